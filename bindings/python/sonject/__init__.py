@@ -1,0 +1,108 @@
+"""Puts ray-traced targets into measured sonar images.
+
+>>> import sonject
+>>> scene = sonject.Scene(
+...     geometry=sonject.Geometry(first_slant_range_m=40.0),
+...     objects=[sonject.Sphere(diameter_m=0.5)],
+... )
+>>> result = sonject.inject(patch, scene)
+>>> result.image
+
+Lengths are metres, angles radians (from_degrees converts), frequencies hertz. Images are arrays of
+rows (track positions) x columns (slant ranges).
+"""
+
+from ._callbacks import Progress
+from ._library import load as _load
+from .actions import check, inject, quicklook, run, write_seabed
+from .context import Context, Device, default_context, devices
+from .enumerations import (
+    ColumnRule,
+    Mode,
+    RangeAxis,
+    ResponseWindow,
+    SeabedMap,
+    Side,
+    Status,
+    TransferKind,
+)
+from .errors import Cancelled, SonjectError
+from .objects import (
+    Capsule,
+    Cylinder,
+    Metres,
+    Object,
+    PatchCentre,
+    Pixels,
+    Plane,
+    Sphere,
+)
+from .parameters import (
+    Geometry,
+    Injection,
+    Material,
+    Medium,
+    Patch,
+    Seabed,
+    Sonar,
+    Synthetic,
+    Transfer,
+    Uniform,
+    from_degrees,
+)
+from .result import Box, ObjectTruth, Result, Statistics
+from .scene import Scene
+
+
+def version() -> str:
+    """major.minor.patch of the loaded library."""
+    return str(_load().sonject_version().decode("ascii"))
+
+
+__all__ = [
+    "Box",
+    "Cancelled",
+    "Capsule",
+    "ColumnRule",
+    "Context",
+    "Cylinder",
+    "Device",
+    "Geometry",
+    "Injection",
+    "Material",
+    "Medium",
+    "Metres",
+    "Mode",
+    "Object",
+    "ObjectTruth",
+    "Patch",
+    "PatchCentre",
+    "Pixels",
+    "Plane",
+    "Progress",
+    "RangeAxis",
+    "ResponseWindow",
+    "Result",
+    "Scene",
+    "Seabed",
+    "SeabedMap",
+    "Side",
+    "Sonar",
+    "SonjectError",
+    "Sphere",
+    "Statistics",
+    "Status",
+    "Synthetic",
+    "Transfer",
+    "TransferKind",
+    "Uniform",
+    "check",
+    "default_context",
+    "devices",
+    "from_degrees",
+    "inject",
+    "quicklook",
+    "run",
+    "version",
+    "write_seabed",
+]

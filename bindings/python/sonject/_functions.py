@@ -1,0 +1,103 @@
+"""Parameters and results of every public function, checked against the headers by the tests."""
+
+from __future__ import annotations
+
+import ctypes
+from ctypes import POINTER, c_char_p, c_int, c_size_t, c_uint32, c_uint64, c_void_p
+from typing import Any
+
+from . import _structures as s
+
+_status = c_int
+_context = POINTER(s.sonject_context)
+_scene = POINTER(s.sonject_scene)
+_result = POINTER(s.sonject_result)
+
+# name: (what it returns, its parameters in order)
+FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
+    "sonject_version": (c_char_p, []),
+    "sonject_status_name": (c_char_p, [_status]),
+    "sonject_context_params_init": (None, [POINTER(s.sonject_context_params)]),
+    "sonject_context_create": (_status, [POINTER(s.sonject_context_params), POINTER(_context)]),
+    "sonject_context_release": (None, [POINTER(_context)]),
+    "sonject_context_message": (c_char_p, [_context]),
+    "sonject_devices": (
+        _status,
+        [_context, POINTER(s.sonject_device_info), c_size_t, POINTER(c_size_t)],
+    ),
+    "sonject_geometry_params_init": (None, [POINTER(s.sonject_geometry_params)]),
+    "sonject_transfer_params_init": (None, [POINTER(s.sonject_transfer_params)]),
+    "sonject_synthetic_params_init": (None, [POINTER(s.sonject_synthetic_params)]),
+    "sonject_injection_params_init": (None, [POINTER(s.sonject_injection_params)]),
+    "sonject_material_params_init": (None, [POINTER(s.sonject_material_params)]),
+    "sonject_object_params_init": (None, [POINTER(s.sonject_object_params)]),
+    "sonject_sonar_params_init": (None, [POINTER(s.sonject_sonar_params)]),
+    "sonject_medium_params_init": (None, [POINTER(s.sonject_medium_params)]),
+    "sonject_seabed_params_init": (None, [POINTER(s.sonject_seabed_params)]),
+    "sonject_scene_create": (_status, [_context, POINTER(_scene)]),
+    "sonject_scene_read": (
+        _status,
+        [_context, c_char_p, POINTER(c_char_p), c_size_t, POINTER(_scene)],
+    ),
+    "sonject_scene_release": (None, [POINTER(_scene)]),
+    "sonject_scene_set_sonar": (_status, [_scene, POINTER(s.sonject_sonar_params)]),
+    "sonject_scene_set_medium": (_status, [_scene, POINTER(s.sonject_medium_params)]),
+    "sonject_scene_set_seabed": (_status, [_scene, POINTER(s.sonject_seabed_params)]),
+    "sonject_scene_set_geometry": (_status, [_scene, POINTER(s.sonject_geometry_params)]),
+    "sonject_scene_set_transfer": (_status, [_scene, POINTER(s.sonject_transfer_params)]),
+    "sonject_scene_set_injection": (_status, [_scene, POINTER(s.sonject_injection_params)]),
+    "sonject_scene_set_patch": (_status, [_scene, POINTER(s.sonject_patch_params)]),
+    "sonject_scene_set_input_file": (_status, [_scene, c_char_p]),
+    "sonject_scene_set_input_uniform": (_status, [_scene, c_uint32, c_uint32]),
+    "sonject_scene_set_input_synthetic": (_status, [_scene, POINTER(s.sonject_synthetic_params)]),
+    "sonject_scene_add_object": (
+        _status,
+        [_scene, POINTER(s.sonject_object_params), POINTER(c_uint32)],
+    ),
+    "sonject_scene_object_count": (_status, [_scene, POINTER(c_uint32)]),
+    "sonject_inject": (
+        _status,
+        [
+            _context,
+            _scene,
+            POINTER(s.sonject_pixels),
+            s.sonject_progress_function,
+            c_void_p,
+            POINTER(_result),
+        ],
+    ),
+    "sonject_result_release": (None, [POINTER(_result)]),
+    "sonject_result_size": (
+        _status,
+        [_result, POINTER(c_uint64), POINTER(c_uint64), POINTER(c_uint32)],
+    ),
+    "sonject_result_layer": (_status, [_result, c_int, c_void_p, c_size_t]),
+    "sonject_result_object": (_status, [_result, c_uint32, POINTER(s.sonject_object_truth)]),
+    "sonject_result_statistics": (_status, [_result, POINTER(s.sonject_statistics)]),
+    "sonject_run_params_init": (None, [POINTER(s.sonject_run_params)]),
+    "sonject_run": (
+        _status,
+        [
+            _context,
+            _scene,
+            POINTER(s.sonject_run_params),
+            s.sonject_progress_function,
+            c_void_p,
+            POINTER(c_int),
+        ],
+    ),
+    "sonject_check": (_status, [_context, _scene, POINTER(c_char_p)]),
+    "sonject_text_release": (None, [POINTER(c_char_p)]),
+    "sonject_quicklook_params_init": (None, [POINTER(s.sonject_quicklook_params)]),
+    "sonject_quicklook": (_status, [_context, POINTER(s.sonject_quicklook_params)]),
+    "sonject_seabed_file_params_init": (None, [POINTER(s.sonject_seabed_file_params)]),
+    "sonject_seabed_write": (_status, [_context, POINTER(s.sonject_seabed_file_params)]),
+}
+
+
+def declare(library: ctypes.CDLL) -> None:
+    """Sets restype and argtypes. Raises AttributeError where the library lacks a function."""
+    for name, (result, parameters) in FUNCTIONS.items():
+        function = getattr(library, name)
+        function.restype = result
+        function.argtypes = parameters

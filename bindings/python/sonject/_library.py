@@ -1,0 +1,76 @@
+"""Finds and loads libsonject, once."""
+
+from __future__ import annotations
+
+import ctypes
+import ctypes.util
+import functools
+import os
+import pathlib
+import sys
+from typing import Iterator
+
+from ._functions import declare
+
+# Of the headers that _structures.py and _functions.py mirror.
+VERSION = (0, 1, 0)
+
+
+def _file_names() -> list[str]:
+    if sys.platform == "win32":
+        return ["sonject.dll", "sonject-0.dll", "libsonject-0.dll"]
+    if sys.platform == "darwin":
+        return ["libsonject.0.dylib", "libsonject.dylib"]
+    return ["libsonject.so.0", "libsonject.so"]
+
+
+def _candidates() -> Iterator[str]:
+    """Names to load, in order: SONJECT_LIBRARY alone if it is set, beside the package, system."""
+    chosen = os.environ.get("SONJECT_LIBRARY")
+    if chosen:
+        yield chosen
+        return
+    package = pathlib.Path(__file__).resolve().parent
+    for folder in (package, package.parent):
+        for name in _file_names():
+            if (folder / name).is_file():
+                yield str(folder / name)
+    yield from _file_names()
+    found = ctypes.util.find_library("sonject")
+    if found:
+        yield found
+
+
+def _check_version(library: ctypes.CDLL) -> None:
+    # The library's _init functions write as many bytes as its own structures have, so structures
+    # of another version could overflow ours: only the same major.minor will do.
+    text = library.sonject_version().decode("ascii")
+    if tuple(int(part) for part in text.split(".")[:2]) != VERSION[:2]:
+        ours = ".".join(str(part) for part in VERSION)
+        raise ImportError(
+            f"libsonject is version {text}, but this Python package is for {ours}: "
+            "install the pair that belongs together or set SONJECT_LIBRARY"
+        )
+
+
+@functools.lru_cache(maxsize=None)
+def load() -> ctypes.CDLL:
+    """The loaded library with all functions declared. Raises ImportError if there is none."""
+    failures: list[str] = []
+    for name in _candidates():
+        try:
+            library = ctypes.CDLL(name)
+        except OSError as error:
+            failures.append(str(error))
+            continue
+        try:
+            declare(library)
+        except AttributeError as error:
+            raise ImportError(f"{name} is not the libsonject of this package: {error}") from None
+        _check_version(library)
+        return library
+    raise ImportError(
+        "libsonject was not found: set the environment variable SONJECT_LIBRARY to its path ("
+        + "; ".join(failures)
+        + ")"
+    )

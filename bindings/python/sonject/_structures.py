@@ -1,0 +1,288 @@
+"""The public structures of include/sonject, field by field and under their C names.
+
+tests/test_declarations.py compares them with the headers and with the C compiler's layout.
+"""
+
+from __future__ import annotations
+
+from ctypes import (
+    CFUNCTYPE,
+    Structure,
+    c_char,
+    c_char_p,
+    c_double,
+    c_int,
+    c_uint32,
+    c_uint64,
+    c_void_p,
+)
+
+NAME_CAPACITY = 64
+
+sonject_log_function = CFUNCTYPE(None, c_void_p, c_char_p)
+sonject_progress_function = CFUNCTYPE(c_int, c_void_p, c_double, c_char_p)
+
+
+class sonject_context(Structure):
+    """Opaque."""
+
+
+class sonject_scene(Structure):
+    """Opaque."""
+
+
+class sonject_result(Structure):
+    """Opaque."""
+
+
+class sonject_context_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("device_name", c_char_p),
+        ("cache_folder", c_char_p),
+        ("opencl_context", c_void_p),
+        ("opencl_device", c_void_p),
+        ("log", sonject_log_function),
+        ("log_user", c_void_p),
+    ]
+
+
+class sonject_device_info(Structure):
+    _fields_ = [
+        ("name", c_char * 128),
+        ("platform", c_char * 128),
+        ("driver", c_char * 128),
+        ("compute_units", c_uint32),
+        ("vector_width", c_uint32),
+        ("is_default", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
+class sonject_geometry_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("side", c_uint32),
+        ("row_spacing_m", c_double),
+        ("column_spacing_m", c_double),
+        ("first_along_track_m", c_double),
+        ("first_slant_range_m", c_double),
+    ]
+
+
+class sonject_transfer_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("kind", c_uint32),
+        ("parameter", c_double),
+        ("offset", c_double),
+    ]
+
+
+class sonject_synthetic_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("complex_pixels", c_uint32),
+        ("rows", c_uint32),
+        ("columns", c_uint32),
+        ("seed", c_uint64),
+        ("speckle_shape", c_double),
+        ("texture_length_m", c_double),
+        ("ripple_wavelength_m", c_double),
+        ("ripple_contrast", c_double),
+        ("ripple_heading_rad", c_double),
+        ("patch_contrast_db", c_double),
+        ("patch_length_m", c_double),
+        ("mean_amplitude", c_double),
+    ]
+
+
+class sonject_injection_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("mode", c_uint32),
+        ("column_rule", c_uint32),
+        ("estimate_noise", c_uint32),
+        ("noise_floor_db", c_double),
+        ("influence_db", c_double),
+        ("ray_scale", c_double),
+        ("seed", c_uint64),
+    ]
+
+
+class sonject_material_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("reflection", c_double),
+        ("roughness_m", c_double),
+        ("lambert", c_double),
+    ]
+
+
+class sonject_object_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("shape", c_uint32),
+        ("name", c_char * NAME_CAPACITY),
+        ("class_name", c_char * NAME_CAPACITY),
+        ("length_m", c_double),
+        ("width_m", c_double),
+        ("diameter_m", c_double),
+        ("position_kind", c_uint32),
+        ("reserved", c_uint32),
+        ("position_along", c_double),
+        ("position_range", c_double),
+        ("heading_rad", c_double),
+        ("pitch_rad", c_double),
+        ("roll_rad", c_double),
+        ("burial_m", c_double),
+        ("material", sonject_material_params),
+    ]
+
+
+class sonject_pixels(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("kind", c_uint32),
+        ("rows", c_uint64),
+        ("columns", c_uint64),
+        ("row_stride", c_uint64),
+        ("data", c_void_p),
+    ]
+
+
+class sonject_box(Structure):
+    _fields_ = [
+        ("first_row", c_uint64),
+        ("first_column", c_uint64),
+        ("rows", c_uint64),
+        ("columns", c_uint64),
+    ]
+
+
+class sonject_object_truth(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("is_visible", c_uint32),
+        ("highlight_is_cut", c_uint32),
+        ("shadow_is_cut", c_uint32),
+        ("row", c_double),
+        ("column", c_double),
+        ("along_track_m", c_double),
+        ("slant_range_m", c_double),
+        ("ground_range_m", c_double),
+        ("height_m", c_double),
+        ("highlight", sonject_box),
+        ("shadow", sonject_box),
+        ("both", sonject_box),
+        ("highlight_pixels", c_uint64),
+        ("shadow_pixels", c_uint64),
+        ("target_strength_db", c_double),
+        ("highlight_contrast_db", c_double),
+        ("shadow_contrast_db", c_double),
+    ]
+
+
+class sonject_statistics(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("pings", c_uint64),
+        ("rays", c_uint64),
+        ("ray_queries", c_uint64),
+        ("impulses", c_uint64),
+        ("trace_s", c_double),
+        ("form_s", c_double),
+        ("inject_s", c_double),
+        ("noise_floor_db", c_double),
+        ("input_clipped", c_uint64),
+        ("output_clipped", c_uint64),
+        ("changed_pixels", c_uint64),
+        ("level_change_db", c_double),
+        ("input_contrast", c_double),
+        ("output_contrast", c_double),
+        ("histogram_distance", c_double),
+        ("correlation", c_double),
+    ]
+
+
+class sonject_run_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("folder", c_char_p),
+    ]
+
+
+class sonject_sonar_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("response_window", c_uint32),
+        ("centre_frequency_hz", c_double),
+        ("bandwidth_hz", c_double),
+        ("altitude_m", c_double),
+        ("along_track_resolution_m", c_double),
+        ("transducer_side_m", c_double),
+        ("taylor_sidelobe_db", c_double),
+        ("taylor_terms", c_uint32),
+        ("reserved", c_uint32),
+    ]
+
+
+class sonject_medium_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("sound_speed_mps", c_double),
+        ("reference_sound_speed_mps", c_double),
+    ]
+
+
+class sonject_seabed_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("map", c_uint32),
+        ("lambert", c_double),
+        ("level_radius_m", c_double),
+        ("despeckle_radius_m", c_double),
+    ]
+
+
+class sonject_patch_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("first_row", c_uint64),
+        ("first_column", c_uint64),
+        ("rows", c_uint64),
+        ("columns", c_uint64),
+    ]
+
+
+class sonject_quicklook_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("range_axis", c_uint32),
+        ("image", c_char_p),
+        ("picture", c_char_p),
+        ("minimum_db", c_double),
+        ("maximum_db", c_double),
+        ("altitude_m", c_double),
+        ("has_geometry", c_uint32),
+        ("has_transfer", c_uint32),
+        ("geometry", sonject_geometry_params),
+        ("transfer", sonject_transfer_params),
+    ]
+
+
+class sonject_seabed_file_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("image", c_char_p),
+        ("synthetic", sonject_synthetic_params),
+        ("geometry", sonject_geometry_params),
+        ("sonar", sonject_sonar_params),
+    ]

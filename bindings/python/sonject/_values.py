@@ -1,0 +1,101 @@
+"""Python values into C fields, refusing what ctypes would quietly cut or wrap."""
+
+from __future__ import annotations
+
+import ctypes
+import enum
+import numbers
+import operator
+import os
+from typing import Any, Mapping, Optional, Type, TypeVar, Union
+
+from ._library import load
+
+PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
+AnyStructure = TypeVar("AnyStructure", bound=ctypes.Structure)
+AnyEnum = TypeVar("AnyEnum", bound=enum.IntEnum)
+
+_LARGEST = {ctypes.c_uint32: 2**32 - 1, ctypes.c_uint64: 2**64 - 1}
+
+
+def whole_number(name: str, value: Any, largest: int) -> int:
+    """value as an int within 0...largest."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{name} must be a whole number, not {value!r}") from None
+    if not 0 <= number <= largest:
+        raise ValueError(f"{name} must lie within 0...{largest}, not {number}")
+    return number
+
+
+def real_number(name: str, value: Any) -> float:
+    """value as a float; whether it makes sense is the library's to say."""
+    if not isinstance(value, numbers.Real):
+        raise TypeError(f"{name} must be a number, not {value!r}")
+    return float(value)
+
+
+def choice(name: str, kind: Type[AnyEnum], value: Any) -> AnyEnum:
+    """value as a member of kind; a member's name in any case is one too."""
+    if isinstance(value, str) and value.upper() in kind.__members__:
+        return kind[value.upper()]
+    if not isinstance(value, str):
+        try:
+            return kind(value)
+        except ValueError:
+            pass
+    names = ", ".join(member.lower() for member in kind.__members__)
+    raise ValueError(f"{name} must be one of {names}, not {value!r}")
+
+
+def short_text(name: str, value: Any, capacity: int) -> bytes:
+    """value in UTF-8 with room for the terminator."""
+    if not isinstance(value, str):
+        raise TypeError(f"{name} must be a text, not {value!r}")
+    encoded = value.encode("utf-8")
+    if len(encoded) >= capacity or b"\0" in encoded:
+        raise ValueError(f"{name} must have at most {capacity - 1} bytes and no NUL: {value!r}")
+    return encoded
+
+
+def file_name(name: str, value: Any) -> bytes:
+    """A path in the file system's encoding."""
+    try:
+        encoded = os.fsencode(value)
+    except TypeError:
+        raise TypeError(f"{name} must be a path, not {value!r}") from None
+    if b"\0" in encoded:
+        raise ValueError(f"{name} contains a NUL: {value!r}")
+    return encoded
+
+
+def optional_file_name(name: str, value: Any) -> Optional[bytes]:
+    return None if value is None else file_name(name, value)
+
+
+def initialised(kind: Type[AnyStructure]) -> AnyStructure:
+    """A structure with the library's defaults."""
+    structure = kind()
+    getattr(load(), kind.__name__ + "_init")(ctypes.byref(structure))
+    return structure
+
+
+def sized(kind: Type[AnyStructure]) -> AnyStructure:
+    """A zeroed structure that carries its size."""
+    return kind(struct_size=ctypes.sizeof(kind))
+
+
+def fill(structure: ctypes.Structure, values: Mapping[str, Any]) -> None:
+    """Assigns each named value, checked for the field's type."""
+    types = {field[0]: field[1] for field in structure._fields_}
+    for name, value in values.items():
+        kind = types[name]
+        if kind is ctypes.c_double:
+            setattr(structure, name, real_number(name, value))
+        elif kind in _LARGEST:
+            setattr(structure, name, whole_number(name, value, _LARGEST[kind]))
+        elif issubclass(kind, ctypes.Array):
+            setattr(structure, name, short_text(name, value, ctypes.sizeof(kind)))
+        else:
+            setattr(structure, name, value)

@@ -1,0 +1,142 @@
+"""What there is to do: inject into arrays, and whole runs on files."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import Any, Optional
+
+from . import _structures as s
+from ._callbacks import Progress, ProgressBridge, text
+from ._library import load
+from ._pixels import library_pixels
+from ._values import PathLike, choice, file_name, initialised, real_number
+from .context import Context, default_context
+from .enumerations import RangeAxis
+from .parameters import Geometry, Sonar, Synthetic, Transfer
+from .result import Result
+from .scene import Scene
+
+
+def inject(patch: Any, scene: Scene, progress: Optional[Progress] = None) -> Result:
+    """Puts the scene's objects into a patch.
+
+    patch: array of rows (track positions) x columns (slant ranges), linear amplitudes or complex
+    pixels; its pixel (0, 0) lies where the scene's geometry begins. float32 and complex64 arrays
+    with contiguous columns are read where they lie, other floating point arrays are converted to
+    these, anything else is refused. None where the scene's input is Uniform or Synthetic. The patch
+    is never changed.
+
+    progress: called with the finished fraction and the stage's name; a true answer cancels, and
+    what it raises ends the call and is raised here.
+
+    Raises SonjectError, Cancelled, and TypeError or ValueError for arrays that are no patch.
+    """
+    pixels = None
+    array = None  # must live until the call is over: pixels points into it
+    if patch is not None:
+        pixels, array = library_pixels(patch)
+    context = scene.context
+    count = scene.object_count
+    bridge = ProgressBridge(progress)
+    pointer = context.make(
+        s.sonject_result,
+        "sonject_inject",
+        context,
+        scene,
+        None if pixels is None else ctypes.byref(pixels),
+        bridge.callback,
+        None,
+        bridge=bridge,
+    )
+    del array
+    return Result(context, pointer, count)
+
+
+def run(scene: Scene, folder: PathLike, progress: Optional[Progress] = None) -> bool:
+    """Reads the scene's input, injects, and writes the result files into folder.
+
+    False, with nothing done, if folder already held the finished result of the same inputs.
+    """
+    context = scene.context
+    params = initialised(s.sonject_run_params)
+    params.folder = file_name("folder", folder)
+    bridge = ProgressBridge(progress)
+    was_finished = ctypes.c_int()
+    context.call(
+        "sonject_run",
+        context,
+        scene,
+        ctypes.byref(params),
+        bridge.callback,
+        None,
+        ctypes.byref(was_finished),
+        bridge=bridge,
+    )
+    return not was_finished.value
+
+
+def check(scene: Scene) -> str:
+    """Checks the scene against its input image and describes the geometry, with a drawing."""
+    description = ctypes.c_char_p()
+    scene.context.call("sonject_check", scene.context, scene, ctypes.byref(description))
+    try:
+        return text(description.value)
+    finally:
+        load().sonject_text_release(ctypes.byref(description))
+
+
+def quicklook(
+    image: PathLike,
+    picture: PathLike,
+    *,
+    decibels: Optional[tuple[float, float]] = None,
+    range_axis: RangeAxis = RangeAxis.SLANT,
+    altitude_m: Optional[float] = None,
+    geometry: Optional[Geometry] = None,
+    transfer: Optional[Transfer] = None,
+    context: Optional[Context] = None,
+) -> None:
+    """Draws an image file as a PNG.
+
+    decibels: ends of the grey scale, None: chosen from the image; altitude_m, geometry, transfer:
+    None for what the image's metadata says.
+    """
+    context = default_context() if context is None else context
+    params = initialised(s.sonject_quicklook_params)
+    params.image = file_name("image", image)
+    params.picture = file_name("picture", picture)
+    params.range_axis = choice("range_axis", RangeAxis, range_axis)
+    if decibels is not None:
+        minimum, maximum = (real_number("decibels", end) for end in decibels)
+        if not minimum < maximum:
+            raise ValueError(f"decibels must be (minimum, maximum), not {decibels!r}")
+        params.minimum_db, params.maximum_db = minimum, maximum
+    if altitude_m is not None:
+        params.altitude_m = real_number("altitude_m", altitude_m)
+    if geometry is not None:
+        params.has_geometry = 1
+        params.geometry = geometry.to_structure()
+    if transfer is not None:
+        params.has_transfer = 1
+        params.transfer = transfer.to_structure()
+    context.call("sonject_quicklook", context, ctypes.byref(params))
+
+
+def write_seabed(
+    image: PathLike,
+    synthetic: Optional[Synthetic] = None,
+    geometry: Optional[Geometry] = None,
+    sonar: Optional[Sonar] = None,
+    context: Optional[Context] = None,
+) -> None:
+    """Writes a synthetic seabed with its geometry as metadata: .tif (float32) or .png (8 bit)."""
+    context = default_context() if context is None else context
+    params = initialised(s.sonject_seabed_file_params)
+    params.image = file_name("image", image)
+    if synthetic is not None:
+        params.synthetic = synthetic.to_structure()
+    if geometry is not None:
+        params.geometry = geometry.to_structure()
+    if sonar is not None:
+        params.sonar = sonar.to_structure()
+    context.call("sonject_seabed_write", context, ctypes.byref(params))

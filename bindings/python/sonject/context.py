@@ -1,0 +1,221 @@
+"""Contexts: one OpenCL device each, and whatever was made with them."""
+
+from __future__ import annotations
+
+import collections
+import contextlib
+import ctypes
+import os
+import threading
+import weakref
+from dataclasses import dataclass
+from typing import Any, Callable, Iterator, Optional, Type
+
+from . import _structures as s
+from ._callbacks import LogBridge, ProgressBridge, text
+from ._handle import Handle
+from ._library import load
+from ._values import PathLike, initialised, optional_file_name
+from .enumerations import Status
+from .errors import Cancelled, SonjectError
+
+
+@dataclass(frozen=True)
+class Device:
+    """An OpenCL device; vector_width: lanes that the kernels are compiled for."""
+
+    name: str
+    platform: str
+    driver: str
+    compute_units: int
+    vector_width: int
+    is_default: bool
+
+
+class Context:
+    """Works with one OpenCL device.
+
+    device: part of the device's name, None for the default one; cache_folder: for compiled
+    programs, None for the user's cache, "" for none; log: called with lines of news;
+    opencl_context, opencl_device: addresses of a host's cl_context and cl_device_id to work in.
+
+    Calls from several threads on one context wait for each other; use a context per thread to work
+    at once. A context does not survive os.fork in the child.
+    """
+
+    def __init__(
+        self,
+        device: Optional[str] = None,
+        cache_folder: Optional[PathLike] = None,
+        log: Optional[Callable[[str], Any]] = None,
+        opencl_context: Optional[int] = None,
+        opencl_device: Optional[int] = None,
+    ) -> None:
+        self._library = load()
+        self._process = os.getpid()
+        self._lock = threading.Lock()
+        self._owner: Optional[int] = None
+        self._waiting: collections.deque[Any] = collections.deque()
+        self._handles: weakref.WeakSet[Handle] = weakref.WeakSet()
+        self._log = None if log is None else LogBridge(log)
+        params = initialised(s.sonject_context_params)
+        params.device_name = optional_file_name("device", device)
+        params.cache_folder = optional_file_name("cache_folder", cache_folder)
+        params.opencl_context = opencl_context
+        params.opencl_device = opencl_device
+        if self._log is not None:
+            params.log = self._log.callback
+        self._pointer = ctypes.POINTER(s.sonject_context)()
+        status = self._library.sonject_context_create(
+            ctypes.byref(params), ctypes.byref(self._pointer)
+        )
+        if status != Status.OK:
+            name = text(self._library.sonject_status_name(status))
+            raise SonjectError(Status(status), f"the context cannot be made: {name}")
+        self._finalizer = weakref.finalize(
+            self, _release_context, self._pointer, self._process, self._log
+        )
+
+    def close(self) -> None:
+        """Releases the context, after the scenes and results that were made with it."""
+        for handle in list(self._handles):
+            handle.close()
+        if self._finalizer.alive:
+            with self._exclusive():
+                pass  # waits for a call that still runs and releases what it kept waiting
+            self._finalizer()
+
+    def __enter__(self) -> "Context":
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
+
+    def devices(self) -> list[Device]:
+        """The OpenCL devices that there are; empty if none."""
+        count = ctypes.c_size_t()
+        self.call("sonject_devices", self, None, 0, ctypes.byref(count))
+        found = (s.sonject_device_info * count.value)()
+        self.call("sonject_devices", self, found, len(found), ctypes.byref(count))
+        return [
+            Device(
+                name=text(info.name),
+                platform=text(info.platform),
+                driver=text(info.driver),
+                compute_units=info.compute_units,
+                vector_width=info.vector_width,
+                is_default=bool(info.is_default),
+            )
+            for info in found[: count.value]
+        ]
+
+    @property
+    def pointer(self) -> Any:
+        """The C handle. Raises ValueError once the context is closed."""
+        if not self._finalizer.alive:
+            raise ValueError("this sonject context was closed")
+        return self._pointer
+
+    @property
+    def is_usable(self) -> bool:
+        """False once it is closed, and in a child process."""
+        return self._finalizer.alive and self._process == os.getpid()
+
+    def call(self, name: str, *arguments: Any, bridge: Optional[ProgressBridge] = None) -> None:
+        """Calls the library function name, which answers a status.
+
+        Handles among the arguments stand for their pointers. Raises what callbacks raised first,
+        then SonjectError.
+        """
+        with self._exclusive():
+            # Looked up under the lock: another thread may close a handle until then.
+            values = [
+                each.pointer if isinstance(each, (Handle, Context)) else each for each in arguments
+            ]
+            status = getattr(self._library, name)(*values)
+            message = ""
+            if status != Status.OK:
+                message = text(self._library.sonject_context_message(self._pointer))
+        for callback in (bridge, self._log):
+            if callback is not None and callback.error is not None:
+                error, callback.error = callback.error, None
+                raise error
+        if status == Status.CANCELLED:
+            raise Cancelled(Status.CANCELLED, message)
+        if status != Status.OK:
+            raise SonjectError(Status(status), message)
+
+    def make(
+        self,
+        kind: Type[ctypes.Structure],
+        name: str,
+        *arguments: Any,
+        bridge: Optional[ProgressBridge] = None,
+    ) -> Any:
+        """Calls the library function name, whose last parameter gets a new handle of kind."""
+        pointer = ctypes.POINTER(kind)()
+        try:
+            self.call(name, *arguments, ctypes.byref(pointer), bridge=bridge)
+        except BaseException:
+            if pointer:  # made, but a callback raised something
+                self.release(pointer)
+            raise
+        return pointer
+
+    def adopt(self, handle: Handle) -> None:
+        """Has handle closed before the context is."""
+        self._handles.add(handle)
+
+    def release(self, pointer: Any) -> None:
+        """Gives a handle back to the library."""
+        # Runs wherever Python collects garbage, perhaps inside a callback of a running call: then
+        # the release waits for that call's end, since a context works for one thread at a time.
+        self._waiting.append(pointer)
+        if self._lock.acquire(blocking=False):
+            try:
+                self._release_waiting()
+            finally:
+                self._lock.release()
+
+    def _release_waiting(self) -> None:
+        while self._waiting:
+            pointer = self._waiting.popleft()
+            if os.getpid() == self._process:
+                release = getattr(self._library, pointer._type_.__name__ + "_release")
+                release(ctypes.byref(pointer))
+
+    @contextlib.contextmanager
+    def _exclusive(self) -> Iterator[None]:
+        if os.getpid() != self._process:
+            raise RuntimeError("this sonject context belongs to the parent process: make a new one")
+        if self._owner == threading.get_ident():
+            raise RuntimeError("a sonject context cannot be used within its own callbacks")
+        with self._lock:
+            self._owner = threading.get_ident()
+            try:
+                yield
+            finally:
+                self._owner = None
+                self._release_waiting()
+
+
+def _release_context(pointer: Any, process: int, _log: Optional[LogBridge]) -> None:
+    if os.getpid() == process:
+        load().sonject_context_release(ctypes.byref(pointer))
+
+
+_of_thread = threading.local()
+
+
+def default_context() -> Context:
+    """The calling thread's own context on the default device."""
+    context: Optional[Context] = getattr(_of_thread, "context", None)
+    if context is None or not context.is_usable:
+        context = Context()
+        _of_thread.context = context
+    return context
+
+
+def devices() -> list[Device]:
+    """The OpenCL devices that there are; empty if none."""
+    return default_context().devices()

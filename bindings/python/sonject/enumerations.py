@@ -1,0 +1,118 @@
+"""Named choices; the values are those of the C enumerations."""
+
+from __future__ import annotations
+
+import enum
+
+
+class Status(enum.IntEnum):
+    """sonject_status: what a call answered."""
+
+    OK = 0
+    ERROR_ARGUMENT = 1
+    ERROR_INPUT = 2
+    ERROR_DEVICE = 3
+    ERROR_STORAGE = 4
+    ERROR_MEMORY = 5
+    ERROR_UNSUPPORTED = 6
+    CANCELLED = 7
+
+
+class Side(enum.IntEnum):
+    """sonject_side: which side of the track the image shows."""
+
+    PORT = 0
+    STARBOARD = 1
+
+
+class TransferKind(enum.IntEnum):
+    """sonject_transfer: how stored numbers came from amplitudes."""
+
+    AMPLITUDE = 0
+    INTENSITY = 1
+    DECIBEL = 2
+    GAMMA = 3
+    SCHLICK = 4
+
+
+class Mode(enum.IntEnum):
+    """sonject_injection_mode: compose into the patch, or trace the whole patch anew."""
+
+    COMPOSITE = 0
+    RESYNTHESISE = 1
+
+
+class ColumnRule(enum.IntEnum):
+    """sonject_column_rule: the column of an echo of several interactions."""
+
+    FOCUSED = 0
+    PAPER = 1
+
+
+class Shape(enum.IntEnum):
+    """sonject_shape."""
+
+    PLANE = 0
+    SPHERE = 1
+    CYLINDER = 2
+    CAPSULE = 3
+
+
+class PositionKind(enum.IntEnum):
+    """sonject_position_kind."""
+
+    PATCH_CENTRE = 0
+    METRES = 1
+    PIXELS = 2
+
+
+class PixelKind(enum.IntEnum):
+    """sonject_pixel_kind."""
+
+    AMPLITUDE = 0
+    COMPLEX = 1
+
+
+class Layer(enum.IntEnum):
+    """sonject_layer: the arrays of a result."""
+
+    IMAGE = 0
+    FIELD = 1
+    ENERGY = 2
+    VISIBILITY = 3
+    HIGHLIGHT = 4
+    SHADOW = 5
+    LABELS = 6
+    INFLUENCE = 7
+
+
+class RangeAxis(enum.IntEnum):
+    """sonject_range_axis: horizontal axis of a quick look."""
+
+    SLANT = 0
+    GROUND = 1
+
+
+class InputKind(enum.IntEnum):
+    """sonject_input_kind: where a scene's swath comes from."""
+
+    MEMORY = 0
+    FILE = 1
+    UNIFORM = 2
+    SYNTHETIC = 3
+
+
+class SeabedMap(enum.IntEnum):
+    """sonject_seabed_map: what resynthesise uses as reflectivity."""
+
+    INTENSITY = 0
+    DESPECKLED = 1
+    COHERENT = 2
+
+
+class ResponseWindow(enum.IntEnum):
+    """sonject_response_window: weighting of the aspects that form a pixel."""
+
+    RECTANGULAR = 0
+    HAMMING = 1
+    TAYLOR = 2

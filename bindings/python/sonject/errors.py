@@ -1,0 +1,24 @@
+"""What the package raises when the library refuses."""
+
+from __future__ import annotations
+
+from .enumerations import Status
+
+
+class SonjectError(Exception):
+    """A call of the library failed.
+
+    status: which kind of failure; message: one line that says what is wrong and where.
+    """
+
+    def __init__(self, status: Status, message: str) -> None:
+        super().__init__(status, message)
+        self.status = status
+        self.message = message
+
+    def __str__(self) -> str:
+        return self.message
+
+
+class Cancelled(SonjectError):
+    """The progress function asked to stop. Nothing was published."""

@@ -1,0 +1,251 @@
+"""What describes a scene, apart from its objects. SI units, angles in radians.
+
+Whatever is not given takes the library's default, which the attribute shows afterwards. Ranges of
+values are checked by the library when a scene is made of them.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import enum
+import math
+from dataclasses import dataclass, field, fields
+from typing import Any, ClassVar, Mapping, Optional, Type
+
+from . import _structures as s
+from ._values import choice, fill, initialised, sized
+from .enumerations import (
+    ColumnRule,
+    Mode,
+    ResponseWindow,
+    SeabedMap,
+    Side,
+    TransferKind,
+)
+
+
+def from_degrees(angle: float) -> float:
+    """An angle in radians from one in degrees: ``heading_rad=from_degrees(30)``."""
+    return math.radians(angle)
+
+
+def library_default() -> Any:
+    """A field whose default the library gives."""
+    return field(default=None)
+
+
+@dataclass(kw_only=True)
+class Parameters:
+    """Mirrors one C structure; fields have the names of the structure's."""
+
+    _structure: ClassVar[Type[ctypes.Structure]]
+    _choices: ClassVar[Mapping[str, Type[enum.IntEnum]]] = {}
+
+    def __post_init__(self) -> None:
+        defaults = initialised(self._structure)
+        for entry in fields(self):
+            if getattr(self, entry.name) is None:
+                setattr(self, entry.name, getattr(defaults, entry.name))
+            if entry.name in self._choices:
+                kind = self._choices[entry.name]
+                setattr(self, entry.name, choice(entry.name, kind, getattr(self, entry.name)))
+
+    def _values(self) -> dict[str, Any]:
+        values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
+        for name, kind in self._choices.items():
+            values[name] = choice(name, kind, values[name])
+        return values
+
+    def to_structure(self) -> Any:
+        """The C structure. Raises TypeError or ValueError where a value does not fit into it."""
+        structure = initialised(self._structure)
+        fill(structure, self._values())
+        return structure
+
+
+@dataclass(kw_only=True)
+class Sonar(Parameters):
+    """The sonar as its images show it.
+
+    response_window: weighting of the aspects that form a pixel; centre_frequency_hz, bandwidth_hz:
+    the range width at -3 dB is c / (2 bandwidth); altitude_m: height of the track over the mean
+    seabed; along_track_resolution_m: 0 takes the image's row spacing; transducer_side_m: side of
+    the source, 0 for a point; taylor_sidelobe_db, taylor_terms: for the Taylor window only.
+    """
+
+    _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_sonar_params
+    _choices: ClassVar[Mapping[str, Type[enum.IntEnum]]] = {"response_window": ResponseWindow}
+
+    response_window: ResponseWindow = library_default()
+    centre_frequency_hz: float = library_default()
+    bandwidth_hz: float = library_default()
+    altitude_m: float = library_default()
+    along_track_resolution_m: float = library_default()
+    transducer_side_m: float = library_default()
+    taylor_sidelobe_db: float = library_default()
+    taylor_terms: int = library_default()
+
+
+@dataclass(kw_only=True)
+class Medium(Parameters):
+    """The water. reference_sound_speed_mps: that the image processor assumed; 0: the true one."""
+
+    _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_medium_params
+
+    sound_speed_mps: float = library_default()
+    reference_sound_speed_mps: float = library_default()
+
+
+@dataclass(kw_only=True)
+class Seabed(Parameters):
+    """The seabed, a plane whose reflectivity comes from the image.
+
+    map: the reflectivity when the patch is resynthesised; lambert: backscatter per area and solid
+    angle at normal incidence, linear, at most 1/pi; level_radius_m: of the smooth local mean that
+    lambert stands for; despeckle_radius_m: of the despeckled map.
+    """
+
+    _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_seabed_params
+    _choices: ClassVar[Mapping[str, Type[enum.IntEnum]]] = {"map": SeabedMap}
+
+    map: SeabedMap = library_default()
+    lambert: float = library_default()
+    level_radius_m: float = library_default()
+    despeckle_radius_m: float = library_default()
+
+
+@dataclass(kw_only=True)
+class Geometry(Parameters):
+    """Where the pixels lie: rows are track positions, columns slant ranges, both pixel centres.
+
+    first_slant_range_m has no useful default: it is the slant range of column 0.
+    """
+
+    _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_geometry_params
+    _choices: ClassVar[Mapping[str, Type[enum.IntEnum]]] = {"side": Side}
+
+    first_slant_range_m: float
+    row_spacing_m: float = library_default()
+    column_spacing_m: float = library_default()
+    first_along_track_m: float = library_default()
+    side: Side = library_default()
+
+
+@dataclass(kw_only=True)
+class Transfer(Parameters):
+    """How an image file's stored numbers came from amplitudes; arrays are always linear.
+
+    parameter: dB per unit (decibel), exponent (gamma) or b (schlick); offset: dB (decibel).
+    """
+
+    _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_transfer_params
+    _choices: ClassVar[Mapping[str, Type[enum.IntEnum]]] = {"kind": TransferKind}
+
+    kind: TransferKind = library_default()
+    parameter: float = library_default()
+    offset: float = library_default()
+
+
+@dataclass(kw_only=True)
+class Injection(Parameters):
+    """How objects are put into the image.
+
+    mode: composite keeps every bit of pixels outside the objects' influence, resynthesise traces
+    the whole patch anew; column_rule: column of an echo of several interactions; noise_floor_db:
+    noise energy over the local mean seabed energy, below 0, None: estimated from the patch;
+    influence_db: level of change over the seabed from which a pixel is the objects'; ray_scale:
+    factor on the number of rays; seed: of all random numbers.
+    """
+
+    _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_injection_params
+    _choices: ClassVar[Mapping[str, Type[enum.IntEnum]]] = {
+        "mode": Mode,
+        "column_rule": ColumnRule,
+    }
+
+    mode: Mode = library_default()
+    column_rule: ColumnRule = library_default()
+    influence_db: float = library_default()
+    ray_scale: float = library_default()
+    seed: int = library_default()
+    noise_floor_db: Optional[float] = None
+
+    def __post_init__(self) -> None:
+        given = self.noise_floor_db
+        super().__post_init__()
+        self.noise_floor_db = given
+
+    def _values(self) -> dict[str, Any]:
+        values = super()._values()
+        values["estimate_noise"] = int(self.noise_floor_db is None)
+        if self.noise_floor_db is None:
+            del values["noise_floor_db"]
+        return values
+
+
+@dataclass(kw_only=True)
+class Material(Parameters):
+    """How much sound a surface returns.
+
+    reflection: amplitude of the mirror-like part, -1...1; roughness_m: rms height; lambert:
+    coefficient mu of the rough part, linear.
+    """
+
+    _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_material_params
+
+    reflection: float = library_default()
+    roughness_m: float = library_default()
+    lambert: float = library_default()
+
+
+@dataclass(kw_only=True)
+class Synthetic(Parameters):
+    """A synthetic seabed: amplitude or complex pixels with K-distributed speckle.
+
+    speckle_shape: shape of the K distribution, math.inf for Rayleigh amplitudes; texture_length_m:
+    correlation length of its texture; ripple_contrast: 0...1; ripple_heading_rad: across the
+    crests, from along-track towards range; patch_contrast_db, patch_length_m: sediment patches;
+    mean_amplitude: rms amplitude of the darker sediment.
+    """
+
+    _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_synthetic_params
+
+    rows: int = library_default()
+    columns: int = library_default()
+    seed: int = library_default()
+    complex_pixels: bool = library_default()
+    speckle_shape: float = library_default()
+    texture_length_m: float = library_default()
+    ripple_wavelength_m: float = library_default()
+    ripple_contrast: float = library_default()
+    ripple_heading_rad: float = library_default()
+    patch_contrast_db: float = library_default()
+    patch_length_m: float = library_default()
+    mean_amplitude: float = library_default()
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.complex_pixels = bool(self.complex_pixels)
+
+
+@dataclass
+class Uniform:
+    """A swath of rows x columns pixels of unit reflectivity."""
+
+    rows: int
+    columns: int
+
+
+@dataclass(kw_only=True)
+class Patch:
+    """The part of a swath that is worked on, in whole pixels."""
+
+    first_row: int
+    first_column: int
+    rows: int
+    columns: int
+
+    def to_structure(self) -> s.sonject_patch_params:
+        structure = sized(s.sonject_patch_params)
+        fill(structure, {entry.name: getattr(self, entry.name) for entry in fields(self)})
+        return structure

@@ -1,0 +1,160 @@
+"""Scenes: sonar, water, seabed and objects."""
+
+from __future__ import annotations
+
+import ctypes
+from typing import Any, Iterable, Mapping, Optional, Type, Union
+
+from . import _structures as s
+from ._handle import Handle
+from ._values import PathLike, file_name, whole_number
+from .context import Context, default_context
+from .objects import Object
+from .parameters import (
+    Geometry,
+    Injection,
+    Medium,
+    Patch,
+    Seabed,
+    Sonar,
+    Synthetic,
+    Transfer,
+    Uniform,
+)
+
+Input = Union[PathLike, Uniform, Synthetic]
+
+
+class Scene(Handle):
+    """What the sonar sees. Each setting is checked, and copied, when it is made.
+
+    sonar, medium, seabed, geometry, injection: None for the defaults (but geometry needs at least
+    the first slant range before anything can be injected); objects: up to 250; input: an image
+    file, Uniform or Synthetic, None where inject is given an array; transfer, patch: of an image
+    file; context: None for the thread's own one.
+    """
+
+    _noun = "scene"
+
+    def __init__(
+        self,
+        *,
+        sonar: Optional[Sonar] = None,
+        medium: Optional[Medium] = None,
+        seabed: Optional[Seabed] = None,
+        geometry: Optional[Geometry] = None,
+        injection: Optional[Injection] = None,
+        objects: Iterable[Object] = (),
+        input: Optional[Input] = None,
+        transfer: Optional[Transfer] = None,
+        patch: Optional[Patch] = None,
+        context: Optional[Context] = None,
+    ) -> None:
+        context = default_context() if context is None else context
+        super().__init__(context, context.make(s.sonject_scene, "sonject_scene_create", context))
+        settings: list[tuple[str, Any, Type[Any]]] = [
+            ("sonar", sonar, Sonar),
+            ("medium", medium, Medium),
+            ("seabed", seabed, Seabed),
+            ("geometry", geometry, Geometry),
+            ("injection", injection, Injection),
+            ("transfer", transfer, Transfer),
+            ("patch", patch, Patch),
+        ]
+        for name, setting, kind in settings:
+            if setting is not None:
+                self._set(name, setting, kind)
+        if input is not None:
+            self.set_input(input)
+        for each in objects:
+            self.add(each)
+
+    @classmethod
+    def read(
+        cls,
+        path: PathLike,
+        overrides: Union[Iterable[str], Mapping[str, Any]] = (),
+        context: Optional[Context] = None,
+    ) -> "Scene":
+        """Reads a scene file.
+
+        overrides: "key.path=value" texts, or a mapping of key paths to values, which replace or
+        add keys: ``{"input.path": "swath.tif", "objects[0].heading": "30 deg"}``.
+        """
+        if isinstance(overrides, str):
+            raise TypeError("overrides must be a list of texts or a mapping, not one text")
+        if isinstance(overrides, Mapping):
+            overrides = [f"{key}={value}" for key, value in overrides.items()]
+        texts = [file_name("override", text) for text in overrides]
+        context = default_context() if context is None else context
+        pointer = context.make(
+            s.sonject_scene,
+            "sonject_scene_read",
+            context,
+            file_name("path", path),
+            (ctypes.c_char_p * len(texts))(*texts),
+            len(texts),
+        )
+        scene = cls.__new__(cls)
+        Handle.__init__(scene, context, pointer)
+        return scene
+
+    def _set(self, name: str, setting: Any, kind: Type[Any]) -> None:
+        if not isinstance(setting, kind):
+            raise TypeError(f"{name} must be a {kind.__name__}, not {setting!r}")
+        structure = setting.to_structure()
+        self._context.call("sonject_scene_set_" + name, self, ctypes.byref(structure))
+
+    def set_sonar(self, sonar: Sonar) -> None:
+        self._set("sonar", sonar, Sonar)
+
+    def set_medium(self, medium: Medium) -> None:
+        self._set("medium", medium, Medium)
+
+    def set_seabed(self, seabed: Seabed) -> None:
+        self._set("seabed", seabed, Seabed)
+
+    def set_geometry(self, geometry: Geometry) -> None:
+        self._set("geometry", geometry, Geometry)
+
+    def set_injection(self, injection: Injection) -> None:
+        self._set("injection", injection, Injection)
+
+    def set_transfer(self, transfer: Transfer) -> None:
+        self._set("transfer", transfer, Transfer)
+
+    def set_patch(self, patch: Patch) -> None:
+        self._set("patch", patch, Patch)
+
+    def set_input(self, source: Input) -> None:
+        """Where the swath comes from: an image file, Uniform or Synthetic."""
+        if isinstance(source, Synthetic):
+            self._set("input_synthetic", source, Synthetic)
+        elif isinstance(source, Uniform):
+            largest = 2**32 - 1
+            rows = whole_number("rows", source.rows, largest)
+            columns = whole_number("columns", source.columns, largest)
+            self._context.call("sonject_scene_set_input_uniform", self, rows, columns)
+        else:
+            path = file_name("input", source)
+            self._context.call("sonject_scene_set_input_file", self, path)
+
+    def add(self, thing: Object) -> int:
+        """Adds an object; gives its number, counted from 0."""
+        if not isinstance(thing, Object):
+            raise TypeError(f"an Object is wanted, not {thing!r}")
+        index = ctypes.c_uint32()
+        structure = thing.to_structure()
+        self._context.call(
+            "sonject_scene_add_object",
+            self,
+            ctypes.byref(structure),
+            ctypes.byref(index),
+        )
+        return index.value
+
+    @property
+    def object_count(self) -> int:
+        count = ctypes.c_uint32()
+        self._context.call("sonject_scene_object_count", self, ctypes.byref(count))
+        return count.value

@@ -1,0 +1,55 @@
+"""What the tests of the bindings share. The library is the one that SONJECT_LIBRARY names."""
+
+import os
+import pathlib
+import sys
+
+import numpy
+import pytest
+
+PACKAGE_FOLDER = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(PACKAGE_FOLDER))
+
+import sonject  # noqa: E402
+
+ROWS, COLUMNS = 96, 128
+
+
+def pytest_sessionstart(session):
+    if not os.environ.get("SONJECT_LIBRARY"):
+        raise pytest.UsageError("set SONJECT_LIBRARY to the path of libsonject")
+
+
+@pytest.fixture(scope="session")
+def context(tmp_path_factory):
+    with sonject.Context(cache_folder=tmp_path_factory.mktemp("cache")) as context:
+        yield context
+
+
+@pytest.fixture
+def complex_patch():
+    """Speckle of unit mean intensity."""
+    random = numpy.random.default_rng(20240501)
+    parts = random.standard_normal((2, ROWS, COLUMNS)) * numpy.sqrt(0.5)
+    return (parts[0] + 1j * parts[1]).astype(numpy.complex64)
+
+
+@pytest.fixture
+def amplitude_patch(complex_patch):
+    return numpy.abs(complex_patch)
+
+
+@pytest.fixture
+def make_scene(context):
+    """A proud sphere in the middle of the patch, which is 2.4 m x 3.2 m at about 26 m."""
+
+    def make(**changes):
+        settings = {
+            "geometry": sonject.Geometry(first_slant_range_m=25.0),
+            "objects": [sonject.Sphere(diameter_m=0.5, name="ball")],
+            "context": context,
+        }
+        settings.update(changes)
+        return sonject.Scene(**settings)
+
+    return make

@@ -1,0 +1,220 @@
+"""Injection into arrays."""
+
+import gc
+import math
+import threading
+
+import numpy
+import pytest
+
+import sonject
+from conftest import COLUMNS, ROWS
+from sonject._pixels import library_pixels
+
+
+@pytest.fixture(params=["float32", "complex64"])
+def patch(request, amplitude_patch, complex_patch):
+    return amplitude_patch if request.param == "float32" else complex_patch
+
+
+def test_layers_have_their_types(patch, make_scene):
+    result = sonject.inject(patch, make_scene())
+    types = {
+        "image": patch.dtype,
+        "field": numpy.complex64,
+        "energy": numpy.float32,
+        "visibility": numpy.float32,
+        "highlight": numpy.uint8,
+        "shadow": numpy.uint8,
+        "labels": numpy.uint8,
+        "influence": numpy.uint8,
+    }
+    for name, kind in types.items():
+        layer = getattr(result, name)
+        assert layer.shape == result.shape == (ROWS, COLUMNS), name
+        assert layer.dtype == kind, name
+        assert layer is getattr(result, name), name
+
+
+def test_the_sphere_shows_and_the_rest_keeps_its_bits(patch, make_scene):
+    before = patch.copy()
+    result = sonject.inject(patch, make_scene())
+    assert numpy.array_equal(patch, before)
+    untouched = result.influence == 0
+    assert 0 < numpy.count_nonzero(~untouched) < untouched.size
+    assert result.image[untouched].tobytes() == patch[untouched].tobytes()
+    assert not numpy.array_equal(result.image, patch)
+    assert result.highlight[ROWS // 2 - 12 : ROWS // 2 + 12].any()
+    assert set(numpy.unique(result.labels)) == {0, 1}
+    assert set(numpy.unique(result.highlight)) <= {0, 255}
+    assert numpy.all((result.visibility >= 0) & (result.visibility <= 1))
+
+
+def test_truth_and_statistics(patch, make_scene):
+    result = sonject.inject(patch, make_scene())
+    (truth,) = result.objects
+    assert truth.is_visible
+    assert truth.row == pytest.approx((ROWS - 1) / 2, abs=1)
+    # The centre is nearer to the sonar than the ground point below it, which is the patch's middle.
+    assert 0 < truth.column < COLUMNS / 2 + 1
+    assert truth.height_m == pytest.approx(0.25)
+    assert math.isfinite(truth.target_strength_db)
+    rows, columns = truth.highlight.slices
+    assert numpy.count_nonzero(result.highlight) == truth.highlight_pixels
+    assert numpy.count_nonzero(result.highlight[rows, columns]) == truth.highlight_pixels
+    assert result.statistics.rays > 0
+    assert result.statistics.changed_pixels == numpy.count_nonzero(result.influence)
+    assert math.isnan(result.statistics.correlation)
+
+
+def test_the_same_input_gives_the_same_bits(patch, make_scene):
+    first = sonject.inject(patch, make_scene())
+    second = sonject.inject(patch, make_scene())
+    other = sonject.inject(patch, make_scene(injection=sonject.Injection(seed=2)))
+    for name in ("image", "field", "energy", "labels"):
+        assert getattr(first, name).tobytes() == getattr(second, name).tobytes(), name
+    assert first.image.tobytes() != other.image.tobytes()
+
+
+def test_rows_with_any_stride_are_read_where_they_lie(patch, make_scene):
+    wide = numpy.full((2 * ROWS, COLUMNS + 3), numpy.nan, patch.dtype)
+    window = wide[::2, 1 : COLUMNS + 1]
+    window[...] = patch
+    pixels, array = library_pixels(window)
+    assert array is window
+    assert pixels.data == window.ctypes.data
+    assert pixels.row_stride == 2 * wide.strides[0]
+    expected = sonject.inject(patch, make_scene()).image
+    assert sonject.inject(window, make_scene()).image.tobytes() == expected.tobytes()
+
+
+@pytest.mark.parametrize(
+    "arrange",
+    [
+        lambda patch: numpy.asfortranarray(patch),
+        lambda patch: patch[::-1][::-1][:, :],
+        lambda patch: patch[::-1].copy()[::-1],
+        lambda patch: patch[:, ::-1].copy()[:, ::-1],
+        lambda patch: patch.astype(patch.dtype.newbyteorder()),
+        lambda patch: patch.astype(numpy.result_type(patch.dtype, numpy.float64)),
+    ],
+    ids=["fortran", "twice", "rows reversed", "columns reversed", "byte order", "double"],
+)
+def test_other_arrangements_give_the_same(patch, make_scene, arrange):
+    arranged = arrange(patch)
+    assert numpy.array_equal(arranged, patch)
+    expected = sonject.inject(patch, make_scene()).image
+    assert sonject.inject(arranged, make_scene()).image.tobytes() == expected.tobytes()
+
+
+def test_a_repeated_row_is_not_taken_for_packed_rows():
+    row = numpy.arange(4, dtype=numpy.float32)
+    repeated = numpy.broadcast_to(row, (3, 4))
+    pixels, array = library_pixels(repeated)
+    assert pixels.row_stride == 16
+    assert numpy.array_equal(array, repeated)
+
+
+@pytest.mark.parametrize(
+    "patch, error, message",
+    [
+        (numpy.ones((4, 4), numpy.uint8), TypeError, "uint8 is refused"),
+        (numpy.ones((4, 4), bool), TypeError, "bool is refused"),
+        (numpy.ones((4, 4), object), TypeError, "object is refused"),
+        (numpy.ma.masked_less(numpy.ones((4, 4), numpy.float32), 2), TypeError, "masked"),
+        (numpy.ones(4, numpy.float32), ValueError, "rows and columns"),
+        (numpy.ones((4, 0), numpy.float32), ValueError, "rows and columns"),
+        (numpy.full((4, 4), 1e300), ValueError, "beyond single precision"),
+    ],
+)
+def test_arrays_that_are_no_patch_are_refused(make_scene, patch, error, message):
+    with pytest.raises(error, match=message):
+        sonject.inject(patch, make_scene())
+
+
+def test_nan_is_named(patch, make_scene):
+    patch[5, 7] = numpy.nan
+    with pytest.raises(sonject.SonjectError) as caught:
+        sonject.inject(patch, make_scene())
+    assert caught.value.status is sonject.Status.ERROR_INPUT
+    assert "nan" in str(caught.value).lower()
+    assert "\n" not in str(caught.value)
+
+
+def test_no_patch_is_an_error(make_scene):
+    with pytest.raises(sonject.SonjectError) as caught:
+        sonject.inject(None, make_scene())
+    assert caught.value.status in (
+        sonject.Status.ERROR_ARGUMENT,
+        sonject.Status.ERROR_INPUT,
+    )
+
+
+def test_a_uniform_input_needs_no_patch(make_scene):
+    result = sonject.inject(None, make_scene(input=sonject.Uniform(rows=ROWS, columns=COLUMNS)))
+    assert result.image.shape == (ROWS, COLUMNS)
+
+
+def test_progress_rises_and_names_its_stages(amplitude_patch, make_scene):
+    calls = []
+    sonject.inject(
+        amplitude_patch, make_scene(), progress=lambda fraction, stage: calls.append((fraction, stage))
+    )
+    fractions = [fraction for fraction, _ in calls]
+    assert fractions and fractions == sorted(fractions)
+    assert 0 <= fractions[0] and fractions[-1] <= 1
+    assert all(isinstance(stage, str) and stage for _, stage in calls)
+
+
+def test_progress_can_cancel(amplitude_patch, make_scene):
+    scene = make_scene()
+    with pytest.raises(sonject.Cancelled) as caught:
+        sonject.inject(amplitude_patch, scene, progress=lambda fraction, stage: True)
+    assert caught.value.status is sonject.Status.CANCELLED
+    assert sonject.inject(amplitude_patch, scene).image.shape == (ROWS, COLUMNS)
+
+
+@pytest.mark.parametrize("kind", [ZeroDivisionError, KeyboardInterrupt])
+def test_what_progress_raises_is_raised(amplitude_patch, make_scene, kind):
+    def progress(fraction, stage):
+        raise kind("from the callback")
+
+    with pytest.raises(kind, match="from the callback"):
+        sonject.inject(amplitude_patch, make_scene(), progress=progress)
+
+
+def test_a_callback_cannot_use_its_context(amplitude_patch, make_scene):
+    scene = make_scene()
+    with pytest.raises(RuntimeError, match="own callbacks"):
+        sonject.inject(
+            amplitude_patch, scene, progress=lambda fraction, stage: scene.object_count
+        )
+
+
+def test_garbage_collected_in_a_callback_is_released_afterwards(amplitude_patch, make_scene):
+    doomed = [make_scene()]
+
+    def progress(fraction, stage):
+        doomed.clear()
+        gc.collect()
+
+    scene = make_scene()
+    sonject.inject(amplitude_patch, scene, progress=progress)
+    assert not scene.context._waiting
+
+
+def test_other_threads_run_meanwhile(amplitude_patch, make_scene):
+    expected = sonject.inject(amplitude_patch, make_scene()).image.tobytes()
+    images = []
+
+    def work():
+        with sonject.Context(cache_folder="") as context:
+            scene = make_scene(context=context)
+            images.append(sonject.inject(amplitude_patch, scene).image.tobytes())
+
+    threads = [threading.Thread(target=work) for _ in range(2)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert images == [expected, expected]

@@ -1,0 +1,106 @@
+"""Values on their way into the C structures."""
+
+import math
+
+import numpy
+import pytest
+
+import sonject
+from sonject import _structures as s
+from sonject._values import initialised
+
+
+def test_defaults_are_the_librarys():
+    defaults = initialised(s.sonject_sonar_params)
+    sonar = sonject.Sonar()
+    assert sonar.centre_frequency_hz == defaults.centre_frequency_hz == 100e3
+    assert sonar.altitude_m == defaults.altitude_m == 10.0
+    assert sonar.response_window is sonject.ResponseWindow.RECTANGULAR
+
+
+def test_an_object_without_a_pose_is_the_librarys_default():
+    ours = bytes(sonject.Sphere(diameter_m=0.5).to_structure())
+    assert ours == bytes(initialised(s.sonject_object_params))
+
+
+def test_values_arrive_in_their_fields():
+    thing = sonject.Capsule(
+        length_m=2.3,
+        diameter_m=0.3,
+        position=sonject.Metres(along_track_m=1.5, slant_range_m=52.0),
+        heading_rad=sonject.from_degrees(30),
+        burial_m=0.1,
+        material=sonject.Material(reflection=-0.5),
+        name="Röhre",
+        class_name="pipe",
+    ).to_structure()
+    assert (thing.shape, thing.length_m, thing.diameter_m) == (3, 2.3, 0.3)
+    assert (thing.position_kind, thing.position_along, thing.position_range) == (1, 1.5, 52.0)
+    assert thing.heading_rad == math.pi / 6
+    assert thing.burial_m == 0.1
+    assert thing.material.reflection == -0.5
+    assert thing.name.decode() == "Röhre"
+    assert thing.class_name == b"pipe"
+
+
+def test_pixel_positions_are_row_then_column():
+    thing = sonject.Sphere(diameter_m=1, position=sonject.Pixels(row=3, column=4)).to_structure()
+    assert (thing.position_kind, thing.position_along, thing.position_range) == (2, 3.0, 4.0)
+
+
+def test_noise_floor_is_estimated_unless_given():
+    assert sonject.Injection().to_structure().estimate_noise == 1
+    given = sonject.Injection(noise_floor_db=-20.0).to_structure()
+    assert (given.estimate_noise, given.noise_floor_db) == (0, -20.0)
+
+
+def test_choices_are_taken_by_name_and_value():
+    assert sonject.Injection(mode="resynthesise").mode is sonject.Mode.RESYNTHESISE
+    assert sonject.Geometry(first_slant_range_m=1, side=1).side is sonject.Side.STARBOARD
+    with pytest.raises(ValueError, match="mode must be one of composite, resynthesise"):
+        sonject.Injection(mode="replace")
+
+
+def test_numpy_scalars_are_numbers():
+    sonar = sonject.Sonar(altitude_m=numpy.float32(12.5), taylor_terms=numpy.int64(5))
+    structure = sonar.to_structure()
+    assert (structure.altitude_m, structure.taylor_terms) == (12.5, 5)
+
+
+@pytest.mark.parametrize(
+    "make, message",
+    [
+        (lambda: sonject.Injection(seed=-1), "seed must lie within"),
+        (lambda: sonject.Injection(seed=2**64), "seed must lie within"),
+        (lambda: sonject.Sonar(taylor_terms=2**32), "taylor_terms must lie within"),
+        (lambda: sonject.Patch(first_row=-1, first_column=0, rows=1, columns=1), "first_row"),
+        (lambda: sonject.Sphere(diameter_m=1, name="x" * 64), "at most 63 bytes"),
+        (lambda: sonject.Sphere(diameter_m=1, class_name="a\0b"), "no NUL"),
+    ],
+)
+def test_what_a_field_would_cut_or_wrap_is_refused(make, message):
+    with pytest.raises(ValueError, match=message):
+        make().to_structure()
+
+
+@pytest.mark.parametrize(
+    "make, message",
+    [
+        (lambda: sonject.Sonar(altitude_m="10"), "altitude_m must be a number"),
+        (lambda: sonject.Injection(seed=1.0), "seed must be a whole number"),
+        (lambda: sonject.Sphere(diameter_m=1, name=b"x"), "name must be a text"),
+        (lambda: sonject.Sphere(diameter_m=1, position=(1, 2)), "position must be"),
+        (lambda: sonject.Sphere(diameter_m=1, material="steel"), "material must be"),
+    ],
+)
+def test_wrong_types_are_refused(make, message):
+    with pytest.raises(TypeError, match=message):
+        make().to_structure()
+
+
+def test_the_library_refuses_with_status_and_message(make_scene):
+    with pytest.raises(sonject.SonjectError) as caught:
+        make_scene(objects=[sonject.Sphere(diameter_m=-1.0)])
+    assert caught.value.status is sonject.Status.ERROR_INPUT
+    assert "diameter" in caught.value.message
+    assert "\n" not in caught.value.message

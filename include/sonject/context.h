@@ -1,0 +1,73 @@
+/* A context: one OpenCL device, its programs, and the message of the last failure. */
+#ifndef SONJECT_CONTEXT_H
+#define SONJECT_CONTEXT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <sonject/export.h>
+#include <sonject/status.h>
+
+SONJECT_BEGIN_DECLARATIONS
+
+typedef struct sonject_context sonject_context;
+
+/* Receives one line of news (no newline at its end); called on the thread that made the call. */
+typedef void (*sonject_log_function)(void *user, const char *line);
+
+/* Called between pieces of work with the finished fraction, 0...1. Return 0 to go on, anything else
+ * to cancel: the call then answers SONJECT_CANCELLED. */
+typedef int (*sonject_progress_function)(void *user, double fraction, const char *stage);
+
+typedef struct sonject_context_params {
+    uint32_t struct_size; /* sizeof(sonject_context_params) */
+    uint32_t reserved;    /* 0 */
+    const char
+        *device_name; /* part of a device's name, case-insensitive; NULL: the default device */
+    const char *cache_folder; /* for compiled programs; NULL: the user's cache; "": no cache */
+    void *opencl_context;     /* a host's cl_context to work in; NULL: the library makes its own */
+    void *opencl_device;      /* the cl_device_id to use in that context; NULL with no context */
+    sonject_log_function log; /* NULL: silent */
+    void *log_user;
+} sonject_context_params;
+
+/* Fills params with the defaults and its size. params: not NULL. */
+SONJECT_API void sonject_context_params_init(sonject_context_params *params);
+
+/* Makes a context. It opens no device yet: that happens at the first call that needs one, so that a
+ * missing device is reported with a message. params may be NULL (all defaults); its strings are
+ * copied. A host's OpenCL context is retained until release.
+ * On success *context is the caller's, to be given to sonject_context_release. On failure *context
+ * is NULL. Errors: ARGUMENT, MEMORY.
+ * Threads: a context and whatever was made with it belong to one thread at a time; different
+ * contexts may be used by different threads at once. */
+SONJECT_API sonject_status sonject_context_create(const sonject_context_params *params,
+                                                  sonject_context **context);
+
+/* Releases the context and sets *context to NULL. NULL and a pointer to NULL are allowed.
+ * Everything made with the context must be released before. */
+SONJECT_API void sonject_context_release(sonject_context **context);
+
+/* The one-line message of the last failed call on this context, "" if none failed. It names what is
+ * wrong and where. Valid until the next call on the context. */
+SONJECT_API const char *sonject_context_message(const sonject_context *context);
+
+typedef struct sonject_device_info {
+    char name[128];
+    char platform[128];
+    char driver[128];
+    uint32_t compute_units;
+    uint32_t vector_width; /* lanes that the kernels are compiled for */
+    uint32_t is_default;   /* 1 for the one that a context takes when not asked for another */
+    uint32_t reserved;
+} sonject_device_info;
+
+/* Lists the OpenCL devices. devices: room for capacity entries (NULL if capacity is 0); *count gets
+ * the number found, which may exceed capacity. Zero devices is not an error here.
+ * Errors: ARGUMENT, MEMORY. */
+SONJECT_API sonject_status sonject_devices(sonject_context *context, sonject_device_info *devices,
+                                           size_t capacity, size_t *count);
+
+SONJECT_END_DECLARATIONS
+
+#endif

@@ -1,0 +1,132 @@
+/* What an injection gives back. */
+#ifndef SONJECT_RESULT_H
+#define SONJECT_RESULT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <sonject/export.h>
+#include <sonject/scene.h>
+#include <sonject/status.h>
+
+SONJECT_BEGIN_DECLARATIONS
+
+typedef enum sonject_pixel_kind {
+    SONJECT_PIXELS_AMPLITUDE = 0, /* float, >= 0 */
+    SONJECT_PIXELS_COMPLEX = 1 /* pairs of float, real and imaginary part; a path of travel time t
+                                  has phase +2 pi f t */
+} sonject_pixel_kind;
+
+/* Pixels in the caller's memory; never kept, never written. */
+typedef struct sonject_pixels {
+    uint32_t struct_size;
+    uint32_t kind; /* sonject_pixel_kind */
+    uint64_t rows;
+    uint64_t columns;
+    uint64_t row_stride; /* bytes from a row to the next, a multiple of 4; 0: rows are packed */
+    const void *data;
+} sonject_pixels;
+
+typedef struct sonject_result sonject_result;
+
+/* Puts the scene's objects into a patch in memory. pixels: the patch, linear (no transfer
+ * function); its pixel (0, 0) is the geometry's first track position and range; the scene's input
+ * and patch are not used. pixels may be NULL where the scene's input is uniform or synthetic.
+ * progress may be NULL. On success *result is the caller's, for sonject_result_release; on failure
+ * NULL. Errors: ARGUMENT, INPUT (NaN pixels, object outside the patch, ...), DEVICE, MEMORY,
+ * CANCELLED. */
+SONJECT_API sonject_status sonject_inject(sonject_context *context, const sonject_scene *scene,
+                                          const sonject_pixels *pixels,
+                                          sonject_progress_function progress, void *user,
+                                          sonject_result **result);
+
+/* Releases the result and sets *result to NULL; NULL allowed. */
+SONJECT_API void sonject_result_release(sonject_result **result);
+
+typedef enum sonject_layer {
+    SONJECT_LAYER_IMAGE = 0,  /* the patch with the objects, kind and units of the input */
+    SONJECT_LAYER_FIELD = 1,  /* complex; |pixel|^2 is a backscattering cross-section in m^2 */
+    SONJECT_LAYER_ENERGY = 2, /* float; expected cross-section in m^2 of what was traced: objects
+                                 and the seabed that still is in view, no speckle, no noise */
+    SONJECT_LAYER_VISIBILITY =
+        3, /* float 0...1; fraction of the seabed's energy that still arrives */
+    SONJECT_LAYER_HIGHLIGHT = 4, /* uint8, 255 where an object's echo dominates */
+    SONJECT_LAYER_SHADOW = 5, /* uint8, 255 where less than half of the seabed's energy arrives */
+    SONJECT_LAYER_LABELS =
+        6, /* uint8, object number + 1 of highlights and shadows (highlight wins), 0 elsewhere */
+    SONJECT_LAYER_INFLUENCE = 7 /* uint8, 255 where the image was changed */
+} sonject_layer;
+
+/* Size of the layers. Errors: ARGUMENT. */
+SONJECT_API sonject_status sonject_result_size(const sonject_result *result, uint64_t *rows,
+                                               uint64_t *columns, uint32_t *image_kind);
+
+/* Copies a layer, rows packed, into buffer of exactly rows * columns * pixel size bytes.
+ * Errors: ARGUMENT (unknown layer, wrong size). */
+SONJECT_API sonject_status sonject_result_layer(const sonject_result *result, sonject_layer layer,
+                                                void *buffer, size_t bytes);
+
+/* Whole pixels of the patch (of the swath in truth files); rows = columns = 0: empty. */
+typedef struct sonject_box {
+    uint64_t first_row;
+    uint64_t first_column;
+    uint64_t rows;
+    uint64_t columns;
+} sonject_box;
+
+typedef struct sonject_object_truth {
+    uint32_t struct_size;
+    uint32_t is_visible;       /* 1: some pixel of it dominates, or it casts a shadow */
+    uint32_t highlight_is_cut; /* 1: the highlight touches the patch's edge */
+    uint32_t shadow_is_cut;    /* 1: the shadow touches the patch's edge */
+    double row;                /* of the object's centre, patch pixels */
+    double column;             /* where its centre's slant range lies, patch pixels */
+    double along_track_m;      /* of the centre */
+    double slant_range_m;      /* apparent, of the centre */
+    double ground_range_m;     /* of the centre */
+    double height_m;           /* of the centre over the seabed */
+    sonject_box highlight;
+    sonject_box shadow;
+    sonject_box both;
+    uint64_t highlight_pixels;
+    uint64_t shadow_pixels;
+    double target_strength_db; /* 10 log10 of its brightest pixel's expected cross-section in m^2;
+                                  -infinity where nothing of it is in view */
+    double highlight_contrast_db; /* mean energy of the highlight over the local seabed level */
+    double shadow_contrast_db;    /* mean energy left in the shadow over the local seabed level */
+} sonject_object_truth;
+
+/* Truth of object number index. truth->struct_size must be set. Errors: ARGUMENT. */
+SONJECT_API sonject_status sonject_result_object(const sonject_result *result, uint32_t index,
+                                                 sonject_object_truth *truth);
+
+typedef struct sonject_statistics {
+    uint32_t struct_size;
+    uint32_t reserved;
+    uint64_t pings;       /* rows that were traced, margins included */
+    uint64_t rays;        /* primary rays */
+    uint64_t ray_queries; /* rays and visibility tests */
+    uint64_t impulses;    /* echoes that were recorded */
+    double trace_s;       /* wall-clock time of the stages */
+    double form_s;
+    double inject_s;
+    double noise_floor_db;   /* that was used, over the local mean seabed energy */
+    uint64_t input_clipped;  /* pixels of the patch at full scale (files only) */
+    uint64_t output_clipped; /* changed pixels that full scale cut (files only) */
+    uint64_t changed_pixels;
+    /* Output against input where nothing of the objects is in view, as in the paper's Figure 5
+     * (resynthesise; otherwise NaN). */
+    double level_change_db;
+    double input_contrast; /* intensity standard deviation over mean */
+    double output_contrast;
+    double histogram_distance; /* Kolmogorov-Smirnov, intensities over their means */
+    double correlation;        /* of the intensities */
+} sonject_statistics;
+
+/* statistics->struct_size must be set. Errors: ARGUMENT. */
+SONJECT_API sonject_status sonject_result_statistics(const sonject_result *result,
+                                                     sonject_statistics *statistics);
+
+SONJECT_END_DECLARATIONS
+
+#endif

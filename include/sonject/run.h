@@ -1,0 +1,86 @@
+/* Whole runs on files: what the command's verbs do. */
+#ifndef SONJECT_RUN_H
+#define SONJECT_RUN_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <sonject/export.h>
+#include <sonject/scene.h>
+#include <sonject/status.h>
+
+SONJECT_BEGIN_DECLARATIONS
+
+typedef struct sonject_run_params {
+    uint32_t struct_size;
+    uint32_t reserved;
+    const char *folder; /* for the results; made where missing */
+} sonject_run_params;
+
+SONJECT_API void sonject_run_params_init(sonject_run_params *params);
+
+/* Reads the scene's input, injects, and writes the result files into params->folder; run.json is
+ * published last, so a folder with run.json is complete. *was_finished (may be NULL) gets 1, with
+ * nothing done, if the folder already holds the finished result of the same inputs. Each file
+ * appears whole or not at all.
+ * Errors: ARGUMENT, INPUT, DEVICE, STORAGE, MEMORY, UNSUPPORTED (no raster files in this build),
+ * CANCELLED. */
+SONJECT_API sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
+                                       const sonject_run_params *params,
+                                       sonject_progress_function progress, void *user,
+                                       int *was_finished);
+
+/* Checks the scene against its input image (which must exist) without tracing, and describes the
+ * geometry as a text with a drawing: track, patch, objects, grazing angles, shadow lengths. *text
+ * is the caller's, for sonject_text_release. Errors: ARGUMENT, INPUT, STORAGE, MEMORY. */
+SONJECT_API sonject_status sonject_check(sonject_context *context, const sonject_scene *scene,
+                                         char **text);
+SONJECT_API void sonject_text_release(char **text);
+
+typedef enum sonject_range_axis {
+    SONJECT_AXIS_SLANT = 0,
+    SONJECT_AXIS_GROUND = 1 /* the image is resampled to ground range; needs the altitude */
+} sonject_range_axis;
+
+typedef struct sonject_quicklook_params {
+    uint32_t struct_size;
+    uint32_t range_axis; /* sonject_range_axis */
+    const char *image;   /* file to look at */
+    const char *picture; /* PNG to write */
+    double minimum_db;   /* of the grey scale; both 0: chosen from the image */
+    double maximum_db;
+    double altitude_m;     /* 0: from the image's metadata */
+    uint32_t has_geometry; /* 1: geometry below is used; 0: the image's metadata, and without any
+                              the axes count pixels */
+    uint32_t
+        has_transfer; /* 1: transfer below is used; 0: the image's metadata, or plain amplitude */
+    sonject_geometry_params geometry;
+    sonject_transfer_params transfer;
+} sonject_quicklook_params;
+
+SONJECT_API void sonject_quicklook_params_init(sonject_quicklook_params *params);
+
+/* Draws an image file with axes in metres. Errors: ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED.
+ */
+SONJECT_API sonject_status sonject_quicklook(sonject_context *context,
+                                             const sonject_quicklook_params *params);
+
+typedef struct sonject_seabed_file_params {
+    uint32_t struct_size;
+    uint32_t reserved;
+    const char *image; /* file to write: .tif (float32) or .png (8 bit, amplitude 1 = 255) */
+    sonject_synthetic_params synthetic;
+    sonject_geometry_params geometry;
+    sonject_sonar_params sonar; /* resolution and metadata */
+} sonject_seabed_file_params;
+
+SONJECT_API void sonject_seabed_file_params_init(sonject_seabed_file_params *params);
+
+/* Writes a synthetic seabed with its geometry as metadata. Errors: ARGUMENT, INPUT, STORAGE,
+ * MEMORY, UNSUPPORTED. */
+SONJECT_API sonject_status sonject_seabed_write(sonject_context *context,
+                                                const sonject_seabed_file_params *params);
+
+SONJECT_END_DECLARATIONS
+
+#endif

@@ -1,0 +1,87 @@
+/* A scene: sonar, water, seabed, objects, and where the image comes from. */
+#ifndef SONJECT_SCENE_H
+#define SONJECT_SCENE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <sonject/context.h>
+#include <sonject/export.h>
+#include <sonject/image.h>
+#include <sonject/injection.h>
+#include <sonject/object.h>
+#include <sonject/seabed.h>
+#include <sonject/sonar.h>
+
+SONJECT_BEGIN_DECLARATIONS
+
+typedef struct sonject_scene sonject_scene;
+
+/* Where the swath comes from. */
+typedef enum sonject_input_kind {
+    SONJECT_INPUT_MEMORY = 0,   /* the caller hands pixels to sonject_inject */
+    SONJECT_INPUT_FILE = 1,     /* an image file */
+    SONJECT_INPUT_UNIFORM = 2,  /* rows x columns of unit reflectivity */
+    SONJECT_INPUT_SYNTHETIC = 3 /* made by sonject */
+} sonject_input_kind;
+
+/* Part of the swath that is worked on; all 0: the whole swath. */
+typedef struct sonject_patch_params {
+    uint32_t struct_size;
+    uint32_t reserved;
+    uint64_t first_row;
+    uint64_t first_column;
+    uint64_t rows;
+    uint64_t columns;
+} sonject_patch_params;
+
+/* An empty scene with all defaults. On success *scene is the caller's, for sonject_scene_release;
+ * on failure NULL. Errors: ARGUMENT, MEMORY. */
+SONJECT_API sonject_status sonject_scene_create(sonject_context *context, sonject_scene **scene);
+
+/* Reads a scene file. path: YAML file. overrides: count strings "key.path=value" that replace or
+ * add keys, such as "input.path=swath.tif" or "objects[0].heading=30 deg". Relative file names are
+ * resolved against the scene file's folder, those of overrides against the working directory.
+ * Message on failure: file:line:column, the key, what is wrong. On failure *scene is NULL.
+ * Errors: ARGUMENT, INPUT, STORAGE, MEMORY. */
+SONJECT_API sonject_status sonject_scene_read(sonject_context *context, const char *path,
+                                              const char *const *overrides, size_t count,
+                                              sonject_scene **scene);
+
+/* Releases the scene and sets *scene to NULL; NULL allowed. */
+SONJECT_API void sonject_scene_release(sonject_scene **scene);
+
+/* Each call copies the structure, whose struct_size must be set (use the _init functions), and
+ * checks it: on failure the scene is unchanged. Beyond the ranges stated at the members, lengths
+ * and positions must be within 1000 km, lengths above 0 at least 1 um, and frequencies 1 Hz...1
+ * GHz. Errors: ARGUMENT, INPUT (a value out of range), MEMORY. */
+SONJECT_API sonject_status sonject_scene_set_sonar(sonject_scene *scene,
+                                                   const sonject_sonar_params *sonar);
+SONJECT_API sonject_status sonject_scene_set_medium(sonject_scene *scene,
+                                                    const sonject_medium_params *medium);
+SONJECT_API sonject_status sonject_scene_set_seabed(sonject_scene *scene,
+                                                    const sonject_seabed_params *seabed);
+SONJECT_API sonject_status sonject_scene_set_geometry(sonject_scene *scene,
+                                                      const sonject_geometry_params *geometry);
+SONJECT_API sonject_status sonject_scene_set_transfer(sonject_scene *scene,
+                                                      const sonject_transfer_params *transfer);
+SONJECT_API sonject_status sonject_scene_set_injection(sonject_scene *scene,
+                                                       const sonject_injection_params *injection);
+SONJECT_API sonject_status sonject_scene_set_patch(sonject_scene *scene,
+                                                   const sonject_patch_params *patch);
+/* path is copied. */
+SONJECT_API sonject_status sonject_scene_set_input_file(sonject_scene *scene, const char *path);
+SONJECT_API sonject_status sonject_scene_set_input_uniform(sonject_scene *scene, uint32_t rows,
+                                                           uint32_t columns);
+SONJECT_API sonject_status
+sonject_scene_set_input_synthetic(sonject_scene *scene, const sonject_synthetic_params *synthetic);
+/* Up to 250 objects; *index (may be NULL) gets the number of the new object, counted from 0. */
+SONJECT_API sonject_status sonject_scene_add_object(sonject_scene *scene,
+                                                    const sonject_object_params *object,
+                                                    uint32_t *index);
+
+SONJECT_API sonject_status sonject_scene_object_count(const sonject_scene *scene, uint32_t *count);
+
+SONJECT_END_DECLARATIONS
+
+#endif

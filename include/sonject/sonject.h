@@ -1,0 +1,17 @@
+/* All of sonject's public interface. */
+#ifndef SONJECT_SONJECT_H
+#define SONJECT_SONJECT_H
+
+#include <sonject/context.h>
+#include <sonject/image.h>
+#include <sonject/injection.h>
+#include <sonject/object.h>
+#include <sonject/result.h>
+#include <sonject/run.h>
+#include <sonject/scene.h>
+#include <sonject/seabed.h>
+#include <sonject/sonar.h>
+#include <sonject/status.h>
+#include <sonject/version.h>
+
+#endif

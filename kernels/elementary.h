@@ -1,0 +1,87 @@
+/* Elementary functions by + - * / alone, so that every device gives the same bits. Minimax
+ * polynomials; the errors stated were measured against double precision over the whole range
+ * (tests/unit/test_elementary.c). */
+#ifndef SONJECT_KERNELS_ELEMENTARY_H
+#define SONJECT_KERNELS_ELEMENTARY_H
+
+#include "width.h"
+
+/* The integer nearest to value, |value| < 2^22. */
+FUNCTION real nearest_integer(real value)
+{
+    const real magic = SPLAT(12582912.0f); /* 1.5 * 2^23: adding it leaves no fraction bits */
+    return (value + magic) - magic;
+}
+
+/* Sine and cosine of an angle in cycles, |cycles| < 2^22; error below 1.5e-7, and the sine's is
+ * relative near 0. Phase in cycles reduces exactly, where phase in radians would lose digits. */
+FUNCTION void sine_cosine_of_cycles(real cycles, real *sine, real *cosine)
+{
+    const real turns = cycles - nearest_integer(cycles); /* -1/2...1/2, exact */
+    const real quarter = nearest_integer(turns * 4.0f);
+    const real rest = turns - quarter * 0.25f; /* -1/8...1/8, exact */
+    const real square = rest * rest;
+    const real s =
+        rest *
+        (6.283185307f +
+         square * (-41.34170215f +
+                   square * (81.60520475f + square * (-76.69786989f + square * 41.47294645f))));
+    const real c =
+        1.0f + square * (-19.7392088f +
+                         square * (64.93939383f +
+                                   square * (-85.45676503f +
+                                             square * (60.23819113f + square * -26.05833571f))));
+    const whole quadrant = WHOLE_OF(quarter) & 3;
+    const mask swapped = MASK_OF((quadrant & 1) != 0);
+    const real plain_sine = CHOOSE(swapped, c, s);
+    const real plain_cosine = CHOOSE(swapped, s, c);
+    *sine = CHOOSE(MASK_OF((quadrant & 2) != 0), -plain_sine, plain_sine);
+    *cosine = CHOOSE(MASK_OF(((quadrant + 1) & 2) != 0), -plain_cosine, plain_cosine);
+}
+
+/* sin(2 pi u) / (2 pi u), 1 at 0. */
+FUNCTION real sinc_of_cycles(real cycles)
+{
+    real sine, cosine;
+    sine_cosine_of_cycles(cycles, &sine, &cosine);
+    const mask is_zero = MASK_OF(cycles == 0.0f);
+    return CHOOSE(is_zero, SPLAT(1.0f),
+                  sine / (CHOOSE(is_zero, SPLAT(1.0f), cycles) * 6.2831853072f));
+}
+
+/* exp(value) for value <= 0; relative error below 2e-7; 0 below -80. */
+FUNCTION real exponential_of_negative(real value)
+{
+    const real limited = larger(value, SPLAT(-80.0f));
+    const real power = nearest_integer(limited * 1.44269504089f);
+    /* ln 2 in two parts, so that the remainder keeps its digits */
+    const real rest = (limited - power * 0.693359375f) - power * -2.12194440e-4f;
+    const real fraction =
+        1.0f +
+        rest * (1.0f +
+                rest * (0.49999992f +
+                        rest * (0.1666642f +
+                                rest * (0.04166823f + rest * (0.00837482f + rest * 0.00138368f)))));
+    const real scale = AS_REAL((WHOLE_OF(power) + 127) << 23);
+    return CHOOSE(MASK_OF(value < -80.0f), SPLAT(0.0f), fraction * scale);
+}
+
+/* Natural logarithm of a normal value > 0; absolute error below 2e-7 + 1e-7 |result|. */
+FUNCTION real natural_logarithm(real value)
+{
+    const whole bits = AS_WHOLE(value);
+    whole exponent = ((bits >> 23) & 255) - 127;
+    real fraction = AS_REAL((bits & 0x007fffff) | 0x3f800000); /* 1...2 */
+    const mask upper = MASK_OF(fraction > 1.41421356f);
+    fraction = CHOOSE(upper, fraction * 0.5f, fraction);
+    exponent = CHOOSE(upper, exponent + 1, exponent);
+    const real ratio = (fraction - 1.0f) / (fraction + 1.0f); /* ln f = 2 artanh(ratio) */
+    const real square = ratio * ratio;
+    const real series =
+        2.0f * ratio *
+        (1.0f + square * (0.33333333f +
+                          square * (0.20000193f + square * (0.14267472f + square * 0.11809092f))));
+    return REAL_OF(exponent) * 0.69314718056f + series;
+}
+
+#endif

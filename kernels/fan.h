@@ -1,0 +1,64 @@
+/* Primary rays: a fan of elevations from a sonar that moves with the ray's track position. */
+#ifndef SONJECT_KERNELS_FAN_H
+#define SONJECT_KERNELS_FAN_H
+
+#include "elementary.h"
+#include "interval.h"
+#include "layout.h"
+
+/* A ray through the frame's neighbourhood, counted from its point closest to the origin: at 500 m
+ * the sonar's own coordinates would eat the digits that the phase needs. */
+struct fan_ray {
+    struct vector3 closest;   /* point closest to the frame's origin (in the plane of the strip) */
+    struct vector3 direction; /* unit, away from the sonar */
+    struct vector3 upward;    /* unit, across the ray, towards larger elevation */
+    real range_at_closest;    /* range there less the reference range, <= 0 */
+};
+
+/* x: track position; elevation: rad over the direction from the track to the origin.
+ * With d the central direction and u upward of it, the ray's direction is d cos e + u sin e, and it
+ * passes the origin at R sin e (u cos e - d sin e), at range R cos e. */
+FUNCTION struct fan_ray fan_ray_at(const struct fan_record *fan, real x, real elevation)
+{
+    real sine, cosine;
+    sine_cosine_of_cycles(elevation * 0.15915494309f, &sine, &cosine);
+    cosine = SQUARE_ROOT(1.0f - sine * sine);
+    struct fan_ray ray;
+    ray.direction.x = SPLAT(0.0f);
+    ray.direction.y = cosine * fan->cosine_depression + sine * fan->sine_depression;
+    ray.direction.z = sine * fan->cosine_depression - cosine * fan->sine_depression;
+    ray.upward.x = SPLAT(0.0f);
+    ray.upward.y = -ray.direction.z;
+    ray.upward.z = ray.direction.y;
+    const real offset = fan->reference_range * sine;
+    ray.closest.x = x;
+    ray.closest.y = offset * ray.upward.y;
+    ray.closest.z = offset * ray.upward.z;
+    ray.range_at_closest = -offset * sine / (1.0f + cosine);
+    return ray;
+}
+
+/* Along-track position of the middle of a strip of this launch. */
+FUNCTION float strip_position(const struct fan_record *fan, int strip)
+{
+    return fan->first_strip_x + (float)(fan->first_strip + strip) * fan->strip_width;
+}
+
+/* The bin whose middle is nearest to a bin coordinate; far outside -> a bin that does not exist. */
+FUNCTION whole nearest_bin(real coordinate)
+{
+    const real limited = smaller(larger(coordinate, SPLAT(-2.0f)), SPLAT(8.0e6f));
+    return WHOLE_OF(limited + 4.5f) - 4; /* truncation is floor on positive numbers */
+}
+
+/* Distance from the closest point to the seabed plane; FAR_AWAY for rays that do not go down. */
+FUNCTION real seabed_distance(const struct fan_record *fan, struct vector3 point,
+                              struct vector3 direction)
+{
+    const mask is_downward = MASK_OF(direction.z < -1.0e-6f);
+    return CHOOSE(is_downward,
+                  (fan->seabed_height - point.z) / CHOOSE(is_downward, direction.z, SPLAT(-1.0f)),
+                  SPLAT(FAR_AWAY));
+}
+
+#endif

@@ -1,0 +1,53 @@
+/* Entry points of image formation. */
+#include "image_formation.h"
+
+/* Amplitudes sqrt(energy) * complex normal deviate. Global size: groups of WIDTH bins x strips. */
+__kernel void draw_speckle(__global const float *energy, int bins, int first_bin, int first_strip,
+                           uint seed_low, uint seed_high, uint stream, __global float *out_real,
+                           __global float *out_imaginary)
+{
+    const int strip = (int)get_global_id(1);
+    const struct random_key key =
+        random_key_of(seed_low, seed_high, stream, (uint)(first_strip + strip));
+    const int first = (int)get_global_id(0) * WIDTH;
+    real a, b;
+    complex_normal(key, SPLAT_WORD((uint)(first_bin + first)) + LANE_NUMBERS, &a, &b);
+    float lanes_a[WIDTH], lanes_b[WIDTH];
+    STORE_REAL(a, lanes_a);
+    STORE_REAL(b, lanes_b);
+    for (int lane = 0; lane < WIDTH && first + lane < bins; lane++) {
+        const long at = (long)strip * bins + first + lane;
+        const float amplitude = sqrt(energy[at]);
+        out_real[at] = amplitude * lanes_a[lane];
+        out_imaginary[at] = amplitude * lanes_b[lane];
+    }
+}
+
+/* Global size: groups of FORM_COLUMNS columns x strips x 2 planes. */
+__kernel void compress_range(__global const float *lines_real,
+                             __global const float *lines_imaginary, int bins, int first,
+                             int bins_per_pixel, __global const float *pulse, int taps, int columns,
+                             int stride, int first_out_strip, __global float *out_real,
+                             __global float *out_imaginary)
+{
+    const long strip = (long)get_global_id(1);
+    const int column = (int)get_global_id(0) * FORM_COLUMNS;
+    __global const float *lines = get_global_id(2) ? lines_imaginary : lines_real;
+    __global float *out = get_global_id(2) ? out_imaginary : out_real;
+    compress_range_of(lines + strip * bins, bins, first, bins_per_pixel, pulse, taps, column,
+                      columns, out + (strip + first_out_strip) * stride);
+}
+
+/* Global size: groups of WIDTH columns x groups of FORM_ROWS rows. */
+__kernel void combine_aspects(int first_strip, int strips, int strips_per_row, int reach,
+                              __global const float *lines_real,
+                              __global const float *lines_imaginary, int stride,
+                              __global const float *response_real,
+                              __global const float *response_imaginary, int rows,
+                              __global float *out_real, __global float *out_imaginary)
+{
+    const struct aspects aspects = {first_strip, strips, strips_per_row, reach};
+    combine_aspects_of(aspects, lines_real, lines_imaginary, stride, response_real,
+                       response_imaginary, (int)get_global_id(1) * FORM_ROWS, rows,
+                       (int)get_global_id(0) * WIDTH, out_real, out_imaginary);
+}

@@ -1,0 +1,94 @@
+/* From bins to pixels: speckle, pulse, cross-range response. Fields are two float planes, real and
+ * imaginary part (or two energies that are formed side by side). Every output is a sum in one fixed
+ * order. */
+#ifndef SONJECT_KERNELS_IMAGE_FORMATION_H
+#define SONJECT_KERNELS_IMAGE_FORMATION_H
+
+#include "elementary.h"
+#include "random.h"
+
+/* Complex normal deviates of unit mean square (Box and Muller: -ln u is the exponential intensity,
+ * v the phase in cycles). */
+FUNCTION void complex_normal(struct random_key key, word number, real *real_part,
+                             real *imaginary_part)
+{
+    real u, v;
+    two_uniforms(key, number, 0, &u, &v);
+    const real amplitude = SQUARE_ROOT(-natural_logarithm(u));
+    real sine, cosine;
+    sine_cosine_of_cycles(v, &sine, &cosine);
+    *real_part = amplitude * cosine;
+    *imaginary_part = amplitude * sine;
+}
+
+#define FORM_COLUMNS 16 /* pixels a work-item forms, whatever the width */
+
+/* Range compression of FORM_COLUMNS pixels of a line: pixel j is the sum over taps of
+ * line[j * bins_per_pixel + first + tap] * pulse[tap]; bins outside the line are empty. */
+FUNCTION void compress_range_of(GLOBAL const float *line, int bins, int first, int bins_per_pixel,
+                                GLOBAL const float *pulse, int taps, int first_column, int columns,
+                                GLOBAL float *out)
+{
+    for (int column = first_column; column < first_column + FORM_COLUMNS && column < columns;
+         column++) {
+        const int start = column * bins_per_pixel + first;
+        const int low = start < 0 ? -start : 0;
+        const int high = start + taps > bins ? bins - start : taps;
+        float sum = 0.0f;
+        for (int tap = low; tap < high; tap++)
+            sum += line[start + tap] * pulse[tap];
+        out[column] = sum;
+    }
+}
+
+/* Where a row takes its aspects from. */
+struct aspects {
+    int first_strip; /* of the lines, on the track's numbering */
+    int strips;
+    int strips_per_row;
+    int reach; /* the response is kept within +-reach strips; 2 reach + 1 taps */
+};
+
+#define FORM_ROWS 4 /* rows a work-item forms, so that a line is read once for all of them */
+
+/* Cross-range response for FORM_ROWS x WIDTH pixels: row n is the sum over strips q of
+ * lines[q] * response[n * strips_per_row - q + reach]. Planes are rows_or_strips x stride. */
+FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lines_real,
+                                 GLOBAL const float *lines_imaginary, int stride,
+                                 GLOBAL const float *response_real,
+                                 GLOBAL const float *response_imaginary, int first_row, int rows,
+                                 int column, GLOBAL float *out_real, GLOBAL float *out_imaginary)
+{
+    real sum_real[FORM_ROWS], sum_imaginary[FORM_ROWS];
+    for (int r = 0; r < FORM_ROWS; r++) {
+        sum_real[r] = SPLAT(0.0f);
+        sum_imaginary[r] = SPLAT(0.0f);
+    }
+    const int taps = 2 * aspects.reach + 1;
+    int low = first_row * aspects.strips_per_row - aspects.reach;
+    int high = (first_row + FORM_ROWS - 1) * aspects.strips_per_row + aspects.reach + 1;
+    low = low < aspects.first_strip ? aspects.first_strip : low;
+    high =
+        high > aspects.first_strip + aspects.strips ? aspects.first_strip + aspects.strips : high;
+    for (int strip = low; strip < high; strip++) {
+        const long at = (long)(strip - aspects.first_strip) * stride + column;
+        const real a = LOAD_REAL(lines_real + at);
+        const real b = LOAD_REAL(lines_imaginary + at);
+        for (int r = 0; r < FORM_ROWS; r++) {
+            const int tap = (first_row + r) * aspects.strips_per_row - strip + aspects.reach;
+            if (tap < 0 || tap >= taps)
+                continue;
+            const float c = response_real[tap];
+            const float d = response_imaginary[tap];
+            sum_real[r] += a * c - b * d;
+            sum_imaginary[r] += a * d + b * c;
+        }
+    }
+    for (int r = 0; r < FORM_ROWS && first_row + r < rows; r++) {
+        const long at = (long)(first_row + r) * stride + column;
+        STORE_REAL(sum_real[r], out_real + at);
+        STORE_REAL(sum_imaginary[r], out_imaginary + at);
+    }
+}
+
+#endif

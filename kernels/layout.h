@@ -1,0 +1,105 @@
+/* Records that host and device share. Four-byte members only, so no compiler pads them; the host
+ * asserts every size (lib/trace/records.c). */
+#ifndef SONJECT_KERNELS_LAYOUT_H
+#define SONJECT_KERNELS_LAYOUT_H
+
+#include "width.h"
+
+enum shape_kind {
+    SHAPE_PLANE = 0,
+    SHAPE_SPHERE = 1,
+    SHAPE_CYLINDER = 2,
+    SHAPE_CAPSULE = 3
+};
+
+/* What a random number is for; part of its key. */
+enum random_stream {
+    STREAM_ROUGH_RAYS = 1,
+    STREAM_SEABED_SPECKLE = 2,
+    STREAM_NOISE = 3,
+    STREAM_INPUT_PHASE = 4,
+    STREAM_SMOOTH_RAYS = 256,   /* + object */
+    STREAM_OBJECT_SPECKLE = 512 /* + object */
+};
+
+/* Bits that a work-item reports; any of them fails the run. */
+enum fault {
+    FAULT_NOT_A_NUMBER = 1,
+    FAULT_OVERFLOW = 2,
+    FAULT_OUTSIDE_TILE = 4
+};
+
+/* One object in the frame of a launch. */
+struct object_record {
+    RECORD_INT shape;
+    float centre_x, centre_y, centre_z; /* m, in the frame */
+    float axes[9];         /* rows: the object's own x (nose), y and z axis in frame coordinates */
+    float half_length;     /* m: plane, cylinder; capsule: of its straight part */
+    float half_width;      /* m: plane */
+    float radius;          /* m: sphere, cylinder, capsule */
+    float bounding_radius; /* m, about the centre */
+    float reflection;      /* amplitude of the smooth part */
+    float roughness_phase; /* 2 k eta: P = roughness_phase * cos(angle) */
+    float lambert;         /* mu */
+    RECORD_INT has_smooth_part;
+    /* Where the object's echoes and shadow are tallied, in the tile buffer (incoherent part). */
+    RECORD_WORD tile_offset;     /* first element */
+    RECORD_INT tile_first_strip; /* strips of the launch's track */
+    RECORD_INT tile_strips;
+    RECORD_INT tile_first_bin;
+    RECORD_INT tile_bins;
+};
+
+/* Planes of an object's tile, one after the other. */
+enum tile_plane {
+    TILE_ENERGY = 0,    /* expected cross-section of its echoes, in quanta */
+    TILE_FOOTPRINT = 1, /* number of rays that hit it */
+    TILE_LOST = 2,      /* seabed energy that it hides, in quanta */
+    TILE_PLANES = 3
+};
+
+/* A fan of rays over a track, in a frame that the host centres on what is traced. The sonar moves
+ * along y = z = -reference_range * (0, cos, -sin)(depression) of that frame. */
+struct fan_record {
+    float reference_range;                    /* m, from the track to the frame's origin */
+    float cosine_depression, sine_depression; /* of the direction from the track to the origin */
+    float seabed_height;                      /* z of the seabed plane in the frame, m */
+    float first_strip_x;                      /* x of the middle of strip 0, m */
+    float strip_width;                        /* m */
+    float first_elevation; /* upper... lower edge of the fan, rad from the central direction, upward
+                            */
+    float elevation_step;  /* rad a ray */
+    RECORD_WORD rays;      /* in elevation, a strip and along-track stratum */
+    RECORD_WORD strata;    /* along-track strata of a strip */
+    RECORD_INT first_strip; /* number of the first strip of this launch; strips are numbered over
+                               the whole track, so that chunks change nothing */
+    RECORD_INT strips;      /* of this launch */
+    float bins_per_metre;   /* of true range; apparent range scales it */
+    float first_bin;        /* bin coordinate of reference_range */
+    RECORD_INT bins;
+    float source_side;    /* m; 0: the source is a point at the receiver */
+    float seabed_lambert; /* mu0; 0: no seabed energy wanted */
+    float quanta;         /* quanta per m^2 (energy) or per m (amplitude), a power of two */
+    RECORD_INT map_rows, map_columns; /* of the reflectivity map; 0: uniform */
+    float map_row_at_origin;          /* map row at x = 0 of the frame */
+    float map_rows_per_metre;
+    float map_first_column; /* map column of reference_range */
+    float map_columns_per_metre;
+    float cycles_per_metre; /* 2 / wavelength: phase of a two-way path, in cycles per m of range */
+    float first_cycles;     /* phase at reference_range, a fraction of a cycle */
+    float inverse_wavelength; /* 1/m */
+    RECORD_WORD seed_low, seed_high, stream;
+    RECORD_INT objects;
+    RECORD_INT only_object; /* smooth part: the object whose glints are wanted */
+    RECORD_INT segments;    /* work-items that share a strip */
+};
+
+/* What a work-item counted. */
+struct outcome_record {
+    RECORD_WORD queries; /* rays and visibility tests */
+    RECORD_WORD impulses;
+    RECORD_WORD faults;
+    RECORD_WORD reserved;
+};
+
+#endif

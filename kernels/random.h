@@ -1,0 +1,76 @@
+/* Counter-based random numbers: Threefry-2x32 of Salmon, Moraes, Dror and Shaw, "Parallel random
+ * numbers: as easy as 1, 2, 3" (SC 2011), 20 rounds. A number depends on its key and counter alone,
+ * so neither order, width, chunk nor device can change it. */
+#ifndef SONJECT_KERNELS_RANDOM_H
+#define SONJECT_KERNELS_RANDOM_H
+
+#include "width.h"
+
+#define THREEFRY_BODY(type)                                                                        \
+    const type parity = key0 ^ key1 ^ 0x1BD11BDAu;                                                 \
+    *a += key0;                                                                                    \
+    *b += key1;                                                                                    \
+    THREEFRY_FOUR(13, 15, 26, 6)                                                                   \
+    *a += key1;                                                                                    \
+    *b += parity + 1u;                                                                             \
+    THREEFRY_FOUR(17, 29, 16, 24)                                                                  \
+    *a += parity;                                                                                  \
+    *b += key0 + 2u;                                                                               \
+    THREEFRY_FOUR(13, 15, 26, 6)                                                                   \
+    *a += key0;                                                                                    \
+    *b += key1 + 3u;                                                                               \
+    THREEFRY_FOUR(17, 29, 16, 24)                                                                  \
+    *a += key1;                                                                                    \
+    *b += parity + 4u;                                                                             \
+    THREEFRY_FOUR(13, 15, 26, 6)                                                                   \
+    *a += parity;                                                                                  \
+    *b += key0 + 5u;
+
+#define THREEFRY_ROUND(turn)                                                                       \
+    *a += *b;                                                                                      \
+    *b = ((*b << turn) | (*b >> (32 - turn))) ^ *a;
+
+#define THREEFRY_FOUR(turn0, turn1, turn2, turn3)                                                  \
+    THREEFRY_ROUND(turn0) THREEFRY_ROUND(turn1) THREEFRY_ROUND(turn2) THREEFRY_ROUND(turn3)
+
+/* Turns the counter (*a, *b) into two random words. */
+FUNCTION void threefry(RECORD_WORD key0, RECORD_WORD key1, word *a,
+                       word *b){THREEFRY_BODY(RECORD_WORD)}
+
+/* The same on scalars, for keys. */
+FUNCTION void threefry_scalar(RECORD_WORD key0, RECORD_WORD key1, RECORD_WORD *a, RECORD_WORD *b)
+{
+    THREEFRY_BODY(RECORD_WORD)
+}
+
+struct random_key {
+    RECORD_WORD first, second;
+};
+
+/* The key of one track strip in one stream. */
+FUNCTION struct random_key random_key_of(RECORD_WORD seed_low, RECORD_WORD seed_high,
+                                         RECORD_WORD stream, RECORD_WORD strip)
+{
+    struct random_key key = {strip, stream};
+    threefry_scalar(seed_low, seed_high, &key.first, &key.second);
+    return key;
+}
+
+/* The middle of one of 2^23 equal parts of (0, 1), exact: never 0, never 1. */
+FUNCTION real uniform_from(word bits)
+{
+    return (REAL_OF(bits >> 9) + 0.5f) * 1.1920928955078125e-7f;
+}
+
+/* Two uniform deviates of (0, 1) for ray number `ray`; draw counts interactions and dimensions. */
+FUNCTION void two_uniforms(struct random_key key, word ray, RECORD_WORD draw, real *first,
+                           real *second)
+{
+    word a = ray;
+    word b = SPLAT_WORD(draw);
+    threefry(key.first, key.second, &a, &b);
+    *first = uniform_from(a);
+    *second = uniform_from(b);
+}
+
+#endif

@@ -1,0 +1,27 @@
+/* Sphere about the origin of its own frame. */
+#ifndef SONJECT_KERNELS_SHAPES_SPHERE_H
+#define SONJECT_KERNELS_SHAPES_SPHERE_H
+
+#include "interval.h"
+
+/* point: of the ray, near the centre; direction: unit. */
+FUNCTION struct interval sphere_interval(struct vector3 point, struct vector3 direction,
+                                         float radius)
+{
+    const real middle = -dot3(point, direction);
+    const struct vector3 closest = along3(point, direction, middle);
+    const real square = radius * radius - dot3(closest, closest);
+    const real reach = SQUARE_ROOT(larger(square, SPLAT(0.0f)));
+    return interval_where(MASK_OF(square > 0.0f), middle - reach, middle + reach);
+}
+
+FUNCTION struct vector3 sphere_normal(struct vector3 point, float radius)
+{
+    struct vector3 normal;
+    normal.x = point.x / radius;
+    normal.y = point.y / radius;
+    normal.z = point.z / radius;
+    return normal;
+}
+
+#endif

@@ -1,0 +1,15 @@
+/* Entry point: one work-item traces one segment of one strip. */
+#include "trace_rough.h"
+
+__kernel void trace_rough(__global const struct fan_record *fan_buffer,
+                          __global const struct object_record *objects, __global const float *map,
+                          __global long *seabed, __global long *tiles,
+                          __global struct outcome_record *outcomes)
+{
+    const struct fan_record fan = *fan_buffer;
+    const int strip = (int)(get_global_id(0) / (size_t)fan.segments);
+    const int segment = (int)(get_global_id(0) % (size_t)fan.segments);
+    if (strip < fan.strips)
+        outcomes[get_global_id(0)] =
+            trace_rough_strip(&fan, objects, map, seabed, tiles, strip, segment);
+}

@@ -1,0 +1,225 @@
+/* The incoherent part at one interaction: seabed and rough surfaces. Each ray carries the energy of
+ * the strip of wavefront that it stands for (kernels/MATH.md, "Rough surfaces"). */
+#ifndef SONJECT_KERNELS_TRACE_ROUGH_H
+#define SONJECT_KERNELS_TRACE_ROUGH_H
+
+#include "fan.h"
+#include "intersection.h"
+#include "random.h"
+#include "surface.h"
+#include "tally.h"
+
+/* A hit as seen by the source: where its echo lies and whether it gets there. */
+struct connection {
+    real range;  /* half the path less the reference range */
+    real cosine; /* of the angle between normal and the way to the source */
+    mask is_open;
+};
+
+/* Connects a hit to a random point of the source's rectangle, which spans x and the fan's upward
+ * direction about the receiver, and tests whether anything is in between. */
+FUNCTION struct connection connect_to_source(const struct fan_record *fan,
+                                             GLOBAL const struct object_record *objects,
+                                             const struct fan_ray *ray, struct vector3 hit,
+                                             struct vector3 normal, real range, real along,
+                                             real across)
+{
+    /* from the hit back to the receiver is -direction * r; the source point lies an offset beside
+     */
+    const real r = fan->reference_range + range;
+    const real offset_x = (along - 0.5f) * fan->source_side;
+    const real offset_up = (across - 0.5f) * fan->source_side;
+    const real square = offset_x * offset_x + offset_up * offset_up;
+    const real path = SQUARE_ROOT(r * r + square);
+    struct vector3 way;
+    way.x = offset_x / path;
+    way.y = (offset_up * ray->upward.y - r * ray->direction.y) / path;
+    way.z = (offset_up * ray->upward.z - r * ray->direction.z) / path;
+    struct connection connection;
+    connection.range = range + 0.5f * square / (path + r);
+    connection.cosine = dot3(way, normal);
+    /* start off the surface by more than its rounding, less than anything that throws a shadow */
+    const struct vector3 start = along3(hit, normal, SPLAT(2.0e-5f));
+    const struct nearest_hit blocking = find_nearest_hit(objects, fan->objects, start, way, 0.0f);
+    connection.is_open = MASK_OF(blocking.distance > path) & MASK_OF(connection.cosine > 0.0f);
+    return connection;
+}
+
+/* Energies of one group of rays, lane by lane, ready to be tallied. */
+struct rough_echo {
+    float seabed[WIDTH], target[WIDTH]; /* quanta; 0: none */
+    int seabed_bin[WIDTH], target_bin[WIDTH], object[WIDTH];
+    float row[WIDTH], column[WIDTH]; /* of the reflectivity map */
+};
+
+FUNCTION float map_value(const struct fan_record *fan, GLOBAL const float *map, float row,
+                         float column)
+{
+    if (fan->map_rows == 0)
+        return 1.0f;
+    int r = (int)(row + 0.5f);
+    int c = (int)(column + 0.5f);
+    r = r < 0 ? 0 : r >= fan->map_rows ? fan->map_rows - 1 : r;
+    c = c < 0 ? 0 : c >= fan->map_columns ? fan->map_columns - 1 : c;
+    return map[(long)r * fan->map_columns + c];
+}
+
+FUNCTION GLOBAL TALLY *tile_element(GLOBAL const struct object_record *object, GLOBAL TALLY *tiles,
+                                    int plane, int strip, int bin)
+{
+    const int row = strip - object->tile_first_strip;
+    const int column = bin - object->tile_first_bin;
+    if (row < 0 || row >= object->tile_strips || column < 0 || column >= object->tile_bins)
+        return 0;
+    return tiles + object->tile_offset +
+           ((long)plane * object->tile_strips + row) * object->tile_bins + column;
+}
+
+/* Tallies one lane. */
+FUNCTION void tally_rough_echo(const struct fan_record *fan,
+                               GLOBAL const struct object_record *objects, GLOBAL const float *map,
+                               GLOBAL TALLY *seabed, GLOBAL TALLY *tiles, int strip,
+                               const struct rough_echo *echo, int lane,
+                               struct outcome_record *outcome)
+{
+    const int track_strip = fan->first_strip + strip;
+    const int object = echo->object[lane];
+    const int bin = echo->seabed_bin[lane];
+    if (echo->seabed[lane] > 0.0f && bin >= 0 && bin < fan->bins) {
+        const float quanta =
+            echo->seabed[lane] * map_value(fan, map, echo->row[lane], echo->column[lane]);
+        tally_add(&seabed[(long)strip * fan->bins + bin], quanta, &outcome->faults);
+        outcome->impulses += object < 0;
+        if (object >= 0) {
+            GLOBAL TALLY *lost = tile_element(&objects[object], tiles, TILE_LOST, track_strip, bin);
+            if (lost)
+                tally_add(lost, quanta, &outcome->faults);
+            else
+                outcome->faults |= FAULT_OUTSIDE_TILE;
+        }
+    }
+    if (object >= 0) {
+        const int target_bin = echo->target_bin[lane];
+        GLOBAL TALLY *energy =
+            tile_element(&objects[object], tiles, TILE_ENERGY, track_strip, target_bin);
+        GLOBAL TALLY *footprint =
+            tile_element(&objects[object], tiles, TILE_FOOTPRINT, track_strip, target_bin);
+        if (!energy || !footprint)
+            return; /* beyond the patch's ranges */
+        tally_add(footprint, 1.0f, &outcome->faults);
+        tally_add(energy, echo->target[lane], &outcome->faults);
+        outcome->impulses += echo->target[lane] > 0.0f;
+    }
+}
+
+/* Traces one group of WIDTH rays of a strip. */
+FUNCTION void trace_rough_group(const struct fan_record *fan,
+                                GLOBAL const struct object_record *objects, int strip,
+                                struct random_key key, RECORD_WORD first_ray,
+                                struct rough_echo *echo, struct outcome_record *outcome)
+{
+    const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
+    const mask is_ray = MASK_OF(number < fan->rays);
+    real along, across;
+    two_uniforms(key, number, 0, &along, &across);
+    const real x = strip_position(fan, strip) + (along - 0.5f) * fan->strip_width;
+    const struct fan_ray ray =
+        fan_ray_at(fan, x, fan->first_elevation + (REAL_OF(number) + across) * fan->elevation_step);
+    const real to_seabed = seabed_distance(fan, ray.closest, ray.direction);
+    const struct nearest_hit nearest =
+        find_nearest_hit(objects, fan->objects, ray.closest, ray.direction, -fan->reference_range);
+    const mask on_object = is_ray & MASK_OF(nearest.distance < to_seabed);
+
+    const real seabed_range = ray.range_at_closest + to_seabed;
+    const float wavefront = fan->strip_width * fan->elevation_step; /* times range: area */
+    const real seabed_cosine = -ray.direction.z;
+    real bed_range = seabed_range;
+    real bed_cosine = seabed_cosine;
+    mask bed_open = is_ray & MASK_OF(to_seabed < 0.5f * FAR_AWAY);
+    real source_along, source_across;
+    if (fan->source_side > 0.0f)
+        two_uniforms(key, number, 1, &source_along, &source_across);
+    if (fan->source_side > 0.0f && ANY(bed_open)) {
+        struct vector3 up;
+        up.x = SPLAT(0.0f);
+        up.y = SPLAT(0.0f);
+        up.z = SPLAT(1.0f);
+        const struct connection way =
+            connect_to_source(fan, objects, &ray, along3(ray.closest, ray.direction, to_seabed), up,
+                              seabed_range, source_along, source_across);
+        outcome->queries += count_lanes(bed_open);
+        bed_range = way.range;
+        bed_cosine = way.cosine;
+        bed_open = bed_open & (way.is_open | on_object);
+    }
+    const real bed_energy = fan->seabed_lambert * bed_cosine * wavefront *
+                            (fan->reference_range + seabed_range) * fan->quanta;
+    const real bed_bin =
+        CHOOSE(bed_open, bed_range * fan->bins_per_metre + fan->first_bin, SPLAT(-9.0f));
+
+    real energy = SPLAT(0.0f);
+    real target_range = ray.range_at_closest + CHOOSE(on_object, nearest.distance, SPLAT(0.0f));
+    const real target_area = wavefront * (fan->reference_range + target_range) * fan->quanta;
+    for (int i = 0; i < fan->objects && ANY(on_object); i++) {
+        const mask here = on_object & MASK_OF(nearest.object == i);
+        if (!ANY(here))
+            continue;
+        const real distance = CHOOSE(here, nearest.distance, SPLAT(0.0f));
+        const struct vector3 normal =
+            object_normal(&objects[i], ray.closest, ray.direction, distance);
+        const real cosine_in = larger(-dot3(normal, ray.direction), SPLAT(0.0f));
+        real cosine_out = cosine_in;
+        mask is_open = here;
+        if (fan->source_side > 0.0f) {
+            const struct connection way =
+                connect_to_source(fan, objects, &ray, along3(ray.closest, ray.direction, distance),
+                                  normal, target_range, source_along, source_across);
+            outcome->queries += count_lanes(here);
+            is_open = is_open & way.is_open;
+            cosine_out = larger(way.cosine, SPLAT(0.0f));
+            target_range = CHOOSE(here, way.range, target_range);
+        }
+        energy =
+            CHOOSE(is_open,
+                   rough_scattering(&objects[i], cosine_in, cosine_out) * cosine_out * target_area,
+                   energy);
+    }
+    const whole seabed_bins = nearest_bin(bed_bin);
+    const whole target_bins = nearest_bin(target_range * fan->bins_per_metre + fan->first_bin);
+    const whole object_numbers = CHOOSE(on_object, nearest.object, WHOLE_OF(SPLAT(-1.0f)));
+    const real kept = CHOOSE(bed_open, bed_energy, SPLAT(0.0f));
+    const real row = fan->map_row_at_origin + x * fan->map_rows_per_metre;
+    const real column = fan->map_first_column + seabed_range * fan->map_columns_per_metre;
+    const real safe_column = smaller(larger(column, SPLAT(-1.0f)), SPLAT(1.0e8f));
+    STORE_REAL(kept, echo->seabed);
+    STORE_REAL(energy, echo->target);
+    STORE_WHOLE(seabed_bins, echo->seabed_bin);
+    STORE_WHOLE(target_bins, echo->target_bin);
+    STORE_WHOLE(object_numbers, echo->object);
+    STORE_REAL(row, echo->row);
+    STORE_REAL(safe_column, echo->column);
+}
+
+/* Traces the share `segment` of a strip's fan. */
+FUNCTION struct outcome_record trace_rough_strip(const struct fan_record *fan,
+                                                 GLOBAL const struct object_record *objects,
+                                                 GLOBAL const float *map, GLOBAL TALLY *seabed,
+                                                 GLOBAL TALLY *tiles, int strip, int segment)
+{
+    struct outcome_record outcome = {0, 0, 0, 0};
+    const struct random_key key = random_key_of(fan->seed_low, fan->seed_high, fan->stream,
+                                                (RECORD_WORD)(fan->first_strip + strip));
+    const RECORD_WORD groups = (fan->rays + WIDTH - 1u) / WIDTH;
+    for (RECORD_WORD group = (RECORD_WORD)segment; group < groups;
+         group += (RECORD_WORD)fan->segments) {
+        struct rough_echo echo;
+        const RECORD_WORD left = fan->rays - group * WIDTH;
+        outcome.queries += left < WIDTH ? left : WIDTH;
+        trace_rough_group(fan, objects, strip, key, group * WIDTH, &echo, &outcome);
+        for (int lane = 0; lane < WIDTH; lane++)
+            tally_rough_echo(fan, objects, map, seabed, tiles, strip, &echo, lane, &outcome);
+    }
+    return outcome;
+}
+
+#endif

@@ -1,0 +1,13 @@
+/* Entry point: one work-item traces one segment of one sub-strip. */
+#include "trace_smooth.h"
+
+__kernel void trace_smooth(__global const struct fan_record *fan_buffer,
+                           __global const struct object_record *objects, __global long *tally,
+                           __global struct outcome_record *outcomes)
+{
+    const struct fan_record fan = *fan_buffer;
+    const int strip = (int)(get_global_id(0) / (size_t)fan.segments);
+    const int segment = (int)(get_global_id(0) % (size_t)fan.segments);
+    if (strip < fan.strips)
+        outcomes[get_global_id(0)] = trace_smooth_strip(&fan, objects, tally, strip, segment);
+}

@@ -1,0 +1,178 @@
+/* One source, any width: the physics is written on `real`, which holds WIDTH lanes.
+ * OpenCL C at WIDTH 1, 4, 8 or 16, and plain C99 at WIDTH 1 (unit tests) or, with the vector
+ * extension of gcc and clang, at WIDTH 16 (benchmark). Every operation used on `real` is exact or
+ * correctly rounded lane by lane, so all of them give the same bits. A mask lane is 0 or -1. */
+#ifndef SONJECT_KERNELS_WIDTH_H
+#define SONJECT_KERNELS_WIDTH_H
+
+#ifndef WIDTH
+#define WIDTH 1
+#endif
+
+#ifdef __OPENCL_C_VERSION__
+
+#pragma OPENCL FP_CONTRACT OFF
+#define FUNCTION    static inline
+#define GLOBAL      __global
+#define CONSTANT    __constant
+#define RECORD_INT  int
+#define RECORD_WORD uint
+#define TALLY       long
+#define JOIN_(a, b) a##b
+#define JOIN(a, b)  JOIN_(a, b)
+#if WIDTH == 1
+typedef float real;
+typedef int whole;
+typedef uint word;
+typedef int mask;
+#define MASK_OF(comparison)       (-(comparison))
+#define AS_WHOLE(value)           as_int(value)
+#define AS_REAL(value)            as_float(value)
+#define AS_WORD(value)            as_uint(value)
+#define REAL_OF(value)            convert_float(value)
+#define WHOLE_OF(value)           convert_int_rtz(value)
+#define STORE_REAL(value, array)  ((array)[0] = (value))
+#define STORE_WHOLE(value, array) ((array)[0] = (value))
+#define LOAD_REAL(array)          ((array)[0])
+#define LANE_NUMBERS              0u
+#else
+typedef JOIN(float, WIDTH) real;
+typedef JOIN(int, WIDTH) whole;
+typedef JOIN(uint, WIDTH) word;
+typedef JOIN(int, WIDTH) mask;
+#define MASK_OF(comparison)       (comparison)
+#define AS_WHOLE(value)           JOIN(as_int, WIDTH)(value)
+#define AS_REAL(value)            JOIN(as_float, WIDTH)(value)
+#define AS_WORD(value)            JOIN(as_uint, WIDTH)(value)
+#define REAL_OF(value)            JOIN(convert_float, WIDTH)(value)
+#define WHOLE_OF(value)           JOIN(JOIN(convert_int, WIDTH), _rtz)(value)
+#define STORE_REAL(value, array)  JOIN(vstore, WIDTH)(value, 0, array)
+#define STORE_WHOLE(value, array) JOIN(vstore, WIDTH)(value, 0, array)
+#define LOAD_REAL(array)          JOIN(vload, WIDTH)(0, array)
+#if WIDTH == 4
+#define LANE_NUMBERS ((word)(0, 1, 2, 3))
+#elif WIDTH == 8
+#define LANE_NUMBERS ((word)(0, 1, 2, 3, 4, 5, 6, 7))
+#else
+#define LANE_NUMBERS ((word)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#endif
+#endif
+#define SPLAT(value)       ((real)(value))
+#define SPLAT_WORD(value)  ((word)(value))
+#define SQUARE_ROOT(value) sqrt(value)
+#define CHOOSE(m, yes, no) select(no, yes, m)
+#define ANY(m)             any(m)
+
+#else /* plain C */
+
+#include <math.h>
+#include <stdint.h>
+#include <string.h>
+
+#define FUNCTION static inline
+#define GLOBAL
+#define CONSTANT
+#define RECORD_INT  int32_t
+#define RECORD_WORD uint32_t
+#define TALLY       int64_t
+#if WIDTH == 1
+typedef float real;
+typedef int32_t whole;
+typedef uint32_t word;
+typedef int32_t mask;
+#define MASK_OF(comparison)       (-(int32_t)(comparison))
+FUNCTION int32_t AS_WHOLE(float value)
+{
+    int32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+FUNCTION float AS_REAL(int32_t bits)
+{
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return value;
+}
+#define AS_WORD(value)            ((word)(value))
+#define REAL_OF(value)            ((float)(value))
+#define WHOLE_OF(value)           ((int32_t)(value))
+#define SPLAT(value)              ((real)(value))
+#define SPLAT_WORD(value)         ((word)(value))
+#define SQUARE_ROOT(value)        sqrtf(value)
+#define CHOOSE(m, yes, no)        ((m) ? (yes) : (no))
+#define ANY(m)                    ((m) != 0)
+#define STORE_REAL(value, array)  ((array)[0] = (value))
+#define STORE_WHOLE(value, array) ((array)[0] = (value))
+#define LOAD_REAL(array)          ((array)[0])
+#define LANE_NUMBERS              0u
+#else
+typedef float real __attribute__((vector_size(4 * WIDTH)));
+typedef int32_t whole __attribute__((vector_size(4 * WIDTH)));
+typedef uint32_t word __attribute__((vector_size(4 * WIDTH)));
+typedef int32_t mask __attribute__((vector_size(4 * WIDTH)));
+#define MASK_OF(comparison)       (comparison)
+#define AS_WHOLE(value)           ((whole)(value))
+#define AS_REAL(value)            ((real)(value))
+#define AS_WORD(value)            ((word)(value))
+#define REAL_OF(value)            __builtin_convertvector(value, real)
+#define WHOLE_OF(value)           __builtin_convertvector(value, whole)
+#define SPLAT(value)              ((real){0} + (float)(value))
+#define SPLAT_WORD(value)         ((word){0} + (uint32_t)(value))
+FUNCTION real SQUARE_ROOT(real value)
+{
+    real root;
+    for (int lane = 0; lane < WIDTH; lane++)
+        root[lane] = sqrtf(value[lane]);
+    return root;
+}
+#define CHOOSE(m, yes, no)        ((__typeof__(yes))(((m) & (mask)(yes)) | (~(m) & (mask)(no))))
+FUNCTION real LOAD_REAL(const float *array)
+{
+    real value;
+    memcpy(&value, array, sizeof value);
+    return value;
+}
+FUNCTION int ANY(mask m)
+{
+    int32_t some = 0;
+    for (int lane = 0; lane < WIDTH; lane++)
+        some |= m[lane];
+    return some != 0;
+}
+#define STORE_REAL(value, array)  memcpy(array, &(value), sizeof(real))
+#define STORE_WHOLE(value, array) memcpy(array, &(value), sizeof(whole))
+#define LANE_NUMBERS              ((word){0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15})
+#endif
+
+#endif
+
+/* A value that is used as scratch in several lanes must be named: STORE_* takes its address in C.
+ */
+
+FUNCTION real smaller(real a, real b)
+{
+    return CHOOSE(MASK_OF(b < a), b, a);
+}
+
+FUNCTION real larger(real a, real b)
+{
+    return CHOOSE(MASK_OF(b > a), b, a);
+}
+
+FUNCTION real magnitude(real value)
+{
+    return AS_REAL(AS_WHOLE(value) & 0x7fffffff);
+}
+
+/* How many lanes of the mask are set. */
+FUNCTION RECORD_WORD count_lanes(mask m)
+{
+    int lanes[WIDTH];
+    STORE_WHOLE(m, lanes);
+    RECORD_WORD count = 0;
+    for (int lane = 0; lane < WIDTH; lane++)
+        count += lanes[lane] != 0;
+    return count;
+}
+
+#endif

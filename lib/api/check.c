@@ -1,0 +1,192 @@
+#include "api/handles.h"
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <sonject/run.h>
+
+#include "api/swath.h"
+#include "base/memory.h"
+#include "scene/placement.h"
+
+#define DEGREES_PER_RADIAN 57.29577951308232
+#define MAP_ROWS           20
+#define MAP_COLUMNS        64
+
+/* A text that grows; a failed allocation makes the rest a no-op. */
+struct text {
+    char *characters;
+    size_t length, capacity;
+    bool failed;
+};
+
+static void text_add(struct text *text, const char *format, ...) REPORT_FORMAT(2);
+
+static void text_add(struct text *text, const char *format, ...)
+{
+    char line[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    const size_t length = strlen(line);
+    if (!text->failed && text->length + length + 1 > text->capacity) {
+        const size_t capacity = 2 * text->capacity + length + 1;
+        char *grown = realloc(text->characters, capacity);
+        text->failed = !grown;
+        if (grown) {
+            text->characters = grown;
+            text->capacity = capacity;
+        }
+    }
+    if (text->failed)
+        return;
+    memcpy(text->characters + text->length, line, length + 1);
+    text->length += length;
+}
+
+static double grazing_degrees(const struct patch_view *view, double apparent_range)
+{
+    return asin(view_grazing_sine(view, apparent_range)) * DEGREES_PER_RADIAN;
+}
+
+static void describe_patch(struct text *text, const struct scene *scene, const struct swath *swath,
+                           const struct patch_view *view)
+{
+    const double last = view_apparent_range(view, (double)view->columns - 1.0);
+    text_add(text, "image      %llu x %llu pixels, %u channel%s\n",
+             (unsigned long long)swath->layout.rows, (unsigned long long)swath->layout.columns,
+             (unsigned)swath->layout.channels, swath->layout.channels == 1 ? "" : "s");
+    text_add(text, "patch      %llu x %llu pixels from row %llu, column %llu\n",
+             (unsigned long long)swath->patch.rows, (unsigned long long)swath->patch.columns,
+             (unsigned long long)swath->patch.first_row,
+             (unsigned long long)swath->patch.first_column);
+    text_add(text, "           %.2f m along-track, slant range %.2f...%.2f m, %s\n",
+             (double)view->rows * view->row_spacing_m, view->first_range_m, last,
+             view->is_mirrored ? "starboard" : "port");
+    text_add(text, "           grazing angle %.1f...%.1f deg\n",
+             grazing_degrees(view, view->first_range_m), grazing_degrees(view, last));
+    text_add(text, "sonar      %.4g kHz, bandwidth %.4g kHz, altitude %.3g m, wavelength %.4g mm\n",
+             scene->sonar.centre_frequency_hz / 1e3, scene->sonar.bandwidth_hz / 1e3,
+             scene->sonar.altitude_m, view->wavelength_m * 1e3);
+}
+
+/* Length on the ground of the shadow of something as high as the object's top. */
+static double shadow_length(const struct patch_view *view, const struct placement *placement,
+                            double top)
+{
+    return top > 0.0 ? placement->centre[1] * top / (view->altitude_m - top) : 0.0;
+}
+
+static double top_of(const struct scene *scene, const struct placement *placement, uint32_t i)
+{
+    static const double upward[3] = {0.0, 0.0, 1.0};
+    return placement->centre[2] + placement_half_extent(placement, scene->objects[i].shape, upward);
+}
+
+static void describe_objects(struct text *text, const struct scene *scene,
+                             const struct patch_view *view, const struct placement *placements)
+{
+    for (uint32_t i = 0; i < scene->object_count; i++) {
+        const struct placement *placement = &placements[i];
+        const double top = top_of(scene, placement, i);
+        const double range = placement_range(placement, view) * view->range_ratio;
+        text_add(text, "object %-3u %s (%s): row %.1f, slant range %.2f m, top %.3f m, shadow %.2f m\n",
+                 (unsigned)(i + 1), scene->objects[i].name, shape_name(scene->objects[i].shape),
+                 view_row_of_x(view, placement->centre[0]), range, top,
+                 shadow_length(view, placement, top));
+    }
+}
+
+/* Marks the cells of the plan that a box on the ground covers. */
+static void mark(char plan[MAP_ROWS][MAP_COLUMNS + 1], const struct patch_view *view,
+                 const double low[2], const double high[2], char sign)
+{
+    for (int row = 0; row < MAP_ROWS; row++)
+        for (int column = 0; column < MAP_COLUMNS; column++) {
+            const double x = view_x_of_row(view, (row + 0.5) / MAP_ROWS * (double)view->rows);
+            const double range = view_apparent_range(
+                view, (column + 0.5) / MAP_COLUMNS * (double)view->columns);
+            const double y = view_ground_range(view, range);
+            const double half_x = 0.5 * (double)view->rows / MAP_ROWS * view->row_spacing_m;
+            const double half_y =
+                0.5 * (double)view->columns / MAP_COLUMNS * view->column_spacing_m;
+            if (x + half_x > low[0] && x - half_x < high[0] && y + half_y > low[1] &&
+                y - half_y < high[1] && plan[row][column] != '#')
+                plan[row][column] = sign;
+        }
+}
+
+static void draw_plan(struct text *text, const struct scene *scene, const struct patch_view *view,
+                      const struct placement *placements)
+{
+    static const double along[3] = {1.0, 0.0, 0.0};
+    static const double outward[3] = {0.0, 1.0, 0.0};
+    char plan[MAP_ROWS][MAP_COLUMNS + 1];
+    for (int row = 0; row < MAP_ROWS; row++) {
+        memset(plan[row], '.', MAP_COLUMNS);
+        plan[row][MAP_COLUMNS] = '\0';
+    }
+    for (uint32_t i = 0; i < scene->object_count; i++) {
+        const struct placement *placement = &placements[i];
+        const uint32_t shape = scene->objects[i].shape;
+        const double x = placement_half_extent(placement, shape, along);
+        const double y = placement_half_extent(placement, shape, outward);
+        const double shadow = shadow_length(view, placement, top_of(scene, placement, i));
+        const double low[2] = {placement->centre[0] - x, placement->centre[1] - y};
+        const double high[2] = {placement->centre[0] + x, placement->centre[1] + y};
+        const double end[2] = {high[0], high[1] + shadow};
+        mark(plan, view, low, high, '#');
+        mark(plan, view, low, end, ':');
+    }
+    text_add(text, "\nplan, track at the left, range to the right (# object's bounds, : shadow)\n");
+    for (int row = 0; row < MAP_ROWS; row++)
+        text_add(text, "  |%s|\n", plan[view->is_mirrored ? MAP_ROWS - 1 - row : row]);
+}
+
+sonject_status sonject_check(sonject_context *context, const sonject_scene *handle, char **out)
+{
+    if (!context || !out)
+        return SONJECT_ERROR_ARGUMENT;
+    *out = NULL;
+    context_begin_call(context);
+    struct report *report = &context->report;
+    if (!handle)
+        return null_argument(report, "scene");
+    const struct scene *scene = &handle->scene;
+    struct swath swath;
+    struct patch_view view;
+    struct placement *placements = allocate_array(scene->object_count, sizeof *placements);
+    if (!placements)
+        return report_out_of_memory(report, "objects");
+    sonject_status status = swath_describe(report, scene, &swath);
+    if (status == SONJECT_OK)
+        status = injection_check(report, scene, (double)swath.patch.first_row,
+                                 (double)swath.patch.first_column, (size_t)swath.patch.rows,
+                                 (size_t)swath.patch.columns, &view, placements);
+    if (status == SONJECT_OK) {
+        struct text text = {NULL, 0, 0, false};
+        describe_patch(&text, scene, &swath, &view);
+        describe_objects(&text, scene, &view, placements);
+        draw_plan(&text, scene, &view, placements);
+        if (text.failed) {
+            free(text.characters);
+            status = report_out_of_memory(report, "the description");
+        } else {
+            *out = text.characters;
+        }
+    }
+    free(placements);
+    return status;
+}
+
+void sonject_text_release(char **text)
+{
+    if (!text)
+        return;
+    free(*text);
+    *text = NULL;
+}

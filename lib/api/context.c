@@ -1,0 +1,183 @@
+#include "api/handles.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <sonject/version.h>
+
+#include "base/memory.h"
+
+#define TEXT_OF_(token) #token
+#define TEXT_OF(token)  TEXT_OF_(token)
+
+const char *sonject_version(void)
+{
+    return TEXT_OF(SONJECT_VERSION_MAJOR) "." TEXT_OF(SONJECT_VERSION_MINOR) "." TEXT_OF(
+        SONJECT_VERSION_PATCH);
+}
+
+const char *sonject_status_name(sonject_status status)
+{
+    switch (status) {
+    case SONJECT_OK:
+        return "ok";
+    case SONJECT_ERROR_ARGUMENT:
+        return "bad argument";
+    case SONJECT_ERROR_INPUT:
+        return "bad input";
+    case SONJECT_ERROR_DEVICE:
+        return "device failure";
+    case SONJECT_ERROR_STORAGE:
+        return "storage failure";
+    case SONJECT_ERROR_MEMORY:
+        return "out of memory";
+    case SONJECT_ERROR_UNSUPPORTED:
+        return "not in this build";
+    case SONJECT_CANCELLED:
+        return "cancelled";
+    }
+    return "unknown status";
+}
+
+void context_begin_call(struct sonject_context *context)
+{
+    context->report.message[0] = '\0';
+}
+
+sonject_status null_argument(struct report *report, const char *name)
+{
+    return report_failure(report, SONJECT_ERROR_ARGUMENT, "%s must not be NULL", name);
+}
+
+static uint32_t size_of(const void *params)
+{
+    uint32_t size;
+    memcpy(&size, params, sizeof size);
+    return size;
+}
+
+sonject_status params_take(struct report *report, void *to, size_t to_size, const void *from,
+                           size_t smallest, const char *name)
+{
+    if (!from)
+        return null_argument(report, name);
+    const size_t size = size_of(from);
+    if (size < smallest)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                              "%s: struct_size is %zu, at least %zu is needed: fill it with its "
+                              "_init function",
+                              name, size, smallest);
+    for (size_t i = to_size; i < size; i++)
+        if (((const unsigned char *)from)[i] != 0)
+            return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                                  "%s sets members that version %s of the library does not know",
+                                  name, sonject_version());
+    memcpy(to, from, size < to_size ? size : to_size);
+    const uint32_t known = (uint32_t)to_size;
+    memcpy(to, &known, sizeof known);
+    return SONJECT_OK;
+}
+
+sonject_status params_give(struct report *report, void *to, const void *from, size_t from_size,
+                           size_t smallest, const char *name)
+{
+    if (!to)
+        return null_argument(report, name);
+    const uint32_t size = size_of(to);
+    if (size < smallest)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                              "%s: struct_size is %u, at least %zu is needed", name, (unsigned)size,
+                              smallest);
+    memcpy(to, from, size < from_size ? size : from_size);
+    memcpy(to, &size, sizeof size);
+    return SONJECT_OK;
+}
+
+void sonject_context_params_init(sonject_context_params *params)
+{
+    memset(params, 0, sizeof *params);
+    params->struct_size = sizeof *params;
+}
+
+static sonject_status copy_params(struct sonject_context *context,
+                                  const sonject_context_params *params)
+{
+    sonject_context_params_init(&context->params);
+    if (!params)
+        return SONJECT_OK;
+    sonject_context_params taken;
+    sonject_context_params_init(&taken);
+    const sonject_status status = params_take(&context->report, &taken, sizeof taken, params,
+                                              sizeof taken, "context parameters");
+    if (status != SONJECT_OK)
+        return status;
+    if ((taken.opencl_context == NULL) != (taken.opencl_device == NULL))
+        return SONJECT_ERROR_ARGUMENT;
+    context->report.log = taken.log;
+    context->report.log_user = taken.log_user;
+    context->params = taken;
+    context->params.device_name = taken.device_name ? copy_text(taken.device_name) : NULL;
+    context->params.cache_folder = taken.cache_folder ? copy_text(taken.cache_folder) : NULL;
+    if ((taken.device_name && !context->params.device_name) ||
+        (taken.cache_folder && !context->params.cache_folder))
+        return SONJECT_ERROR_MEMORY;
+    return SONJECT_OK;
+}
+
+sonject_status sonject_context_create(const sonject_context_params *params,
+                                      sonject_context **context)
+{
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    *context = NULL;
+    struct sonject_context *made = allocate_array(1, sizeof *made);
+    if (!made)
+        return SONJECT_ERROR_MEMORY;
+    const sonject_status status = copy_params(made, params);
+    if (status != SONJECT_OK) {
+        sonject_context_release(&made);
+        return status;
+    }
+    if (made->params.opencl_context)
+        clRetainContext(made->params.opencl_context);
+    *context = made;
+    return SONJECT_OK;
+}
+
+void sonject_context_release(sonject_context **context)
+{
+    if (!context || !*context)
+        return;
+    device_close(&(*context)->device);
+    if ((*context)->params.opencl_context)
+        clReleaseContext((*context)->params.opencl_context);
+    free((char *)(*context)->params.device_name);
+    free((char *)(*context)->params.cache_folder);
+    free(*context);
+    *context = NULL;
+}
+
+const char *sonject_context_message(const sonject_context *context)
+{
+    return context ? context->report.message : "";
+}
+
+sonject_status context_device(struct sonject_context *context, struct device **device)
+{
+    sonject_status status = SONJECT_OK;
+    if (!context->device)
+        status = device_open(&context->report, &context->params, &context->device);
+    *device = context->device;
+    return status;
+}
+
+sonject_status sonject_devices(sonject_context *context, sonject_device_info *devices,
+                               size_t capacity, size_t *count)
+{
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    if (!count || (capacity > 0 && !devices))
+        return null_argument(&context->report, "devices and count");
+    return device_list(&context->report, devices, capacity, count);
+}

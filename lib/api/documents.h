@@ -1,0 +1,26 @@
+/* The JSON files of a run. */
+#ifndef SONJECT_API_DOCUMENTS_H
+#define SONJECT_API_DOCUMENTS_H
+
+#include "api/swath.h"
+#include "cl/device.h"
+
+struct run_facts {
+    const struct scene *scene;
+    const struct swath *swath;
+    const struct injection_result *result;
+    const struct device *device;
+    const char *scene_hash; /* of scene and input: see run.c */
+    const char *image_name;
+    double read_s, write_s, total_s;
+};
+
+/* Each writes one file, whole or not at all. Errors: STORAGE, MEMORY. */
+sonject_status write_truth(struct report *report, const struct run_facts *facts, const char *path);
+sonject_status write_coco(struct report *report, const struct run_facts *facts, const char *path);
+sonject_status write_run(struct report *report, const struct run_facts *facts, const char *path);
+
+/* True if path is the run.json of a finished run with that hash. */
+bool run_is_finished(const char *path, const char *scene_hash);
+
+#endif

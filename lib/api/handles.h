@@ -1,0 +1,52 @@
+/* What the opaque handles of the public interface hold. */
+#ifndef SONJECT_API_HANDLES_H
+#define SONJECT_API_HANDLES_H
+
+#include <stddef.h>
+
+#include <sonject/context.h>
+#include <sonject/result.h>
+#include <sonject/scene.h>
+
+#include "base/report.h"
+#include "cl/device.h"
+#include "inject/injection.h"
+#include "scene/scene.h"
+
+struct sonject_context {
+    struct report report;
+    sonject_context_params params; /* its strings are owned */
+    struct device *device;         /* NULL until first needed */
+};
+
+struct sonject_scene {
+    struct report *report; /* the context's */
+    struct scene scene;
+};
+
+struct sonject_result {
+    struct report *report;
+    struct injection_result result;
+};
+
+/* Forgets the last message: every public call that can fail begins with it. */
+void context_begin_call(struct sonject_context *context);
+
+/* The context's device, opened on first use. Errors: DEVICE, MEMORY. */
+sonject_status context_device(struct sonject_context *context, struct device **device);
+
+/* Copies a caller's parameter structure (which starts with its size) over the library's defaults in
+ * `to`, so that programs built against older headers go on working: a shorter one leaves the rest
+ * at its defaults, a longer one must be 0 beyond what this library knows. smallest: the size of the
+ * first released version. name: for the message. Errors: ARGUMENT. */
+sonject_status params_take(struct report *report, void *to, size_t to_size, const void *from,
+                           size_t smallest, const char *name);
+
+/* The same in the other direction, for structures that the library fills. */
+sonject_status params_give(struct report *report, void *to, const void *from, size_t from_size,
+                           size_t smallest, const char *name);
+
+/* report_failure(ARGUMENT, "... must not be NULL") */
+sonject_status null_argument(struct report *report, const char *name);
+
+#endif

@@ -1,0 +1,216 @@
+#include "api/handles.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <sonject/run.h>
+
+#include "api/geometry_notes.h"
+#include "base/memory.h"
+#include "image/plot.h"
+#include "image/transfer.h"
+#include "io/raster_file.h"
+
+#define SIDE_LIMIT 4096 /* pixels that are drawn a side; larger images are averaged down to it */
+
+void sonject_quicklook_params_init(sonject_quicklook_params *params)
+{
+    memset(params, 0, sizeof *params);
+    params->struct_size = sizeof *params;
+    sonject_geometry_params_init(&params->geometry);
+    sonject_transfer_params_init(&params->transfer);
+}
+
+/* An image as it is drawn: amplitudes of blocks of pixels. */
+struct view_image {
+    size_t rows, columns;
+    uint64_t block; /* pixels a side that became one */
+    float *amplitude;
+};
+
+/* Adds one row of pixels to the energies of its block row. */
+static sonject_status add_row(struct report *report, const char *path, struct view_image *image,
+                              const sonject_transfer_params *transfer,
+                              const struct raster_layout *layout, uint64_t row, const void *stored,
+                              float *linear)
+{
+    const size_t parts = layout->channels;
+    size_t bad = 0;
+    uint64_t clipped = 0;
+    if (transfer_to_amplitude(transfer, layout->type, stored, (size_t)layout->columns * parts,
+                              linear, &bad, &clipped) != SONJECT_OK)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: the pixel at row %llu, column %zu is not a finite number", path,
+                              (unsigned long long)row, bad / parts);
+    float *out = image->amplitude + (size_t)(row / image->block) * image->columns;
+    for (size_t i = 0; i < (size_t)layout->columns * parts; i++)
+        out[i / parts / (size_t)image->block] += linear[i] * linear[i];
+    return SONJECT_OK;
+}
+
+static void energies_to_amplitudes(struct view_image *image, const struct raster_layout *layout)
+{
+    for (size_t i = 0; i < image->rows * image->columns; i++) {
+        const uint64_t row = i / image->columns * image->block;
+        const uint64_t column = i % image->columns * image->block;
+        const uint64_t high = layout->rows - row < image->block ? layout->rows - row : image->block;
+        const uint64_t wide =
+            layout->columns - column < image->block ? layout->columns - column : image->block;
+        image->amplitude[i] = sqrtf(image->amplitude[i] / (float)(high * wide));
+    }
+}
+
+static sonject_status read_reduced(struct report *report, const char *path,
+                                   struct raster_file *file,
+                                   const sonject_transfer_params *transfer,
+                                   struct view_image *image)
+{
+    struct raster_layout layout;
+    raster_file_layout(file, &layout);
+    const uint64_t longest = layout.rows > layout.columns ? layout.rows : layout.columns;
+    image->block = (longest + SIDE_LIMIT - 1) / SIDE_LIMIT;
+    image->rows = (size_t)((layout.rows + image->block - 1) / image->block);
+    image->columns = (size_t)((layout.columns + image->block - 1) / image->block);
+    image->amplitude = allocate_array(image->rows * image->columns, sizeof(float));
+    struct region strip = {0, 0, layout.rows < 256 ? layout.rows : 256, layout.columns};
+    size_t bytes = 0;
+    size_t row_bytes = 0;
+    const struct region one_row = {0, 0, 1, layout.columns};
+    if (!region_bytes(&layout, &strip, &bytes) || !region_bytes(&layout, &one_row, &row_bytes))
+        return report_out_of_memory(report, path);
+    unsigned char *stored = allocate_array(bytes, 1);
+    float *linear = allocate_array((size_t)layout.columns, layout.channels * sizeof *linear);
+    sonject_status status = stored && linear && image->amplitude
+                                ? SONJECT_OK
+                                : report_out_of_memory(report, path);
+    for (; status == SONJECT_OK && strip.first_row < layout.rows; strip.first_row += strip.rows) {
+        if (strip.rows > layout.rows - strip.first_row)
+            strip.rows = layout.rows - strip.first_row;
+        status = raster_file_read(report, file, &strip, stored);
+        for (uint64_t row = 0; status == SONJECT_OK && row < strip.rows; row++)
+            status = add_row(report, path, image, transfer, &layout, strip.first_row + row,
+                             stored + row * row_bytes, linear);
+    }
+    if (status == SONJECT_OK)
+        energies_to_amplitudes(image, &layout);
+    free(stored);
+    free(linear);
+    return status;
+}
+
+/* Resamples slant range columns at equal steps of ground range, nearest pixel. */
+static sonject_status to_ground_range(struct report *report, struct view_image *image,
+                                      struct plot_frame *frame, double altitude)
+{
+    if (!(altitude > 0.0))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "a ground range axis needs the altitude: give --altitude");
+    const double last = frame->first_range_m + frame->column_spacing_m * (double)(image->columns - 1);
+    if (last <= altitude)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "no column lies beyond the altitude of %g m", altitude);
+    const double start = sqrt(fmax(0.0, frame->first_range_m * frame->first_range_m -
+                                            altitude * altitude));
+    const double end = sqrt(last * last - altitude * altitude);
+    const size_t columns = (size_t)fmax(1.0, fmin(floor((end - start) / frame->column_spacing_m) + 1.0,
+                                                  4.0 * SIDE_LIMIT));
+    const double step = columns > 1 ? (end - start) / (double)(columns - 1) : frame->column_spacing_m;
+    float *ground = allocate_array(image->rows * columns, sizeof *ground);
+    if (!ground)
+        return report_out_of_memory(report, "the ground range image");
+    for (size_t column = 0; column < columns; column++) {
+        const double range = hypot(start + step * (double)column, altitude);
+        const double at = (range - frame->first_range_m) / frame->column_spacing_m + 0.5;
+        const size_t from = (size_t)fmin(fmax(at, 0.0), (double)(image->columns - 1));
+        for (size_t row = 0; row < image->rows; row++)
+            ground[row * columns + column] = image->amplitude[row * image->columns + from];
+    }
+    free(image->amplitude);
+    image->amplitude = ground;
+    image->columns = columns;
+    frame->columns = columns;
+    frame->first_range_m = start;
+    frame->column_spacing_m = step;
+    frame->range_label = "ground range, m";
+    return SONJECT_OK;
+}
+
+static sonject_status draw(struct report *report, const struct plot_frame *frame,
+                           const struct view_image *image, const char *path)
+{
+    const struct plot_panel panel = {"", image->amplitude, false};
+    uint8_t *picture = NULL;
+    uint32_t height, width;
+    sonject_status status = plot_panels(report, frame, &panel, 1, &picture, &height, &width);
+    if (status != SONJECT_OK)
+        return status;
+    const struct raster_layout layout = {height, width, 3, PIXEL_UINT8};
+    status = raster_file_write(report, path, &layout, NULL, NULL, 0, picture);
+    free(picture);
+    return status;
+}
+
+/* Axes: what the caller says, else what the file says, else pixels. */
+static void fill_frame(struct plot_frame *frame, const sonject_quicklook_params *params,
+                       const struct raster_file *file, const struct view_image *image,
+                       double *altitude)
+{
+    sonject_geometry_params geometry = params->geometry;
+    double noted_altitude = 0.0;
+    const bool is_noted = geometry_notes_read(file, &geometry, &noted_altitude);
+    if (params->has_geometry)
+        geometry = params->geometry;
+    const bool has_metres = params->has_geometry || is_noted;
+    *altitude = params->altitude_m > 0.0 ? params->altitude_m : noted_altitude;
+    const double block = (double)image->block;
+    memset(frame, 0, sizeof *frame);
+    frame->rows = image->rows;
+    frame->columns = image->columns;
+    frame->row_spacing_m = (has_metres ? geometry.row_spacing_m : 1.0) * block;
+    frame->column_spacing_m = (has_metres ? geometry.column_spacing_m : 1.0) * block;
+    frame->first_along_track_m = has_metres ? geometry.first_along_track_m : 0.0;
+    frame->first_range_m = has_metres ? geometry.first_slant_range_m : 0.0;
+    frame->range_label = has_metres ? "slant range, m" : "column";
+    frame->minimum_db = params->minimum_db;
+    frame->maximum_db = params->maximum_db;
+    frame->difference_db = 20.0;
+}
+
+sonject_status sonject_quicklook(sonject_context *context, const sonject_quicklook_params *params)
+{
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    struct report *report = &context->report;
+    sonject_quicklook_params taken;
+    sonject_quicklook_params_init(&taken);
+    sonject_status status =
+        params_take(report, &taken, sizeof taken, params, sizeof taken, "quicklook parameters");
+    if (status != SONJECT_OK)
+        return status;
+    if (!taken.image || !taken.picture)
+        return null_argument(report, "image and picture");
+    if (taken.has_geometry)
+        status = check_geometry(&taken.geometry, report, NULL);
+    if (status == SONJECT_OK && taken.has_transfer)
+        status = check_transfer(&taken.transfer, report, NULL);
+    struct raster_file *file = NULL;
+    struct view_image image = {0, 0, 1, NULL};
+    struct plot_frame frame;
+    double altitude = 0.0;
+    if (status == SONJECT_OK)
+        status = raster_file_open(report, taken.image, &file);
+    if (status == SONJECT_OK)
+        status = read_reduced(report, taken.image, file, &taken.transfer, &image);
+    if (status == SONJECT_OK) {
+        fill_frame(&frame, &taken, file, &image, &altitude);
+        if (taken.range_axis == SONJECT_AXIS_GROUND)
+            status = to_ground_range(report, &image, &frame, altitude);
+    }
+    if (status == SONJECT_OK)
+        status = draw(report, &frame, &image, taken.picture);
+    raster_file_close(&file);
+    free(image.amplitude);
+    return status;
+}

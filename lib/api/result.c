@@ -1,0 +1,193 @@
+#include "api/handles.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "inject/input_patch.h"
+
+/* Packs a caller's rows. */
+static sonject_status take_pixels(struct report *report, const sonject_pixels *pixels,
+                                  struct injection_input *input, float **packed)
+{
+    const size_t parts = pixels->kind == SONJECT_PIXELS_COMPLEX ? 2 : 1;
+    if (pixels->struct_size < sizeof *pixels || !pixels->data ||
+        pixels->kind > SONJECT_PIXELS_COMPLEX || pixels->row_stride % 4 != 0)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                              "pixels need struct_size, data, a known kind and a row stride that "
+                              "is a multiple of 4");
+    const uint64_t limit = (uint64_t)1 << 31;
+    if (pixels->rows == 0 || pixels->columns == 0 || pixels->rows > limit ||
+        pixels->columns > limit || pixels->rows * pixels->columns > limit)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the patch of %llu x %llu pixels is empty or has more than 2^31",
+                              (unsigned long long)pixels->rows, (unsigned long long)pixels->columns);
+    const size_t row_bytes = (size_t)pixels->columns * parts * sizeof(float);
+    const size_t stride = pixels->row_stride ? (size_t)pixels->row_stride : row_bytes;
+    if (stride < row_bytes)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                              "the row stride of %zu bytes is shorter than a row of %zu", stride,
+                              row_bytes);
+    *packed = allocate_array((size_t)pixels->rows, row_bytes);
+    if (!*packed)
+        return report_out_of_memory(report, "the patch");
+    for (size_t row = 0; row < pixels->rows; row++)
+        memcpy((char *)*packed + row * row_bytes, (const char *)pixels->data + row * stride,
+               row_bytes);
+    memset(input, 0, sizeof *input);
+    input->rows = (size_t)pixels->rows;
+    input->columns = (size_t)pixels->columns;
+    input->is_complex = pixels->kind == SONJECT_PIXELS_COMPLEX;
+    input->pixels = *packed;
+    return SONJECT_OK;
+}
+
+static sonject_status find_input(struct report *report, const struct scene *scene,
+                                 const sonject_pixels *pixels, struct injection_input *input,
+                                 float **owned)
+{
+    if (pixels)
+        return take_pixels(report, pixels, input, owned);
+    if (scene->input_kind != SONJECT_INPUT_UNIFORM && scene->input_kind != SONJECT_INPUT_SYNTHETIC)
+        return null_argument(report, "pixels");
+    const sonject_status status = make_input(report, scene, input);
+    *owned = (float *)input->pixels;
+    return status;
+}
+
+sonject_status sonject_inject(sonject_context *context, const sonject_scene *scene,
+                              const sonject_pixels *pixels, sonject_progress_function progress,
+                              void *user, sonject_result **result)
+{
+    if (!context || !result)
+        return SONJECT_ERROR_ARGUMENT;
+    *result = NULL;
+    context_begin_call(context);
+    if (!scene)
+        return null_argument(&context->report, "scene");
+    struct injection_input input;
+    float *owned = NULL;
+    sonject_status status =
+        find_input(&context->report, &scene->scene, pixels, &input, &owned);
+    struct device *device = NULL;
+    if (status == SONJECT_OK)
+        status = context_device(context, &device);
+    sonject_result *made = NULL;
+    if (status == SONJECT_OK) {
+        made = allocate_array(1, sizeof *made);
+        status = made ? SONJECT_OK : report_out_of_memory(&context->report, "the result");
+    }
+    if (status == SONJECT_OK) {
+        made->report = &context->report;
+        status = injection_run(&context->report, device, &scene->scene, &input, progress, user,
+                               &made->result);
+    }
+    free(owned);
+    if (status == SONJECT_OK)
+        *result = made;
+    else
+        free(made);
+    return status;
+}
+
+void sonject_result_release(sonject_result **result)
+{
+    if (!result || !*result)
+        return;
+    injection_result_clear(&(*result)->result);
+    free(*result);
+    *result = NULL;
+}
+
+sonject_status sonject_result_size(const sonject_result *result, uint64_t *rows, uint64_t *columns,
+                                   uint32_t *image_kind)
+{
+    if (!result || !rows || !columns || !image_kind)
+        return SONJECT_ERROR_ARGUMENT;
+    *rows = result->result.rows;
+    *columns = result->result.columns;
+    *image_kind = result->result.is_complex ? SONJECT_PIXELS_COMPLEX : SONJECT_PIXELS_AMPLITUDE;
+    return SONJECT_OK;
+}
+
+struct layer_memory {
+    const void *data;
+    size_t pixel_bytes;
+};
+
+static struct layer_memory find_layer(const struct injection_result *result, sonject_layer layer)
+{
+    struct layer_memory memory = {NULL, 1};
+    switch (layer) {
+    case SONJECT_LAYER_IMAGE:
+        memory.data = result->image;
+        memory.pixel_bytes = (result->is_complex ? 2 : 1) * sizeof(float);
+        break;
+    case SONJECT_LAYER_FIELD:
+        memory.data = result->field;
+        memory.pixel_bytes = 2 * sizeof(float);
+        break;
+    case SONJECT_LAYER_ENERGY:
+        memory.data = result->energy;
+        memory.pixel_bytes = sizeof(float);
+        break;
+    case SONJECT_LAYER_VISIBILITY:
+        memory.data = result->visibility;
+        memory.pixel_bytes = sizeof(float);
+        break;
+    case SONJECT_LAYER_HIGHLIGHT:
+        memory.data = result->highlight;
+        break;
+    case SONJECT_LAYER_SHADOW:
+        memory.data = result->shadow;
+        break;
+    case SONJECT_LAYER_LABELS:
+        memory.data = result->labels;
+        break;
+    case SONJECT_LAYER_INFLUENCE:
+        memory.data = result->influence;
+        break;
+    }
+    return memory;
+}
+
+sonject_status sonject_result_layer(const sonject_result *result, sonject_layer layer, void *buffer,
+                                    size_t bytes)
+{
+    if (!result)
+        return SONJECT_ERROR_ARGUMENT;
+    if (!buffer)
+        return null_argument(result->report, "buffer");
+    const struct layer_memory memory = find_layer(&result->result, layer);
+    if (!memory.data)
+        return report_failure(result->report, SONJECT_ERROR_ARGUMENT, "layer %d does not exist",
+                              (int)layer);
+    const size_t needed = result->result.rows * result->result.columns * memory.pixel_bytes;
+    if (bytes != needed)
+        return report_failure(result->report, SONJECT_ERROR_ARGUMENT,
+                              "layer %d has %zu bytes, the buffer %zu", (int)layer, needed, bytes);
+    memcpy(buffer, memory.data, needed);
+    return SONJECT_OK;
+}
+
+sonject_status sonject_result_object(const sonject_result *result, uint32_t index,
+                                     sonject_object_truth *truth)
+{
+    if (!result)
+        return SONJECT_ERROR_ARGUMENT;
+    if (index >= result->result.object_count)
+        return report_failure(result->report, SONJECT_ERROR_ARGUMENT,
+                              "there is no object %u, only %u", (unsigned)index,
+                              (unsigned)result->result.object_count);
+    return params_give(result->report, truth, &result->result.objects[index], sizeof *truth,
+                       sizeof *truth, "truth");
+}
+
+sonject_status sonject_result_statistics(const sonject_result *result,
+                                         sonject_statistics *statistics)
+{
+    if (!result)
+        return SONJECT_ERROR_ARGUMENT;
+    return params_give(result->report, statistics, &result->result.statistics, sizeof *statistics,
+                       sizeof *statistics, "statistics");
+}

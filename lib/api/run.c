@@ -1,0 +1,174 @@
+#include "api/handles.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <sonject/run.h>
+
+#include "api/documents.h"
+#include "api/layers.h"
+#include "api/scene_hash.h"
+#include "api/swath.h"
+#include "base/clock.h"
+#include "base/file.h"
+
+/* Shares of a run's progress. */
+#define TRACE_START 0.1
+#define WRITE_START 0.8
+
+/* Maps a stage's own fraction into the run's. */
+struct stage_progress {
+    sonject_progress_function progress;
+    void *user;
+    double start, share;
+};
+
+static int tell_stage(void *user, double fraction, const char *stage)
+{
+    const struct stage_progress *outer = user;
+    return outer->progress
+               ? outer->progress(outer->user, outer->start + outer->share * fraction, stage)
+               : 0;
+}
+
+void sonject_run_params_init(sonject_run_params *params)
+{
+    memset(params, 0, sizeof *params);
+    params->struct_size = sizeof *params;
+}
+
+static sonject_status write_documents(struct report *report, struct run_facts *facts,
+                                      const char *folder, double run_start, double write_start)
+{
+    char *truth = path_join(folder, "truth.json");
+    char *coco = path_join(folder, "coco.json");
+    char *run = path_join(folder, "run.json");
+    sonject_status status =
+        truth && coco && run ? SONJECT_OK : report_out_of_memory(report, "a path");
+    if (status == SONJECT_OK)
+        status = write_truth(report, facts, truth);
+    if (status == SONJECT_OK)
+        status = write_coco(report, facts, coco);
+    if (status == SONJECT_OK) {
+        const double now = clock_seconds();
+        facts->write_s = now - write_start;
+        facts->total_s = now - run_start;
+        status = write_run(report, facts, run);
+    }
+    free(truth);
+    free(coco);
+    free(run);
+    return status;
+}
+
+static sonject_status write_results(struct report *report, struct run_facts *facts,
+                                    struct injection_result *result, const char *folder,
+                                    double run_start, sonject_progress_function progress,
+                                    void *user)
+{
+    const double start = clock_seconds();
+    struct stage_progress writing = {progress, user, WRITE_START, 1.0 - WRITE_START};
+    char *path = path_join(folder, facts->image_name);
+    if (!path)
+        return report_out_of_memory(report, "a path");
+    sonject_status status = write_layers(report, facts->scene, facts->swath, result, folder);
+    if (status == SONJECT_OK)
+        status = swath_write(report, facts->scene, facts->swath, result, path, tell_stage, &writing,
+                             &result->statistics.output_clipped);
+    free(path);
+    if (status == SONJECT_OK)
+        status = write_documents(report, facts, folder, run_start, start);
+    return status;
+}
+
+/* Traces and writes; the folder has no run.json of an earlier run while this goes on, so that a
+ * folder with run.json is always complete. */
+static sonject_status run_swath(struct sonject_context *context, const struct scene *scene,
+                                const struct swath *swath, struct run_facts *facts,
+                                const char *folder, double start,
+                                sonject_progress_function progress, void *user)
+{
+    struct device *device;
+    struct injection_result result;
+    struct stage_progress tracing = {progress, user, TRACE_START, WRITE_START - TRACE_START};
+    struct injection_input input;
+    memset(&input, 0, sizeof input);
+    input.rows = (size_t)swath->patch.rows;
+    input.columns = (size_t)swath->patch.columns;
+    input.first_row = (double)swath->patch.first_row;
+    input.first_column = (double)swath->patch.first_column;
+    input.is_complex = swath->is_complex;
+    input.pixels = swath->pixels;
+    sonject_status status = context_device(context, &device);
+    if (status == SONJECT_OK)
+        status = injection_run(&context->report, device, scene, &input, tell_stage, &tracing,
+                               &result);
+    if (status != SONJECT_OK)
+        return status;
+    result.statistics.input_clipped = swath->clipped;
+    facts->result = &result;
+    facts->device = device;
+    status = write_results(&context->report, facts, &result, folder, start, progress, user);
+    injection_result_clear(&result);
+    return status;
+}
+
+static sonject_status run_scene(struct sonject_context *context, const struct scene *scene,
+                                const char *folder, sonject_progress_function progress, void *user,
+                                int *was_finished)
+{
+    struct report *report = &context->report;
+    const double start = clock_seconds();
+    struct swath swath;
+    struct run_facts facts;
+    char hash[HASH_TEXT_CAPACITY];
+    memset(&facts, 0, sizeof facts);
+    sonject_status status = swath_open(report, scene, &swath);
+    if (status != SONJECT_OK)
+        return status;
+    char *image_name = swath_image_name(scene);
+    char *run_path = path_join(folder, "run.json");
+    if (!image_name || !run_path)
+        status = report_out_of_memory(report, "a path");
+    if (status == SONJECT_OK)
+        status = scene_hash(report, scene, swath.identity, hash);
+    const bool is_finished = status == SONJECT_OK && run_is_finished(run_path, hash);
+    if (status == SONJECT_OK && !is_finished)
+        status = folder_make(report, folder);
+    if (status == SONJECT_OK && !is_finished)
+        file_discard(run_path);
+    if (status == SONJECT_OK && !is_finished) {
+        facts.scene = scene;
+        facts.swath = &swath;
+        facts.scene_hash = hash;
+        facts.image_name = image_name;
+        facts.read_s = clock_seconds() - start;
+        status = run_swath(context, scene, &swath, &facts, folder, start, progress, user);
+    }
+    if (was_finished)
+        *was_finished = is_finished;
+    free(image_name);
+    free(run_path);
+    swath_close(&swath);
+    return status;
+}
+
+sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
+                           const sonject_run_params *params, sonject_progress_function progress,
+                           void *user, int *was_finished)
+{
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    if (!scene)
+        return null_argument(&context->report, "scene");
+    sonject_run_params taken;
+    sonject_run_params_init(&taken);
+    const sonject_status status = params_take(&context->report, &taken, sizeof taken, params,
+                                              sizeof taken, "run parameters");
+    if (status != SONJECT_OK)
+        return status;
+    if (!taken.folder || !taken.folder[0])
+        return null_argument(&context->report, "folder");
+    return run_scene(context, &scene->scene, taken.folder, progress, user, was_finished);
+}

@@ -1,0 +1,199 @@
+#include "api/handles.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "io/scene_file.h"
+
+/* Takes a structure into a local copy, checks it, and only then changes the scene. */
+#define SET_CHECKED(scene_handle, type, member, params, checker, name)                             \
+    do {                                                                                           \
+        if (!(scene_handle))                                                                       \
+            return SONJECT_ERROR_ARGUMENT;                                                         \
+        type taken = (scene_handle)->scene.member;                                                 \
+        sonject_status status = params_take((scene_handle)->report, &taken, sizeof taken, params,  \
+                                            sizeof taken, name);                                   \
+        if (status == SONJECT_OK)                                                                  \
+            status = checker(&taken, (scene_handle)->report, NULL);                                \
+        if (status == SONJECT_OK)                                                                  \
+            (scene_handle)->scene.member = taken;                                                  \
+        return status;                                                                             \
+    } while (0)
+
+sonject_status sonject_scene_create(sonject_context *context, sonject_scene **scene)
+{
+    if (!context || !scene)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    *scene = allocate_array(1, sizeof **scene);
+    if (!*scene)
+        return report_out_of_memory(&context->report, "a scene");
+    (*scene)->report = &context->report;
+    scene_init(&(*scene)->scene);
+    return SONJECT_OK;
+}
+
+void sonject_scene_release(sonject_scene **scene)
+{
+    if (!scene || !*scene)
+        return;
+    scene_clear(&(*scene)->scene);
+    free(*scene);
+    *scene = NULL;
+}
+
+sonject_status sonject_scene_read(sonject_context *context, const char *path,
+                                  const char *const *overrides, size_t count,
+                                  sonject_scene **scene)
+{
+    if (!context || !scene)
+        return SONJECT_ERROR_ARGUMENT;
+    *scene = NULL;
+    context_begin_call(context);
+    if (!path || (count > 0 && !overrides))
+        return null_argument(&context->report, "path and overrides");
+    for (size_t i = 0; i < count; i++)
+        if (!overrides[i])
+            return null_argument(&context->report, "an override");
+    sonject_scene *made;
+    sonject_status status = sonject_scene_create(context, &made);
+    if (status != SONJECT_OK)
+        return status;
+    status = scene_file_read(&context->report, path, overrides, count, &made->scene);
+    if (status == SONJECT_OK)
+        *scene = made;
+    else
+        sonject_scene_release(&made);
+    return status;
+}
+
+sonject_status sonject_scene_set_sonar(sonject_scene *scene, const sonject_sonar_params *sonar)
+{
+    SET_CHECKED(scene, sonject_sonar_params, sonar, sonar, check_sonar, "sonar");
+}
+
+sonject_status sonject_scene_set_medium(sonject_scene *scene, const sonject_medium_params *medium)
+{
+    SET_CHECKED(scene, sonject_medium_params, medium, medium, check_medium, "medium");
+}
+
+sonject_status sonject_scene_set_seabed(sonject_scene *scene, const sonject_seabed_params *seabed)
+{
+    SET_CHECKED(scene, sonject_seabed_params, seabed, seabed, check_seabed, "seabed");
+}
+
+sonject_status sonject_scene_set_geometry(sonject_scene *scene,
+                                          const sonject_geometry_params *geometry)
+{
+    SET_CHECKED(scene, sonject_geometry_params, geometry, geometry, check_geometry, "geometry");
+}
+
+sonject_status sonject_scene_set_transfer(sonject_scene *scene,
+                                          const sonject_transfer_params *transfer)
+{
+    SET_CHECKED(scene, sonject_transfer_params, transfer, transfer, check_transfer, "transfer");
+}
+
+sonject_status sonject_scene_set_injection(sonject_scene *scene,
+                                           const sonject_injection_params *injection)
+{
+    SET_CHECKED(scene, sonject_injection_params, injection, injection, check_injection,
+                "injection");
+}
+
+/* Sizes are checked against the image when there is one. */
+static sonject_status any_patch(const sonject_patch_params *patch, struct report *report,
+                                const char **key)
+{
+    (void)patch;
+    (void)report;
+    (void)key;
+    return SONJECT_OK;
+}
+
+sonject_status sonject_scene_set_patch(sonject_scene *scene, const sonject_patch_params *patch)
+{
+    SET_CHECKED(scene, sonject_patch_params, patch, patch, any_patch, "patch");
+}
+
+sonject_status sonject_scene_set_input_file(sonject_scene *scene, const char *path)
+{
+    if (!scene)
+        return SONJECT_ERROR_ARGUMENT;
+    if (!path)
+        return null_argument(scene->report, "path");
+    char *copy = copy_text(path);
+    if (!copy)
+        return report_out_of_memory(scene->report, "a path");
+    free(scene->scene.input_path);
+    scene->scene.input_path = copy;
+    scene->scene.input_kind = SONJECT_INPUT_FILE;
+    return SONJECT_OK;
+}
+
+static sonject_status check_size(struct report *report, uint32_t rows, uint32_t columns)
+{
+    const uint32_t limit = (uint32_t)1 << 20;
+    if (rows == 0 || columns == 0 || rows > limit || columns > limit ||
+        (uint64_t)rows * columns > (uint64_t)1 << 31)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "rows and columns must be 1...2^20 with at most 2^31 pixels, not "
+                              "%u x %u",
+                              (unsigned)rows, (unsigned)columns);
+    return SONJECT_OK;
+}
+
+sonject_status sonject_scene_set_input_uniform(sonject_scene *scene, uint32_t rows,
+                                               uint32_t columns)
+{
+    if (!scene)
+        return SONJECT_ERROR_ARGUMENT;
+    const sonject_status status = check_size(scene->report, rows, columns);
+    if (status == SONJECT_OK) {
+        scene->scene.uniform_rows = rows;
+        scene->scene.uniform_columns = columns;
+        scene->scene.input_kind = SONJECT_INPUT_UNIFORM;
+    }
+    return status;
+}
+
+static sonject_status take_synthetic(sonject_scene *scene, const sonject_synthetic_params *synthetic)
+{
+    SET_CHECKED(scene, sonject_synthetic_params, synthetic, synthetic, check_synthetic, "synthetic");
+}
+
+sonject_status sonject_scene_set_input_synthetic(sonject_scene *scene,
+                                                 const sonject_synthetic_params *synthetic)
+{
+    const sonject_status status = take_synthetic(scene, synthetic);
+    if (status == SONJECT_OK)
+        scene->scene.input_kind = SONJECT_INPUT_SYNTHETIC;
+    return status;
+}
+
+sonject_status sonject_scene_add_object(sonject_scene *scene, const sonject_object_params *object,
+                                        uint32_t *index)
+{
+    if (!scene)
+        return SONJECT_ERROR_ARGUMENT;
+    sonject_object_params taken;
+    sonject_object_params_init(&taken);
+    sonject_status status =
+        params_take(scene->report, &taken, sizeof taken, object, sizeof taken, "object");
+    if (status == SONJECT_OK)
+        status = check_object(&taken, scene->report, NULL);
+    if (status == SONJECT_OK)
+        status = scene_append_object(&scene->scene, scene->report, &taken);
+    if (status == SONJECT_OK && index)
+        *index = scene->scene.object_count - 1;
+    return status;
+}
+
+sonject_status sonject_scene_object_count(const sonject_scene *scene, uint32_t *count)
+{
+    if (!scene || !count)
+        return SONJECT_ERROR_ARGUMENT;
+    *count = scene->scene.object_count;
+    return SONJECT_OK;
+}

@@ -1,0 +1,95 @@
+#include "api/scene_hash.h"
+
+#include <string.h>
+
+#include <sonject/version.h>
+
+/* Members one by one: the padding of a structure is not part of its value. */
+#define ADD(hash, member) hash_add(hash, &(member), sizeof(member))
+
+static void add_sonar(struct hash *hash, const struct scene *scene)
+{
+    const sonject_sonar_params *sonar = &scene->sonar;
+    ADD(hash, sonar->response_window);
+    ADD(hash, sonar->centre_frequency_hz);
+    ADD(hash, sonar->bandwidth_hz);
+    ADD(hash, sonar->altitude_m);
+    ADD(hash, sonar->along_track_resolution_m);
+    ADD(hash, sonar->transducer_side_m);
+    ADD(hash, sonar->taylor_sidelobe_db);
+    ADD(hash, sonar->taylor_terms);
+    ADD(hash, scene->medium.sound_speed_mps);
+    ADD(hash, scene->medium.reference_sound_speed_mps);
+    ADD(hash, scene->seabed.map);
+    ADD(hash, scene->seabed.lambert);
+    ADD(hash, scene->seabed.level_radius_m);
+    ADD(hash, scene->seabed.despeckle_radius_m);
+}
+
+static void add_image(struct hash *hash, const struct scene *scene)
+{
+    const sonject_geometry_params *geometry = &scene->geometry;
+    ADD(hash, geometry->side);
+    ADD(hash, geometry->row_spacing_m);
+    ADD(hash, geometry->column_spacing_m);
+    ADD(hash, geometry->first_along_track_m);
+    ADD(hash, geometry->first_slant_range_m);
+    ADD(hash, scene->transfer.kind);
+    ADD(hash, scene->transfer.parameter);
+    ADD(hash, scene->transfer.offset);
+    ADD(hash, scene->patch.first_row);
+    ADD(hash, scene->patch.first_column);
+    ADD(hash, scene->patch.rows);
+    ADD(hash, scene->patch.columns);
+    ADD(hash, scene->input_kind);
+    ADD(hash, scene->input_is_complex);
+}
+
+static void add_object(struct hash *hash, const sonject_object_params *object)
+{
+    ADD(hash, object->shape);
+    hash_add_text(hash, object->name);
+    hash_add_text(hash, object->class_name);
+    ADD(hash, object->length_m);
+    ADD(hash, object->width_m);
+    ADD(hash, object->diameter_m);
+    ADD(hash, object->position_kind);
+    ADD(hash, object->position_along);
+    ADD(hash, object->position_range);
+    ADD(hash, object->heading_rad);
+    ADD(hash, object->pitch_rad);
+    ADD(hash, object->roll_rad);
+    ADD(hash, object->burial_m);
+    ADD(hash, object->material.reflection);
+    ADD(hash, object->material.roughness_m);
+    ADD(hash, object->material.lambert);
+}
+
+static void add_injection(struct hash *hash, const sonject_injection_params *injection)
+{
+    ADD(hash, injection->mode);
+    ADD(hash, injection->column_rule);
+    ADD(hash, injection->estimate_noise);
+    ADD(hash, injection->noise_floor_db);
+    ADD(hash, injection->influence_db);
+    ADD(hash, injection->ray_scale);
+    ADD(hash, injection->seed);
+}
+
+sonject_status scene_hash(struct report *report, const struct scene *scene,
+                          const char *input_identity, char text[HASH_TEXT_CAPACITY])
+{
+    struct hash *hash = hash_begin();
+    if (!hash)
+        return report_out_of_memory(report, "a hash");
+    hash_add_text(hash, sonject_version());
+    add_sonar(hash, scene);
+    add_image(hash, scene);
+    add_injection(hash, &scene->injection);
+    for (uint32_t i = 0; i < scene->object_count; i++)
+        add_object(hash, &scene->objects[i]);
+    hash_add_text(hash, scene->input_path);
+    hash_add_text(hash, input_identity);
+    hash_end(hash, text);
+    return SONJECT_OK;
+}

@@ -1,0 +1,15 @@
+/* Whether two runs have the same inputs. */
+#ifndef SONJECT_API_SCENE_HASH_H
+#define SONJECT_API_SCENE_HASH_H
+
+#include "base/hash.h"
+#include "base/report.h"
+#include "cl/device.h"
+#include "scene/scene.h"
+
+/* Hash of everything that the result depends on: version, scene, the input's identity. The device
+ * is not part of it, since the answer does not depend on it. Errors: MEMORY. */
+sonject_status scene_hash(struct report *report, const struct scene *scene,
+                          const char *input_identity, char hash[HASH_TEXT_CAPACITY]);
+
+#endif

@@ -1,0 +1,291 @@
+#include "api/swath.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "api/geometry_notes.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "image/transfer.h"
+#include "inject/input_patch.h"
+#include "io/raster_file.h"
+
+/* The scene's patch; all zeros mean the whole swath. */
+static sonject_status choose_patch(struct report *report, const struct scene *scene,
+                                   struct swath *swath)
+{
+    const sonject_patch_params *asked = &scene->patch;
+    const struct raster_layout *layout = &swath->layout;
+    struct region *patch = &swath->patch;
+    patch->first_row = asked->first_row;
+    patch->first_column = asked->first_column;
+    patch->rows = asked->rows ? asked->rows : layout->rows - asked->first_row;
+    patch->columns = asked->columns ? asked->columns : layout->columns - asked->first_column;
+    if (asked->first_row >= layout->rows || asked->first_column >= layout->columns ||
+        !region_is_inside(layout, patch))
+        return report_failure(
+            report, SONJECT_ERROR_INPUT,
+            "the patch (row %llu, column %llu, %llu x %llu) is not inside the image of %llu x %llu "
+            "pixels: correct patch",
+            (unsigned long long)asked->first_row, (unsigned long long)asked->first_column,
+            (unsigned long long)asked->rows, (unsigned long long)asked->columns,
+            (unsigned long long)layout->rows, (unsigned long long)layout->columns);
+    if (patch->rows * patch->columns > (uint64_t)1 << 31 || patch->rows > (uint64_t)1 << 24 ||
+        patch->columns > (uint64_t)1 << 24)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the patch of %llu x %llu pixels is too large: choose one of at most "
+                              "2^31 pixels with patch",
+                              (unsigned long long)patch->rows, (unsigned long long)patch->columns);
+    return SONJECT_OK;
+}
+
+static sonject_status describe_file(struct report *report, const struct scene *scene,
+                                    const struct raster_file *file, struct swath *swath)
+{
+    raster_file_layout(file, &swath->layout);
+    swath->is_lossless = raster_file_is_lossless(file);
+    swath->is_complex = swath->layout.channels == 2;
+    if (swath->is_complex && !scene->input_is_complex)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s has 2 channels: say complex: true under input if they are real "
+                              "and imaginary part",
+                              scene->input_path);
+    if (!swath->is_complex && scene->input_is_complex)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s has 1 channel, but input says complex: true, which needs 2 (real "
+                              "and imaginary part)",
+                              scene->input_path);
+    if (swath->is_complex && swath->layout.type != PIXEL_FLOAT32)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s has integer pixels; complex images must be 32-bit float",
+                              scene->input_path);
+    if (swath->is_complex && scene->transfer.kind != SONJECT_TRANSFER_AMPLITUDE)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "a complex image cannot have a transfer function: take transfer out");
+    return SONJECT_OK;
+}
+
+static sonject_status describe_made(const struct scene *scene, struct swath *swath)
+{
+    const bool is_synthetic = scene->input_kind == SONJECT_INPUT_SYNTHETIC;
+    swath->layout.rows = is_synthetic ? scene->synthetic.rows : scene->uniform_rows;
+    swath->layout.columns = is_synthetic ? scene->synthetic.columns : scene->uniform_columns;
+    swath->is_complex = is_synthetic && scene->synthetic.complex_pixels;
+    swath->layout.channels = swath->is_complex ? 2 : 1;
+    swath->layout.type = PIXEL_FLOAT32;
+    swath->is_lossless = true;
+    return SONJECT_OK;
+}
+
+static sonject_status open_and_describe(struct report *report, const struct scene *scene,
+                                        struct swath *swath, struct raster_file **file)
+{
+    memset(swath, 0, sizeof *swath);
+    *file = NULL;
+    sonject_status status;
+    if (scene->input_kind == SONJECT_INPUT_MEMORY)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the scene has no input image: give input.path");
+    if (scene->input_kind == SONJECT_INPUT_FILE) {
+        status = raster_file_open(report, scene->input_path, file);
+        if (status == SONJECT_OK)
+            status = describe_file(report, scene, *file, swath);
+    } else {
+        status = describe_made(scene, swath);
+    }
+    if (status == SONJECT_OK)
+        status = choose_patch(report, scene, swath);
+    if (status != SONJECT_OK)
+        raster_file_close(file);
+    return status;
+}
+
+sonject_status swath_describe(struct report *report, const struct scene *scene,
+                              struct swath *swath)
+{
+    struct raster_file *file;
+    const sonject_status status = open_and_describe(report, scene, swath, &file);
+    raster_file_close(&file);
+    return status;
+}
+
+static sonject_status identify(struct report *report, struct swath *swath, const void *pixels,
+                               size_t bytes)
+{
+    struct hash *hash = hash_begin();
+    if (!hash)
+        return report_out_of_memory(report, "a hash");
+    hash_add(hash, &swath->layout.rows, sizeof swath->layout.rows);
+    hash_add(hash, &swath->layout.columns, sizeof swath->layout.columns);
+    hash_add(hash, pixels, bytes);
+    hash_end(hash, swath->identity);
+    return SONJECT_OK;
+}
+
+static sonject_status bad_pixel(struct report *report, const struct scene *scene,
+                                const struct swath *swath, size_t index)
+{
+    const size_t pixel = swath->is_complex ? index / 2 : index;
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "%s: the pixel at row %llu, column %llu is not a finite number: mend the "
+                          "image or choose another patch",
+                          scene->input_path,
+                          (unsigned long long)(swath->patch.first_row +
+                                               pixel / (size_t)swath->patch.columns),
+                          (unsigned long long)(swath->patch.first_column +
+                                               pixel % (size_t)swath->patch.columns));
+}
+
+static sonject_status read_patch(struct report *report, const struct scene *scene,
+                                 struct raster_file *file, struct swath *swath)
+{
+    size_t bytes;
+    size_t bad = 0;
+    const size_t count =
+        (size_t)swath->patch.rows * (size_t)swath->patch.columns * (swath->is_complex ? 2 : 1);
+    if (!region_bytes(&swath->layout, &swath->patch, &bytes))
+        return report_out_of_memory(report, "the patch");
+    swath->stored = allocate_array(bytes, 1);
+    swath->pixels = allocate_array(count, sizeof(float));
+    if (!swath->stored || !swath->pixels)
+        return report_out_of_memory(report, "the patch");
+    sonject_status status = raster_file_read(report, file, &swath->patch, swath->stored);
+    if (status == SONJECT_OK) {
+        status = transfer_to_amplitude(&scene->transfer, swath->layout.type, swath->stored, count,
+                                       swath->pixels, &bad, &swath->clipped);
+        if (status != SONJECT_OK)
+            status = bad_pixel(report, scene, swath, bad);
+    }
+    return status == SONJECT_OK ? identify(report, swath, swath->stored, bytes) : status;
+}
+
+/* Made swaths are made whole; the patch is cut out of them. */
+static sonject_status make_patch(struct report *report, const struct scene *scene,
+                                 struct swath *swath)
+{
+    struct injection_input whole;
+    sonject_status status = make_input(report, scene, &whole);
+    if (status != SONJECT_OK)
+        return status;
+    const size_t parts = swath->is_complex ? 2 : 1;
+    const size_t row_floats = (size_t)swath->patch.columns * parts;
+    swath->pixels = allocate_array((size_t)swath->patch.rows, row_floats * sizeof(float));
+    if (!swath->pixels) {
+        status = report_out_of_memory(report, "the patch");
+    } else {
+        for (size_t row = 0; row < swath->patch.rows; row++)
+            memcpy(swath->pixels + row * row_floats,
+                   whole.pixels + (((size_t)swath->patch.first_row + row) * whole.columns +
+                                   (size_t)swath->patch.first_column) *
+                                      parts,
+                   row_floats * sizeof(float));
+        /* kept for writing the swath back around the patch */
+        swath->stored = (void *)whole.pixels;
+        status = identify(report, swath, whole.pixels, whole.rows * whole.columns * parts *
+                                                           sizeof(float));
+    }
+    if (status != SONJECT_OK && !swath->stored)
+        free((void *)whole.pixels);
+    return status;
+}
+
+sonject_status swath_open(struct report *report, const struct scene *scene, struct swath *swath)
+{
+    struct raster_file *file;
+    sonject_status status = open_and_describe(report, scene, swath, &file);
+    if (status == SONJECT_OK)
+        status = file ? read_patch(report, scene, file, swath) : make_patch(report, scene, swath);
+    raster_file_close(&file);
+    if (status != SONJECT_OK)
+        swath_close(swath);
+    return status;
+}
+
+void swath_close(struct swath *swath)
+{
+    free(swath->stored);
+    free(swath->pixels);
+    memset(swath, 0, sizeof *swath);
+}
+
+char *swath_image_name(const struct scene *scene)
+{
+    const char *extension = ".tif";
+    if (scene->input_kind == SONJECT_INPUT_FILE) {
+        const char *dot = strrchr(scene->input_path, '.');
+        const char *slash = strrchr(scene->input_path, '/');
+        if (dot && (!slash || dot > slash))
+            extension = dot;
+    }
+    char *name = allocate_array(strlen("image") + strlen(extension) + 1, 1);
+    if (name) {
+        strcpy(name, "image");
+        strcat(name, extension);
+    }
+    return name;
+}
+
+/* The stored patch with the touched pixels replaced. To be given to free(). */
+static void *stored_with_result(const struct scene *scene, const struct swath *swath,
+                                const struct injection_result *result, uint64_t *clipped)
+{
+    const size_t pixels = result->rows * result->columns;
+    const size_t parts = swath->is_complex ? 2 : 1;
+    const size_t bytes = pixel_bytes(swath->layout.type);
+    unsigned char *stored = allocate_array(pixels * parts, bytes);
+    unsigned char *fresh = allocate_array(pixels * parts, bytes);
+    if (stored && fresh) {
+        memcpy(stored, swath->stored, pixels * parts * bytes);
+        if (swath->is_complex)
+            memcpy(fresh, result->image, pixels * parts * bytes);
+        else
+            for (size_t i = 0; i < pixels; i++)
+                if (result->influence[i])
+                    transfer_to_stored(&scene->transfer, swath->layout.type, result->image + i, 1,
+                                       fresh + i * bytes, clipped);
+        for (size_t i = 0; i < pixels; i++)
+            if (result->influence[i])
+                memcpy(stored + i * parts * bytes, fresh + i * parts * bytes, parts * bytes);
+    } else {
+        free(stored);
+        stored = NULL;
+    }
+    free(fresh);
+    return stored;
+}
+
+static sonject_status write_made(struct report *report, const struct scene *scene,
+                                 const struct swath *swath, const struct injection_result *result,
+                                 const char *path)
+{
+    const size_t parts = swath->is_complex ? 2 : 1;
+    const size_t row_floats = (size_t)swath->patch.columns * parts;
+    float *whole = swath->stored;
+    for (size_t row = 0; row < result->rows; row++)
+        memcpy(whole + (((size_t)swath->patch.first_row + row) * (size_t)swath->layout.columns +
+                        (size_t)swath->patch.first_column) *
+                           parts,
+               result->image + row * row_floats, row_floats * sizeof(float));
+    static const char *const complex_names[] = {"real", "imag"};
+    struct geometry_notes notes;
+    geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
+    return raster_file_write(report, path, &swath->layout, swath->is_complex ? complex_names : NULL,
+                             notes.attributes, GEOMETRY_NOTES_COUNT, whole);
+}
+
+sonject_status swath_write(struct report *report, const struct scene *scene,
+                           const struct swath *swath, const struct injection_result *result,
+                           const char *path, sonject_progress_function progress, void *user,
+                           uint64_t *clipped)
+{
+    *clipped = 0;
+    if (scene->input_kind != SONJECT_INPUT_FILE)
+        return write_made(report, scene, swath, result, path);
+    void *stored = stored_with_result(scene, swath, result, clipped);
+    if (!stored)
+        return report_out_of_memory(report, "the patch");
+    const sonject_status status = raster_file_copy_with_patch(
+        report, scene->input_path, path, &swath->patch, stored, progress, user);
+    free(stored);
+    return status;
+}

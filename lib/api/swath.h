@@ -1,0 +1,44 @@
+/* The image that a run works on: a file, or one that sonject makes. */
+#ifndef SONJECT_API_SWATH_H
+#define SONJECT_API_SWATH_H
+
+#include "base/hash.h"
+#include "base/report.h"
+#include "image/raster.h"
+#include "inject/injection.h"
+#include "scene/scene.h"
+
+/* Owned parts are freed by swath_close. */
+struct swath {
+    struct raster_layout layout; /* of the whole swath */
+    struct region patch;
+    void *stored;                /* the patch's pixels as the file stores them; NULL if made */
+    float *pixels;               /* the patch, linear: amplitudes or pairs */
+    bool is_complex;
+    bool is_lossless;
+    uint64_t clipped;            /* pixels at full scale */
+    char identity[HASH_TEXT_CAPACITY]; /* of path, size, time and patch pixels; of parameters if made */
+};
+
+/* Finds layout and patch without reading pixels (a made swath: from its parameters). Errors: INPUT,
+ * STORAGE, MEMORY, UNSUPPORTED. */
+sonject_status swath_describe(struct report *report, const struct scene *scene,
+                              struct swath *swath);
+
+/* The same, and reads (or makes) the patch. On failure nothing is held. */
+sonject_status swath_open(struct report *report, const struct scene *scene, struct swath *swath);
+void swath_close(struct swath *swath);
+
+/* "image.tif" and the like: the input's extension, .tif for a made swath. To be given to free();
+ * NULL when memory is out. */
+char *swath_image_name(const struct scene *scene);
+
+/* Writes the swath with the result's patch at path, in the input's format, type and transfer; pixels
+ * that were not touched keep their stored bytes. *clipped gets the number of touched pixels that
+ * full scale cut. Errors: INPUT, STORAGE, MEMORY, CANCELLED. */
+sonject_status swath_write(struct report *report, const struct scene *scene,
+                           const struct swath *swath, const struct injection_result *result,
+                           const char *path, sonject_progress_function progress, void *user,
+                           uint64_t *clipped);
+
+#endif

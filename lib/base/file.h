@@ -1,0 +1,44 @@
+/* Files that appear whole or not at all. */
+#ifndef SONJECT_BASE_FILE_H
+#define SONJECT_BASE_FILE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/report.h"
+
+/* A private name beside path for a file in the making: "<path>.<unique>.part<extension of path>",
+ * so that writers that choose by extension still work. To be given to free(); NULL when memory is
+ * out. */
+char *file_part_name(const char *path);
+
+/* Flushes the file part to disk and renames it to path. On failure part is removed and the message
+ * names path and the reason (errno text). Errors: STORAGE. */
+sonject_status file_publish(struct report *report, const char *part, const char *path);
+
+/* Removes a part if it is there; never fails. */
+void file_discard(const char *part);
+
+/* Writes bytes to path: a part, then published. Errors: STORAGE, MEMORY. */
+sonject_status file_write_whole(struct report *report, const char *path, const void *bytes,
+                                size_t count);
+
+/* Reads a whole file of at most limit bytes into *bytes (one terminating 0 byte beyond *count), to
+ * be given to free(). Errors: STORAGE (cannot open, read), INPUT (larger than limit), MEMORY. */
+sonject_status file_read_whole(struct report *report, const char *path, size_t limit, char **bytes,
+                               size_t *count);
+
+/* Makes the folder and its parents where missing. Errors: STORAGE. */
+sonject_status folder_make(struct report *report, const char *path);
+
+bool file_exists(const char *path);
+
+/* folder + "/" + name, to be given to free(); an absolute name is copied as it is; folder "" gives
+ * name. NULL when memory is out. */
+char *path_join(const char *folder, const char *name);
+
+/* The folder part of path ("" if none), to be given to free(). */
+char *path_folder(const char *path);
+
+#endif

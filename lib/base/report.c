@@ -1,0 +1,39 @@
+#include "base/report.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+
+static void keep_on_one_line(char *text)
+{
+    for (; *text; text++)
+        if ((unsigned char)*text < 0x20)
+            *text = ' ';
+}
+
+sonject_status report_failure(struct report *report, sonject_status status, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(report->message, sizeof report->message, format, arguments);
+    va_end(arguments);
+    keep_on_one_line(report->message);
+    return status;
+}
+
+sonject_status report_out_of_memory(struct report *report, const char *what)
+{
+    return report_failure(report, SONJECT_ERROR_MEMORY, "out of memory for %s", what);
+}
+
+void report_news(struct report *report, const char *format, ...)
+{
+    if (!report->log)
+        return;
+    char line[REPORT_CAPACITY];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(line, sizeof line, format, arguments);
+    va_end(arguments);
+    keep_on_one_line(line);
+    report->log(report->log_user, line);
+}

@@ -1,0 +1,35 @@
+/* The message of the last failure, and the log. Every function that can fail takes a report. */
+#ifndef SONJECT_BASE_REPORT_H
+#define SONJECT_BASE_REPORT_H
+
+#include <stdbool.h>
+
+#include <sonject/context.h>
+#include <sonject/status.h>
+
+#define REPORT_CAPACITY 1024
+
+struct report {
+    char message[REPORT_CAPACITY]; /* one line, "" while nothing failed */
+    sonject_log_function log;      /* may be NULL */
+    void *log_user;
+};
+
+#if defined(__GNUC__)
+#define REPORT_FORMAT(format_index) __attribute__((format(printf, format_index, format_index + 1)))
+#else
+#define REPORT_FORMAT(format_index)
+#endif
+
+/* Keeps the message (control characters become spaces, so it stays one line) and returns status, so
+ * that a caller can write: return report_failure(report, SONJECT_ERROR_INPUT, "..."). */
+sonject_status report_failure(struct report *report, sonject_status status, const char *format, ...)
+    REPORT_FORMAT(3);
+
+/* The message for an allocation that failed; returns SONJECT_ERROR_MEMORY. what: "histogram". */
+sonject_status report_out_of_memory(struct report *report, const char *what);
+
+/* Sends a line to the log, if there is one. */
+void report_news(struct report *report, const char *format, ...) REPORT_FORMAT(2);
+
+#endif

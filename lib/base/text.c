@@ -1,0 +1,205 @@
+#include "base/text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* A double halfway between two others has at most 767 significant digits: of digits beyond these
+ * only matters whether one is not zero. */
+#define DIGITS_KEPT 780
+
+/* Far beyond any exponent that matters, and far from overflow when lengths of texts are added. */
+#define EXPONENT_LIMIT INT64_C(1000000000000000)
+
+struct decimal {
+    bool is_negative;
+    bool has_more; /* a digit other than 0 was dropped */
+    int count;
+    int64_t exponent; /* of the last digit kept */
+    char digits[DIGITS_KEPT];
+};
+
+static bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+static void take_digit(struct decimal *decimal, char digit, bool is_fraction)
+{
+    if (decimal->count == 0 && digit == '0') {
+        decimal->exponent -= is_fraction;
+        return;
+    }
+    if (decimal->count < DIGITS_KEPT) {
+        decimal->digits[decimal->count++] = digit;
+        decimal->exponent -= is_fraction;
+        return;
+    }
+    decimal->has_more |= digit != '0';
+    decimal->exponent += !is_fraction;
+}
+
+/* Digits with at most one '.', at least one digit; NULL if there are none. */
+static const char *take_mantissa(struct decimal *decimal, const char *text)
+{
+    bool is_fraction = false;
+    bool has_digit = false;
+    for (;; text++) {
+        if (is_digit(*text)) {
+            take_digit(decimal, *text, is_fraction);
+            has_digit = true;
+        } else if (*text == '.' && !is_fraction) {
+            is_fraction = true;
+        } else {
+            return has_digit ? text : NULL;
+        }
+    }
+}
+
+static const char *take_exponent(struct decimal *decimal, const char *text)
+{
+    const char *digit = text + 1;
+    if (*text != 'e' && *text != 'E')
+        return text;
+    const bool is_negative = *digit == '-';
+    digit += *digit == '-' || *digit == '+';
+    if (!is_digit(*digit))
+        return text;
+    int64_t exponent = 0;
+    for (; is_digit(*digit); digit++)
+        if (exponent < EXPONENT_LIMIT)
+            exponent = 10 * exponent + (*digit - '0');
+    decimal->exponent += is_negative ? -exponent : exponent;
+    return digit;
+}
+
+/* Written without a decimal separator, so that strtod reads the same under every locale. */
+static double decimal_value(const struct decimal *decimal)
+{
+    char text[DIGITS_KEPT + 40];
+    if (decimal->count == 0)
+        return decimal->is_negative ? -0.0 : 0.0;
+    int64_t exponent = decimal->exponent - decimal->has_more;
+    if (exponent > 100000)
+        exponent = 100000;
+    if (exponent < -100000)
+        exponent = -100000;
+    snprintf(text, sizeof text, "%s%.*s%se%d", decimal->is_negative ? "-" : "", decimal->count,
+             decimal->digits, decimal->has_more ? "1" : "", (int)exponent);
+    return strtod(text, NULL);
+}
+
+static char lower(char c)
+{
+    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
+}
+
+static const char *skip_infinity(const char *text)
+{
+    text += *text == '.';
+    for (const char *letter = "inf"; *letter; letter++, text++)
+        if (lower(*text) != *letter)
+            return NULL;
+    return text;
+}
+
+bool text_to_shifted_number(const char *text, int shift, double *number, const char **rest)
+{
+    struct decimal decimal = {0};
+    decimal.is_negative = *text == '-';
+    text += *text == '-' || *text == '+';
+    const char *end = skip_infinity(text);
+    if (end) {
+        *number = decimal.is_negative ? -HUGE_VAL : HUGE_VAL;
+        *rest = end;
+        return true;
+    }
+    end = take_mantissa(&decimal, text);
+    if (!end)
+        return false;
+    *rest = take_exponent(&decimal, end);
+    decimal.exponent += shift;
+    *number = decimal_value(&decimal);
+    return true;
+}
+
+bool text_to_number(const char *text, double *number, const char **rest)
+{
+    return text_to_shifted_number(text, 0, number, rest);
+}
+
+bool text_to_count(const char *text, uint64_t *count)
+{
+    uint64_t value = 0;
+    if (!*text)
+        return false;
+    for (; *text; text++) {
+        if (!is_digit(*text))
+            return false;
+        const uint64_t digit = (uint64_t)(*text - '0');
+        if (value > (UINT64_MAX - digit) / 10)
+            return false;
+        value = 10 * value + digit;
+    }
+    *count = value;
+    return true;
+}
+
+/* Bytes of the well-formed UTF-8 character that text starts with, 0 if it is not one (or the end).
+ * Shortest form only, no surrogates, nothing above U+10FFFF. */
+static size_t character_length(const unsigned char *text)
+{
+    const unsigned char first = text[0];
+    if (first < 0x80)
+        return first != 0;
+    const size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
+    unsigned char low = 0x80;
+    unsigned char high = 0xBF;
+    if (first < 0xC2 || first > 0xF4)
+        return 0;
+    if (first == 0xE0)
+        low = 0xA0;
+    else if (first == 0xF0)
+        low = 0x90;
+    else if (first == 0xED)
+        high = 0x9F;
+    else if (first == 0xF4)
+        high = 0x8F;
+    for (size_t i = 1; i < length; i++) {
+        if (text[i] < low || text[i] > high)
+            return 0;
+        low = 0x80;
+        high = 0xBF;
+    }
+    return length;
+}
+
+bool text_is_printable(const char *text)
+{
+    const unsigned char *byte = (const unsigned char *)text;
+    while (*byte) {
+        const size_t length = character_length(byte);
+        const bool is_control =
+            byte[0] < 0x20 || byte[0] == 0x7F || (byte[0] == 0xC2 && length == 2 && byte[1] < 0xA0);
+        if (length == 0 || is_control)
+            return false;
+        byte += length;
+    }
+    return true;
+}
+
+const char *text_excerpt(char *excerpt, size_t capacity, const char *text)
+{
+    const size_t length = strlen(text);
+    if (length < capacity) {
+        memcpy(excerpt, text, length + 1);
+        return excerpt;
+    }
+    size_t kept = capacity - 4;
+    while (kept > 0 && ((unsigned char)text[kept] & 0xC0) == 0x80)
+        kept--;
+    memcpy(excerpt, text, kept);
+    memcpy(excerpt + kept, "...", 4);
+    return excerpt;
+}

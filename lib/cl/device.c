@@ -1,0 +1,242 @@
+#include "cl/device.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "cl/cache.h"
+
+#define DEVICES_MAX 64
+
+struct found_device {
+    cl_platform_id platform;
+    cl_device_id id;
+    cl_device_type type;
+};
+
+sonject_status device_failure(struct report *report, const struct device *device, const char *call,
+                              cl_int error)
+{
+    return report_failure(
+        report, error == CL_OUT_OF_HOST_MEMORY ? SONJECT_ERROR_MEMORY : SONJECT_ERROR_DEVICE,
+        "device '%s': %s failed with %s (%d)", device->name, call, cl_error_name(error),
+        (int)error);
+}
+
+static size_t find_devices(struct found_device *found)
+{
+    cl_platform_id platforms[16];
+    cl_uint platform_count = 0;
+    size_t count = 0;
+    if (clGetPlatformIDs(16, platforms, &platform_count) != CL_SUCCESS)
+        return 0; /* also what the loader answers where no driver is installed */
+    for (cl_uint p = 0; p < platform_count && p < 16; p++) {
+        cl_device_id ids[DEVICES_MAX];
+        cl_uint ids_count = 0;
+        if (clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, DEVICES_MAX, ids, &ids_count) !=
+            CL_SUCCESS)
+            continue;
+        for (cl_uint d = 0; d < ids_count && d < DEVICES_MAX && count < DEVICES_MAX; d++) {
+            found[count].platform = platforms[p];
+            found[count].id = ids[d];
+            found[count].type = 0;
+            clGetDeviceInfo(ids[d], CL_DEVICE_TYPE, sizeof found[count].type, &found[count].type,
+                            NULL);
+            count++;
+        }
+    }
+    return count;
+}
+
+/* The first GPU, else the first CPU, else the first. */
+static size_t default_device(const struct found_device *found, size_t count)
+{
+    static const cl_device_type preferred[] = {CL_DEVICE_TYPE_GPU, CL_DEVICE_TYPE_CPU};
+    for (size_t kind = 0; kind < 2; kind++)
+        for (size_t i = 0; i < count; i++)
+            if (found[i].type & preferred[kind])
+                return i;
+    return 0;
+}
+
+static void read_text(cl_device_id id, cl_device_info what, char *text, size_t capacity)
+{
+    size_t bytes = 0;
+    text[0] = '\0';
+    char *whole = NULL;
+    if (clGetDeviceInfo(id, what, 0, NULL, &bytes) == CL_SUCCESS)
+        whole = allocate_array(bytes + 1, 1);
+    if (whole && clGetDeviceInfo(id, what, bytes, whole, NULL) == CL_SUCCESS)
+        snprintf(text, capacity, "%s", whole);
+    free(whole);
+}
+
+/* CPUs run as many lanes as their registers hold; GPUs make lanes of work-items themselves. */
+static uint32_t lanes_for(cl_device_id id, cl_device_type type)
+{
+    cl_uint native = 1;
+    if (!(type & CL_DEVICE_TYPE_CPU))
+        return 1;
+    clGetDeviceInfo(id, CL_DEVICE_NATIVE_VECTOR_WIDTH_FLOAT, sizeof native, &native, NULL);
+    return native >= 16 ? 16 : native >= 8 ? 8 : native >= 4 ? 4 : 1;
+}
+
+static void describe(cl_device_id id, cl_device_type type, cl_platform_id platform,
+                     sonject_device_info *info)
+{
+    cl_uint units = 0;
+    memset(info, 0, sizeof *info);
+    read_text(id, CL_DEVICE_NAME, info->name, sizeof info->name);
+    read_text(id, CL_DRIVER_VERSION, info->driver, sizeof info->driver);
+    if (clGetPlatformInfo(platform, CL_PLATFORM_NAME, sizeof info->platform, info->platform,
+                          NULL) != CL_SUCCESS)
+        info->platform[0] = '\0';
+    clGetDeviceInfo(id, CL_DEVICE_MAX_COMPUTE_UNITS, sizeof units, &units, NULL);
+    info->compute_units = units;
+    info->vector_width = lanes_for(id, type);
+}
+
+sonject_status device_list(struct report *report, sonject_device_info *devices, size_t capacity,
+                           size_t *count)
+{
+    (void)report;
+    struct found_device found[DEVICES_MAX];
+    *count = find_devices(found);
+    const size_t chosen = default_device(found, *count);
+    for (size_t i = 0; i < *count && i < capacity; i++) {
+        describe(found[i].id, found[i].type, found[i].platform, &devices[i]);
+        devices[i].is_default = i == chosen;
+    }
+    return SONJECT_OK;
+}
+
+static bool contains_ignoring_case(const char *text, const char *part)
+{
+    for (; *text; text++) {
+        size_t i = 0;
+        while (part[i] && tolower((unsigned char)text[i]) == tolower((unsigned char)part[i]))
+            i++;
+        if (!part[i])
+            return true;
+    }
+    return part[0] == '\0';
+}
+
+static sonject_status choose_device(struct report *report, const char *name,
+                                    struct found_device *chosen)
+{
+    struct found_device found[DEVICES_MAX];
+    const size_t count = find_devices(found);
+    if (count == 0)
+        return report_failure(report, SONJECT_ERROR_DEVICE,
+                              "no OpenCL device found: install a driver, such as the package "
+                              "pocl-opencl-icd for the CPU");
+    if (!name) {
+        *chosen = found[default_device(found, count)];
+        return SONJECT_OK;
+    }
+    for (size_t i = 0; i < count; i++) {
+        char device_name[128];
+        read_text(found[i].id, CL_DEVICE_NAME, device_name, sizeof device_name);
+        if (contains_ignoring_case(device_name, name)) {
+            *chosen = found[i];
+            return SONJECT_OK;
+        }
+    }
+    return report_failure(report, SONJECT_ERROR_DEVICE,
+                          "no OpenCL device has '%s' in its name: `sonject devices` lists them",
+                          name);
+}
+
+static sonject_status open_queue(struct report *report, struct device *device)
+{
+    cl_int error = CL_SUCCESS;
+    if (!device->context) {
+        device->context = clCreateContext(NULL, 1, &device->id, NULL, NULL, &error);
+        if (error != CL_SUCCESS) {
+            device->context = NULL;
+            return device_failure(report, device, "clCreateContext", error);
+        }
+    }
+    device->queue = clCreateCommandQueue(device->context, device->id, 0, &error);
+    if (error != CL_SUCCESS) {
+        device->queue = NULL;
+        return device_failure(report, device, "clCreateCommandQueue", error);
+    }
+    return SONJECT_OK;
+}
+
+static sonject_status check_abilities(struct report *report, struct device *device)
+{
+    cl_ulong limit = 0;
+    cl_device_fp_config precision = 0;
+    clGetDeviceInfo(device->id, CL_DEVICE_MAX_MEM_ALLOC_SIZE, sizeof limit, &limit, NULL);
+    clGetDeviceInfo(device->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof precision, &precision, NULL);
+    device->allocation_limit = limit > SIZE_MAX ? SIZE_MAX : (size_t)limit;
+    if (!(precision & CL_FP_INF_NAN) || !(precision & CL_FP_ROUND_TO_NEAREST))
+        return report_failure(report, SONJECT_ERROR_DEVICE,
+                              "device '%s' does not compute single precision as IEEE 754 does: "
+                              "choose another",
+                              device->name);
+    return SONJECT_OK;
+}
+
+sonject_status device_open(struct report *report, const sonject_context_params *params,
+                           struct device **out)
+{
+    *out = NULL;
+    struct found_device chosen = {NULL, NULL, 0};
+    if (params->opencl_context) {
+        chosen.id = params->opencl_device;
+        clGetDeviceInfo(chosen.id, CL_DEVICE_TYPE, sizeof chosen.type, &chosen.type, NULL);
+        clGetDeviceInfo(chosen.id, CL_DEVICE_PLATFORM, sizeof chosen.platform, &chosen.platform,
+                        NULL);
+    } else {
+        const sonject_status status = choose_device(report, params->device_name, &chosen);
+        if (status != SONJECT_OK)
+            return status;
+    }
+    struct device *device = allocate_array(1, sizeof *device);
+    if (!device)
+        return report_out_of_memory(report, "the device");
+    sonject_device_info info;
+    describe(chosen.id, chosen.type, chosen.platform, &info);
+    memcpy(device->name, info.name, sizeof device->name);
+    memcpy(device->platform, info.platform, sizeof device->platform);
+    memcpy(device->driver, info.driver, sizeof device->driver);
+    device->id = chosen.id;
+    device->context = params->opencl_context;
+    if (device->context)
+        clRetainContext(device->context);
+    device->is_cpu = (chosen.type & CL_DEVICE_TYPE_CPU) != 0;
+    device->width = info.vector_width;
+    device->compute_units = info.compute_units;
+    device->cache_folder = cache_folder_for(params->cache_folder);
+    sonject_status status = open_queue(report, device);
+    if (status == SONJECT_OK)
+        status = check_abilities(report, device);
+    if (status != SONJECT_OK) {
+        device_close(&device);
+        return status;
+    }
+    *out = device;
+    return SONJECT_OK;
+}
+
+void device_close(struct device **device)
+{
+    if (!device || !*device)
+        return;
+    for (int i = 0; i < PROGRAM_COUNT; i++)
+        if ((*device)->programs[i])
+            clReleaseProgram((*device)->programs[i]);
+    if ((*device)->queue)
+        clReleaseCommandQueue((*device)->queue);
+    if ((*device)->context)
+        clReleaseContext((*device)->context);
+    free((*device)->cache_folder);
+    free(*device);
+    *device = NULL;
+}

@@ -1,0 +1,84 @@
+#include "cl/launch.h"
+
+sonject_status buffer_create(struct report *report, struct device *device, size_t bytes,
+                             const void *contents, cl_mem *buffer)
+{
+    cl_int error = CL_SUCCESS;
+    const size_t size = bytes > 0 ? bytes : 1;
+    *buffer = NULL;
+    if (size > device->allocation_limit)
+        return report_failure(report, SONJECT_ERROR_DEVICE,
+                              "device '%s' allows buffers of %zu MB, %zu MB are needed: use a "
+                              "smaller patch",
+                              device->name, device->allocation_limit >> 20, size >> 20);
+    *buffer = clCreateBuffer(device->context, CL_MEM_READ_WRITE, size, NULL, &error);
+    if (error != CL_SUCCESS) {
+        *buffer = NULL;
+        return device_failure(report, device, "clCreateBuffer", error);
+    }
+    const sonject_status status = contents
+                                      ? buffer_write(report, device, *buffer, 0, bytes, contents)
+                                      : buffer_clear(report, device, *buffer, size);
+    if (status != SONJECT_OK)
+        buffer_release(buffer);
+    return status;
+}
+
+void buffer_release(cl_mem *buffer)
+{
+    if (*buffer)
+        clReleaseMemObject(*buffer);
+    *buffer = NULL;
+}
+
+sonject_status buffer_read(struct report *report, struct device *device, cl_mem buffer,
+                           size_t offset, size_t bytes, void *contents)
+{
+    if (bytes == 0)
+        return SONJECT_OK;
+    const cl_int error =
+        clEnqueueReadBuffer(device->queue, buffer, CL_TRUE, offset, bytes, contents, 0, NULL, NULL);
+    return error == CL_SUCCESS ? SONJECT_OK
+                               : device_failure(report, device, "clEnqueueReadBuffer", error);
+}
+
+sonject_status buffer_write(struct report *report, struct device *device, cl_mem buffer,
+                            size_t offset, size_t bytes, const void *contents)
+{
+    if (bytes == 0)
+        return SONJECT_OK;
+    const cl_int error = clEnqueueWriteBuffer(device->queue, buffer, CL_TRUE, offset, bytes,
+                                              contents, 0, NULL, NULL);
+    return error == CL_SUCCESS ? SONJECT_OK
+                               : device_failure(report, device, "clEnqueueWriteBuffer", error);
+}
+
+sonject_status buffer_clear(struct report *report, struct device *device, cl_mem buffer,
+                            size_t bytes)
+{
+    const cl_uchar zero = 0;
+    const cl_int error =
+        clEnqueueFillBuffer(device->queue, buffer, &zero, sizeof zero, 0, bytes, 0, NULL, NULL);
+    return error == CL_SUCCESS ? SONJECT_OK
+                               : device_failure(report, device, "clEnqueueFillBuffer", error);
+}
+
+sonject_status kernel_run(struct report *report, struct device *device, cl_kernel kernel,
+                          const struct kernel_argument *arguments, size_t argument_count,
+                          uint32_t dimensions, const size_t *global)
+{
+    for (size_t i = 0; i < argument_count; i++) {
+        const cl_int error =
+            clSetKernelArg(kernel, (cl_uint)i, arguments[i].bytes, arguments[i].value);
+        if (error != CL_SUCCESS)
+            return device_failure(report, device, "clSetKernelArg", error);
+    }
+    /* on a CPU a work-item is a whole strip: groups of one let the cores share them evenly */
+    static const size_t alone[3] = {1, 1, 1};
+    cl_int error = clEnqueueNDRangeKernel(device->queue, kernel, dimensions, NULL, global,
+                                          device->is_cpu ? alone : NULL, 0, NULL, NULL);
+    if (error != CL_SUCCESS)
+        return device_failure(report, device, "clEnqueueNDRangeKernel", error);
+    error = clFinish(device->queue);
+    return error == CL_SUCCESS ? SONJECT_OK : device_failure(report, device, "clFinish", error);
+}

@@ -1,0 +1,162 @@
+#include "cl/program.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <sonject/version.h>
+
+#include "base/hash.h"
+#include "base/memory.h"
+#include "cl/cache.h"
+#include "cl/sources.h"
+
+static bool divides_correctly(const struct device *device)
+{
+    cl_device_fp_config precision = 0;
+    clGetDeviceInfo(device->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof precision, &precision, NULL);
+    return (precision & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
+}
+
+/* No fast-math of any kind; correctly rounded division where the compiler has to be told. A CPU's
+ * work-items own their tallies; a GPU's share them. */
+static void write_options(const struct device *device, char *options, size_t capacity)
+{
+    snprintf(options, capacity, "-cl-std=CL1.2 -DWIDTH=%u%s%s", (unsigned)device->width,
+             device->is_cpu ? "" : " -DTALLY_IS_SHARED",
+             divides_correctly(device) ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
+}
+
+static bool key_of(const struct device *device, const struct embedded_source *source,
+                   const char *options, char key[HASH_TEXT_CAPACITY])
+{
+    struct hash *hash = hash_begin();
+    if (!hash)
+        return false;
+    hash_add_text(hash, sonject_version());
+    hash_add_text(hash, source->text);
+    hash_add_text(hash, options);
+    hash_add_text(hash, device->name);
+    hash_add_text(hash, device->platform);
+    hash_add_text(hash, device->driver);
+    hash_end(hash, key);
+    return true;
+}
+
+static sonject_status build_failure(struct report *report, struct device *device,
+                                    const struct embedded_source *source, cl_program program,
+                                    cl_int error)
+{
+    char log[512] = "";
+    size_t bytes = 0;
+    clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, 0, NULL, &bytes);
+    char *whole = allocate_array(bytes + 1, 1);
+    if (whole && clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, bytes, whole,
+                                       NULL) == CL_SUCCESS) {
+        /* the first error says what is wrong, warnings before it do not */
+        const char *first = strstr(whole, "error:");
+        snprintf(log, sizeof log, "%s", first ? first : whole);
+        log[strcspn(log, "\n")] = '\0';
+    }
+    free(whole);
+    return report_failure(report, SONJECT_ERROR_DEVICE, "device '%s' cannot build %s: %s: %s",
+                          device->name, source->name, cl_error_name(error), log);
+}
+
+/* The program from the cache, NULL if there is none that the device accepts. */
+static cl_program from_cache(struct device *device, const char *key, const char *options)
+{
+    unsigned char *bytes;
+    size_t count;
+    if (!device->cache_folder || !cache_read(device->cache_folder, key, &bytes, &count))
+        return NULL;
+    cl_int error = CL_SUCCESS;
+    cl_int accepted = CL_SUCCESS;
+    const unsigned char *binary = bytes;
+    cl_program program = clCreateProgramWithBinary(device->context, 1, &device->id, &count, &binary,
+                                                   &accepted, &error);
+    free(bytes);
+    if (error != CL_SUCCESS)
+        return NULL;
+    if (accepted != CL_SUCCESS ||
+        clBuildProgram(program, 1, &device->id, options, NULL, NULL) != CL_SUCCESS) {
+        clReleaseProgram(program);
+        return NULL;
+    }
+    return program;
+}
+
+static void into_cache(struct device *device, const char *key, cl_program program)
+{
+    size_t count = 0;
+    if (!device->cache_folder ||
+        clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, sizeof count, &count, NULL) !=
+            CL_SUCCESS ||
+        count == 0)
+        return;
+    unsigned char *bytes = allocate_array(count, 1);
+    if (bytes &&
+        clGetProgramInfo(program, CL_PROGRAM_BINARIES, sizeof bytes, &bytes, NULL) == CL_SUCCESS)
+        cache_write(device->cache_folder, key, bytes, count);
+    free(bytes);
+}
+
+static sonject_status build(struct report *report, struct device *device,
+                            const struct embedded_source *source, const char *options,
+                            cl_program *out)
+{
+    cl_int error = CL_SUCCESS;
+    cl_program program =
+        clCreateProgramWithSource(device->context, 1, (const char *[]){source->text},
+                                  (const size_t[]){source->bytes}, &error);
+    if (error != CL_SUCCESS)
+        return device_failure(report, device, "clCreateProgramWithSource", error);
+    error = clBuildProgram(program, 1, &device->id, options, NULL, NULL);
+    if (error != CL_SUCCESS) {
+        const sonject_status status = build_failure(report, device, source, program, error);
+        clReleaseProgram(program);
+        return status;
+    }
+    *out = program;
+    return SONJECT_OK;
+}
+
+sonject_status program_get(struct report *report, struct device *device, enum device_program number,
+                           cl_program *out)
+{
+    cl_program *program = &device->programs[number];
+    if (!*program) {
+        const struct embedded_source *source = &embedded_sources[number];
+        char options[128];
+        char key[HASH_TEXT_CAPACITY];
+        write_options(device, options, sizeof options);
+        if (!key_of(device, source, options, key))
+            return report_out_of_memory(report, "the program cache");
+        *program = from_cache(device, key, options);
+        if (!*program) {
+            const sonject_status status = build(report, device, source, options, program);
+            if (status != SONJECT_OK)
+                return status;
+            into_cache(device, key, *program);
+        }
+    }
+    *out = *program;
+    return SONJECT_OK;
+}
+
+sonject_status kernel_create(struct report *report, struct device *device,
+                             enum device_program number, const char *name, cl_kernel *kernel)
+{
+    cl_program program;
+    *kernel = NULL;
+    const sonject_status status = program_get(report, device, number, &program);
+    if (status != SONJECT_OK)
+        return status;
+    cl_int error = CL_SUCCESS;
+    *kernel = clCreateKernel(program, name, &error);
+    if (error != CL_SUCCESS) {
+        *kernel = NULL;
+        return device_failure(report, device, "clCreateKernel", error);
+    }
+    return SONJECT_OK;
+}

@@ -1,0 +1,287 @@
+#include "form/form.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "cl/launch.h"
+#include "cl/program.h"
+
+#define SPECKLE_ENERGY_SHARE 0.001 /* of |W|^2 that is cut off from speckle and energies */
+#define COLUMNS_PER_ITEM     16    /* FORM_COLUMNS of kernels/image_formation.h */
+#define ROWS_PER_ITEM        4     /* FORM_ROWS */
+
+/* The columns that the grid's bins reach through the pulse. */
+static void choose_window(struct form_lines *lines, const struct patch_view *view,
+                          int32_t taps_each_side)
+{
+    const double per_pixel = lines->grid.bins_per_pixel;
+    const double first = ceil((double)(lines->grid.bins.first - taps_each_side) / per_pixel);
+    const double last = floor(
+        (double)(lines->grid.bins.first + lines->grid.bins.count - 1 + taps_each_side) / per_pixel);
+    const double low = fmax(first, 0.0);
+    const double high = fmin(last, (double)view->columns - 1.0);
+    lines->first_column = high < low ? 0 : (size_t)low;
+    lines->columns = high < low ? 0 : (size_t)(high - low) + 1;
+    lines->stride = (lines->columns + COLUMNS_PER_ITEM - 1) / COLUMNS_PER_ITEM * COLUMNS_PER_ITEM;
+}
+
+static sonject_status make_pulse(struct form_lines *lines, const struct patch_view *view,
+                                 int32_t taps_each_side)
+{
+    const double bin = view->column_spacing_m / lines->grid.bins_per_pixel;
+    lines->pulse_taps = 2 * taps_each_side + 1;
+    lines->pulse_first = -taps_each_side - lines->grid.bins.first;
+    float *taps = allocate_array((size_t)lines->pulse_taps, sizeof *taps);
+    if (!taps)
+        return report_out_of_memory(lines->report, "the pulse");
+    for (int32_t tap = 0; tap < lines->pulse_taps; tap++) {
+        const double g = range_response(&lines->response, (tap - taps_each_side) * bin);
+        taps[tap] = (float)(lines->kind == FORM_ENERGY ? g * g : g);
+    }
+    const sonject_status status =
+        buffer_create(lines->report, lines->device, (size_t)lines->pulse_taps * sizeof *taps, taps,
+                      &lines->pulse);
+    free(taps);
+    return status;
+}
+
+static int32_t response_reach(const struct patch_view *view, const struct point_response *response,
+                              enum form_kind kind, const struct line_grid *grid)
+{
+    const double whole = (double)view->rows * grid->strips_per_row;
+    if (kind == FORM_GLINT)
+        return (int32_t)whole;
+    const double strip = view->row_spacing_m / grid->strips_per_row;
+    return (int32_t)fmin(whole,
+                         ceil(along_track_energy_reach(response, SPECKLE_ENERGY_SHARE) / strip));
+}
+
+sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
+                                struct device *device, const struct patch_view *view,
+                                const struct point_response *response, enum form_kind kind,
+                                const struct line_grid *grid)
+{
+    memset(lines, 0, sizeof *lines);
+    lines->report = report;
+    lines->device = device;
+    lines->grid = *grid;
+    lines->kind = kind;
+    lines->rows = view->rows;
+    lines->row_spacing_m = view->row_spacing_m;
+    lines->response = *response;
+    lines->reach = response_reach(view, response, kind, grid);
+    const int32_t taps_each_side = pulse_reach_bins(view, response, grid->bins_per_pixel);
+    choose_window(lines, view, taps_each_side);
+    if (lines->columns == 0)
+        return SONJECT_OK;
+    const size_t bytes = (size_t)grid->strips.count * lines->stride * sizeof(float);
+    sonject_status status = make_pulse(lines, view, taps_each_side);
+    if (status == SONJECT_OK)
+        status = buffer_create(report, device, bytes, NULL, &lines->real_lines);
+    if (status == SONJECT_OK)
+        status = buffer_create(report, device, bytes, NULL, &lines->imaginary_lines);
+    if (status == SONJECT_OK)
+        status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, "compress_range",
+                               &lines->compress);
+    if (status == SONJECT_OK)
+        status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, "combine_aspects",
+                               &lines->combine);
+    if (status == SONJECT_OK)
+        status =
+            kernel_create(report, device, PROGRAM_IMAGE_FORMATION, "draw_speckle", &lines->speckle);
+    if (status != SONJECT_OK)
+        form_lines_end(lines);
+    return status;
+}
+
+void form_lines_end(struct form_lines *lines)
+{
+    if (lines->compress)
+        clReleaseKernel(lines->compress);
+    if (lines->combine)
+        clReleaseKernel(lines->combine);
+    if (lines->speckle)
+        clReleaseKernel(lines->speckle);
+    lines->compress = NULL;
+    lines->combine = NULL;
+    lines->speckle = NULL;
+    buffer_release(&lines->real_lines);
+    buffer_release(&lines->imaginary_lines);
+    buffer_release(&lines->pulse);
+}
+
+static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t count,
+                               cl_mem real_bins, cl_mem imaginary_bins)
+{
+    const cl_int bins = lines->grid.bins.count;
+    const cl_int per_pixel = (cl_int)lines->grid.bins_per_pixel;
+    const cl_int first = lines->pulse_first + (cl_int)lines->first_column * per_pixel;
+    const cl_int taps = lines->pulse_taps;
+    const cl_int columns = (cl_int)lines->columns;
+    const cl_int stride = (cl_int)lines->stride;
+    const cl_int out_strip = strip - lines->grid.strips.first;
+    const struct kernel_argument arguments[] = {
+        ARGUMENT(real_bins), ARGUMENT(imaginary_bins),    ARGUMENT(bins),
+        ARGUMENT(first),     ARGUMENT(per_pixel),         ARGUMENT(lines->pulse),
+        ARGUMENT(taps),      ARGUMENT(columns),           ARGUMENT(stride),
+        ARGUMENT(out_strip), ARGUMENT(lines->real_lines), ARGUMENT(lines->imaginary_lines)};
+    const size_t global[3] = {lines->stride / COLUMNS_PER_ITEM, (size_t)count, 2};
+    return kernel_run(lines->report, lines->device, lines->compress, arguments,
+                      sizeof arguments / sizeof *arguments, 3, global);
+}
+
+sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t count,
+                              const float *real_part, const float *imaginary_part)
+{
+    if (lines->columns == 0 || count == 0)
+        return SONJECT_OK;
+    const size_t bytes = (size_t)count * (size_t)lines->grid.bins.count * sizeof(float);
+    cl_mem real_bins = NULL;
+    cl_mem imaginary_bins = NULL;
+    sonject_status status =
+        buffer_create(lines->report, lines->device, bytes, real_part, &real_bins);
+    if (status == SONJECT_OK)
+        status =
+            buffer_create(lines->report, lines->device, bytes, imaginary_part, &imaginary_bins);
+    if (status == SONJECT_OK)
+        status = compress(lines, strip, count, real_bins, imaginary_bins);
+    buffer_release(&real_bins);
+    buffer_release(&imaginary_bins);
+    return status;
+}
+
+sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, int32_t count,
+                                      const float *energy, uint64_t seed, uint32_t stream)
+{
+    if (lines->columns == 0 || count == 0)
+        return SONJECT_OK;
+    const size_t bytes = (size_t)count * (size_t)lines->grid.bins.count * sizeof(float);
+    cl_mem energies = NULL;
+    cl_mem real_bins = NULL;
+    cl_mem imaginary_bins = NULL;
+    sonject_status status = buffer_create(lines->report, lines->device, bytes, energy, &energies);
+    if (status == SONJECT_OK)
+        status = buffer_create(lines->report, lines->device, bytes, NULL, &real_bins);
+    if (status == SONJECT_OK)
+        status = buffer_create(lines->report, lines->device, bytes, NULL, &imaginary_bins);
+    if (status == SONJECT_OK) {
+        const cl_int bins = lines->grid.bins.count;
+        const cl_int first_bin = lines->grid.bins.first;
+        const cl_int first_strip = strip;
+        const cl_uint seed_low = (cl_uint)(seed & 0xffffffffu);
+        const cl_uint seed_high = (cl_uint)(seed >> 32);
+        const cl_uint stream_number = stream;
+        const struct kernel_argument arguments[] = {
+            ARGUMENT(energies),      ARGUMENT(bins),      ARGUMENT(first_bin),
+            ARGUMENT(first_strip),   ARGUMENT(seed_low),  ARGUMENT(seed_high),
+            ARGUMENT(stream_number), ARGUMENT(real_bins), ARGUMENT(imaginary_bins)};
+        const size_t width = lines->device->width;
+        const size_t global[2] = {((size_t)bins + width - 1) / width, (size_t)count};
+        status = kernel_run(lines->report, lines->device, lines->speckle, arguments,
+                            sizeof arguments / sizeof *arguments, 2, global);
+    }
+    if (status == SONJECT_OK)
+        status = compress(lines, strip, count, real_bins, imaginary_bins);
+    buffer_release(&energies);
+    buffer_release(&real_bins);
+    buffer_release(&imaginary_bins);
+    return status;
+}
+
+/* W (or |W|^2) at the offsets n * strips_per_row - q of pixel row n from strip q. */
+static float *response_taps(const struct form_lines *lines, size_t *count)
+{
+    *count = 2 * (size_t)lines->reach + 1;
+    float *taps = allocate_array(*count, sizeof *taps);
+    if (!taps)
+        return NULL;
+    const double per_row = lines->grid.strips_per_row;
+    for (size_t i = 0; i < *count; i++) {
+        const double strips = (double)i - lines->reach;
+        const double rows = strips / per_row + 0.5 - 0.5 / per_row;
+        const double w = along_track_response(&lines->response, rows * lines->row_spacing_m);
+        taps[i] = (float)(lines->kind == FORM_ENERGY ? w * w : w);
+    }
+    return taps;
+}
+
+static sonject_status combine(struct form_lines *lines, cl_mem taps, cl_mem no_taps,
+                              cl_mem real_out, cl_mem imaginary_out)
+{
+    const cl_int first_strip = lines->grid.strips.first;
+    const cl_int strips = lines->grid.strips.count;
+    const cl_int per_row = (cl_int)lines->grid.strips_per_row;
+    const cl_int reach = lines->reach;
+    const cl_int stride = (cl_int)lines->stride;
+    const cl_int rows = (cl_int)lines->rows;
+    const struct kernel_argument arguments[] = {ARGUMENT(first_strip),
+                                                ARGUMENT(strips),
+                                                ARGUMENT(per_row),
+                                                ARGUMENT(reach),
+                                                ARGUMENT(lines->real_lines),
+                                                ARGUMENT(lines->imaginary_lines),
+                                                ARGUMENT(stride),
+                                                ARGUMENT(taps),
+                                                ARGUMENT(no_taps),
+                                                ARGUMENT(rows),
+                                                ARGUMENT(real_out),
+                                                ARGUMENT(imaginary_out)};
+    const size_t global[2] = {lines->stride / lines->device->width,
+                              (lines->rows + ROWS_PER_ITEM - 1) / ROWS_PER_ITEM};
+    return kernel_run(lines->report, lines->device, lines->combine, arguments,
+                      sizeof arguments / sizeof *arguments, 2, global);
+}
+
+/* Reads a plane and drops the padding of its rows. */
+static sonject_status read_plane(struct form_lines *lines, cl_mem plane, float *padded, float *out)
+{
+    const sonject_status status = buffer_read(lines->report, lines->device, plane, 0,
+                                              lines->rows * lines->stride * sizeof(float), padded);
+    if (status == SONJECT_OK)
+        for (size_t row = 0; row < lines->rows; row++)
+            memcpy(out + row * lines->columns, padded + row * lines->stride,
+                   lines->columns * sizeof *out);
+    return status;
+}
+
+sonject_status form_lines_finish(struct form_lines *lines, float *real_part, float *imaginary_part)
+{
+    if (lines->columns == 0)
+        return SONJECT_OK;
+    size_t count;
+    const size_t plane = lines->rows * lines->stride;
+    cl_mem tap_buffer = NULL;
+    cl_mem no_taps = NULL; /* the response of a straight track is real */
+    cl_mem real_out = NULL;
+    cl_mem imaginary_out = NULL;
+    float *taps = response_taps(lines, &count);
+    float *padded = allocate_array(plane, sizeof *padded);
+    sonject_status status =
+        taps && padded ? SONJECT_OK : report_out_of_memory(lines->report, "image formation");
+    if (status == SONJECT_OK)
+        status =
+            buffer_create(lines->report, lines->device, count * sizeof *taps, taps, &tap_buffer);
+    if (status == SONJECT_OK)
+        status = buffer_create(lines->report, lines->device, count * sizeof *taps, NULL, &no_taps);
+    if (status == SONJECT_OK)
+        status =
+            buffer_create(lines->report, lines->device, plane * sizeof(float), NULL, &real_out);
+    if (status == SONJECT_OK)
+        status = buffer_create(lines->report, lines->device, plane * sizeof(float), NULL,
+                               &imaginary_out);
+    if (status == SONJECT_OK)
+        status = combine(lines, tap_buffer, no_taps, real_out, imaginary_out);
+    if (status == SONJECT_OK)
+        status = read_plane(lines, real_out, padded, real_part);
+    if (status == SONJECT_OK)
+        status = read_plane(lines, imaginary_out, padded, imaginary_part);
+    buffer_release(&tap_buffer);
+    buffer_release(&no_taps);
+    buffer_release(&real_out);
+    buffer_release(&imaginary_out);
+    free(taps);
+    free(padded);
+    return status;
+}

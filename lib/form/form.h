@@ -1,0 +1,62 @@
+/* Image formation: lines of bins to pixels. A line goes through the pulse first (range compression
+ * into columns), then all lines of a patch through the cross-range response into rows. */
+#ifndef SONJECT_FORM_FORM_H
+#define SONJECT_FORM_FORM_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/report.h"
+#include "cl/device.h"
+#include "scene/line_grid.h"
+#include "scene/patch_view.h"
+#include "scene/point_response.h"
+
+/* What is formed: complex amplitudes, by G and W; or two energies side by side (the real plane and
+ * the imaginary plane), by G^2 and |W|^2. Glints are kept over the whole patch, since their side
+ * lobes stand out of the seabed that far; speckle and energies where 99.9 % of |W|^2 lies. */
+enum form_kind {
+    FORM_GLINT,
+    FORM_SPECKLE,
+    FORM_ENERGY
+};
+
+struct form_lines {
+    struct report *report;
+    struct device *device;
+    struct line_grid grid;
+    enum form_kind kind;
+    size_t rows, columns, stride; /* pixels; stride: floats from a line to the next */
+    size_t first_column;          /* of the patch; the window is `columns` wide */
+    int32_t reach;                /* of the cross-range response, strips */
+    int32_t pulse_first, pulse_taps;
+    double row_spacing_m;
+    struct point_response response;
+    cl_mem real_lines, imaginary_lines, pulse;
+    cl_kernel compress, combine, speckle;
+};
+
+/* Prepares lines for the patch's rows and, of its columns, those that bins of the grid reach. On
+ * success to be given to form_lines_end; on failure nothing is held. Errors: DEVICE, MEMORY.
+ * If no column is reached, lines->columns is 0 and the other calls do nothing. */
+sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
+                                struct device *device, const struct patch_view *view,
+                                const struct point_response *response, enum form_kind kind,
+                                const struct line_grid *grid);
+void form_lines_end(struct form_lines *lines);
+
+/* Range-compresses count strips from `strip` on: two planes of count x grid.bins.count. A NULL
+ * imaginary_part is zero. Errors: DEVICE, MEMORY. */
+sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t count,
+                              const float *real_part, const float *imaginary_part);
+
+/* The same with amplitudes drawn on the device: sqrt(energy) times complex normal deviates that
+ * depend on seed, stream, strip and bin alone. */
+sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, int32_t count,
+                                      const float *energy, uint64_t seed, uint32_t stream);
+
+/* Combines all lines into two planes of rows x lines->columns pixels. Errors: DEVICE, MEMORY. */
+sonject_status form_lines_finish(struct form_lines *lines, float *real_part, float *imaginary_part);
+
+#endif

@@ -1,0 +1,143 @@
+#include "inject/compose.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+struct complex_plane {
+    float *real_part, *imaginary_part;
+};
+
+static sonject_status plane_of_noise(struct tracer *tracer, uint32_t stream,
+                                     struct complex_plane *plane)
+{
+    const size_t pixels = tracer->view.rows * tracer->view.columns;
+    plane->real_part = allocate_array(pixels, sizeof(float));
+    plane->imaginary_part = allocate_array(pixels, sizeof(float));
+    if (!plane->real_part || !plane->imaginary_part)
+        return report_out_of_memory(tracer->report, "noise");
+    return coloured_noise(tracer, stream, plane->real_part, plane->imaginary_part);
+}
+
+static void plane_clear(struct complex_plane *plane)
+{
+    free(plane->real_part);
+    free(plane->imaginary_part);
+}
+
+/* One pixel: all in image units but V. */
+struct pixel_parts {
+    double input_real, input_imaginary; /* the measured seabed, or its new realisation */
+    double target_real, target_imaginary;
+    double noise_real, noise_imaginary;
+    double visibility;
+    double noise_energy;
+};
+
+static void add_parts(const struct pixel_parts *parts, bool seabed_is_in_view_already,
+                      double *real_part, double *imaginary_part)
+{
+    const double seabed = seabed_is_in_view_already ? 1.0 : sqrt(parts->visibility);
+    const double noise = sqrt((1.0 - parts->visibility) * parts->noise_energy);
+    *real_part = seabed * parts->input_real + parts->target_real + noise * parts->noise_real;
+    *imaginary_part =
+        seabed * parts->input_imaginary + parts->target_imaginary + noise * parts->noise_imaginary;
+}
+
+/* The measured pixel with a phase: its own, or where the image has only magnitudes that of a
+ * speckle field of the sonar's point response, so that it varies as a real one would. */
+static void input_with_phase(const float *pixels, bool is_complex,
+                             const struct complex_plane *phase, size_t i, double *real_part,
+                             double *imaginary_part)
+{
+    if (is_complex) {
+        *real_part = pixels[2 * i];
+        *imaginary_part = pixels[2 * i + 1];
+        return;
+    }
+    const double a = phase->real_part[i];
+    const double b = phase->imaginary_part[i];
+    const double length = hypot(a, b);
+    *real_part = length > 0.0 ? pixels[i] * a / length : pixels[i];
+    *imaginary_part = length > 0.0 ? pixels[i] * b / length : 0.0;
+}
+
+static void store_pixel(struct injection_result *result, size_t i, double real_part,
+                        double imaginary_part)
+{
+    if (result->is_complex) {
+        result->image[2 * i] = (float)real_part;
+        result->image[2 * i + 1] = (float)imaginary_part;
+    } else {
+        result->image[i] = (float)hypot(real_part, imaginary_part);
+    }
+}
+
+static void compose_pixel(const struct scene *scene, const struct patch_level *level,
+                          const struct echoes *echoes, const float *pixels,
+                          const struct complex_plane *noise, const struct complex_plane *phase,
+                          size_t i, double threshold, struct injection_result *result)
+{
+    const double local = level->level[i];
+    const double gain = local / level->cell_energy[i % echoes->columns]; /* image energy per m^2 */
+    const double scale = sqrt(gain);
+    const double without = echoes->seabed_energy[i];
+    const double hidden = without > 0.0 ? fmin(1.0, echoes->lost_energy[i] / without) : 0.0;
+    const double change = gain * echoes->target_energy[i] + hidden * local;
+    const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
+    const bool is_touched = change >= threshold * local && change > 0.0;
+    struct pixel_parts parts;
+    parts.visibility = is_touched || resynthesises ? 1.0 - hidden : 1.0;
+    parts.noise_energy = level->noise_ratio * local;
+    parts.target_real = scale * echoes->target_real[i];
+    parts.target_imaginary = scale * echoes->target_imaginary[i];
+    parts.noise_real = noise->real_part ? noise->real_part[i] : 0.0;
+    parts.noise_imaginary = noise->real_part ? noise->imaginary_part[i] : 0.0;
+    if (resynthesises) {
+        parts.input_real = scale * echoes->seabed_real[i];
+        parts.input_imaginary = scale * echoes->seabed_imaginary[i];
+    } else {
+        input_with_phase(pixels, result->is_complex, phase, i, &parts.input_real,
+                         &parts.input_imaginary);
+    }
+    double real_part = parts.input_real;
+    double imaginary_part = parts.input_imaginary;
+    if (is_touched || resynthesises) {
+        add_parts(&parts, resynthesises, &real_part, &imaginary_part);
+        store_pixel(result, i, real_part, imaginary_part);
+    }
+    result->field[2 * i] = (float)(real_part / scale);
+    result->field[2 * i + 1] = (float)(imaginary_part / scale);
+    result->visibility[i] = (float)parts.visibility;
+    result->energy[i] =
+        (float)(echoes->target_energy[i] + fmax(0.0, without - echoes->lost_energy[i]));
+    result->influence[i] = is_touched || resynthesises ? 255 : 0;
+}
+
+sonject_status compose(struct tracer *tracer, const struct patch_level *level,
+                       const struct echoes *echoes, const float *pixels, bool is_complex,
+                       struct injection_result *result)
+{
+    const struct scene *scene = tracer->scene;
+    const size_t count = echoes->rows * echoes->columns;
+    const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
+    struct complex_plane noise = {NULL, NULL};
+    struct complex_plane phase = {NULL, NULL};
+    sonject_status status = SONJECT_OK;
+    if (scene->object_count > 0)
+        status = plane_of_noise(tracer, STREAM_NOISE, &noise);
+    if (status == SONJECT_OK && !is_complex && !resynthesises)
+        status = plane_of_noise(tracer, STREAM_INPUT_PHASE, &phase);
+    if (status == SONJECT_OK) {
+        /* pixels that nothing touches must keep every bit, so they are copied, not computed */
+        memcpy(result->image, pixels, count * (is_complex ? 2 : 1) * sizeof(float));
+        const double threshold = pow(10.0, scene->injection.influence_db / 10.0);
+        for (size_t i = 0; i < count; i++)
+            compose_pixel(scene, level, echoes, pixels, &noise, &phase, i, threshold, result);
+    }
+    plane_clear(&noise);
+    plane_clear(&phase);
+    return status;
+}

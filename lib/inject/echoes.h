@@ -1,0 +1,59 @@
+/* What the patch would return: traced, formed, in cross-section units (m^2 and m). */
+#ifndef SONJECT_INJECT_ECHOES_H
+#define SONJECT_INJECT_ECHOES_H
+
+#include <stdint.h>
+
+#include "base/report.h"
+#include "trace/rough.h"
+#include "trace/tracer.h"
+
+/* One object's part, on a window of columns (all rows). */
+struct object_echo {
+    size_t first_column, columns;
+    float *energy;    /* expected cross-section, rough and smooth part, m^2 */
+    float *lost;      /* seabed energy that it hides, m^2 */
+    uint8_t *covered; /* 1 where some ray of that pixel hit it */
+};
+
+/* Everything is rows x columns of the view unless said otherwise. Owned. */
+struct echoes {
+    size_t rows, columns;
+    float *seabed_energy;                  /* expected without objects, m^2 */
+    float *lost_energy;                    /* of it, hidden by objects */
+    float *target_energy;                  /* expected from all objects */
+    float *target_real, *target_imaginary; /* one realisation, m */
+    float *seabed_real,
+        *seabed_imaginary; /* one realisation of what is in view; NULL if unwanted */
+    struct object_echo *objects;
+    uint32_t object_count;
+    double trace_s, form_s; /* wall clock */
+};
+
+/* How the seabed's realisation is drawn. */
+enum seabed_field {
+    SEABED_FIELD_NONE,
+    SEABED_FIELD_SPECKLE, /* complex normal deviates */
+    SEABED_FIELD_COHERENT /* the measured complex reflectivity */
+};
+
+struct echo_request {
+    const float *map; /* reflectivity over mu0, or NULL */
+    enum seabed_field field;
+    const float *reflectivity_real, *reflectivity_imaginary; /* COHERENT: unit mean square */
+    sonject_progress_function progress;                      /* may be NULL */
+    void *user;
+};
+
+/* Traces and forms all of it. On failure *echoes is empty. Errors: INPUT, DEVICE, MEMORY,
+ * CANCELLED. */
+sonject_status echoes_compute(struct echoes *echoes, struct tracer *tracer,
+                              const struct echo_request *request);
+void echoes_clear(struct echoes *echoes);
+
+/* A field of complex normal deviates of unit mean square with the sonar's point response, rows x
+ * columns. Errors: DEVICE, MEMORY. */
+sonject_status coloured_noise(struct tracer *tracer, uint32_t stream, float *real_part,
+                              float *imaginary_part);
+
+#endif

@@ -1,0 +1,48 @@
+/* One injection in memory, from a patch to a patch with objects and its truth. */
+#ifndef SONJECT_INJECT_INJECTION_H
+#define SONJECT_INJECT_INJECTION_H
+
+#include <stdbool.h>
+
+#include <sonject/result.h>
+
+#include "base/report.h"
+#include "cl/device.h"
+#include "scene/placement.h"
+#include "scene/scene.h"
+
+/* The patch that objects are put into. Linear; row 0 is the image's. */
+struct injection_input {
+    size_t rows, columns;
+    double first_row, first_column; /* of the patch in the swath that the geometry describes */
+    bool is_complex;
+    const float *pixels; /* rows x columns amplitudes, or pairs of real and imaginary part */
+};
+
+/* What sonject_result is. All layers rows x columns in the image's row order; owned. */
+struct injection_result {
+    size_t rows, columns;
+    bool is_complex;
+    float *image; /* kind of the input */
+    float *field; /* pairs; m */
+    float *energy, *visibility;
+    uint8_t *highlight, *shadow, *labels, *influence;
+    sonject_object_truth *objects;
+    uint32_t object_count;
+    sonject_statistics statistics;
+};
+
+/* Progress fractions run from 0 to 1. On failure *result is empty. Errors: as sonject_inject. */
+sonject_status injection_run(struct report *report, struct device *device,
+                             const struct scene *scene, const struct injection_input *input,
+                             sonject_progress_function progress, void *user,
+                             struct injection_result *result);
+void injection_result_clear(struct injection_result *result);
+
+/* Everything that can be checked without tracing: geometry, objects, map. placements: room for all
+ * objects. Errors: INPUT. */
+sonject_status injection_check(struct report *report, const struct scene *scene, double first_row,
+                               double first_column, size_t rows, size_t columns,
+                               struct patch_view *view, struct placement *placements);
+
+#endif

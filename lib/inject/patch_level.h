@@ -1,0 +1,32 @@
+/* The measured patch as reflectivity: its level, its map, and its scale to cross-sections. */
+#ifndef SONJECT_INJECT_PATCH_LEVEL_H
+#define SONJECT_INJECT_PATCH_LEVEL_H
+
+#include "base/report.h"
+#include "scene/patch_view.h"
+#include "scene/point_response.h"
+#include "scene/scene.h"
+
+/* Owned planes, rows x columns of the view. */
+struct patch_level {
+    float *intensity;    /* measured */
+    float *level;        /* smooth local mean of it, > 0 */
+    float *map;          /* reflectivity over mu0 for the tracer */
+    float *cell_energy;  /* expected cross-section of a pixel of plain seabed (mu0), m^2; a column each */
+    double noise_ratio;  /* noise energy over level */
+};
+
+/* pixels: amplitudes or pairs, in the view's row order. Errors: INPUT (nothing but zeros; not a
+ * finite number: says where), MEMORY. On failure nothing is held. */
+sonject_status patch_level_init(struct patch_level *level, struct report *report,
+                                const struct scene *scene, const struct patch_view *view,
+                                const struct point_response *response, const float *pixels,
+                                bool is_complex);
+void patch_level_clear(struct patch_level *level);
+
+/* Expected cross-section in m^2 of a pixel of Lambert seabed (mu) at an apparent range: mu sin^2 of
+ * the grazing angle times the area that the point response covers. */
+double seabed_cell_energy(const struct patch_view *view, const struct point_response *response,
+                          double mu, double apparent_range_m);
+
+#endif

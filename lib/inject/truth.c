@@ -1,0 +1,157 @@
+#include "inject/truth.h"
+
+#include <math.h>
+#include <string.h>
+
+struct box_search {
+    size_t first_row, last_row, first_column, last_column;
+    uint64_t pixels;
+    double energy, level; /* sums over its pixels */
+};
+
+static void box_take(struct box_search *box, size_t row, size_t column, double energy, double level)
+{
+    if (box->pixels == 0 || row < box->first_row)
+        box->first_row = row;
+    if (box->pixels == 0 || row > box->last_row)
+        box->last_row = row;
+    if (box->pixels == 0 || column < box->first_column)
+        box->first_column = column;
+    if (box->pixels == 0 || column > box->last_column)
+        box->last_column = column;
+    box->pixels++;
+    box->energy += energy;
+    box->level += level;
+}
+
+static sonject_box box_of(const struct box_search *search)
+{
+    sonject_box box = {0, 0, 0, 0};
+    if (search->pixels > 0) {
+        box.first_row = search->first_row;
+        box.first_column = search->first_column;
+        box.rows = search->last_row - search->first_row + 1;
+        box.columns = search->last_column - search->first_column + 1;
+    }
+    return box;
+}
+
+static bool box_is_cut(const struct box_search *search, const struct echoes *echoes)
+{
+    return search->pixels > 0 &&
+           (search->first_row == 0 || search->first_column == 0 ||
+            search->last_row + 1 == echoes->rows || search->last_column + 1 == echoes->columns);
+}
+
+/* A ray of the pixel or of a neighbour met the object: side lobes are not the object. */
+static bool is_on_object(const struct object_echo *echo, size_t rows, size_t row, size_t column)
+{
+    const size_t local = column - echo->first_column;
+    const size_t low_row = row > 0 ? row - 1 : 0;
+    const size_t high_row = row + 1 < rows ? row + 1 : row;
+    const size_t low = local > 0 ? local - 1 : 0;
+    const size_t high = local + 1 < echo->columns ? local + 1 : local;
+    for (size_t r = low_row; r <= high_row; r++)
+        for (size_t c = low; c <= high; c++)
+            if (echo->covered[r * echo->columns + c])
+                return true;
+    return false;
+}
+
+/* Expected energies of a pixel, m^2. */
+struct pixel_levels {
+    double own, background, hidden_share;
+};
+
+static struct pixel_levels levels_at(const struct patch_level *level, const struct echoes *echoes,
+                                     const struct object_echo *echo, size_t row, size_t column)
+{
+    const size_t i = row * echoes->columns + column;
+    const size_t local = row * echo->columns + column - echo->first_column;
+    const double without = echoes->seabed_energy[i];
+    struct pixel_levels levels;
+    levels.own = echo->energy[local];
+    levels.background = fmax(0.0, without - echoes->lost_energy[i]) +
+                        level->noise_ratio * level->cell_energy[column];
+    levels.hidden_share = without > 0.0 ? echo->lost[local] / without : 0.0;
+    return levels;
+}
+
+static double decibels(double ratio)
+{
+    return ratio > 0.0 ? 10.0 * log10(ratio) : -INFINITY;
+}
+
+static double decibels_over(const struct box_search *search)
+{
+    return search->pixels > 0 ? decibels(search->energy / search->level) : NAN;
+}
+
+static void find_object(const struct patch_level *level, const struct echoes *echoes,
+                        uint32_t number, struct injection_result *result)
+{
+    const struct object_echo *echo = &echoes->objects[number];
+    struct box_search highlight, shadow, both;
+    memset(&highlight, 0, sizeof highlight);
+    memset(&shadow, 0, sizeof shadow);
+    memset(&both, 0, sizeof both);
+    double brightest = 0.0;
+    for (size_t row = 0; echo->energy && row < echoes->rows; row++)
+        for (size_t column = echo->first_column; column < echo->first_column + echo->columns;
+             column++) {
+            const size_t i = row * echoes->columns + column;
+            const struct pixel_levels levels = levels_at(level, echoes, echo, row, column);
+            const double plain = level->cell_energy[column];
+            brightest = fmax(brightest, levels.own);
+            if (levels.own > levels.background && is_on_object(echo, echoes->rows, row, column)) {
+                result->highlight[i] = 255;
+                result->labels[i] = (uint8_t)(number + 1);
+                box_take(&highlight, row, column, levels.own + levels.background, plain);
+                box_take(&both, row, column, 0.0, 0.0);
+            } else if (levels.hidden_share > 0.5) {
+                if (!result->labels[i])
+                    result->labels[i] = (uint8_t)(number + 1);
+                result->shadow[i] = 255;
+                box_take(&shadow, row, column, echoes->target_energy[i] + levels.background, plain);
+                box_take(&both, row, column, 0.0, 0.0);
+            }
+        }
+    sonject_object_truth *truth = &result->objects[number];
+    truth->is_visible = both.pixels > 0;
+    truth->highlight_is_cut = box_is_cut(&highlight, echoes);
+    truth->shadow_is_cut = box_is_cut(&shadow, echoes);
+    truth->highlight = box_of(&highlight);
+    truth->shadow = box_of(&shadow);
+    truth->both = box_of(&both);
+    truth->highlight_pixels = highlight.pixels;
+    truth->shadow_pixels = shadow.pixels;
+    truth->target_strength_db = decibels(brightest);
+    truth->highlight_contrast_db = decibels_over(&highlight);
+    truth->shadow_contrast_db = decibels_over(&shadow);
+}
+
+static void locate(const struct tracer *tracer, uint32_t number, sonject_object_truth *truth)
+{
+    const struct placement *placement = &tracer->placements[number];
+    const struct patch_view *view = &tracer->view;
+    truth->struct_size = sizeof *truth;
+    truth->along_track_m = placement->centre[0];
+    truth->ground_range_m = placement->centre[1];
+    truth->height_m = placement->centre[2];
+    truth->slant_range_m = placement_range(placement, view) * view->range_ratio;
+    truth->row = view_row_of_x(view, placement->centre[0]);
+    truth->column = view_column_of_range(view, truth->slant_range_m);
+}
+
+void find_truth(const struct tracer *tracer, const struct patch_level *level,
+                const struct echoes *echoes, struct injection_result *result)
+{
+    for (uint32_t i = 0; i < echoes->object_count; i++) {
+        locate(tracer, i, &result->objects[i]);
+        find_object(level, echoes, i, result);
+    }
+    /* a pixel where another object's echo stands in the shadow is a highlight */
+    for (size_t i = 0; i < echoes->rows * echoes->columns; i++)
+        if (result->highlight[i])
+            result->shadow[i] = 0;
+}

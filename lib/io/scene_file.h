@@ -1,0 +1,27 @@
+/* Scene files: YAML to a scene. */
+#ifndef SONJECT_IO_SCENE_FILE_H
+#define SONJECT_IO_SCENE_FILE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/report.h"
+#include "scene/scene.h"
+
+/* Reads path, applies count overrides "key.path=value" and fills scene, which must be initialised
+ * and empty; on failure it is left empty. Contract and errors as of sonject_scene_read. */
+sonject_status scene_file_read(struct report *report, const char *path,
+                               const char *const *overrides, size_t count, struct scene *scene);
+
+struct scene_file_key {
+    char path[64];       /* "objects[].heading" */
+    const char *unit;    /* "deg, rad", "whole number", "word", ...; static */
+    const char *meaning; /* one line; static */
+    bool is_required;    /* in its section */
+};
+
+/* Lists every key that has a value of its own. keys: room for capacity entries (NULL if capacity is
+ * 0). Returns the number of keys, which may exceed capacity. */
+size_t scene_file_keys(struct scene_file_key *keys, size_t capacity);
+
+#endif

@@ -1,0 +1,78 @@
+/* The list of keys, from the tables. */
+#include <stdio.h>
+#include <string.h>
+
+#include "io/scene_file.h"
+#include "io/scene_schema.h"
+
+struct listing {
+    struct scene_file_key *keys;
+    size_t capacity;
+    size_t count;
+};
+
+static const char *unit_of(const struct field *field)
+{
+    static const char *const of_quantities[] = {
+        [QUANTITY_NUMBER] = "number",
+        [QUANTITY_LENGTH] = "m, km, cm, mm",
+        [QUANTITY_FREQUENCY] = "Hz, kHz, MHz",
+        [QUANTITY_SPEED] = "m/s, km/s",
+        [QUANTITY_ANGLE] = "deg, rad",
+        [QUANTITY_DECIBEL] = "dB",
+        [QUANTITY_LEVEL] = "dB, or a linear number",
+    };
+    switch (field->kind) {
+    case FIELD_QUANTITY:
+        return of_quantities[field->quantity];
+    case FIELD_BOOL:
+    case FIELD_FLAG32:
+        return "true or false";
+    case FIELD_WORD:
+        return "word";
+    case FIELD_LABEL:
+        return "text";
+    case FIELD_PATH:
+        return "file name";
+    case FIELD_SPECIAL:
+        return field->unit ? field->unit : "whole number";
+    default:
+        return "whole number";
+    }
+}
+
+static void list_field(struct listing *listing, const char *path, const struct field *field)
+{
+    if (listing->count < listing->capacity) {
+        struct scene_file_key *key = &listing->keys[listing->count];
+        snprintf(key->path, sizeof key->path, "%s", path);
+        key->unit = unit_of(field);
+        key->meaning = field->meaning;
+        key->is_required = field->is_required;
+    }
+    listing->count++;
+}
+
+/* Sections are at most three deep. */
+static void list_section(struct listing *listing, const char *prefix, const struct section *section)
+{
+    for (size_t i = 0; i < section->count; i++) {
+        const struct field *field = &section->fields[i];
+        char path[64];
+        char below[sizeof path + 4];
+        snprintf(path, sizeof path, "%s%s", prefix, field->key);
+        if (field->kind == FIELD_WORD || !field->section)
+            list_field(listing, path, field);
+        if (!field->section)
+            continue;
+        snprintf(below, sizeof below, "%s%s", path, field->kind == FIELD_SPECIAL ? "[]." : ".");
+        list_section(listing, below, field->section);
+    }
+}
+
+size_t scene_file_keys(struct scene_file_key *keys, size_t capacity)
+{
+    struct listing listing = {keys, capacity, 0};
+    list_section(&listing, "", &scene_section);
+    return listing.count;
+}

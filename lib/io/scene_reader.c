@@ -1,0 +1,302 @@
+/* Walks a section's table and fills its structure from the tree. */
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/text.h"
+#include "io/scene_schema.h"
+
+/* Keys in a message, "a, b, c". */
+struct word_list {
+    char text[300];
+    size_t count;
+};
+
+static void list_word(struct word_list *list, const char *word)
+{
+    const size_t length = strlen(list->text);
+    snprintf(list->text + length, sizeof list->text - length, "%s%s", list->count ? ", " : "",
+             word);
+    list->count++;
+}
+
+static sonject_status refuse_at(const struct reader *reader, struct tree_place place,
+                                const char *format, va_list arguments)
+{
+    char what[REPORT_CAPACITY];
+    vsnprintf(what, sizeof what, format, arguments);
+    return tree_failure(reader->tree, place, reader->path.text, "%s", what);
+}
+
+sonject_status refuse_value(const struct reader *reader, const struct tree_node *node,
+                            const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    const sonject_status status = refuse_at(reader, node->place, format, arguments);
+    va_end(arguments);
+    return status;
+}
+
+sonject_status refuse_key(struct reader *reader, const struct tree_node *node, const char *key,
+                          const char *format, ...)
+{
+    const size_t before = key_path_add(&reader->path, key);
+    struct tree_place place = node->place;
+    while (node && *key) {
+        char step[64];
+        const size_t length = strcspn(key, ".");
+        snprintf(step, sizeof step, "%.*s", (int)length, key);
+        const struct tree_entry *entry = tree_find(node, step);
+        node = entry ? &entry->value : NULL;
+        place = entry ? entry->value.place : place;
+        key += length + (key[length] == '.');
+    }
+    va_list arguments;
+    va_start(arguments, format);
+    const sonject_status status = refuse_at(reader, place, format, arguments);
+    va_end(arguments);
+    key_path_shorten(&reader->path, before);
+    return status;
+}
+
+sonject_status place_check(struct reader *reader, const struct tree_node *node, const char *key,
+                           const struct report *check)
+{
+    return refuse_key(reader, node, key, "%s", check->message + strlen(key) + 1);
+}
+
+static sonject_status need_text(struct reader *reader, const struct tree_node *node,
+                                const char **text)
+{
+    if (tree_is_null(node))
+        return refuse_value(reader, node, "has no value; write one or remove the key");
+    if (node->kind != TREE_TEXT)
+        return refuse_value(reader, node, "must be a single value, not a %s",
+                            node->kind == TREE_LIST ? "list" : "section");
+    *text = node->text;
+    return SONJECT_OK;
+}
+
+sonject_status read_quantity(struct reader *reader, const struct tree_node *node,
+                             enum quantity quantity, double *value)
+{
+    char problem[200];
+    const char *text;
+    sonject_status status = need_text(reader, node, &text);
+    if (status == SONJECT_OK && !quantity_from_text(quantity, text, value, problem, sizeof problem))
+        status = refuse_value(reader, node, "%s", problem);
+    return status;
+}
+
+static sonject_status read_count(struct reader *reader, const struct field *field,
+                                 const struct tree_node *node, uint64_t *count)
+{
+    char excerpt[40];
+    const char *text;
+    const sonject_status status = need_text(reader, node, &text);
+    if (status != SONJECT_OK)
+        return status;
+    if (!text_to_count(text, count))
+        return refuse_value(reader, node, "'%s' is not a whole number from 0 to %llu",
+                            text_excerpt(excerpt, sizeof excerpt, text),
+                            (unsigned long long)field->maximum);
+    if (*count > field->maximum)
+        return refuse_value(reader, node, "must be at most %llu",
+                            (unsigned long long)field->maximum);
+    return SONJECT_OK;
+}
+
+static sonject_status read_bool(struct reader *reader, const struct tree_node *node, bool *value)
+{
+    char excerpt[40];
+    const char *text;
+    const sonject_status status = need_text(reader, node, &text);
+    if (status != SONJECT_OK)
+        return status;
+    *value = strcmp(text, "true") == 0;
+    if (!*value && strcmp(text, "false") != 0)
+        return refuse_value(reader, node, "'%s' is neither true nor false",
+                            text_excerpt(excerpt, sizeof excerpt, text));
+    return SONJECT_OK;
+}
+
+static sonject_status read_word(struct reader *reader, const struct field *field,
+                                const struct tree_node *node, uint32_t *value)
+{
+    struct word_list list = {{0}, 0};
+    char excerpt[40];
+    const char *text;
+    const sonject_status status = need_text(reader, node, &text);
+    if (status != SONJECT_OK)
+        return status;
+    for (uint32_t i = 0; i < FIELD_WORDS_MAX && field->words[i]; i++) {
+        if (strcmp(field->words[i], text) == 0) {
+            *value = i;
+            return SONJECT_OK;
+        }
+        list_word(&list, field->words[i]);
+    }
+    const char *near = nearest_word(text, field->words, list.count);
+    for (size_t i = 0; field->section && i < field->section->count; i++) {
+        char key[32];
+        snprintf(key, sizeof key, "{%s: ...}", field->section->fields[i].key);
+        list_word(&list, key);
+    }
+    return refuse_value(reader, node, "'%s' is not one of %s%s%s%s",
+                        text_excerpt(excerpt, sizeof excerpt, text), list.text,
+                        near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+}
+
+static sonject_status read_label(struct reader *reader, const struct tree_node *node, char *label)
+{
+    const char *text;
+    const sonject_status status = need_text(reader, node, &text);
+    if (status != SONJECT_OK)
+        return status;
+    if (strlen(text) >= SONJECT_NAME_CAPACITY)
+        return refuse_value(reader, node, "longer than %d bytes; shorten it",
+                            SONJECT_NAME_CAPACITY - 1);
+    memset(label, 0, SONJECT_NAME_CAPACITY);
+    memcpy(label, text, strlen(text));
+    return SONJECT_OK;
+}
+
+/* A path in the file is meant from the file's folder, one of an override from where the user is. */
+static sonject_status read_path(struct reader *reader, const struct tree_node *node, char **path)
+{
+    const char *text;
+    const sonject_status status = need_text(reader, node, &text);
+    if (status != SONJECT_OK)
+        return status;
+    if (*text == 0 || !text_is_printable(text))
+        return refuse_value(reader, node, "must be a file name on one line");
+    char *folder = copy_text("");
+    if (!node->place.override) {
+        free(folder);
+        folder = path_folder(reader->tree->file);
+    }
+    *path = folder ? path_join(folder, text) : NULL;
+    free(folder);
+    return *path ? SONJECT_OK : report_out_of_memory(reader->report, "a file name");
+}
+
+static sonject_status read_subsection(struct reader *reader, const struct section *section,
+                                      const struct tree_node *node, void *structure)
+{
+    struct tree_node empty = {.kind = TREE_SECTION, .place = node->place};
+    return read_section(reader, section, tree_is_null(node) ? &empty : node, structure);
+}
+
+static sonject_status read_field(struct reader *reader, const struct field *field,
+                                 const struct tree_node *node, void *structure)
+{
+    void *destination = (char *)structure + field->offset;
+    uint64_t count = 0;
+    bool flag = false;
+    sonject_status status = SONJECT_OK;
+    switch (field->kind) {
+    case FIELD_QUANTITY:
+        return read_quantity(reader, node, field->quantity, destination);
+    case FIELD_COUNT32:
+        status = read_count(reader, field, node, &count);
+        *(uint32_t *)destination = (uint32_t)count;
+        return status;
+    case FIELD_COUNT64:
+        return read_count(reader, field, node, destination);
+    case FIELD_BOOL:
+        return read_bool(reader, node, destination);
+    case FIELD_FLAG32:
+        status = read_bool(reader, node, &flag);
+        *(uint32_t *)destination = flag;
+        return status;
+    case FIELD_WORD:
+        if (field->section && node->kind == TREE_SECTION)
+            return read_section(reader, field->section, node, structure);
+        return read_word(reader, field, node, destination);
+    case FIELD_LABEL:
+        return read_label(reader, node, destination);
+    case FIELD_PATH:
+        return read_path(reader, node, destination);
+    case FIELD_SECTION:
+        return read_subsection(reader, field->section, node, destination);
+    case FIELD_SPECIAL:
+        break;
+    }
+    return field->read(reader, node, structure);
+}
+
+static sonject_status refuse_unknown(struct reader *reader, const struct section *section,
+                                     const struct tree_entry *entry)
+{
+    const char *keys[16];
+    struct word_list list = {{0}, 0};
+    for (size_t i = 0; i < section->count && i < 16; i++) {
+        keys[i] = section->fields[i].key;
+        list_word(&list, keys[i]);
+    }
+    const char *near = nearest_word(entry->key, keys, list.count);
+    key_path_add(&reader->path, entry->key);
+    if (near)
+        return tree_failure(reader->tree, entry->place, reader->path.text,
+                            "unknown key; did you mean '%s'?", near);
+    return tree_failure(reader->tree, entry->place, reader->path.text,
+                        "unknown key; known here are %s", list.text);
+}
+
+static sonject_status find_unknown(struct reader *reader, const struct section *section,
+                                   const struct tree_node *node)
+{
+    for (size_t i = 0; i < node->count; i++) {
+        size_t j = 0;
+        while (j < section->count && strcmp(section->fields[j].key, node->entries[i].key) != 0)
+            j++;
+        if (j == section->count)
+            return refuse_unknown(reader, section, &node->entries[i]);
+    }
+    return SONJECT_OK;
+}
+
+static sonject_status find_missing(struct reader *reader, const struct section *section,
+                                   const struct tree_node *node)
+{
+    struct word_list list = {{0}, 0};
+    const struct field *missing = NULL;
+    for (size_t i = 0; i < section->count; i++) {
+        const struct field *field = &section->fields[i];
+        if (!field->is_required || tree_find(node, field->key))
+            continue;
+        list_word(&list, field->key);
+        missing = field;
+    }
+    if (list.count == 0)
+        return SONJECT_OK;
+    if (list.count > 1)
+        return refuse_value(reader, node, "%s are missing; add them", list.text);
+    return refuse_key(reader, node, missing->key, "missing; add it (%s)", missing->meaning);
+}
+
+sonject_status read_section(struct reader *reader, const struct section *section,
+                            const struct tree_node *node, void *structure)
+{
+    if (node->kind != TREE_SECTION)
+        return refuse_value(reader, node, "must be a section of 'key: value' lines, not a %s",
+                            node->kind == TREE_LIST ? "list" : "single value");
+    sonject_status status = find_unknown(reader, section, node);
+    if (status == SONJECT_OK)
+        status = find_missing(reader, section, node);
+    for (size_t i = 0; status == SONJECT_OK && i < section->count; i++) {
+        const struct tree_entry *entry = tree_find(node, section->fields[i].key);
+        if (!entry)
+            continue;
+        const size_t before = key_path_add(&reader->path, entry->key);
+        status = read_field(reader, &section->fields[i], &entry->value, structure);
+        key_path_shorten(&reader->path, before);
+    }
+    if (status == SONJECT_OK && section->check)
+        status = section->check(reader, node, structure);
+    return status;
+}

@@ -1,0 +1,204 @@
+/* What a table cannot say: keys that need or exclude each other, and the few that are read in a way
+ * of their own. */
+#include <string.h>
+
+#include "io/scene_schema.h"
+
+static bool is_given(const struct tree_node *node, const char *key)
+{
+    return tree_find(node, key) != NULL;
+}
+
+sonject_status read_version(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    (void)structure;
+    if (node->kind != TREE_TEXT || !node->text || strcmp(node->text, "1") != 0)
+        return refuse_value(reader, node, "must be 1, the version of the format that is read here");
+    return SONJECT_OK;
+}
+
+sonject_status read_noise_floor(struct reader *reader, const struct tree_node *node,
+                                void *structure)
+{
+    sonject_injection_params *injection = structure;
+    injection->estimate_noise =
+        node->kind == TREE_TEXT && node->text && strcmp(node->text, "estimate") == 0;
+    if (injection->estimate_noise)
+        return SONJECT_OK;
+    return read_quantity(reader, node, QUANTITY_DECIBEL, &injection->noise_floor_db);
+}
+
+static sonject_status read_object(struct reader *reader, const struct tree_node *node)
+{
+    sonject_object_params object;
+    sonject_object_params_init(&object);
+    object.diameter_m = 0.0;
+    sonject_status status = read_section(reader, &object_section, node, &object);
+    if (status == SONJECT_OK)
+        status = scene_append_object(reader->scene, reader->report, &object);
+    return status;
+}
+
+sonject_status read_objects(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    sonject_status status = SONJECT_OK;
+    (void)structure;
+    if (tree_is_null(node))
+        return SONJECT_OK;
+    if (node->kind != TREE_LIST)
+        return refuse_value(reader, node, "must be a list; start each object with '- '");
+    if (node->count > SCENE_OBJECTS_MAX)
+        return refuse_value(reader, node, "has %zu entries; at most %d are possible", node->count,
+                            SCENE_OBJECTS_MAX);
+    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
+        const size_t before = key_path_add_index(&reader->path, i);
+        status = read_object(reader, &node->entries[i].value);
+        key_path_shorten(&reader->path, before);
+    }
+    return status;
+}
+
+sonject_status finish_scene(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    const struct scene *scene = structure;
+    const bool is_complex = scene->input_kind == SONJECT_INPUT_SYNTHETIC
+                                ? scene->synthetic.complex_pixels
+                                : scene->input_is_complex;
+    if (scene->seabed.map == SONJECT_MAP_COHERENT && !is_complex)
+        return refuse_key(reader, node, "seabed.map",
+                          "coherent needs complex pixels; set complex: true in input if they are");
+    return SONJECT_OK;
+}
+
+sonject_status finish_input(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    static const char *const file_keys[] = {"complex", "transfer"};
+    struct scene *scene = structure;
+    const bool is_file = is_given(node, "path");
+    const bool is_uniform = is_given(node, "uniform");
+    const bool is_synthetic = is_given(node, "synthetic");
+    if (is_file + is_uniform + is_synthetic != 1)
+        return refuse_value(reader, node, "%s of path, uniform and synthetic is there; give one",
+                            is_file + is_uniform + is_synthetic == 0 ? "none" : "more than one");
+    for (int i = 0; i < 2; i++)
+        if (!is_file && is_given(node, file_keys[i]))
+            return refuse_key(reader, node, file_keys[i],
+                              "belongs to an image file (path), not to %s; remove it",
+                              is_uniform ? "uniform" : "synthetic");
+    scene->input_kind = is_file      ? SONJECT_INPUT_FILE
+                        : is_uniform ? SONJECT_INPUT_UNIFORM
+                                     : SONJECT_INPUT_SYNTHETIC;
+    return SONJECT_OK;
+}
+
+sonject_status finish_uniform(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    const struct scene *scene = structure;
+    struct report report = {{0}, NULL, NULL};
+    const char *key = "";
+    if (check_uniform(scene->uniform_rows, scene->uniform_columns, &report, &key) != SONJECT_OK)
+        return place_check(reader, node, key, &report);
+    return SONJECT_OK;
+}
+
+/* The check of a structure that a section fills. */
+#define FINISH(name, type)                                                                         \
+    sonject_status finish_##name(struct reader *reader, const struct tree_node *node,              \
+                                 void *structure)                                                  \
+    {                                                                                              \
+        struct report report = {{0}, NULL, NULL};                                                  \
+        const char *key = "";                                                                      \
+        if (check_##name((const type *)structure, &report, &key) != SONJECT_OK)                    \
+            return place_check(reader, node, key, &report);                                        \
+        return SONJECT_OK;                                                                         \
+    }
+
+FINISH(synthetic, sonject_synthetic_params)
+FINISH(geometry, sonject_geometry_params)
+FINISH(patch, sonject_patch_params)
+FINISH(sonar, sonject_sonar_params)
+FINISH(medium, sonject_medium_params)
+FINISH(seabed, sonject_seabed_params)
+FINISH(injection, sonject_injection_params)
+
+sonject_status finish_transfer(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    const sonject_transfer_params *transfer = structure;
+    struct report report = {{0}, NULL, NULL};
+    const char *key = "";
+    const bool has_parameter = transfer->kind == SONJECT_TRANSFER_DECIBEL ||
+                               transfer->kind == SONJECT_TRANSFER_GAMMA ||
+                               transfer->kind == SONJECT_TRANSFER_SCHLICK;
+    if (has_parameter && !is_given(node, "parameter"))
+        return refuse_key(reader, node, "parameter", "missing; this kind of transfer needs it");
+    if (!has_parameter && is_given(node, "parameter"))
+        return refuse_key(reader, node, "parameter", "this kind of transfer has none; remove it");
+    if (transfer->kind != SONJECT_TRANSFER_DECIBEL && is_given(node, "offset"))
+        return refuse_key(reader, node, "offset", "only the decibel kind has one; remove it");
+    if (check_transfer(transfer, &report, &key) != SONJECT_OK)
+        return place_check(reader, node, key, &report);
+    return SONJECT_OK;
+}
+
+sonject_status finish_response(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    sonject_sonar_params *sonar = structure;
+    (void)reader;
+    (void)node;
+    sonar->response_window = SONJECT_WINDOW_TAYLOR;
+    return SONJECT_OK;
+}
+
+sonject_status finish_position(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    sonject_object_params *object = structure;
+    const int metres = is_given(node, "along_track") + is_given(node, "slant_range");
+    const int pixels = is_given(node, "row") + is_given(node, "column");
+    if (metres + pixels != 2 || metres == 1)
+        return refuse_value(reader, node,
+                            "needs along_track and slant_range, or row and column; give one pair");
+    object->position_kind = metres ? SONJECT_POSITION_METRES : SONJECT_POSITION_PIXELS;
+    return SONJECT_OK;
+}
+
+static sonject_status check_size_keys(struct reader *reader, const struct tree_node *node,
+                                      uint32_t shape)
+{
+    static const struct {
+        const char *key;
+        bool is_needed[4]; /* by shape */
+    } sizes[] = {
+        {"length",
+         {[SONJECT_SHAPE_PLANE] = true,
+          [SONJECT_SHAPE_CYLINDER] = true,
+          [SONJECT_SHAPE_CAPSULE] = true}},
+        {"width", {[SONJECT_SHAPE_PLANE] = true}},
+        {"diameter",
+         {[SONJECT_SHAPE_SPHERE] = true,
+          [SONJECT_SHAPE_CYLINDER] = true,
+          [SONJECT_SHAPE_CAPSULE] = true}},
+    };
+    for (int i = 0; i < 3; i++) {
+        const bool is_needed = sizes[i].is_needed[shape];
+        if (is_needed && !is_given(node, sizes[i].key))
+            return refuse_key(reader, node, sizes[i].key, "missing; a %s needs it",
+                              shape_name(shape));
+        if (!is_needed && is_given(node, sizes[i].key))
+            return refuse_key(reader, node, sizes[i].key, "a %s has none; remove it",
+                              shape_name(shape));
+    }
+    return SONJECT_OK;
+}
+
+sonject_status finish_object(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    const sonject_object_params *object = structure;
+    struct report report = {{0}, NULL, NULL};
+    const char *key = "";
+    const sonject_status status = check_size_keys(reader, node, object->shape);
+    if (status != SONJECT_OK)
+        return status;
+    if (check_object(object, &report, &key) != SONJECT_OK)
+        return place_check(reader, node, key, &report);
+    return SONJECT_OK;
+}

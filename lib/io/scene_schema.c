@@ -1,0 +1,263 @@
+/* The tables. A line: key, meaning, what it is, where it goes. */
+#include "io/scene_schema.h"
+
+#define COUNT(fields) (sizeof(fields) / sizeof(fields)[0])
+
+#define SIDE_MAX  (UINT64_C(1) << 20)
+#define INDEX_MAX (UINT64_C(1) << 40)
+
+#define QUANTITY(structure, member, kind_of_quantity)                                              \
+    .kind = FIELD_QUANTITY, .quantity = kind_of_quantity, .offset = offsetof(structure, member)
+#define COUNT32(structure, member, limit)                                                          \
+    .kind = FIELD_COUNT32, .offset = offsetof(structure, member), .maximum = limit
+#define COUNT64(structure, member, limit)                                                          \
+    .kind = FIELD_COUNT64, .offset = offsetof(structure, member), .maximum = limit
+#define WORD(structure, member)  .kind = FIELD_WORD, .offset = offsetof(structure, member), .words
+#define LABEL(structure, member) .kind = FIELD_LABEL, .offset = offsetof(structure, member)
+
+/* A section that fills a structure of its own, and one that fills its parent's. */
+#define PART(structure, member, table)                                                             \
+    .kind = FIELD_SECTION, .offset = offsetof(structure, member), .section = &(table)
+#define SAME(table) .kind = FIELD_SECTION, .offset = 0, .section = &(table)
+
+#define REQUIRED .is_required = true
+
+static const struct field uniform_fields[] = {
+    {"rows", "track positions", COUNT32(struct scene, uniform_rows, SIDE_MAX), REQUIRED},
+    {"columns", "range cells", COUNT32(struct scene, uniform_columns, SIDE_MAX), REQUIRED},
+};
+static const struct section uniform_section = {uniform_fields, COUNT(uniform_fields),
+                                               finish_uniform};
+
+#define STRUCTURE sonject_synthetic_params
+static const struct field synthetic_fields[] = {
+    {"rows", "track positions", COUNT32(STRUCTURE, rows, SIDE_MAX), REQUIRED},
+    {"columns", "range cells", COUNT32(STRUCTURE, columns, SIDE_MAX), REQUIRED},
+    {"seed", "of the random seabed", COUNT64(STRUCTURE, seed, UINT64_MAX)},
+    {"complex", "complex pixels instead of amplitudes", .kind = FIELD_FLAG32,
+     .offset = offsetof(STRUCTURE, complex_pixels)},
+    {"speckle_shape", "shape of the K distribution, inf for Rayleigh amplitudes",
+     QUANTITY(STRUCTURE, speckle_shape, QUANTITY_NUMBER)},
+    {"texture_length", "correlation length of the speckle's texture",
+     QUANTITY(STRUCTURE, texture_length_m, QUANTITY_LENGTH)},
+    {"ripple_wavelength", "from crest to crest of the sand ripples",
+     QUANTITY(STRUCTURE, ripple_wavelength_m, QUANTITY_LENGTH)},
+    {"ripple_contrast", "of the ripples, 0 (none) to 1",
+     QUANTITY(STRUCTURE, ripple_contrast, QUANTITY_NUMBER)},
+    {"ripple_heading", "direction across the crests, from along-track towards range",
+     QUANTITY(STRUCTURE, ripple_heading_rad, QUANTITY_ANGLE)},
+    {"patch_contrast", "level step between sediment patches",
+     QUANTITY(STRUCTURE, patch_contrast_db, QUANTITY_DECIBEL)},
+    {"patch_length", "typical size of a sediment patch",
+     QUANTITY(STRUCTURE, patch_length_m, QUANTITY_LENGTH)},
+    {"mean_amplitude", "rms amplitude of the darker sediment",
+     QUANTITY(STRUCTURE, mean_amplitude, QUANTITY_NUMBER)},
+};
+static const struct section synthetic_section = {synthetic_fields, COUNT(synthetic_fields),
+                                                 finish_synthetic};
+#undef STRUCTURE
+
+#define STRUCTURE sonject_geometry_params
+static const struct field geometry_fields[] = {
+    {"row_spacing", "distance between track positions",
+     QUANTITY(STRUCTURE, row_spacing_m, QUANTITY_LENGTH), REQUIRED},
+    {"column_spacing", "distance between range cells, in slant range",
+     QUANTITY(STRUCTURE, column_spacing_m, QUANTITY_LENGTH), REQUIRED},
+    {"first_slant_range", "slant range of column 0 of the whole swath",
+     QUANTITY(STRUCTURE, first_slant_range_m, QUANTITY_LENGTH), REQUIRED},
+    {"first_along_track", "track position of row 0",
+     QUANTITY(STRUCTURE, first_along_track_m, QUANTITY_LENGTH)},
+    {"side", "of the track that the image shows",
+     WORD(STRUCTURE,
+          side) = {[SONJECT_SIDE_PORT] = "port", [SONJECT_SIDE_STARBOARD] = "starboard"}},
+};
+static const struct section geometry_section = {geometry_fields, COUNT(geometry_fields),
+                                                finish_geometry};
+#undef STRUCTURE
+
+#define STRUCTURE sonject_transfer_params
+static const struct field transfer_fields[] = {
+    {"kind", "how stored numbers came from amplitudes",
+     WORD(STRUCTURE, kind) = {[SONJECT_TRANSFER_AMPLITUDE] = "amplitude",
+                              [SONJECT_TRANSFER_INTENSITY] = "intensity",
+                              [SONJECT_TRANSFER_DECIBEL] = "decibel",
+                              [SONJECT_TRANSFER_GAMMA] = "gamma",
+                              [SONJECT_TRANSFER_SCHLICK] = "schlick"},
+     REQUIRED},
+    {"parameter", "dB per stored unit (decibel), exponent (gamma) or b (schlick)",
+     QUANTITY(STRUCTURE, parameter, QUANTITY_NUMBER)},
+    {"offset", "level of a stored 0 (decibel)", QUANTITY(STRUCTURE, offset, QUANTITY_DECIBEL)},
+};
+static const struct section transfer_section = {transfer_fields, COUNT(transfer_fields),
+                                                finish_transfer};
+#undef STRUCTURE
+
+#define STRUCTURE struct scene
+static const struct field input_fields[] = {
+    {"path", "image file", .kind = FIELD_PATH, .offset = offsetof(STRUCTURE, input_path)},
+    {"complex", "the file's two channels are real and imaginary part", .kind = FIELD_BOOL,
+     .offset = offsetof(STRUCTURE, input_is_complex)},
+    {"uniform", "a swath of unit reflectivity", SAME(uniform_section)},
+    {"synthetic", "a swath that sonject makes", PART(STRUCTURE, synthetic, synthetic_section)},
+    {"geometry", "where the pixels lie: row_spacing, column_spacing and first_slant_range",
+     PART(STRUCTURE, geometry, geometry_section), REQUIRED},
+    {"transfer", "what the file's numbers mean", PART(STRUCTURE, transfer, transfer_section)},
+};
+static const struct section input_section = {input_fields, COUNT(input_fields), finish_input};
+#undef STRUCTURE
+
+#define STRUCTURE sonject_patch_params
+static const struct field patch_fields[] = {
+    {"row", "first row of the swath", COUNT64(STRUCTURE, first_row, INDEX_MAX)},
+    {"column", "first column of the swath", COUNT64(STRUCTURE, first_column, INDEX_MAX)},
+    {"rows", "track positions", COUNT64(STRUCTURE, rows, INDEX_MAX), REQUIRED},
+    {"columns", "range cells", COUNT64(STRUCTURE, columns, INDEX_MAX), REQUIRED},
+};
+static const struct section patch_section = {patch_fields, COUNT(patch_fields), finish_patch};
+#undef STRUCTURE
+
+#define STRUCTURE sonject_sonar_params
+static const struct field taylor_fields[] = {
+    {"sidelobes", "depth of the side lobes",
+     QUANTITY(STRUCTURE, taylor_sidelobe_db, QUANTITY_DECIBEL), REQUIRED},
+    {"terms", "side lobes of equal height", COUNT32(STRUCTURE, taylor_terms, UINT32_MAX), REQUIRED},
+};
+static const struct section taylor_section = {taylor_fields, COUNT(taylor_fields), NULL};
+
+static const struct field response_fields[] = {
+    {"taylor", "sidelobes and terms of a Taylor window", SAME(taylor_section), REQUIRED},
+};
+static const struct section response_section = {response_fields, COUNT(response_fields),
+                                                finish_response};
+
+static const struct field sonar_fields[] = {
+    {"frequency", "centre frequency", QUANTITY(STRUCTURE, centre_frequency_hz, QUANTITY_FREQUENCY),
+     REQUIRED},
+    {"bandwidth", "sets the range resolution, c / (2 bandwidth)",
+     QUANTITY(STRUCTURE, bandwidth_hz, QUANTITY_FREQUENCY), REQUIRED},
+    {"altitude", "height of the track over the mean seabed",
+     QUANTITY(STRUCTURE, altitude_m, QUANTITY_LENGTH), REQUIRED},
+    {"resolution", "along-track; by default the row spacing",
+     QUANTITY(STRUCTURE, along_track_resolution_m, QUANTITY_LENGTH)},
+    {"transducer", "side of the source, 0 for a point",
+     QUANTITY(STRUCTURE, transducer_side_m, QUANTITY_LENGTH)},
+    {"response", "aspect weighting: rectangular, hamming or {taylor: {sidelobes: , terms: }}",
+     WORD(STRUCTURE, response_window) =
+         {[SONJECT_WINDOW_RECTANGULAR] = "rectangular", [SONJECT_WINDOW_HAMMING] = "hamming"},
+     .section = &response_section},
+};
+static const struct section sonar_section = {sonar_fields, COUNT(sonar_fields), finish_sonar};
+#undef STRUCTURE
+
+#define STRUCTURE sonject_medium_params
+static const struct field medium_fields[] = {
+    {"sound_speed", "of the water", QUANTITY(STRUCTURE, sound_speed_mps, QUANTITY_SPEED)},
+    {"reference_sound_speed", "that the image processor assumed; by default the true one",
+     QUANTITY(STRUCTURE, reference_sound_speed_mps, QUANTITY_SPEED)},
+};
+static const struct section medium_section = {medium_fields, COUNT(medium_fields), finish_medium};
+#undef STRUCTURE
+
+#define STRUCTURE sonject_seabed_params
+static const struct field seabed_fields[] = {
+    {"lambert", "backscatter mu at normal incidence, -27 dB on Mackenzie's seabed",
+     QUANTITY(STRUCTURE, lambert, QUANTITY_LEVEL)},
+    {"map", "reflectivity that resynthesise takes from the image",
+     WORD(STRUCTURE, map) = {[SONJECT_MAP_INTENSITY] = "intensity",
+                             [SONJECT_MAP_DESPECKLED] = "despeckled",
+                             [SONJECT_MAP_COHERENT] = "coherent"}},
+    {"level_radius", "of the local mean that lambert stands for",
+     QUANTITY(STRUCTURE, level_radius_m, QUANTITY_LENGTH)},
+    {"despeckle_radius", "of the despeckled map's local mean",
+     QUANTITY(STRUCTURE, despeckle_radius_m, QUANTITY_LENGTH)},
+};
+static const struct section seabed_section = {seabed_fields, COUNT(seabed_fields), finish_seabed};
+#undef STRUCTURE
+
+#define STRUCTURE sonject_injection_params
+static const struct field injection_fields[] = {
+    {"mode", "keep the measured pixels around the target, or trace the patch anew",
+     WORD(STRUCTURE, mode) =
+         {[SONJECT_MODE_COMPOSITE] = "composite", [SONJECT_MODE_RESYNTHESISE] = "resynthesise"}},
+    {"columns", "that an echo of several interactions goes to",
+     WORD(
+         STRUCTURE,
+         column_rule) = {[SONJECT_COLUMNS_FOCUSED] = "focused", [SONJECT_COLUMNS_PAPER] = "paper"}},
+    {"noise_floor", "noise over the mean seabed, or estimate", .kind = FIELD_SPECIAL,
+     .read = read_noise_floor, .unit = "dB, or estimate"},
+    {"influence", "change over the seabed from which a pixel is the target's",
+     QUANTITY(STRUCTURE, influence_db, QUANTITY_DECIBEL)},
+    {"rays", "factor on the number of rays", QUANTITY(STRUCTURE, ray_scale, QUANTITY_NUMBER)},
+    {"seed", "of all random numbers of the injection", COUNT64(STRUCTURE, seed, UINT64_MAX)},
+};
+static const struct section injection_section = {injection_fields, COUNT(injection_fields),
+                                                 finish_injection};
+#undef STRUCTURE
+
+#define STRUCTURE sonject_material_params
+static const struct field material_fields[] = {
+    {"reflection", "amplitude of the mirror-like part, -1 to 1",
+     QUANTITY(STRUCTURE, reflection, QUANTITY_NUMBER)},
+    {"roughness", "rms height", QUANTITY(STRUCTURE, roughness_m, QUANTITY_LENGTH)},
+    {"lambert", "coefficient mu of the rough part", QUANTITY(STRUCTURE, lambert, QUANTITY_LEVEL)},
+};
+static const struct section material_section = {material_fields, COUNT(material_fields), NULL};
+#undef STRUCTURE
+
+#define STRUCTURE sonject_object_params
+static const struct field position_fields[] = {
+    {"along_track", "track position", QUANTITY(STRUCTURE, position_along, QUANTITY_LENGTH)},
+    {"slant_range", "as the image shows it", QUANTITY(STRUCTURE, position_range, QUANTITY_LENGTH)},
+    {"row", "of the swath, may be a fraction",
+     QUANTITY(STRUCTURE, position_along, QUANTITY_NUMBER)},
+    {"column", "of the swath, may be a fraction",
+     QUANTITY(STRUCTURE, position_range, QUANTITY_NUMBER)},
+};
+static const struct section position_section = {position_fields, COUNT(position_fields),
+                                                finish_position};
+
+static const struct field object_fields[] = {
+    {"name", "of this object", LABEL(STRUCTURE, name)},
+    {"class", "label for training; by default the shape", LABEL(STRUCTURE, class_name)},
+    {"shape", "of the object",
+     WORD(STRUCTURE, shape) = {[SONJECT_SHAPE_PLANE] = "plane",
+                               [SONJECT_SHAPE_SPHERE] = "sphere",
+                               [SONJECT_SHAPE_CYLINDER] = "cylinder",
+                               [SONJECT_SHAPE_CAPSULE] = "capsule"},
+     REQUIRED},
+    {"length", "overall, of plane, cylinder and capsule",
+     QUANTITY(STRUCTURE, length_m, QUANTITY_LENGTH)},
+    {"width", "of a plane", QUANTITY(STRUCTURE, width_m, QUANTITY_LENGTH)},
+    {"diameter", "of sphere, cylinder and capsule",
+     QUANTITY(STRUCTURE, diameter_m, QUANTITY_LENGTH)},
+    {"position",
+     "ground point under the centre: centre, {along_track: , slant_range: } or {row: , column: }",
+     WORD(STRUCTURE, position_kind) = {[SONJECT_POSITION_PATCH_CENTRE] = "centre"},
+     .section = &position_section},
+    {"heading", "from along-track towards range", QUANTITY(STRUCTURE, heading_rad, QUANTITY_ANGLE)},
+    {"pitch", "raises the nose", QUANTITY(STRUCTURE, pitch_rad, QUANTITY_ANGLE)},
+    {"roll", "about the nose direction", QUANTITY(STRUCTURE, roll_rad, QUANTITY_ANGLE)},
+    {"burial", "depth of the lowest point below the seabed",
+     QUANTITY(STRUCTURE, burial_m, QUANTITY_LENGTH)},
+    {"material", "surface of the object", PART(STRUCTURE, material, material_section)},
+};
+const struct section object_section = {object_fields, COUNT(object_fields), finish_object};
+#undef STRUCTURE
+
+#define STRUCTURE struct scene
+static const struct field scene_fields[] = {
+    {"sonject", "version of the format, 1", .kind = FIELD_SPECIAL, .read = read_version, REQUIRED},
+    {"input", "where the image comes from: path, uniform or synthetic, and geometry",
+     SAME(input_section), REQUIRED},
+    {"patch", "part of the swath that is worked on; by default all of it",
+     PART(STRUCTURE, patch, patch_section)},
+    {"sonar", "the sonar: frequency, bandwidth and altitude", PART(STRUCTURE, sonar, sonar_section),
+     REQUIRED},
+    {"medium", "the water", PART(STRUCTURE, medium, medium_section)},
+    {"seabed", "the seabed", PART(STRUCTURE, seabed, seabed_section)},
+    {"injection", "how targets are put into the image",
+     PART(STRUCTURE, injection, injection_section)},
+    {"objects", "list of the targets", .kind = FIELD_SPECIAL, .read = read_objects,
+     .section = &object_section},
+};
+const struct section scene_section = {scene_fields, COUNT(scene_fields), finish_scene};

@@ -1,0 +1,116 @@
+/* The keys of scene files: one table a section, which the reader walks. Adding a key is adding a
+ * line to a table. */
+#ifndef SONJECT_IO_SCENE_SCHEMA_H
+#define SONJECT_IO_SCENE_SCHEMA_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/units.h"
+#include "io/yaml_tree.h"
+#include "scene/scene.h"
+
+#define FIELD_WORDS_MAX 6
+
+enum field_kind {
+    FIELD_QUANTITY, /* double */
+    FIELD_COUNT32,  /* uint32_t */
+    FIELD_COUNT64,  /* uint64_t */
+    FIELD_BOOL,     /* bool */
+    FIELD_FLAG32,   /* uint32_t, 0 or 1 */
+    FIELD_WORD,     /* uint32_t, the word's index; or a section, if the field has one */
+    FIELD_LABEL,    /* char[SONJECT_NAME_CAPACITY] */
+    FIELD_PATH,     /* char *, owned by the scene */
+    FIELD_SECTION,  /* a structure; the same one as its parent's where offset is 0 */
+    FIELD_SPECIAL   /* read by a function of its own */
+};
+
+struct reader;
+struct section;
+
+struct field {
+    const char *key;
+    const char *meaning;
+    enum field_kind kind;
+    bool is_required;
+    enum quantity quantity;
+    size_t offset;                      /* of the destination in the section's structure */
+    uint64_t maximum;                   /* of a count */
+    const char *words[FIELD_WORDS_MAX]; /* ended by NULL, in the order of the enumeration */
+    const struct section *section;
+    const char *unit; /* as told to users, where kind and quantity do not say it */
+    sonject_status (*read)(struct reader *reader, const struct tree_node *node, void *structure);
+};
+
+struct section {
+    const struct field *fields;
+    size_t count;
+    /* Called when all keys are read, for what they must be to each other; NULL: nothing. */
+    sonject_status (*check)(struct reader *reader, const struct tree_node *node, void *structure);
+};
+
+struct reader {
+    struct report *report;
+    const struct tree *tree;
+    struct scene *scene;
+    struct key_path path; /* of the section or key that is read */
+};
+
+/* The whole file; its structure is struct scene. */
+extern const struct section scene_section;
+
+/* Reads a section's keys into structure. node: a TREE_SECTION. Errors: INPUT, MEMORY. */
+sonject_status read_section(struct reader *reader, const struct section *section,
+                            const struct tree_node *node, void *structure);
+
+/* Reads a text as a quantity. */
+sonject_status read_quantity(struct reader *reader, const struct tree_node *node,
+                             enum quantity quantity, double *value);
+
+/* The message about the value at the reader's path. Returns INPUT. */
+sonject_status refuse_value(const struct reader *reader, const struct tree_node *node,
+                            const char *format, ...) REPORT_FORMAT(3);
+
+/* The same about a key of the section node at the reader's path, "material.lambert" for instance:
+ * the message points at the key, or at the section where that is not there. */
+sonject_status refuse_key(struct reader *reader, const struct tree_node *node, const char *key,
+                          const char *format, ...) REPORT_FORMAT(4);
+
+/* Gives a failure of one of the check_ functions its place: key and message as that gave them. */
+sonject_status place_check(struct reader *reader, const struct tree_node *node, const char *key,
+                           const struct report *check);
+
+/* The word of the list nearest to a mistyped one; NULL if none is near. */
+const char *nearest_word(const char *typed, const char *const *words, size_t count);
+
+/* The special readers and the checks, in scene_relations.c. */
+sonject_status read_version(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status read_noise_floor(struct reader *reader, const struct tree_node *node,
+                                void *structure);
+sonject_status read_objects(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status finish_scene(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status finish_input(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status finish_uniform(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status finish_synthetic(struct reader *reader, const struct tree_node *node,
+                                void *structure);
+sonject_status finish_geometry(struct reader *reader, const struct tree_node *node,
+                               void *structure);
+sonject_status finish_transfer(struct reader *reader, const struct tree_node *node,
+                               void *structure);
+sonject_status finish_patch(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status finish_sonar(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status finish_response(struct reader *reader, const struct tree_node *node,
+                               void *structure);
+sonject_status finish_medium(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status finish_seabed(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status finish_injection(struct reader *reader, const struct tree_node *node,
+                                void *structure);
+sonject_status finish_position(struct reader *reader, const struct tree_node *node,
+                               void *structure);
+sonject_status finish_object(struct reader *reader, const struct tree_node *node, void *structure);
+
+/* The objects' table, for read_objects. */
+extern const struct section object_section;
+
+#endif

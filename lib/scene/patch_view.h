@@ -1,0 +1,46 @@
+/* A patch as the tracer sees it: where its pixels lie, with the imaged side to port. */
+#ifndef SONJECT_SCENE_PATCH_VIEW_H
+#define SONJECT_SCENE_PATCH_VIEW_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "scene/scene.h"
+
+/* Starboard images are mirrored: x runs against the image's along-track axis and row n of the
+ * view is row rows - 1 - n of the image, so that +y is to port of +x as in a right-handed frame. */
+struct patch_view {
+    size_t rows, columns;
+    double row_spacing_m, column_spacing_m;
+    double first_x_m;     /* of row 0 of the view */
+    double first_range_m; /* apparent slant range of column 0 */
+    double range_ratio;   /* apparent over true range: reference over true sound speed */
+    double altitude_m;
+    double wavelength_m;
+    bool is_mirrored;
+};
+
+/* The scene's geometry shifted to the region that starts at first_row, first_column of the swath.
+ * Errors: INPUT (patch not beyond the altitude, no pixels). */
+sonject_status patch_view_init(struct patch_view *view, struct report *report,
+                               const struct scene *scene, double first_row, double first_column,
+                               size_t rows, size_t columns);
+
+/* Along-track position (in the view's x) of a row, which may be fractional. */
+double view_x_of_row(const struct patch_view *view, double row);
+
+double view_row_of_x(const struct patch_view *view, double x_m);
+double view_apparent_range(const struct patch_view *view, double column);
+double view_column_of_range(const struct patch_view *view, double apparent_range_m);
+
+/* Horizontal range of the seabed point seen at an apparent slant range; 0 above the altitude. */
+double view_ground_range(const struct patch_view *view, double apparent_range_m);
+
+/* Sine of the grazing angle of the seabed at an apparent slant range. */
+double view_grazing_sine(const struct patch_view *view, double apparent_range_m);
+
+/* (apparent / true range)^4: what the target-strength normalisation by apparent range does to
+ * energies when the processor's sound speed is off. */
+double view_energy_scale(const struct patch_view *view);
+
+#endif

@@ -1,0 +1,133 @@
+#include "scene/placement.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PI 3.14159265358979323846
+
+/* Heading turns +x towards +y, pitch raises the nose, roll turns about it. In a mirrored view the
+ * image's along-track axis is -x, so heading and roll change sense. */
+static void turn_axes(double axes[3][3], const sonject_object_params *object, bool is_mirrored)
+{
+    const double heading = is_mirrored ? PI - object->heading_rad : object->heading_rad;
+    const double roll = is_mirrored ? -object->roll_rad : object->roll_rad;
+    const double cp = cos(object->pitch_rad);
+    const double sp = sin(object->pitch_rad);
+    const double nose[3] = {cos(heading) * cp, sin(heading) * cp, sp};
+    const double side[3] = {-sin(heading), cos(heading), 0.0};
+    const double up[3] = {-cos(heading) * sp, -sin(heading) * sp, cp};
+    for (int i = 0; i < 3; i++) {
+        axes[0][i] = nose[i];
+        axes[1][i] = side[i] * cos(roll) + up[i] * sin(roll);
+        axes[2][i] = up[i] * cos(roll) - side[i] * sin(roll);
+    }
+}
+
+static void take_size(struct placement *placement, const sonject_object_params *object)
+{
+    placement->radius_m = 0.5 * object->diameter_m;
+    placement->half_length_m = 0.5 * object->length_m;
+    placement->half_width_m = 0.0;
+    switch (object->shape) {
+    case SONJECT_SHAPE_PLANE:
+        placement->radius_m = 0.0;
+        placement->half_width_m = 0.5 * object->width_m;
+        placement->bounding_radius_m = hypot(placement->half_length_m, placement->half_width_m);
+        break;
+    case SONJECT_SHAPE_SPHERE:
+        placement->half_length_m = 0.0;
+        placement->bounding_radius_m = placement->radius_m;
+        break;
+    case SONJECT_SHAPE_CYLINDER:
+        placement->bounding_radius_m = hypot(placement->half_length_m, placement->radius_m);
+        break;
+    default:
+        placement->bounding_radius_m = placement->half_length_m;
+        placement->half_length_m -= placement->radius_m;
+        break;
+    }
+    placement->bounding_radius_m *= 1.0 + 1e-6; /* rounding to single precision must not cut */
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+double placement_half_extent(const struct placement *placement, uint32_t shape,
+                             const double direction[3])
+{
+    const double nose = fabs(dot(placement->axes[0], direction));
+    const double across = sqrt(fmax(0.0, 1.0 - nose * nose));
+    switch (shape) {
+    case SONJECT_SHAPE_PLANE:
+        return nose * placement->half_length_m +
+               fabs(dot(placement->axes[1], direction)) * placement->half_width_m;
+    case SONJECT_SHAPE_CYLINDER:
+        return nose * placement->half_length_m + across * placement->radius_m;
+    default:
+        return nose * placement->half_length_m + placement->radius_m;
+    }
+}
+
+double placement_range(const struct placement *placement, const struct patch_view *view)
+{
+    return hypot(placement->centre[1], view->altitude_m - placement->centre[2]);
+}
+
+/* Row and column of the view under the object's centre. */
+static void find_pixel(const struct patch_view *view, double first_row, double first_column,
+                       const sonject_object_params *object, double *row, double *column)
+{
+    *row = 0.5 * (double)(view->rows - 1);
+    *column = 0.5 * (double)(view->columns - 1);
+    if (object->position_kind == SONJECT_POSITION_METRES) {
+        const double x = view->is_mirrored ? -object->position_along : object->position_along;
+        *row = view_row_of_x(view, x);
+        *column = view_column_of_range(view, object->position_range);
+    } else if (object->position_kind == SONJECT_POSITION_PIXELS) {
+        const double image_row = object->position_along - first_row;
+        *row = view->is_mirrored ? (double)(view->rows - 1) - image_row : image_row;
+        *column = object->position_range - first_column;
+    }
+}
+
+sonject_status placement_init(struct placement *placement, struct report *report,
+                              const struct patch_view *view, double first_row, double first_column,
+                              const sonject_object_params *object)
+{
+    memset(placement, 0, sizeof *placement);
+    double row, column;
+    find_pixel(view, first_row, first_column, object, &row, &column);
+    if (!(row >= -0.5 && row < (double)view->rows - 0.5 && column >= -0.5 &&
+          column < (double)view->columns - 0.5))
+        return report_failure(
+            report, SONJECT_ERROR_INPUT,
+            "object '%s' lies outside the patch: its centre is %.1f m along-track "
+            "and at %.1f m slant range; move it or the patch",
+            object->name, view_x_of_row(view, row) * (view->is_mirrored ? -1 : 1),
+            view_apparent_range(view, column));
+    take_size(placement, object);
+    turn_axes(placement->axes, object, view->is_mirrored);
+    static const double upward[3] = {0.0, 0.0, 1.0};
+    static const double along[3] = {1.0, 0.0, 0.0};
+    static const double outward[3] = {0.0, 1.0, 0.0};
+    const double half_height = placement_half_extent(placement, object->shape, upward);
+    placement->centre[0] = view_x_of_row(view, row);
+    placement->centre[1] = view_ground_range(view, view_apparent_range(view, column));
+    placement->centre[2] = half_height - object->burial_m;
+    const double patch_length = (double)view->rows * view->row_spacing_m;
+    const double patch_width = (double)view->columns * view->column_spacing_m;
+    if (2.0 * placement_half_extent(placement, object->shape, along) > patch_length ||
+        2.0 * placement_half_extent(placement, object->shape, outward) > patch_width)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "object '%s' is larger than the patch of %.2f m x %.2f m: use a "
+                              "larger patch",
+                              object->name, patch_length, patch_width);
+    if (placement->centre[2] + half_height >= view->altitude_m ||
+        placement_range(placement, view) <= 2.0 * placement->bounding_radius_m)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "object '%s' reaches up to the sonar: lower it or raise the altitude",
+                              object->name);
+    return SONJECT_OK;
+}

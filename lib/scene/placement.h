@@ -1,0 +1,30 @@
+/* Objects placed on the seabed under a patch: centre, axes and extents. */
+#ifndef SONJECT_SCENE_PLACEMENT_H
+#define SONJECT_SCENE_PLACEMENT_H
+
+#include "scene/patch_view.h"
+#include "scene/scene.h"
+
+struct placement {
+    double centre[3];     /* m: x of the view, horizontal range from the track, height */
+    double axes[3][3];    /* rows: nose, own y, own z, in view coordinates */
+    double half_length_m; /* straight part for a capsule */
+    double half_width_m;
+    double radius_m;
+    double bounding_radius_m;
+};
+
+/* Errors: INPUT (centre outside the patch, larger than the patch). first_row, first_column: of the
+ * patch in the swath, for positions in swath pixels. */
+sonject_status placement_init(struct placement *placement, struct report *report,
+                              const struct patch_view *view, double first_row, double first_column,
+                              const sonject_object_params *object);
+
+/* Half of the object's size along a unit direction of the view. */
+double placement_half_extent(const struct placement *placement, uint32_t shape,
+                             const double direction[3]);
+
+/* Slant range (true, m) from the track abreast of the centre to the centre. */
+double placement_range(const struct placement *placement, const struct patch_view *view);
+
+#endif

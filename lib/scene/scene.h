@@ -1,0 +1,70 @@
+/* A scene as the library keeps it: the public parameter structures themselves, each complete (no
+ * zero sizes, no defaults left open). Pure data. */
+#ifndef SONJECT_SCENE_SCENE_H
+#define SONJECT_SCENE_SCENE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <sonject/scene.h>
+
+#include "base/report.h"
+
+#define SCENE_OBJECTS_MAX 250 /* ids must fit the 8-bit label image */
+
+struct scene {
+    sonject_sonar_params sonar;
+    sonject_medium_params medium;
+    sonject_seabed_params seabed;
+    sonject_geometry_params geometry;
+    sonject_transfer_params transfer;
+    sonject_injection_params injection;
+    sonject_patch_params patch;
+    sonject_input_kind input_kind;
+    char *input_path;      /* owned; NULL unless input_kind is SONJECT_INPUT_FILE */
+    bool input_is_complex; /* two channels of the file are real and imaginary part */
+    uint32_t uniform_rows, uniform_columns;
+    sonject_synthetic_params synthetic;
+    sonject_object_params *objects; /* owned */
+    uint32_t object_count;
+};
+
+/* All defaults; geometry.first_slant_range_m has none and is NaN, which check_geometry refuses. */
+void scene_init(struct scene *scene);
+
+/* Frees what the scene owns and makes it empty again. */
+void scene_clear(struct scene *scene);
+
+/* Appends a copy. Errors: INPUT (too many), MEMORY. */
+sonject_status scene_append_object(struct scene *scene, struct report *report,
+                                   const sonject_object_params *object);
+
+/* Checks of one structure each, ranges and relations as the public headers state them. The message
+ * starts with the name of the value as the scene file writes it ("bandwidth must be ..."); key, if
+ * not NULL, gets that name (static storage), so that a reader can point at the line. Errors: INPUT.
+ */
+sonject_status check_sonar(const sonject_sonar_params *sonar, struct report *report,
+                           const char **key);
+sonject_status check_medium(const sonject_medium_params *medium, struct report *report,
+                            const char **key);
+sonject_status check_seabed(const sonject_seabed_params *seabed, struct report *report,
+                            const char **key);
+sonject_status check_geometry(const sonject_geometry_params *geometry, struct report *report,
+                              const char **key);
+sonject_status check_transfer(const sonject_transfer_params *transfer, struct report *report,
+                              const char **key);
+sonject_status check_injection(const sonject_injection_params *injection, struct report *report,
+                               const char **key);
+sonject_status check_patch(const sonject_patch_params *patch, struct report *report,
+                           const char **key);
+sonject_status check_uniform(uint32_t rows, uint32_t columns, struct report *report,
+                             const char **key);
+sonject_status check_synthetic(const sonject_synthetic_params *synthetic, struct report *report,
+                               const char **key);
+sonject_status check_object(const sonject_object_params *object, struct report *report,
+                            const char **key);
+
+/* The name of a shape as scene files write it; NULL for an unknown one. */
+const char *shape_name(uint32_t shape);
+
+#endif

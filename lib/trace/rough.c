@@ -1,0 +1,296 @@
+#include "trace/rough.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "cl/launch.h"
+#include "cl/program.h"
+
+#define PI           3.14159265358979323846
+#define RAYS_PER_BIN 2 /* at the far edge, where elevation covers most range */
+#define RAYS_MAX     67108864.0
+#define TALLY_BYTES  ((size_t)64 << 20)
+
+static double apparent_range_of_bin(const struct rough_trace *trace, const struct tracer *tracer,
+                                    double bin)
+{
+    return view_apparent_range(&tracer->view, bin / trace->grid.bins_per_pixel);
+}
+
+static double bin_of_apparent_range(const struct rough_trace *trace, const struct tracer *tracer,
+                                    double range)
+{
+    return view_column_of_range(&tracer->view, range) * trace->grid.bins_per_pixel;
+}
+
+/* Depression of the seabed at a true range; straight down within the altitude. */
+static double seabed_depression(const struct tracer *tracer, double range)
+{
+    const double sine = tracer->view.altitude_m / range;
+    return sine < 1.0 ? asin(sine) : 0.5 * PI;
+}
+
+/* Elevation of the highest object over the central direction. */
+static double highest_elevation(const struct tracer *tracer, double central_depression,
+                                double lowest)
+{
+    double highest = lowest;
+    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
+        const struct placement *placement = &tracer->placements[i];
+        const double depression =
+            atan2(tracer->view.altitude_m - placement->centre[2], placement->centre[1]);
+        const double across[3] = {0.0, sin(depression), cos(depression)};
+        const double extent =
+            placement_half_extent(placement, tracer->scene->objects[i].shape, across);
+        const double range = placement_range(placement, &tracer->view);
+        const double top = central_depression - depression + asin(fmin(1.0, 1.05 * extent / range));
+        highest = fmax(highest, top);
+    }
+    return highest;
+}
+
+/* Elevations from the seabed at the first bin up to the last bin's or the highest object's. */
+static sonject_status lay_fan(struct rough_trace *trace, struct tracer *tracer,
+                              double central_depression)
+{
+    const double ratio = tracer->view.range_ratio;
+    const double near = apparent_range_of_bin(trace, tracer, trace->grid.bins.first - 0.5) / ratio;
+    const double far = apparent_range_of_bin(
+                           trace, tracer, trace->grid.bins.first + trace->grid.bins.count - 0.5) /
+                       ratio;
+    const double far_depression = seabed_depression(tracer, far);
+    const double lowest = central_depression - seabed_depression(tracer, near);
+    const double highest =
+        highest_elevation(tracer, central_depression, central_depression - far_depression);
+    const double bin = tracer->view.column_spacing_m / trace->grid.bins_per_pixel / ratio;
+    const double step_for_seabed = tan(far_depression) * bin / far;
+    const double step_for_objects = bin / far;
+    const double step = fmin(step_for_seabed, step_for_objects) /
+                        (RAYS_PER_BIN * tracer->scene->injection.ray_scale);
+    const double rays = ceil((highest - lowest) / step);
+    if (!(rays < RAYS_MAX))
+        return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                              "the patch needs %.3g rays a ping: use a smaller patch or fewer rays",
+                              rays);
+    trace->fan.rays = (uint32_t)rays;
+    trace->fan.first_elevation = (float)lowest;
+    trace->fan.elevation_step = (float)((highest - lowest) / rays);
+    return SONJECT_OK;
+}
+
+/* Bins where an object's echoes and shadow can lie: from its nearest point to where the ray over
+ * its top meets the seabed. */
+static struct span tile_bins(const struct rough_trace *trace, const struct tracer *tracer,
+                             uint32_t number)
+{
+    static const double upward[3] = {0.0, 0.0, 1.0};
+    static const double outward[3] = {0.0, 1.0, 0.0};
+    const struct placement *placement = &tracer->placements[number];
+    const uint32_t shape = tracer->scene->objects[number].shape;
+    const double altitude = tracer->view.altitude_m;
+    const double top = placement->centre[2] + placement_half_extent(placement, shape, upward);
+    const double end = placement->centre[1] + placement_half_extent(placement, shape, outward);
+    const double shadow_end = top > 0.0 ? end * altitude / (altitude - top) : end;
+    const double first_range =
+        placement_range(placement, &tracer->view) - placement->bounding_radius_m;
+    const double last_range =
+        fmax(hypot(shadow_end, altitude),
+             placement_range(placement, &tracer->view) + placement->bounding_radius_m);
+    const double slack =
+        0.01 * placement->bounding_radius_m + tracer->scene->sonar.transducer_side_m;
+    const double ratio = tracer->view.range_ratio;
+    const double first =
+        floor(bin_of_apparent_range(trace, tracer, (first_range - slack) * ratio)) - 2.0;
+    const double last =
+        ceil(bin_of_apparent_range(trace, tracer, (last_range + slack) * ratio)) + 2.0;
+    const double limit = trace->grid.bins.first + trace->grid.bins.count;
+    struct span bins;
+    bins.first = (int32_t)fmin(fmax(first, trace->grid.bins.first), limit);
+    bins.count = (int32_t)fmax(0.0, fmin(last + 1.0, limit) - bins.first);
+    return bins;
+}
+
+static struct span tile_strips(const struct rough_trace *trace, const struct tracer *tracer,
+                               uint32_t number)
+{
+    static const double along[3] = {1.0, 0.0, 0.0};
+    const struct placement *placement = &tracer->placements[number];
+    const double extent =
+        placement_half_extent(placement, tracer->scene->objects[number].shape, along) +
+        tracer->scene->sonar.transducer_side_m;
+    const double per_row = trace->grid.strips_per_row;
+    const double limit = trace->grid.strips.first + trace->grid.strips.count;
+    const double first =
+        floor((view_row_of_x(&tracer->view, placement->centre[0] - extent) + 0.5) * per_row) - 1.0;
+    const double last =
+        floor((view_row_of_x(&tracer->view, placement->centre[0] + extent) + 0.5) * per_row) + 1.0;
+    struct span strips;
+    strips.first = (int32_t)fmax(first, trace->grid.strips.first);
+    strips.count = (int32_t)(fmin(last + 1.0, limit) - strips.first);
+    return strips;
+}
+
+static sonject_status lay_tiles(struct rough_trace *trace, struct tracer *tracer,
+                                struct object_record *records)
+{
+    size_t elements = 0;
+    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
+        struct rough_tile *tile = &trace->tiles[i];
+        tile->grid = trace->grid;
+        tile->grid.strips = tile_strips(trace, tracer, i);
+        tile->grid.bins = tile_bins(trace, tracer, i);
+        tile->offset = elements;
+        records[i].tile_offset = (uint32_t)elements;
+        records[i].tile_first_strip = tile->grid.strips.first;
+        records[i].tile_strips = tile->grid.strips.count;
+        records[i].tile_first_bin = tile->grid.bins.first - trace->grid.bins.first;
+        records[i].tile_bins = tile->grid.bins.count;
+        elements += line_grid_cells(&tile->grid) * TILE_PLANES;
+        if (elements > (size_t)1 << 31)
+            return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                                  "objects and shadows cover too many pixels: use a smaller patch");
+    }
+    trace->tile_elements = elements;
+    return SONJECT_OK;
+}
+
+/* Quanta so fine that the weakest seabed still counts in millions, and so coarse that the
+ * brightest surface (mu = 1/pi, or the map's brightest seabed) stays below the limit. */
+static void choose_quanta(struct rough_trace *trace, const struct tracer *tracer, const float *map)
+{
+    double brightest = 1.0;
+    if (map)
+        for (size_t i = 0; i < tracer->view.rows * tracer->view.columns; i++)
+            brightest = fmax(brightest, map[i]);
+    const double wavefront = (double)trace->fan.strip_width * trace->fan.elevation_step * 2.0 *
+                             trace->fan.reference_range;
+    const double most = wavefront * fmax(1.0 / PI, tracer->scene->seabed.lambert * brightest);
+    trace->fan.quanta = power_of_two_below(ldexp(1.0, 44) / most);
+    trace->energy_of_quantum = view_energy_scale(&tracer->view) / trace->fan.quanta;
+}
+
+static sonject_status make_buffers(struct rough_trace *trace, struct tracer *tracer,
+                                   const struct object_record *records, const float *map)
+{
+    struct report *report = tracer->report;
+    struct device *device = tracer->device;
+    const size_t line_bytes = (size_t)trace->grid.bins.count * sizeof(int64_t);
+    trace->tally_capacity = TALLY_BYTES / line_bytes;
+    if (trace->tally_capacity == 0)
+        trace->tally_capacity = 1;
+    if (trace->tally_capacity > (size_t)trace->grid.strips.count)
+        trace->tally_capacity = (size_t)trace->grid.strips.count;
+    sonject_status status =
+        kernel_create(report, device, PROGRAM_TRACE_ROUGH, "trace_rough", &trace->kernel);
+    if (status == SONJECT_OK)
+        status = buffer_create(report, device, tracer->scene->object_count * sizeof *records,
+                               records, &trace->objects);
+    if (status == SONJECT_OK)
+        status = buffer_create(report, device,
+                               map ? tracer->view.rows * tracer->view.columns * sizeof *map : 0,
+                               map, &trace->map);
+    if (status == SONJECT_OK)
+        status = buffer_create(report, device, trace->tally_capacity * line_bytes, NULL,
+                               &trace->tallies);
+    if (status == SONJECT_OK)
+        status = buffer_create(report, device, trace->tile_elements * sizeof(int64_t), NULL,
+                               &trace->tile_buffer);
+    return status;
+}
+
+sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *tracer, const float *map)
+{
+    memset(trace, 0, sizeof *trace);
+    const struct patch_view *view = &tracer->view;
+    line_grid_for_patch(&trace->grid, view, &tracer->response);
+    const double middle = view_apparent_range(view, 0.5 * (double)(view->columns - 1));
+    const double origin[3] = {view_x_of_row(view, 0.5 * (double)(view->rows - 1)),
+                              view_ground_range(view, middle), 0.0};
+    struct object_record *records = allocate_array(tracer->scene->object_count, sizeof *records);
+    if (!records)
+        return report_out_of_memory(tracer->report, "objects");
+    fan_record_init(&trace->fan, tracer, origin, &trace->grid);
+    object_records_init(records, tracer, origin);
+    trace->fan.stream = STREAM_ROUGH_RAYS;
+    trace->fan.seabed_lambert = (float)tracer->scene->seabed.lambert;
+    trace->fan.map_rows = map ? (int32_t)view->rows : 0;
+    trace->fan.map_columns = map ? (int32_t)view->columns : 0;
+    sonject_status status = lay_fan(trace, tracer, atan2(view->altitude_m, origin[1]));
+    if (status == SONJECT_OK)
+        status = lay_tiles(trace, tracer, records);
+    if (status == SONJECT_OK) {
+        choose_quanta(trace, tracer, map);
+        status = make_buffers(trace, tracer, records, map);
+    }
+    free(records);
+    if (status != SONJECT_OK)
+        rough_trace_end(trace);
+    return status;
+}
+
+void rough_trace_end(struct rough_trace *trace)
+{
+    if (trace->kernel)
+        clReleaseKernel(trace->kernel);
+    trace->kernel = NULL;
+    buffer_release(&trace->objects);
+    buffer_release(&trace->map);
+    buffer_release(&trace->tallies);
+    buffer_release(&trace->tile_buffer);
+}
+
+int32_t rough_trace_chunk(const struct rough_trace *trace)
+{
+    return (int32_t)trace->tally_capacity;
+}
+
+static sonject_status read_tallies(struct tracer *tracer, cl_mem buffer, size_t count, double unit,
+                                   float *values)
+{
+    int64_t *tallies = allocate_array(count, sizeof *tallies);
+    if (!tallies)
+        return report_out_of_memory(tracer->report, "tallies");
+    const sonject_status status =
+        buffer_read(tracer->report, tracer->device, buffer, 0, count * sizeof *tallies, tallies);
+    if (status == SONJECT_OK)
+        for (size_t i = 0; i < count; i++)
+            values[i] = (float)((double)tallies[i] * unit);
+    free(tallies);
+    return status;
+}
+
+sonject_status rough_trace_strips(struct rough_trace *trace, struct tracer *tracer,
+                                  struct span strips, float *seabed)
+{
+    const size_t count = (size_t)strips.count * (size_t)trace->grid.bins.count;
+    const cl_mem buffers[] = {trace->objects, trace->map, trace->tallies, trace->tile_buffer};
+    trace->fan.first_strip = strips.first;
+    trace->fan.strips = strips.count;
+    sonject_status status =
+        buffer_clear(tracer->report, tracer->device, trace->tallies, count * sizeof(int64_t));
+    if (status == SONJECT_OK)
+        status = trace_launch(tracer, trace->kernel, &trace->fan, buffers, 4);
+    if (status == SONJECT_OK)
+        status = read_tallies(tracer, trace->tallies, count, trace->energy_of_quantum, seabed);
+    if (status == SONJECT_OK)
+        tracer->counts.pings += (uint64_t)strips.count;
+    return status;
+}
+
+sonject_status rough_trace_tiles(struct rough_trace *trace, struct tracer *tracer, float *tiles)
+{
+    const sonject_status status = read_tallies(tracer, trace->tile_buffer, trace->tile_elements,
+                                               trace->energy_of_quantum, tiles);
+    if (status != SONJECT_OK)
+        return status;
+    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
+        const struct rough_tile *tile = &trace->tiles[i];
+        const size_t plane = line_grid_cells(&tile->grid);
+        float *footprint = tiles + tile->offset + TILE_FOOTPRINT * plane;
+        for (size_t k = 0; k < plane; k++)
+            footprint[k] = (float)(footprint[k] / trace->energy_of_quantum);
+    }
+    return SONJECT_OK;
+}

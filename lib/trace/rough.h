@@ -1,0 +1,42 @@
+/* The incoherent part: expected energies of seabed and rough surfaces, strip by strip. */
+#ifndef SONJECT_TRACE_ROUGH_H
+#define SONJECT_TRACE_ROUGH_H
+
+#include "trace/tracer.h"
+
+struct rough_tile {
+    struct line_grid grid;
+    size_t offset; /* of the tile's first plane in the tiles */
+};
+
+struct rough_trace {
+    struct line_grid grid; /* of the patch with its margins */
+    struct rough_tile tiles[SCENE_OBJECTS_MAX];
+    size_t tile_elements;     /* of all tiles and planes */
+    double energy_of_quantum; /* m^2 */
+    struct fan_record fan;
+    cl_kernel kernel;
+    cl_mem objects, map, tallies, tile_buffer;
+    size_t tally_capacity; /* strips that the tally buffer holds */
+};
+
+/* Prepares a trace. map: rows x columns of the view, reflectivity over mu0 (values >= 0, finite),
+ * or NULL for 1 everywhere. On success the trace is to be given to rough_trace_end, also after
+ * later failures; on failure nothing is held. Errors: INPUT (too many rays), DEVICE, MEMORY. */
+sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *tracer,
+                                 const float *map);
+void rough_trace_end(struct rough_trace *trace);
+
+/* How many strips a call of rough_trace_strips may take. */
+int32_t rough_trace_chunk(const struct rough_trace *trace);
+
+/* Traces strips.count <= chunk strips and writes the energies (m^2) that the seabed would return
+ * without objects, strips.count x bins.count. The objects' tiles add up on the device. */
+sonject_status rough_trace_strips(struct rough_trace *trace, struct tracer *tracer,
+                                  struct span strips, float *seabed);
+
+/* Reads all tiles as energies (planes TILE_ENERGY, TILE_LOST; m^2) and counts (TILE_FOOTPRINT):
+ * tile_elements floats. Plane p of a tile starts at offset + p * line_grid_cells(&tile.grid). */
+sonject_status rough_trace_tiles(struct rough_trace *trace, struct tracer *tracer, float *tiles);
+
+#endif

@@ -1,0 +1,154 @@
+#include "trace/smooth.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "cl/launch.h"
+#include "cl/program.h"
+
+#define STRIP_WAVELENGTHS  0.25  /* widest sub-strip: wider ones alias glints (physics.md 2) */
+#define CELL_WAVELENGTHS   0.125 /* spacing of rays on the wavefront */
+#define BINS_PER_DEVIATION 16.0  /* linear sharing between bins then errs by 5e-4 */
+#define TALLY_BYTES        ((size_t)64 << 20)
+
+static void lay_grid(struct smooth_trace *trace, const struct tracer *tracer, uint32_t number)
+{
+    static const double along[3] = {1.0, 0.0, 0.0};
+    const struct patch_view *view = &tracer->view;
+    const struct placement *placement = &tracer->placements[number];
+    const uint32_t shape = tracer->scene->objects[number].shape;
+    trace->grid.strips_per_row =
+        (uint32_t)ceil(view->row_spacing_m / (STRIP_WAVELENGTHS * view->wavelength_m) - 1e-9);
+    trace->grid.bins_per_pixel = (uint32_t)ceil(
+        BINS_PER_DEVIATION * view->column_spacing_m / tracer->response.range_deviation_m - 1e-9);
+    const double extent = placement_half_extent(placement, shape, along);
+    const double per_row = trace->grid.strips_per_row;
+    trace->grid.strips.first =
+        (int32_t)floor((view_row_of_x(view, placement->centre[0] - extent) + 0.5) * per_row) - 1;
+    trace->grid.strips.count =
+        (int32_t)floor((view_row_of_x(view, placement->centre[0] + extent) + 0.5) * per_row) + 2 -
+        trace->grid.strips.first;
+    const double range = placement_range(placement, view);
+    const double reach = 1.01 * placement->bounding_radius_m;
+    const double per_metre = trace->grid.bins_per_pixel / view->column_spacing_m;
+    const double first = ((range - reach) * view->range_ratio - view->first_range_m) * per_metre;
+    const double last = ((range + reach) * view->range_ratio - view->first_range_m) * per_metre;
+    trace->grid.bins.first = (int32_t)floor(first) - 1;
+    trace->grid.bins.count = (int32_t)ceil(last) + 2 - trace->grid.bins.first;
+}
+
+static void lay_fan(struct smooth_trace *trace, const struct tracer *tracer, uint32_t number)
+{
+    const struct placement *placement = &tracer->placements[number];
+    const double range = trace->fan.reference_range;
+    const double across[3] = {0.0, trace->fan.sine_depression, trace->fan.cosine_depression};
+    const double extent =
+        1.02 * placement_half_extent(placement, tracer->scene->objects[number].shape, across);
+    const double cell =
+        CELL_WAVELENGTHS * tracer->view.wavelength_m / sqrt(tracer->scene->injection.ray_scale);
+    const double edge = asin(fmin(1.0, extent / (range - placement->bounding_radius_m)));
+    const double rays = ceil(2.0 * edge * range / cell) + 1.0;
+    trace->fan.rays = (uint32_t)rays;
+    trace->fan.first_elevation = (float)-edge;
+    trace->fan.elevation_step = (float)(2.0 * edge / rays);
+    trace->fan.strata = (uint32_t)ceil(trace->fan.strip_width / cell - 1e-6);
+    trace->fan.only_object = (int32_t)number;
+    trace->fan.stream = STREAM_SMOOTH_RAYS + number;
+}
+
+static void choose_quanta(struct smooth_trace *trace, const struct tracer *tracer)
+{
+    const double ratio = tracer->view.range_ratio;
+    const double cell = (double)trace->fan.strip_width / trace->fan.strata *
+                        trace->fan.elevation_step * 2.0 * trace->fan.reference_range;
+    const double most = cell * trace->fan.inverse_wavelength;
+    trace->fan.quanta = power_of_two_below(ldexp(1.0, 36) / most);
+    trace->amplitude_of_quantum = ratio * ratio / trace->fan.quanta;
+}
+
+static sonject_status make_buffers(struct smooth_trace *trace, struct tracer *tracer,
+                                   const struct object_record *records)
+{
+    struct report *report = tracer->report;
+    struct device *device = tracer->device;
+    const size_t line_bytes = (size_t)trace->grid.bins.count * 2 * sizeof(int64_t);
+    trace->tally_capacity = TALLY_BYTES / line_bytes;
+    if (trace->tally_capacity == 0)
+        trace->tally_capacity = 1;
+    if (trace->tally_capacity > (size_t)trace->grid.strips.count)
+        trace->tally_capacity = (size_t)trace->grid.strips.count;
+    sonject_status status =
+        kernel_create(report, device, PROGRAM_TRACE_SMOOTH, "trace_smooth", &trace->kernel);
+    if (status == SONJECT_OK)
+        status = buffer_create(report, device, tracer->scene->object_count * sizeof *records,
+                               records, &trace->objects);
+    if (status == SONJECT_OK)
+        status = buffer_create(report, device, trace->tally_capacity * line_bytes, NULL,
+                               &trace->tallies);
+    return status;
+}
+
+sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tracer,
+                                  uint32_t number)
+{
+    memset(trace, 0, sizeof *trace);
+    if (tracer->scene->objects[number].material.reflection == 0.0)
+        return SONJECT_OK;
+    struct object_record *records = allocate_array(tracer->scene->object_count, sizeof *records);
+    if (!records)
+        return report_out_of_memory(tracer->report, "objects");
+    /* the frame is centred on the object: phases then keep their digits */
+    const double *origin = tracer->placements[number].centre;
+    lay_grid(trace, tracer, number);
+    fan_record_init(&trace->fan, tracer, origin, &trace->grid);
+    object_records_init(records, tracer, origin);
+    lay_fan(trace, tracer, number);
+    choose_quanta(trace, tracer);
+    const sonject_status status = make_buffers(trace, tracer, records);
+    free(records);
+    if (status != SONJECT_OK)
+        smooth_trace_end(trace);
+    return status;
+}
+
+void smooth_trace_end(struct smooth_trace *trace)
+{
+    if (trace->kernel)
+        clReleaseKernel(trace->kernel);
+    trace->kernel = NULL;
+    buffer_release(&trace->objects);
+    buffer_release(&trace->tallies);
+}
+
+int32_t smooth_trace_chunk(const struct smooth_trace *trace)
+{
+    return (int32_t)trace->tally_capacity;
+}
+
+sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tracer,
+                                   struct span strips, float *real_part, float *imaginary_part)
+{
+    const size_t count = (size_t)strips.count * (size_t)trace->grid.bins.count;
+    const cl_mem buffers[] = {trace->objects, trace->tallies};
+    int64_t *tallies = allocate_array(2 * count, sizeof *tallies);
+    if (!tallies)
+        return report_out_of_memory(tracer->report, "tallies");
+    trace->fan.first_strip = strips.first;
+    trace->fan.strips = strips.count;
+    sonject_status status =
+        buffer_clear(tracer->report, tracer->device, trace->tallies, 2 * count * sizeof *tallies);
+    if (status == SONJECT_OK)
+        status = trace_launch(tracer, trace->kernel, &trace->fan, buffers, 2);
+    if (status == SONJECT_OK)
+        status = buffer_read(tracer->report, tracer->device, trace->tallies, 0,
+                             2 * count * sizeof *tallies, tallies);
+    if (status == SONJECT_OK)
+        for (size_t i = 0; i < count; i++) {
+            real_part[i] = (float)((double)tallies[2 * i] * trace->amplitude_of_quantum);
+            imaginary_part[i] = (float)((double)tallies[2 * i + 1] * trace->amplitude_of_quantum);
+        }
+    free(tallies);
+    return status;
+}

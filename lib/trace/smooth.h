@@ -1,0 +1,29 @@
+/* The coherent part: the glints of one object by physical optics, sub-strip by sub-strip. */
+#ifndef SONJECT_TRACE_SMOOTH_H
+#define SONJECT_TRACE_SMOOTH_H
+
+#include "trace/tracer.h"
+
+struct smooth_trace {
+    struct line_grid grid;       /* that the object covers */
+    double amplitude_of_quantum; /* m */
+    struct fan_record fan;
+    cl_kernel kernel;
+    cl_mem objects, tallies;
+    size_t tally_capacity;
+};
+
+/* Prepares a trace of one object's glints; as rough_trace_begin. An object without a smooth part
+ * has grid.strips.count 0 and nothing to trace. */
+sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tracer,
+                                  uint32_t object);
+void smooth_trace_end(struct smooth_trace *trace);
+
+int32_t smooth_trace_chunk(const struct smooth_trace *trace);
+
+/* Traces strips.count <= chunk sub-strips: complex amplitudes in m, strips.count x bins, in two
+ * planes. |sum|^2 is a cross-section in m^2. */
+sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tracer,
+                                   struct span strips, float *real_part, float *imaginary_part);
+
+#endif

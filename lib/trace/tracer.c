@@ -1,0 +1,157 @@
+#include "trace/tracer.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "cl/launch.h"
+
+#define PI 3.14159265358979323846
+
+/* Host and device must agree on every byte. */
+typedef char object_record_is_packed[sizeof(struct object_record) == 26 * 4 ? 1 : -1];
+typedef char fan_record_is_packed[sizeof(struct fan_record) == 33 * 4 ? 1 : -1];
+typedef char outcome_record_is_packed[sizeof(struct outcome_record) == 4 * 4 ? 1 : -1];
+
+float power_of_two_below(double value)
+{
+    int exponent;
+    frexp(value, &exponent);
+    return (float)ldexp(1.0, exponent - 1);
+}
+
+void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const double origin[3],
+                     const struct line_grid *grid)
+{
+    const struct patch_view *view = &tracer->view;
+    const double drop = view->altitude_m - origin[2];
+    const double range = hypot(origin[1], drop);
+    const double row_of_strip0 = 0.5 / grid->strips_per_row - 0.5;
+    const double bins_per_apparent_metre = grid->bins_per_pixel / view->column_spacing_m;
+    const double cycles = 2.0 * range / view->wavelength_m;
+    memset(fan, 0, sizeof *fan);
+    fan->reference_range = (float)range;
+    fan->cosine_depression = (float)(origin[1] / range);
+    fan->sine_depression = (float)(drop / range);
+    fan->seabed_height = (float)-origin[2];
+    fan->first_strip_x = (float)(view_x_of_row(view, row_of_strip0) - origin[0]);
+    fan->strip_width = (float)(view->row_spacing_m / grid->strips_per_row);
+    fan->strata = 1;
+    fan->bins_per_metre = (float)(bins_per_apparent_metre * view->range_ratio);
+    fan->first_bin =
+        (float)((range * view->range_ratio - view->first_range_m) * bins_per_apparent_metre -
+                grid->bins.first);
+    fan->bins = grid->bins.count;
+    fan->source_side = (float)tracer->scene->sonar.transducer_side_m;
+    fan->map_row_at_origin = (float)view_row_of_x(view, origin[0]);
+    fan->map_rows_per_metre = (float)(1.0 / view->row_spacing_m);
+    fan->map_first_column = (float)view_column_of_range(view, range * view->range_ratio);
+    fan->map_columns_per_metre = (float)(view->range_ratio / view->column_spacing_m);
+    fan->cycles_per_metre = (float)(2.0 / view->wavelength_m);
+    fan->first_cycles = (float)(cycles - floor(cycles));
+    fan->inverse_wavelength = (float)(1.0 / view->wavelength_m);
+    fan->seed_low = (uint32_t)(tracer->scene->injection.seed & 0xffffffffu);
+    fan->seed_high = (uint32_t)(tracer->scene->injection.seed >> 32);
+    fan->objects = (int32_t)tracer->scene->object_count;
+    fan->segments = 1;
+}
+
+void object_records_init(struct object_record *records, const struct tracer *tracer,
+                         const double origin[3])
+{
+    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
+        const sonject_object_params *object = &tracer->scene->objects[i];
+        const struct placement *placement = &tracer->placements[i];
+        struct object_record *record = &records[i];
+        memset(record, 0, sizeof *record);
+        record->shape = (int32_t)object->shape; /* both enumerations count alike, see below */
+        record->centre_x = (float)(placement->centre[0] - origin[0]);
+        record->centre_y = (float)(placement->centre[1] - origin[1]);
+        record->centre_z = (float)(placement->centre[2] - origin[2]);
+        for (int axis = 0; axis < 3; axis++)
+            for (int k = 0; k < 3; k++)
+                record->axes[3 * axis + k] = (float)placement->axes[axis][k];
+        record->half_length = (float)placement->half_length_m;
+        record->half_width = (float)placement->half_width_m;
+        record->radius = (float)placement->radius_m;
+        record->bounding_radius = (float)placement->bounding_radius_m;
+        record->reflection = (float)object->material.reflection;
+        record->roughness_phase =
+            (float)(4.0 * PI * object->material.roughness_m / tracer->view.wavelength_m);
+        record->lambert = (float)object->material.lambert;
+        record->has_smooth_part = object->material.reflection != 0.0;
+    }
+}
+
+typedef char shapes_count_alike[(int)SHAPE_PLANE == SONJECT_SHAPE_PLANE &&
+                                        (int)SHAPE_SPHERE == SONJECT_SHAPE_SPHERE &&
+                                        (int)SHAPE_CYLINDER == SONJECT_SHAPE_CYLINDER &&
+                                        (int)SHAPE_CAPSULE == SONJECT_SHAPE_CAPSULE
+                                    ? 1
+                                    : -1];
+
+/* Adds up the reports. A fault fails the run: a number that cannot be trusted must not be drawn. */
+static sonject_status add_outcomes(struct tracer *tracer, const struct outcome_record *outcomes,
+                                   size_t count)
+{
+    uint32_t faults = 0;
+    for (size_t i = 0; i < count; i++) {
+        tracer->counts.queries += outcomes[i].queries;
+        tracer->counts.impulses += outcomes[i].impulses;
+        faults |= outcomes[i].faults;
+    }
+    if (faults == 0)
+        return SONJECT_OK;
+    return report_failure(tracer->report, SONJECT_ERROR_DEVICE,
+                          "device '%s' reported a fault while tracing:%s%s%s", tracer->device->name,
+                          faults & FAULT_NOT_A_NUMBER ? " not a number;" : "",
+                          faults & FAULT_OVERFLOW ? " energies out of scale;" : "",
+                          faults & FAULT_OUTSIDE_TILE ? " shadow outside its bounds;" : "");
+}
+
+/* A CPU's work-item does a whole strip; a GPU wants tens of thousands of work-items. */
+static int32_t segments_for(const struct tracer *tracer, const struct fan_record *fan)
+{
+    if (tracer->device->is_cpu)
+        return 1;
+    const int32_t wanted = 262144 / (fan->strips > 0 ? fan->strips : 1);
+    const int32_t limit = (int32_t)(fan->rays < 4096 ? fan->rays : 4096);
+    return wanted < 1 ? 1 : wanted > limit ? limit : wanted;
+}
+
+sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_record *fan,
+                            const cl_mem *buffers, size_t buffer_count)
+{
+    struct report *report = tracer->report;
+    struct device *device = tracer->device;
+    fan->segments = segments_for(tracer, fan);
+    const size_t items = (size_t)fan->strips * (size_t)fan->segments;
+    cl_mem fan_buffer = NULL;
+    cl_mem outcome_buffer = NULL;
+    struct outcome_record *outcomes = allocate_array(items, sizeof *outcomes);
+    sonject_status status = outcomes ? SONJECT_OK : report_out_of_memory(report, "trace counts");
+    if (status == SONJECT_OK)
+        status = buffer_create(report, device, sizeof *fan, fan, &fan_buffer);
+    if (status == SONJECT_OK)
+        status = buffer_create(report, device, items * sizeof *outcomes, NULL, &outcome_buffer);
+    if (status == SONJECT_OK) {
+        struct kernel_argument arguments[8];
+        arguments[0] = (struct kernel_argument){sizeof fan_buffer, &fan_buffer};
+        for (size_t i = 0; i < buffer_count; i++)
+            arguments[1 + i] = (struct kernel_argument){sizeof buffers[i], &buffers[i]};
+        arguments[1 + buffer_count] =
+            (struct kernel_argument){sizeof outcome_buffer, &outcome_buffer};
+        status = kernel_run(report, device, kernel, arguments, buffer_count + 2, 1, &items);
+    }
+    if (status == SONJECT_OK)
+        status = buffer_read(report, device, outcome_buffer, 0, items * sizeof *outcomes, outcomes);
+    if (status == SONJECT_OK) {
+        tracer->counts.rays += (uint64_t)fan->rays * fan->strata * (uint64_t)fan->strips;
+        status = add_outcomes(tracer, outcomes, items);
+    }
+    buffer_release(&fan_buffer);
+    buffer_release(&outcome_buffer);
+    free(outcomes);
+    return status;
+}

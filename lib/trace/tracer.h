@@ -1,0 +1,49 @@
+/* What both parts of the tracer share: the patch, the placed objects and the counts. */
+#ifndef SONJECT_TRACE_TRACER_H
+#define SONJECT_TRACE_TRACER_H
+
+#include <stdint.h>
+
+#include "base/report.h"
+#include "cl/device.h"
+#include "kernels/layout.h"
+#include "scene/line_grid.h"
+#include "scene/patch_view.h"
+#include "scene/placement.h"
+#include "scene/point_response.h"
+#include "scene/scene.h"
+
+struct trace_counts {
+    uint64_t pings, rays, queries, impulses;
+};
+
+/* Borrowed by traces; must outlive them. */
+struct tracer {
+    struct report *report;
+    struct device *device;
+    const struct scene *scene;
+    struct patch_view view;
+    struct point_response response;
+    const struct placement *placements; /* of scene->objects */
+    struct trace_counts counts;
+};
+
+/* A fan record for a frame centred on a point of the view (x, horizontal range, height). Fills what
+ * depends on frame, grid, sonar and seed; rays, quanta and stream are left 0. */
+void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const double origin[3],
+                     const struct line_grid *grid);
+
+/* Object records in a frame; tiles left 0. count = scene->object_count. */
+void object_records_init(struct object_record *records, const struct tracer *tracer,
+                         const double origin[3]);
+
+/* Runs a trace kernel over the fan's strips and adds up what the work-items report. Arguments: the
+ * fan first, then `buffers`, then the outcomes. Sets fan->segments. Errors: DEVICE (also faults
+ * that the kernel reports), MEMORY. */
+sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_record *fan,
+                            const cl_mem *buffers, size_t buffer_count);
+
+/* The largest power of two not above value; value > 0. */
+float power_of_two_below(double value);
+
+#endif

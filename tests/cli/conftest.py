@@ -1,0 +1,104 @@
+"""What the tests of the command share. SONJECT_COMMAND names the command."""
+
+import os
+import pathlib
+import subprocess
+
+import numpy
+import pytest
+
+import images
+
+ROWS, COLUMNS = 96, 128
+
+SCENE = """\
+sonject: 1
+input:
+  path: swath.tif
+  geometry:
+    row_spacing: 2.5 cm
+    column_spacing: 2.5 cm
+    first_slant_range: 25 m
+sonar:
+  frequency: 100 kHz
+  bandwidth: 30 kHz
+  altitude: 10 m
+objects:
+  - name: ball
+    shape: sphere
+    diameter: 0.5 m
+"""
+
+
+def pytest_sessionstart(session):
+    if not os.environ.get("SONJECT_COMMAND"):
+        raise pytest.UsageError("set SONJECT_COMMAND to the path of the command")
+
+
+COMMAND = os.environ.get("SONJECT_COMMAND", "")
+
+
+@pytest.fixture(scope="session")
+def environment(tmp_path_factory):
+    """The environment of commands, with caches that no other test run has touched."""
+    home = tmp_path_factory.mktemp("home")
+    variables = {
+        name: value
+        for name, value in os.environ.items()
+        if name not in ("XDG_CACHE_HOME", "POCL_CACHE_DIR")
+    }
+    variables["HOME"] = str(home)
+    return variables
+
+
+@pytest.fixture
+def sonject(tmp_path, environment):
+    """Runs the command in a fresh folder; changes: of the environment, None removes."""
+
+    def run(*arguments, changes=None, timeout=300, **options):
+        variables = {**environment, **(changes or {})}
+        variables = {name: value for name, value in variables.items() if value is not None}
+        options.setdefault("stdout", subprocess.PIPE)
+        options.setdefault("stderr", subprocess.PIPE)
+        return subprocess.run(
+            [COMMAND, *map(str, arguments)],
+            cwd=tmp_path,
+            env=variables,
+            text=True,
+            timeout=timeout,
+            **options,
+        )
+
+    return run
+
+
+@pytest.fixture
+def swath():
+    """Rayleigh amplitudes, rms 0.1."""
+    random = numpy.random.default_rng(20240502)
+    return random.rayleigh(0.1 / numpy.sqrt(2), (ROWS, COLUMNS)).astype(numpy.float32)
+
+
+@pytest.fixture
+def scene(tmp_path, swath):
+    """A scene file with a sphere on a float32 swath."""
+    (tmp_path / "swath.tif").write_bytes(images.tiff_bytes(swath))
+    path = tmp_path / "scene.yaml"
+    path.write_text(SCENE)
+    return path
+
+
+def files_below(folder):
+    """All files in the folder, none if it is not there."""
+    return sorted(path for path in pathlib.Path(folder).rglob("*") if path.is_file())
+
+
+def assert_refused(answer, code, *words):
+    """One line on stderr that holds the words, nothing on stdout, the exit code."""
+    assert answer.returncode == code, answer.stderr
+    lines = answer.stderr.splitlines()
+    assert len(lines) == 1, answer.stderr
+    assert lines[0].startswith("sonject: ")
+    for word in words:
+        assert word in lines[0], (word, lines[0])
+    assert not answer.stdout

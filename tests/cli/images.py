@@ -1,0 +1,92 @@
+"""Just enough writers of image files, so that the tests need no image library."""
+
+import struct
+import zlib
+
+import numpy
+
+_FORMATS = {"u": 1, "f": 3}  # TIFF's SampleFormat
+
+
+def tiff_bytes(pixels, width=None, height=None):
+    """An uncompressed little-endian TIFF of (rows, columns) or (rows, columns, channels).
+
+    width, height: what the header says instead of the truth.
+    """
+    pixels = numpy.ascontiguousarray(pixels)
+    rows, columns = pixels.shape[:2]
+    channels = pixels.shape[2] if pixels.ndim == 3 else 1
+    data = pixels.astype(pixels.dtype.newbyteorder("<")).tobytes()
+    shorts = {
+        258: [8 * pixels.dtype.itemsize] * channels,  # BitsPerSample
+        339: [_FORMATS[pixels.dtype.kind]] * channels,  # SampleFormat
+        338: [0] * (channels - 1),  # ExtraSamples
+    }
+    single = {
+        256: width or columns,
+        257: height or rows,
+        259: 1,  # no compression
+        262: 1,  # black is zero
+        273: 8,  # the only strip's place
+        277: channels,
+        278: height or rows,
+        279: len(data),
+        284: 1,  # channels interleaved
+    }
+    entries = b""
+    for tag in sorted([*single, *(tag for tag, values in shorts.items() if values)]):
+        if tag in single:
+            entries += struct.pack("<HHII", tag, 4, 1, single[tag])
+        else:
+            values = struct.pack(f"<{channels if tag != 338 else channels - 1}H", *shorts[tag])
+            assert len(values) <= 4
+            entries += struct.pack("<HHI4s", tag, 3, len(values) // 2, values)
+    directory = struct.pack("<H", len(entries) // 12) + entries + struct.pack("<I", 0)
+    padding = b"\0" * (len(data) % 2)
+    return struct.pack("<2sHI", b"II", 42, 8 + len(data) + len(padding)) + data + padding + directory
+
+
+def png_bytes(pixels):
+    """An 8 bit grey PNG of (rows, columns)."""
+    rows, columns = pixels.shape
+    lines = b"".join(b"\0" + row.astype(numpy.uint8).tobytes() for row in pixels)
+
+    def chunk(name, content):
+        checked = name + content
+        return struct.pack(">I", len(content)) + checked + struct.pack(">I", zlib.crc32(checked))
+
+    header = struct.pack(">IIBBBBB", columns, rows, 8, 0, 0, 0, 0)
+    return (
+        b"\x89PNG\r\n\x1a\n"
+        + chunk(b"IHDR", header)
+        + chunk(b"IDAT", zlib.compress(lines))
+        + chunk(b"IEND", b"")
+    )
+
+
+def read_tiff(path):
+    """Pixels of an uncompressed TIFF in strips, of either byte order."""
+    content = path.read_bytes()
+    order = {b"II": "<", b"MM": ">"}[content[:2]]
+    assert struct.unpack_from(order + "H", content, 2) == (42,)
+    (start,) = struct.unpack_from(order + "I", content, 4)
+    (count,) = struct.unpack_from(order + "H", content, start)
+    tags = {}
+    for index in range(count):
+        place = start + 2 + 12 * index
+        tag, kind, length = struct.unpack_from(order + "HHI", content, place)
+        if kind in (3, 4):
+            code, size = ("H", 2) if kind == 3 else ("I", 4)
+            if length * size > 4:
+                (value_place,) = struct.unpack_from(order + "I", content, place + 8)
+            else:
+                value_place = place + 8
+            tags[tag] = struct.unpack_from(f"{order}{length}{code}", content, value_place)
+    assert tags.get(259, (1,)) == (1,), "the TIFF is compressed"
+    data = b"".join(
+        content[first : first + length] for first, length in zip(tags[273], tags[279])
+    )
+    kind = {1: "u", 3: "f"}[tags.get(339, (1,))[0]] + str(tags[258][0] // 8)
+    channels = tags.get(277, (1,))[0]
+    pixels = numpy.frombuffer(data, order + kind).reshape(tags[257][0], tags[256][0], channels)
+    return pixels[:, :, 0] if channels == 1 else pixels

@@ -1,0 +1,173 @@
+"""Scenes and images that cannot be used: exit code 3, one line, nothing written."""
+
+import struct
+
+import numpy
+import pytest
+
+import images
+from conftest import COLUMNS, ROWS, assert_refused, files_below
+
+
+def refuse(sonject, scene, code, *words, options=()):
+    """Both verbs refuse, and leave nothing behind."""
+    before = files_below(scene.parent)
+    assert_refused(sonject("check", scene, *options), code, *words)
+    assert_refused(sonject("run", scene, "-o", "result", *options), code, *words)
+    assert files_below(scene.parent) == before
+
+
+def edit(scene, old, new):
+    text = scene.read_text()
+    assert text.count(old) == 1
+    scene.write_text(text.replace(old, new))
+
+
+def test_a_missing_scene_is_named(sonject, tmp_path):
+    assert_refused(sonject("check", "absent.yaml"), 3, "absent.yaml")
+    assert_refused(sonject("run", "absent.yaml", "-o", "result"), 3, "absent.yaml")
+    assert not list(tmp_path.iterdir())
+
+
+def test_an_unknown_key(sonject, scene):
+    edit(scene, "    diameter: 0.5 m", "    diametre: 0.5 m")
+    line = scene.read_text().splitlines().index("    diametre: 0.5 m") + 1
+    refuse(sonject, scene, 3, f"scene.yaml:{line}:5", "diametre", "diameter")
+
+
+def test_a_wrong_unit(sonject, scene):
+    edit(scene, "diameter: 0.5 m", "diameter: 0.5 kHz")
+    refuse(sonject, scene, 3, "scene.yaml:", "diameter", "kHz")
+
+
+def test_an_unknown_unit(sonject, scene):
+    edit(scene, "100 kHz", "100 parsec")
+    refuse(sonject, scene, 3, "scene.yaml:9:", "frequency", "parsec")
+
+
+def test_zero_altitude(sonject, scene):
+    edit(scene, "altitude: 10 m", "altitude: 0 m")
+    refuse(sonject, scene, 3, "altitude")
+
+
+def test_an_image_nearer_than_the_altitude(sonject, scene):
+    edit(scene, "first_slant_range: 25 m", "first_slant_range: 5 m")
+    refuse(sonject, scene, 3, "altitude")
+
+
+def test_broken_yaml(sonject, scene):
+    scene.write_text("sonar: [1, 2\nobjects: }\n")
+    refuse(sonject, scene, 3, "scene.yaml:")
+
+
+def test_an_empty_scene(sonject, scene):
+    scene.write_text("")
+    refuse(sonject, scene, 3, "scene.yaml")
+
+
+def test_a_scene_that_is_no_text(sonject, scene):
+    scene.write_bytes(bytes(range(256)) * 16)
+    refuse(sonject, scene, 3, "scene.yaml")
+
+
+def test_an_alias_bomb_ends_at_once(sonject, scene):
+    lines = ['a0: &a0 ["x", "x", "x", "x", "x", "x", "x", "x", "x", "x"]']
+    for level in range(1, 12):
+        lines.append(f"a{level}: &a{level} [{', '.join([f'*a{level - 1}'] * 10)}]")
+    scene.write_text("\n".join(lines) + "\n")
+    before = files_below(scene.parent)
+    assert_refused(sonject("check", scene, timeout=20), 3, "scene.yaml")
+    assert files_below(scene.parent) == before
+
+
+def test_deep_nesting_ends_at_once(sonject, scene):
+    scene.write_text("sonar: " + "[" * 200000 + "\n")
+    assert_refused(sonject("check", scene, timeout=20), 3, "scene.yaml")
+
+
+def test_a_missing_image(sonject, scene):
+    (scene.parent / "swath.tif").unlink()
+    refuse(sonject, scene, 3, "swath.tif")
+
+
+def test_an_image_that_is_none(sonject, scene):
+    (scene.parent / "swath.tif").write_bytes(b"this is no image\n" * 100)
+    refuse(sonject, scene, 3, "swath.tif")
+
+
+@pytest.mark.parametrize("kept", [4, 100, ROWS * COLUMNS * 2])
+def test_a_truncated_image(sonject, scene, kept):
+    path = scene.parent / "swath.tif"
+    path.write_bytes(path.read_bytes()[:kept])
+    refuse(sonject, scene, 3, "swath.tif")
+
+
+def test_an_image_whose_pixels_are_cut_short(sonject, scene, swath):
+    # The directory stands before the pixels, so only reading them finds out.
+    content = images.tiff_bytes(swath)
+    (start,) = struct.unpack_from("<I", content, 4)
+    directory = bytearray(content[start:])
+    for index in range(struct.unpack_from("<H", directory)[0]):
+        place = 2 + 12 * index
+        if struct.unpack_from("<H", directory, place) == (273,):
+            struct.pack_into("<I", directory, place + 8, 8 + len(directory))
+    moved = content[:4] + struct.pack("<I", 8) + bytes(directory) + content[8:start]
+    (scene.parent / "swath.tif").write_bytes(moved[: len(moved) // 2])
+    before = files_below(scene.parent)
+    assert_refused(sonject("run", scene, "-o", "result"), 3, "swath.tif")
+    assert files_below(scene.parent) == before
+
+
+def test_an_image_of_astronomic_size(sonject, scene, swath):
+    largest = 2**31 - 1
+    content = images.tiff_bytes(swath, width=largest, height=largest)
+    (scene.parent / "swath.tif").write_bytes(content)
+    refuse(sonject, scene, 3, "swath.tif")
+
+
+def test_one_channel_is_not_complex(sonject, scene):
+    edit(scene, "  path: swath.tif", "  path: swath.tif\n  complex: true")
+    refuse(sonject, scene, 3, "swath.tif", "channel")
+
+
+def test_a_patch_outside_the_swath(sonject, scene):
+    patch = f"patch:\n  row: 0\n  column: 100\n  rows: {ROWS}\n  columns: 64\n"
+    scene.write_text(scene.read_text() + patch)
+    refuse(sonject, scene, 3, "patch", str(COLUMNS))
+
+
+def test_a_target_outside_the_patch(sonject, scene):
+    edit(scene, "    shape: sphere", "    shape: sphere\n    position: {row: 1000, column: 10}")
+    refuse(sonject, scene, 3, "ball", "patch")
+
+
+def test_a_target_larger_than_the_patch(sonject, scene):
+    edit(scene, "diameter: 0.5 m", "diameter: 50 m")
+    refuse(sonject, scene, 3, "ball")
+
+
+@pytest.mark.parametrize("value", [numpy.nan, numpy.inf, -1.0])
+def test_pixels_that_are_no_amplitudes(sonject, scene, swath, value):
+    swath[40, 50] = value
+    (scene.parent / "swath.tif").write_bytes(images.tiff_bytes(swath))
+    before = files_below(scene.parent)
+    assert_refused(sonject("run", scene, "-o", "result"), 3, "swath.tif", "40", "50")
+    assert files_below(scene.parent) == before
+
+
+def test_overrides_are_checked_like_the_file(sonject, scene):
+    refuse(sonject, scene, 3, "sonar.altitude", options=["--set", "sonar.altitude=-1 m"])
+    refuse(sonject, scene, 3, "sonar.colour", options=["--set", "sonar.colour=red"])
+    refuse(sonject, scene, 3, "sonar", options=["--set", "sonar"])
+
+
+def test_quicklook_of_a_missing_image(sonject, tmp_path):
+    assert_refused(sonject("quicklook", "absent.tif", "-o", "x.png"), 3, "absent.tif")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_seabed_beyond_all_sizes(sonject, tmp_path):
+    answer = sonject("seabed", "-o", "x.tif", "--rows", 2**31, "--columns", 2**31)
+    assert answer.returncode in (2, 3)
+    assert len(answer.stderr.splitlines()) == 1
+    assert not list(tmp_path.iterdir())

@@ -1,0 +1,260 @@
+"""Whole runs: what they leave, and what happens when they are stopped."""
+
+import json
+import os
+import pty
+import resource
+import signal
+import struct
+import subprocess
+import time
+
+import numpy
+import pytest
+
+import images
+from conftest import COLUMNS, COMMAND, ROWS, assert_refused, files_below
+
+RESULTS = {
+    "image.tif",
+    "patch.tif",
+    "energy.tif",
+    "highlight.png",
+    "shadow.png",
+    "labels.png",
+    "truth.json",
+    "coco.json",
+    "quicklook.png",
+    "run.json",
+}
+# So many rays that signals arrive while it traces.
+SLOW = ["--set", "injection.rays=512"]
+
+
+def contents(folder):
+    """{name: bytes} of the results but run.json, which holds times."""
+    return {
+        path.name: path.read_bytes() for path in files_below(folder) if path.name != "run.json"
+    }
+
+
+def test_a_run_leaves_the_promised_files(sonject, scene, tmp_path, swath):
+    answer = sonject("run", scene, "-o", "new/result")
+    assert answer.returncode == 0, answer.stderr
+    assert not answer.stdout
+    folder = tmp_path / "new" / "result"
+    assert {path.name for path in folder.iterdir()} == RESULTS
+    for name in ("truth.json", "coco.json", "run.json"):
+        json.loads((folder / name).read_text())
+    for name in ("highlight.png", "shadow.png", "labels.png"):
+        header = (folder / name).read_bytes()[16:26]
+        assert struct.unpack(">IIBB", header) == (COLUMNS, ROWS, 8, 0)
+    image = images.read_tiff(folder / "image.tif")
+    assert image.dtype == numpy.float32
+    assert image.shape == swath.shape
+    same = image.view(numpy.uint32) == swath.view(numpy.uint32)
+    assert same.any() and not same.all()
+    assert files_below(tmp_path) == sorted(
+        [scene, tmp_path / "swath.tif", *(folder / name for name in RESULTS)]
+    )
+
+
+def test_an_8_bit_swath_stays_one(sonject, scene, tmp_path, swath):
+    grey = numpy.clip(numpy.rint(swath * 255), 0, 255).astype(numpy.uint8)
+    (tmp_path / "swath.png").write_bytes(images.png_bytes(grey))
+    answer = sonject("run", scene, "-o", "result", "--set", "input.path=swath.png")
+    assert answer.returncode == 0, answer.stderr
+    header = (tmp_path / "result" / "image.png").read_bytes()[16:26]
+    assert struct.unpack(">IIBB", header) == (COLUMNS, ROWS, 8, 0)
+
+
+def test_a_finished_run_is_not_repeated(sonject, scene, tmp_path):
+    assert sonject("run", scene, "-o", "result").returncode == 0
+    before = {path: path.stat().st_mtime_ns for path in files_below(tmp_path / "result")}
+    answer = sonject("run", scene, "-o", "result")
+    assert answer.returncode == 0
+    assert "already" in answer.stderr
+    assert before == {path: path.stat().st_mtime_ns for path in files_below(tmp_path / "result")}
+
+
+def test_other_inputs_are_run_again(sonject, scene, tmp_path):
+    assert sonject("run", scene, "-o", "result").returncode == 0
+    first = contents(tmp_path / "result")
+    assert sonject("run", scene, "-o", "result", "--seed", "2").returncode == 0
+    assert contents(tmp_path / "result")["image.tif"] != first["image.tif"]
+
+
+def test_the_seed_is_an_override(sonject, scene, tmp_path):
+    assert sonject("run", scene, "-o", "a", "--seed", "7").returncode == 0
+    assert sonject("run", scene, "-o", "b", "--set", "injection.seed=7").returncode == 0
+    assert sonject("run", scene, "-o", "c", "--set=injection.seed=8").returncode == 0
+    assert contents(tmp_path / "a") == contents(tmp_path / "b")
+    assert contents(tmp_path / "a")["image.tif"] != contents(tmp_path / "c")["image.tif"]
+
+
+def test_set_changes_the_scene(sonject, scene, tmp_path):
+    assert sonject("run", scene, "-o", "a", "--set", "objects[0].diameter=0.3 m").returncode == 0
+    scene.write_text(scene.read_text().replace("0.5 m", "30 cm"))
+    assert sonject("run", scene, "-o", "b").returncode == 0
+    assert contents(tmp_path / "a") == contents(tmp_path / "b")
+
+
+def test_quiet_is_quiet(sonject, scene):
+    answer = sonject("run", scene, "-o", "result", "--quiet")
+    assert (answer.returncode, answer.stdout, answer.stderr) == (0, "", "")
+
+
+def test_no_home_and_no_cache_are_no_reason_to_fail(sonject, scene, tmp_path):
+    gone = {"HOME": None, "XDG_CACHE_HOME": None}
+    assert sonject("run", scene, "-o", "a", changes=gone).returncode == 0
+    closed = {"HOME": "/dev/null", "XDG_CACHE_HOME": "/dev/null/cache"}
+    closed["POCL_CACHE_DIR"] = str(tmp_path / "pocl")
+    assert sonject("run", scene, "-o", "b", changes=closed).returncode == 0
+    assert contents(tmp_path / "a") == contents(tmp_path / "b")
+
+
+def test_no_device(sonject, scene, tmp_path):
+    (tmp_path / "vendors").mkdir()
+    empty = {"OCL_ICD_VENDORS": str(tmp_path / "vendors")}
+    assert_refused(sonject("devices", changes=empty), 4, "OpenCL")
+    assert_refused(sonject("run", scene, "-o", "result", changes=empty), 4, "OpenCL")
+    assert not files_below(tmp_path / "result")
+    assert sonject("check", scene, changes=empty).returncode == 0
+
+
+def test_an_unknown_device_is_named(sonject, scene, tmp_path):
+    answer = sonject("run", scene, "-o", "result", "--device", "abacus")
+    assert_refused(answer, 4, "abacus")
+    assert not files_below(tmp_path / "result")
+
+
+def limit_file_size():
+    """Like a disk that is full after some kilobytes: writing beyond fails."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))
+
+
+def test_a_limit_on_file_sizes_leaves_nothing_half(sonject, scene, tmp_path):
+    # The first run fills the caches, which are not what this is about.
+    assert sonject("run", scene, "-o", "first").returncode == 0
+    answer = sonject("run", scene, "-o", "result", preexec_fn=limit_file_size)
+    assert_refused(answer, 5, "result")
+    assert not (tmp_path / "result" / "run.json").exists()
+    assert {path.name for path in files_below(tmp_path / "result")} <= RESULTS
+    assert sonject("run", scene, "-o", "result").returncode == 0
+    assert contents(tmp_path / "result") == contents(tmp_path / "first")
+
+
+@pytest.fixture
+def small_disk(tmp_path):
+    """A file system of 32 KiB, or None where nothing can be mounted."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=32k", "sonject-test", str(folder)]
+    mounted = os.geteuid() == 0 and subprocess.run(mount, capture_output=True).returncode == 0
+    yield folder if mounted else None
+    if mounted:
+        subprocess.run(["umount", str(folder)], check=True)
+
+
+def test_a_full_disk_leaves_nothing_half(sonject, scene, small_disk):
+    if small_disk is None:
+        pytest.skip("nothing can be mounted here; the limit on file sizes is tested instead")
+    answer = sonject("run", scene, "-o", small_disk)
+    assert_refused(answer, 5, str(small_disk), "No space left")
+    assert not (small_disk / "run.json").exists()
+    assert {path.name for path in files_below(small_disk)} <= RESULTS
+
+
+def test_a_folder_that_cannot_be_made(sonject, scene):
+    answer = sonject("run", scene, "-o", scene / "result")
+    assert_refused(answer, 5, "scene.yaml")
+
+
+def start_and_wait_for_the_bar(arguments, folder, variables):
+    """Starts the command with a terminal for its messages; returns once the bar is drawn."""
+    mine, its = pty.openpty()
+    process = subprocess.Popen(
+        [COMMAND, *map(str, arguments)], cwd=folder, env=variables, stdout=its, stderr=its
+    )
+    os.close(its)
+    seen = b""
+    end = time.monotonic() + 120
+    while b"%" not in seen and time.monotonic() < end:
+        try:
+            seen += os.read(mine, 4096)
+        except OSError:  # the terminal was closed: the command ended
+            break
+    assert b"%" in seen, seen
+    return process, mine
+
+
+def read_rest(terminal):
+    rest = b""
+    while True:
+        try:
+            more = os.read(terminal, 4096)
+        except OSError:
+            more = b""
+        if not more:
+            os.close(terminal)
+            return rest.decode()
+        rest += more
+
+
+@pytest.mark.parametrize(
+    "number, code, words",
+    [
+        (signal.SIGTERM, 85, "sonject: stopped; run the same command again"),
+        (signal.SIGINT, 130, "sonject: interrupted"),
+    ],
+)
+def test_signals_stop_a_run(scene, tmp_path, environment, number, code, words):
+    arguments = ["run", scene, "-o", "result", *SLOW]
+    process, terminal = start_and_wait_for_the_bar(arguments, tmp_path, environment)
+    process.send_signal(number)
+    text = read_rest(terminal)
+    assert process.wait(60) == code, text
+    assert words in text
+    assert not (tmp_path / "result" / "run.json").exists()
+    assert {path.name for path in files_below(tmp_path / "result")} <= RESULTS
+
+
+def test_a_killed_run_is_completed_by_the_next(sonject, scene, tmp_path, environment):
+    arguments = ["run", scene, "-o", "result", "--set", "injection.rays=64"]
+    process, terminal = start_and_wait_for_the_bar(arguments, tmp_path, environment)
+    process.kill()
+    read_rest(terminal)
+    assert process.wait(60) == -signal.SIGKILL
+    assert not (tmp_path / "result" / "run.json").exists()
+    assert sonject(*arguments).returncode == 0
+    assert {path.name for path in files_below(tmp_path / "result")} == RESULTS
+    arguments[3] = "fresh"
+    assert sonject(*arguments).returncode == 0
+    assert contents(tmp_path / "result") == contents(tmp_path / "fresh")
+
+
+def test_seabed_and_quicklook_belong_together(sonject, tmp_path):
+    made = sonject("seabed", "-o", "bed.tif", "--rows", "64", "--columns", "80", "--seed", "3")
+    assert (made.returncode, made.stderr) == (0, "")
+    assert images.read_tiff(tmp_path / "bed.tif").shape == (64, 80)
+    for options in ([], ["--db", "-40:0"], ["--range-axis", "ground"]):
+        drawn = sonject("quicklook", "bed.tif", "-o", "bed.png", *options)
+        assert (drawn.returncode, drawn.stderr) == (0, "")
+        assert (tmp_path / "bed.png").read_bytes().startswith(b"\x89PNG")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bed.png", "bed.tif"]
+
+
+def test_a_seabed_is_the_same_for_the_same_seed(sonject, tmp_path):
+    for name, seed in (("a", 1), ("b", 1), ("c", 2)):
+        answer = sonject("seabed", "-o", f"{name}.tif", "--rows=16", "--columns=16", "--seed", seed)
+        assert answer.returncode == 0
+    a, b, c = (images.read_tiff(tmp_path / f"{name}.tif") for name in "abc")
+    assert numpy.array_equal(a, b)
+    assert not numpy.array_equal(a, c)
+
+
+def test_a_complex_seabed_has_two_channels(sonject, tmp_path):
+    answer = sonject("seabed", "-o", "bed.tif", "--rows=16", "--columns=16", "--complex")
+    assert answer.returncode == 0
+    assert images.read_tiff(tmp_path / "bed.tif").shape == (16, 16, 2)

@@ -1,0 +1,161 @@
+"""Options, help and the standard streams."""
+
+import os
+import pathlib
+import re
+import subprocess
+
+import pytest
+
+from conftest import COMMAND, assert_refused
+
+VERBS = {"run", "check", "quicklook", "seabed", "devices"}
+NOT_THERE = r"\b(merge|trace|form|measure|campaign|convert)\b|--(shard|labels)"
+
+
+def test_version(sonject):
+    answer = sonject("--version")
+    assert answer.returncode == 0
+    assert re.fullmatch(r"sonject \d+\.\d+\.\d+\n", answer.stdout)
+
+
+def test_help_lists_the_verbs_that_exist(sonject):
+    answer = sonject("--help")
+    assert answer.returncode == 0
+    listed = set(re.findall(r"^  sonject (\w+) ", answer.stdout, flags=re.M)) - {"help"}
+    assert listed == VERBS
+    assert sonject("help").stdout == sonject("-h").stdout == answer.stdout
+
+
+@pytest.mark.parametrize("verb", sorted(VERBS))
+def test_help_of_a_verb(sonject, verb):
+    answer = sonject("help", verb)
+    assert answer.returncode == 0
+    assert answer.stdout.startswith(f"sonject {verb}")
+    assert sonject(verb, "--help").stdout == answer.stdout
+    for option in re.findall(r"--[a-z-]+", answer.stdout):
+        refused = sonject(verb, option + "x")
+        assert_refused(refused, 2, "there is no option")
+    assert not re.search(NOT_THERE, answer.stdout)
+
+
+def test_help_says_nothing_about_what_is_not_there(sonject):
+    assert not re.search(NOT_THERE, sonject("--help").stdout)
+
+
+def test_nothing_asked_is_a_usage_error(sonject):
+    answer = sonject()
+    assert answer.returncode == 2
+    assert not answer.stdout
+    assert "sonject run" in answer.stderr
+
+
+@pytest.mark.parametrize(
+    "arguments, words",
+    [
+        (["rnu"], ['no verb "rnu"', "did you mean run?"]),
+        (["xylophone"], ["sonject --help"]),
+        (["merge", "x"], ['no verb "merge"']),
+        (["help", "rnu"], ["did you mean run?"]),
+        (["run"], ["SCENE.yaml is missing"]),
+        (["run", ""], ["must not be empty"]),
+        (["run", "a.yaml"], ["-o DIR is missing"]),
+        (["run", "a.yaml", "b.yaml", "-o", "d"], ["a.yaml", "b.yaml"]),
+        (["run", "a.yaml", "-o"], ["needs a value"]),
+        (["run", "a.yaml", "-o", "--quiet"], ["needs a value"]),
+        (["run", "a.yaml", "-o", "d", "-o", "e"], ["given twice"]),
+        (["run", "a.yaml", "-o", "d", "--sede", "1"], ["--sede", "did you mean --seed?"]),
+        (["run", "a.yaml", "-o", "d", "--seed", "-1"], ["--seed", '"-1"']),
+        (["run", "a.yaml", "-o", "d", "--seed", "1.5"], ["--seed", "whole number"]),
+        (["run", "a.yaml", "-o", "d", "--seed", str(2**64)], ["--seed", str(2**64)]),
+        (["run", "a.yaml", "-o", "d", "--seed="], ["--seed"]),
+        (["run", "a.yaml", "-o", "d", "--quiet=yes"], ["takes no value"]),
+        (["run", "a.yaml", "-o", "d", "--shard", "1/2"], ["--shard"]),
+        (["run", "a.yaml", "-o", "d", "-q"], ["-q"]),
+        (["check", "a.yaml", "-o", "d"], ["-o"]),
+        (["devices", "all"], ['"all"']),
+        (["seabed"], ["-o IMAGE is missing"]),
+        (["seabed", "-o", "x.tif", "--rows", "4294967297"], ["--rows"]),
+        (["seabed", "-o", "x.tif", "--altitude", "10 m"], ["--altitude", "10 m"]),
+        (["seabed", "-o", "x.tif", "--altitude", "nan"], ["--altitude", "nan"]),
+        (["seabed", "-o", "x.tif", "--altitude", "0x10"], ["--altitude"]),
+        (["seabed", "-o", "x.tif", "--altitude", "1e999"], ["--altitude"]),
+        (["seabed", "-o", "x.tif", "--altitude", "1,5"], ["--altitude"]),
+        (["seabed", "-o", "x.tif", "--altitude", ""], ["--altitude"]),
+        (["quicklook", "x.tif", "-o", "x.png", "--db", "0:-40"], ["--db", "MIN below MAX"]),
+        (["quicklook", "x.tif", "-o", "x.png", "--db", "-40"], ["--db"]),
+        (["quicklook", "x.tif", "-o", "x.png", "--range-axis", "time"], ["slant or ground"]),
+        (["quicklook", "x.tif", "-o", "x.png", "--first-range", "9"], ["--row-spacing"]),
+        (["quicklook", "x.tif", "-o", "x.png", "--transfer", "sqrt"], ["sqrt"]),
+        (["quicklook", "x.tif", "-o", "x.png", "--altitude", "0"], ["--altitude"]),
+    ],
+)
+def test_wrong_usage_is_one_line(sonject, tmp_path, arguments, words):
+    assert_refused(sonject(*arguments), 2, *words)
+    assert not list(tmp_path.iterdir())
+
+
+def test_messages_stay_one_line_whatever_the_names(sonject):
+    answer = sonject("check", "no\nsuch\x1b[31mfile.yaml")
+    assert answer.returncode == 3
+    assert len(answer.stderr.splitlines()) == 1
+    assert "\x1b" not in answer.stderr
+
+
+def test_check_prints_to_stdout(sonject, scene):
+    answer = sonject("check", scene)
+    assert (answer.returncode, answer.stderr) == (0, "")
+    assert "ball" in answer.stdout
+
+
+def test_a_full_standard_output_is_noticed(sonject, scene):
+    with open("/dev/full", "w") as full:
+        for arguments in (["--help"], ["--version"], ["check", scene], ["devices"]):
+            answer = sonject(*arguments, stdout=full)
+            assert answer.returncode == 5, arguments
+            assert "standard output" in answer.stderr
+
+
+def test_a_closed_standard_output_is_noticed(sonject, scene):
+    answer = sonject("check", scene, preexec_fn=lambda: os.close(1))
+    assert answer.returncode == 5
+    assert "standard output" in answer.stderr
+
+
+def test_a_run_needs_no_standard_streams(sonject, scene, tmp_path):
+    def close_all():
+        for descriptor in (0, 1, 2):
+            os.close(descriptor)
+
+    assert sonject("run", scene, "-o", "result", preexec_fn=close_all).returncode == 0
+    for path in (tmp_path / "result").iterdir():
+        assert b"sonject: " not in path.read_bytes()[:64]
+
+
+def test_the_locale_does_not_change_numbers(tmp_path, sonject):
+    for name in ("C", "de_DE.UTF-8", "nonsense"):
+        answer = sonject(
+            "seabed", "-o", f"{name}.tif", "--rows", "8", "--columns", "8", "--altitude", "9.5",
+            changes={"LC_ALL": name},
+        )
+        assert answer.returncode == 0, answer.stderr
+    assert (tmp_path / "C.tif").read_bytes() == (tmp_path / "de_DE.UTF-8.tif").read_bytes()
+
+
+def test_devices_are_a_table(sonject):
+    answer = sonject("devices")
+    assert answer.returncode == 0
+    head, *rows = answer.stdout.splitlines()
+    assert "name" in head and "platform" in head
+    assert [row[0] for row in rows].count("*") == 1
+
+
+def test_the_command_uses_only_the_public_interface():
+    symbols = subprocess.run(
+        ["nm", "-D", "--undefined-only", COMMAND], capture_output=True, text=True, check=True
+    ).stdout
+    used = set(re.findall(r"\bsonject_\w+", symbols))
+    headers = pathlib.Path(__file__).resolve().parents[2] / "include" / "sonject"
+    public = "".join(path.read_text() for path in headers.glob("*.h"))
+    assert {"sonject_run", "sonject_check", "sonject_devices"} <= used
+    assert used <= set(re.findall(r"\bsonject_\w+(?=\()", public))

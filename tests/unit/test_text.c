@@ -1,0 +1,251 @@
+/* Numbers from text: correctly rounded, and the same under a locale with a decimal comma. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <locale.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
+
+static void expect_number(const char *text, double expected, const char *expected_rest)
+{
+    double number = -1.0;
+    const char *rest = NULL;
+    if (!text_to_number(text, &number, &rest))
+        fail_msg("'%s' was not taken for a number", text);
+    if (memcmp(&number, &expected, sizeof number) != 0)
+        fail_msg("'%s' gave %a, not %a", text, number, expected);
+    assert_string_equal(rest, expected_rest);
+}
+
+/* Expected values are written as hexadecimal bits, so that no decimal conversion checks itself. */
+static void test_numbers(void **state)
+{
+    (void)state;
+    expect_number("0", 0.0, "");
+    expect_number("-0.0", -0.0, "");
+    expect_number("2.5", 0x1.4p1, "");
+    expect_number("+12 m", 0x1.8p3, " m");
+    expect_number(".5", 0x1p-1, "");
+    expect_number("5.", 0x1.4p2, "");
+    expect_number("-27 dB", -0x1.bp4, " dB");
+    expect_number("1e3", 0x1.f4p9, "");
+    expect_number("1E-2", 0x1.47ae147ae147bp-7, "");
+    expect_number("0.1", 0x1.999999999999ap-4, "");
+    expect_number("0.067", 0x1.126e978d4fdf4p-4, "");
+    expect_number("1e", 1.0, "e");
+    expect_number("1e+", 1.0, "e+");
+    expect_number("1_000", 1.0, "_000");
+    expect_number("1,5", 1.0, ",5");
+    expect_number("1.5.2", 1.5, ".2");
+    expect_number("0x10", 0.0, "x10");
+    expect_number("007", 7.0, "");
+}
+
+static void test_infinity_is_written_as_in_yaml(void **state)
+{
+    (void)state;
+    expect_number("inf", HUGE_VAL, "");
+    expect_number(".inf", HUGE_VAL, "");
+    expect_number("-.INF", -HUGE_VAL, "");
+    expect_number("1e999", HUGE_VAL, "");
+    expect_number("-1e99999999999999999999999999", -HUGE_VAL, "");
+    expect_number("1e-99999999999999999999999999", 0.0, "");
+}
+
+static void test_what_is_no_number(void **state)
+{
+    static const char *const texts[] = {"",   "-",  ".",     "-.",   "e5", "nan", ".nan",
+                                        " 1", "m5", "--1.0", "+-.5", ".i", "i",   ".e1"};
+    (void)state;
+    for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
+        double number = 7.0;
+        const char *rest = NULL;
+        if (text_to_number(texts[i], &number, &rest))
+            fail_msg("'%s' was taken for a number", texts[i]);
+        assert_true(number == 7.0);
+    }
+}
+
+/* 2^53 + 1 lies halfway between two doubles; the smallest double's half likewise. */
+static void test_halfway_cases(void **state)
+{
+    char text[3000];
+    (void)state;
+    expect_number("9007199254740993", 0x1p53, "");
+    expect_number("9007199254740995", 0x1.0000000000002p53, "");
+    expect_number("9007199254740993.0000000000000000000001", 0x1.0000000000001p53, "");
+    snprintf(text, sizeof text, "9007199254740993.%01500d1", 0);
+    expect_number(text, 0x1.0000000000001p53, "");
+    snprintf(text, sizeof text, "9007199254740993.%01500d", 0);
+    expect_number(text, 0x1p53, "");
+    expect_number("2.4703282292062327e-324", 0.0, "");
+    expect_number("2.4703282292062328e-324", 0x1p-1074, "");
+    expect_number("1.7976931348623157e308", 0x1.fffffffffffffp1023, "");
+    expect_number("1.7976931348623159e308", HUGE_VAL, "");
+}
+
+static void test_long_texts(void **state)
+{
+    char text[3000];
+    (void)state;
+    snprintf(text, sizeof text, "0.%01200d1e1201", 0);
+    expect_number(text, 1.0, "");
+    snprintf(text, sizeof text, "1%01200de-1199", 0);
+    expect_number(text, 10.0, "");
+    snprintf(text, sizeof text, "%01200d5", 0);
+    expect_number(text, 5.0, "");
+}
+
+static void test_a_shift_rounds_once(void **state)
+{
+    double number;
+    const char *rest;
+    (void)state;
+    assert_true(text_to_shifted_number("6.7 cm", -2, &number, &rest));
+    assert_true(number == 0x1.126e978d4fdf4p-4); /* 0.067; 6.7 * 0.01 is one bit more */
+    assert_true(text_to_shifted_number("0.4e0", -3, &number, &rest));
+    assert_true(number == 0x1.a36e2eb1c432dp-12);
+    assert_true(text_to_shifted_number("30", 3, &number, &rest));
+    assert_true(number == 30000.0);
+}
+
+/* Any double printed with 17 digits must come back as it was. */
+static void expect_round_trips(int count)
+{
+    uint64_t random = 1;
+    for (int i = 0; i < count; i++) {
+        char text[40];
+        double value;
+        random = random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+        const uint64_t bits = random ^ (random >> 29);
+        memcpy(&value, &bits, sizeof value);
+        if (!isfinite(value))
+            continue;
+        snprintf(text, sizeof text, "%.17g", value);
+        for (char *c = text; *c; c++)
+            if (*c == ',')
+                *c = '.';
+        expect_number(text, value, "");
+    }
+}
+
+static void test_round_trips(void **state)
+{
+    (void)state;
+    expect_round_trips(20000);
+}
+
+static void test_a_decimal_comma_changes_nothing(void **state)
+{
+    static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8",   "de_DE",
+                                        "fr_FR.UTF-8", "fr_FR.utf8",   "nb_NO.UTF-8",
+                                        "nl_NL.UTF-8", "sonject_comma"};
+    (void)state;
+    const char *found = NULL;
+    for (size_t i = 0; i < sizeof names / sizeof names[0] && !found; i++)
+        found = setlocale(LC_ALL, names[i]);
+    if (!found || strcmp(localeconv()->decimal_point, ",") != 0) {
+        setlocale(LC_ALL, "C");
+        print_message("no locale with a decimal comma is installed\n");
+        skip();
+    }
+    test_numbers(state);
+    test_halfway_cases(state);
+    expect_round_trips(2000);
+    setlocale(LC_ALL, "C");
+}
+
+static void test_counts(void **state)
+{
+    static const char *const bad[] = {"",
+                                      "-1",
+                                      "+1",
+                                      "1.0",
+                                      "1e3",
+                                      " 1",
+                                      "1 ",
+                                      "0x1",
+                                      "1_0",
+                                      "18446744073709551616",
+                                      "99999999999999999999"};
+    uint64_t count = 7;
+    (void)state;
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        assert_false(text_to_count(bad[i], &count));
+    assert_true(count == 7);
+    assert_true(text_to_count("0", &count) && count == 0);
+    assert_true(text_to_count("18446744073709551615", &count) && count == UINT64_MAX);
+    assert_true(text_to_count("1099511627776", &count) && count == UINT64_C(1) << 40);
+}
+
+static void test_printable(void **state)
+{
+    static const char *const good[] = {"",
+                                       "mine 1",
+                                       "\xC3\xA5",
+                                       "\xE2\x82\xAC",
+                                       "\xED\x9F\xBF",
+                                       "\xF0\x9F\x90\x9F",
+                                       "\xF4\x8F\xBF\xBF",
+                                       "\xC2\xA0"};
+    static const char *const bad[] = {"a\nb",
+                                      "\x1B[31m",
+                                      "\x7F",
+                                      "\xC2\x85",
+                                      "\x80",
+                                      "\xC3",
+                                      "\xC0\xAF",
+                                      "\xC1\xBF",
+                                      "\xE0\x9F\xBF",
+                                      "\xED\xA0\x80",
+                                      "\xE2\x82",
+                                      "\xF0\x8F\xBF\xBF",
+                                      "\xF4\x90\x80\x80",
+                                      "\xF5\x80\x80\x80",
+                                      "\xFF"};
+    (void)state;
+    for (size_t i = 0; i < sizeof good / sizeof good[0]; i++)
+        if (!text_is_printable(good[i]))
+            fail_msg("good text %zu was refused", i);
+    for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
+        if (text_is_printable(bad[i]))
+            fail_msg("bad text %zu was taken", i);
+}
+
+static void test_excerpts(void **state)
+{
+    char excerpt[8];
+    (void)state;
+    assert_string_equal(text_excerpt(excerpt, sizeof excerpt, "seven 7"), "seven 7");
+    assert_string_equal(text_excerpt(excerpt, sizeof excerpt, "eight  8"), "eigh...");
+    /* A euro sign of three bytes does not fit after three letters, and is not cut in two. */
+    assert_string_equal(text_excerpt(excerpt, sizeof excerpt, "abc\xE2\x82\xAC of it"), "abc...");
+    assert_string_equal(text_excerpt(excerpt, 4, "abcd"), "...");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_numbers),
+        cmocka_unit_test(test_infinity_is_written_as_in_yaml),
+        cmocka_unit_test(test_what_is_no_number),
+        cmocka_unit_test(test_halfway_cases),
+        cmocka_unit_test(test_long_texts),
+        cmocka_unit_test(test_a_shift_rounds_once),
+        cmocka_unit_test(test_round_trips),
+        cmocka_unit_test(test_a_decimal_comma_changes_nothing),
+        cmocka_unit_test(test_counts),
+        cmocka_unit_test(test_printable),
+        cmocka_unit_test(test_excerpts),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,109 @@
+/* sonject run: the targets of a scene into its image. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <sonject/sonject.h>
+
+#include "exit_code.h"
+#include "message.h"
+#include "progress.h"
+#include "stop.h"
+#include "verbs.h"
+
+struct run_options {
+    const char *scene;
+    const char *folder;
+    const char *device;
+    struct whole_argument seed;
+    struct text_list overrides;
+    bool is_quiet;
+};
+
+static const struct argument arguments[] = {
+    {"--output", "-o", "DIR", "folder for the results, made where missing", ARGUMENT_TEXT, true,
+     offsetof(struct run_options, folder)},
+    {"--seed", NULL, "N", "seed of the random numbers: --set injection.seed=N", ARGUMENT_WHOLE,
+     false, offsetof(struct run_options, seed)},
+    {"--device", NULL, "NAME", "part of an OpenCL device's name, see sonject devices",
+     ARGUMENT_TEXT, false, offsetof(struct run_options, device)},
+    {"--set", NULL, "KEY.PATH=VALUE", "replaces or adds a key of the scene; may be repeated",
+     ARGUMENT_TEXTS, false, offsetof(struct run_options, overrides)},
+    {"--quiet", NULL, NULL, "no progress bar, no news; only what is wrong", ARGUMENT_FLAG, false,
+     offsetof(struct run_options, is_quiet)},
+};
+
+/* The scene with its overrides, the seed's last. */
+static sonject_status read_scene(sonject_context *context, const struct run_options *options,
+                                 const char *seed, const char **overrides, sonject_scene **scene)
+{
+    size_t count = options->overrides.count;
+    if (count > 0)
+        memcpy(overrides, options->overrides.texts, count * sizeof(*overrides));
+    if (options->seed.is_given)
+        overrides[count++] = seed;
+    return sonject_scene_read(context, options->scene, overrides, count, scene);
+}
+
+static sonject_status inject(sonject_context *context, const struct run_options *options,
+                             struct progress *progress, int *was_finished)
+{
+    char seed[48];
+    snprintf(seed, sizeof(seed), "injection.seed=%llu", (unsigned long long)options->seed.value);
+    const char **overrides = calloc(options->overrides.count + 1, sizeof(*overrides));
+    if (!overrides)
+        return SONJECT_ERROR_MEMORY;
+    sonject_scene *scene = NULL;
+    sonject_status status = read_scene(context, options, seed, overrides, &scene);
+    free(overrides);
+    if (status == SONJECT_OK) {
+        sonject_run_params params;
+        sonject_run_params_init(&params);
+        params.folder = options->folder;
+        status = sonject_run(context, scene, &params, progress_update, progress, was_finished);
+    }
+    sonject_scene_release(&scene);
+    return status;
+}
+
+static int work(const void *verb_options)
+{
+    const struct run_options *options = verb_options;
+    stop_watch();
+    struct progress progress;
+    progress_begin(&progress, options->is_quiet);
+    sonject_context_params params;
+    sonject_context_params_init(&params);
+    params.device_name = options->device;
+    params.log = options->is_quiet ? NULL : progress_log;
+    params.log_user = &progress;
+    sonject_context *context = NULL;
+    int was_finished = 0;
+    sonject_status status = sonject_context_create(&params, &context);
+    if (status == SONJECT_OK)
+        status = inject(context, options, &progress, &was_finished);
+    progress_end(&progress);
+    int code = EXIT_CODE_DONE;
+    if (status == SONJECT_CANCELLED)
+        code = stop_report();
+    else if (status != SONJECT_OK)
+        code = fail_with(context, status);
+    else if (!options->is_quiet && was_finished)
+        message(options->folder, " already holds the finished result");
+    else if (!options->is_quiet)
+        message("the result is in ", options->folder);
+    sonject_context_release(&context);
+    return code;
+}
+
+const struct verb run_verb = {
+    .name = "run",
+    .summary = "injects a scene's targets and writes images, masks and truth",
+    .operand = "SCENE.yaml",
+    .operand_offset = offsetof(struct run_options, scene),
+    .arguments = arguments,
+    .argument_count = sizeof(arguments) / sizeof(arguments[0]),
+    .notes = "A folder that already holds the finished result of the same inputs is left as it is.",
+    .options_size = sizeof(struct run_options),
+    .work = work,
+};

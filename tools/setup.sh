@@ -1,0 +1,59 @@
+# What first-run.sh and test.sh share: the Debian 12 packages that sonject needs, and the build.
+# To be sourced from the project's top folder.
+# shellcheck shell=sh disable=SC2034
+
+build_packages="build-essential meson ninja-build pkg-config python3
+    libopenimageio-dev libyaml-dev libjansson-dev libxxhash-dev
+    ocl-icd-opencl-dev opencl-headers pocl-opencl-icd"
+test_packages="libcmocka-dev python3-numpy python3-pytest clang"
+
+# dpkg calls programs from here, which a plain su leaves out.
+PATH="$PATH:/usr/sbin:/sbin"
+export PATH
+
+is_installed() {
+    [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
+}
+
+run_as_root() {
+    if [ "$(id -u)" -eq 0 ]; then
+        "$@"
+    elif command -v sudo >/dev/null; then
+        sudo "$@"
+    else
+        echo "$0: root or sudo is needed to run: $*" >&2
+        return 1
+    fi
+}
+
+apt() {
+    run_as_root env DEBIAN_FRONTEND=noninteractive apt-get -y -q \
+        -o DPkg::Lock::Timeout=600 -o Acquire::Retries=3 "$@"
+}
+
+# Installs those of the named packages that are missing.
+install_packages() {
+    if ! command -v apt-get >/dev/null; then
+        echo "$0: no apt-get here: install what corresponds to these Debian packages: $*" >&2
+        return 0
+    fi
+    missing=
+    for package in "$@"; do
+        is_installed "$package" || missing="$missing $package"
+    done
+    [ -n "$missing" ] || return 0
+    apt update
+    # shellcheck disable=SC2086 # a list of words
+    apt install --no-install-recommends $missing
+}
+
+# Builds into ./build; a folder that an earlier call left, finished or not, is used again.
+build_release() {
+    if [ -f build/meson-private/coredata.dat ]; then
+        meson setup --reconfigure build --buildtype=release ||
+            meson setup --wipe build --buildtype=release
+    else
+        meson setup build --buildtype=release
+    fi
+    ninja -C build
+}

@@ -1,0 +1,13 @@
+/* The verbs, one file each. */
+#ifndef SONJECT_TOOLS_VERBS_H
+#define SONJECT_TOOLS_VERBS_H
+
+#include "arguments.h"
+
+extern const struct verb run_verb;
+extern const struct verb check_verb;
+extern const struct verb quicklook_verb;
+extern const struct verb seabed_verb;
+extern const struct verb devices_verb;
+
+#endif
