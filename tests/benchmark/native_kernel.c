@@ -1,0 +1,20 @@
+#define WIDTH 16
+#include "kernels/trace_rough.h"
+#include "kernels/trace_smooth.h"
+
+#include "native_kernel.h"
+
+void native_trace_rough(const struct fan_record *fan, const struct object_record *objects,
+                        const float *map, int64_t *seabed, int64_t *tiles, int first, int last,
+                        struct outcome_record *outcomes)
+{
+    for (int strip = first; strip < last; strip++)
+        outcomes[strip] = trace_rough_strip(fan, objects, map, seabed, tiles, strip, 0);
+}
+
+void native_trace_smooth(const struct fan_record *fan, const struct object_record *objects,
+                         int64_t *tally, int first, int last, struct outcome_record *outcomes)
+{
+    for (int strip = first; strip < last; strip++)
+        outcomes[strip] = trace_smooth_strip(fan, objects, tally, strip, 0);
+}
