@@ -233,12 +233,15 @@ static sonject_status parse(struct builder *builder, size_t bytes, int depth,
 
 sonject_status tree_parse(struct tree *tree, const char *text, size_t bytes)
 {
-    struct builder builder = {.tree = tree, .text = text};
+    static const char byte_order_mark[] = "\xEF\xBB\xBF";
     if (bytes > TREE_BYTES_MAX)
         return report_failure(tree->report, SONJECT_ERROR_INPUT,
                               "%s: larger than %d bytes; this is no scene file", tree->file,
                               TREE_BYTES_MAX);
-    return parse(&builder, bytes, 0, &tree->root);
+    /* libyaml skips the mark only where it chooses the encoding itself. */
+    const size_t skipped = bytes >= 3 && memcmp(text, byte_order_mark, 3) == 0 ? 3 : 0;
+    struct builder builder = {.tree = tree, .text = text + skipped};
+    return parse(&builder, bytes - skipped, 0, &tree->root);
 }
 
 sonject_status tree_parse_value(struct tree *tree, const char *override, const char *text,

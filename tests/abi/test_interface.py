@@ -1,0 +1,99 @@
+"""The library's outer face: exported symbols, headers that compile alone, sizes of structures, and
+a core that loads no C++ runtime."""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+
+import pytest
+
+SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
+LIBRARY = pathlib.Path(os.environ["SONJECT_LIBRARY"])
+HEADERS = sorted((SOURCE / "include" / "sonject").glob("*.h"))
+COMPILER = os.environ.get("CC", "cc")
+CXX_COMPILER = os.environ.get("CXX", "c++")
+
+
+def exported_symbols(library):
+    listing = subprocess.run(["nm", "-D", "--defined-only", library], check=True,
+                             capture_output=True, text=True).stdout
+    names = {line.split()[-1].split("@")[0] for line in listing.splitlines()}
+    return {name for name in names if name != "SONJECT_0"}
+
+
+def test_exports_are_the_checked_in_list():
+    listed = set((SOURCE / "tests" / "abi" / "symbols.txt").read_text().split())
+    assert exported_symbols(LIBRARY) == listed
+
+
+def test_exports_are_the_declared_functions():
+    declared = set()
+    for header in HEADERS:
+        declared |= set(re.findall(r"\b(sonject_\w+)\s*\(", re.sub(
+            r"/\*.*?\*/|^\s*#.*?$", "", header.read_text(), flags=re.S | re.M)))
+    functions = {name for name in declared if not name.endswith("_function")}
+    assert exported_symbols(LIBRARY) == functions
+
+
+@pytest.mark.parametrize("header", HEADERS, ids=lambda header: header.name)
+@pytest.mark.parametrize("language", ["c99", "c++11", "c++17"])
+def test_headers_compile_alone(header, language, tmp_path):
+    is_c = language == "c99"
+    source = tmp_path / ("alone.c" if is_c else "alone.cpp")
+    source.write_text(f"#include <sonject/{header.name}>\n"
+                      f"#include <sonject/{header.name}>\nint main(void) {{ return 0; }}\n")
+    subprocess.run([COMPILER if is_c else CXX_COMPILER, f"-std={language}", "-Wall", "-Wextra",
+                    "-Wpedantic", "-Werror", "-fsyntax-only", "-I", SOURCE / "include", source],
+                   check=True)
+
+
+# Sizes on 64-bit machines. A structure may only grow, at its end, in a release that says so.
+SIZES = {
+    "sonject_context_params": 56,
+    "sonject_device_info": 400,
+    "sonject_sonar_params": 64,
+    "sonject_medium_params": 24,
+    "sonject_seabed_params": 32,
+    "sonject_material_params": 32,
+    "sonject_object_params": 248,
+    "sonject_geometry_params": 40,
+    "sonject_transfer_params": 24,
+    "sonject_synthetic_params": 88,
+    "sonject_injection_params": 48,
+    "sonject_patch_params": 40,
+    "sonject_pixels": 40,
+    "sonject_box": 32,
+    "sonject_object_truth": 200,
+    "sonject_statistics": 136,
+    "sonject_run_params": 16,
+    "sonject_quicklook_params": 120,
+    "sonject_seabed_file_params": 208,
+}
+
+
+def test_structures_keep_their_sizes(tmp_path):
+    source = tmp_path / "sizes.c"
+    lines = "".join(f'printf("{name} %zu\\n", sizeof({name}));' for name in SIZES)
+    source.write_text("#include <stdio.h>\n#include <sonject/sonject.h>\n"
+                      f"int main(void) {{ {lines} return 0; }}\n")
+    program = tmp_path / "sizes"
+    subprocess.run([COMPILER, "-std=c99", "-I", SOURCE / "include", source, "-o", program],
+                   check=True)
+    output = subprocess.run([program], check=True, capture_output=True, text=True).stdout
+    assert dict((name, int(size)) for name, size in map(str.split, output.splitlines())) == SIZES
+
+
+def test_core_loads_no_cxx_runtime(tmp_path):
+    meson = shutil.which("meson")
+    assert meson, "meson is needed to build the core"
+    build = tmp_path / "core"
+    subprocess.run([meson, "setup", build, SOURCE, "-Dopenimageio=disabled", "--buildtype=debug",
+                    "-Db_sanitize=none"], check=True, capture_output=True)
+    subprocess.run([meson, "compile", "-C", build, "sonject:shared_library"], check=True,
+                   capture_output=True)
+    library = build / "lib" / "libsonject.so"
+    needed = subprocess.run(["readelf", "-d", library], check=True, capture_output=True,
+                            text=True).stdout
+    assert "NEEDED" in needed and "libstdc++" not in needed and "OpenImageIO" not in needed
+    assert exported_symbols(library) == exported_symbols(LIBRARY)
