@@ -1,6 +1,6 @@
 /* Elementary functions by + - * / alone, so that every device gives the same bits. Minimax
  * polynomials; the errors stated were measured against double precision over the whole range
- * (tests/unit/test_elementary.c). */
+ * (tests/kernel/test_elementary.c). */
 #ifndef SONJECT_KERNELS_ELEMENTARY_H
 #define SONJECT_KERNELS_ELEMENTARY_H
 
@@ -13,8 +13,9 @@ FUNCTION real nearest_integer(real value)
     return (value + magic) - magic;
 }
 
-/* Sine and cosine of an angle in cycles, |cycles| < 2^22; error below 1.5e-7, and the sine's is
- * relative near 0. Phase in cycles reduces exactly, where phase in radians would lose digits. */
+/* Sine and cosine of an angle in cycles, |cycles| < 2^22; error below 1e-7, and the sine's is
+ * relative (1.3e-7) near 0. Phase in cycles reduces exactly, where phase in radians would lose
+ * digits. */
 FUNCTION void sine_cosine_of_cycles(real cycles, real *sine, real *cosine)
 {
     const real turns = cycles - nearest_integer(cycles); /* -1/2...1/2, exact */
@@ -39,7 +40,7 @@ FUNCTION void sine_cosine_of_cycles(real cycles, real *sine, real *cosine)
     *cosine = CHOOSE(MASK_OF(((quadrant + 1) & 2) != 0), -plain_cosine, plain_cosine);
 }
 
-/* sin(2 pi u) / (2 pi u), 1 at 0. */
+/* sin(2 pi u) / (2 pi u), 1 at 0; |cycles| < 2^22; error below 2e-7. */
 FUNCTION real sinc_of_cycles(real cycles)
 {
     real sine, cosine;
@@ -49,7 +50,7 @@ FUNCTION real sinc_of_cycles(real cycles)
                   sine / (CHOOSE(is_zero, SPLAT(1.0f), cycles) * 6.2831853072f));
 }
 
-/* exp(value) for value <= 0; relative error below 2e-7; 0 below -80. */
+/* exp(value) for value <= 0; relative error below 1.3e-7; 0 below -80. */
 FUNCTION real exponential_of_negative(real value)
 {
     const real limited = larger(value, SPLAT(-80.0f));
@@ -66,7 +67,7 @@ FUNCTION real exponential_of_negative(real value)
     return CHOOSE(MASK_OF(value < -80.0f), SPLAT(0.0f), fraction * scale);
 }
 
-/* Natural logarithm of a normal value > 0; absolute error below 2e-7 + 1e-7 |result|. */
+/* Natural logarithm of a normal value > 0; absolute error below 1e-7 + 1.25e-7 |result|. */
 FUNCTION real natural_logarithm(real value)
 {
     const whole bits = AS_WHOLE(value);

@@ -23,19 +23,18 @@ __kernel void draw_speckle(__global const float *energy, int bins, int first_bin
     }
 }
 
-/* Global size: groups of FORM_COLUMNS columns x strips x 2 planes. */
+/* Global size: groups of WIDTH columns x strips x 2 planes. */
 __kernel void compress_range(__global const float *lines_real,
                              __global const float *lines_imaginary, int bins, int first,
-                             int bins_per_pixel, __global const float *pulse, int taps, int columns,
-                             int stride, int first_out_strip, __global float *out_real,
+                             int bins_per_pixel, __global const float *pulse, int taps, int stride,
+                             int first_out_strip, __global float *out_real,
                              __global float *out_imaginary)
 {
     const long strip = (long)get_global_id(1);
-    const int column = (int)get_global_id(0) * FORM_COLUMNS;
     __global const float *lines = get_global_id(2) ? lines_imaginary : lines_real;
     __global float *out = get_global_id(2) ? out_imaginary : out_real;
-    compress_range_of(lines + strip * bins, bins, first, bins_per_pixel, pulse, taps, column,
-                      columns, out + (strip + first_out_strip) * stride);
+    compress_range_of(lines + strip * bins, bins, first, bins_per_pixel, pulse, taps,
+                      (int)get_global_id(0) * WIDTH, out + (strip + first_out_strip) * stride);
 }
 
 /* Global size: groups of WIDTH columns x groups of FORM_ROWS rows. */

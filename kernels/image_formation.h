@@ -21,24 +21,28 @@ FUNCTION void complex_normal(struct random_key key, word number, real *real_part
     *imaginary_part = amplitude * sine;
 }
 
-#define FORM_COLUMNS 16 /* pixels a work-item forms, whatever the width */
-
-/* Range compression of FORM_COLUMNS pixels of a line: pixel j is the sum over taps of
- * line[j * bins_per_pixel + first + tap] * pulse[tap]; bins outside the line are empty. */
-FUNCTION void compress_range_of(GLOBAL const float *line, int bins, int first, int bins_per_pixel,
-                                GLOBAL const float *pulse, int taps, int first_column, int columns,
-                                GLOBAL float *out)
+/* The bins that WIDTH neighbouring pixels take one tap from; bins outside the line are empty. */
+FUNCTION real load_tap(GLOBAL const float *line, int bins, int start, int bins_per_pixel)
 {
-    for (int column = first_column; column < first_column + FORM_COLUMNS && column < columns;
-         column++) {
-        const int start = column * bins_per_pixel + first;
-        const int low = start < 0 ? -start : 0;
-        const int high = start + taps > bins ? bins - start : taps;
-        float sum = 0.0f;
-        for (int tap = low; tap < high; tap++)
-            sum += line[start + tap] * pulse[tap];
-        out[column] = sum;
+    float lanes[WIDTH];
+    for (int lane = 0; lane < WIDTH; lane++) {
+        const int bin = start + lane * bins_per_pixel;
+        lanes[lane] = bin >= 0 && bin < bins ? line[bin] : 0.0f;
     }
+    return LOAD_REAL(lanes);
+}
+
+/* Range compression of the WIDTH pixels from `column` on: pixel j is the sum over taps of
+ * line[j * bins_per_pixel + first + tap] * pulse[tap]. Lanes are pixels, so that each sum keeps its
+ * order whatever a compiler makes of the loop. `out` must have room for whole groups of WIDTH. */
+FUNCTION void compress_range_of(GLOBAL const float *line, int bins, int first, int bins_per_pixel,
+                                GLOBAL const float *pulse, int taps, int column, GLOBAL float *out)
+{
+    const int start = column * bins_per_pixel + first;
+    real sum = SPLAT(0.0f);
+    for (int tap = 0; tap < taps; tap++)
+        sum += load_tap(line, bins, start + tap, bins_per_pixel) * pulse[tap];
+    STORE_REAL(sum, out + column);
 }
 
 /* Where a row takes its aspects from. */

@@ -9,8 +9,8 @@
 #include "cl/program.h"
 
 #define SPECKLE_ENERGY_SHARE 0.001 /* of |W|^2 that is cut off from speckle and energies */
-#define COLUMNS_PER_ITEM     16    /* FORM_COLUMNS of kernels/image_formation.h */
-#define ROWS_PER_ITEM        4     /* FORM_ROWS */
+#define COLUMN_STEP          16    /* lines are padded to whole groups of any width */
+#define ROWS_PER_ITEM        4     /* FORM_ROWS of kernels/image_formation.h */
 
 /* The columns that the grid's bins reach through the pulse. */
 static void choose_window(struct form_lines *lines, const struct patch_view *view,
@@ -24,7 +24,7 @@ static void choose_window(struct form_lines *lines, const struct patch_view *vie
     const double high = fmin(last, (double)view->columns - 1.0);
     lines->first_column = high < low ? 0 : (size_t)low;
     lines->columns = high < low ? 0 : (size_t)(high - low) + 1;
-    lines->stride = (lines->columns + COLUMNS_PER_ITEM - 1) / COLUMNS_PER_ITEM * COLUMNS_PER_ITEM;
+    lines->stride = (lines->columns + COLUMN_STEP - 1) / COLUMN_STEP * COLUMN_STEP;
 }
 
 static sonject_status make_pulse(struct form_lines *lines, const struct patch_view *view,
@@ -119,15 +119,20 @@ static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t 
     const cl_int per_pixel = (cl_int)lines->grid.bins_per_pixel;
     const cl_int first = lines->pulse_first + (cl_int)lines->first_column * per_pixel;
     const cl_int taps = lines->pulse_taps;
-    const cl_int columns = (cl_int)lines->columns;
     const cl_int stride = (cl_int)lines->stride;
     const cl_int out_strip = strip - lines->grid.strips.first;
-    const struct kernel_argument arguments[] = {
-        ARGUMENT(real_bins), ARGUMENT(imaginary_bins),    ARGUMENT(bins),
-        ARGUMENT(first),     ARGUMENT(per_pixel),         ARGUMENT(lines->pulse),
-        ARGUMENT(taps),      ARGUMENT(columns),           ARGUMENT(stride),
-        ARGUMENT(out_strip), ARGUMENT(lines->real_lines), ARGUMENT(lines->imaginary_lines)};
-    const size_t global[3] = {lines->stride / COLUMNS_PER_ITEM, (size_t)count, 2};
+    const struct kernel_argument arguments[] = {ARGUMENT(real_bins),
+                                                ARGUMENT(imaginary_bins),
+                                                ARGUMENT(bins),
+                                                ARGUMENT(first),
+                                                ARGUMENT(per_pixel),
+                                                ARGUMENT(lines->pulse),
+                                                ARGUMENT(taps),
+                                                ARGUMENT(stride),
+                                                ARGUMENT(out_strip),
+                                                ARGUMENT(lines->real_lines),
+                                                ARGUMENT(lines->imaginary_lines)};
+    const size_t global[3] = {lines->stride / lines->device->width, (size_t)count, 2};
     return kernel_run(lines->report, lines->device, lines->compress, arguments,
                       sizeof arguments / sizeof *arguments, 3, global);
 }
