@@ -37,7 +37,7 @@ typedef struct sonject_material_params {
     double lambert;     /* mu >= 0, linear; pi*mu <= reflection^2, or <= 1 where reflection is 0 */
 } sonject_material_params;
 
-/* Painted steel as sonars see it: reflection 0.9, roughness 0.4 mm, mu = -10 dB. */
+/* Weathered steel: reflection 0.9, roughness 1 mm, mu = -10 dB. */
 SONJECT_API void sonject_material_params_init(sonject_material_params *material);
 
 #define SONJECT_NAME_CAPACITY 64

@@ -94,7 +94,7 @@ void sonject_material_params_init(sonject_material_params *material)
     memset(material, 0, sizeof *material);
     material->struct_size = sizeof *material;
     material->reflection = 0.9;
-    material->roughness_m = 0.4e-3;
+    material->roughness_m = 1.0e-3;
     material->lambert = 0.1;
 }
 
