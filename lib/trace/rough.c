@@ -6,12 +6,10 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
-#include "cl/program.h"
 
 #define PI           3.14159265358979323846
 #define RAYS_PER_BIN 2 /* at the far edge, where elevation covers most range */
 #define RAYS_MAX     67108864.0
-#define TALLY_BYTES  ((size_t)64 << 20)
 
 static double apparent_range_of_bin(const struct rough_trace *trace, const struct tracer *tracer,
                                     double bin)
@@ -174,29 +172,15 @@ static void choose_quanta(struct rough_trace *trace, const struct tracer *tracer
 static sonject_status make_buffers(struct rough_trace *trace, struct tracer *tracer,
                                    const struct object_record *records, const float *map)
 {
-    struct report *report = tracer->report;
-    struct device *device = tracer->device;
-    const size_t line_bytes = (size_t)trace->grid.bins.count * sizeof(int64_t);
-    trace->tally_capacity = TALLY_BYTES / line_bytes;
-    if (trace->tally_capacity == 0)
-        trace->tally_capacity = 1;
-    if (trace->tally_capacity > (size_t)trace->grid.strips.count)
-        trace->tally_capacity = (size_t)trace->grid.strips.count;
+    const size_t map_bytes = map ? tracer->view.rows * tracer->view.columns * sizeof *map : 0;
     sonject_status status =
-        kernel_create(report, device, PROGRAM_TRACE_ROUGH, "trace_rough", &trace->kernel);
+        trace_device_init(&trace->on_device, tracer, PROGRAM_TRACE_ROUGH, "trace_rough", records,
+                          (size_t)trace->grid.strips.count, (size_t)trace->grid.bins.count);
     if (status == SONJECT_OK)
-        status = buffer_create(report, device, tracer->scene->object_count * sizeof *records,
-                               records, &trace->objects);
+        status = buffer_create(tracer->report, tracer->device, map_bytes, map, &trace->map);
     if (status == SONJECT_OK)
-        status = buffer_create(report, device,
-                               map ? tracer->view.rows * tracer->view.columns * sizeof *map : 0,
-                               map, &trace->map);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, trace->tally_capacity * line_bytes, NULL,
-                               &trace->tallies);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, trace->tile_elements * sizeof(int64_t), NULL,
-                               &trace->tile_buffer);
+        status = buffer_create(tracer->report, tracer->device,
+                               trace->tile_elements * sizeof(int64_t), NULL, &trace->tile_buffer);
     return status;
 }
 
@@ -232,18 +216,14 @@ sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *trace
 
 void rough_trace_end(struct rough_trace *trace)
 {
-    if (trace->kernel)
-        clReleaseKernel(trace->kernel);
-    trace->kernel = NULL;
-    buffer_release(&trace->objects);
+    trace_device_clear(&trace->on_device);
     buffer_release(&trace->map);
-    buffer_release(&trace->tallies);
     buffer_release(&trace->tile_buffer);
 }
 
 int32_t rough_trace_chunk(const struct rough_trace *trace)
 {
-    return (int32_t)trace->tally_capacity;
+    return (int32_t)trace->on_device.tally_strips;
 }
 
 static sonject_status read_tallies(struct tracer *tracer, cl_mem buffer, size_t count, double unit,
@@ -265,15 +245,17 @@ sonject_status rough_trace_strips(struct rough_trace *trace, struct tracer *trac
                                   struct span strips, float *seabed)
 {
     const size_t count = (size_t)strips.count * (size_t)trace->grid.bins.count;
-    const cl_mem buffers[] = {trace->objects, trace->map, trace->tallies, trace->tile_buffer};
+    const cl_mem buffers[] = {trace->on_device.objects, trace->map, trace->on_device.tallies,
+                              trace->tile_buffer};
     trace->fan.first_strip = strips.first;
     trace->fan.strips = strips.count;
-    sonject_status status =
-        buffer_clear(tracer->report, tracer->device, trace->tallies, count * sizeof(int64_t));
+    sonject_status status = buffer_clear(tracer->report, tracer->device, trace->on_device.tallies,
+                                         count * sizeof(int64_t));
     if (status == SONJECT_OK)
-        status = trace_launch(tracer, trace->kernel, &trace->fan, buffers, 4);
+        status = trace_launch(tracer, trace->on_device.kernel, &trace->fan, buffers, 4);
     if (status == SONJECT_OK)
-        status = read_tallies(tracer, trace->tallies, count, trace->energy_of_quantum, seabed);
+        status =
+            read_tallies(tracer, trace->on_device.tallies, count, trace->energy_of_quantum, seabed);
     if (status == SONJECT_OK)
         tracer->counts.pings += (uint64_t)strips.count;
     return status;

@@ -15,9 +15,8 @@ struct rough_trace {
     size_t tile_elements;     /* of all tiles and planes */
     double energy_of_quantum; /* m^2 */
     struct fan_record fan;
-    cl_kernel kernel;
-    cl_mem objects, map, tallies, tile_buffer;
-    size_t tally_capacity; /* strips that the tally buffer holds */
+    struct trace_device on_device;
+    cl_mem map, tile_buffer;
 };
 
 /* Prepares a trace. map: rows x columns of the view, reflectivity over mu0 (values >= 0, finite),

@@ -6,12 +6,10 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
-#include "cl/program.h"
 
 #define STRIP_WAVELENGTHS  0.25  /* widest sub-strip: wider ones alias glints (physics.md 2) */
 #define CELL_WAVELENGTHS   0.125 /* spacing of rays on the wavefront */
 #define BINS_PER_DEVIATION 16.0  /* linear sharing between bins then errs by 5e-4 */
-#define TALLY_BYTES        ((size_t)64 << 20)
 
 static void lay_grid(struct smooth_trace *trace, const struct tracer *tracer, uint32_t number)
 {
@@ -68,28 +66,6 @@ static void choose_quanta(struct smooth_trace *trace, const struct tracer *trace
     trace->amplitude_of_quantum = ratio * ratio / trace->fan.quanta;
 }
 
-static sonject_status make_buffers(struct smooth_trace *trace, struct tracer *tracer,
-                                   const struct object_record *records)
-{
-    struct report *report = tracer->report;
-    struct device *device = tracer->device;
-    const size_t line_bytes = (size_t)trace->grid.bins.count * 2 * sizeof(int64_t);
-    trace->tally_capacity = TALLY_BYTES / line_bytes;
-    if (trace->tally_capacity == 0)
-        trace->tally_capacity = 1;
-    if (trace->tally_capacity > (size_t)trace->grid.strips.count)
-        trace->tally_capacity = (size_t)trace->grid.strips.count;
-    sonject_status status =
-        kernel_create(report, device, PROGRAM_TRACE_SMOOTH, "trace_smooth", &trace->kernel);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, tracer->scene->object_count * sizeof *records,
-                               records, &trace->objects);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, trace->tally_capacity * line_bytes, NULL,
-                               &trace->tallies);
-    return status;
-}
-
 sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tracer,
                                   uint32_t number)
 {
@@ -106,43 +82,39 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
     object_records_init(records, tracer, origin);
     lay_fan(trace, tracer, number);
     choose_quanta(trace, tracer);
-    const sonject_status status = make_buffers(trace, tracer, records);
+    const sonject_status status =
+        trace_device_init(&trace->on_device, tracer, PROGRAM_TRACE_SMOOTH, "trace_smooth", records,
+                          (size_t)trace->grid.strips.count, 2 * (size_t)trace->grid.bins.count);
     free(records);
-    if (status != SONJECT_OK)
-        smooth_trace_end(trace);
     return status;
 }
 
 void smooth_trace_end(struct smooth_trace *trace)
 {
-    if (trace->kernel)
-        clReleaseKernel(trace->kernel);
-    trace->kernel = NULL;
-    buffer_release(&trace->objects);
-    buffer_release(&trace->tallies);
+    trace_device_clear(&trace->on_device);
 }
 
 int32_t smooth_trace_chunk(const struct smooth_trace *trace)
 {
-    return (int32_t)trace->tally_capacity;
+    return (int32_t)trace->on_device.tally_strips;
 }
 
 sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tracer,
                                    struct span strips, float *real_part, float *imaginary_part)
 {
     const size_t count = (size_t)strips.count * (size_t)trace->grid.bins.count;
-    const cl_mem buffers[] = {trace->objects, trace->tallies};
+    const cl_mem buffers[] = {trace->on_device.objects, trace->on_device.tallies};
     int64_t *tallies = allocate_array(2 * count, sizeof *tallies);
     if (!tallies)
         return report_out_of_memory(tracer->report, "tallies");
     trace->fan.first_strip = strips.first;
     trace->fan.strips = strips.count;
-    sonject_status status =
-        buffer_clear(tracer->report, tracer->device, trace->tallies, 2 * count * sizeof *tallies);
+    sonject_status status = buffer_clear(tracer->report, tracer->device, trace->on_device.tallies,
+                                         2 * count * sizeof *tallies);
     if (status == SONJECT_OK)
-        status = trace_launch(tracer, trace->kernel, &trace->fan, buffers, 2);
+        status = trace_launch(tracer, trace->on_device.kernel, &trace->fan, buffers, 2);
     if (status == SONJECT_OK)
-        status = buffer_read(tracer->report, tracer->device, trace->tallies, 0,
+        status = buffer_read(tracer->report, tracer->device, trace->on_device.tallies, 0,
                              2 * count * sizeof *tallies, tallies);
     if (status == SONJECT_OK)
         for (size_t i = 0; i < count; i++) {

@@ -8,9 +8,7 @@ struct smooth_trace {
     struct line_grid grid;       /* that the object covers */
     double amplitude_of_quantum; /* m */
     struct fan_record fan;
-    cl_kernel kernel;
-    cl_mem objects, tallies;
-    size_t tally_capacity;
+    struct trace_device on_device;
 };
 
 /* Prepares a trace of one object's glints; as rough_trace_begin. An object without a smooth part

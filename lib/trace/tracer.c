@@ -6,8 +6,10 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "cl/program.h"
 
-#define PI 3.14159265358979323846
+#define PI          3.14159265358979323846
+#define TALLY_BYTES ((size_t)64 << 20)
 
 /* Host and device must agree on every byte. */
 typedef char object_record_is_packed[sizeof(struct object_record) == 26 * 4 ? 1 : -1];
@@ -154,4 +156,37 @@ sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_
     buffer_release(&outcome_buffer);
     free(outcomes);
     return status;
+}
+
+sonject_status trace_device_init(struct trace_device *device, struct tracer *tracer,
+                                 enum device_program program, const char *kernel_name,
+                                 const struct object_record *records, size_t strips,
+                                 size_t elements)
+{
+    struct report *report = tracer->report;
+    const size_t line_bytes = elements * sizeof(int64_t);
+    const size_t fitting = TALLY_BYTES / line_bytes;
+    memset(device, 0, sizeof *device);
+    device->tally_strips = fitting < 1 ? 1 : fitting < strips ? fitting : strips;
+    sonject_status status =
+        kernel_create(report, tracer->device, program, kernel_name, &device->kernel);
+    if (status == SONJECT_OK)
+        status =
+            buffer_create(report, tracer->device, tracer->scene->object_count * sizeof *records,
+                          records, &device->objects);
+    if (status == SONJECT_OK)
+        status = buffer_create(report, tracer->device, device->tally_strips * line_bytes, NULL,
+                               &device->tallies);
+    if (status != SONJECT_OK)
+        trace_device_clear(device);
+    return status;
+}
+
+void trace_device_clear(struct trace_device *device)
+{
+    if (device->kernel)
+        clReleaseKernel(device->kernel);
+    device->kernel = NULL;
+    buffer_release(&device->objects);
+    buffer_release(&device->tallies);
 }

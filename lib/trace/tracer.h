@@ -43,6 +43,22 @@ void object_records_init(struct object_record *records, const struct tracer *tra
 sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_record *fan,
                             const cl_mem *buffers, size_t buffer_count);
 
+/* What both parts keep on the device. */
+struct trace_device {
+    cl_kernel kernel;
+    cl_mem objects, tallies;
+    size_t tally_strips; /* that the tallies have room for */
+};
+
+/* Creates the kernel, the objects' buffer and tallies for as many of `strips` strips, of `elements`
+ * 64-bit integers each, as fit 64 MB (at least one). On failure nothing is held. Errors: DEVICE,
+ * MEMORY. */
+sonject_status trace_device_init(struct trace_device *device, struct tracer *tracer,
+                                 enum device_program program, const char *kernel_name,
+                                 const struct object_record *records, size_t strips,
+                                 size_t elements);
+void trace_device_clear(struct trace_device *device);
+
 /* The largest power of two not above value; value > 0. */
 float power_of_two_below(double value);
 

@@ -172,17 +172,18 @@ int main(void)
         fail(&set.report, "rough part");
     rough.fan.first_strip = rough.grid.strips.first;
     rough.fan.strips = rough.grid.strips.count;
-    int differs = compare(&set, &rough.fan, rough.kernel, rough.objects, rough.tallies,
-                          rough.tile_buffer, line_grid_cells(&rough.grid), rough.tile_elements, 0,
-                          &rates);
+    int differs = compare(&set, &rough.fan, rough.on_device.kernel, rough.on_device.objects,
+                          rough.on_device.tallies, rough.tile_buffer, line_grid_cells(&rough.grid),
+                          rough.tile_elements, 0, &rates);
     print_rates("seabed and rough surfaces", &rates);
     if (smooth_trace_begin(&smooth, &set.tracer, 0) != SONJECT_OK)
         fail(&set.report, "smooth part");
     smooth.fan.first_strip = smooth.grid.strips.first;
     smooth.fan.strips = smooth_trace_chunk(&smooth);
-    differs |= compare(&set, &smooth.fan, smooth.kernel, smooth.objects, smooth.tallies, NULL,
-                       2 * (size_t)smooth.fan.strips * (size_t)smooth.grid.bins.count, 0, 1,
-                       &rates);
+    differs |=
+        compare(&set, &smooth.fan, smooth.on_device.kernel, smooth.on_device.objects,
+                smooth.on_device.tallies, NULL,
+                2 * (size_t)smooth.fan.strips * (size_t)smooth.grid.bins.count, 0, 1, &rates);
     print_rates("glints", &rates);
     printf("device and native C agree in every bit: %s\n", differs ? "NO" : "yes");
     rough_trace_end(&rough);
