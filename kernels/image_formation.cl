@@ -41,12 +41,11 @@ __kernel void compress_range(__global const float *lines_real,
 __kernel void combine_aspects(int first_strip, int strips, int strips_per_row, int reach,
                               __global const float *lines_real,
                               __global const float *lines_imaginary, int stride,
-                              __global const float *response_real,
-                              __global const float *response_imaginary, int rows,
+                              __global const float *response, int rows,
                               __global float *out_real, __global float *out_imaginary)
 {
     const struct aspects aspects = {first_strip, strips, strips_per_row, reach};
-    combine_aspects_of(aspects, lines_real, lines_imaginary, stride, response_real,
-                       response_imaginary, (int)get_global_id(1) * FORM_ROWS, rows,
-                       (int)get_global_id(0) * WIDTH, out_real, out_imaginary);
+    combine_aspects_of(aspects, lines_real, lines_imaginary, stride, response,
+                       (int)get_global_id(1) * FORM_ROWS, rows, (int)get_global_id(0) * WIDTH,
+                       out_real, out_imaginary);
 }

@@ -59,9 +59,8 @@ struct aspects {
  * lines[q] * response[n * strips_per_row - q + reach]. Planes are rows_or_strips x stride. */
 FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lines_real,
                                  GLOBAL const float *lines_imaginary, int stride,
-                                 GLOBAL const float *response_real,
-                                 GLOBAL const float *response_imaginary, int first_row, int rows,
-                                 int column, GLOBAL float *out_real, GLOBAL float *out_imaginary)
+                                 GLOBAL const float *response, int first_row, int rows, int column,
+                                 GLOBAL float *out_real, GLOBAL float *out_imaginary)
 {
     real sum_real[FORM_ROWS], sum_imaginary[FORM_ROWS];
     for (int r = 0; r < FORM_ROWS; r++) {
@@ -82,10 +81,8 @@ FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lin
             const int tap = (first_row + r) * aspects.strips_per_row - strip + aspects.reach;
             if (tap < 0 || tap >= taps)
                 continue;
-            const float c = response_real[tap];
-            const float d = response_imaginary[tap];
-            sum_real[r] += a * c - b * d;
-            sum_imaginary[r] += a * d + b * c;
+            sum_real[r] += a * response[tap];
+            sum_imaginary[r] += b * response[tap];
         }
     }
     for (int r = 0; r < FORM_ROWS && first_row + r < rows; r++) {

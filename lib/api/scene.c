@@ -102,19 +102,9 @@ sonject_status sonject_scene_set_injection(sonject_scene *scene,
                 "injection");
 }
 
-/* Sizes are checked against the image when there is one. */
-static sonject_status any_patch(const sonject_patch_params *patch, struct report *report,
-                                const char **key)
-{
-    (void)patch;
-    (void)report;
-    (void)key;
-    return SONJECT_OK;
-}
-
 sonject_status sonject_scene_set_patch(sonject_scene *scene, const sonject_patch_params *patch)
 {
-    SET_CHECKED(scene, sonject_patch_params, patch, patch, any_patch, "patch");
+    SET_CHECKED(scene, sonject_patch_params, patch, patch, check_patch, "patch");
 }
 
 sonject_status sonject_scene_set_input_file(sonject_scene *scene, const char *path)
@@ -132,24 +122,12 @@ sonject_status sonject_scene_set_input_file(sonject_scene *scene, const char *pa
     return SONJECT_OK;
 }
 
-static sonject_status check_size(struct report *report, uint32_t rows, uint32_t columns)
-{
-    const uint32_t limit = (uint32_t)1 << 20;
-    if (rows == 0 || columns == 0 || rows > limit || columns > limit ||
-        (uint64_t)rows * columns > (uint64_t)1 << 31)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "rows and columns must be 1...2^20 with at most 2^31 pixels, not "
-                              "%u x %u",
-                              (unsigned)rows, (unsigned)columns);
-    return SONJECT_OK;
-}
-
 sonject_status sonject_scene_set_input_uniform(sonject_scene *scene, uint32_t rows,
                                                uint32_t columns)
 {
     if (!scene)
         return SONJECT_ERROR_ARGUMENT;
-    const sonject_status status = check_size(scene->report, rows, columns);
+    const sonject_status status = check_uniform(rows, columns, scene->report, NULL);
     if (status == SONJECT_OK) {
         scene->scene.uniform_rows = rows;
         scene->scene.uniform_columns = columns;

@@ -53,6 +53,22 @@ sonject_status buffer_write(struct report *report, struct device *device, cl_mem
                                : device_failure(report, device, "clEnqueueWriteBuffer", error);
 }
 
+sonject_status buffer_map(struct report *report, struct device *device, cl_mem buffer, size_t bytes,
+                          const void **contents)
+{
+    cl_int error = CL_SUCCESS;
+    *contents = clEnqueueMapBuffer(device->queue, buffer, CL_TRUE, CL_MAP_READ, 0,
+                                   bytes > 0 ? bytes : 1, 0, NULL, NULL, &error);
+    return error == CL_SUCCESS ? SONJECT_OK
+                               : device_failure(report, device, "clEnqueueMapBuffer", error);
+}
+
+void buffer_unmap(struct device *device, cl_mem buffer, const void *contents)
+{
+    /* the queue is in order, so nothing that follows can overtake this */
+    (void)clEnqueueUnmapMemObject(device->queue, buffer, (void *)contents, 0, NULL, NULL);
+}
+
 sonject_status buffer_clear(struct report *report, struct device *device, cl_mem buffer,
                             size_t bytes)
 {

@@ -15,6 +15,12 @@ sonject_status buffer_read(struct report *report, struct device *device, cl_mem 
                            size_t offset, size_t bytes, void *contents);
 sonject_status buffer_write(struct report *report, struct device *device, cl_mem buffer,
                             size_t offset, size_t bytes, const void *contents);
+/* Makes a buffer's first bytes readable where they lie (on a CPU without a copy); *contents is
+ * valid until buffer_unmap. Errors: DEVICE, MEMORY. */
+sonject_status buffer_map(struct report *report, struct device *device, cl_mem buffer, size_t bytes,
+                          const void **contents);
+void buffer_unmap(struct device *device, cl_mem buffer, const void *contents);
+
 sonject_status buffer_clear(struct report *report, struct device *device, cl_mem buffer,
                             size_t bytes);
 

@@ -47,13 +47,13 @@ static sonject_status make_pulse(struct form_lines *lines, const struct patch_vi
     return status;
 }
 
-static int32_t response_reach(const struct patch_view *view, const struct point_response *response,
-                              enum form_kind kind, const struct line_grid *grid)
+int32_t form_reach(const struct patch_view *view, const struct point_response *response,
+                   enum form_kind kind, uint32_t strips_per_row)
 {
-    const double whole = (double)view->rows * grid->strips_per_row;
+    const double whole = (double)view->rows * strips_per_row;
     if (kind == FORM_GLINT)
         return (int32_t)whole;
-    const double strip = view->row_spacing_m / grid->strips_per_row;
+    const double strip = view->row_spacing_m / strips_per_row;
     return (int32_t)fmin(whole,
                          ceil(along_track_energy_reach(response, SPECKLE_ENERGY_SHARE) / strip));
 }
@@ -71,7 +71,7 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
     lines->rows = view->rows;
     lines->row_spacing_m = view->row_spacing_m;
     lines->response = *response;
-    lines->reach = response_reach(view, response, kind, grid);
+    lines->reach = form_reach(view, response, kind, grid->strips_per_row);
     const int32_t taps_each_side = pulse_reach_bins(view, response, grid->bins_per_pixel);
     choose_window(lines, view, taps_each_side);
     if (lines->columns == 0)
@@ -212,8 +212,8 @@ static float *response_taps(const struct form_lines *lines, size_t *count)
     return taps;
 }
 
-static sonject_status combine(struct form_lines *lines, cl_mem taps, cl_mem no_taps,
-                              cl_mem real_out, cl_mem imaginary_out)
+static sonject_status combine(struct form_lines *lines, cl_mem taps, cl_mem real_out,
+                              cl_mem imaginary_out)
 {
     const cl_int first_strip = lines->grid.strips.first;
     const cl_int strips = lines->grid.strips.count;
@@ -229,7 +229,6 @@ static sonject_status combine(struct form_lines *lines, cl_mem taps, cl_mem no_t
                                                 ARGUMENT(lines->imaginary_lines),
                                                 ARGUMENT(stride),
                                                 ARGUMENT(taps),
-                                                ARGUMENT(no_taps),
                                                 ARGUMENT(rows),
                                                 ARGUMENT(real_out),
                                                 ARGUMENT(imaginary_out)};
@@ -258,7 +257,6 @@ sonject_status form_lines_finish(struct form_lines *lines, float *real_part, flo
     size_t count;
     const size_t plane = lines->rows * lines->stride;
     cl_mem tap_buffer = NULL;
-    cl_mem no_taps = NULL; /* the response of a straight track is real */
     cl_mem real_out = NULL;
     cl_mem imaginary_out = NULL;
     float *taps = response_taps(lines, &count);
@@ -269,21 +267,18 @@ sonject_status form_lines_finish(struct form_lines *lines, float *real_part, flo
         status =
             buffer_create(lines->report, lines->device, count * sizeof *taps, taps, &tap_buffer);
     if (status == SONJECT_OK)
-        status = buffer_create(lines->report, lines->device, count * sizeof *taps, NULL, &no_taps);
-    if (status == SONJECT_OK)
         status =
             buffer_create(lines->report, lines->device, plane * sizeof(float), NULL, &real_out);
     if (status == SONJECT_OK)
         status = buffer_create(lines->report, lines->device, plane * sizeof(float), NULL,
                                &imaginary_out);
     if (status == SONJECT_OK)
-        status = combine(lines, tap_buffer, no_taps, real_out, imaginary_out);
+        status = combine(lines, tap_buffer, real_out, imaginary_out);
     if (status == SONJECT_OK)
         status = read_plane(lines, real_out, padded, real_part);
     if (status == SONJECT_OK)
         status = read_plane(lines, imaginary_out, padded, imaginary_part);
     buffer_release(&tap_buffer);
-    buffer_release(&no_taps);
     buffer_release(&real_out);
     buffer_release(&imaginary_out);
     free(taps);

@@ -46,6 +46,10 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
                                 const struct line_grid *grid);
 void form_lines_end(struct form_lines *lines);
 
+/* Strips on each side of a row that this kind of formation takes aspects from. */
+int32_t form_reach(const struct patch_view *view, const struct point_response *response,
+                   enum form_kind kind, uint32_t strips_per_row);
+
 /* Range-compresses count strips from `strip` on: two planes of count x grid.bins.count. A NULL
  * imaginary_part is zero. Errors: DEVICE, MEMORY. */
 sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t count,

@@ -11,14 +11,14 @@ struct complex_plane {
 };
 
 static sonject_status plane_of_noise(struct tracer *tracer, uint32_t stream,
-                                     struct complex_plane *plane)
+                                     const struct window *window, struct complex_plane *plane)
 {
     const size_t pixels = tracer->view.rows * tracer->view.columns;
     plane->real_part = allocate_array(pixels, sizeof(float));
     plane->imaginary_part = allocate_array(pixels, sizeof(float));
     if (!plane->real_part || !plane->imaginary_part)
         return report_out_of_memory(tracer->report, "noise");
-    return coloured_noise(tracer, stream, plane->real_part, plane->imaginary_part);
+    return coloured_noise(tracer, stream, window, plane->real_part, plane->imaginary_part);
 }
 
 static void plane_clear(struct complex_plane *plane)
@@ -75,22 +75,58 @@ static void store_pixel(struct injection_result *result, size_t i, double real_p
     }
 }
 
+/* How much of the seabed's energy the objects hide. */
+static double hidden_share(const struct echoes *echoes, size_t i)
+{
+    const double without = echoes->seabed_energy[i];
+    return without > 0.0 ? fmin(1.0, echoes->lost_energy[i] / without) : 0.0;
+}
+
+/* Image energy per m^2 of cross-section. */
+static double gain_at(const struct patch_level *level, const struct echoes *echoes, size_t i)
+{
+    return level->level[i] / (double)level->cell_energy[i % echoes->columns];
+}
+
+/* Marks the pixels that the objects change by more than the scene's influence level (all of them
+ * when the patch is traced anew), and finds the window that holds them. */
+static struct window mark_influence(const struct scene *scene, const struct patch_level *level,
+                                    const struct echoes *echoes, uint8_t *influence)
+{
+    const double threshold = pow(10.0, scene->injection.influence_db / 10.0);
+    const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
+    struct window window = {echoes->rows, 0, echoes->columns, 0};
+    size_t end_row = 0;
+    size_t end_column = 0;
+    for (size_t i = 0; i < echoes->rows * echoes->columns; i++) {
+        const double change = gain_at(level, echoes, i) * echoes->target_energy[i] +
+                              hidden_share(echoes, i) * level->level[i];
+        if (!resynthesises && !(change > 0.0 && change >= threshold * level->level[i]))
+            continue;
+        const size_t row = i / echoes->columns;
+        const size_t column = i % echoes->columns;
+        influence[i] = 255;
+        window.first_row = row < window.first_row ? row : window.first_row;
+        window.first_column = column < window.first_column ? column : window.first_column;
+        end_row = row + 1;
+        end_column = column + 1 > end_column ? column + 1 : end_column;
+    }
+    window.rows = end_row > window.first_row ? end_row - window.first_row : 0;
+    window.columns = end_column > window.first_column ? end_column - window.first_column : 0;
+    return window;
+}
+
 static void compose_pixel(const struct scene *scene, const struct patch_level *level,
                           const struct echoes *echoes, const float *pixels,
                           const struct complex_plane *noise, const struct complex_plane *phase,
-                          size_t i, double threshold, struct injection_result *result)
+                          size_t i, struct injection_result *result)
 {
-    const double local = level->level[i];
-    const double gain = local / level->cell_energy[i % echoes->columns]; /* image energy per m^2 */
-    const double scale = sqrt(gain);
-    const double without = echoes->seabed_energy[i];
-    const double hidden = without > 0.0 ? fmin(1.0, echoes->lost_energy[i] / without) : 0.0;
-    const double change = gain * echoes->target_energy[i] + hidden * local;
+    const double scale = sqrt(gain_at(level, echoes, i));
+    const bool is_touched = result->influence[i] != 0;
     const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
-    const bool is_touched = change >= threshold * local && change > 0.0;
     struct pixel_parts parts;
-    parts.visibility = is_touched || resynthesises ? 1.0 - hidden : 1.0;
-    parts.noise_energy = level->noise_ratio * local;
+    parts.visibility = is_touched ? 1.0 - hidden_share(echoes, i) : 1.0;
+    parts.noise_energy = level->noise_ratio * level->level[i];
     parts.target_real = scale * echoes->target_real[i];
     parts.target_imaginary = scale * echoes->target_imaginary[i];
     parts.noise_real = noise->real_part ? noise->real_part[i] : 0.0;
@@ -104,7 +140,7 @@ static void compose_pixel(const struct scene *scene, const struct patch_level *l
     }
     double real_part = parts.input_real;
     double imaginary_part = parts.input_imaginary;
-    if (is_touched || resynthesises) {
+    if (is_touched) {
         add_parts(&parts, resynthesises, &real_part, &imaginary_part);
         store_pixel(result, i, real_part, imaginary_part);
     }
@@ -112,8 +148,8 @@ static void compose_pixel(const struct scene *scene, const struct patch_level *l
     result->field[2 * i + 1] = (float)(imaginary_part / scale);
     result->visibility[i] = (float)parts.visibility;
     result->energy[i] =
-        (float)(echoes->target_energy[i] + fmax(0.0, without - echoes->lost_energy[i]));
-    result->influence[i] = is_touched || resynthesises ? 255 : 0;
+        (float)(echoes->target_energy[i] +
+                fmax(0.0, (double)echoes->seabed_energy[i] - echoes->lost_energy[i]));
 }
 
 sonject_status compose(struct tracer *tracer, const struct patch_level *level,
@@ -123,19 +159,21 @@ sonject_status compose(struct tracer *tracer, const struct patch_level *level,
     const struct scene *scene = tracer->scene;
     const size_t count = echoes->rows * echoes->columns;
     const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
+    const struct window touched = mark_influence(scene, level, echoes, result->influence);
+    /* the field layer gives every pixel a phase, so that one is drawn everywhere */
+    const struct window whole = {0, echoes->rows, 0, echoes->columns};
     struct complex_plane noise = {NULL, NULL};
     struct complex_plane phase = {NULL, NULL};
     sonject_status status = SONJECT_OK;
     if (scene->object_count > 0)
-        status = plane_of_noise(tracer, STREAM_NOISE, &noise);
+        status = plane_of_noise(tracer, STREAM_NOISE, &touched, &noise);
     if (status == SONJECT_OK && !is_complex && !resynthesises)
-        status = plane_of_noise(tracer, STREAM_INPUT_PHASE, &phase);
+        status = plane_of_noise(tracer, STREAM_INPUT_PHASE, &whole, &phase);
     if (status == SONJECT_OK) {
         /* pixels that nothing touches must keep every bit, so they are copied, not computed */
         memcpy(result->image, pixels, count * (is_complex ? 2 : 1) * sizeof(float));
-        const double threshold = pow(10.0, scene->injection.influence_db / 10.0);
         for (size_t i = 0; i < count; i++)
-            compose_pixel(scene, level, echoes, pixels, &noise, &phase, i, threshold, result);
+            compose_pixel(scene, level, echoes, pixels, &noise, &phase, i, result);
     }
     plane_clear(&noise);
     plane_clear(&phase);

@@ -51,9 +51,15 @@ sonject_status echoes_compute(struct echoes *echoes, struct tracer *tracer,
                               const struct echo_request *request);
 void echoes_clear(struct echoes *echoes);
 
-/* A field of complex normal deviates of unit mean square with the sonar's point response, rows x
- * columns. Errors: DEVICE, MEMORY. */
-sonject_status coloured_noise(struct tracer *tracer, uint32_t stream, float *real_part,
-                              float *imaginary_part);
+/* Rows and columns of a view. */
+struct window {
+    size_t first_row, rows, first_column, columns;
+};
+
+/* A field of complex normal deviates of unit mean square with the sonar's point response, in two
+ * planes of rows x columns of the view. Only the window is filled; its values do not depend on the
+ * window's size. Errors: DEVICE, MEMORY. */
+sonject_status coloured_noise(struct tracer *tracer, uint32_t stream, const struct window *window,
+                              float *real_part, float *imaginary_part);
 
 #endif

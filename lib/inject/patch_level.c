@@ -7,8 +7,9 @@
 #include "base/memory.h"
 #include "image/statistics.h"
 
-#define LEVEL_FLOOR 1e-6 /* of the patch's mean intensity: blank corners of a swath have no level  \
-                          */
+#define LEVEL_FLOOR                                                                                \
+    1e-6 /* of the patch's mean intensity: blank corners of a swath have no level                  \
+          */
 
 double seabed_cell_energy(const struct patch_view *view, const struct point_response *response,
                           double mu, double apparent_range_m)

@@ -69,37 +69,40 @@ sonject_status place_check(struct reader *reader, const struct tree_node *node, 
     return refuse_key(reader, node, key, "%s", check->message + strlen(key) + 1);
 }
 
-static sonject_status need_text(struct reader *reader, const struct tree_node *node,
-                                const char **text)
+/* The text of a single value; NULL after a message, whose status is INPUT. */
+static const char *need_text(struct reader *reader, const struct tree_node *node)
 {
-    if (tree_is_null(node))
-        return refuse_value(reader, node, "has no value; write one or remove the key");
-    if (node->kind != TREE_TEXT)
-        return refuse_value(reader, node, "must be a single value, not a %s",
-                            node->kind == TREE_LIST ? "list" : "section");
-    *text = node->text;
-    return SONJECT_OK;
+    if (tree_is_null(node)) {
+        refuse_value(reader, node, "has no value; write one or remove the key");
+        return NULL;
+    }
+    if (node->kind != TREE_TEXT) {
+        refuse_value(reader, node, "must be a single value, not a %s",
+                     node->kind == TREE_LIST ? "list" : "section");
+        return NULL;
+    }
+    return node->text;
 }
 
 sonject_status read_quantity(struct reader *reader, const struct tree_node *node,
                              enum quantity quantity, double *value)
 {
     char problem[200];
-    const char *text;
-    sonject_status status = need_text(reader, node, &text);
-    if (status == SONJECT_OK && !quantity_from_text(quantity, text, value, problem, sizeof problem))
-        status = refuse_value(reader, node, "%s", problem);
-    return status;
+    const char *text = need_text(reader, node);
+    if (!text)
+        return SONJECT_ERROR_INPUT;
+    if (!quantity_from_text(quantity, text, value, problem, sizeof problem))
+        return refuse_value(reader, node, "%s", problem);
+    return SONJECT_OK;
 }
 
 static sonject_status read_count(struct reader *reader, const struct field *field,
                                  const struct tree_node *node, uint64_t *count)
 {
     char excerpt[40];
-    const char *text;
-    const sonject_status status = need_text(reader, node, &text);
-    if (status != SONJECT_OK)
-        return status;
+    const char *text = need_text(reader, node);
+    if (!text)
+        return SONJECT_ERROR_INPUT;
     if (!text_to_count(text, count))
         return refuse_value(reader, node, "'%s' is not a whole number from 0 to %llu",
                             text_excerpt(excerpt, sizeof excerpt, text),
@@ -113,10 +116,9 @@ static sonject_status read_count(struct reader *reader, const struct field *fiel
 static sonject_status read_bool(struct reader *reader, const struct tree_node *node, bool *value)
 {
     char excerpt[40];
-    const char *text;
-    const sonject_status status = need_text(reader, node, &text);
-    if (status != SONJECT_OK)
-        return status;
+    const char *text = need_text(reader, node);
+    if (!text)
+        return SONJECT_ERROR_INPUT;
     *value = strcmp(text, "true") == 0;
     if (!*value && strcmp(text, "false") != 0)
         return refuse_value(reader, node, "'%s' is neither true nor false",
@@ -129,10 +131,9 @@ static sonject_status read_word(struct reader *reader, const struct field *field
 {
     struct word_list list = {{0}, 0};
     char excerpt[40];
-    const char *text;
-    const sonject_status status = need_text(reader, node, &text);
-    if (status != SONJECT_OK)
-        return status;
+    const char *text = need_text(reader, node);
+    if (!text)
+        return SONJECT_ERROR_INPUT;
     for (uint32_t i = 0; i < FIELD_WORDS_MAX && field->words[i]; i++) {
         if (strcmp(field->words[i], text) == 0) {
             *value = i;
@@ -153,10 +154,9 @@ static sonject_status read_word(struct reader *reader, const struct field *field
 
 static sonject_status read_label(struct reader *reader, const struct tree_node *node, char *label)
 {
-    const char *text;
-    const sonject_status status = need_text(reader, node, &text);
-    if (status != SONJECT_OK)
-        return status;
+    const char *text = need_text(reader, node);
+    if (!text)
+        return SONJECT_ERROR_INPUT;
     if (strlen(text) >= SONJECT_NAME_CAPACITY)
         return refuse_value(reader, node, "longer than %d bytes; shorten it",
                             SONJECT_NAME_CAPACITY - 1);
@@ -168,17 +168,12 @@ static sonject_status read_label(struct reader *reader, const struct tree_node *
 /* A path in the file is meant from the file's folder, one of an override from where the user is. */
 static sonject_status read_path(struct reader *reader, const struct tree_node *node, char **path)
 {
-    const char *text;
-    const sonject_status status = need_text(reader, node, &text);
-    if (status != SONJECT_OK)
-        return status;
+    const char *text = need_text(reader, node);
+    if (!text)
+        return SONJECT_ERROR_INPUT;
     if (*text == 0 || !text_is_printable(text))
         return refuse_value(reader, node, "must be a file name on one line");
-    char *folder = copy_text("");
-    if (!node->place.override) {
-        free(folder);
-        folder = path_folder(reader->tree->file);
-    }
+    char *folder = node->place.override ? copy_text("") : path_folder(reader->tree->file);
     *path = folder ? path_join(folder, text) : NULL;
     free(folder);
     return *path ? SONJECT_OK : report_out_of_memory(reader->report, "a file name");

@@ -24,7 +24,7 @@ sonject_status patch_view_init(struct patch_view *view, struct report *report,
     view->first_x_m =
         view->is_mirrored ? -(along + (double)(rows - 1) * geometry->row_spacing_m) : along;
     view->first_range_m = geometry->first_slant_range_m + first_column * geometry->column_spacing_m;
-    if (view->first_range_m <= view->altitude_m * view->range_ratio)
+    if (!(view->first_range_m > view->altitude_m * view->range_ratio))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "the patch starts at %.3f m slant range, which is not beyond the "
                               "altitude of %.3f m: move the patch outwards or correct "

@@ -229,16 +229,16 @@ int32_t rough_trace_chunk(const struct rough_trace *trace)
 static sonject_status read_tallies(struct tracer *tracer, cl_mem buffer, size_t count, double unit,
                                    float *values)
 {
-    int64_t *tallies = allocate_array(count, sizeof *tallies);
-    if (!tallies)
-        return report_out_of_memory(tracer->report, "tallies");
+    const void *mapped;
     const sonject_status status =
-        buffer_read(tracer->report, tracer->device, buffer, 0, count * sizeof *tallies, tallies);
-    if (status == SONJECT_OK)
-        for (size_t i = 0; i < count; i++)
-            values[i] = (float)((double)tallies[i] * unit);
-    free(tallies);
-    return status;
+        buffer_map(tracer->report, tracer->device, buffer, count * sizeof(int64_t), &mapped);
+    if (status != SONJECT_OK)
+        return status;
+    const int64_t *tallies = mapped;
+    for (size_t i = 0; i < count; i++)
+        values[i] = (float)((double)tallies[i] * unit);
+    buffer_unmap(tracer->device, buffer, mapped);
+    return SONJECT_OK;
 }
 
 sonject_status rough_trace_strips(struct rough_trace *trace, struct tracer *tracer,

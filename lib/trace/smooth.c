@@ -29,7 +29,13 @@ static void lay_grid(struct smooth_trace *trace, const struct tracer *tracer, ui
         (int32_t)floor((view_row_of_x(view, placement->centre[0] + extent) + 0.5) * per_row) + 2 -
         trace->grid.strips.first;
     const double range = placement_range(placement, view);
-    const double reach = 1.01 * placement->bounding_radius_m;
+    /* along the line of sight, and what a wavefront's curvature adds at the bounding sphere's edge
+     */
+    const double sight[3] = {0.0, placement->centre[1] / range,
+                             (placement->centre[2] - view->altitude_m) / range};
+    const double bound = placement->bounding_radius_m;
+    const double reach =
+        1.01 * placement_half_extent(placement, shape, sight) + bound * bound / (range - bound);
     const double per_metre = trace->grid.bins_per_pixel / view->column_spacing_m;
     const double first = ((range - reach) * view->range_ratio - view->first_range_m) * per_metre;
     const double last = ((range + reach) * view->range_ratio - view->first_range_m) * per_metre;
@@ -104,23 +110,23 @@ sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tr
 {
     const size_t count = (size_t)strips.count * (size_t)trace->grid.bins.count;
     const cl_mem buffers[] = {trace->on_device.objects, trace->on_device.tallies};
-    int64_t *tallies = allocate_array(2 * count, sizeof *tallies);
-    if (!tallies)
-        return report_out_of_memory(tracer->report, "tallies");
     trace->fan.first_strip = strips.first;
     trace->fan.strips = strips.count;
+    const void *mapped;
     sonject_status status = buffer_clear(tracer->report, tracer->device, trace->on_device.tallies,
-                                         2 * count * sizeof *tallies);
+                                         2 * count * sizeof(int64_t));
     if (status == SONJECT_OK)
         status = trace_launch(tracer, trace->on_device.kernel, &trace->fan, buffers, 2);
     if (status == SONJECT_OK)
-        status = buffer_read(tracer->report, tracer->device, trace->on_device.tallies, 0,
-                             2 * count * sizeof *tallies, tallies);
-    if (status == SONJECT_OK)
-        for (size_t i = 0; i < count; i++) {
-            real_part[i] = (float)((double)tallies[2 * i] * trace->amplitude_of_quantum);
-            imaginary_part[i] = (float)((double)tallies[2 * i + 1] * trace->amplitude_of_quantum);
-        }
-    free(tallies);
-    return status;
+        status = buffer_map(tracer->report, tracer->device, trace->on_device.tallies,
+                            2 * count * sizeof(int64_t), &mapped);
+    if (status != SONJECT_OK)
+        return status;
+    const int64_t *tallies = mapped;
+    for (size_t i = 0; i < count; i++) {
+        real_part[i] = (float)((double)tallies[2 * i] * trace->amplitude_of_quantum);
+        imaginary_part[i] = (float)((double)tallies[2 * i + 1] * trace->amplitude_of_quantum);
+    }
+    buffer_unmap(tracer->device, trace->on_device.tallies, mapped);
+    return SONJECT_OK;
 }

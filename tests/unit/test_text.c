@@ -93,6 +93,30 @@ static void test_halfway_cases(void **state)
     expect_number("1.7976931348623159e308", HUGE_VAL, "");
 }
 
+/* Half of the smallest double, 2^-1075, has 750 significant digits: exactly there it is a tie, and
+ * any digit behind them decides. 2^-1075 = 5^1075 / 10^1075. */
+static void test_a_tie_of_750_digits(void **state)
+{
+    char digits[1100];
+    char text[1200];
+    (void)state;
+    memset(digits, '0', sizeof digits);
+    digits[1075] = 0;
+    digits[1074] = '1';
+    for (int power = 0; power < 1075; power++) {
+        int carry = 0;
+        for (int i = 1074; i >= 0; i--) {
+            const int product = 5 * (digits[i] - '0') + carry;
+            digits[i] = (char)('0' + product % 10);
+            carry = product / 10;
+        }
+    }
+    snprintf(text, sizeof text, "0.%s", digits);
+    expect_number(text, 0.0, "");
+    snprintf(text, sizeof text, "0.%s%020d1", digits, 0);
+    expect_number(text, 0x1p-1074, "");
+}
+
 static void test_long_texts(void **state)
 {
     char text[3000];
@@ -146,9 +170,8 @@ static void test_round_trips(void **state)
 
 static void test_a_decimal_comma_changes_nothing(void **state)
 {
-    static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8",   "de_DE",
-                                        "fr_FR.UTF-8", "fr_FR.utf8",   "nb_NO.UTF-8",
-                                        "nl_NL.UTF-8", "sonject_comma"};
+    static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8",  "de_DE",      "fr_FR.UTF-8",
+                                        "fr_FR.utf8",  "nb_NO.UTF-8", "nl_NL.UTF-8"};
     (void)state;
     const char *found = NULL;
     for (size_t i = 0; i < sizeof names / sizeof names[0] && !found; i++)
@@ -239,6 +262,7 @@ int main(void)
         cmocka_unit_test(test_infinity_is_written_as_in_yaml),
         cmocka_unit_test(test_what_is_no_number),
         cmocka_unit_test(test_halfway_cases),
+        cmocka_unit_test(test_a_tie_of_750_digits),
         cmocka_unit_test(test_long_texts),
         cmocka_unit_test(test_a_shift_rounds_once),
         cmocka_unit_test(test_round_trips),

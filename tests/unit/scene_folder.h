@@ -1,0 +1,108 @@
+/* A fresh folder with one scene file, for the tests of scene files. To be included after cmocka.h,
+ * by files that begin with #define _POSIX_C_SOURCE 200809L. */
+#ifndef SCENE_FOLDER_H
+#define SCENE_FOLDER_H
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "io/scene_file.h"
+
+#define SCENE_FOLDER_CAPACITY 1024
+
+#ifndef SOURCE_ROOT
+#define SOURCE_ROOT "."
+#endif
+
+struct scene_folder {
+    char folder[SCENE_FOLDER_CAPACITY];
+    char file[SCENE_FOLDER_CAPACITY + 16]; /* folder/scene.yaml, the name of every scene here */
+    struct report report;
+    struct scene scene; /* of the last reading, cleared before the next */
+};
+
+/* Set-up and tear-down of a cmocka group; *state is the struct scene_folder. */
+static inline int make_scene_folder(void **state)
+{
+    struct scene_folder *folder = calloc(1, sizeof *folder);
+    const char *temporary = getenv("TMPDIR");
+    if (!folder)
+        return 1;
+    snprintf(folder->folder, sizeof folder->folder, "%s/sonject-scene-XXXXXX",
+             temporary ? temporary : "/tmp");
+    if (!mkdtemp(folder->folder)) {
+        free(folder);
+        return 1;
+    }
+    snprintf(folder->file, sizeof folder->file, "%s/scene.yaml", folder->folder);
+    scene_init(&folder->scene);
+    *state = folder;
+    return 0;
+}
+
+static inline int remove_scene_folder(void **state)
+{
+    struct scene_folder *folder = *state;
+    scene_clear(&folder->scene);
+    (void)unlink(folder->file);
+    const int result = rmdir(folder->folder);
+    free(folder);
+    return result;
+}
+
+static inline void write_scene(struct scene_folder *folder, const char *text, size_t bytes)
+{
+    FILE *file = fopen(folder->file, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, bytes, file), bytes);
+    assert_int_equal(fclose(file), 0);
+}
+
+/* Reads the file that is there. overrides may be NULL if count is 0. */
+static inline sonject_status read_scene(struct scene_folder *folder, const char *const *overrides,
+                                        size_t count)
+{
+    scene_clear(&folder->scene);
+    memset(&folder->report, 0, sizeof folder->report);
+    return scene_file_read(&folder->report, folder->file, overrides, count, &folder->scene);
+}
+
+static inline void expect_scene_taken(struct scene_folder *folder, const char *text)
+{
+    write_scene(folder, text, strlen(text));
+    if (read_scene(folder, NULL, 0) != SONJECT_OK)
+        fail_msg("refused: %s", folder->report.message);
+}
+
+/* message: all of what follows the file name, ":2:3: sonar.altitude: ...". */
+static inline void expect_scene_refused(struct scene_folder *folder, const char *text,
+                                        const char *message)
+{
+    const size_t place = strlen(folder->file);
+    write_scene(folder, text, strlen(text));
+    if (read_scene(folder, NULL, 0) != SONJECT_ERROR_INPUT)
+        fail_msg("not refused: %s", text);
+    if (strncmp(folder->report.message, folder->file, place) != 0 ||
+        strcmp(folder->report.message + place, message) != 0)
+        fail_msg("the message is\n%s\nand not\n%s%s", folder->report.message, folder->file,
+                 message);
+}
+
+/* The text of an example scene, its end marked by a 0, for free(). name: "demo". */
+static inline char *example_scene(const char *name, size_t *bytes)
+{
+    char path[SCENE_FOLDER_CAPACITY];
+    snprintf(path, sizeof path, SOURCE_ROOT "/tools/scenes/%s.yaml", name);
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        fail_msg("%s is not there", path);
+    char *text = calloc(65536, 1);
+    assert_non_null(text);
+    *bytes = fread(text, 1, 65535, file);
+    fclose(file);
+    return text;
+}
+
+#endif

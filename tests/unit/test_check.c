@@ -1,0 +1,412 @@
+/* Ranges of a scene's values, and the defaults. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <string.h>
+
+#include "scene/scene.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+/* One of each structure, all good. */
+struct all {
+    sonject_sonar_params sonar;
+    sonject_medium_params medium;
+    sonject_seabed_params seabed;
+    sonject_geometry_params geometry;
+    sonject_transfer_params transfer;
+    sonject_injection_params injection;
+    sonject_synthetic_params synthetic;
+    sonject_patch_params patch;
+    sonject_object_params sphere, capsule, plane;
+};
+
+static void make_good(struct all *all)
+{
+    memset(all, 0, sizeof *all);
+    sonject_sonar_params_init(&all->sonar);
+    sonject_medium_params_init(&all->medium);
+    sonject_seabed_params_init(&all->seabed);
+    sonject_geometry_params_init(&all->geometry);
+    all->geometry.first_slant_range_m = 40.0;
+    sonject_transfer_params_init(&all->transfer);
+    sonject_injection_params_init(&all->injection);
+    sonject_synthetic_params_init(&all->synthetic);
+    all->patch.rows = all->patch.columns = 10;
+    sonject_object_params_init(&all->sphere);
+    all->capsule = all->plane = all->sphere;
+    all->capsule.shape = SONJECT_SHAPE_CAPSULE;
+    all->capsule.length_m = 2.0;
+    all->plane.shape = SONJECT_SHAPE_PLANE;
+    all->plane.length_m = all->plane.width_m = 1.0;
+}
+
+static sonject_status check_all(const struct all *all, struct report *report, const char **key)
+{
+    sonject_status status = check_sonar(&all->sonar, report, key);
+    if (status == SONJECT_OK)
+        status = check_medium(&all->medium, report, key);
+    if (status == SONJECT_OK)
+        status = check_seabed(&all->seabed, report, key);
+    if (status == SONJECT_OK)
+        status = check_geometry(&all->geometry, report, key);
+    if (status == SONJECT_OK)
+        status = check_transfer(&all->transfer, report, key);
+    if (status == SONJECT_OK)
+        status = check_injection(&all->injection, report, key);
+    if (status == SONJECT_OK)
+        status = check_synthetic(&all->synthetic, report, key);
+    if (status == SONJECT_OK)
+        status = check_patch(&all->patch, report, key);
+    if (status == SONJECT_OK)
+        status = check_object(&all->sphere, report, key);
+    if (status == SONJECT_OK)
+        status = check_object(&all->capsule, report, key);
+    if (status == SONJECT_OK)
+        status = check_object(&all->plane, report, key);
+    return status;
+}
+
+static void expect_refused(const struct all *all, const char *name, const char *what)
+{
+    struct report report = {{0}, NULL, NULL};
+    const char *key = NULL;
+    if (check_all(all, &report, &key) != SONJECT_ERROR_INPUT)
+        fail_msg("%s of %s was taken", what, name);
+    assert_non_null(key);
+    if (strcmp(key, name) != 0)
+        fail_msg("%s of %s was blamed on %s", what, name, key);
+    if (strncmp(report.message, key, strlen(key)) != 0 || report.message[strlen(key)] != ' ')
+        fail_msg("the message does not start with %s: %s", key, report.message);
+}
+
+static void expect_taken(const struct all *all, const char *name, double value)
+{
+    struct report report = {{0}, NULL, NULL};
+    if (check_all(all, &report, NULL) != SONJECT_OK)
+        fail_msg("%s of %g was refused: %s", name, value, report.message);
+}
+
+#define NONE NAN /* no such limit */
+
+/* A number, the smallest and largest that are taken, and what lies just beyond. */
+static const struct number {
+    const char *key;
+    size_t offset;
+    double below, least, most, above;
+} numbers[] = {
+    {"frequency", offsetof(struct all, sonar.centre_frequency_hz), 0.0, 20e3, 1e9, 2e9},
+    {"bandwidth", offsetof(struct all, sonar.bandwidth_hz), 0.0, 1.0, 199999.0, 200000.0},
+    {"altitude", offsetof(struct all, sonar.altitude_m), 0.0, 1e-6, 1e6, 2e6},
+    {"resolution", offsetof(struct all, sonar.along_track_resolution_m), -0.1, 0.0, 1e6, 2e6},
+    {"transducer", offsetof(struct all, sonar.transducer_side_m), -0.1, 0.0, 1e6, 2e6},
+    {"sound_speed", offsetof(struct all, medium.sound_speed_mps), 99.0, 100.0, 10000.0, 10001.0},
+    {"reference_sound_speed", offsetof(struct all, medium.reference_sound_speed_mps), 99.0, 0.0,
+     10000.0, 10001.0},
+    {"lambert", offsetof(struct all, seabed.lambert), 0.0, 1e-9, 0.3183098861837907, 0.3184},
+    {"level_radius", offsetof(struct all, seabed.level_radius_m), 0.0, 1e-6, 1e6, 2e6},
+    {"despeckle_radius", offsetof(struct all, seabed.despeckle_radius_m), 0.0, 1e-6, 1e6, 2e6},
+    {"row_spacing", offsetof(struct all, geometry.row_spacing_m), 0.0, 1e-6, 1e6, 2e6},
+    {"column_spacing", offsetof(struct all, geometry.column_spacing_m), 0.0, 1e-6, 1e6, 2e6},
+    {"first_slant_range", offsetof(struct all, geometry.first_slant_range_m), -0.1, 0.0, 1e6, 2e6},
+    {"first_along_track", offsetof(struct all, geometry.first_along_track_m), -2e6, -1e6, 1e6, 2e6},
+    {"parameter", offsetof(struct all, transfer.parameter), NONE, -1e9, 1e9, NONE},
+    {"offset", offsetof(struct all, transfer.offset), NONE, -1e9, 1e9, NONE},
+    {"noise_floor", offsetof(struct all, injection.noise_floor_db), NONE, -1e9, 1e9, NONE},
+    {"influence", offsetof(struct all, injection.influence_db), -201.0, -200.0, 0.0, 0.1},
+    {"rays", offsetof(struct all, injection.ray_scale), 0.015, 1.0 / 64.0, 4096.0, 4097.0},
+    {"texture_length", offsetof(struct all, synthetic.texture_length_m), 0.0, 1e-6, 1e6, 2e6},
+    {"ripple_wavelength", offsetof(struct all, synthetic.ripple_wavelength_m), 0.0, 1e-6, 1e6, 2e6},
+    {"ripple_contrast", offsetof(struct all, synthetic.ripple_contrast), -0.1, 0.0, 1.0, 1.1},
+    {"ripple_heading", offsetof(struct all, synthetic.ripple_heading_rad), NONE, -9.0, 9.0, NONE},
+    {"patch_contrast", offsetof(struct all, synthetic.patch_contrast_db), -0.1, 0.0, 100.0, 101.0},
+    {"patch_length", offsetof(struct all, synthetic.patch_length_m), 0.0, 1e-6, 1e6, 2e6},
+    {"mean_amplitude", offsetof(struct all, synthetic.mean_amplitude), 0.0, 1e-6, 1e6, 2e6},
+    {"diameter", offsetof(struct all, sphere.diameter_m), 0.0, 1e-6, 1e6, 2e6},
+    {"length", offsetof(struct all, capsule.length_m), 0.49, 0.5, 1e6, 2e6},
+    {"diameter", offsetof(struct all, capsule.diameter_m), 0.0, 1e-6, 2.0, NONE},
+    {"length", offsetof(struct all, plane.length_m), 0.0, 1e-6, 1e6, 2e6},
+    {"width", offsetof(struct all, plane.width_m), 0.0, 1e-6, 1e6, 2e6},
+    {"width", offsetof(struct all, sphere.width_m), NONE, 0.0, 1.0, NONE},
+    {"position", offsetof(struct all, sphere.position_along), NONE, -1.0, 1.0, NONE},
+    {"position", offsetof(struct all, sphere.position_range), NONE, -1.0, 1.0, NONE},
+    {"heading", offsetof(struct all, sphere.heading_rad), NONE, -9.0, 9.0, NONE},
+    {"pitch", offsetof(struct all, sphere.pitch_rad), NONE, -9.0, 9.0, NONE},
+    {"roll", offsetof(struct all, sphere.roll_rad), NONE, -9.0, 9.0, NONE},
+    {"burial", offsetof(struct all, sphere.burial_m), -2e6, -1e6, 1e6, 2e6},
+    {"material.reflection", offsetof(struct all, sphere.material.reflection), -1.01, -1.0, 1.0,
+     1.01},
+    {"material.roughness", offsetof(struct all, sphere.material.roughness_m), -0.1, 0.0, 1.0, 1.1},
+    {"material.lambert", offsetof(struct all, sphere.material.lambert), -0.1, 0.0, 0.2578, 0.2579},
+};
+
+static void put(struct all *all, const struct number *number, double value)
+{
+    make_good(all);
+    memcpy((char *)all + number->offset, &value, sizeof value);
+}
+
+static void test_limits(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < COUNT(numbers); i++) {
+        const struct number *number = &numbers[i];
+        struct all all;
+        put(&all, number, number->least);
+        expect_taken(&all, number->key, number->least);
+        put(&all, number, number->most);
+        expect_taken(&all, number->key, number->most);
+        put(&all, number, number->below);
+        expect_refused(&all, number->key, "the value below");
+        put(&all, number, number->above);
+        expect_refused(&all, number->key, "the value above");
+    }
+}
+
+static void test_only_finite_numbers(void **state)
+{
+    static const double bad[] = {NAN, INFINITY, -INFINITY};
+    (void)state;
+    for (size_t i = 0; i < COUNT(numbers); i++)
+        for (size_t j = 0; j < COUNT(bad); j++) {
+            struct all all;
+            put(&all, &numbers[i], bad[j]);
+            expect_refused(&all, numbers[i].key, "a value that is not finite");
+        }
+}
+
+static void test_speckle_may_be_rayleigh(void **state)
+{
+    struct all all;
+    (void)state;
+    make_good(&all);
+    all.synthetic.speckle_shape = INFINITY;
+    expect_taken(&all, "speckle_shape", INFINITY);
+    all.synthetic.speckle_shape = -INFINITY;
+    expect_refused(&all, "speckle_shape", "minus infinity");
+    all.synthetic.speckle_shape = NAN;
+    expect_refused(&all, "speckle_shape", "NaN");
+    all.synthetic.speckle_shape = 0.0;
+    expect_refused(&all, "speckle_shape", "zero");
+}
+
+static void test_choices(void **state)
+{
+    static const struct {
+        const char *key;
+        size_t offset;
+        uint32_t last;
+    } choices[] = {
+        {"response", offsetof(struct all, sonar.response_window), SONJECT_WINDOW_TAYLOR},
+        {"map", offsetof(struct all, seabed.map), SONJECT_MAP_COHERENT},
+        {"side", offsetof(struct all, geometry.side), SONJECT_SIDE_STARBOARD},
+        {"kind", offsetof(struct all, transfer.kind), SONJECT_TRANSFER_SCHLICK},
+        {"mode", offsetof(struct all, injection.mode), SONJECT_MODE_RESYNTHESISE},
+        {"columns", offsetof(struct all, injection.column_rule), SONJECT_COLUMNS_PAPER},
+        {"noise_floor", offsetof(struct all, injection.estimate_noise), 1},
+        {"complex", offsetof(struct all, synthetic.complex_pixels), 1},
+        {"position", offsetof(struct all, sphere.position_kind), SONJECT_POSITION_PIXELS},
+    };
+    struct all all;
+    (void)state;
+    for (size_t i = 0; i < COUNT(choices); i++) {
+        for (uint32_t value = 0; value <= choices[i].last; value++) {
+            make_good(&all);
+            memcpy((char *)&all + choices[i].offset, &value, sizeof value);
+            expect_taken(&all, choices[i].key, value);
+        }
+        for (uint32_t value = choices[i].last + 1; value; value <<= 1) {
+            make_good(&all);
+            memcpy((char *)&all + choices[i].offset, &value, sizeof value);
+            expect_refused(&all, choices[i].key, "an unknown choice");
+        }
+    }
+    make_good(&all);
+    all.sphere.shape = 4;
+    expect_refused(&all, "shape", "an unknown choice");
+    assert_null(shape_name(4));
+    assert_string_equal(shape_name(SONJECT_SHAPE_CYLINDER), "cylinder");
+}
+
+static void test_window_and_transfer_parameters(void **state)
+{
+    static const struct {
+        uint32_t kind;
+        double parameter;
+    } bad[] = {{SONJECT_TRANSFER_DECIBEL, 0.0},
+               {SONJECT_TRANSFER_GAMMA, 0.0},
+               {SONJECT_TRANSFER_SCHLICK, 0.999}};
+    struct all all;
+    (void)state;
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        make_good(&all);
+        all.transfer.kind = bad[i].kind;
+        expect_taken(&all, "parameter", 1.0);
+        all.transfer.parameter = bad[i].parameter;
+        expect_refused(&all, "parameter", "a value out of range");
+    }
+    make_good(&all);
+    all.transfer.kind = SONJECT_TRANSFER_DECIBEL;
+    all.transfer.offset = 1001.0;
+    expect_refused(&all, "offset", "1001 dB");
+    make_good(&all);
+    all.sonar.response_window = SONJECT_WINDOW_TAYLOR;
+    all.sonar.taylor_terms = 17;
+    expect_refused(&all, "response.taylor.terms", "17");
+    all.sonar.taylor_terms = 1;
+    expect_refused(&all, "response.taylor.terms", "1");
+    all.sonar.taylor_terms = 16;
+    all.sonar.taylor_sidelobe_db = 0.0;
+    expect_refused(&all, "response.taylor.sidelobes", "0 dB");
+    all.sonar.response_window = SONJECT_WINDOW_HAMMING;
+    all.sonar.taylor_sidelobe_db = NAN;
+    expect_refused(&all, "response.taylor.sidelobes", "NaN");
+}
+
+static void test_relations(void **state)
+{
+    struct all all;
+    (void)state;
+    make_good(&all);
+    all.injection.estimate_noise = 0;
+    expect_taken(&all, "noise_floor", -25.0);
+    all.injection.noise_floor_db = 0.0;
+    expect_refused(&all, "noise_floor", "the seabed's level");
+    make_good(&all);
+    all.sphere.material.reflection = 0.0;
+    all.sphere.material.lambert = 0.3183;
+    expect_taken(&all, "material.lambert", 0.3183);
+    all.sphere.material.lambert = 0.3184;
+    expect_refused(&all, "material.lambert", "more than all energy");
+    make_good(&all);
+    all.sphere.position_kind = SONJECT_POSITION_METRES;
+    all.sphere.position_range = -1.0;
+    expect_refused(&all, "position.slant_range", "-1 m");
+    all.sphere.position_along = 2e6;
+    expect_refused(&all, "position.along_track", "2000 km");
+    all.sphere.position_kind = SONJECT_POSITION_PIXELS;
+    all.sphere.position_along = 2e12;
+    expect_refused(&all, "position.row", "2e12");
+    all.sphere.position_along = 0.0;
+    all.sphere.position_range = 2e12;
+    expect_refused(&all, "position.column", "2e12");
+}
+
+static void test_sizes_of_swath_and_patch(void **state)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct all all;
+    const uint32_t side = UINT32_C(1) << 20;
+    (void)state;
+    assert_int_equal(check_uniform(1, side, &report, NULL), SONJECT_OK);
+    assert_int_equal(check_uniform(2048, side, &report, NULL), SONJECT_OK);
+    assert_int_equal(check_uniform(2049, side, &report, NULL), SONJECT_ERROR_INPUT);
+    assert_int_equal(check_uniform(side, side, &report, NULL), SONJECT_ERROR_INPUT);
+    assert_int_equal(check_uniform(0, 1, &report, NULL), SONJECT_ERROR_INPUT);
+    assert_int_equal(check_uniform(1, 0, &report, NULL), SONJECT_ERROR_INPUT);
+    assert_int_equal(check_uniform(side + 1, 1, &report, NULL), SONJECT_ERROR_INPUT);
+    make_good(&all);
+    all.synthetic.rows = all.synthetic.columns = UINT32_MAX;
+    expect_refused(&all, "rows", "too large a size");
+    make_good(&all);
+    memset(&all.patch, 0, sizeof all.patch);
+    expect_taken(&all, "patch", 0.0);
+    all.patch.first_row = 1;
+    expect_refused(&all, "rows", "no rows");
+    all.patch.rows = 1;
+    expect_refused(&all, "columns", "no columns");
+    all.patch.columns = UINT64_C(1) << 40;
+    expect_taken(&all, "patch", 0.0);
+    all.patch.first_row = UINT64_MAX;
+    expect_refused(&all, "row", "2^64 - 1");
+}
+
+static void test_names(void **state)
+{
+    struct all all;
+    (void)state;
+    make_good(&all);
+    memset(all.sphere.name, 'x', sizeof all.sphere.name);
+    expect_refused(&all, "name", "no end");
+    all.sphere.name[63] = 0;
+    expect_taken(&all, "name", 63.0);
+    strcpy(all.sphere.class_name, "a\nb");
+    expect_refused(&all, "class", "a line break");
+    strcpy(all.sphere.class_name, "\xFF");
+    expect_refused(&all, "class", "no UTF-8");
+}
+
+/* What the public headers promise. */
+static void test_defaults(void **state)
+{
+    struct scene scene;
+    struct report report = {{0}, NULL, NULL};
+    sonject_object_params object;
+    (void)state;
+    scene_init(&scene);
+    assert_int_equal(scene.sonar.struct_size, sizeof scene.sonar);
+    assert_true(scene.sonar.centre_frequency_hz == 100e3 && scene.sonar.bandwidth_hz == 30e3);
+    assert_true(scene.sonar.altitude_m == 10.0 && scene.sonar.transducer_side_m == 0.0);
+    assert_int_equal(scene.sonar.response_window, SONJECT_WINDOW_RECTANGULAR);
+    assert_true(scene.medium.sound_speed_mps == 1500.0);
+    assert_true(fabs(10.0 * log10(scene.seabed.lambert) + 27.0) < 1e-12); /* rounding of log10 */
+    assert_true(scene.seabed.level_radius_m == 3.0 && scene.seabed.despeckle_radius_m == 0.1);
+    assert_true(scene.geometry.row_spacing_m == 0.025 && scene.geometry.column_spacing_m == 0.025);
+    assert_int_equal(scene.geometry.side, SONJECT_SIDE_PORT);
+    assert_int_equal(scene.injection.mode, SONJECT_MODE_COMPOSITE);
+    assert_int_equal(scene.injection.column_rule, SONJECT_COLUMNS_FOCUSED);
+    assert_true(scene.injection.estimate_noise == 1 && scene.injection.seed == 1);
+    assert_true(scene.injection.influence_db == -40.0 && scene.injection.ray_scale == 1.0);
+    assert_int_equal(scene.synthetic.rows, 400);
+    assert_int_equal(scene.input_kind, SONJECT_INPUT_MEMORY);
+    assert_int_equal(scene.transfer.kind, SONJECT_TRANSFER_AMPLITUDE);
+    assert_int_equal(check_geometry(&scene.geometry, &report, NULL), SONJECT_ERROR_INPUT);
+    sonject_object_params_init(&object);
+    assert_true(object.shape == SONJECT_SHAPE_SPHERE && object.diameter_m == 0.5);
+    assert_true(object.material.reflection == 0.9 && object.material.roughness_m == 1e-3);
+    assert_true(object.material.lambert == 0.1 && object.burial_m == 0.0);
+    scene_clear(&scene);
+}
+
+static void test_objects_are_copied_up_to_the_limit(void **state)
+{
+    struct scene scene;
+    struct report report = {{0}, NULL, NULL};
+    sonject_object_params object;
+    (void)state;
+    scene_init(&scene);
+    sonject_object_params_init(&object);
+    for (uint32_t i = 0; i < SCENE_OBJECTS_MAX; i++) {
+        object.diameter_m = i;
+        assert_int_equal(scene_append_object(&scene, &report, &object), SONJECT_OK);
+    }
+    assert_int_equal(scene_append_object(&scene, &report, &object), SONJECT_ERROR_INPUT);
+    assert_int_equal(scene.object_count, SCENE_OBJECTS_MAX);
+    for (uint32_t i = 0; i < SCENE_OBJECTS_MAX; i++)
+        assert_true(scene.objects[i].diameter_m == i);
+    scene_clear(&scene);
+    assert_int_equal(scene.object_count, 0);
+    assert_null(scene.objects);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_only_finite_numbers),
+        cmocka_unit_test(test_speckle_may_be_rayleigh),
+        cmocka_unit_test(test_choices),
+        cmocka_unit_test(test_window_and_transfer_parameters),
+        cmocka_unit_test(test_relations),
+        cmocka_unit_test(test_sizes_of_swath_and_patch),
+        cmocka_unit_test(test_names),
+        cmocka_unit_test(test_defaults),
+        cmocka_unit_test(test_objects_are_copied_up_to_the_limit),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,347 @@
+/* Scene files that are wrong: each message tells the place, the key, what is wrong, what to do. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene_folder.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+#define START "sonject: 1\n"
+#define INPUT                                                                                      \
+    "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
+    "first_slant_range: 40}}\n"
+#define SONAR  "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
+#define BASE   START INPUT SONAR /* three lines */
+#define OBJECT BASE "objects:\n  - shape: "
+
+struct wrong {
+    const char *text;
+    const char *message; /* behind the file name */
+};
+
+static void expect_all(void **state, const struct wrong *wrong, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        expect_scene_refused(*state, wrong[i].text, wrong[i].message);
+}
+
+static void test_unknown_keys(void **state)
+{
+    static const struct wrong wrong[] = {
+        {BASE "medum: {}\n", ":4:1: medum: unknown key; did you mean 'medium'?"},
+        {BASE "medium:\n  sound_sped: 1500\n",
+         ":5:3: medium.sound_sped: unknown key; did you mean 'sound_speed'?"},
+        {BASE "medium:\n  salinity: 35\n",
+         ":5:3: medium.salinity: unknown key; known here are sound_speed, reference_sound_speed"},
+        {OBJECT "sphere\n    diamter: 1 m\n",
+         ":6:5: objects[0].diamter: unknown key; did you mean 'diameter'?"},
+        {BASE "objects:\n  - {shape: sphere, diameter: 1}\n  - {shape: plane, lenght: 1}\n",
+         ":6:20: objects[1].lenght: unknown key; did you mean 'length'?"},
+        {START INPUT "sonar: {frequency: 1e5, bandwidth: 3e4, altitud: 10}\n",
+         ":3:41: sonar.altitud: unknown key; did you mean 'altitude'?"},
+        {OBJECT "sphere\n    \xC3\xA9tat: 1 m\n",
+         ":6:5: objects[0].\xC3\xA9tat: unknown key; known here are name, class, shape, length, "
+         "width, diameter, position, heading, pitch, roll, burial, material"},
+    };
+    expect_all(state, wrong, COUNT(wrong));
+}
+
+static void test_missing_keys(void **state)
+{
+    static const struct wrong wrong[] = {
+        {INPUT SONAR, ":1:1: sonject: missing; add it (version of the format, 1)"},
+        {START INPUT,
+         ":1:1: sonar: missing; add it (the sonar: frequency, bandwidth and altitude)"},
+        {START, ":1:1: input, sonar are missing; add them"},
+        {START SONAR, ":1:1: input: missing; add it (where the image comes from: path, uniform or "
+                      "synthetic, and geometry)"},
+        {START INPUT "sonar: {bandwidth: 30e3, altitude: 10}\n",
+         ":3:8: sonar.frequency: missing; add it (centre frequency)"},
+        {START INPUT "sonar: {frequency: 100e3, altitude: 10}\n",
+         ":3:8: sonar.bandwidth: missing; add it (sets the range resolution, c / (2 bandwidth))"},
+        {START INPUT "sonar: {frequency: 100e3, bandwidth: 30e3}\n",
+         ":3:8: sonar.altitude: missing; add it (height of the track over the mean seabed)"},
+        {START INPUT "sonar:\n", ":3:7: sonar: frequency, bandwidth, altitude are missing; add "
+                                 "them"},
+        {START "input: {uniform: {rows: 1, columns: 1}}\n" SONAR,
+         ":2:8: input.geometry: missing; add it (where the pixels lie: row_spacing, column_spacing "
+         "and first_slant_range)"},
+        {START "input:\n  uniform: {rows: 1, columns: 1}\n  geometry:\n    row_spacing: 1\n" SONAR,
+         ":5:5: input.geometry: column_spacing, first_slant_range are missing; add them"},
+        {START "input: {uniform: {rows: 1}, geometry: {}}\n" SONAR,
+         ":2:18: input.uniform.columns: missing; add it (range cells)"},
+        {BASE "patch: {row: 1, column: 1}\n", ":4:8: patch: rows, columns are missing; add them"},
+        {OBJECT "capsule\n    diameter: 1\n",
+         ":5:5: objects[0].length: missing; a capsule needs it"},
+        {OBJECT "plane\n    length: 1\n", ":5:5: objects[0].width: missing; a plane needs it"},
+        {OBJECT "sphere\n", ":5:5: objects[0].diameter: missing; a sphere needs it"},
+        {BASE "objects: [{}]\n", ":4:11: objects[0].shape: missing; add it (of the object)"},
+    };
+    expect_all(state, wrong, COUNT(wrong));
+}
+
+static void test_wrong_values(void **state)
+{
+    static const struct wrong wrong[] = {
+        {BASE "medium:\n  sound_speed: 1500 knots\n",
+         ":5:16: medium.sound_speed: unit 'knots' is not one of m/s, km/s"},
+        {BASE "medium: {sound_speed: fast}\n",
+         ":4:23: medium.sound_speed: 'fast' is not a number with a unit of m/s, km/s"},
+        {BASE "medium: {sound_speed: 15}\n",
+         ":4:23: medium.sound_speed: must be 100...10000 m/s, not 15"},
+        {BASE "medium: {sound_speed: .nan}\n",
+         ":4:23: medium.sound_speed: '.nan' is not a number with a unit of m/s, km/s"},
+        {BASE "medium: {sound_speed: .inf}\n",
+         ":4:23: medium.sound_speed: must be 100...10000 m/s, not inf"},
+        {BASE "medium: {sound_speed: 1e999}\n", ":4:23: medium.sound_speed: '1e999' is too large"},
+        {BASE "medium: {sound_speed: [1500]}\n",
+         ":4:23: medium.sound_speed: must be a single value, not a list"},
+        {BASE "medium: {sound_speed: {a: 1}}\n",
+         ":4:23: medium.sound_speed: must be a single value, not a section"},
+        {BASE "medium: {sound_speed: }\n",
+         ":4:23: medium.sound_speed: has no value; write one or remove the key"},
+        {BASE "medium: 1500 m/s\n",
+         ":4:9: medium: must be a section of 'key: value' lines, not a single value"},
+        {BASE "medium: [1500 m/s]\n",
+         ":4:9: medium: must be a section of 'key: value' lines, not a list"},
+        {BASE "patch: {rows: 1, columns: 2.5}\n",
+         ":4:27: patch.columns: '2.5' is not a whole number from 0 to 1099511627776"},
+        {BASE "patch: {rows: 1, columns: -1}\n",
+         ":4:27: patch.columns: '-1' is not a whole number from 0 to 1099511627776"},
+        {BASE "patch: {rows: 1, columns: 1099511627777}\n",
+         ":4:27: patch.columns: must be at most 1099511627776"},
+        {BASE "patch: {rows: 0, columns: 1}\n", ":4:15: patch.rows: must be at least 1 pixel"},
+        {BASE "injection: {seed: 18446744073709551616}\n",
+         ":4:19: injection.seed: '18446744073709551616' is not a whole number from 0 to "
+         "18446744073709551615"},
+        {BASE "injection: {mode: compsite}\n",
+         ":4:19: injection.mode: 'compsite' is not one of composite, resynthesise; did you mean "
+         "'composite'?"},
+        {BASE "injection: {mode: 0}\n",
+         ":4:19: injection.mode: '0' is not one of composite, resynthesise"},
+        {BASE "injection: {noise_floor: 3 dB}\n",
+         ":4:26: injection.noise_floor: must be below 0 dB, the seabed's own level, not 3 dB"},
+        {BASE "injection: {noise_floor: guess}\n",
+         ":4:26: injection.noise_floor: 'guess' is not a number with a unit of dB"},
+        {BASE "seabed: {lambert: 3 dB}\n",
+         ":4:19: seabed.lambert: must be above 0 and at most 1/pi (-4.97 dB), or the seabed "
+         "returns more than it receives; it is 1.99526"},
+        {"sonject: 2\n" INPUT SONAR,
+         ":1:10: sonject: must be 1, the version of the format that is read here"},
+        {BASE "objects: {shape: sphere}\n",
+         ":4:10: objects: must be a list; start each object with '- '"},
+        {BASE "objects: [sphere]\n",
+         ":4:11: objects[0]: must be a section of 'key: value' lines, not a single value"},
+        {OBJECT "cube\n",
+         ":5:12: objects[0].shape: 'cube' is not one of plane, sphere, cylinder, capsule"},
+        {OBJECT "sphere\n    diameter: 1 m\n    material: {lambert: 0.3}\n",
+         ":7:25: objects[0].material.lambert: must be 0...0.2578 (reflection^2 / pi), or the "
+         "surface returns more than it receives; it is 0.3"},
+        {OBJECT "sphere\n    diameter: 1\n    class: \"a\\tb\"\n",
+         ":7:12: objects[0].class: must be UTF-8 text without control characters"},
+        {OBJECT "sphere\n    diameter: 1\n    name: "
+                "0123456789012345678901234567890123456789012345678901234567890123\n",
+         ":7:11: objects[0].name: longer than 63 bytes; shorten it"},
+        {"- a\n", ":1:1: must be a section of 'key: value' lines, not a list"},
+        {"hello\n", ":1:1: must be a section of 'key: value' lines, not a single value"},
+    };
+    expect_all(state, wrong, COUNT(wrong));
+}
+
+static void test_keys_that_exclude_or_need_each_other(void **state)
+{
+    static const char geometry[] =
+        ", geometry: {row_spacing: 1, column_spacing: 1, first_slant_range: 40}}\n";
+    static const struct {
+        const char *input;
+        const char *message;
+    } inputs[] = {
+        {"input: {path: a.tif, uniform: {rows: 1, columns: 1}",
+         ":2:8: input: more than one of path, uniform and synthetic is there; give one"},
+        {"input: {complex: true",
+         ":2:8: input: none of path, uniform and synthetic is there; give one"},
+        {"input: {uniform: {rows: 1, columns: 1}, complex: true",
+         ":2:50: input.complex: belongs to an image file (path), not to uniform; remove it"},
+        {"input: {synthetic: {rows: 1, columns: 1}, transfer: {kind: amplitude}",
+         ":2:53: input.transfer: belongs to an image file (path), not to synthetic; remove it"},
+        {"input: {path: a.tif, complex: yes",
+         ":2:31: input.complex: 'yes' is neither true nor false"},
+        {"input: {path: \"\"", ":2:15: input.path: must be a file name on one line"},
+        {"input: {path: \"a\\nb\"", ":2:15: input.path: must be a file name on one line"},
+        {"input: {path: a.tif, transfer: {kind: gamma}",
+         ":2:32: input.transfer.parameter: missing; this kind of transfer needs it"},
+        {"input: {path: a.tif, transfer: {kind: intensity, parameter: 1}",
+         ":2:61: input.transfer.parameter: this kind of transfer has none; remove it"},
+        {"input: {path: a.tif, transfer: {kind: gamma, parameter: 1, offset: 1}",
+         ":2:68: input.transfer.offset: only the decibel kind has one; remove it"},
+        {"input: {path: a.tif, transfer: {kind: schlick, parameter: 0.5}",
+         ":2:59: input.transfer.parameter: must be 1...1e+06, not 0.5"},
+        {"input: {uniform: {rows: 65536, columns: 32769}",
+         ":2:25: input.uniform.rows: times columns must be at most 2^31 pixels, not 65536 x 32769"},
+        {"input: {synthetic: {rows: 1048577, columns: 1}",
+         ":2:27: input.synthetic.rows: must be at most 1048576"},
+    };
+    static const struct wrong wrong[] = {
+        {BASE "seabed: {map: coherent}\n", ":4:15: seabed.map: coherent needs complex pixels; set "
+                                           "complex: true in input if they are"},
+        {OBJECT "sphere\n    diameter: 1\n    width: 1\n",
+         ":7:12: objects[0].width: a sphere has none; remove it"},
+        {OBJECT "plane\n    diameter: 1\n    length: 1\n    width: 1\n",
+         ":6:15: objects[0].diameter: a plane has none; remove it"},
+        {OBJECT "capsule\n    diameter: 1\n    length: 0.5\n",
+         ":7:13: objects[0].length: of a capsule includes its round ends and must be at least its "
+         "diameter, 1 m, not 0.5 m"},
+        {OBJECT "sphere\n    diameter: 1\n    position: {row: 1}\n",
+         ":7:15: objects[0].position: needs along_track and slant_range, or row and column; give "
+         "one pair"},
+        {OBJECT "sphere\n    diameter: 1\n    position: {row: 1, slant_range: 40}\n",
+         ":7:15: objects[0].position: needs along_track and slant_range, or row and column; give "
+         "one pair"},
+        {OBJECT "sphere\n    diameter: 1\n    position: middle\n",
+         ":7:15: objects[0].position: 'middle' is not one of centre, {along_track: ...}, "
+         "{slant_range: ...}, {row: ...}, {column: ...}"},
+        {START INPUT "sonar: {frequency: 10e3, bandwidth: 20e3, altitude: 10}\n",
+         ":3:37: sonar.bandwidth: must be below twice the frequency, 20000 Hz, not 20000 Hz"},
+        {START INPUT "sonar: {frequency: 10e3, bandwidth: 1e3, altitude: 10, response: {taylor: "
+                     "{sidelobes: 35 dB, terms: 1}}}\n",
+         ":3:101: sonar.response.taylor.terms: must be 2...16, not 1"},
+    };
+    for (size_t i = 0; i < COUNT(inputs); i++) {
+        char text[1000];
+        snprintf(text, sizeof text, "%s%s%s%s", START, inputs[i].input, geometry, SONAR);
+        expect_scene_refused(*state, text, inputs[i].message);
+    }
+    expect_all(state, wrong, COUNT(wrong));
+}
+
+static void test_yaml_that_is_not_wanted(void **state)
+{
+    static const struct wrong wrong[] = {
+        {"", ":1:1: there is nothing in it"},
+        {"# only a comment\n", ":2:1: there is nothing in it"},
+        {"---\n", ":2:1: there is nothing in it; start with 'sonject: 1'"},
+        {BASE "---\nsonject: 1\n", ":4:1: a second document starts here; keep one in a file"},
+        {BASE "medium: {}\nmedium: {}\n", ":5:1: medium: given twice, first on line 4; remove one"},
+        {BASE "medium:\n  sound_speed: 1\n  sound_speed: 2\n",
+         ":6:3: medium.sound_speed: given twice, first on line 5; remove one"},
+        {BASE "medium: &m {sound_speed: 1500}\n",
+         ":4:9: medium: anchors and tags (&name, !name) are not supported; remove it"},
+        {BASE "medium: *m\n",
+         ":4:9: medium: aliases (*name) are not supported; write the value out"},
+        {BASE "medium: !!map {}\n",
+         ":4:9: medium: anchors and tags (&name, !name) are not supported; remove it"},
+        {BASE "medium: {sound_speed: !!float 1500}\n",
+         ":4:23: medium.sound_speed: anchors and tags (&name, !name) are not supported; remove it"},
+        {BASE "objects: !!seq []\n",
+         ":4:10: objects: anchors and tags (&name, !name) are not supported; remove it"},
+        {BASE "[a]: 1\n", ":4:1: keys must be plain words; write 'key: value'"},
+        {BASE "&k medium: {}\n", ":4:1: keys must be plain words; write 'key: value'"},
+        {BASE "medium: {sound_speed: \"15\\000\"}\n",
+         ":4:23: medium.sound_speed: contains a character 0; remove it"},
+        {BASE "\"med\\0ium\": 1\n", ":4:1: the key contains a character 0; remove it"},
+        {BASE "medium: {sound_speed: 1500\n",
+         ":5:1: medium: not valid YAML (while parsing a flow mapping: did not find "
+         "expected ',' or '}'); check indentation, colons, quotes and brackets"},
+        {BASE "medium:\n\tsound_speed: 1\n",
+         ":5:1: medium: not valid YAML (while scanning for the next token: found character that "
+         "cannot start any token); check indentation, colons, quotes and brackets"},
+        {BASE "medium: {sound_speed: \xFF}\n",
+         ":4:23: not UTF-8 text (invalid leading UTF-8 octet); save the file as UTF-8"},
+        {START "# \xC3\xA9\xE2\x82 broken\n",
+         ":2:5: not UTF-8 text (invalid trailing UTF-8 octet); save the file as UTF-8"},
+    };
+    expect_all(state, wrong, COUNT(wrong));
+}
+
+static void test_overrides_that_are_wrong(void **state)
+{
+    static const struct {
+        const char *override;
+        const char *message; /* all of it */
+    } wrong[] = {
+        {"sonar.altitude", "--set sonar.altitude: has no '='; write key.path=value"},
+        {"sonar.altitude=", "--set sonar.altitude: has no value; write key.path=value"},
+        {"sonar.altitude=  ", "--set sonar.altitude: has no value; write key.path=value"},
+        {"=3", "--set : not a key path; write it as 'objects[0].heading'"},
+        {"sonar..altitude=3", "--set sonar..altitude: not a key path; write it as "
+                              "'objects[0].heading'"},
+        {"sonar.=3", "--set sonar.: not a key path; write it as 'objects[0].heading'"},
+        {"objects[0]heading=3", "--set objects[0]heading: not a key path; write it as "
+                                "'objects[0].heading'"},
+        {"objects[=3", "--set objects[: not a key path; write it as 'objects[0].heading'"},
+        {"objects[0=3", "--set objects[0: not a key path; ']' is missing"},
+        {"objects[-1].x=3", "--set objects[-1].x: not a key path; an index must be a whole number "
+                            "from 0"},
+        {"objects[5].x=3", "--set objects[5].x: objects has 1 entries, counted from 0; [1] would "
+                           "add one"},
+        {"objects.x=3", "--set objects.x: objects is a list in the file, not a section; give the "
+                        "whole of it"},
+        {"sonar[0]=3", "--set sonar[0]: sonar is a section in the file, not a list; give the whole "
+                       "of it"},
+        {"sonar.altitude.x=3", "--set sonar.altitude.x: sonar.altitude is a value in the file, not "
+                               "a section; give the whole of it"},
+        {"a.b.c.d.e.f.g.h.i.j.k.l.m.n.o=1", "--set a.b.c.d.e.f.g.h.i.j.k.l.m.n.o: nested too "
+                                            "deeply; no key of a scene is"},
+        {"sonar.altitud=3", "--set sonar.altitud: unknown key; did you mean 'altitude'?"},
+        {"sonar.altitude=3 kg", "--set sonar.altitude: unit 'kg' is not one of m, km, cm, mm"},
+        {"sonar.altitude=-1 m", "--set sonar.altitude: must be 1e-06...1e+06 m, not -1"},
+        {"sonar={altitude: 3}", "--set sonar: frequency, bandwidth are missing; add them"},
+        {"sonar={frequency: 1e5, bandwidth: 3e4, altitude: deep}",
+         "--set sonar: sonar.altitude: 'deep' is not a number with a unit of m, km, cm, mm"},
+        {"medium={sound_speed: *a}", "--set medium: medium.sound_speed: aliases (*name) are not "
+                                     "supported; write the value out"},
+        {"medium={sound_speed: 1500", "--set medium: not valid YAML (while "
+                                      "parsing a flow mapping: did not find expected ',' or '}'); "
+                                      "check indentation, colons, quotes and brackets"},
+        {"objects=[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]"
+         "]",
+         "--set objects: objects[0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0][0]"
+         "[0][0][0][0][0][0][0][0][0][0]: nested too deeply; no scene needs this many levels"},
+        {"input.path=\xFF", "--set input.path: not UTF-8 text on one line"},
+        {"objects[0].name=a\nb", "--set objects[0].name: not UTF-8 text on one line"},
+    };
+    struct scene_folder *folder = *state;
+    const char text[] = BASE "objects: [{shape: sphere, diameter: 1}]\n";
+    write_scene(folder, text, strlen(text));
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        if (read_scene(folder, &wrong[i].override, 1) != SONJECT_ERROR_INPUT)
+            fail_msg("%s was taken", wrong[i].override);
+        assert_string_equal(folder->report.message, wrong[i].message);
+    }
+}
+
+static void test_a_missing_file_is_named(void **state)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct scene scene;
+    (void)state;
+    scene_init(&scene);
+    assert_int_equal(scene_file_read(&report, "/tmp/absent-scene.yaml", NULL, 0, &scene),
+                     SONJECT_ERROR_INPUT);
+    assert_string_equal(report.message,
+                        "/tmp/absent-scene.yaml: there is no such scene file; check its name");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_unknown_keys),
+        cmocka_unit_test(test_missing_keys),
+        cmocka_unit_test(test_wrong_values),
+        cmocka_unit_test(test_keys_that_exclude_or_need_each_other),
+        cmocka_unit_test(test_yaml_that_is_not_wanted),
+        cmocka_unit_test(test_overrides_that_are_wrong),
+        cmocka_unit_test(test_a_missing_file_is_named),
+    };
+    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
+}

@@ -1,0 +1,431 @@
+/* Scene files that are good: every key, every way to write it, overrides, examples. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <locale.h>
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene_folder.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+#define PI           3.14159265358979323846
+
+static const char small[] = "sonject: 1\n"
+                            "input:\n"
+                            "  uniform: {rows: 4, columns: 5}\n"
+                            "  geometry:\n"
+                            "    row_spacing: 2.5 cm\n"
+                            "    column_spacing: 2.5 cm\n"
+                            "    first_slant_range: 40 m\n"
+                            "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
+                            "objects:\n"
+                            "  - {shape: sphere, diameter: 0.5 m}\n";
+
+static const char synthetic[] = "sonject: 1\n"
+                                "input:\n"
+                                "  synthetic: {rows: 4, columns: 5}\n"
+                                "  geometry: {row_spacing: 1, column_spacing: 1, "
+                                "first_slant_range: 40}\n"
+                                "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n";
+
+static const char file[] = "sonject: 1\n"
+                           "input:\n"
+                           "  path: swath.tif\n"
+                           "  geometry: {row_spacing: 1, column_spacing: 1, "
+                           "first_slant_range: 40}\n"
+                           "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n";
+
+enum type {
+    TYPE_DOUBLE,
+    TYPE_U32,
+    TYPE_U64,
+    TYPE_BOOL,
+    TYPE_TEXT, /* an array of characters */
+    TYPE_PATH, /* a pointer to them */
+    TYPE_NOTHING
+};
+
+/* A value that is not the default, where it must arrive, and what else its section then needs. */
+static const struct key_case {
+    const char *path;
+    const char *base;
+    const char *value;
+    enum type type;
+    size_t offset; /* in struct scene, or in the first object if the path starts with objects */
+    double number;
+    const char *text;
+    const char *other;
+} cases[] = {
+#define SCENE(member)  offsetof(struct scene, member)
+#define OBJECT(member) offsetof(sonject_object_params, member)
+    {"sonject", small, "1", TYPE_NOTHING, 0, 0.0, NULL, NULL},
+    {"input.path", file, "swath-2.tif", TYPE_PATH, SCENE(input_path), 0.0, "swath-2.tif", NULL},
+    {"input.complex", file, "true", TYPE_BOOL, SCENE(input_is_complex), 1.0, NULL, NULL},
+    {"input.uniform.rows", small, "1048576", TYPE_U32, SCENE(uniform_rows), 1048576.0, NULL, NULL},
+    {"input.uniform.columns", small, "7", TYPE_U32, SCENE(uniform_columns), 7.0, NULL, NULL},
+    {"input.synthetic.rows", synthetic, "8", TYPE_U32, SCENE(synthetic.rows), 8.0, NULL, NULL},
+    {"input.synthetic.columns", synthetic, "9", TYPE_U32, SCENE(synthetic.columns), 9.0, NULL,
+     NULL},
+    {"input.synthetic.seed", synthetic, "4294967296", TYPE_U64, SCENE(synthetic.seed), 4294967296.0,
+     NULL, NULL},
+    {"input.synthetic.complex", synthetic, "true", TYPE_U32, SCENE(synthetic.complex_pixels), 1.0,
+     NULL, NULL},
+    {"input.synthetic.speckle_shape", synthetic, "inf", TYPE_DOUBLE, SCENE(synthetic.speckle_shape),
+     HUGE_VAL, NULL, NULL},
+    {"input.synthetic.texture_length", synthetic, "35 cm", TYPE_DOUBLE,
+     SCENE(synthetic.texture_length_m), 0.35, NULL, NULL},
+    {"input.synthetic.ripple_wavelength", synthetic, "75 cm", TYPE_DOUBLE,
+     SCENE(synthetic.ripple_wavelength_m), 0.75, NULL, NULL},
+    {"input.synthetic.ripple_contrast", synthetic, "0.125", TYPE_DOUBLE,
+     SCENE(synthetic.ripple_contrast), 0.125, NULL, NULL},
+    {"input.synthetic.ripple_heading", synthetic, "90 deg", TYPE_DOUBLE,
+     SCENE(synthetic.ripple_heading_rad), PI / 2.0, NULL, NULL},
+    {"input.synthetic.patch_contrast", synthetic, "6 dB", TYPE_DOUBLE,
+     SCENE(synthetic.patch_contrast_db), 6.0, NULL, NULL},
+    {"input.synthetic.patch_length", synthetic, "5 m", TYPE_DOUBLE, SCENE(synthetic.patch_length_m),
+     5.0, NULL, NULL},
+    {"input.synthetic.mean_amplitude", synthetic, "0.5", TYPE_DOUBLE,
+     SCENE(synthetic.mean_amplitude), 0.5, NULL, NULL},
+    {"input.geometry.row_spacing", small, "5 cm", TYPE_DOUBLE, SCENE(geometry.row_spacing_m), 0.05,
+     NULL, NULL},
+    {"input.geometry.column_spacing", small, "15 mm", TYPE_DOUBLE, SCENE(geometry.column_spacing_m),
+     0.015, NULL, NULL},
+    {"input.geometry.first_slant_range", small, "0.043 km", TYPE_DOUBLE,
+     SCENE(geometry.first_slant_range_m), 43.0, NULL, NULL},
+    {"input.geometry.first_along_track", small, "-3 m", TYPE_DOUBLE,
+     SCENE(geometry.first_along_track_m), -3.0, NULL, NULL},
+    {"input.geometry.side", small, "starboard", TYPE_U32, SCENE(geometry.side),
+     SONJECT_SIDE_STARBOARD, NULL, NULL},
+    {"input.transfer.kind", file, "intensity", TYPE_U32, SCENE(transfer.kind),
+     SONJECT_TRANSFER_INTENSITY, NULL, NULL},
+    {"input.transfer.parameter", file, "2.2", TYPE_DOUBLE, SCENE(transfer.parameter), 2.2, NULL,
+     "input.transfer.kind=gamma"},
+    {"input.transfer.offset", file, "-96 dB", TYPE_DOUBLE, SCENE(transfer.offset), -96.0, NULL,
+     "input.transfer={kind: decibel, parameter: 0.378}"},
+    {"patch.row", small, "3", TYPE_U64, SCENE(patch.first_row), 3.0, NULL,
+     "patch={rows: 1, columns: 1}"},
+    {"patch.column", small, "1099511627776", TYPE_U64, SCENE(patch.first_column), 1099511627776.0,
+     NULL, "patch={rows: 1, columns: 1}"},
+    {"patch.rows", small, "11", TYPE_U64, SCENE(patch.rows), 11.0, NULL, "patch={columns: 1}"},
+    {"patch.columns", small, "12", TYPE_U64, SCENE(patch.columns), 12.0, NULL, "patch={rows: 1}"},
+    {"sonar.frequency", small, "0.3 MHz", TYPE_DOUBLE, SCENE(sonar.centre_frequency_hz), 300e3,
+     NULL, NULL},
+    {"sonar.bandwidth", small, "20000 Hz", TYPE_DOUBLE, SCENE(sonar.bandwidth_hz), 20e3, NULL,
+     NULL},
+    {"sonar.altitude", small, "12", TYPE_DOUBLE, SCENE(sonar.altitude_m), 12.0, NULL, NULL},
+    {"sonar.resolution", small, "3 cm", TYPE_DOUBLE, SCENE(sonar.along_track_resolution_m), 0.03,
+     NULL, NULL},
+    {"sonar.transducer", small, "20 cm", TYPE_DOUBLE, SCENE(sonar.transducer_side_m), 0.2, NULL,
+     NULL},
+    {"sonar.response", small, "hamming", TYPE_U32, SCENE(sonar.response_window),
+     SONJECT_WINDOW_HAMMING, NULL, NULL},
+    {"sonar.response.taylor.sidelobes", small, "40 dB", TYPE_DOUBLE,
+     SCENE(sonar.taylor_sidelobe_db), 40.0, NULL, "sonar.response={taylor: {terms: 5}}"},
+    {"sonar.response.taylor.terms", small, "7", TYPE_U32, SCENE(sonar.taylor_terms), 7.0, NULL,
+     "sonar.response={taylor: {sidelobes: 35 dB}}"},
+    {"medium.sound_speed", small, "1.48 km/s", TYPE_DOUBLE, SCENE(medium.sound_speed_mps), 1480.0,
+     NULL, NULL},
+    {"medium.reference_sound_speed", small, "1490 m/s", TYPE_DOUBLE,
+     SCENE(medium.reference_sound_speed_mps), 1490.0, NULL, NULL},
+    {"seabed.lambert", small, "0.25", TYPE_DOUBLE, SCENE(seabed.lambert), 0.25, NULL, NULL},
+    {"seabed.map", small, "despeckled", TYPE_U32, SCENE(seabed.map), SONJECT_MAP_DESPECKLED, NULL,
+     NULL},
+    {"seabed.level_radius", small, "4 m", TYPE_DOUBLE, SCENE(seabed.level_radius_m), 4.0, NULL,
+     NULL},
+    {"seabed.despeckle_radius", small, "5 cm", TYPE_DOUBLE, SCENE(seabed.despeckle_radius_m), 0.05,
+     NULL, NULL},
+    {"injection.mode", small, "resynthesise", TYPE_U32, SCENE(injection.mode),
+     SONJECT_MODE_RESYNTHESISE, NULL, NULL},
+    {"injection.columns", small, "paper", TYPE_U32, SCENE(injection.column_rule),
+     SONJECT_COLUMNS_PAPER, NULL, NULL},
+    {"injection.noise_floor", small, "-30 dB", TYPE_DOUBLE, SCENE(injection.noise_floor_db), -30.0,
+     NULL, NULL},
+    {"injection.influence", small, "-35 dB", TYPE_DOUBLE, SCENE(injection.influence_db), -35.0,
+     NULL, NULL},
+    {"injection.rays", small, "0.5", TYPE_DOUBLE, SCENE(injection.ray_scale), 0.5, NULL, NULL},
+    {"injection.seed", small, "2199023255552", TYPE_U64, SCENE(injection.seed), 2199023255552.0,
+     NULL, NULL},
+    {"objects[].name", small, "M\xC3\xBCll 7: #1", TYPE_TEXT, OBJECT(name), 0.0,
+     "M\xC3\xBCll 7: #1", NULL},
+    {"objects[].class", small, "\"mine\"", TYPE_TEXT, OBJECT(class_name), 0.0, "mine", NULL},
+    {"objects[].shape", small, "capsule", TYPE_U32, OBJECT(shape), SONJECT_SHAPE_CAPSULE, NULL,
+     "objects[0].length=2 m"},
+    {"objects[].length", small, "1.2 m", TYPE_DOUBLE, OBJECT(length_m), 1.2, NULL,
+     "objects[0].shape=cylinder"},
+    {"objects[].width", small, "0.8 m", TYPE_DOUBLE, OBJECT(width_m), 0.8, NULL,
+     "objects[0]={shape: plane, length: 1 m}"},
+    {"objects[].diameter", small, "30 cm", TYPE_DOUBLE, OBJECT(diameter_m), 0.3, NULL, NULL},
+    {"objects[].position", small, "centre", TYPE_U32, OBJECT(position_kind),
+     SONJECT_POSITION_PATCH_CENTRE, NULL, NULL},
+    {"objects[].position.along_track", small, "-2 m", TYPE_DOUBLE, OBJECT(position_along), -2.0,
+     NULL, "objects[0].position={slant_range: 41}"},
+    {"objects[].position.slant_range", small, "42 m", TYPE_DOUBLE, OBJECT(position_range), 42.0,
+     NULL, "objects[0].position={along_track: 0}"},
+    {"objects[].position.row", small, "1.5", TYPE_DOUBLE, OBJECT(position_along), 1.5, NULL,
+     "objects[0].position={column: 2}"},
+    {"objects[].position.column", small, "2.25", TYPE_DOUBLE, OBJECT(position_range), 2.25, NULL,
+     "objects[0].position={row: 2}"},
+    {"objects[].heading", small, "-45 deg", TYPE_DOUBLE, OBJECT(heading_rad), -PI / 4.0, NULL,
+     NULL},
+    {"objects[].pitch", small, "0.5 rad", TYPE_DOUBLE, OBJECT(pitch_rad), 0.5, NULL, NULL},
+    {"objects[].roll", small, "180", TYPE_DOUBLE, OBJECT(roll_rad), PI, NULL, NULL},
+    {"objects[].burial", small, "-6.7 cm", TYPE_DOUBLE, OBJECT(burial_m), -0.067, NULL, NULL},
+    {"objects[].material.reflection", small, "-0.75", TYPE_DOUBLE, OBJECT(material.reflection),
+     -0.75, NULL, NULL},
+    {"objects[].material.roughness", small, "2 mm", TYPE_DOUBLE, OBJECT(material.roughness_m),
+     0.002, NULL, NULL},
+    {"objects[].material.lambert", small, "0.125", TYPE_DOUBLE, OBJECT(material.lambert), 0.125,
+     NULL, NULL},
+};
+
+static double number_at(const void *structure, const struct key_case *key)
+{
+    const char *place = (const char *)structure + key->offset;
+    double number;
+    uint32_t count32;
+    uint64_t count64;
+    bool flag;
+    switch (key->type) {
+    case TYPE_DOUBLE:
+        memcpy(&number, place, sizeof number);
+        return number;
+    case TYPE_U32:
+        memcpy(&count32, place, sizeof count32);
+        return count32;
+    case TYPE_U64:
+        memcpy(&count64, place, sizeof count64);
+        return (double)count64;
+    default:
+        memcpy(&flag, place, sizeof flag);
+        return flag;
+    }
+}
+
+static void expect_arrived(const struct key_case *key, const void *structure)
+{
+    const char *place = (const char *)structure + key->offset;
+    if (key->type == TYPE_NOTHING)
+        return;
+    if (key->type == TYPE_TEXT || key->type == TYPE_PATH) {
+        const char *text = place;
+        if (key->type == TYPE_PATH)
+            memcpy(&text, place, sizeof text);
+        assert_string_equal(text, key->text);
+    } else if (!(number_at(structure, key) == key->number)) {
+        fail_msg("%s: %s gave %.17g, not %.17g", key->path, key->value, number_at(structure, key),
+                 key->number);
+    }
+}
+
+static void expect_case(struct scene_folder *folder, const struct key_case *key)
+{
+    char override[256];
+    const char *overrides[2];
+    size_t count = 0;
+    const char *behind = strchr(key->path, ']');
+    if (key->other)
+        overrides[count++] = key->other;
+    snprintf(override, sizeof override, "%s%s=%s", behind ? "objects[0]" : "",
+             behind ? behind + 1 : key->path, key->value);
+    overrides[count++] = override;
+    write_scene(folder, key->base, strlen(key->base));
+    if (read_scene(folder, overrides, count) != SONJECT_OK)
+        fail_msg("%s: %s", override, folder->report.message);
+    expect_arrived(key, behind ? (const void *)folder->scene.objects : &folder->scene);
+}
+
+static void test_every_key_arrives(void **state)
+{
+    for (size_t i = 0; i < COUNT(cases); i++)
+        expect_case(*state, &cases[i]);
+}
+
+/* So that a key cannot be added to the tables without a case above. */
+static void test_every_key_has_a_case(void **state)
+{
+    struct scene_file_key keys[100];
+    const size_t count = scene_file_keys(keys, COUNT(keys));
+    (void)state;
+    assert_int_equal(count, COUNT(cases));
+    assert_int_equal(scene_file_keys(NULL, 0), count);
+    for (size_t i = 0; i < count; i++) {
+        size_t j = 0;
+        while (j < COUNT(cases) && strcmp(cases[j].path, keys[i].path) != 0)
+            j++;
+        if (j == COUNT(cases))
+            fail_msg("%s has no case", keys[i].path);
+        assert_true(keys[i].unit[0] && keys[i].meaning[0]);
+    }
+}
+
+static void test_defaults_stay_where_nothing_is_said(void **state)
+{
+    struct scene_folder *folder = *state;
+    struct scene defaults;
+    scene_init(&defaults);
+    expect_scene_taken(folder, small);
+    assert_memory_equal(&folder->scene.medium, &defaults.medium, sizeof defaults.medium);
+    assert_memory_equal(&folder->scene.seabed, &defaults.seabed, sizeof defaults.seabed);
+    assert_memory_equal(&folder->scene.injection, &defaults.injection, sizeof defaults.injection);
+    assert_memory_equal(&folder->scene.patch, &defaults.patch, sizeof defaults.patch);
+    assert_int_equal(folder->scene.input_kind, SONJECT_INPUT_UNIFORM);
+    assert_int_equal(folder->scene.object_count, 1);
+    assert_true(folder->scene.objects[0].material.reflection == 0.9);
+    assert_true(folder->scene.objects[0].length_m == 0.0);
+}
+
+static void test_words_and_forms(void **state)
+{
+    struct scene_folder *folder = *state;
+    const char *overrides[] = {"sonar.response={taylor: {sidelobes: 30 dB, terms: 4}}",
+                               "injection.noise_floor=-20",
+                               "objects[0].position={row: 1, column: 2}", "seabed.lambert=-30 dB"};
+    const char *back[] = {"sonar.response=rectangular", "injection.noise_floor=estimate",
+                          "objects[0].position={along_track: 1, slant_range: 41}"};
+    write_scene(folder, small, strlen(small));
+    assert_int_equal(read_scene(folder, overrides, COUNT(overrides)), SONJECT_OK);
+    assert_int_equal(folder->scene.sonar.response_window, SONJECT_WINDOW_TAYLOR);
+    assert_int_equal(folder->scene.injection.estimate_noise, 0);
+    assert_int_equal(folder->scene.objects[0].position_kind, SONJECT_POSITION_PIXELS);
+    assert_true(fabs(folder->scene.seabed.lambert / 1e-3 - 1.0) < 1e-15); /* rounding of pow */
+    assert_int_equal(read_scene(folder, back, COUNT(back)), SONJECT_OK);
+    assert_int_equal(folder->scene.sonar.response_window, SONJECT_WINDOW_RECTANGULAR);
+    assert_int_equal(folder->scene.injection.estimate_noise, 1);
+    assert_int_equal(folder->scene.objects[0].position_kind, SONJECT_POSITION_METRES);
+}
+
+static void test_paths_are_meant_from_where_they_stand(void **state)
+{
+    struct scene_folder *folder = *state;
+    const char *absolute = "input.path=/data/a #1: b.tif";
+    const char *relative = "input.path= data/swath.tif";
+    char expected[SCENE_FOLDER_CAPACITY + 16];
+    expect_scene_taken(folder, file);
+    snprintf(expected, sizeof expected, "%s/swath.tif", folder->folder);
+    assert_string_equal(folder->scene.input_path, expected);
+    assert_int_equal(folder->scene.input_kind, SONJECT_INPUT_FILE);
+    assert_int_equal(read_scene(folder, &absolute, 1), SONJECT_OK);
+    assert_string_equal(folder->scene.input_path, "/data/a #1: b.tif");
+    assert_int_equal(read_scene(folder, &relative, 1), SONJECT_OK);
+    assert_string_equal(folder->scene.input_path, "data/swath.tif");
+}
+
+static void test_overrides_change_and_add(void **state)
+{
+    struct scene_folder *folder = *state;
+    const char *overrides[] = {"objects[0].heading=30 deg", "objects[1]={shape: plane, length: 1}",
+                               "objects[1].width = 2 m",    "sonar.altitude=11",
+                               "sonar.altitude=12 m",       "injection.seed='77'"};
+    const char *none = "objects=[]";
+    write_scene(folder, small, strlen(small));
+    assert_int_equal(read_scene(folder, overrides, COUNT(overrides)), SONJECT_OK);
+    assert_int_equal(folder->scene.object_count, 2);
+    assert_true(folder->scene.objects[0].heading_rad == 30.0 / 180.0 * PI);
+    assert_true(folder->scene.objects[1].width_m == 2.0);
+    assert_true(folder->scene.objects[1].diameter_m == 0.0); /* a plane has none, not the default */
+    assert_true(folder->scene.sonar.altitude_m == 12.0);
+    assert_int_equal(folder->scene.injection.seed, 77);
+    assert_int_equal(read_scene(folder, &none, 1), SONJECT_OK);
+    assert_int_equal(folder->scene.object_count, 0);
+}
+
+static void test_sections_may_be_empty(void **state)
+{
+    char text[1000];
+    struct scene_folder *folder = *state;
+    snprintf(text, sizeof text, "%smedium:\nseabed: {}\ninjection: ~\n", small);
+    expect_scene_taken(folder, text);
+    *strstr(text, "objects:") = 0;
+    strcat(text, "objects:\n");
+    expect_scene_taken(folder, text);
+    assert_int_equal(folder->scene.object_count, 0);
+    *strstr(text, "objects:") = 0;
+    expect_scene_taken(folder, text);
+    assert_int_equal(folder->scene.object_count, 0);
+}
+
+static void test_byte_order_mark_and_line_ends(void **state)
+{
+    char text[1000] = "\xEF\xBB\xBF";
+    size_t length = 3;
+    for (const char *c = small; *c; c++) {
+        if (*c == '\n')
+            text[length++] = '\r';
+        text[length++] = *c;
+    }
+    text[length] = 0;
+    expect_scene_taken(*state, text);
+}
+
+static void test_examples_are_good(void **state)
+{
+    static const struct {
+        const char *name;
+        sonject_input_kind input;
+        sonject_injection_mode mode;
+        uint32_t objects;
+    } examples[] = {
+        {"demo", SONJECT_INPUT_SYNTHETIC, SONJECT_MODE_COMPOSITE, 3},
+        {"figure4", SONJECT_INPUT_UNIFORM, SONJECT_MODE_RESYNTHESISE, 1},
+        {"figure5", SONJECT_INPUT_FILE, SONJECT_MODE_RESYNTHESISE, 0},
+        {"figure6", SONJECT_INPUT_FILE, SONJECT_MODE_COMPOSITE, 1},
+    };
+    struct scene_folder *folder = *state;
+    for (size_t i = 0; i < COUNT(examples); i++) {
+        size_t bytes;
+        char *text = example_scene(examples[i].name, &bytes);
+        write_scene(folder, text, bytes);
+        free(text);
+        if (read_scene(folder, NULL, 0) != SONJECT_OK)
+            fail_msg("%s: %s", examples[i].name, folder->report.message);
+        assert_int_equal(folder->scene.input_kind, examples[i].input);
+        assert_int_equal(folder->scene.injection.mode, examples[i].mode);
+        assert_int_equal(folder->scene.object_count, examples[i].objects);
+        assert_true(folder->scene.sonar.centre_frequency_hz == 100e3);
+        assert_true(folder->scene.sonar.bandwidth_hz == 30e3);
+        assert_true(folder->scene.sonar.altitude_m == 10.0);
+    }
+}
+
+static void test_a_decimal_comma_changes_nothing(void **state)
+{
+    static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8", "de_DE", "fr_FR.UTF-8"};
+    const char *found = NULL;
+    for (size_t i = 0; i < COUNT(names) && !found; i++)
+        found = setlocale(LC_ALL, names[i]);
+    if (!found || strcmp(localeconv()->decimal_point, ",") != 0) {
+        setlocale(LC_ALL, "C");
+        print_message("no locale with a decimal comma is installed\n");
+        skip();
+    }
+    for (size_t i = 0; i < COUNT(cases); i++)
+        expect_case(*state, &cases[i]);
+    setlocale(LC_ALL, "C");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_key_arrives),
+        cmocka_unit_test(test_every_key_has_a_case),
+        cmocka_unit_test(test_defaults_stay_where_nothing_is_said),
+        cmocka_unit_test(test_words_and_forms),
+        cmocka_unit_test(test_paths_are_meant_from_where_they_stand),
+        cmocka_unit_test(test_overrides_change_and_add),
+        cmocka_unit_test(test_sections_may_be_empty),
+        cmocka_unit_test(test_byte_order_mark_and_line_ends),
+        cmocka_unit_test(test_examples_are_good),
+        cmocka_unit_test(test_a_decimal_comma_changes_nothing),
+    };
+    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
+}

@@ -1,0 +1,287 @@
+/* Scene files made to break the reader: bombs, nesting, sizes, cut and mutated files. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene_folder.h"
+
+#ifndef MUTATIONS
+#define MUTATIONS 20000 /* of each example; a slow checker may compile with fewer */
+#endif
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+static const char *const examples[] = {"demo", "figure4", "figure5", "figure6"};
+
+static size_t lines_of(const char *text, size_t bytes)
+{
+    size_t lines = 1;
+    for (size_t i = 0; i < bytes; i++)
+        lines += text[i] == '\n' || text[i] == '\r';
+    return lines;
+}
+
+/* Whatever the text, it is a scene or a message that leads to a line of it. */
+static sonject_status expect_taken_or_explained(struct scene_folder *folder, const char *text,
+                                                size_t bytes)
+{
+    const char *place = folder->report.message + strlen(folder->file);
+    unsigned long line, column;
+    int length = 0;
+    write_scene(folder, text, bytes);
+    const sonject_status status = read_scene(folder, NULL, 0);
+    if (status == SONJECT_OK)
+        return status;
+    if (status != SONJECT_ERROR_INPUT)
+        fail_msg("status %d: %s", (int)status, folder->report.message);
+    assert_memory_equal(folder->report.message, folder->file, strlen(folder->file));
+    if (sscanf(place, ":%lu:%lu: %n", &line, &column, &length) != 2 || length == 0 ||
+        place[length] == 0)
+        fail_msg("no place or no text: %s", folder->report.message);
+    /* Next line (0x85) and its like also end a line for YAML and take two bytes or more; so does
+     * the end of the file. */
+    if (line < 1 || line > lines_of(text, bytes) + bytes / 2 + 1 || column < 1 ||
+        column > bytes + 1)
+        fail_msg("a place that is not there: %s", folder->report.message);
+    assert_int_equal(folder->scene.object_count, 0);
+    assert_null(folder->scene.input_path);
+    return status;
+}
+
+static void expect_saying(struct scene_folder *folder, const char *text, size_t bytes,
+                          const char *part)
+{
+    if (expect_taken_or_explained(folder, text, bytes) == SONJECT_OK)
+        fail_msg("taken instead of: %s", part);
+    if (!strstr(folder->report.message, part))
+        fail_msg("the message is not '%s': %s", part, folder->report.message);
+}
+
+/* head, then middle count times, then tail; for free(). */
+static char *repeated(const char *head, const char *middle, size_t count, const char *tail)
+{
+    char *text = malloc(strlen(head) + count * strlen(middle) + strlen(tail) + 1);
+    assert_non_null(text);
+    char *end = text + sprintf(text, "%s", head);
+    for (size_t i = 0; i < count; i++)
+        end += sprintf(end, "%s", middle);
+    sprintf(end, "%s", tail);
+    return text;
+}
+
+static void expect_repeated_saying(void **state, const char *head, const char *middle, size_t count,
+                                   const char *tail, const char *part)
+{
+    char *text = repeated(head, middle, count, tail);
+    expect_saying(*state, text, strlen(text), part);
+    free(text);
+}
+
+static void test_alias_bomb(void **state)
+{
+    char text[2000] = "a: &a [x,x,x,x,x,x,x,x,x]\n";
+    for (char name = 'b'; name <= 'j'; name++)
+        sprintf(text + strlen(text), "%c: &%c [*%c,*%c,*%c,*%c,*%c,*%c,*%c,*%c]\n", name, name,
+                name - 1, name - 1, name - 1, name - 1, name - 1, name - 1, name - 1, name - 1);
+    expect_saying(*state, text, strlen(text), ":1:4: a: anchors");
+}
+
+static void test_deep_nesting(void **state)
+{
+    expect_repeated_saying(state, "a: ", "[", 33, "", "nested too deeply");
+    expect_repeated_saying(state, "a: ", "[", 500000, "", "nested too deeply");
+    expect_repeated_saying(state, "", "{a: ", 200000, "", "nested too deeply");
+    expect_repeated_saying(state, "", "- ", 500000, "x", "nested too deeply");
+    expect_repeated_saying(state, "", "? ", 500000, "x", "plain words");
+}
+
+static void test_too_many_values(void **state)
+{
+    expect_repeated_saying(state, "a: [", "1,", 99998, "1]", "unknown key");
+    expect_repeated_saying(state, "a: [", "1,", 99999, "1]", "one value too many");
+    expect_repeated_saying(state, "sonject: 1\nobjects: [", "{},", 251, "]", "input, sonar");
+}
+
+static void test_too_many_keys(void **state)
+{
+    char *text = malloc(20000);
+    char *end = text;
+    assert_non_null(text);
+    for (int i = 0; i < 257; i++)
+        end += sprintf(end, "key_%d: 1\n", i);
+    expect_saying(*state, text, strlen(text), ":257:1: key_256: has more than 256 keys");
+    free(text);
+}
+
+static void test_too_many_objects(void **state)
+{
+    static const char head[] =
+        "sonject: 1\ninput: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, "
+        "column_spacing: 1, first_slant_range: 40}}\n"
+        "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\nobjects:\n";
+    static const char object[] = "  - {shape: sphere, diameter: 1}\n";
+    char *text = repeated(head, object, 250, "");
+    assert_int_equal(expect_taken_or_explained(*state, text, strlen(text)), SONJECT_OK);
+    free(text);
+    expect_repeated_saying(state, head, object, 251, "", "has 251 entries; at most 250");
+}
+
+static void test_too_large_a_file(void **state)
+{
+    struct scene_folder *folder = *state;
+    char *text = repeated("# ", "x", 1024 * 1024, "");
+    write_scene(folder, text, strlen(text));
+    free(text);
+    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    assert_memory_equal(folder->report.message, folder->file, strlen(folder->file));
+}
+
+static void test_long_words(void **state)
+{
+    struct scene_folder *folder = *state;
+    expect_repeated_saying(state, "", "k", 1000, ": 1", ": unknown key");
+    expect_repeated_saying(state, "\"", "k", 500000, "\": 1", "not valid YAML");
+    expect_repeated_saying(state, "sonject: ", "1", 500000, "", "are missing");
+    expect_repeated_saying(state, "? ", "\xC3\xA9", 100000, "\n: 1", ": unknown key");
+    assert_true(strlen(folder->report.message) < REPORT_CAPACITY - 1);
+}
+
+/* A number of half a million digits is still a number. */
+static void test_long_numbers(void **state)
+{
+    static const char head[] =
+        "sonject: 1\ninput: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, "
+        "column_spacing: 1, first_slant_range: 40}}\n"
+        "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10.";
+    struct scene_folder *folder = *state;
+    char *text = repeated(head, "0", 500000, "1}\n");
+    assert_int_equal(expect_taken_or_explained(folder, text, strlen(text)), SONJECT_OK);
+    assert_true(folder->scene.sonar.altitude_m == 10.0);
+    free(text);
+    expect_repeated_saying(state, head, "0", 1000, "e99999}\n", "too large");
+}
+
+static void test_other_encodings(void **state)
+{
+    static const char utf16[] = "\xFF\xFEs\0o\0n\0";
+    static const char zero[] = "sonject: 1\n\0input: 1\n";
+    expect_saying(*state, utf16, sizeof utf16 - 1, ":1:1: not UTF-8");
+    expect_saying(*state, zero, sizeof zero - 1, ":2:1: not UTF-8 text (control characters");
+    expect_saying(*state, "\xEF\xBB\xBF", 3, "there is nothing in it");
+    expect_saying(*state, "\xEF\xBB", 2, "not UTF-8");
+}
+
+static void test_an_example_cut_at_every_length(void **state)
+{
+    size_t bytes;
+    size_t taken = 0;
+    char *text = example_scene("demo", &bytes);
+    for (size_t length = 0; length <= bytes; length++) {
+        /* A copy of its own size, so that reading beyond it is found. */
+        char *cut = malloc(length + 1);
+        assert_non_null(cut);
+        memcpy(cut, text, length);
+        taken += expect_taken_or_explained(*state, cut, length) == SONJECT_OK;
+        free(cut);
+    }
+    /* Most of the file is needed, but its end holds objects that may be missing. */
+    assert_true(taken > 0 && taken < bytes / 2);
+    free(text);
+}
+
+struct dice {
+    uint64_t state;
+};
+
+/* Marsaglia's xorshift. */
+static size_t throw(struct dice * dice, size_t sides)
+{
+    dice->state ^= dice->state << 13;
+    dice->state ^= dice->state >> 7;
+    dice->state ^= dice->state << 17;
+    return (size_t)(dice->state % sides);
+}
+
+#define TEXT_CAPACITY 8192
+
+/* One change to the text: a byte, a special character, a piece lost, doubled or moved. */
+static size_t mutate(struct dice *dice, char *text, size_t bytes)
+{
+    static const char special[] = "{}[]:,#&*!|>'\"%@`-?\n\t \\.0-9e~";
+    const size_t at = throw(dice, bytes);
+    const size_t most = bytes - at < 40 ? bytes - at : 40;
+    const size_t length = 1 + throw(dice, most);
+    const size_t from = throw(dice, bytes - length + 1);
+    char piece[40];
+    switch (throw(dice, 5)) {
+    case 0:
+        text[at] = (char) throw(dice, 256);
+        return bytes;
+    case 1:
+        text[at] = special[throw(dice, sizeof special - 1)];
+        return bytes;
+    case 2:
+        memmove(text + at, text + at + length, bytes - at - length);
+        return bytes - length;
+    case 3:
+        memcpy(piece, text + from, length);
+        if (bytes + length > TEXT_CAPACITY)
+            return bytes;
+        memmove(text + at + length, text + at, bytes - at);
+        memcpy(text + at, piece, length);
+        return bytes + length;
+    default:
+        memcpy(piece, text + from, length);
+        memcpy(text + at, piece, length);
+        return bytes;
+    }
+}
+
+static void test_mutated_examples(void **state)
+{
+    struct dice dice = {UINT64_C(0x9E3779B97F4A7C15)};
+    for (size_t i = 0; i < COUNT(examples); i++) {
+        size_t bytes;
+        size_t refused = 0;
+        char *text = example_scene(examples[i], &bytes);
+        assert_true(bytes > 100 && bytes < TEXT_CAPACITY);
+        for (int j = 0; j < MUTATIONS; j++) {
+            char mutated[TEXT_CAPACITY];
+            size_t length = bytes;
+            memcpy(mutated, text, bytes);
+            for (size_t changes = 1 + throw(&dice, 4); changes > 0 && length > 0; changes--)
+                length = mutate(&dice, mutated, length);
+            refused += expect_taken_or_explained(*state, mutated, length) != SONJECT_OK;
+        }
+        /* Many changes fall into comments; but the mutations must hurt. */
+        assert_true(refused > MUTATIONS / 4 && refused < MUTATIONS);
+        free(text);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_alias_bomb),
+        cmocka_unit_test(test_deep_nesting),
+        cmocka_unit_test(test_too_many_values),
+        cmocka_unit_test(test_too_many_keys),
+        cmocka_unit_test(test_too_many_objects),
+        cmocka_unit_test(test_too_large_a_file),
+        cmocka_unit_test(test_long_words),
+        cmocka_unit_test(test_long_numbers),
+        cmocka_unit_test(test_other_encodings),
+        cmocka_unit_test(test_an_example_cut_at_every_length),
+        cmocka_unit_test(test_mutated_examples),
+    };
+    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
+}
