@@ -9,12 +9,14 @@ void native_trace_rough(const struct fan_record *fan, const struct object_record
                         struct outcome_record *outcomes)
 {
     for (int strip = first; strip < last; strip++)
-        outcomes[strip] = trace_rough_strip(fan, objects, map, seabed, tiles, strip, 0);
+        for (int segment = 0; segment < fan->segments; segment++)
+            outcomes[strip] = trace_rough_strip(fan, objects, map, seabed, tiles, strip, segment);
 }
 
 void native_trace_smooth(const struct fan_record *fan, const struct object_record *objects,
                          int64_t *tally, int first, int last, struct outcome_record *outcomes)
 {
     for (int strip = first; strip < last; strip++)
-        outcomes[strip] = trace_smooth_strip(fan, objects, tally, strip, 0);
+        for (int segment = 0; segment < fan->segments; segment++)
+            outcomes[strip] = trace_smooth_strip(fan, objects, tally, strip, segment);
 }
