@@ -2,6 +2,7 @@
 #include "api/documents.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
@@ -232,6 +233,16 @@ static json_t *comparison_document(const sonject_statistics *statistics)
     return document;
 }
 
+/* JSON's readers take integers of 63 bits at the most; larger seeds are written as text. */
+static json_t *seed_document(uint64_t seed)
+{
+    char text[24];
+    if (seed <= (uint64_t)INT64_MAX)
+        return count(seed);
+    snprintf(text, sizeof text, "%llu", (unsigned long long)seed);
+    return json_string(text);
+}
+
 sonject_status write_run(struct report *report, const struct run_facts *facts, const char *path)
 {
     const sonject_statistics *statistics = &facts->result->statistics;
@@ -243,7 +254,7 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
     json_t *document = json_object();
     add(document, "sonject", json_string(sonject_version()));
     add(document, "scene_hash", json_string(facts->scene_hash));
-    add(document, "seed", count(facts->scene->injection.seed));
+    add(document, "seed", seed_document(facts->scene->injection.seed));
     add(document, "device", device);
     add(document, "options", options_document(facts->scene));
     add(document, "image", json_string(facts->image_name));
