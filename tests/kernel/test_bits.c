@@ -1,0 +1,550 @@
+/* The same bits everywhere: what a device tallies and forms, at every width, chunking, core count
+ * and time, is what the same kernel functions give as plain C, one lane at a time. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "image_formation.h"
+#include "trace_rough.h"
+#include "trace_smooth.h"
+
+#include "cl/launch.h"
+#include "physics/bench.h"
+
+#define ROWS    96
+#define COLUMNS 128
+
+enum scene_kind {
+    SCENE_ALL_SHAPES,  /* several objects, source at the receiver */
+    SCENE_WIDE_SOURCE, /* the same, source rectangle: visibility tests */
+    SCENE_WITH_MAP,    /* and a reflectivity map */
+    SCENE_EMPTY,       /* seabed alone */
+    SCENE_KINDS
+};
+
+static void place(sonject_object_params *object, double row, double column, double heading,
+                  double pitch, double roll)
+{
+    object->position_kind = SONJECT_POSITION_PIXELS;
+    object->position_along = row;
+    object->position_range = column;
+    object->heading_rad = heading;
+    object->pitch_rad = pitch;
+    object->roll_rad = roll;
+    object->material.lambert = 0.05;
+    object->material.reflection = 0.8;
+    object->material.roughness_m = 1e-3;
+}
+
+static void make_scene(struct bench *bench, enum scene_kind kind)
+{
+    bench->scene.injection.seed = 0x123456789abcdefu;
+    bench->scene.sonar.altitude_m = 7.3;
+    bench->scene.medium.reference_sound_speed_mps = 1480.0;
+    bench->scene.sonar.along_track_resolution_m = 0.03;
+    if (kind != SCENE_EMPTY) {
+        place(bench_add(bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.4), 20.2, 40.7, 0.0, 0.0, 0.0);
+        place(bench_add(bench, SONJECT_SHAPE_CYLINDER, 0.8, 0.0, 0.3), 50.0, 30.0, 0.7, 0.2, 0.0);
+        place(bench_add(bench, SONJECT_SHAPE_CAPSULE, 1.0, 0.0, 0.3), 60.0, 70.0, -0.4, 0.1, 0.3);
+        place(bench_add(bench, SONJECT_SHAPE_PLANE, 0.6, 0.4, 0.0), 40.0, 55.0, 0.3, -0.5, 0.4);
+        bench->scene.objects[3].burial_m = 0.05;
+    }
+    if (kind == SCENE_WIDE_SOURCE || kind == SCENE_WITH_MAP)
+        bench->scene.sonar.transducer_side_m = 0.2;
+    bench_ready(bench);
+}
+
+static float *make_map(enum scene_kind kind)
+{
+    if (kind != SCENE_WITH_MAP)
+        return NULL;
+    float *map = malloc(ROWS * COLUMNS * sizeof *map);
+    assert_non_null(map);
+    const struct random_key key = random_key_of(5, 0, 99, 0);
+    for (uint32_t i = 0; i < ROWS * COLUMNS; i++) {
+        float u, v;
+        two_uniforms(key, i, 0, &u, &v);
+        map[i] = u < 0.1f ? 0.0f : -3.0f * natural_logarithm(v);
+    }
+    return map;
+}
+
+/* Everything a trace leaves behind. */
+struct tallies {
+    size_t lines, tiles; /* elements */
+    int64_t *line, *tile;
+    struct trace_counts counts;
+};
+
+static void tallies_clear(struct tallies *tallies)
+{
+    free(tallies->line);
+    free(tallies->tile);
+}
+
+static void expect_same(const char *what, const struct tallies *a, const struct tallies *b)
+{
+    assert_int_equal(a->lines, b->lines);
+    assert_int_equal(a->tiles, b->tiles);
+    for (size_t i = 0; i < a->lines; i++)
+        if (a->line[i] != b->line[i])
+            fail_msg("%s: line element %zu of %zu is %lld, not %lld", what, i, a->lines,
+                     (long long)a->line[i], (long long)b->line[i]);
+    for (size_t i = 0; i < a->tiles; i++)
+        if (a->tile[i] != b->tile[i])
+            fail_msg("%s: tile element %zu of %zu is %lld, not %lld", what, i, a->tiles,
+                     (long long)a->tile[i], (long long)b->tile[i]);
+    assert_int_equal(a->counts.rays, b->counts.rays);
+    assert_int_equal(a->counts.impulses, b->counts.impulses);
+    assert_int_equal(a->counts.queries, b->counts.queries);
+}
+
+/* A sum without weight would let a dead trace pass. */
+static void expect_alive(const struct tallies *tallies)
+{
+    size_t filled = 0;
+    for (size_t i = 0; i < tallies->lines; i++)
+        filled += tallies->line[i] != 0;
+    assert_true(filled > tallies->lines / 20);
+}
+
+static struct tallies trace_rough_on_device(struct bench *bench, const float *map, int32_t chunk)
+{
+    struct rough_trace trace;
+    struct tallies tallies = {0, 0, NULL, NULL, {0, 0, 0, 0}};
+    memset(&bench->tracer.counts, 0, sizeof bench->tracer.counts);
+    if (rough_trace_begin(&trace, &bench->tracer, map) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+    const size_t bins = (size_t)trace.grid.bins.count;
+    const int32_t count = trace.grid.strips.count;
+    tallies.lines = line_grid_cells(&trace.grid);
+    tallies.tiles = trace.tile_elements;
+    tallies.line = calloc(tallies.lines, sizeof(int64_t));
+    tallies.tile = calloc(tallies.tiles + 1, sizeof(int64_t));
+    float *energy = calloc(tallies.lines, sizeof *energy);
+    assert_true(tallies.line && tallies.tile && energy);
+    assert_true(rough_trace_chunk(&trace) >= count);
+    for (int32_t done = 0; done < count; done += chunk) {
+        const int32_t left = count - done;
+        const struct span strips = {trace.grid.strips.first + done, left < chunk ? left : chunk};
+        if (rough_trace_strips(&trace, &bench->tracer, strips, energy) != SONJECT_OK ||
+            buffer_read(&bench->report, bench->tracer.device, trace.on_device.tallies, 0,
+                        (size_t)strips.count * bins * sizeof(int64_t),
+                        tallies.line + (size_t)done * bins) != SONJECT_OK)
+            fail_msg("%s", bench->report.message);
+        for (size_t i = 0; i < (size_t)strips.count * bins; i++)
+            assert_true(energy[i] == (float)((double)tallies.line[(size_t)done * bins + i] *
+                                             trace.energy_of_quantum));
+    }
+    if (tallies.tiles > 0)
+        assert_int_equal(buffer_read(&bench->report, bench->tracer.device, trace.tile_buffer, 0,
+                                     tallies.tiles * sizeof(int64_t), tallies.tile),
+                         SONJECT_OK);
+    tallies.counts = bench->tracer.counts;
+    free(energy);
+    rough_trace_end(&trace);
+    return tallies;
+}
+
+static void read_objects(struct bench *bench, cl_mem buffer, struct object_record *records)
+{
+    if (bench->scene.object_count > 0)
+        assert_int_equal(buffer_read(&bench->report, bench->tracer.device, buffer, 0,
+                                     bench->scene.object_count * sizeof *records, records),
+                         SONJECT_OK);
+}
+
+static void count_outcome(struct tallies *tallies, struct outcome_record outcome)
+{
+    assert_int_equal(outcome.faults, 0);
+    tallies->counts.queries += outcome.queries;
+    tallies->counts.impulses += outcome.impulses;
+}
+
+static struct tallies trace_rough_as_c(struct bench *bench, const float *map)
+{
+    struct rough_trace trace;
+    struct object_record objects[BENCH_OBJECTS];
+    struct tallies tallies = {0, 0, NULL, NULL, {0, 0, 0, 0}};
+    if (rough_trace_begin(&trace, &bench->tracer, map) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+    read_objects(bench, trace.on_device.objects, objects);
+    tallies.lines = line_grid_cells(&trace.grid);
+    tallies.tiles = trace.tile_elements;
+    tallies.line = calloc(tallies.lines, sizeof(int64_t));
+    tallies.tile = calloc(tallies.tiles + 1, sizeof(int64_t));
+    assert_true(tallies.line && tallies.tile);
+    trace.fan.first_strip = trace.grid.strips.first;
+    trace.fan.strips = trace.grid.strips.count;
+    trace.fan.segments = 1;
+    for (int strip = 0; strip < trace.fan.strips; strip++)
+        count_outcome(&tallies, trace_rough_strip(&trace.fan, objects, map, tallies.line,
+                                                  tallies.tile, strip, 0));
+    tallies.counts.rays = (uint64_t)trace.fan.rays * (uint64_t)trace.fan.strips;
+    rough_trace_end(&trace);
+    return tallies;
+}
+
+static struct tallies trace_smooth_on_device(struct bench *bench, uint32_t object, int32_t chunk)
+{
+    struct smooth_trace trace;
+    struct tallies tallies = {0, 0, NULL, NULL, {0, 0, 0, 0}};
+    memset(&bench->tracer.counts, 0, sizeof bench->tracer.counts);
+    if (smooth_trace_begin(&trace, &bench->tracer, object) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+    const size_t bins = (size_t)trace.grid.bins.count;
+    const int32_t count = trace.grid.strips.count;
+    tallies.lines = 2 * line_grid_cells(&trace.grid);
+    tallies.line = calloc(tallies.lines, sizeof(int64_t));
+    float *a = calloc(tallies.lines, sizeof *a);
+    float *b = calloc(tallies.lines, sizeof *b);
+    assert_true(tallies.line && a && b);
+    for (int32_t done = 0; done < count; done += chunk) {
+        const int32_t left = count - done;
+        const struct span strips = {trace.grid.strips.first + done, left < chunk ? left : chunk};
+        if (smooth_trace_strips(&trace, &bench->tracer, strips, a, b) != SONJECT_OK ||
+            buffer_read(&bench->report, bench->tracer.device, trace.on_device.tallies, 0,
+                        2 * (size_t)strips.count * bins * sizeof(int64_t),
+                        tallies.line + 2 * (size_t)done * bins) != SONJECT_OK)
+            fail_msg("%s", bench->report.message);
+    }
+    tallies.counts = bench->tracer.counts;
+    free(a);
+    free(b);
+    smooth_trace_end(&trace);
+    return tallies;
+}
+
+static struct tallies trace_smooth_as_c(struct bench *bench, uint32_t object)
+{
+    struct smooth_trace trace;
+    struct object_record objects[BENCH_OBJECTS];
+    struct tallies tallies = {0, 0, NULL, NULL, {0, 0, 0, 0}};
+    if (smooth_trace_begin(&trace, &bench->tracer, object) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+    read_objects(bench, trace.on_device.objects, objects);
+    tallies.lines = 2 * line_grid_cells(&trace.grid);
+    tallies.line = calloc(tallies.lines, sizeof(int64_t));
+    assert_non_null(tallies.line);
+    trace.fan.first_strip = trace.grid.strips.first;
+    trace.fan.strips = trace.grid.strips.count;
+    trace.fan.segments = 1;
+    for (int strip = 0; strip < trace.fan.strips; strip++)
+        count_outcome(&tallies, trace_smooth_strip(&trace.fan, objects, tallies.line, strip, 0));
+    tallies.counts.rays = (uint64_t)trace.fan.rays * trace.fan.strata * (uint64_t)trace.fan.strips;
+    smooth_trace_end(&trace);
+    return tallies;
+}
+
+typedef void body(struct bench *bench, enum scene_kind kind);
+
+/* Runs a body on every device, at every width from the least on. */
+static void on_every_device(body *run, uint32_t least_width)
+{
+    static const uint32_t widths[] = {1, 4, 8, 16};
+    char names[BENCH_DEVICES][128];
+    const size_t devices = bench_devices(names);
+    for (size_t d = 0; d < devices; d++)
+        for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
+            struct bench bench;
+            bench_open(&bench, names[d], ROWS, COLUMNS, 18.0);
+            if (bench.tracer.device->is_cpu && widths[w] < least_width) {
+                bench_close(&bench);
+                continue;
+            }
+            bench.tracer.device->width = widths[w];
+            print_message("%s, width %u\n", names[d], (unsigned)widths[w]);
+            for (int kind = 0; kind < SCENE_KINDS; kind++) {
+                scene_clear(&bench.scene);
+                bench_move(&bench, 18.0);
+                run(&bench, (enum scene_kind)kind);
+            }
+            bench_close(&bench);
+        }
+}
+
+static void compare_rough(struct bench *bench, enum scene_kind kind)
+{
+    make_scene(bench, kind);
+    float *map = make_map(kind);
+    struct tallies expected = trace_rough_as_c(bench, map);
+    expect_alive(&expected);
+    static const int32_t chunks[] = {1 << 20, 1 << 20, 37, 1};
+    for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
+        struct tallies measured = trace_rough_on_device(bench, map, chunks[i]);
+        expect_same("rough", &measured, &expected);
+        tallies_clear(&measured);
+    }
+    tallies_clear(&expected);
+    free(map);
+}
+
+static void test_rough_tallies(void **unused)
+{
+    (void)unused;
+    on_every_device(compare_rough, 1);
+}
+
+static void compare_smooth(struct bench *bench, enum scene_kind kind)
+{
+    if (kind != SCENE_ALL_SHAPES)
+        return; /* neither source nor map matter to glints */
+    make_scene(bench, kind);
+    for (uint32_t object = 0; object < bench->scene.object_count; object++) {
+        struct tallies expected = trace_smooth_as_c(bench, object);
+        expect_alive(&expected);
+        static const int32_t chunks[] = {1 << 20, 1 << 20, 37, 5};
+        for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
+            struct tallies measured = trace_smooth_on_device(bench, object, chunks[i]);
+            expect_same("smooth", &measured, &expected);
+            tallies_clear(&measured);
+        }
+        tallies_clear(&expected);
+    }
+}
+
+static void test_smooth_tallies(void **unused)
+{
+    (void)unused;
+    on_every_device(compare_smooth, 1);
+}
+
+/* Planes of lines or pixels, real part first. */
+struct planes {
+    size_t count;
+    float *part[2];
+};
+
+static struct planes planes_of(size_t count)
+{
+    struct planes planes = {count, {calloc(count, sizeof(float)), calloc(count, sizeof(float))}};
+    assert_true(planes.part[0] && planes.part[1]);
+    return planes;
+}
+
+static void planes_clear(struct planes *planes)
+{
+    free(planes->part[0]);
+    free(planes->part[1]);
+}
+
+static void expect_same_planes(const struct planes *a, const struct planes *b)
+{
+    assert_int_equal(a->count, b->count);
+    for (int part = 0; part < 2; part++)
+        for (size_t i = 0; i < a->count; i++)
+            if (memcmp(&a->part[part][i], &b->part[part][i], sizeof(float)) != 0)
+                fail_msg("element %zu of %zu is %.9g, not %.9g", i, a->count,
+                         (double)a->part[part][i], (double)b->part[part][i]);
+}
+
+static struct planes form_as_c(struct bench *bench, const struct form_lines *lines,
+                               const struct planes *bins)
+{
+    const size_t strips = (size_t)lines->grid.strips.count;
+    const int count = lines->grid.bins.count;
+    const int per_pixel = (int)lines->grid.bins_per_pixel;
+    const int taps = 2 * lines->reach + 1;
+    struct planes compressed = planes_of(strips * lines->stride);
+    struct planes padded = planes_of(lines->rows * lines->stride);
+    struct planes pixels = planes_of(lines->rows * lines->columns);
+    float *pulse = calloc((size_t)lines->pulse_taps, sizeof *pulse);
+    float *response = calloc((size_t)taps, sizeof *response);
+    assert_true(pulse && response);
+    assert_int_equal(buffer_read(&bench->report, bench->tracer.device, lines->pulse, 0,
+                                 (size_t)lines->pulse_taps * sizeof *pulse, pulse),
+                     SONJECT_OK);
+    const double strip = lines->row_spacing_m / lines->grid.strips_per_row;
+    for (int i = 0; i < taps; i++) {
+        /* pixel rows sit in the middle of their strips */
+        const double rows = (double)(i - lines->reach) / lines->grid.strips_per_row + 0.5 -
+                            0.5 / lines->grid.strips_per_row;
+        assert_true(fabs(rows * lines->row_spacing_m -
+                         (i - lines->reach + 0.5 * (lines->grid.strips_per_row - 1)) * strip) <
+                    1e-9);
+        const double w = along_track_response(&lines->response, rows * lines->row_spacing_m);
+        response[i] = (float)(lines->kind == FORM_ENERGY ? w * w : w);
+    }
+    for (int part = 0; part < 2; part++)
+        for (size_t s = 0; s < strips; s++)
+            for (int column = 0; column < (int)lines->columns; column++)
+                compress_range_of(bins->part[part] + s * (size_t)count, count,
+                                  lines->pulse_first + (int)lines->first_column * per_pixel,
+                                  per_pixel, pulse, lines->pulse_taps, column,
+                                  compressed.part[part] + s * lines->stride);
+    const struct aspects aspects = {lines->grid.strips.first, lines->grid.strips.count,
+                                    (int)lines->grid.strips_per_row, lines->reach};
+    for (int row = 0; row < (int)lines->rows; row += FORM_ROWS)
+        for (int column = 0; column < (int)lines->columns; column++)
+            combine_aspects_of(aspects, compressed.part[0], compressed.part[1], (int)lines->stride,
+                               response, row, (int)lines->rows, column, padded.part[0],
+                               padded.part[1]);
+    for (int part = 0; part < 2; part++)
+        for (size_t row = 0; row < lines->rows; row++)
+            memcpy(pixels.part[part] + row * lines->columns,
+                   padded.part[part] + row * lines->stride, lines->columns * sizeof(float));
+    free(pulse);
+    free(response);
+    planes_clear(&compressed);
+    planes_clear(&padded);
+    return pixels;
+}
+
+/* Energies of a seabed: 0 here and there. */
+static struct planes make_bins(const struct line_grid *grid, uint32_t stream)
+{
+    struct planes bins = planes_of(line_grid_cells(grid));
+    for (uint32_t i = 0; i < bins.count; i++) {
+        float u, v;
+        two_uniforms(random_key_of(8, 0, stream, 3), i, 0, &u, &v);
+        bins.part[0][i] = u < 0.05f ? 0.0f : u * 1e-5f;
+        bins.part[1][i] = (v - 0.5f) * 1e-5f;
+    }
+    return bins;
+}
+
+static struct planes form_on_device(struct bench *bench, struct form_lines *lines,
+                                    const struct planes *bins, int32_t chunk, int is_speckle)
+{
+    const size_t count = (size_t)lines->grid.bins.count;
+    const int32_t strips = lines->grid.strips.count;
+    struct planes pixels = planes_of(lines->rows * lines->columns);
+    for (int32_t done = 0; done < strips; done += chunk) {
+        const size_t at = (size_t)done * count;
+        const int32_t some = strips - done < chunk ? strips - done : chunk;
+        const int32_t first = lines->grid.strips.first + done;
+        const sonject_status status =
+            is_speckle ? form_lines_add_speckle(lines, first, some, bins->part[0] + at,
+                                                0xfedcba9876543210u, STREAM_SEABED_SPECKLE)
+                       : form_lines_add(lines, first, some, bins->part[0] + at, bins->part[1] + at);
+        if (status != SONJECT_OK)
+            fail_msg("%s", bench->report.message);
+    }
+    if (form_lines_finish(lines, pixels.part[0], pixels.part[1]) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+    return pixels;
+}
+
+static void compare_forming(struct bench *bench, enum form_kind kind, const struct line_grid *grid,
+                            int is_speckle)
+{
+    struct form_lines lines;
+    if (form_lines_begin(&lines, &bench->report, bench->tracer.device, &bench->tracer.view,
+                         &bench->tracer.response, kind, grid) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+    struct planes bins = make_bins(grid, 4);
+    struct planes drawn = planes_of(bins.count);
+    for (size_t i = 0; i < bins.count; i++) {
+        const int32_t strip = grid->strips.first + (int32_t)(i / (size_t)grid->bins.count);
+        const int32_t bin = grid->bins.first + (int32_t)(i % (size_t)grid->bins.count);
+        drawn.part[0][i] = bins.part[0][i];
+        drawn.part[1][i] = bins.part[1][i];
+        if (is_speckle) {
+            float a, b;
+            complex_normal(
+                random_key_of(0x76543210u, 0xfedcba98u, STREAM_SEABED_SPECKLE, (uint32_t)strip),
+                (uint32_t)bin, &a, &b);
+            drawn.part[0][i] = sqrtf(bins.part[0][i]) * a;
+            drawn.part[1][i] = sqrtf(bins.part[0][i]) * b;
+        }
+    }
+    struct planes expected = form_as_c(bench, &lines, &drawn);
+    static const int32_t chunks[] = {1 << 20, 1 << 20, 37, 1};
+    for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
+        struct planes measured = form_on_device(bench, &lines, &bins, chunks[i], is_speckle);
+        expect_same_planes(&measured, &expected);
+        planes_clear(&measured);
+    }
+    planes_clear(&expected);
+    planes_clear(&bins);
+    planes_clear(&drawn);
+    form_lines_end(&lines);
+}
+
+static void compare_formation(struct bench *bench, enum scene_kind kind)
+{
+    if (kind != SCENE_EMPTY)
+        return;
+    make_scene(bench, kind);
+    struct line_grid patch;
+    line_grid_for_patch(&patch, &bench->tracer.view, &bench->tracer.response);
+    compare_forming(bench, FORM_SPECKLE, &patch, 1);
+    compare_forming(bench, FORM_ENERGY, &patch, 0);
+    /* a fine grid in a corner, partly outside the patch, as a glint's is */
+    const struct line_grid corner = {7, 26, {-20, 150}, {-40, 333}};
+    compare_forming(bench, FORM_GLINT, &corner, 0);
+    const struct line_grid far_corner = {7, 26, {600, 90}, {26 * (COLUMNS - 3), 200}};
+    compare_forming(bench, FORM_GLINT, &far_corner, 0);
+}
+
+static void test_image_formation(void **unused)
+{
+    (void)unused;
+    /* Intel's compiler spreads a scalar sum over lanes, which changes its order. No CPU is given
+     * one lane: every one that OpenCL runs on has at least four. */
+    on_every_device(compare_formation, 4);
+}
+
+/* One core of a device instead of all. */
+static void test_one_core(void **unused)
+{
+    (void)unused;
+    char names[BENCH_DEVICES][128];
+    const size_t devices = bench_devices(names);
+    for (size_t d = 0; d < devices; d++) {
+        struct bench bench;
+        bench_open(&bench, names[d], ROWS, COLUMNS, 18.0);
+        const cl_device_partition_property one_core[] = {CL_DEVICE_PARTITION_BY_COUNTS, 1,
+                                                         CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
+        cl_device_id core = NULL;
+        cl_uint cores = 0;
+        if (clCreateSubDevices(bench.tracer.device->id, one_core, 1, &core, &cores) != CL_SUCCESS ||
+            cores != 1) {
+            print_message("%s cannot be divided\n", names[d]);
+            bench_close(&bench);
+            continue;
+        }
+        make_scene(&bench, SCENE_WITH_MAP);
+        float *map = make_map(SCENE_WITH_MAP);
+        struct tallies expected = trace_rough_on_device(&bench, map, 1 << 20);
+        cl_int error = CL_SUCCESS;
+        cl_context context = clCreateContext(NULL, 1, &core, NULL, NULL, &error);
+        assert_int_equal(error, CL_SUCCESS);
+        sonject_context_params params;
+        memset(&params, 0, sizeof params);
+        params.struct_size = sizeof params;
+        params.cache_folder = "";
+        params.opencl_context = context;
+        params.opencl_device = core;
+        device_close(&bench.tracer.device);
+        if (device_open(&bench.report, &params, &bench.tracer.device) != SONJECT_OK)
+            fail_msg("%s", bench.report.message);
+        assert_int_equal(bench.tracer.device->compute_units, 1);
+        struct tallies measured = trace_rough_on_device(&bench, map, 1 << 20);
+        expect_same("one core", &measured, &expected);
+        tallies_clear(&measured);
+        tallies_clear(&expected);
+        free(map);
+        bench_close(&bench);
+        clReleaseContext(context);
+        clReleaseDevice(core);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_rough_tallies),
+        cmocka_unit_test(test_smooth_tallies),
+        cmocka_unit_test(test_image_formation),
+        cmocka_unit_test(test_one_core),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,207 @@
+/* kernels/random.h and the deviates of image_formation.h. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "image_formation.h"
+#include "layout.h"
+
+#define DRAWS 1000000
+
+/* From the known-answer file of the authors' own Random123 distribution, threefry2x32 of 20 rounds.
+ */
+static void test_known_answers(void **unused)
+{
+    (void)unused;
+    static const uint32_t vectors[][6] = {
+        {0x00000000, 0x00000000, 0x00000000, 0x00000000, 0x6b200159, 0x99ba4efe},
+        {0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff, 0x1cb996fc, 0xbb002be7},
+        {0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344, 0xc4923a9c, 0x483df7a0},
+    };
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+        uint32_t a = vectors[i][0];
+        uint32_t b = vectors[i][1];
+        threefry(vectors[i][2], vectors[i][3], &a, &b);
+        assert_int_equal(a, vectors[i][4]);
+        assert_int_equal(b, vectors[i][5]);
+        a = vectors[i][0];
+        b = vectors[i][1];
+        threefry_scalar(vectors[i][2], vectors[i][3], &a, &b);
+        assert_int_equal(a, vectors[i][4]);
+        assert_int_equal(b, vectors[i][5]);
+    }
+}
+
+static void test_uniforms_stay_inside(void **unused)
+{
+    (void)unused;
+    assert_true(uniform_from(0u) > 0.0f);
+    assert_true(uniform_from(0xffffffffu) < 1.0f);
+    /* each of the 2^23 parts has its own exact middle */
+    float before = 0.0f;
+    for (uint32_t part = 0; part < 1u << 23; part++) {
+        const float value = uniform_from(part << 9);
+        assert_true(value == (float)((part + 0.5) / 8388608.0));
+        assert_true(value > before);
+        before = value;
+    }
+}
+
+/* Chi-square of counts in equal classes, as normal deviates (classes are many). */
+static double chi_square(const uint32_t *counts, int classes, double draws)
+{
+    const double expected = draws / classes;
+    double sum = 0.0;
+    for (int i = 0; i < classes; i++)
+        sum += (counts[i] - expected) * (counts[i] - expected) / expected;
+    return (sum - (classes - 1)) / sqrt(2.0 * (classes - 1));
+}
+
+/* 4 standard errors everywhere: what a fair generator passes 15,786 times of 15,787. */
+static void test_uniformity(void **unused)
+{
+    (void)unused;
+    for (uint32_t draw = 0; draw < 3; draw++) {
+        static uint32_t singles[1024], pairs[1024], neighbours[1024];
+        for (int i = 0; i < 1024; i++)
+            singles[i] = pairs[i] = neighbours[i] = 0;
+        const struct random_key key = random_key_of(7, 0, STREAM_ROUGH_RAYS, 1000 + draw);
+        double sum = 0.0;
+        double squares = 0.0;
+        float before = 0.5f;
+        for (uint32_t ray = 0; ray < DRAWS; ray++) {
+            float u, v;
+            two_uniforms(key, ray, draw, &u, &v);
+            sum += u + v;
+            squares += (u - 0.5) * (u - 0.5) + (v - 0.5) * (v - 0.5);
+            singles[(int)(u * 1024.0f)]++;
+            pairs[(int)(u * 32.0f) * 32 + (int)(v * 32.0f)]++;
+            neighbours[(int)(before * 32.0f) * 32 + (int)(u * 32.0f)]++;
+            before = u;
+        }
+        const double mean = sum / (2.0 * DRAWS);
+        const double variance = squares / (2.0 * DRAWS);
+        const double of_singles = chi_square(singles, 1024, DRAWS);
+        const double of_pairs = chi_square(pairs, 1024, DRAWS);
+        const double of_neighbours = chi_square(neighbours, 1024, DRAWS);
+        print_message("draw %u: mean %.6f, variance %.6f, chi-square %.2f %.2f %.2f sigma\n",
+                      (unsigned)draw, mean, variance, of_singles, of_pairs, of_neighbours);
+        assert_true(fabs(mean - 0.5) < 4.0 * sqrt(1.0 / 12.0 / (2.0 * DRAWS)));
+        assert_true(fabs(variance - 1.0 / 12.0) < 4.0 * sqrt(1.0 / 180.0 / (2.0 * DRAWS)));
+        assert_true(fabs(of_singles) < 4.0);
+        assert_true(fabs(of_pairs) < 4.0);
+        assert_true(fabs(of_neighbours) < 4.0);
+    }
+}
+
+struct source {
+    uint32_t seed_low, seed_high, stream, strip, draw;
+};
+
+static double correlation_between(struct source a, struct source b)
+{
+    const struct random_key key_a = random_key_of(a.seed_low, a.seed_high, a.stream, a.strip);
+    const struct random_key key_b = random_key_of(b.seed_low, b.seed_high, b.stream, b.strip);
+    double sum = 0.0;
+    for (uint32_t ray = 0; ray < 100000; ray++) {
+        float u, v, p, q;
+        two_uniforms(key_a, ray, a.draw, &u, &v);
+        two_uniforms(key_b, ray, b.draw, &p, &q);
+        sum += (u - 0.5) * (p - 0.5) + (v - 0.5) * (q - 0.5) + (u - 0.5) * (q - 0.5);
+    }
+    /* a term has variance 1/144; in standard errors */
+    return sum / sqrt(3.0 * 100000.0 / 144.0);
+}
+
+/* Streams that the program uses side by side must not share anything. */
+static void test_streams_are_independent(void **unused)
+{
+    (void)unused;
+    const struct source one = {1, 0, STREAM_SEABED_SPECKLE, 5, 0};
+    const struct source others[] = {
+        {2, 0, STREAM_SEABED_SPECKLE, 5, 0},
+        {1, 1, STREAM_SEABED_SPECKLE, 5, 0},
+        {1, 0, STREAM_NOISE, 5, 0},
+        {1, 0, STREAM_INPUT_PHASE, 5, 0},
+        {1, 0, STREAM_OBJECT_SPECKLE, 5, 0},
+        {1, 0, STREAM_OBJECT_SPECKLE + 1, 5, 0},
+        {1, 0, STREAM_SMOOTH_RAYS, 5, 0},
+        {1, 0, STREAM_SEABED_SPECKLE, 6, 0},
+        {1, 0, STREAM_SEABED_SPECKLE, 0xfffffffb, 0},
+        {1, 0, STREAM_SEABED_SPECKLE, 5, 1},
+        {0, 1, STREAM_SEABED_SPECKLE, 5, 0},
+        {5, 0, STREAM_SEABED_SPECKLE, 1, 0},
+    };
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+        const double sigmas = correlation_between(one, others[i]);
+        print_message("pair %u: %.2f sigma\n", (unsigned)i, sigmas);
+        assert_true(fabs(sigmas) < 4.0);
+    }
+    assert_true(fabs(correlation_between(one, one)) > 100.0);
+}
+
+static int compare_doubles(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* Unit mean square, circular, exponential intensity (Kolmogorov-Smirnov at the 6e-5 level that 4
+ * standard errors mean: 2.27 / sqrt(n)). */
+static void test_complex_normal(void **unused)
+{
+    (void)unused;
+    const struct random_key key = random_key_of(3, 0, STREAM_SEABED_SPECKLE, 17);
+    double *intensity = malloc(DRAWS * sizeof *intensity);
+    assert_non_null(intensity);
+    double real_sum = 0.0, imaginary_sum = 0.0, energy = 0.0, energy_squared = 0.0;
+    double square_real = 0.0, square_imaginary = 0.0;
+    for (uint32_t i = 0; i < DRAWS; i++) {
+        float a, b;
+        complex_normal(key, i, &a, &b);
+        intensity[i] = (double)a * a + (double)b * b;
+        real_sum += a;
+        imaginary_sum += b;
+        energy += intensity[i];
+        energy_squared += intensity[i] * intensity[i];
+        square_real += (double)a * a - (double)b * b; /* the mean of z^2 is 0 if circular */
+        square_imaginary += 2.0 * a * b;
+    }
+    qsort(intensity, DRAWS, sizeof *intensity, compare_doubles);
+    double distance = 0.0;
+    for (int i = 0; i < DRAWS; i++) {
+        const double expected = 1.0 - exp(-intensity[i]);
+        distance = fmax(
+            distance, fmax(fabs((i + 1.0) / DRAWS - expected), fabs((double)i / DRAWS - expected)));
+    }
+    free(intensity);
+    const double root = sqrt((double)DRAWS);
+    print_message("mean (%.5f, %.5f), mean square %.5f, fourth moment %.5f, KS %.5f of %.5f\n",
+                  real_sum / DRAWS, imaginary_sum / DRAWS, energy / DRAWS, energy_squared / DRAWS,
+                  distance, 2.27 / root);
+    assert_true(fabs(real_sum / DRAWS) < 4.0 * sqrt(0.5) / root);
+    assert_true(fabs(imaginary_sum / DRAWS) < 4.0 * sqrt(0.5) / root);
+    assert_true(fabs(energy / DRAWS - 1.0) < 4.0 / root);
+    /* variance of I^2 for an exponential I: 4! - 2!^2 */
+    assert_true(fabs(energy_squared / DRAWS - 2.0) < 4.0 * sqrt(20.0) / root);
+    assert_true(fabs(square_real / DRAWS) < 4.0 / root);
+    assert_true(fabs(square_imaginary / DRAWS) < 4.0 / root);
+    assert_true(distance < 2.27 / root);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_known_answers),  cmocka_unit_test(test_uniforms_stay_inside),
+        cmocka_unit_test(test_uniformity),     cmocka_unit_test(test_streams_are_independent),
+        cmocka_unit_test(test_complex_normal),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

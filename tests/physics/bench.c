@@ -1,0 +1,199 @@
+#include "bench.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void expect_ok(struct bench *bench, sonject_status status)
+{
+    if (status != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+}
+
+void bench_open(struct bench *bench, const char *device, size_t rows, size_t columns,
+                double middle_range_m)
+{
+    sonject_context_params context;
+    memset(bench, 0, sizeof *bench);
+    memset(&context, 0, sizeof context);
+    context.struct_size = sizeof context;
+    context.device_name = device;
+    context.cache_folder = "";
+    scene_init(&bench->scene);
+    bench->rows = rows;
+    bench->columns = columns;
+    bench->tracer.report = &bench->report;
+    bench->tracer.scene = &bench->scene;
+    bench->tracer.placements = bench->placements;
+    bench_move(bench, middle_range_m);
+    expect_ok(bench, device_open(&bench->report, &context, &bench->tracer.device));
+}
+
+void bench_close(struct bench *bench)
+{
+    device_close(&bench->tracer.device);
+    scene_clear(&bench->scene);
+}
+
+void bench_move(struct bench *bench, double middle_range_m)
+{
+    sonject_geometry_params *geometry = &bench->scene.geometry;
+    geometry->first_slant_range_m =
+        middle_range_m - 0.5 * (double)(bench->columns - 1) * geometry->column_spacing_m;
+}
+
+sonject_object_params *bench_add(struct bench *bench, sonject_shape shape, double length_m,
+                                 double width_m, double diameter_m)
+{
+    sonject_object_params object;
+    sonject_object_params_init(&object);
+    object.shape = shape;
+    object.length_m = length_m;
+    object.width_m = width_m;
+    object.diameter_m = diameter_m;
+    object.material.reflection = 1.0;
+    object.material.roughness_m = 0.0;
+    object.material.lambert = 0.0;
+    assert_true(bench->scene.object_count < BENCH_OBJECTS);
+    expect_ok(bench, scene_append_object(&bench->scene, &bench->report, &object));
+    return &bench->scene.objects[bench->scene.object_count - 1];
+}
+
+void bench_ready(struct bench *bench)
+{
+    struct tracer *tracer = &bench->tracer;
+    expect_ok(bench, patch_view_init(&tracer->view, &bench->report, &bench->scene, 0.0, 0.0,
+                                     bench->rows, bench->columns));
+    for (uint32_t i = 0; i < bench->scene.object_count; i++)
+        expect_ok(bench, placement_init(&bench->placements[i], &bench->report, &tracer->view, 0.0,
+                                        0.0, &bench->scene.objects[i]));
+    point_response_init(&tracer->response, &bench->scene.sonar,
+                        tracer->view.range_ratio * bench->scene.medium.sound_speed_mps,
+                        tracer->view.row_spacing_m);
+}
+
+double bench_wavenumber(const struct bench *bench)
+{
+    return 2.0 * PI * bench->scene.sonar.centre_frequency_hz / bench->scene.medium.sound_speed_mps;
+}
+
+size_t bench_devices(char names[BENCH_DEVICES][128])
+{
+    static sonject_device_info devices[BENCH_DEVICES];
+    struct report report;
+    size_t count = 0;
+    memset(&report, 0, sizeof report);
+    assert_int_equal(device_list(&report, devices, BENCH_DEVICES, &count), SONJECT_OK);
+    assert_true(count > 0);
+    count = count < BENCH_DEVICES ? count : BENCH_DEVICES;
+    for (size_t i = 0; i < count; i++)
+        memcpy(names[i], devices[i].name, sizeof devices[i].name);
+    return count;
+}
+
+struct echo_line bench_glint_line(struct bench *bench, uint32_t object)
+{
+    struct smooth_trace trace;
+    struct echo_line line;
+    expect_ok(bench, smooth_trace_begin(&trace, &bench->tracer, object));
+    line.bins = (size_t)trace.grid.bins.count;
+    line.spacing_m = bench->tracer.view.column_spacing_m / trace.grid.bins_per_pixel;
+    line.first_range_m = bench->tracer.view.first_range_m + trace.grid.bins.first * line.spacing_m;
+    line.real_part = calloc(line.bins, sizeof(double));
+    line.imaginary_part = calloc(line.bins, sizeof(double));
+    const int32_t chunk = smooth_trace_chunk(&trace);
+    float *real_part = calloc((size_t)chunk * line.bins, sizeof(float));
+    float *imaginary_part = calloc((size_t)chunk * line.bins, sizeof(float));
+    assert_true(line.real_part && line.imaginary_part && real_part && imaginary_part);
+    for (int32_t done = 0; done < trace.grid.strips.count; done += chunk) {
+        const int32_t left = trace.grid.strips.count - done;
+        const struct span strips = {trace.grid.strips.first + done, left < chunk ? left : chunk};
+        expect_ok(bench,
+                  smooth_trace_strips(&trace, &bench->tracer, strips, real_part, imaginary_part));
+        for (size_t i = 0; i < (size_t)strips.count * line.bins; i++) {
+            line.real_part[i % line.bins] += real_part[i];
+            line.imaginary_part[i % line.bins] += imaginary_part[i];
+        }
+    }
+    free(real_part);
+    free(imaginary_part);
+    smooth_trace_end(&trace);
+    return line;
+}
+
+void echo_line_clear(struct echo_line *line)
+{
+    free(line->real_part);
+    free(line->imaginary_part);
+}
+
+struct complex_value echo_line_at(const struct bench *bench, const struct echo_line *line,
+                                  double range_m)
+{
+    struct complex_value sum = {0.0, 0.0};
+    for (size_t i = 0; i < line->bins; i++) {
+        const double bin_range = line->first_range_m + (double)i * line->spacing_m;
+        const double g = range_response(&bench->tracer.response, range_m - bin_range);
+        sum.real_part += line->real_part[i] * g;
+        sum.imaginary_part += line->imaginary_part[i] * g;
+    }
+    return sum;
+}
+
+double echo_line_peak(const struct bench *bench, const struct echo_line *line, double *range_m)
+{
+    double largest = 0.0;
+    for (size_t i = 0; i < line->bins; i++) {
+        const double range = line->first_range_m + (double)i * line->spacing_m;
+        const struct complex_value value = echo_line_at(bench, line, range);
+        const double amplitude = hypot(value.real_part, value.imaginary_part);
+        if (amplitude > largest) {
+            largest = amplitude;
+            if (range_m)
+                *range_m = range;
+        }
+    }
+    return largest;
+}
+
+double decibels_of_amplitude(double ratio)
+{
+    return 20.0 * log10(ratio);
+}
+
+double decibels_of_energy(double ratio)
+{
+    return 10.0 * log10(ratio);
+}
+
+void bench_echoes(struct bench *bench, const float *map, enum seabed_field field,
+                  struct echoes *echoes)
+{
+    struct echo_request request;
+    memset(&request, 0, sizeof request);
+    request.map = map;
+    request.field = field;
+    expect_ok(bench, echoes_compute(echoes, &bench->tracer, &request));
+}
+
+void expect_close(const char *what, double measured, double expected, double tolerance)
+{
+    print_message("%s: %.6g, expected %.6g +- %.2g\n", what, measured, expected, tolerance);
+    if (!(fabs(measured - expected) <= tolerance))
+        fail_msg("%s: %.9g is not %.9g within %.3g", what, measured, expected, tolerance);
+}
+
+void expect_below(const char *what, double measured, double limit)
+{
+    print_message("%s: %.6g, to be below %.6g\n", what, measured, limit);
+    if (!(measured < limit))
+        fail_msg("%s: %.9g is not below %.9g", what, measured, limit);
+}

@@ -1,0 +1,83 @@
+/* A small sea for tests: one patch, some objects, one device, driven below the public interface. */
+#ifndef SONJECT_TESTS_BENCH_H
+#define SONJECT_TESTS_BENCH_H
+
+#include <stdint.h>
+
+#include "form/form.h"
+#include "inject/echoes.h"
+#include "inject/patch_level.h"
+#include "trace/rough.h"
+#include "trace/smooth.h"
+#include "trace/tracer.h"
+
+#define PI            3.14159265358979323846
+#define BENCH_OBJECTS 8
+
+struct bench {
+    struct report report;
+    struct scene scene;
+    struct placement placements[BENCH_OBJECTS];
+    struct tracer tracer;
+    size_t rows, columns;
+};
+
+/* Opens the device whose name contains `device` (NULL: the default one; no cache of programs), and
+ * lays a patch of pixels with default parameters: 100 kHz, 30 kHz, 10 m altitude, 2.5 cm. Its
+ * middle column is at middle_range_m. Fails the test where a call fails. */
+void bench_open(struct bench *bench, const char *device, size_t rows, size_t columns,
+                double middle_range_m);
+void bench_close(struct bench *bench);
+
+/* Puts the middle column somewhere else (apparent range), after spacing or size changed. */
+void bench_move(struct bench *bench, double middle_range_m);
+
+/* An object in the middle of the patch, rigid and without a rough part, to be changed at will.
+ * All lengths are those of the shape's own words. */
+sonject_object_params *bench_add(struct bench *bench, sonject_shape shape, double length_m,
+                                 double width_m, double diameter_m);
+
+/* Works out view, response and placements from the scene as it now is; before any trace. */
+void bench_ready(struct bench *bench);
+
+/* Wavenumber, 1/m. */
+double bench_wavenumber(const struct bench *bench);
+
+/* The names of all devices; the number of them. */
+#define BENCH_DEVICES 16
+size_t bench_devices(char names[BENCH_DEVICES][128]);
+
+/* Coherent part of one object with no cross-range response at all: the sum of all its sub-strips,
+ * bin by bin, along apparent range. */
+struct echo_line {
+    size_t bins;
+    double first_range_m, spacing_m; /* apparent range of bin 0, and from bin to bin */
+    double *real_part, *imaginary_part;
+};
+
+struct echo_line bench_glint_line(struct bench *bench, uint32_t object);
+void echo_line_clear(struct echo_line *line);
+
+/* The line through the pulse, at an apparent range. */
+struct complex_value {
+    double real_part, imaginary_part;
+};
+
+struct complex_value echo_line_at(const struct bench *bench, const struct echo_line *line,
+                                  double range_m);
+
+/* The largest amplitude on the line after the pulse. Its range, if asked for. */
+double echo_line_peak(const struct bench *bench, const struct echo_line *line, double *range_m);
+
+double decibels_of_amplitude(double ratio);
+double decibels_of_energy(double ratio);
+
+/* echoes_compute with nothing but the request's map and field. */
+void bench_echoes(struct bench *bench, const float *map, enum seabed_field field,
+                  struct echoes *echoes);
+
+/* Prints and compares: |measured - expected| <= tolerance. */
+void expect_close(const char *what, double measured, double expected, double tolerance);
+void expect_below(const char *what, double measured, double limit);
+
+#endif
