@@ -3,6 +3,7 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,78 +13,110 @@
 
 #include "base/memory.h"
 
-/* Tries before giving up on a free name; names hold the process and the time, so one is enough
- * unless something is badly wrong. */
-#define NAME_TRIES 100
+#define READ_STEP ((size_t)64 * 1024)
 
-static sonject_status storage_failure(struct report *report, const char *what, const char *path,
-                                      int error)
+sonject_status file_failure(struct report *report, const char *path, const char *action, int error)
 {
-    return report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot %s: %s", path, what,
-                          strerror(error));
+    char reason[128];
+    if (strerror_r(error, reason, sizeof reason) != 0)
+        snprintf(reason, sizeof reason, "error %d", error);
+    return report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot %s: %s", path, action, reason);
+}
+
+/* From a '.' inside the last component to the end; "" if there is none. */
+static const char *extension_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    const char *name = slash ? slash + 1 : path;
+    const char *dot = strrchr(name, '.');
+    return dot && dot != name ? dot : "";
+}
+
+/* Random where the system gives random bytes. Process number, clocks and stack address keep
+ * processes and threads apart where it does not. */
+static uint64_t unique_number(void)
+{
+    uint64_t number = 0;
+    struct timespec now = {0, 0};
+    const int source = open("/dev/urandom", O_RDONLY | O_CLOEXEC);
+    if (source >= 0) {
+        if (read(source, &number, sizeof number) != (ssize_t)sizeof number)
+            number = 0;
+        close(source);
+    }
+    clock_gettime(CLOCK_MONOTONIC, &now);
+    number ^= (uint64_t)now.tv_nsec * UINT64_C(0x9E3779B97F4A7C15);
+    return number ^ (uint64_t)(uintptr_t)&now;
 }
 
 char *file_part_name(const char *path)
 {
-    const char *slash = strrchr(path, '/');
-    const char *dot = strrchr(path, '.');
-    const char *extension = dot && (!slash || dot > slash + 1) ? dot : "";
+    const char *extension = extension_of(path);
     const size_t capacity = strlen(path) + strlen(extension) + 64;
     char *part = allocate_array(capacity, 1);
-    struct timespec now;
-    clock_gettime(CLOCK_REALTIME, &now);
-    for (int attempt = 0; part && attempt < NAME_TRIES; attempt++) {
-        snprintf(part, capacity, "%s.%lx-%lx-%x.part%s", path, (unsigned long)getpid(),
-                 (unsigned long)now.tv_sec * 1000000007ul ^ (unsigned long)now.tv_nsec,
-                 (unsigned)attempt, extension);
-        if (!file_exists(part))
-            return part;
-    }
-    free(part);
-    return NULL;
+    if (part)
+        snprintf(part, capacity, "%s.%ld-%016" PRIx64 ".part%s", path, (long)getpid(),
+                 unique_number(), extension);
+    return part;
 }
 
-/* A rename survives a power cut only when the folder is on disk too. */
-static void flush_folder(const char *path)
+/* 0, or the errno of what failed. */
+static int flush_to_disk(const char *path)
+{
+    const int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0)
+        return errno;
+    int error = fsync(descriptor) == 0 ? 0 : errno;
+    if (close(descriptor) != 0 && error == 0)
+        error = errno;
+    return error;
+}
+
+/* A rename is only safe from a power cut once the folder is on disk. File systems that cannot flush
+ * a folder say EINVAL; a folder that may be written but not read says EACCES: neither harms what
+ * was written. */
+static int flush_folder_of(const char *path)
 {
     char *folder = path_folder(path);
     if (!folder)
-        return;
-    const int handle = open(folder[0] ? folder : ".", O_RDONLY);
-    if (handle >= 0) {
-        (void)fsync(handle);
-        close(handle);
-    }
+        return ENOMEM;
+    const int error = flush_to_disk(*folder ? folder : ".");
     free(folder);
-}
-
-static int flush_file(const char *path)
-{
-    const int handle = open(path, O_RDONLY);
-    if (handle < 0)
-        return errno;
-    const int error = fsync(handle) == 0 ? 0 : errno;
-    close(handle);
-    return error == EINVAL ? 0 : error; /* pipes and the like cannot be flushed */
+    return error == EINVAL || error == EACCES ? 0 : error;
 }
 
 sonject_status file_publish(struct report *report, const char *part, const char *path)
 {
-    int error = flush_file(part);
+    int error = flush_to_disk(part);
     if (error == 0 && rename(part, path) != 0)
         error = errno;
     if (error != 0) {
         file_discard(part);
-        return storage_failure(report, "write", path, error);
+        return file_failure(report, path, "write", error);
     }
-    flush_folder(path);
-    return SONJECT_OK;
+    error = flush_folder_of(path);
+    return error == 0 ? SONJECT_OK : file_failure(report, path, "write", error);
 }
 
 void file_discard(const char *part)
 {
-    if (part)
-        (void)unlink(part);
+    const int kept = errno;
+    unlink(part);
+    errno = kept;
+}
+
+static int write_all(int descriptor, const char *bytes, size_t count)
+{
+    while (count > 0) {
+        const ssize_t written = write(descriptor, bytes, count);
+        if (written < 0 && errno == EINTR)
+            continue;
+        if (written < 0)
+            return errno;
+        bytes += written;
+        count -= (size_t)written;
+    }
+    return 0;
 }
 
 sonject_status file_write_whole(struct report *report, const char *path, const void *bytes,
@@ -92,51 +125,48 @@ sonject_status file_write_whole(struct report *report, const char *path, const v
     char *part = file_part_name(path);
     if (!part)
         return report_out_of_memory(report, "a file name");
-    sonject_status status = SONJECT_OK;
-    FILE *file = fopen(part, "wbx");
-    if (!file) {
-        status = storage_failure(report, "write", path, errno);
+    sonject_status status;
+    const int descriptor = open(part, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor < 0) {
+        status = file_failure(report, path, "write", errno);
     } else {
-        const int failed = fwrite(bytes, 1, count, file) != count;
-        int error = failed ? errno : 0;
-        if (fclose(file) != 0 && error == 0)
+        int error = write_all(descriptor, bytes, count);
+        if (close(descriptor) != 0 && error == 0)
             error = errno;
-        if (failed || error != 0) {
-            file_discard(part);
-            status = storage_failure(report, "write", path, error);
-        } else {
+        if (error == 0) {
             status = file_publish(report, part, path);
+        } else {
+            file_discard(part);
+            status = file_failure(report, path, "write", error);
         }
     }
     free(part);
     return status;
 }
 
-/* Reads to the end, growing; a size asked of the system beforehand could be wrong by then. */
-static sonject_status read_growing(struct report *report, const char *path, FILE *file,
-                                   size_t limit, char **bytes, size_t *count)
+/* Reads until the end or until more than limit bytes have come; *bytes is to be freed either way.
+ * 0, or the errno of what failed. */
+static int read_all(int descriptor, size_t limit, char **bytes, size_t *count)
 {
-    size_t capacity = 65536;
-    *count = 0;
-    *bytes = malloc(capacity + 1);
-    while (*bytes) {
-        *count += fread(*bytes + *count, 1, capacity - *count, file);
-        if (ferror(file))
-            return storage_failure(report, "read", path, errno);
-        if (*count > limit)
-            return report_failure(report, SONJECT_ERROR_INPUT,
-                                  "%s: is larger than the %zu bytes allowed", path, limit);
-        if (*count < capacity) {
-            (*bytes)[*count] = '\0';
-            return SONJECT_OK;
+    size_t capacity = 0;
+    for (;;) {
+        if (capacity - *count < 2) {
+            capacity = capacity < READ_STEP ? READ_STEP : capacity + capacity / 2;
+            char *larger = capacity > *count ? realloc(*bytes, capacity) : NULL;
+            if (!larger)
+                return ENOMEM;
+            *bytes = larger;
         }
-        capacity *= 2;
-        char *grown = realloc(*bytes, capacity + 1);
-        if (!grown)
-            break;
-        *bytes = grown;
+        const ssize_t got = read(descriptor, *bytes + *count, capacity - *count - 1);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got < 0)
+            return errno;
+        *count += (size_t)got;
+        (*bytes)[*count] = '\0';
+        if (got == 0 || *count > limit)
+            return 0;
     }
-    return report_out_of_memory(report, path);
 }
 
 sonject_status file_read_whole(struct report *report, const char *path, size_t limit, char **bytes,
@@ -144,11 +174,19 @@ sonject_status file_read_whole(struct report *report, const char *path, size_t l
 {
     *bytes = NULL;
     *count = 0;
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return storage_failure(report, "read", path, errno);
-    const sonject_status status = read_growing(report, path, file, limit, bytes, count);
-    fclose(file);
+    const int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    if (descriptor < 0)
+        return file_failure(report, path, "open", errno);
+    const int error = read_all(descriptor, limit, bytes, count);
+    close(descriptor);
+    sonject_status status = SONJECT_OK;
+    if (error == ENOMEM)
+        status = report_out_of_memory(report, path);
+    else if (error != 0)
+        status = file_failure(report, path, "read", error);
+    else if (*count > limit)
+        status =
+            report_failure(report, SONJECT_ERROR_INPUT, "%s: larger than %zu bytes", path, limit);
     if (status != SONJECT_OK) {
         free(*bytes);
         *bytes = NULL;
@@ -157,32 +195,34 @@ sonject_status file_read_whole(struct report *report, const char *path, size_t l
     return status;
 }
 
-static int make_one(const char *path)
+static int make_one_folder(const char *path)
 {
     struct stat facts;
     if (mkdir(path, 0777) == 0)
         return 0;
     const int error = errno;
-    return error == EEXIST && stat(path, &facts) == 0 && S_ISDIR(facts.st_mode) ? 0 : error;
+    if (stat(path, &facts) == 0)
+        return S_ISDIR(facts.st_mode) ? 0 : ENOTDIR;
+    return error;
 }
 
 sonject_status folder_make(struct report *report, const char *path)
 {
-    char *parent = copy_text(path);
-    if (!parent)
-        return report_out_of_memory(report, "a path");
+    char *name = copy_text(path);
+    if (!name)
+        return report_out_of_memory(report, "a folder's name");
     int error = 0;
-    for (char *at = parent + 1; *parent && *at && error == 0; at++) {
-        if (*at != '/')
+    for (char *end = name; error == 0 && *end; end++) {
+        if (*end != '/' || end == name)
             continue;
-        *at = '\0';
-        error = make_one(parent);
-        *at = '/';
+        *end = '\0';
+        error = make_one_folder(name);
+        *end = '/';
     }
-    free(parent);
     if (error == 0)
-        error = make_one(path);
-    return error == 0 ? SONJECT_OK : storage_failure(report, "make the folder", path, error);
+        error = make_one_folder(name);
+    free(name);
+    return error == 0 ? SONJECT_OK : file_failure(report, path, "make the folder", error);
 }
 
 bool file_exists(const char *path)
@@ -193,22 +233,24 @@ bool file_exists(const char *path)
 
 char *path_join(const char *folder, const char *name)
 {
-    if (name[0] == '/' || folder[0] == '\0')
+    const size_t folder_length = strlen(folder);
+    if (name[0] == '/' || folder_length == 0)
         return copy_text(name);
-    const size_t capacity = strlen(folder) + strlen(name) + 2;
-    char *path = malloc(capacity);
-    const char *between = folder[strlen(folder) - 1] == '/' ? "" : "/";
+    const size_t capacity = folder_length + strlen(name) + 2;
+    char *path = allocate_array(capacity, 1);
     if (path)
-        snprintf(path, capacity, "%s%s%s", folder, between, name);
+        snprintf(path, capacity, "%s%s%s", folder, folder[folder_length - 1] == '/' ? "" : "/",
+                 name);
     return path;
 }
 
 char *path_folder(const char *path)
 {
     const char *slash = strrchr(path, '/');
-    const size_t length = slash == path ? 1 : slash ? (size_t)(slash - path) : 0;
-    char *folder = allocate_array(length + 1, 1);
-    if (folder)
-        memcpy(folder, path, length);
+    char *folder = copy_text(path);
+    if (folder && !slash)
+        folder[0] = '\0';
+    else if (folder)
+        folder[slash == path ? 1 : slash - path] = '\0';
     return folder;
 }

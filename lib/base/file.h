@@ -8,6 +8,9 @@
 
 #include "base/report.h"
 
+/* The message "path: cannot <action>: <reason>" for an errno. Returns STORAGE. */
+sonject_status file_failure(struct report *report, const char *path, const char *action, int error);
+
 /* A private name beside path for a file in the making: "<path>.<unique>.part<extension of path>",
  * so that writers that choose by extension still work. To be given to free(); NULL when memory is
  * out. */

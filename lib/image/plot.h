@@ -8,7 +8,7 @@
 #include "base/report.h"
 
 struct plot_panel {
-    const char *title;      /* ASCII */
+    const char *title;      /* ASCII; NULL: none */
     const float *amplitude; /* rows x columns, >= 0 */
     bool is_difference;     /* values are dB already, drawn on +-difference_db in blue-white-red */
 };
@@ -17,17 +17,20 @@ struct plot_frame {
     uint64_t rows, columns; /* of every panel */
     double first_along_track_m, row_spacing_m;
     double first_range_m, column_spacing_m; /* of the axis that is labelled */
-    const char *range_label;                /* "slant range, m" or "ground range, m" */
-    double minimum_db,
-        maximum_db;       /* grey scale; if maximum <= minimum it is chosen from the first panel: */
-                          /* 1st and 99.8th percentile */
+    /* "slant range, m" or "ground range, m"; "column": axes in pixels, the other one called "row"
+     */
+    const char *range_label;
+    /* grey scale; unless minimum < maximum it is chosen from the first panel of amplitudes: 1st and
+     * 99.8th percentile of what is drawn */
+    double minimum_db, maximum_db;
     double difference_db; /* > 0 */
 };
 
-/* Draws the panels side by side (range to the right, along-track upwards), large images reduced by
+/* Draws the panels side by side (range to the right, row 0 at the top), large images reduced by
  * averaging energy, small ones enlarged by whole factors, to about 500...1000 pixels a panel.
- * *picture gets *height x *width x 3 bytes (RGB), for free(). Errors: INPUT (no pixel above 0),
- * MEMORY. */
+ * Pixels that are zero or no number are black. *picture gets *height x *width x 3 bytes (RGB), for
+ * free(); on failure NULL. Errors: INPUT (no pixel above 0 in the panel that the grey scale is
+ * chosen from, or nothing to draw), MEMORY. */
 sonject_status plot_panels(struct report *report, const struct plot_frame *frame,
                            const struct plot_panel *panels, uint32_t count, uint8_t **picture,
                            uint32_t *height, uint32_t *width);

@@ -1,165 +1,338 @@
 #include "image/statistics.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 
-/* Half width of a running mean such that three passes have the variance of the deviation asked
- * for: a mean over 2h + 1 pixels has variance ((2h + 1)^2 - 1) / 12. */
-static size_t half_width(double deviation, size_t count)
+#define PASSES          3
+#define COLUMNS_AT_ONCE 16 /* of float: a cache line */
+
+#define SIGN_BIT  UINT32_C(0x80000000)
+#define SORT_BITS 11 /* at a time: three times are enough for all 32 */
+#define SORT_BINS ((size_t)1 << SORT_BITS)
+
+#define NOISE_BLOCK   7    /* pixels on a side */
+#define NOISE_LOWEST  1e-3 /* -30 dB */
+#define NOISE_HIGHEST 1e-2 /* -20 dB */
+
+/* A running mean along a line: full weight up to radius, edge_weight (0...1) one pixel further on
+ * either side, so that any variance can be had, not only those of whole widths. */
+struct line_mean {
+    size_t length, radius;
+    double edge_weight;
+    double *line;   /* the line with radius zeros on either side */
+    double *before; /* sums from the start of a block of 2 * radius + 1 */
+    double *after;  /* sums to its end */
+};
+
+static size_t padded_length(const struct line_mean *mean)
 {
-    const double width = sqrt(4.0 * deviation * deviation + 1.0);
-    const double half = floor(0.5 * (width - 1.0) + 0.5);
-    const double limit = (double)count;
-    return (size_t)fmin(fmax(half, 0.0), limit);
+    return mean->length + 2 * mean->radius;
 }
 
-/* Running mean of a line of `count` values, `stride` apart; ends: mean over what is inside. */
-static void running_mean(const double *from, double *to, size_t count, size_t half)
+static sonject_status line_mean_init(struct line_mean *mean, struct report *report, size_t length,
+                                     double deviation)
 {
-    double sum = 0.0;
-    size_t inside = 0;
-    for (size_t i = 0; i < count && i < half; i++, inside++)
-        sum += from[i];
-    for (size_t i = 0; i < count; i++) {
-        if (i + half < count) {
-            sum += from[i + half];
-            inside++;
-        }
-        if (i > half) {
-            sum -= from[i - half - 1];
-            inside--;
-        }
-        to[i] = sum / (double)inside;
+    const double variance = deviation > 0.0 ? deviation * deviation / PASSES : 0.0;
+    const double radius = floor((sqrt(1.0 + 12.0 * variance) - 1.0) / 2.0);
+    memset(mean, 0, sizeof *mean);
+    mean->length = length;
+    if (radius < (double)length) {
+        mean->radius = (size_t)radius;
+        mean->edge_weight = (2.0 * radius + 1.0) * (variance - radius * (radius + 1.0) / 3.0) /
+                            (2.0 * ((radius + 1.0) * (radius + 1.0) - variance));
+    } else {
+        mean->radius = length; /* every mean is that of the whole line */
+    }
+    mean->line = allocate_array(padded_length(mean), sizeof(double));
+    mean->before = allocate_array(padded_length(mean), sizeof(double));
+    mean->after = allocate_array(padded_length(mean), sizeof(double));
+    return mean->line && mean->before && mean->after ? SONJECT_OK
+                                                     : report_out_of_memory(report, "a local mean");
+}
+
+static void line_mean_clear(struct line_mean *mean)
+{
+    free(mean->line);
+    free(mean->before);
+    free(mean->after);
+}
+
+/* Sums within blocks of the window's width: any window is the end of one block and the start of the
+ * next. Nothing is ever subtracted, so a bright echo leaves no rounding error in its neighbours. */
+static void sum_blocks(struct line_mean *mean)
+{
+    const size_t width = 2 * mean->radius + 1;
+    const size_t padded = padded_length(mean);
+    for (size_t start = 0; start < padded; start += width) {
+        const size_t end = padded - start < width ? padded : start + width;
+        double sum = 0.0;
+        for (size_t i = start; i < end; i++)
+            mean->before[i] = sum += mean->line[i];
+        sum = 0.0;
+        for (size_t i = end; i-- > start;)
+            mean->after[i] = sum += mean->line[i];
     }
 }
 
-static void smooth_line(float *values, size_t count, size_t stride, size_t half, double *a,
-                        double *b)
+static size_t smaller(size_t a, size_t b)
 {
-    for (size_t i = 0; i < count; i++)
-        a[i] = values[i * stride];
-    running_mean(a, b, count, half);
-    running_mean(b, a, count, half);
-    running_mean(a, b, count, half);
-    for (size_t i = 0; i < count; i++)
-        values[i * stride] = (float)fmax(0.0, b[i]);
+    return a < b ? a : b;
+}
+
+static double window_mean(const struct line_mean *mean, const double *line, size_t i)
+{
+    const size_t width = 2 * mean->radius + 1;
+    const size_t last = i + width - 1;
+    double sum = i % width == 0 ? mean->before[last] : mean->after[i] + mean->before[last];
+    double weight =
+        (double)(smaller(i, mean->radius) + 1 + smaller(mean->length - 1 - i, mean->radius));
+    if (i > mean->radius) {
+        sum += mean->edge_weight * line[i - mean->radius - 1];
+        weight += mean->edge_weight;
+    }
+    if (mean->length - 1 - i > mean->radius) {
+        sum += mean->edge_weight * line[i + mean->radius + 1];
+        weight += mean->edge_weight;
+    }
+    return sum / weight;
+}
+
+/* Smooths mean->line, whose inner part the caller has filled, in place. scratch: length values. */
+static void smooth_line(struct line_mean *mean, double *scratch)
+{
+    double *line = mean->line + mean->radius;
+    for (int pass = 0; pass < PASSES; pass++) {
+        sum_blocks(mean);
+        for (size_t i = 0; i < mean->length; i++)
+            scratch[i] = window_mean(mean, line, i);
+        memcpy(line, scratch, mean->length * sizeof *line);
+    }
+}
+
+static sonject_status smooth_rows(struct report *report, const float *values, size_t rows,
+                                  size_t columns, double deviation, float *result)
+{
+    struct line_mean mean;
+    sonject_status status = line_mean_init(&mean, report, columns, deviation);
+    double *scratch = allocate_array(columns, sizeof *scratch);
+    if (status == SONJECT_OK && !scratch)
+        status = report_out_of_memory(report, "a local mean");
+    for (size_t row = 0; status == SONJECT_OK && row < rows; row++) {
+        double *line = mean.line + mean.radius;
+        for (size_t i = 0; i < columns; i++)
+            line[i] = (double)values[row * columns + i];
+        smooth_line(&mean, scratch);
+        for (size_t i = 0; i < columns; i++)
+            result[row * columns + i] = (float)line[i];
+    }
+    free(scratch);
+    line_mean_clear(&mean);
+    return status;
+}
+
+/* A few columns together, as memory is laid out by rows. gathered: COLUMNS_AT_ONCE x rows. */
+static void smooth_some_columns(struct line_mean *mean, float *map, size_t columns, size_t first,
+                                size_t count, double *gathered, double *scratch)
+{
+    const size_t rows = mean->length;
+    double *line = mean->line + mean->radius;
+    for (size_t row = 0; row < rows; row++)
+        for (size_t i = 0; i < count; i++)
+            gathered[i * rows + row] = (double)map[row * columns + first + i];
+    for (size_t i = 0; i < count; i++) {
+        memcpy(line, gathered + i * rows, rows * sizeof *line);
+        smooth_line(mean, scratch);
+        memcpy(gathered + i * rows, line, rows * sizeof *line);
+    }
+    for (size_t row = 0; row < rows; row++)
+        for (size_t i = 0; i < count; i++)
+            map[row * columns + first + i] = (float)gathered[i * rows + row];
+}
+
+static sonject_status smooth_columns(struct report *report, float *map, size_t rows, size_t columns,
+                                     double deviation)
+{
+    struct line_mean mean;
+    sonject_status status = line_mean_init(&mean, report, rows, deviation);
+    double *scratch = allocate_array(rows, sizeof *scratch);
+    double *gathered = allocate_array(rows, COLUMNS_AT_ONCE * sizeof *gathered);
+    if (status == SONJECT_OK && !(scratch && gathered))
+        status = report_out_of_memory(report, "a local mean");
+    for (size_t first = 0; status == SONJECT_OK && first < columns; first += COLUMNS_AT_ONCE)
+        smooth_some_columns(&mean, map, columns, first, smaller(COLUMNS_AT_ONCE, columns - first),
+                            gathered, scratch);
+    free(gathered);
+    free(scratch);
+    line_mean_clear(&mean);
+    return status;
 }
 
 sonject_status local_mean(struct report *report, const float *values, size_t rows, size_t columns,
                           double row_deviation, double column_deviation, float *mean)
 {
-    const size_t longest = rows > columns ? rows : columns;
-    double *a = allocate_array(longest, sizeof *a);
-    double *b = allocate_array(longest, sizeof *b);
-    if (!a || !b) {
-        free(a);
-        free(b);
-        return report_out_of_memory(report, "the local mean");
-    }
-    memcpy(mean, values, rows * columns * sizeof *mean);
-    const size_t column_half = half_width(column_deviation, columns);
-    const size_t row_half = half_width(row_deviation, rows);
-    for (size_t row = 0; column_half > 0 && row < rows; row++)
-        smooth_line(mean + row * columns, columns, 1, column_half, a, b);
-    for (size_t column = 0; row_half > 0 && column < columns; column++)
-        smooth_line(mean + column, rows, columns, row_half, a, b);
-    free(a);
-    free(b);
-    return SONJECT_OK;
+    if (rows == 0 || columns == 0)
+        return SONJECT_OK;
+    const sonject_status status =
+        smooth_rows(report, values, rows, columns, column_deviation, mean);
+    return status == SONJECT_OK ? smooth_columns(report, mean, rows, columns, row_deviation)
+                                : status;
+}
+
+static double mean_of(const float *values, size_t count)
+{
+    double sum = 0.0;
+    for (size_t i = 0; i < count; i++)
+        sum += (double)values[i];
+    return sum / (double)count;
 }
 
 void mean_and_deviation(const float *values, size_t count, double *mean, double *deviation)
 {
     double sum = 0.0;
-    for (size_t i = 0; i < count; i++)
-        sum += values[i];
-    *mean = sum / (double)count;
-    double squares = 0.0;
-    for (size_t i = 0; i < count; i++)
-        squares += (values[i] - *mean) * (values[i] - *mean);
-    *deviation = sqrt(squares / (double)count);
+    *mean = mean_of(values, count);
+    for (size_t i = 0; i < count; i++) {
+        const double difference = (double)values[i] - *mean;
+        sum += difference * difference;
+    }
+    *deviation = sqrt(sum / (double)count);
 }
 
-#define NOISE_BLOCK   7
-#define NOISE_LOWEST  0.001 /* -30 dB */
-#define NOISE_HIGHEST 0.01  /* -20 dB */
+static double block_ratio(const float *intensity, const float *level, size_t columns,
+                          size_t block_rows, size_t block_columns)
+{
+    double sum = 0.0;
+    for (size_t row = 0; row < block_rows; row++)
+        for (size_t i = 0; i < block_columns; i++)
+            sum += (double)intensity[row * columns + i] / (double)level[row * columns + i];
+    return sum / (double)(block_rows * block_columns);
+}
 
-/* Shadows show the noise floor: the darkest block of a patch that has some. Measured shadows lie
- * 15 to 30 dB under the seabed around them, filled by noise and by what the aperture sees past the
- * object; a patch without a shadow only has a darkest piece of seabed, which says nothing, so the
- * answer is held between -30 and -20 dB. */
+/* What is left in the deepest shadow of the patch is noise: ambient and receiver noise, and the
+ * sidelobes and echoes by other ways that fill real shadows. The darkest block of 7 x 7 pixels
+ * finds it: large enough to average speckle (some twenty looks, so the smallest of many is perhaps
+ * 2 dB low), small enough to fit into the shadow of a stone.
+ *
+ * Two things can fool it, so the answer is limited. In a patch without a shadow the darkest block
+ * is merely seabed, about -3 dB; taken for noise it would fill the target's shadow to the brim.
+ * Measured shadows lie 15 to 30 dB below the seabed around them and hold some seabed echo too, so
+ * noise is not above -20 dB. And a picture that was clipped at its dark end says less than is
+ * there, so it is not below -30 dB. Blocks of nothing but 0 are blank corners, not water. */
 sonject_status estimate_noise_floor(struct report *report, const float *intensity,
                                     const float *level, size_t rows, size_t columns, double *ratio)
 {
     (void)report;
-    double darkest = NOISE_HIGHEST;
-    for (size_t row = 0; row + NOISE_BLOCK <= rows; row += NOISE_BLOCK)
-        for (size_t column = 0; column + NOISE_BLOCK <= columns; column += NOISE_BLOCK) {
-            double sum = 0.0;
-            for (size_t r = row; r < row + NOISE_BLOCK; r++)
-                for (size_t c = column; c < column + NOISE_BLOCK; c++)
-                    sum += (double)intensity[r * columns + c] / level[r * columns + c];
-            darkest = fmin(darkest, sum / (NOISE_BLOCK * NOISE_BLOCK));
+    const size_t block_rows = smaller(NOISE_BLOCK, rows);
+    const size_t block_columns = smaller(NOISE_BLOCK, columns);
+    double darkest = INFINITY;
+    for (size_t row = 0; rows - row >= block_rows && row < rows; row += block_rows)
+        for (size_t i = 0; columns - i >= block_columns && i < columns; i += block_columns) {
+            const size_t corner = row * columns + i;
+            const double here =
+                block_ratio(intensity + corner, level + corner, columns, block_rows, block_columns);
+            if (here > 0.0 && here < darkest)
+                darkest = here;
         }
-    *ratio = fmax(darkest, NOISE_LOWEST);
+    *ratio = fmin(NOISE_HIGHEST, fmax(NOISE_LOWEST, darkest));
     return SONJECT_OK;
 }
 
-static int by_value(const void *a, const void *b)
+/* A whole number that is larger the larger the float is. */
+static uint32_t order_of(float value)
 {
-    const float x = *(const float *)a;
-    const float y = *(const float *)b;
-    return (x > y) - (x < y);
+    uint32_t bits;
+    memcpy(&bits, &value, sizeof bits);
+    return bits & SIGN_BIT ? ~bits : bits | SIGN_BIT;
 }
 
-/* A sorted copy of the sample over its mean. */
-static float *sorted_over_mean(const float *values, size_t count)
+/* Sorts by some bits, keeping the order of what is equal in them. */
+static void sort_by_bits(const uint32_t *from, size_t count, int shift, uint32_t *to)
 {
-    float *sorted = allocate_array(count, sizeof *sorted);
-    if (!sorted)
-        return NULL;
-    double mean, deviation;
-    mean_and_deviation(values, count, &mean, &deviation);
+    size_t places[SORT_BINS + 1] = {0};
     for (size_t i = 0; i < count; i++)
-        sorted[i] = (float)(mean > 0.0 ? values[i] / mean : values[i]);
-    qsort(sorted, count, sizeof *sorted, by_value);
+        places[(from[i] >> shift) % SORT_BINS + 1]++;
+    for (size_t bin = 1; bin < SORT_BINS; bin++)
+        places[bin] += places[bin - 1];
+    for (size_t i = 0; i < count; i++)
+        to[places[(from[i] >> shift) % SORT_BINS]++] = from[i];
+}
+
+/* The ranks of values over their mean, ascending; NULL when memory is out. By way of floats, so
+ * that grey levels that are equal but for a factor stay equal. */
+static uint32_t *sorted_over_mean(const float *values, size_t count)
+{
+    const double mean = mean_of(values, count);
+    uint32_t *sorted = allocate_array(count, sizeof *sorted);
+    uint32_t *scratch = allocate_array(count, sizeof *scratch);
+    if (sorted && scratch) {
+        for (size_t i = 0; i < count; i++)
+            scratch[i] =
+                order_of(0.0f + (mean != 0.0 ? (float)((double)values[i] / mean) : values[i]));
+        sort_by_bits(scratch, count, 0, sorted);
+        sort_by_bits(sorted, count, SORT_BITS, scratch);
+        sort_by_bits(scratch, count, 2 * SORT_BITS, sorted);
+    } else {
+        free(sorted);
+        sorted = NULL;
+    }
+    free(scratch);
     return sorted;
+}
+
+static double largest_distance(const uint32_t *a, const uint32_t *b, size_t count)
+{
+    size_t in_a = 0; /* values up to and with the current one */
+    size_t in_b = 0;
+    size_t largest = 0;
+    while (in_a < count && in_b < count) {
+        const uint32_t value = a[in_a] < b[in_b] ? a[in_a] : b[in_b];
+        while (in_a < count && a[in_a] <= value)
+            in_a++;
+        while (in_b < count && b[in_b] <= value)
+            in_b++;
+        const size_t distance = in_a > in_b ? in_a - in_b : in_b - in_a;
+        if (distance > largest)
+            largest = distance;
+    }
+    return (double)largest / (double)count;
 }
 
 sonject_status histogram_distance(struct report *report, const float *a, const float *b,
                                   size_t count, double *distance)
 {
-    float *x = sorted_over_mean(a, count);
-    float *y = sorted_over_mean(b, count);
     *distance = 0.0;
-    size_t i = 0;
-    size_t j = 0;
-    while (x && y && i < count && j < count) {
-        const float value = x[i] < y[j] ? x[i] : y[j];
-        while (i < count && x[i] <= value)
-            i++;
-        while (j < count && y[j] <= value)
-            j++;
-        *distance = fmax(*distance, fabs((double)i - (double)j) / (double)count);
-    }
-    const bool failed = !x || !y;
-    free(x);
-    free(y);
-    return failed ? report_out_of_memory(report, "the histogram distance") : SONJECT_OK;
+    if (count == 0)
+        return SONJECT_OK;
+    uint32_t *sorted_a = sorted_over_mean(a, count);
+    uint32_t *sorted_b = sorted_over_mean(b, count);
+    sonject_status status = SONJECT_OK;
+    if (sorted_a && sorted_b)
+        *distance = largest_distance(sorted_a, sorted_b, count);
+    else
+        status = report_out_of_memory(report, "a histogram");
+    free(sorted_a);
+    free(sorted_b);
+    return status;
 }
 
 double correlation(const float *a, const float *b, size_t count)
 {
-    double mean_a, mean_b, deviation_a, deviation_b;
-    mean_and_deviation(a, count, &mean_a, &deviation_a);
-    mean_and_deviation(b, count, &mean_b, &deviation_b);
-    double sum = 0.0;
-    for (size_t i = 0; i < count; i++)
-        sum += (a[i] - mean_a) * (b[i] - mean_b);
-    return deviation_a > 0.0 && deviation_b > 0.0
-               ? sum / ((double)count * deviation_a * deviation_b)
-               : 0.0;
+    if (count == 0)
+        return 0.0;
+    const double mean_a = mean_of(a, count);
+    const double mean_b = mean_of(b, count);
+    double aa = 0.0;
+    double bb = 0.0;
+    double ab = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        const double x = (double)a[i] - mean_a;
+        const double y = (double)b[i] - mean_b;
+        aa += x * x;
+        bb += y * y;
+        ab += x * y;
+    }
+    return aa > 0.0 && bb > 0.0 ? ab / (sqrt(aa) * sqrt(bb)) : 0.0;
 }

@@ -6,26 +6,30 @@
 
 #include "base/report.h"
 
-/* Smooth local mean of a rows x columns map: three passes of a running mean (edge pixels: mean over
- * what is inside), which is close to a Gaussian of the given standard deviation in pixels per axis.
- * values and mean must not overlap. Errors: MEMORY. */
+/* Smooth local mean of a rows x columns map: three running means one after the other, which are
+ * close to a Gaussian and have exactly its standard deviation (in pixels, per axis; 0 leaves the
+ * axis as it is). Near edges it is the mean over what is inside. The time does not depend on the
+ * deviation. values and mean must not overlap. Errors: MEMORY. */
 sonject_status local_mean(struct report *report, const float *values, size_t rows, size_t columns,
                           double row_deviation, double column_deviation, float *mean);
 
-/* Mean and standard deviation in double precision; count > 0. */
+/* Mean and standard deviation (root of the mean square difference) in double precision; count > 0.
+ */
 void mean_and_deviation(const float *values, size_t count, double *mean, double *deviation);
 
-/* Noise floor over the local mean, as an energy ratio, from the darkest places of the patch: see
- * statistics.c for how. intensity and level: rows x columns, level > 0. Errors: MEMORY. */
+/* Noise floor over the local mean, as an energy ratio, from the darkest block of about 7 x 7 pixels
+ * of the patch; limited to 0.001...0.01 (-30...-20 dB), because without a shadow in the patch the
+ * darkest block is merely seabed. intensity and level: rows x columns, level > 0. Errors: MEMORY.
+ */
 sonject_status estimate_noise_floor(struct report *report, const float *intensity,
                                     const float *level, size_t rows, size_t columns, double *ratio);
 
 /* Largest distance between the cumulative distributions of two samples (Kolmogorov-Smirnov), each
- * first divided by its own mean. Errors: MEMORY. */
+ * first divided by its own mean: 0...1. Errors: MEMORY. */
 sonject_status histogram_distance(struct report *report, const float *a, const float *b,
                                   size_t count, double *distance);
 
-/* Pearson correlation of two samples. */
+/* Pearson correlation of two samples; 0 where one of them is constant. */
 double correlation(const float *a, const float *b, size_t count);
 
 #endif

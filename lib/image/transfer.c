@@ -1,56 +1,79 @@
 #include "image/transfer.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
-#include "base/memory.h"
-
-/* One stored value (as a number) to amplitude. */
-static double amplitude_of(const sonject_transfer_params *transfer, double stored, double full_scale)
+/* NaN where the value has no amplitude. */
+static double amplitude_of(const sonject_transfer_params *transfer, double full_scale, double value)
 {
-    const double q = stored / full_scale;
+    const double q = value / full_scale;
+    const double b = transfer->parameter;
     switch (transfer->kind) {
     case SONJECT_TRANSFER_INTENSITY:
-        return sqrt(fmax(0.0, q));
+        return sqrt(q);
     case SONJECT_TRANSFER_DECIBEL:
-        return pow(10.0, (stored * transfer->parameter + transfer->offset) / 20.0);
+        return pow(10.0, (value * transfer->parameter + transfer->offset) / 20.0);
     case SONJECT_TRANSFER_GAMMA:
-        return pow(fmax(0.0, q), transfer->parameter);
+        return pow(q, transfer->parameter);
     case SONJECT_TRANSFER_SCHLICK:
-        return q / (transfer->parameter - (transfer->parameter - 1.0) * q);
+        return q / (b - (b - 1.0) * q);
     default:
         return q;
     }
 }
 
-static double stored_of(const sonject_transfer_params *transfer, double amplitude, double full_scale)
+static double value_of(const sonject_transfer_params *transfer, double full_scale, double amplitude)
 {
+    const double a = amplitude;
+    const double b = transfer->parameter;
     switch (transfer->kind) {
     case SONJECT_TRANSFER_INTENSITY:
-        return amplitude * amplitude * full_scale;
+        return a * a * full_scale;
     case SONJECT_TRANSFER_DECIBEL:
-        /* amplitude 0 is minus infinity dB: the smallest number that is one */
-        return (20.0 * log10(fmax(amplitude, 1e-30)) - transfer->offset) / transfer->parameter;
+        /* no logarithm of 0: the quietest normal number is quiet enough */
+        return (20.0 * log10(fmax(a, (double)FLT_MIN)) - transfer->offset) / transfer->parameter;
     case SONJECT_TRANSFER_GAMMA:
-        return pow(amplitude, 1.0 / transfer->parameter) * full_scale;
+        return pow(a, 1.0 / transfer->parameter) * full_scale;
     case SONJECT_TRANSFER_SCHLICK:
-        return transfer->parameter * amplitude /
-               (1.0 + (transfer->parameter - 1.0) * amplitude) * full_scale;
+        return a * b / (1.0 + (b - 1.0) * a) * full_scale;
     default:
-        return amplitude * full_scale;
+        return a * full_scale;
     }
 }
 
-static double read_stored(enum pixel_type type, const void *stored, size_t index)
+static double stored_value(enum pixel_type type, const void *stored, size_t index)
 {
     switch (type) {
     case PIXEL_UINT8:
         return ((const uint8_t *)stored)[index];
     case PIXEL_UINT16:
         return ((const uint16_t *)stored)[index];
-    default:
-        return (double)((const float *)stored)[index];
+    case PIXEL_FLOAT32:
+        break;
     }
+    return (double)((const float *)stored)[index];
+}
+
+/* Only the plain transfer knows negative values: they are parts of complex pixels. */
+static bool is_amplitude(const sonject_transfer_params *transfer, float amplitude)
+{
+    return isfinite(amplitude) &&
+           (amplitude >= 0.0f || transfer->kind == SONJECT_TRANSFER_AMPLITUDE);
+}
+
+/* Amplitudes of every value that an integer type can hold; NULL where a table does not pay, or
+ * memory is out. */
+static float *table_of(const sonject_transfer_params *transfer, enum pixel_type type, size_t count)
+{
+    if (type == PIXEL_FLOAT32 || (double)count < pixel_full_scale(type))
+        return NULL;
+    const size_t length = (size_t)pixel_full_scale(type) + 1;
+    float *table = malloc(length * sizeof *table);
+    for (size_t i = 0; table && i < length; i++)
+        table[i] = (float)amplitude_of(transfer, pixel_full_scale(type), (double)i);
+    return table;
 }
 
 sonject_status transfer_to_amplitude(const sonject_transfer_params *transfer, enum pixel_type type,
@@ -58,38 +81,43 @@ sonject_status transfer_to_amplitude(const sonject_transfer_params *transfer, en
                                      size_t *bad, uint64_t *clipped)
 {
     const double full_scale = pixel_full_scale(type);
+    float *table = table_of(transfer, type, count);
+    sonject_status status = SONJECT_OK;
+    uint64_t at_full_scale = 0;
     for (size_t i = 0; i < count; i++) {
-        const double value = read_stored(type, stored, i);
-        const bool is_plain_float =
-            type == PIXEL_FLOAT32 && transfer->kind == SONJECT_TRANSFER_AMPLITUDE;
-        const double linear =
-            is_plain_float ? value : amplitude_of(transfer, value, full_scale);
-        if (!isfinite(value) || !(fabs(linear) < 1e30)) {
+        const double value = stored_value(type, stored, i);
+        amplitude[i] =
+            table ? table[(size_t)value] : (float)amplitude_of(transfer, full_scale, value);
+        if (!is_amplitude(transfer, amplitude[i])) {
             *bad = i;
-            return SONJECT_ERROR_INPUT;
+            status = SONJECT_ERROR_INPUT;
+            break;
         }
-        amplitude[i] = (float)linear;
-        *clipped += type != PIXEL_FLOAT32 && value == full_scale;
+        at_full_scale += type != PIXEL_FLOAT32 && value >= full_scale;
     }
-    return SONJECT_OK;
+    *clipped += at_full_scale;
+    free(table);
+    return status;
 }
 
 void transfer_to_stored(const sonject_transfer_params *transfer, enum pixel_type type,
                         const float *amplitude, size_t count, void *stored, uint64_t *clipped)
 {
     const double full_scale = pixel_full_scale(type);
+    const double largest = type == PIXEL_FLOAT32 ? (double)FLT_MAX : full_scale;
     for (size_t i = 0; i < count; i++) {
-        const double value = stored_of(transfer, amplitude[i], full_scale);
-        if (type == PIXEL_FLOAT32) {
-            ((float *)stored)[i] = (float)value;
-            continue;
+        double value = value_of(transfer, full_scale, (double)amplitude[i]);
+        if (type != PIXEL_FLOAT32)
+            value = value > 0.0 ? floor(value + 0.5) : 0.0;
+        if (value > largest) {
+            value = largest;
+            ++*clipped;
         }
-        const double rounded = floor(value + 0.5);
-        const double limited = fmin(fmax(rounded, 0.0), full_scale);
-        *clipped += rounded > full_scale;
         if (type == PIXEL_UINT8)
-            ((uint8_t *)stored)[i] = (uint8_t)limited;
+            ((uint8_t *)stored)[i] = (uint8_t)value;
+        else if (type == PIXEL_UINT16)
+            ((uint16_t *)stored)[i] = (uint16_t)value;
         else
-            ((uint16_t *)stored)[i] = (uint16_t)limited;
+            ((float *)stored)[i] = (float)value;
     }
 }

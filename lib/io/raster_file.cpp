@@ -1,430 +1,705 @@
+extern "C" {
+#include "base/file.h"
+#include "base/report.h"
+#include "image/raster.h"
+}
+#include "io/raster_file.h"
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <new>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-extern "C" {
-#include "base/file.h"
-#include "io/raster_file.h"
-}
+#include "io/image_kind.h"
+#include "io/jpeg_segments.h"
+#include "io/png_chunks.h"
+#include "io/tiff_head.h"
+#include "io/tiff_patch.h"
+#include "io/tiff_structure.h"
 
 namespace
 {
 
-constexpr uint64_t strip_bytes_limit = uint64_t(64) << 20;
-constexpr uint64_t pixels_limit = uint64_t(1) << 40;
+constexpr uint64_t strip_bytes = 64u << 20;
+constexpr uint64_t pixels_max = uint64_t(1) << 40;
 
-/* Runs a body that may throw; nothing leaves it but a status. */
-template <typename Body> sonject_status guarded(struct report *report, const char *path, Body body)
+/* Coarser coding would show in the noise of every pixel of the swath, not only near the target. */
+constexpr const char *jpeg_quality = "jpeg:98";
+
+/* What keeps text attributes, as lines of "name=value": every format has it. */
+constexpr const char *description_name = "ImageDescription";
+
+/* Thrown where a report has the message already. */
+struct failure {
+    sonject_status status;
+};
+
+void require(sonject_status status)
+{
+    if (status != SONJECT_OK)
+        throw failure{status};
+}
+
+/* Runs work and turns every exception into a status. */
+template <typename Work> sonject_status guarded(struct report *report, const char *path, Work work)
 {
     try {
-        return body();
+        work();
+        return SONJECT_OK;
+    } catch (const failure &known) {
+        return known.status;
     } catch (const std::bad_alloc &) {
-        return report_failure(report, SONJECT_ERROR_MEMORY, "out of memory for %s", path);
-    } catch (const std::exception &problem) {
-        return report_failure(report, SONJECT_ERROR_STORAGE, "%s: %s", path, problem.what());
+        return report_out_of_memory(report, path);
+    } catch (const std::length_error &) {
+        return report_out_of_memory(report, path);
+    } catch (const std::exception &unforeseen) {
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: %s", path, unforeseen.what());
     } catch (...) {
-        return report_failure(report, SONJECT_ERROR_STORAGE, "%s: unknown failure", path);
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: cannot be processed", path);
     }
 }
 
-OIIO::TypeDesc type_of(enum pixel_type type)
+OIIO::TypeDesc stored_type(enum pixel_type type)
 {
     switch (type) {
     case PIXEL_UINT8:
         return OIIO::TypeDesc::UINT8;
     case PIXEL_UINT16:
         return OIIO::TypeDesc::UINT16;
-    default:
-        return OIIO::TypeDesc::FLOAT;
+    case PIXEL_FLOAT32:
+        break;
     }
+    return OIIO::TypeDesc::FLOAT;
 }
 
-bool take_type(const OIIO::TypeDesc &type, enum pixel_type *taken)
+const char *format_name(enum image_kind kind)
 {
-    if (type == OIIO::TypeDesc::UINT8)
-        *taken = PIXEL_UINT8;
-    else if (type == OIIO::TypeDesc::UINT16)
-        *taken = PIXEL_UINT16;
-    else if (type == OIIO::TypeDesc::FLOAT)
-        *taken = PIXEL_FLOAT32;
-    else
-        return false;
-    return true;
+    switch (kind) {
+    case IMAGE_PNG:
+        return "png";
+    case IMAGE_JPEG:
+        return "jpeg";
+    case IMAGE_TIFF:
+        break;
+    }
+    return "tiff";
 }
 
-/* Deleting an open ImageOutput closes it; the part is discarded unless it was published. */
-struct output_part {
-    char *name;
-    explicit output_part(const char *path) : name(file_part_name(path))
+/* A file name that is removed when it goes out of scope, unless it was published before. */
+class part_file
+{
+  public:
+    explicit part_file(const char *path) : name(file_part_name(path))
     {
         if (!name)
             throw std::bad_alloc();
     }
-    output_part(const output_part &) = delete;
-    output_part &operator=(const output_part &) = delete;
-    ~output_part()
+    ~part_file()
     {
-        if (name)
-            file_discard(name);
-        free(name);
+        file_discard(name);
+        std::free(name);
     }
-    sonject_status publish(struct report *report, const char *path)
-    {
-        const sonject_status status = file_publish(report, name, path);
-        free(name);
-        name = nullptr;
-        return status;
-    }
+    part_file(const part_file &) = delete;
+    part_file &operator=(const part_file &) = delete;
+
+    char *const name;
 };
+
+/* Where encoders write to: keeps the reason why writing failed, which they forget. */
+class file_sink final : public OIIO::Filesystem::IOProxy
+{
+  public:
+    explicit file_sink(const char *path)
+        : IOProxy(path, Write), file(std::fopen(path, "wb")), error_number(file ? 0 : errno)
+    {
+    }
+    ~file_sink() override
+    {
+        finish();
+    }
+    file_sink(const file_sink &) = delete;
+    file_sink &operator=(const file_sink &) = delete;
+
+    const char *proxytype() const override
+    {
+        return "file";
+    }
+    int64_t tell() override
+    {
+        return position;
+    }
+    bool seek(int64_t offset) override
+    {
+        position = offset;
+        return error_number == 0 && check(fseeko(file, offset, SEEK_SET) == 0);
+    }
+    size_t write(const void *bytes, size_t count) override
+    {
+        if (error_number != 0 || !check(std::fwrite(bytes, 1, count, file) == count))
+            return 0;
+        position += int64_t(count);
+        end = position > end ? position : end;
+        return count;
+    }
+    size_t size() const override
+    {
+        return size_t(end);
+    }
+
+    /* 0, or the errno of the first failure. */
+    int finish()
+    {
+        if (file)
+            check(std::fclose(file) == 0);
+        file = nullptr;
+        return error_number;
+    }
+
+  private:
+    bool check(bool is_good)
+    {
+        if (!is_good && error_number == 0)
+            error_number = errno != 0 ? errno : EIO;
+        return is_good;
+    }
+
+    std::FILE *file;
+    int error_number;
+    int64_t position = 0;
+    int64_t end = 0;
+};
+
+uint64_t row_bytes(const struct raster_layout &layout)
+{
+    return layout.columns * layout.channels * pixel_bytes(layout.type);
+}
+
+uint64_t rows_at_once(const struct raster_layout &layout)
+{
+    const uint64_t rows = strip_bytes / row_bytes(layout);
+    return rows > 0 ? rows : 1;
+}
+
+/* An image as it is written, row by row. */
+class image_writer
+{
+  public:
+    /* description: a text that the file keeps; name: of the finished file, for messages */
+    image_writer(struct report *where, const char *path, const char *name, enum image_kind kind,
+                 const struct raster_layout &image, const std::string &description)
+        : report(where), final_name(name), layout(image), sink(path)
+    {
+        if (kind == IMAGE_TIFF)
+            write_head(description);
+        else
+            open_encoder(path, kind, description);
+    }
+
+    void write_rows(uint64_t first, uint64_t end, const void *pixels)
+    {
+        const bool is_written = encoder
+                                    ? encoder->write_scanlines(int(first), int(end), 0,
+                                                               encoder->spec().format, pixels) &&
+                                          !encoder->has_error()
+                                    : write(pixels, (end - first) * row_bytes(layout));
+        if (!is_written)
+            fail();
+    }
+
+    void finish()
+    {
+        const bool is_closed = !encoder || (encoder->close() && !encoder->has_error());
+        if (sink.finish() != 0 || !is_closed)
+            fail();
+    }
+
+  private:
+    void write_head(const std::string &description)
+    {
+        size_t count = 0;
+        const std::unique_ptr<unsigned char, decltype(&std::free)> head(
+            tiff_make_head(&layout, description.c_str(), &count), &std::free);
+        if (!head)
+            throw std::bad_alloc();
+        if (!write(head.get(), count))
+            fail();
+    }
+
+    void open_encoder(const char *path, enum image_kind kind, const std::string &description)
+    {
+        OIIO::ImageSpec spec(int(layout.columns), int(layout.rows), int(layout.channels),
+                             stored_type(layout.type));
+        OIIO::Filesystem::IOProxy *proxy = &sink;
+        spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+        if (kind == IMAGE_JPEG)
+            spec.attribute("Compression", jpeg_quality);
+        if (!description.empty())
+            spec.attribute(description_name, description);
+        encoder = OIIO::ImageOutput::create(format_name(kind));
+        if (!encoder)
+            fail();
+        encoder->threads(1);
+        if (!encoder->open(path, spec))
+            fail();
+    }
+
+    bool write(const void *bytes, uint64_t count)
+    {
+        return sink.write(bytes, size_t(count)) == count;
+    }
+
+    [[noreturn]] void fail()
+    {
+        const std::string reason = encoder ? encoder->geterror() : OIIO::geterror();
+        const int error_number = sink.finish();
+        if (error_number != 0)
+            throw failure{file_failure(report, final_name, "write", error_number)};
+        throw failure{report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot write: %s",
+                                     final_name, reason.c_str())};
+    }
+
+    struct report *report;
+    const char *final_name;
+    const struct raster_layout layout;
+    file_sink sink;
+    std::unique_ptr<OIIO::ImageOutput> encoder; /* none for TIFF */
+};
+
+/* Puts the part of the patch that lies in rows first...end over these rows. */
+void overlay(const struct raster_layout &layout, const struct region &region, const void *patch,
+             uint64_t first, uint64_t end, unsigned char *rows)
+{
+    const uint64_t pixel = layout.channels * pixel_bytes(layout.type);
+    const uint64_t from = first > region.first_row ? first : region.first_row;
+    const uint64_t region_end = region.first_row + region.rows;
+    const uint64_t to = end < region_end ? end : region_end;
+    for (uint64_t row = from; row < to; row++)
+        std::memcpy(rows + (row - first) * row_bytes(layout) + region.first_column * pixel,
+                    static_cast<const unsigned char *>(patch) +
+                        (row - region.first_row) * region.columns * pixel,
+                    region.columns * pixel);
+}
 
 } // namespace
 
 struct raster_file {
+    std::string path;
+    enum image_kind kind;
+    struct raster_layout layout;
     std::unique_ptr<OIIO::ImageInput> input;
     OIIO::ImageSpec spec;
-    struct raster_layout layout;
-    std::string path;
-    bool has_more_images;
+
+    /* Reads whole rows (from a tiled image: those columns) into pixels. */
+    void read(struct report *report, const struct region &region, void *pixels)
+    {
+        const int x = spec.x + int(region.first_column);
+        const int y = spec.y + int(region.first_row);
+        const int x_end = x + int(region.columns);
+        const int y_end = y + int(region.rows);
+        const bool is_read =
+            spec.tile_width > 0
+                ? input->read_tiles(0, 0, x, x_end, y, y_end, 0, 1, 0, spec.nchannels, spec.format,
+                                    pixels)
+                : input->read_scanlines(0, 0, y, y_end, 0, 0, spec.nchannels, spec.format, pixels);
+        const std::string reason = input->geterror();
+        if (!is_read || !reason.empty())
+            throw failure{report_failure(
+                report, SONJECT_ERROR_INPUT, "%s: cut short or damaged at rows %llu...%llu: %s",
+                path.c_str(), (unsigned long long)region.first_row,
+                (unsigned long long)(region.first_row + region.rows - 1), reason.c_str())};
+    }
 };
 
 namespace
 {
 
-sonject_status refuse(struct report *report, const char *path, const std::string &problem)
+void open_input(struct report *report, struct raster_file &file)
 {
-    return report_failure(report, SONJECT_ERROR_INPUT, "%s: %s", path, problem.c_str());
+    const char *path = file.path.c_str();
+    OIIO::ImageSpec configuration;
+    file.input = OIIO::ImageInput::create(format_name(file.kind));
+    if (!file.input) {
+        const std::string reason = OIIO::geterror();
+        throw failure{
+            report_failure(report, SONJECT_ERROR_UNSUPPORTED, "%s: %s", path, reason.c_str())};
+    }
+    file.input->threads(1);
+    /* pixels as they are stored, not multiplied by anything */
+    configuration.attribute("oiio:UnassociatedAlpha", 1);
+    const bool is_open = file.input->open(file.path, file.spec, configuration);
+    const std::string reason = file.input->geterror(); /* of warnings too */
+    if (!is_open || !reason.empty())
+        throw failure{report_failure(report, SONJECT_ERROR_INPUT, "%s: cannot be read: %s", path,
+                                     reason.c_str())};
 }
 
-sonject_status check_spec(struct report *report, const char *path, const OIIO::ImageSpec &spec,
-                          struct raster_layout *layout)
+void take_layout(struct report *report, struct raster_file &file)
 {
-    if (spec.width < 1 || spec.height < 1 || spec.depth > 1)
-        return refuse(report, path, "has no pixels or is a volume");
-    layout->rows = uint64_t(spec.height);
-    layout->columns = uint64_t(spec.width);
-    if (layout->rows > pixels_limit / layout->columns)
-        return refuse(report, path, "claims more than 2^40 pixels; the file is damaged");
+    const OIIO::ImageSpec &spec = file.spec;
+    const char *path = file.path.c_str();
+    if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 ||
+        uint64_t(spec.width) > pixels_max / uint64_t(spec.height))
+        throw failure{report_failure(report, SONJECT_ERROR_INPUT,
+                                     "%s: %d x %d x %d pixels are not an image that sonject reads",
+                                     path, spec.width, spec.height, spec.depth)};
     if (spec.nchannels != 1 && spec.nchannels != 2)
-        return refuse(report, path,
-                      "has " + std::to_string(spec.nchannels) +
-                          " channels; convert it to 1 (amplitude) or 2 (real, imaginary)");
-    layout->channels = uint32_t(spec.nchannels);
-    if (spec.alpha_channel >= 0)
-        return refuse(report, path, "has an alpha channel; convert it to 1 channel without alpha");
-    if (!spec.channelformats.empty() || !take_type(spec.format, &layout->type))
-        return refuse(report, path,
-                      std::string("has pixels of type ") + spec.format.c_str() +
-                          "; convert it to 8 or 16 bit unsigned or 32 bit float");
-    const int bits = spec.get_int_attribute("oiio:BitsPerSample", 0);
-    if (bits != 0 && size_t(bits) != 8 * pixel_bytes(layout->type))
-        return refuse(report, path,
-                      "has " + std::to_string(bits) + " bits a pixel; convert it to 8, 16 or 32");
-    return SONJECT_OK;
+        throw failure{report_failure(report, SONJECT_ERROR_INPUT,
+                                     "%s: has %d channels; sonject reads 1 (amplitude) or 2 (real, "
+                                     "imaginary); convert it to one channel first",
+                                     path, spec.nchannels)};
+    file.layout.rows = uint64_t(spec.height);
+    file.layout.columns = uint64_t(spec.width);
+    file.layout.channels = uint32_t(spec.nchannels);
+    if (spec.format == OIIO::TypeDesc::UINT8)
+        file.layout.type = PIXEL_UINT8;
+    else if (spec.format == OIIO::TypeDesc::UINT16)
+        file.layout.type = PIXEL_UINT16;
+    else if (spec.format == OIIO::TypeDesc::FLOAT)
+        file.layout.type = PIXEL_FLOAT32;
+    else
+        throw failure{report_failure(report, SONJECT_ERROR_INPUT,
+                                     "%s: has pixels of type %s; sonject reads 8 and 16 bit "
+                                     "unsigned and 32 bit float: convert it to one of these",
+                                     path, spec.format.c_str())};
 }
 
-/* Reads whole rows [first, last) of the columns [left, right); tiled files need tile borders. */
-bool read_block(raster_file &file, uint64_t first, uint64_t last, uint64_t left, uint64_t right,
-                void *pixels)
+/* Rows of an image without tiles: strips of whole rows, of which the region's columns are kept. */
+void read_by_rows(struct report *report, struct raster_file &file, const struct region &region,
+                  unsigned char *pixels)
 {
-    const OIIO::ImageSpec &spec = file.spec;
-    const OIIO::TypeDesc type = type_of(file.layout.type);
-    if (spec.tile_width > 0)
-        return file.input->read_tiles(0, 0, spec.x + int(left), spec.x + int(right),
-                                      spec.y + int(first), spec.y + int(last), 0, 1, 0,
-                                      spec.nchannels, type, pixels);
-    return file.input->read_scanlines(0, 0, spec.y + int(first), spec.y + int(last), 0, 0,
-                                      spec.nchannels, type, pixels);
-}
-
-uint64_t round_up(uint64_t value, uint64_t step, uint64_t limit)
-{
-    const uint64_t rounded = (value + step - 1) / step * step;
-    return rounded < limit ? rounded : limit;
-}
-
-/* How many rows a strip of whole width may have: within the limit, whole tiles. */
-uint64_t strip_rows(const OIIO::ImageSpec &spec, uint64_t row_bytes)
-{
-    const uint64_t step = spec.tile_height > 0 ? uint64_t(spec.tile_height) : 1;
-    const uint64_t fitting = strip_bytes_limit / (row_bytes > 0 ? row_bytes : 1);
-    return fitting < step ? step : fitting / step * step;
-}
-
-sonject_status read_failure(struct report *report, const raster_file &file)
-{
-    return refuse(report, file.path.c_str(),
-                  "cannot be read, it may be cut short or damaged: " + file.input->geterror());
-}
-
-sonject_status read_region(struct report *report, raster_file &file, const struct region &region,
-                           unsigned char *pixels)
-{
-    const OIIO::ImageSpec &spec = file.spec;
-    const bool is_tiled = spec.tile_width > 0;
-    const uint64_t tile_width = is_tiled ? uint64_t(spec.tile_width) : 1;
-    const uint64_t tile_height = is_tiled ? uint64_t(spec.tile_height) : 1;
-    const uint64_t left = is_tiled ? region.first_column / tile_width * tile_width : 0;
-    const uint64_t right = is_tiled ? round_up(region.first_column + region.columns, tile_width,
-                                               file.layout.columns)
-                                    : file.layout.columns;
-    const size_t pixel = file.layout.channels * pixel_bytes(file.layout.type);
-    const size_t block_row = size_t(right - left) * pixel;
-    const size_t region_row = size_t(region.columns) * pixel;
+    const uint64_t pixel = file.layout.channels * pixel_bytes(file.layout.type);
+    const uint64_t at_once = rows_at_once(file.layout);
     const uint64_t end = region.first_row + region.rows;
-    const uint64_t rows = strip_rows(spec, block_row);
-    std::vector<unsigned char> block;
-    for (uint64_t first = region.first_row / tile_height * tile_height; first < end;) {
-        const uint64_t last =
-            first + rows < end ? first + rows : round_up(end, tile_height, file.layout.rows);
-        block.resize(size_t(last - first) * block_row);
-        if (!read_block(file, first, last, left, right, block.data()))
-            return read_failure(report, file);
-        for (uint64_t row = first; row < last; row++)
-            if (row >= region.first_row && row < end)
-                std::memcpy(pixels + size_t(row - region.first_row) * region_row,
-                            block.data() + size_t(row - first) * block_row +
-                                size_t(region.first_column - left) * pixel,
-                            region_row);
-        first = last;
+    const uint64_t kept = region.columns * pixel;
+    std::vector<unsigned char> strip(
+        size_t((at_once < region.rows ? at_once : region.rows) * row_bytes(file.layout)));
+    for (uint64_t row = region.first_row; row < end; row += at_once) {
+        const uint64_t rows = end - row < at_once ? end - row : at_once;
+        file.read(report, {row, 0, rows, file.layout.columns}, strip.data());
+        for (uint64_t i = 0; i < rows; i++, pixels += kept)
+            std::memcpy(pixels,
+                        strip.data() + i * row_bytes(file.layout) + region.first_column * pixel,
+                        kept);
     }
-    return SONJECT_OK;
 }
 
-/* Puts the part of a patch that lies in the rows [first, last) into a block of whole rows. */
-void put_patch(std::vector<unsigned char> &block, const struct raster_layout &layout,
-               const struct region &region, const unsigned char *pixels, uint64_t first,
-               uint64_t last)
+/* One tile after the other. */
+void read_by_tiles(struct report *report, struct raster_file &file, const struct region &region,
+                   unsigned char *pixels)
 {
-    const size_t pixel = layout.channels * pixel_bytes(layout.type);
-    const size_t row_bytes = size_t(layout.columns) * pixel;
-    const size_t region_row = size_t(region.columns) * pixel;
-    for (uint64_t row = first; row < last; row++)
-        if (row >= region.first_row && row - region.first_row < region.rows)
-            std::memcpy(block.data() + size_t(row - first) * row_bytes +
-                            size_t(region.first_column) * pixel,
-                        pixels + size_t(row - region.first_row) * region_row, region_row);
+    const uint64_t pixel = file.layout.channels * pixel_bytes(file.layout.type);
+    const uint64_t height = uint64_t(file.spec.tile_height);
+    const uint64_t width = uint64_t(file.spec.tile_width);
+    const uint64_t row_end = region.first_row + region.rows;
+    const uint64_t column_end = region.first_column + region.columns;
+    std::vector<unsigned char> tile(size_t(height * width * pixel));
+    for (uint64_t row = region.first_row / height * height; row < row_end; row += height)
+        for (uint64_t column = region.first_column / width * width; column < column_end;
+             column += width) {
+            const uint64_t rows = file.layout.rows - row < height ? file.layout.rows - row : height;
+            const uint64_t columns =
+                file.layout.columns - column < width ? file.layout.columns - column : width;
+            file.read(report, {row, column, rows, columns}, tile.data());
+            const uint64_t first = row > region.first_row ? row : region.first_row;
+            const uint64_t last = row + rows < row_end ? row + rows : row_end;
+            const uint64_t left = column > region.first_column ? column : region.first_column;
+            const uint64_t right = column + columns < column_end ? column + columns : column_end;
+            for (uint64_t i = first; i < last; i++)
+                std::memcpy(pixels + ((i - region.first_row) * region.columns +
+                                      (left - region.first_column)) *
+                                         pixel,
+                            tile.data() + ((i - row) * columns + (left - column)) * pixel,
+                            (right - left) * pixel);
+        }
 }
 
-bool write_block(OIIO::ImageOutput &output, const OIIO::ImageSpec &spec, OIIO::TypeDesc type,
-                 uint64_t first, uint64_t last, const void *pixels)
+void read_region(struct report *report, struct raster_file &file, const struct region &region,
+                 void *pixels)
 {
-    if (output.spec().tile_width > 0)
-        return output.write_tiles(spec.x, spec.x + spec.width, spec.y + int(first),
-                                  spec.y + int(last), 0, 1, type, pixels);
-    return output.write_scanlines(spec.y + int(first), spec.y + int(last), 0, type, pixels);
+    if (!region_is_inside(&file.layout, &region))
+        throw failure{report_failure(report, SONJECT_ERROR_INPUT,
+                                     "%s: the region is not inside the image", file.path.c_str())};
+    if (file.spec.tile_width > 0)
+        read_by_tiles(report, file, region, static_cast<unsigned char *>(pixels));
+    else
+        read_by_rows(report, file, region, static_cast<unsigned char *>(pixels));
 }
 
-sonject_status write_failure(struct report *report, const char *path, const std::string &problem)
+std::unique_ptr<struct raster_file> open_file(struct report *report, const char *path)
 {
-    return report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot write: %s", path,
-                          problem.c_str());
-}
-
-std::unique_ptr<OIIO::ImageOutput> create_output(struct report *report, const char *part,
-                                                 const char *path, const OIIO::ImageSpec &spec,
-                                                 sonject_status *status)
-{
-    auto output = OIIO::ImageOutput::create(part);
-    *status = SONJECT_OK;
-    if (!output) {
-        *status = report_failure(report, SONJECT_ERROR_UNSUPPORTED, "%s: %s", path,
-                                 OIIO::geterror().c_str());
-        return output;
-    }
-    output->threads(1);
-    if (!output->open(part, spec))
-        *status = write_failure(report, path, output->geterror());
-    return output;
-}
-
-/* Streams rows: `fill` puts the rows [first, last) into the block. */
-template <typename Fill>
-sonject_status write_rows(struct report *report, const char *path, const OIIO::ImageSpec &spec,
-                          const struct raster_layout &layout, Fill fill)
-{
-    output_part part(path);
-    sonject_status status;
-    auto output = create_output(report, part.name, path, spec, &status);
-    if (status != SONJECT_OK)
-        return status;
-    const size_t row_bytes = size_t(layout.columns) * layout.channels * pixel_bytes(layout.type);
-    const uint64_t rows = strip_rows(output->spec(), row_bytes);
-    std::vector<unsigned char> block;
-    for (uint64_t first = 0; first < layout.rows; first += rows) {
-        const uint64_t last = first + rows < layout.rows ? first + rows : layout.rows;
-        block.assign(size_t(last - first) * row_bytes, 0);
-        status = fill(block, first, last);
-        if (status != SONJECT_OK)
-            return status;
-        if (!write_block(*output, spec, type_of(layout.type), first, last, block.data()))
-            return write_failure(report, path, output->geterror());
-    }
-    if (!output->close())
-        return write_failure(report, path, output->geterror());
-    output.reset();
-    return part.publish(report, path);
-}
-
-OIIO::ImageSpec spec_of(const struct raster_layout &layout)
-{
-    return OIIO::ImageSpec(int(layout.columns), int(layout.rows), int(layout.channels),
-                           type_of(layout.type));
+    std::unique_ptr<struct raster_file> file(new struct raster_file);
+    file->path = path;
+    require(image_kind_of(report, path, &file->kind));
+    require(image_kind_check(report, path, file->kind));
+    open_input(report, *file);
+    take_layout(report, *file);
+    return file;
 }
 
 } // namespace
 
-extern "C" sonject_status raster_file_open(struct report *report, const char *path,
-                                           struct raster_file **file)
+sonject_status raster_file_open(struct report *report, const char *path, struct raster_file **file)
 {
     *file = nullptr;
-    if (!file_exists(path))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: no such file: correct input.path or give it with --set "
-                              "input.path=...",
-                              path);
-    return guarded(report, path, [&]() {
-        auto input = OIIO::ImageInput::open(path);
-        if (!input)
-            return refuse(report, path, "cannot be read as an image: " + OIIO::geterror());
-        input->threads(1);
-        std::unique_ptr<raster_file> opened(new raster_file);
-        opened->spec = input->spec();
-        opened->path = path;
-        const sonject_status status = check_spec(report, path, opened->spec, &opened->layout);
-        if (status != SONJECT_OK)
-            return status;
-        opened->has_more_images = input->seek_subimage(1, 0);
-        input->seek_subimage(0, 0);
-        (void)input->geterror(); /* that there is no second image is no error */
-        opened->input = std::move(input);
-        *file = opened.release();
-        return SONJECT_OK;
-    });
+    return guarded(report, path, [&] { *file = open_file(report, path).release(); });
 }
 
-extern "C" void raster_file_close(struct raster_file **file)
+void raster_file_close(struct raster_file **file)
 {
-    if (!file)
+    if (!file || !*file)
         return;
+    try {
+        (*file)->input->close();
+        (*file)->input->geterror();
+    } catch (...) {
+        /* nothing is lost by a file that was only read */
+    }
     delete *file;
     *file = nullptr;
 }
 
-extern "C" void raster_file_layout(const struct raster_file *file, struct raster_layout *layout)
+void raster_file_layout(const struct raster_file *file, struct raster_layout *layout)
 {
     *layout = file->layout;
 }
 
-extern "C" bool raster_file_is_lossless(const struct raster_file *file)
+bool raster_file_is_lossless(const struct raster_file *file)
 {
-    return std::strcmp(file->input->format_name(), "jpeg") != 0 &&
-           file->spec.get_string_attribute("compression").find("jpeg") == std::string::npos;
+    return file->kind != IMAGE_JPEG;
 }
 
-extern "C" bool raster_file_attribute(const struct raster_file *file, const char *name, char *value,
-                                      size_t capacity)
+bool raster_file_attribute(const struct raster_file *file, const char *name, char *value,
+                           size_t capacity)
 {
-    const std::string text = "\n" + std::string(file->spec.get_string_attribute("ImageDescription"));
-    const std::string key = "\n" + std::string(name) + "=";
-    const size_t at = text.find(key);
-    if (at == std::string::npos)
+    try {
+        const std::string description(file->spec.get_string_attribute(description_name));
+        const std::string lines = "\n" + description + "\n";
+        const std::string start = "\n" + std::string(name) + "=";
+        const size_t line = lines.find(start);
+        if (line == std::string::npos)
+            return false;
+        const size_t first = line + start.size();
+        const size_t count = lines.find('\n', first) - first;
+        if (count >= capacity)
+            return false;
+        std::memcpy(value, lines.data() + first, count);
+        value[count] = '\0';
+        return true;
+    } catch (...) {
         return false;
-    const size_t start = at + key.size();
-    const std::string found = text.substr(start, text.find('\n', start) - start);
-    if (found.size() >= capacity)
-        return false;
-    std::memcpy(value, found.c_str(), found.size() + 1);
-    return true;
+    }
 }
 
-extern "C" sonject_status raster_file_read(struct report *report, struct raster_file *file,
-                                           const struct region *region, void *pixels)
+sonject_status raster_file_read(struct report *report, struct raster_file *file,
+                                const struct region *region, void *pixels)
 {
-    return guarded(report, file->path.c_str(), [&]() {
-        return read_region(report, *file, *region, static_cast<unsigned char *>(pixels));
-    });
+    return guarded(report, file->path.c_str(),
+                   [&] { read_region(report, *file, *region, pixels); });
 }
 
-extern "C" sonject_status raster_file_copy_with_patch(struct report *report, const char *source,
-                                                      const char *path, const struct region *region,
-                                                      const void *pixels,
-                                                      sonject_progress_function progress,
-                                                      void *user)
+namespace
 {
+
+struct copy_order {
+    struct report *report;
+    const char *source, *path;
+    const struct region *region;
+    const void *pixels;
+    sonject_progress_function progress;
+    void *user;
+
+    void tell(double fraction) const
+    {
+        if (progress && progress(user, fraction, "write") != 0)
+            throw failure{report_failure(report, SONJECT_CANCELLED, "cancelled")};
+    }
+};
+
+/* Decodes and encodes the image, a strip of rows at a time. */
+void encode_copy(const copy_order &order, struct raster_file &source, const char *encoded)
+{
+    const struct raster_layout &layout = source.layout;
+    const uint64_t at_once = rows_at_once(layout);
+    image_writer output(order.report, encoded, order.path, source.kind, layout, "");
+    std::vector<unsigned char> strip(
+        size_t((at_once < layout.rows ? at_once : layout.rows) * row_bytes(layout)));
+    for (uint64_t row = 0; row < layout.rows; row += at_once) {
+        const uint64_t end = layout.rows - row < at_once ? layout.rows : row + at_once;
+        source.read(order.report, {row, 0, end - row, layout.columns}, strip.data());
+        overlay(layout, *order.region, order.pixels, row, end, strip.data());
+        output.write_rows(row, end, strip.data());
+        order.tell(double(end) / double(layout.rows));
+    }
+    output.finish();
+}
+
+void copy_encoded(const copy_order &order, struct raster_file &source, const char *result)
+{
+    const part_file encoded(result);
+    encode_copy(order, source, encoded.name);
+    if (source.kind == IMAGE_PNG)
+        require(png_join(order.report, order.source, encoded.name, result, order.path));
+    else
+        require(jpeg_join(order.report, order.source, encoded.name, result, order.path));
+}
+
+struct region_reader {
+    struct report *report;
     struct raster_file *file;
-    const sonject_status opened = raster_file_open(report, source, &file);
-    if (opened != SONJECT_OK)
-        return opened;
-    const sonject_status status = guarded(report, path, [&]() {
-        if (file->has_more_images)
-            return refuse(report, source, "holds several images; split it into single ones first");
-        OIIO::ImageSpec spec = file->spec;
-        if (!raster_file_is_lossless(file))
-            spec.attribute("Compression", "jpeg:98");
-        return write_rows(
-            report, path, spec, file->layout,
-            [&](std::vector<unsigned char> &block, uint64_t first, uint64_t last) {
-                if (progress && progress(user, double(first) / double(file->layout.rows),
-                                         "writing the swath"))
-                    return report_failure(report, SONJECT_CANCELLED,
-                                          "cancelled while writing %s", path);
-                if (!read_block(*file, first, last, 0, file->layout.columns, block.data()))
-                    return read_failure(report, *file);
-                put_patch(block, file->layout, *region,
-                          static_cast<const unsigned char *>(pixels), first, last);
-                return SONJECT_OK;
-            });
-    });
-    raster_file_close(&file);
-    return status;
+};
+
+sonject_status read_for_tiff(void *user, const struct region *region, void *pixels)
+{
+    const region_reader *reader = static_cast<const region_reader *>(user);
+    return raster_file_read(reader->report, reader->file, region, pixels);
 }
 
-extern "C" sonject_status raster_file_write(struct report *report, const char *path,
-                                            const struct raster_layout *layout,
-                                            const char *const *channel_names,
-                                            const struct raster_attribute *attributes,
-                                            size_t attribute_count, const void *pixels)
+void copy_tiff(const copy_order &order, struct raster_file &source, const char *result)
 {
-    return guarded(report, path, [&]() {
-        OIIO::ImageSpec spec = spec_of(*layout);
-        if (channel_names) {
-            spec.channelnames.assign(channel_names, channel_names + layout->channels);
-            spec.alpha_channel = -1;
+    region_reader reader = {order.report, &source};
+    const struct tiff_patch patch = {order.source,  result,         order.path,
+                                     *order.region, order.pixels,   read_for_tiff,
+                                     &reader,       order.progress, order.user};
+    require(tiff_copy_with_patch(order.report, &patch));
+}
+
+/* Whatever went into the copy must come out of it: a file that says contradictory things of itself
+ * may fool the writer, but not the reader as well. */
+void check_copy(const copy_order &order, const struct raster_file &source, const char *result)
+{
+    size_t bytes = 0;
+    const std::unique_ptr<struct raster_file> copy = open_file(order.report, result);
+    if (!region_bytes(&source.layout, order.region, &bytes))
+        throw std::bad_alloc();
+    std::vector<unsigned char> pixels(bytes);
+    read_region(order.report, *copy, *order.region, pixels.data());
+    if (raster_file_is_lossless(copy.get()) && std::memcmp(pixels.data(), order.pixels, bytes) != 0)
+        throw failure{report_failure(order.report, SONJECT_ERROR_INPUT,
+                                     "%s: damaged: its pixels cannot be replaced", order.source)};
+}
+
+} // namespace
+
+sonject_status raster_file_copy_with_patch(struct report *report, const char *source,
+                                           const char *path, const struct region *region,
+                                           const void *pixels, sonject_progress_function progress,
+                                           void *user)
+{
+    return guarded(report, path, [&] {
+        const copy_order order = {report, source, path, region, pixels, progress, user};
+        const std::unique_ptr<struct raster_file> file = open_file(report, source);
+        if (!region_is_inside(&file->layout, region))
+            throw failure{report_failure(report, SONJECT_ERROR_INPUT,
+                                         "%s: the region is not inside the image", source)};
+        const part_file part(path);
+        if (file->kind == IMAGE_TIFF)
+            copy_tiff(order, *file, part.name);
+        else
+            copy_encoded(order, *file, part.name);
+        check_copy(order, *file, part.name);
+        require(file_publish(report, part.name, path));
+    });
+}
+
+namespace
+{
+
+enum image_kind kind_to_write(struct report *report, const char *path,
+                              const struct raster_layout &layout)
+{
+    enum image_kind kind;
+    if (!image_kind_of_name(path, &kind))
+        throw failure{report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                                     "%s: images are written as .tif, .png or .jpg: choose one of "
+                                     "these extensions",
+                                     path)};
+    if ((kind == IMAGE_PNG && layout.type == PIXEL_FLOAT32) ||
+        (kind == IMAGE_JPEG && layout.type != PIXEL_UINT8))
+        throw failure{report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                                     "%s: this format does not hold %s pixels: write .tif", path,
+                                     layout.type == PIXEL_FLOAT32 ? "floating-point" : "16-bit")};
+    const bool is_grey_or_colour = layout.channels == 1 || layout.channels == 3;
+    if (!is_grey_or_colour && (kind != IMAGE_TIFF || layout.channels != 2))
+        throw failure{report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                                     "%s: this format does not hold %u channels: write .tif with 1 "
+                                     "to 3",
+                                     path, layout.channels)};
+    const uint64_t side_max = uint64_t(std::numeric_limits<int>::max());
+    if (layout.rows == 0 || layout.columns == 0 || layout.rows > side_max ||
+        layout.columns > side_max / 16)
+        throw failure{report_failure(
+            report, SONJECT_ERROR_UNSUPPORTED, "%s: %llu x %llu pixels cannot be written", path,
+            (unsigned long long)layout.rows, (unsigned long long)layout.columns)};
+    return kind;
+}
+
+/* Lines of "name=value". */
+std::string describe(const struct raster_layout &layout, const char *const *channel_names,
+                     const struct raster_attribute *attributes, size_t attribute_count)
+{
+    std::string description;
+    for (uint32_t i = 0; channel_names && i < layout.channels; i++)
+        description += (i == 0 ? "channels=" : ",") + std::string(channel_names[i]);
+    for (size_t i = 0; i < attribute_count; i++)
+        description += (description.empty() ? "" : "\n") + std::string(attributes[i].name) + "=" +
+                       attributes[i].value;
+    return description;
+}
+
+} // namespace
+
+sonject_status raster_file_write(struct report *report, const char *path,
+                                 const struct raster_layout *layout,
+                                 const char *const *channel_names,
+                                 const struct raster_attribute *attributes, size_t attribute_count,
+                                 const void *pixels)
+{
+    return guarded(report, path, [&] {
+        const enum image_kind kind = kind_to_write(report, path, *layout);
+        const part_file part(path);
+        image_writer output(report, part.name, path, kind, *layout,
+                            describe(*layout, channel_names, attributes, attribute_count));
+        const uint64_t at_once = rows_at_once(*layout);
+        const unsigned char *rows = static_cast<const unsigned char *>(pixels);
+        for (uint64_t row = 0; row < layout->rows; row += at_once) {
+            const uint64_t end = layout->rows - row < at_once ? layout->rows : row + at_once;
+            output.write_rows(row, end, rows + row * row_bytes(*layout));
         }
-        /* TIFF and PNG keep no names of our own, but both keep a description */
-        std::string description;
-        for (size_t i = 0; i < attribute_count; i++)
-            description += std::string(attributes[i].name) + "=" + attributes[i].value + "\n";
-        if (!description.empty())
-            spec.attribute("ImageDescription", description);
-        const size_t row_bytes =
-            size_t(layout->columns) * layout->channels * pixel_bytes(layout->type);
-        return write_rows(report, path, spec, *layout,
-                          [&](std::vector<unsigned char> &block, uint64_t first, uint64_t) {
-                              std::memcpy(block.data(),
-                                          static_cast<const unsigned char *>(pixels) +
-                                              size_t(first) * row_bytes,
-                                          block.size());
-                              return SONJECT_OK;
-                          });
+        output.finish();
+        require(file_publish(report, part.name, path));
     });
 }
 
-extern "C" sonject_status raster_file_write_placed(struct report *report, const char *path,
-                                                   const struct raster_layout *layout,
-                                                   const struct region *region, const void *pixels)
+sonject_status raster_file_write_placed(struct report *report, const char *path,
+                                        const struct raster_layout *layout,
+                                        const struct region *region, const void *pixels)
 {
-    return guarded(report, path, [&]() {
-        OIIO::ImageSpec spec = spec_of(*layout);
-        return write_rows(report, path, spec, *layout,
-                          [&](std::vector<unsigned char> &block, uint64_t first, uint64_t last) {
-                              put_patch(block, *layout, *region,
-                                        static_cast<const unsigned char *>(pixels), first, last);
-                              return SONJECT_OK;
-                          });
+    return guarded(report, path, [&] {
+        const enum image_kind kind = kind_to_write(report, path, *layout);
+        if (!region_is_inside(layout, region))
+            throw failure{report_failure(report, SONJECT_ERROR_STORAGE,
+                                         "%s: the region is not inside the image", path)};
+        const part_file part(path);
+        image_writer output(report, part.name, path, kind, *layout, "");
+        const uint64_t at_once = rows_at_once(*layout);
+        std::vector<unsigned char> strip(
+            size_t((at_once < layout->rows ? at_once : layout->rows) * row_bytes(*layout)));
+        for (uint64_t row = 0; row < layout->rows; row += at_once) {
+            const uint64_t end = layout->rows - row < at_once ? layout->rows : row + at_once;
+            std::memset(strip.data(), 0, strip.size());
+            overlay(*layout, *region, pixels, row, end, strip.data());
+            output.write_rows(row, end, strip.data());
+        }
+        output.finish();
+        require(file_publish(report, part.name, path));
     });
 }

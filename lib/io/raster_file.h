@@ -30,8 +30,8 @@ void raster_file_layout(const struct raster_file *file, struct raster_layout *la
 /* False where writing the format changes pixels (JPEG). */
 bool raster_file_is_lossless(const struct raster_file *file);
 
-/* Such a text of the open image, copied into value; false if it has none of that name or it does not
- * fit. */
+/* Such a text of the open image, copied into value; false if it has none of that name or it does
+ * not fit. */
 bool raster_file_attribute(const struct raster_file *file, const char *name, char *value,
                            size_t capacity);
 

@@ -15,14 +15,6 @@ struct coded {
     int bit_count;
 };
 
-static bool machine_is_big_endian(void)
-{
-    const uint16_t one = 1;
-    unsigned char first;
-    memcpy(&first, &one, 1);
-    return first == 0;
-}
-
 void tiff_order_bytes(const struct tiff_structure *structure, void *values, size_t count)
 {
     const size_t size = pixel_bytes(structure->layout.type);
@@ -43,9 +35,8 @@ static void subtract_neighbours(unsigned char *row, size_t values, size_t size, 
     const bool is_big_endian = machine_is_big_endian();
     for (size_t i = values; i-- > channels;) {
         unsigned char *here = row + i * size;
-        const uint64_t difference =
-            number_from_bytes(here, size, is_big_endian) -
-            number_from_bytes(here - channels * size, size, is_big_endian);
+        const uint64_t difference = number_from_bytes(here, size, is_big_endian) -
+                                    number_from_bytes(here - channels * size, size, is_big_endian);
         number_to_bytes(difference, here, size, is_big_endian);
     }
 }

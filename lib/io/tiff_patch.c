@@ -8,6 +8,7 @@
 #include <string.h>
 #include <sys/types.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "io/byte_order.h"
 #include "io/tiff_encode.h"
@@ -25,11 +26,7 @@ struct tiff_writer {
 
 static sonject_status write_failure(const struct tiff_writer *writer, int error)
 {
-    char reason[128];
-    if (strerror_r(error, reason, sizeof reason) != 0)
-        snprintf(reason, sizeof reason, "error %d", error);
-    return report_failure(writer->report, SONJECT_ERROR_STORAGE, "%s: cannot write: %s",
-                          writer->patch->destination, reason);
+    return file_failure(writer->report, writer->patch->name, "write", error);
 }
 
 static sonject_status write_at(struct tiff_writer *writer, uint64_t place, const void *bytes,
@@ -79,6 +76,16 @@ static sonject_status copy_file(struct tiff_writer *writer)
     return status;
 }
 
+static uint64_t smaller(uint64_t a, uint64_t b)
+{
+    return a < b ? a : b;
+}
+
+static uint64_t larger(uint64_t a, uint64_t b)
+{
+    return a > b ? a : b;
+}
+
 /* The part of the image that a block holds. */
 static struct region block_region(const struct tiff_structure *structure, uint64_t block)
 {
@@ -87,34 +94,20 @@ static struct region block_region(const struct tiff_structure *structure, uint64
     region.first_row =
         block / structure->blocks_across % structure->blocks_down * structure->block_rows;
     region.first_column = block % structure->blocks_across * structure->block_columns;
-    region.rows = layout->rows - region.first_row;
-    region.columns = layout->columns - region.first_column;
-    if (region.rows > structure->block_rows)
-        region.rows = structure->block_rows;
-    if (region.columns > structure->block_columns)
-        region.columns = structure->block_columns;
+    region.rows = smaller(structure->block_rows, layout->rows - region.first_row);
+    region.columns = smaller(structure->block_columns, layout->columns - region.first_column);
     return region;
 }
 
-/* What is in both; empty (0 rows) if nothing is. */
+/* What two regions that meet have in common. */
 static struct region common_region(const struct region *a, const struct region *b)
 {
-    struct region region = {0, 0, 0, 0};
-    const uint64_t row = a->first_row > b->first_row ? a->first_row : b->first_row;
-    const uint64_t column =
-        a->first_column > b->first_column ? a->first_column : b->first_column;
-    const uint64_t a_row_end = a->first_row + a->rows;
-    const uint64_t b_row_end = b->first_row + b->rows;
-    const uint64_t row_end = a_row_end < b_row_end ? a_row_end : b_row_end;
-    const uint64_t a_column_end = a->first_column + a->columns;
-    const uint64_t b_column_end = b->first_column + b->columns;
-    const uint64_t column_end = a_column_end < b_column_end ? a_column_end : b_column_end;
-    if (row < row_end && column < column_end) {
-        region.first_row = row;
-        region.first_column = column;
-        region.rows = row_end - row;
-        region.columns = column_end - column;
-    }
+    struct region region;
+    region.first_row = larger(a->first_row, b->first_row);
+    region.first_column = larger(a->first_column, b->first_column);
+    region.rows = smaller(a->first_row + a->rows, b->first_row + b->rows) - region.first_row;
+    region.columns =
+        smaller(a->first_column + a->columns, b->first_column + b->columns) - region.first_column;
     return region;
 }
 
@@ -128,11 +121,10 @@ static void take_patch_row(const struct tiff_writer *writer, uint64_t block, uin
     const size_t size = pixel_bytes(structure->layout.type);
     const size_t channels = structure->layout.channels;
     const size_t plane = (size_t)(block / (structure->blocks_across * structure->blocks_down));
-    const unsigned char *from =
-        (const unsigned char *)writer->patch->pixels +
-        ((size_t)(row - region->first_row) * (size_t)region->columns +
-         (size_t)(column - region->first_column)) *
-            channels * size;
+    const unsigned char *from = (const unsigned char *)writer->patch->pixels +
+                                ((size_t)(row - region->first_row) * (size_t)region->columns +
+                                 (size_t)(column - region->first_column)) *
+                                    channels * size;
     if (!structure->is_separate) {
         memcpy(values, from, columns * channels * size);
         return;
@@ -154,15 +146,12 @@ static sonject_status patch_in_place(struct tiff_writer *writer, uint64_t block,
     for (uint64_t i = 0; status == SONJECT_OK && i < common.rows; i++) {
         const uint64_t row = common.first_row + i;
         const uint64_t place =
-            structure->offsets[block] +
-            ((row - whole.first_row) * structure->block_columns +
-             (common.first_column - whole.first_column)) *
-                pixel;
-        take_patch_row(writer, block, row, common.first_column, (size_t)common.columns,
-                       row_values);
+            structure->offsets[block] + ((row - whole.first_row) * structure->block_columns +
+                                         (common.first_column - whole.first_column)) *
+                                            pixel;
+        take_patch_row(writer, block, row, common.first_column, (size_t)common.columns, row_values);
         tiff_order_bytes(structure, row_values, values);
-        status = write_at(writer, place, row_values,
-                          values * pixel_bytes(structure->layout.type));
+        status = write_at(writer, place, row_values, values * pixel_bytes(structure->layout.type));
     }
     return status;
 }
@@ -221,14 +210,145 @@ static sonject_status patch_anew(struct tiff_writer *writer, uint64_t block)
         for (uint64_t i = 0; i < common.rows; i++) {
             const uint64_t row = common.first_row + i;
             take_patch_row(writer, block, row, common.first_column, (size_t)common.columns,
-                           pixels + ((size_t)(row - whole.first_row) *
-                                         (size_t)structure->block_columns +
-                                     (size_t)(common.first_column - whole.first_column)) *
-                                        pixel);
+                           pixels +
+                               ((size_t)(row - whole.first_row) * (size_t)structure->block_columns +
+                                (size_t)(common.first_column - whole.first_column)) *
+                                   pixel);
         }
         status = add_block(writer, block, pixels);
     }
     free(decoded);
     free(pixels);
+    return status;
+}
+
+static sonject_status patch_blocks(struct tiff_writer *writer, bool is_in_place,
+                                   unsigned char *row_values)
+{
+    const struct tiff_structure *structure = &writer->structure;
+    const struct region *region = &writer->patch->region;
+    const uint64_t in_plane = structure->blocks_across * structure->blocks_down;
+    const uint64_t row_end = (region->first_row + region->rows - 1) / structure->block_rows + 1;
+    const uint64_t column_end =
+        (region->first_column + region->columns - 1) / structure->block_columns + 1;
+    sonject_status status = SONJECT_OK;
+    for (uint64_t plane = 0; plane < structure->block_count; plane += in_plane)
+        for (uint64_t i = region->first_row / structure->block_rows; i < row_end; i++)
+            for (uint64_t j = region->first_column / structure->block_columns;
+                 status == SONJECT_OK && j < column_end; j++) {
+                const uint64_t block = plane + i * structure->blocks_across + j;
+                status = is_in_place ? patch_in_place(writer, block, row_values)
+                                     : patch_anew(writer, block);
+            }
+    return status;
+}
+
+static int compare_extents(const void *a, const void *b)
+{
+    const uint64_t *x = a;
+    const uint64_t *y = b;
+    return (*x > *y) - (*x < *y);
+}
+
+/* True where blocks lie apart. Some writers store equal blocks once: such a block must not be
+ * changed in place, for it is seen in several places of the image. */
+static sonject_status check_apart(struct tiff_writer *writer, bool *are_apart)
+{
+    const struct tiff_structure *structure = &writer->structure;
+    const size_t count = (size_t)structure->block_count;
+    uint64_t(*extents)[2] = allocate_array(count, sizeof *extents);
+    if (!extents)
+        return report_out_of_memory(writer->report, "the list of tiles or strips");
+    for (size_t i = 0; i < count; i++) {
+        extents[i][0] = structure->offsets[i];
+        extents[i][1] = structure->offsets[i] + structure->counts[i];
+    }
+    qsort(extents, count, sizeof *extents, compare_extents);
+    *are_apart = true;
+    for (size_t i = 1; i < count; i++)
+        if (extents[i][0] < extents[i - 1][1])
+            *are_apart = false;
+    free(extents);
+    return SONJECT_OK;
+}
+
+/* Writes a list of places or sizes behind the end of the file and leads its directory entry there.
+ */
+static sonject_status add_list(struct tiff_writer *writer, uint64_t entry, const uint64_t *list)
+{
+    const struct tiff_structure *structure = &writer->structure;
+    const size_t wide = structure->is_big ? 8 : 4;
+    const size_t count = (size_t)structure->block_count;
+    const bool is_big_endian = structure->is_big_endian;
+    unsigned char *bytes = allocate_array(count, wide);
+    unsigned char head[2 + 2 * 8];
+    if (!bytes)
+        return report_out_of_memory(writer->report, "the list of tiles or strips");
+    for (size_t i = 0; i < count; i++)
+        number_to_bytes(list[i], bytes + i * wide, wide, is_big_endian);
+    number_to_bytes(structure->is_big ? 16 : 4, head, 2, is_big_endian);
+    number_to_bytes(count, head + 2, wide, is_big_endian);
+    sonject_status status = SONJECT_OK;
+    if (count == 1) {
+        memcpy(head + 2 + wide, bytes, wide);
+    } else {
+        writer->end += writer->end % 2;
+        number_to_bytes(writer->end, head + 2 + wide, wide, is_big_endian);
+        status = write_at(writer, writer->end, bytes, count * wide);
+        writer->end += count * wide;
+    }
+    free(bytes);
+    return status == SONJECT_OK ? write_at(writer, entry + 2, head, 2 + 2 * wide) : status;
+}
+
+static sonject_status add_lists(struct tiff_writer *writer)
+{
+    struct tiff_structure *structure = &writer->structure;
+    sonject_status status = add_list(writer, structure->offsets_entry, structure->offsets);
+    if (status == SONJECT_OK)
+        status = add_list(writer, structure->counts_entry, structure->counts);
+    if (status == SONJECT_OK && !structure->is_big && writer->end > UINT32_MAX)
+        return report_failure(writer->report, SONJECT_ERROR_INPUT,
+                              "%s: with the tiles or strips that change it would grow beyond the "
+                              "4 GB that a TIFF can hold: convert it to BigTIFF",
+                              writer->patch->source);
+    return status;
+}
+
+static sonject_status patch_file(struct tiff_writer *writer)
+{
+    const struct tiff_structure *structure = &writer->structure;
+    bool is_in_place = false;
+    sonject_status status = copy_file(writer);
+    if (status == SONJECT_OK)
+        status = check_apart(writer, &is_in_place);
+    if (status != SONJECT_OK)
+        return status;
+    is_in_place = is_in_place && structure->compression == TIFF_UNCOMPRESSED;
+    unsigned char *row_values = allocate_array((size_t)writer->patch->region.columns,
+                                               structure->layout.channels * sizeof(float));
+    if (!row_values)
+        return report_out_of_memory(writer->report, "a row");
+    status = patch_blocks(writer, is_in_place, row_values);
+    free(row_values);
+    return status == SONJECT_OK && !is_in_place ? add_lists(writer) : status;
+}
+
+sonject_status tiff_copy_with_patch(struct report *report, const struct tiff_patch *patch)
+{
+    struct tiff_writer writer = {.report = report, .patch = patch};
+    sonject_status status = tiff_structure_read(report, patch->source, &writer.structure);
+    if (status != SONJECT_OK)
+        return status;
+    if (!region_is_inside(&writer.structure.layout, &patch->region)) {
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "%s: the region is not inside the image", patch->source);
+    } else {
+        writer.file = fopen(patch->destination, "wb");
+        status = writer.file ? patch_file(&writer) : write_failure(&writer, errno);
+        if (writer.file && fclose(writer.file) != 0 && status == SONJECT_OK)
+            status = write_failure(&writer, errno);
+    }
+    tiff_structure_clear(&writer.structure);
     return status;
 }

@@ -10,13 +10,13 @@ extern "C" {
 #endif
 
 /* Reads a region's pixels, decoded. */
-typedef sonject_status (*tiff_read_function)(void *user, const struct region *region,
-                                             void *pixels);
+typedef sonject_status (*tiff_read_function)(void *user, const struct region *region, void *pixels);
 
 struct tiff_patch {
     const char *source, *destination; /* files; the destination is made anew */
+    const char *name;                 /* of the destination, for messages */
     struct region region;
-    const void *pixels; /* of the region: rows x columns x channels */
+    const void *pixels;      /* of the region: rows x columns x channels */
     tiff_read_function read; /* from the source */
     void *read_user;
     sonject_progress_function progress; /* may be NULL */

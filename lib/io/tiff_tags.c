@@ -1,10 +1,10 @@
-#define _POSIX_C_SOURCE   200809L
-#define _FILE_OFFSET_BITS 64
 #include "io/tiff_tags.h"
 
+#include <errno.h>
 #include <string.h>
-#include <sys/types.h>
 
+#include "base/file.h"
+#include "io/byte_file.h"
 #include "io/byte_order.h"
 
 #define ENTRIES_MAX 4096
@@ -17,15 +17,8 @@ sonject_status tiff_reader_open(struct report *report, const char *path, struct 
     memset(reader, 0, sizeof *reader);
     reader->report = report;
     reader->path = path;
-    reader->file = fopen(path, "rb");
-    const off_t size =
-        reader->file && fseeko(reader->file, 0, SEEK_END) == 0 ? ftello(reader->file) : -1;
-    if (size < 0) {
-        tiff_reader_close(reader);
-        return report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot be read", path);
-    }
-    reader->file_bytes = (uint64_t)size;
-    return SONJECT_OK;
+    reader->file = byte_file_open(path, &reader->file_bytes);
+    return reader->file ? SONJECT_OK : file_failure(report, path, "open", errno);
 }
 
 void tiff_reader_close(struct tiff_reader *reader)
@@ -44,8 +37,7 @@ sonject_status tiff_damaged(const struct tiff_reader *reader, const char *how)
 bool tiff_read_at(const struct tiff_reader *reader, uint64_t place, void *bytes, size_t count)
 {
     return place <= reader->file_bytes && count <= reader->file_bytes - place &&
-           fseeko(reader->file, (off_t)place, SEEK_SET) == 0 &&
-           fread(bytes, 1, count, reader->file) == count;
+           byte_file_read(reader->file, place, bytes, count);
 }
 
 static bool number_at(const struct tiff_reader *reader, uint64_t place, size_t size,
@@ -58,22 +50,17 @@ static bool number_at(const struct tiff_reader *reader, uint64_t place, size_t s
     return true;
 }
 
-static size_t size_of_type(uint64_t type)
+/* Bytes of a value, 0 for a type that this does not know. */
+static size_t type_bytes(uint64_t type)
 {
-    switch (type) {
-    case 1:
-        return 1;
-    case 3:
-        return 2;
-    case 4:
-    case 13:
-        return 4;
-    case 16:
-    case 18:
-        return 8;
-    default:
-        return 0;
-    }
+    static const unsigned char bytes[] = {0, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8, 4, 0, 0, 8, 8, 8};
+    return type < sizeof bytes ? bytes[type] : 0;
+}
+
+/* BYTE, SHORT, LONG, IFD, LONG8 or IFD8. */
+static bool is_count_type(uint64_t type)
+{
+    return type == 1 || type == 3 || type == 4 || type == 13 || type == 16 || type == 18;
 }
 
 size_t tiff_place_bytes(const struct tiff_reader *reader)
@@ -81,6 +68,8 @@ size_t tiff_place_bytes(const struct tiff_reader *reader)
     return reader->is_big ? 8 : 4;
 }
 
+/* Reads an entry into the reader's tags, if it is among these. False if its values are not there,
+ * whatever it is. */
 static bool read_entry(struct tiff_reader *reader, uint64_t place)
 {
     uint64_t number, type, count;
@@ -88,17 +77,18 @@ static bool read_entry(struct tiff_reader *reader, uint64_t place)
     if (!number_at(reader, place, 2, &number) || !number_at(reader, place + 2, 2, &type) ||
         !number_at(reader, place + 4, wide, &count))
         return false;
-    for (int i = 0; i < TAG_TOTAL; i++) {
-        struct tag *tag = &reader->tags[i];
-        if (tag_numbers[i] != number)
-            continue;
-        tag->size = size_of_type(type);
-        tag->entry = place;
-        tag->values = place + 4 + wide;
-        tag->count = tag->size ? count : 0;
-        if (tag->size && count > wide / tag->size)
-            return number_at(reader, tag->values, wide, &tag->values);
+    const size_t size = type_bytes(type);
+    uint64_t values = place + 4 + wide;
+    if (size > 0 && count > wide / size) {
+        if (!number_at(reader, values, wide, &values) || values > reader->file_bytes ||
+            count > (reader->file_bytes - values) / size)
+            return false;
     }
+    for (int i = 0; i < TAG_TOTAL; i++)
+        if (tag_numbers[i] == number && is_count_type(type)) {
+            const struct tag tag = {count, size, place, values};
+            reader->tags[i] = tag;
+        }
     return true;
 }
 

@@ -1,0 +1,320 @@
+#include "image/plot.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "image/canvas.h"
+#include "image/font.h"
+#include "image/plot_cells.h"
+#include "image/plot_ticks.h"
+
+/* All lengths are in pixels. */
+#define SINGLE_PANEL      800.0 /* longer side of a panel that stands alone */
+#define SIDE_BY_SIDE      560.0 /* and of one of several */
+#define PANELS_MAX        64
+#define MARGIN            18
+#define PANEL_GAP         34
+#define TITLE_HEIGHT      (FONT_CAPITAL_HEIGHT + 12)
+#define TICK_LENGTH       5
+#define LABEL_GAP         6 /* between a tick and its number, and between numbers and axis label */
+#define BAR_GAP           14
+#define BAR_WIDTH         14
+#define TICK_EVERY_ROW    60.0 /* no closer than this */
+#define TICK_EVERY_COLUMN 80.0
+
+static const struct colour background = {250, 250, 250};
+static const struct colour ink = {40, 40, 40};
+static const struct colour lines = {110, 110, 110};
+static const struct colour black = {0, 0, 0};
+static const struct colour negative_colour = {33, 84, 160};
+static const struct colour zero_colour = {247, 247, 247};
+static const struct colour positive_colour = {172, 28, 36};
+
+struct plot {
+    const struct plot_frame *frame;
+    const struct plot_panel *panels;
+    uint32_t count;
+    struct plot_scale along_track, range;
+    int64_t panel_height, panel_width; /* in the picture */
+    double minimum_db, maximum_db;
+    float *values; /* cells of the panel that is drawn */
+    struct plot_ticks row_ticks, column_ticks;
+    struct canvas canvas;
+};
+
+/* A scale that colours stand for. */
+struct colour_scale {
+    double low, high;
+    bool is_difference;
+};
+
+static uint8_t between(uint8_t from, uint8_t to, double share)
+{
+    return (uint8_t)floor(from + (to - from) * share + 0.5);
+}
+
+static struct colour colour_of(const struct colour_scale *scale, double value)
+{
+    if (isnan(value))
+        return black;
+    const double share = fmin(fmax((value - scale->low) / (scale->high - scale->low), 0.0), 1.0);
+    if (!scale->is_difference) {
+        const uint8_t grey = between(0, 255, share);
+        const struct colour colour = {grey, grey, grey};
+        return colour;
+    }
+    const struct colour end = share < 0.5 ? negative_colour : positive_colour;
+    const double strength = fabs(2.0 * share - 1.0);
+    const struct colour colour = {between(zero_colour.red, end.red, strength),
+                                  between(zero_colour.green, end.green, strength),
+                                  between(zero_colour.blue, end.blue, strength)};
+    return colour;
+}
+
+static struct colour_scale scale_of_panel(const struct plot *plot, uint32_t panel)
+{
+    const struct colour_scale grey = {plot->minimum_db, plot->maximum_db, false};
+    const struct colour_scale difference = {-plot->frame->difference_db, plot->frame->difference_db,
+                                            true};
+    return plot->panels[panel].is_difference ? difference : grey;
+}
+
+/* A colour bar stands behind the last of neighbouring panels that share its scale. */
+static bool has_bar(const struct plot *plot, uint32_t panel)
+{
+    return panel + 1 == plot->count ||
+           plot->panels[panel].is_difference != plot->panels[panel + 1].is_difference;
+}
+
+static struct plot_ticks bar_ticks(const struct plot *plot, const struct colour_scale *scale)
+{
+    return plot_ticks_between(scale->low, scale->high,
+                              fmax(2.0, (double)plot->panel_height / TICK_EVERY_ROW));
+}
+
+static int64_t longest_label(const struct plot_ticks *ticks)
+{
+    int64_t longest = 0;
+    char label[TICK_LABEL_CAPACITY];
+    for (int64_t i = ticks->first; i <= ticks->last; i++) {
+        const int64_t length = text_length(plot_tick_label(ticks, i, label), TICK_LABEL_CAPACITY);
+        longest = length > longest ? length : longest;
+    }
+    return longest;
+}
+
+/* Room for a bar with its ticks and numbers. */
+static int64_t bar_room(const struct plot *plot, uint32_t panel)
+{
+    const struct colour_scale scale = scale_of_panel(plot, panel);
+    const struct plot_ticks ticks = bar_ticks(plot, &scale);
+    return BAR_GAP + BAR_WIDTH + TICK_LENGTH + LABEL_GAP + longest_label(&ticks);
+}
+
+/* Room on the left for the along-track axis. */
+static int64_t axis_room(const struct plot *plot)
+{
+    return MARGIN + FONT_ASCENT + 2 * LABEL_GAP + longest_label(&plot->row_ticks) + LABEL_GAP +
+           TICK_LENGTH;
+}
+
+static struct plot_ticks axis_ticks(double first, double spacing, const struct plot_scale *scale,
+                                    int64_t length, double every)
+{
+    const double last = first + spacing * (double)(scale->pixels - 1);
+    const double half = 0.5 * spacing;
+    return plot_ticks_between(first - half, last + half, fmax(1.0, (double)length / every));
+}
+
+/* Where the value of an axis lies, from the panel's edge. */
+static int64_t position_of(double value, double first, double spacing,
+                           const struct plot_scale *scale)
+{
+    const double pixel = (value - first) / spacing + 0.5;
+    return (int64_t)floor(pixel * scale->up / scale->down);
+}
+
+static void draw_rows_axis(struct plot *plot, int64_t x, int64_t y)
+{
+    const struct plot_frame *frame = plot->frame;
+    const char *name = strcmp(frame->range_label, "column") == 0 ? "row" : "along-track, m";
+    char label[TICK_LABEL_CAPACITY];
+    for (int64_t i = plot->row_ticks.first; i <= plot->row_ticks.last; i++) {
+        const char *number = plot_tick_label(&plot->row_ticks, i, label);
+        const int64_t at =
+            y + position_of(plot_tick_value(&plot->row_ticks, i), frame->first_along_track_m,
+                            frame->row_spacing_m, &plot->along_track);
+        draw_text(&plot->canvas,
+                  x - TICK_LENGTH - LABEL_GAP - text_length(number, TICK_LABEL_CAPACITY),
+                  at + FONT_CAPITAL_HEIGHT / 2, number, TICK_LABEL_CAPACITY, TEXT_RIGHTWARDS, ink);
+    }
+    draw_text(&plot->canvas, MARGIN + FONT_ASCENT,
+              y + (plot->panel_height + text_length(name, SIZE_MAX)) / 2, name, SIZE_MAX,
+              TEXT_UPWARDS, ink);
+}
+
+static void draw_ticks(struct plot *plot, int64_t x, int64_t y)
+{
+    const struct plot_frame *frame = plot->frame;
+    char label[TICK_LABEL_CAPACITY];
+    for (int64_t i = plot->row_ticks.first; i <= plot->row_ticks.last; i++) {
+        const int64_t at =
+            position_of(plot_tick_value(&plot->row_ticks, i), frame->first_along_track_m,
+                        frame->row_spacing_m, &plot->along_track);
+        canvas_fill(&plot->canvas, x - 1 - TICK_LENGTH, y + at, TICK_LENGTH, 1, lines);
+    }
+    const int64_t bottom = y + plot->panel_height;
+    for (int64_t i = plot->column_ticks.first; i <= plot->column_ticks.last; i++) {
+        const char *number = plot_tick_label(&plot->column_ticks, i, label);
+        const int64_t at =
+            x + position_of(plot_tick_value(&plot->column_ticks, i), frame->first_range_m,
+                            frame->column_spacing_m, &plot->range);
+        canvas_fill(&plot->canvas, at, bottom + 1, 1, TICK_LENGTH, lines);
+        draw_text(&plot->canvas, at - text_length(number, TICK_LABEL_CAPACITY) / 2,
+                  bottom + TICK_LENGTH + LABEL_GAP + FONT_CAPITAL_HEIGHT, number,
+                  TICK_LABEL_CAPACITY, TEXT_RIGHTWARDS, ink);
+    }
+    draw_text(&plot->canvas,
+              x + (plot->panel_width - text_length(frame->range_label, SIZE_MAX)) / 2,
+              bottom + TICK_LENGTH + 3 * LABEL_GAP + 2 * FONT_CAPITAL_HEIGHT, frame->range_label,
+              SIZE_MAX, TEXT_RIGHTWARDS, ink);
+}
+
+/* How many of the title's characters fit above a panel. */
+static size_t title_fit(const char *title, int64_t room)
+{
+    size_t count = 0;
+    while (title[count] && text_length(title, count + 1) <= room)
+        count++;
+    return count;
+}
+
+static void draw_bar(struct plot *plot, const struct colour_scale *scale, int64_t x, int64_t y)
+{
+    const struct plot_ticks ticks = bar_ticks(plot, scale);
+    const double last = (double)(plot->panel_height - 1);
+    char label[TICK_LABEL_CAPACITY];
+    for (int64_t i = 0; i < plot->panel_height; i++) {
+        const double share = last > 0.0 ? 1.0 - (double)i / last : 1.0;
+        canvas_fill(&plot->canvas, x, y + i, BAR_WIDTH, 1,
+                    colour_of(scale, scale->low + (scale->high - scale->low) * share));
+    }
+    canvas_frame(&plot->canvas, x, y, BAR_WIDTH, plot->panel_height, lines);
+    for (int64_t i = ticks.first; i <= ticks.last; i++) {
+        const double share = (plot_tick_value(&ticks, i) - scale->low) / (scale->high - scale->low);
+        const int64_t at = y + (int64_t)floor((1.0 - share) * last + 0.5);
+        canvas_fill(&plot->canvas, x + BAR_WIDTH + 1, at, TICK_LENGTH, 1, lines);
+        draw_text(&plot->canvas, x + BAR_WIDTH + TICK_LENGTH + LABEL_GAP,
+                  at + FONT_CAPITAL_HEIGHT / 2, plot_tick_label(&ticks, i, label),
+                  TICK_LABEL_CAPACITY, TEXT_RIGHTWARDS, ink);
+    }
+    draw_text(&plot->canvas, x, y - 10, "dB", SIZE_MAX, TEXT_RIGHTWARDS, ink);
+}
+
+static sonject_status draw_panel(struct report *report, struct plot *plot, uint32_t number,
+                                 int64_t x, int64_t y)
+{
+    const struct plot_panel *panel = &plot->panels[number];
+    const struct colour_scale scale = scale_of_panel(plot, number);
+    const char *title = panel->title ? panel->title : "";
+    const sonject_status status =
+        plot_cells(report, panel, &plot->along_track, &plot->range, plot->values);
+    if (status != SONJECT_OK)
+        return status;
+    const int64_t cell_height = plot->along_track.up;
+    const int64_t cell_width = plot->range.up;
+    for (uint32_t row = 0; row < plot->along_track.cells; row++)
+        for (uint32_t column = 0; column < plot->range.cells; column++)
+            canvas_fill(
+                &plot->canvas, x + column * cell_width, y + row * cell_height, cell_width,
+                cell_height,
+                colour_of(&scale, (double)plot->values[(size_t)row * plot->range.cells + column]));
+    canvas_frame(&plot->canvas, x, y, plot->panel_width, plot->panel_height, lines);
+    draw_ticks(plot, x, y);
+    const size_t fitting = title_fit(title, plot->panel_width);
+    draw_text(&plot->canvas, x + (plot->panel_width - text_length(title, fitting)) / 2, y - 10,
+              title, fitting, TEXT_RIGHTWARDS, ink);
+    if (has_bar(plot, number))
+        draw_bar(plot, &scale, x + plot->panel_width + BAR_GAP, y);
+    return SONJECT_OK;
+}
+
+static sonject_status choose_limits(struct report *report, struct plot *plot)
+{
+    plot->minimum_db = plot->frame->minimum_db;
+    plot->maximum_db = plot->frame->maximum_db;
+    if (isfinite(plot->minimum_db) && isfinite(plot->maximum_db) &&
+        plot->minimum_db < plot->maximum_db)
+        return SONJECT_OK;
+    uint32_t first = 0;
+    while (first < plot->count && plot->panels[first].is_difference)
+        first++;
+    if (first == plot->count)
+        return SONJECT_OK; /* no panel needs the grey scale */
+    const sonject_status status =
+        plot_cells(report, &plot->panels[first], &plot->along_track, &plot->range, plot->values);
+    return status != SONJECT_OK ? status
+                                : plot_limits(report, plot->values,
+                                              (size_t)plot->along_track.cells * plot->range.cells,
+                                              &plot->minimum_db, &plot->maximum_db);
+}
+
+static sonject_status draw_all(struct report *report, struct plot *plot)
+{
+    int64_t width = axis_room(plot);
+    for (uint32_t i = 0; i < plot->count; i++)
+        width += plot->panel_width + (has_bar(plot, i) ? bar_room(plot, i) : 0) +
+                 (i + 1 < plot->count ? PANEL_GAP : MARGIN);
+    const int64_t height = MARGIN + TITLE_HEIGHT + plot->panel_height + TICK_LENGTH +
+                           3 * LABEL_GAP + 2 * FONT_CAPITAL_HEIGHT + FONT_DESCENT + MARGIN;
+    if (!canvas_create(&plot->canvas, (uint32_t)height, (uint32_t)width, background))
+        return report_out_of_memory(report, "a picture");
+    const int64_t y = MARGIN + TITLE_HEIGHT;
+    int64_t x = axis_room(plot);
+    draw_rows_axis(plot, x, y);
+    for (uint32_t i = 0; i < plot->count; i++) {
+        const sonject_status status = draw_panel(report, plot, i, x, y);
+        if (status != SONJECT_OK)
+            return status;
+        x += plot->panel_width + (has_bar(plot, i) ? bar_room(plot, i) : 0) + PANEL_GAP;
+    }
+    return SONJECT_OK;
+}
+
+sonject_status plot_panels(struct report *report, const struct plot_frame *frame,
+                           const struct plot_panel *panels, uint32_t count, uint8_t **picture,
+                           uint32_t *height, uint32_t *width)
+{
+    *picture = NULL;
+    if (frame->rows == 0 || frame->columns == 0 || count == 0 || count > PANELS_MAX)
+        return report_failure(report, SONJECT_ERROR_INPUT, "nothing to draw");
+    struct plot plot;
+    memset(&plot, 0, sizeof plot);
+    plot.frame = frame;
+    plot.panels = panels;
+    plot.count = count;
+    plot_scales(frame, count > 1 ? SIDE_BY_SIDE : SINGLE_PANEL, &plot.along_track, &plot.range);
+    plot.panel_height = (int64_t)plot.along_track.cells * plot.along_track.up;
+    plot.panel_width = (int64_t)plot.range.cells * plot.range.up;
+    plot.row_ticks = axis_ticks(frame->first_along_track_m, frame->row_spacing_m, &plot.along_track,
+                                plot.panel_height, TICK_EVERY_ROW);
+    plot.column_ticks = axis_ticks(frame->first_range_m, frame->column_spacing_m, &plot.range,
+                                   plot.panel_width, TICK_EVERY_COLUMN);
+    plot.values = allocate_array((size_t)plot.along_track.cells * plot.range.cells, sizeof(float));
+    sonject_status status = plot.values ? SONJECT_OK : report_out_of_memory(report, "a picture");
+    if (status == SONJECT_OK)
+        status = choose_limits(report, &plot);
+    if (status == SONJECT_OK)
+        status = draw_all(report, &plot);
+    free(plot.values);
+    if (status != SONJECT_OK) {
+        free(plot.canvas.rgb);
+        return status;
+    }
+    *picture = plot.canvas.rgb;
+    *height = plot.canvas.height;
+    *width = plot.canvas.width;
+    return SONJECT_OK;
+}

@@ -1,0 +1,19 @@
+/* Files read by place. */
+#ifndef SONJECT_IO_BYTE_FILE_H
+#define SONJECT_IO_BYTE_FILE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+
+/* Opens for reading; NULL with errno set if that fails, also for a folder. */
+FILE *byte_file_open(const char *path, uint64_t *bytes);
+
+/* False if the file does not hold as much. */
+bool byte_file_read(FILE *file, uint64_t place, void *bytes, size_t count);
+
+/* Copies count bytes of from to where to stands; false if reading or writing fails. */
+bool byte_file_copy(FILE *from, uint64_t place, uint64_t count, FILE *to);
+
+#endif

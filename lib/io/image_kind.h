@@ -1,0 +1,33 @@
+/* Which kind of image a file is, and whether it is whole. */
+#ifndef SONJECT_IO_IMAGE_KIND_H
+#define SONJECT_IO_IMAGE_KIND_H
+
+#include <stdbool.h>
+
+#include "base/report.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum image_kind {
+    IMAGE_TIFF,
+    IMAGE_PNG,
+    IMAGE_JPEG
+};
+
+/* Told by the file's first bytes. Errors: INPUT (cannot be opened, another kind). */
+sonject_status image_kind_of(struct report *report, const char *path, enum image_kind *kind);
+
+/* Told by the extension of a file that is to be written; false for another kind. */
+bool image_kind_of_name(const char *path, enum image_kind *kind);
+
+/* Checks what can be told without decoding: that the file is not cut short, and that its pixels are
+ * of a kind that sonject reads. Errors: INPUT, STORAGE, MEMORY. */
+sonject_status image_kind_check(struct report *report, const char *path, enum image_kind kind);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,202 @@
+#include "io/png_chunks.h"
+
+#include <errno.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "io/byte_file.h"
+#include "io/byte_order.h"
+
+#define SIGNATURE_BYTES      8
+#define PIXELS_MAX           ((uint64_t)1 << 40)
+#define INTERLACED_BYTES_MAX ((uint64_t)1 << 30) /* interlaced pictures are decoded whole */
+#define DEFLATE_RATIO_MAX    1032
+
+struct png_reader {
+    FILE *file;
+    uint64_t file_bytes;
+    uint64_t place;       /* of the current chunk */
+    uint64_t chunk_bytes; /* with length, name and checksum */
+    char name[5];
+};
+
+static bool open_png(struct png_reader *reader, const char *path)
+{
+    static const unsigned char signature[SIGNATURE_BYTES] = {0x89, 'P',  'N',  'G',
+                                                             '\r', '\n', 0x1A, '\n'};
+    unsigned char head[SIGNATURE_BYTES];
+    memset(reader, 0, sizeof *reader);
+    reader->file = byte_file_open(path, &reader->file_bytes);
+    reader->chunk_bytes = SIGNATURE_BYTES; /* what the first chunk lies behind */
+    return reader->file && byte_file_read(reader->file, 0, head, sizeof head) &&
+           memcmp(head, signature, sizeof head) == 0;
+}
+
+static void close_png(struct png_reader *reader)
+{
+    if (reader->file)
+        fclose(reader->file);
+}
+
+/* False where the file ends before the chunk does. */
+static bool next_chunk(struct png_reader *reader)
+{
+    unsigned char head[8];
+    reader->place += reader->chunk_bytes;
+    if (!byte_file_read(reader->file, reader->place, head, sizeof head))
+        return false;
+    reader->chunk_bytes = number_from_bytes(head, 4, true) + 12;
+    memcpy(reader->name, head + 4, 4);
+    return reader->chunk_bytes <= reader->file_bytes - reader->place;
+}
+
+static bool is_chunk(const struct png_reader *reader, const char *name)
+{
+    return strcmp(reader->name, name) == 0;
+}
+
+static sonject_status cut_short(struct report *report, const char *path)
+{
+    return report_failure(report, SONJECT_ERROR_INPUT, "%s: damaged PNG: cut short", path);
+}
+
+static sonject_status check_colours(struct report *report, const char *path, unsigned bits,
+                                    unsigned colours)
+{
+    static const int channels[] = {1, 0, 3, 1, 2, 0, 4};
+    if (colours == 3)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: has a palette; convert it to one channel first", path);
+    if (colours > 6 || channels[colours] == 0)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: damaged PNG: unknown kind of colour", path);
+    if (colours != 0)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: has %d channels (%s); sonject reads PNG with 1 (amplitude): "
+                              "convert it to one channel first",
+                              path, channels[colours],
+                              colours == 2   ? "red, green, blue"
+                              : colours == 4 ? "grey, transparency"
+                                             : "red, green, blue, transparency");
+    if (bits != 8 && bits != 16)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: has %u-bit pixels; sonject reads PNG with 8 or 16: convert it "
+                              "to one of these",
+                              path, bits);
+    return SONJECT_OK;
+}
+
+/* *bytes gets what the pixels take before compression. */
+static sonject_status check_header(struct report *report, const char *path,
+                                   struct png_reader *reader, uint64_t *bytes)
+{
+    unsigned char header[13];
+    if (!next_chunk(reader) || !is_chunk(reader, "IHDR") ||
+        reader->chunk_bytes != sizeof header + 12 ||
+        !byte_file_read(reader->file, reader->place + 8, header, sizeof header))
+        return cut_short(report, path);
+    const uint64_t columns = number_from_bytes(header, 4, true);
+    const uint64_t rows = number_from_bytes(header + 4, 4, true);
+    if (rows == 0 || columns == 0)
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: damaged PNG: it has no pixels",
+                              path);
+    if (rows > INT32_MAX || columns > INT32_MAX || rows > PIXELS_MAX / columns)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: claims %llu x %llu pixels, which is more than 2^40", path,
+                              (unsigned long long)rows, (unsigned long long)columns);
+    *bytes = rows * (columns * (header[8] / 8) + 1);
+    if (header[12] != 0 && *bytes > INTERLACED_BYTES_MAX)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: is interlaced and larger than 1 GB: write it without "
+                              "interlacing",
+                              path);
+    return check_colours(report, path, header[8], header[9]);
+}
+
+static sonject_status check_chunks(struct report *report, const char *path,
+                                   struct png_reader *reader)
+{
+    uint64_t bytes = 0;
+    uint64_t compressed = 0;
+    const sonject_status status = check_header(report, path, reader, &bytes);
+    if (status != SONJECT_OK)
+        return status;
+    do {
+        if (!next_chunk(reader))
+            return cut_short(report, path);
+        if (is_chunk(reader, "tRNS"))
+            return report_failure(
+                report, SONJECT_ERROR_INPUT,
+                "%s: has a transparent grey level; convert it to plain grey first", path);
+        if (is_chunk(reader, "IDAT"))
+            compressed += reader->chunk_bytes;
+    } while (!is_chunk(reader, "IEND"));
+    if (bytes / DEFLATE_RATIO_MAX > compressed)
+        return cut_short(report, path);
+    return SONJECT_OK;
+}
+
+sonject_status png_check(struct report *report, const char *path)
+{
+    struct png_reader reader;
+    const sonject_status status =
+        open_png(&reader, path)
+            ? check_chunks(report, path, &reader)
+            : report_failure(report, SONJECT_ERROR_INPUT, "%s: cannot be read as PNG", path);
+    close_png(&reader);
+    return status;
+}
+
+static bool copy_chunk(const struct png_reader *reader, FILE *result)
+{
+    return byte_file_copy(reader->file, reader->place, reader->chunk_bytes, result);
+}
+
+/* The chunks of pixels, all of them. */
+static bool copy_pixels(struct png_reader *encoded, FILE *result)
+{
+    bool is_good = true;
+    do {
+        is_good =
+            next_chunk(encoded) && (!is_chunk(encoded, "IDAT") || copy_chunk(encoded, result));
+    } while (is_good && !is_chunk(encoded, "IEND"));
+    return is_good;
+}
+
+static bool join(struct png_reader *source, struct png_reader *encoded, FILE *result)
+{
+    bool has_pixels = false;
+    bool is_good = byte_file_copy(source->file, 0, SIGNATURE_BYTES, result) && next_chunk(source) &&
+                   next_chunk(encoded) && copy_chunk(encoded, result);
+    do {
+        is_good = is_good && next_chunk(source);
+        if (is_good && !is_chunk(source, "IDAT")) {
+            is_good = copy_chunk(source, result);
+        } else if (is_good && !has_pixels) {
+            has_pixels = true;
+            is_good = copy_pixels(encoded, result);
+        }
+    } while (is_good && !is_chunk(source, "IEND"));
+    return is_good && has_pixels;
+}
+
+sonject_status png_join(struct report *report, const char *source, const char *encoded,
+                        const char *result, const char *name)
+{
+    struct png_reader from;
+    struct png_reader pixels;
+    FILE *to = fopen(result, "wb");
+    bool is_good = to != NULL;
+    is_good = open_png(&from, source) && is_good;
+    is_good = open_png(&pixels, encoded) && is_good;
+    is_good = is_good && join(&from, &pixels, to);
+    if (to && fclose(to) != 0)
+        is_good = false;
+    const int error = errno;
+    close_png(&from);
+    close_png(&pixels);
+    return is_good ? SONJECT_OK : file_failure(report, name, "write", error);
+}

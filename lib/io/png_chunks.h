@@ -1,0 +1,25 @@
+/* The chunks of a PNG file. */
+#ifndef SONJECT_IO_PNG_CHUNKS_H
+#define SONJECT_IO_PNG_CHUNKS_H
+
+#include "base/report.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Checks that the file is whole and of a kind that sonject reads: 8 or 16 bit grey. Errors: INPUT.
+ */
+sonject_status png_check(struct report *report, const char *path);
+
+/* Writes at result the pixels of the PNG encoded with all that the PNG source says besides: texts,
+ * resolution, and chunks that only its maker knows. name: of the finished file, for messages. A
+ * result that failed is left to the caller to remove. Errors: INPUT, STORAGE. */
+sonject_status png_join(struct report *report, const char *source, const char *encoded,
+                        const char *result, const char *name);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,104 @@
+/* A fresh folder for files that tests write. To be included after cmocka.h, by files that begin
+ * with #define _POSIX_C_SOURCE 200809L. */
+#ifndef TEMPORARY_FOLDER_H
+#define TEMPORARY_FOLDER_H
+
+#include <dirent.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#define TEMPORARY_CAPACITY 1024
+
+struct temporary_folder {
+    char path[TEMPORARY_CAPACITY];
+    char file[TEMPORARY_CAPACITY + 300]; /* what temporary_file() made last */
+};
+
+/* Set-up and tear-down of a cmocka test; *state is the struct temporary_folder. */
+static inline int make_temporary_folder(void **state)
+{
+    struct temporary_folder *folder = calloc(1, sizeof *folder);
+    const char *temporary = getenv("TMPDIR");
+    if (!folder)
+        return 1;
+    snprintf(folder->path, sizeof folder->path, "%s/sonject-test-XXXXXX",
+             temporary ? temporary : "/tmp");
+    if (!mkdtemp(folder->path)) {
+        free(folder);
+        return 1;
+    }
+    *state = folder;
+    return 0;
+}
+
+static inline bool is_entry(const struct dirent *entry)
+{
+    return strcmp(entry->d_name, ".") != 0 && strcmp(entry->d_name, "..") != 0;
+}
+
+static inline int count_entries(const char *path)
+{
+    int count = 0;
+    DIR *folder = opendir(path);
+    if (!folder)
+        return -1;
+    for (const struct dirent *entry = readdir(folder); entry; entry = readdir(folder))
+        count += is_entry(entry);
+    closedir(folder);
+    return count;
+}
+
+/* Removes the files in the folder and the folder; fails if a folder is left in it. */
+static inline int remove_temporary_folder(void **state)
+{
+    struct temporary_folder *folder = *state;
+    DIR *list = opendir(folder->path);
+    char path[TEMPORARY_CAPACITY + 300];
+    if (!list)
+        return 1;
+    for (const struct dirent *entry = readdir(list); entry; entry = readdir(list)) {
+        snprintf(path, sizeof path, "%s/%s", folder->path, entry->d_name);
+        if (is_entry(entry))
+            (void)unlink(path);
+    }
+    closedir(list);
+    const int result = rmdir(folder->path);
+    free(folder);
+    return result;
+}
+
+/* folder/name, valid until the next call. */
+static inline const char *temporary_file(struct temporary_folder *folder, const char *name)
+{
+    snprintf(folder->file, sizeof folder->file, "%s/%s", folder->path, name);
+    return folder->file;
+}
+
+/* The whole of a file, for free(). */
+static inline unsigned char *bytes_of_file(const char *path, size_t *count)
+{
+    FILE *file = fopen(path, "rb");
+    if (!file)
+        fail_msg("%s is not there", path);
+    assert_int_equal(fseek(file, 0, SEEK_END), 0);
+    *count = (size_t)ftell(file);
+    rewind(file);
+    unsigned char *bytes = calloc(*count + 1, 1);
+    assert_non_null(bytes);
+    assert_int_equal(fread(bytes, 1, *count, file), *count);
+    fclose(file);
+    return bytes;
+}
+
+static inline void write_bytes(const char *path, const void *bytes, size_t count)
+{
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, count, file), count);
+    assert_int_equal(fclose(file), 0);
+}
+
+#endif

@@ -1,0 +1,239 @@
+/* Files that appear whole or not at all. */
+#define _POSIX_C_SOURCE 200809L
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include "base/file.h"
+#include "temporary_folder.h"
+
+static void expect_text(char *text, const char *expected)
+{
+    assert_non_null(text);
+    assert_string_equal(text, expected);
+    free(text);
+}
+
+static void test_joining(void **state)
+{
+    (void)state;
+    expect_text(path_join("folder", "name"), "folder/name");
+    expect_text(path_join("folder/", "name"), "folder/name");
+    expect_text(path_join("/", "name"), "/name");
+    expect_text(path_join("", "name"), "name");
+    expect_text(path_join("folder", "/name"), "/name");
+}
+
+static void test_folder_part(void **state)
+{
+    (void)state;
+    expect_text(path_folder("a/b/c"), "a/b");
+    expect_text(path_folder("name"), "");
+    expect_text(path_folder("/name"), "/");
+    expect_text(path_folder("a/"), "a");
+}
+
+static void expect_part(const char *path, const char *extension)
+{
+    char *part = file_part_name(path);
+    char end[64];
+    snprintf(end, sizeof end, ".part%s", extension);
+    assert_non_null(part);
+    assert_memory_equal(part, path, strlen(path));
+    assert_true(strlen(part) > strlen(path) + strlen(end));
+    assert_string_equal(part + strlen(part) - strlen(end), end);
+    free(part);
+}
+
+static void test_part_names_keep_the_extension(void **state)
+{
+    (void)state;
+    expect_part("/a/image.tif", ".tif");
+    expect_part("image.tar.gz", ".gz");
+    expect_part("/a.b/image", "");
+    expect_part("/a/.hidden", "");
+}
+
+static void test_part_names_differ(void **state)
+{
+    (void)state;
+    char *names[64];
+    for (int i = 0; i < 64; i++) {
+        names[i] = file_part_name("image.tif");
+        assert_non_null(names[i]);
+        for (int j = 0; j < i; j++)
+            assert_string_not_equal(names[i], names[j]);
+    }
+    for (int i = 0; i < 64; i++)
+        free(names[i]);
+}
+
+static void test_a_file_is_written_and_read(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct report report = {{0}, NULL, NULL};
+    const char *path = temporary_file(folder, "x.json");
+    /* longer than what is read at once, and with a 0 in it */
+    const size_t length = 200001;
+    char *written = calloc(length, 1);
+    char *read;
+    size_t count;
+    assert_non_null(written);
+    for (size_t i = 0; i < length; i++)
+        written[i] = (char)(i * 7 % 251);
+    assert_int_equal(file_write_whole(&report, path, "old", 3), SONJECT_OK);
+    assert_int_equal(file_write_whole(&report, path, written, length), SONJECT_OK);
+    assert_int_equal(file_read_whole(&report, path, length, &read, &count), SONJECT_OK);
+    assert_int_equal(count, length);
+    assert_memory_equal(read, written, length);
+    assert_int_equal(read[length], 0);
+    assert_int_equal(count_entries(folder->path), 1);
+    free(read);
+    free(written);
+}
+
+static void test_an_empty_file(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct report report = {{0}, NULL, NULL};
+    const char *path = temporary_file(folder, "empty");
+    char *read;
+    size_t count = 7;
+    assert_int_equal(file_write_whole(&report, path, "", 0), SONJECT_OK);
+    assert_int_equal(file_read_whole(&report, path, 0, &read, &count), SONJECT_OK);
+    assert_int_equal(count, 0);
+    assert_int_equal(read[0], 0);
+    free(read);
+}
+
+static void expect_message(const struct report *report, const char *path, const char *reason)
+{
+    if (!strstr(report->message, path) || !strstr(report->message, reason))
+        fail_msg("'%s' does not name '%s' and '%s'", report->message, path, reason);
+}
+
+static void test_reading_what_cannot_be_read(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct report report = {{0}, NULL, NULL};
+    char *read;
+    size_t count;
+    const char *path = temporary_file(folder, "x");
+    assert_int_equal(file_read_whole(&report, path, 10, &read, &count), SONJECT_ERROR_STORAGE);
+    expect_message(&report, path, "No such file");
+    assert_null(read);
+    assert_int_equal(file_read_whole(&report, folder->path, 10, &read, &count),
+                     SONJECT_ERROR_STORAGE);
+    expect_message(&report, folder->path, "directory");
+    write_bytes(path, "12345678901", 11);
+    assert_int_equal(file_read_whole(&report, path, 10, &read, &count), SONJECT_ERROR_INPUT);
+    expect_message(&report, path, "10 bytes");
+    assert_null(read);
+}
+
+static void test_writing_where_nothing_can_be(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct report report = {{0}, NULL, NULL};
+    const char *path = temporary_file(folder, "missing/x");
+    assert_int_equal(file_write_whole(&report, path, "1", 1), SONJECT_ERROR_STORAGE);
+    expect_message(&report, path, "No such file");
+    assert_int_equal(count_entries(folder->path), 0);
+}
+
+/* A limit on the size of files is as near as a test gets to a full disk. */
+static void test_a_full_disk_leaves_the_old_file(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct report report = {{0}, NULL, NULL};
+    static char many[100000];
+    struct rlimit kept;
+    struct rlimit low;
+    const char *path = temporary_file(folder, "x");
+    write_bytes(path, "old", 3);
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &kept), 0);
+    low = kept;
+    low.rlim_cur = 4096;
+    signal(SIGXFSZ, SIG_IGN);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
+    const sonject_status status = file_write_whole(&report, path, many, sizeof many);
+    assert_int_equal(setrlimit(RLIMIT_FSIZE, &kept), 0);
+    assert_int_equal(status, SONJECT_ERROR_STORAGE);
+    expect_message(&report, path, "File too large");
+    assert_int_equal(count_entries(folder->path), 1);
+    size_t count;
+    unsigned char *bytes = bytes_of_file(path, &count);
+    assert_int_equal(count, 3);
+    assert_memory_equal(bytes, "old", 3);
+    free(bytes);
+}
+
+static void test_publishing(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct report report = {{0}, NULL, NULL};
+    char path[TEMPORARY_CAPACITY + 300];
+    snprintf(path, sizeof path, "%s", temporary_file(folder, "image.tif"));
+    char *part = file_part_name(path);
+    write_bytes(part, "new", 3);
+    assert_false(file_exists(path));
+    assert_int_equal(file_publish(&report, part, path), SONJECT_OK);
+    assert_true(file_exists(path));
+    assert_false(file_exists(part));
+    /* a part that is not there, and a name that a folder has: the part goes, the message names the
+     * file */
+    assert_int_equal(file_publish(&report, part, path), SONJECT_ERROR_STORAGE);
+    expect_message(&report, path, "No such file");
+    write_bytes(part, "new", 3);
+    assert_int_equal(file_publish(&report, part, folder->path), SONJECT_ERROR_STORAGE);
+    assert_false(file_exists(part));
+    file_discard(part);
+    free(part);
+}
+
+static void test_folders_are_made_with_their_parents(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct report report = {{0}, NULL, NULL};
+    char path[TEMPORARY_CAPACITY + 300];
+    snprintf(path, sizeof path, "%s", temporary_file(folder, "a//b/c/"));
+    assert_int_equal(folder_make(&report, path), SONJECT_OK);
+    assert_int_equal(folder_make(&report, path), SONJECT_OK);
+    assert_true(file_exists(path));
+    assert_int_equal(rmdir(path), 0);
+    assert_int_equal(rmdir(temporary_file(folder, "a/b")), 0);
+    assert_int_equal(rmdir(temporary_file(folder, "a")), 0);
+    write_bytes(temporary_file(folder, "file"), "", 0);
+    assert_int_equal(folder_make(&report, temporary_file(folder, "file")), SONJECT_ERROR_STORAGE);
+    expect_message(&report, "file", "Not a directory");
+    assert_int_equal(folder_make(&report, temporary_file(folder, "file/b")), SONJECT_ERROR_STORAGE);
+    expect_message(&report, "file/b", "Not a directory");
+}
+
+#define WITH_FOLDER(test)                                                                          \
+    cmocka_unit_test_setup_teardown(test, make_temporary_folder, remove_temporary_folder)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_joining),
+        cmocka_unit_test(test_folder_part),
+        cmocka_unit_test(test_part_names_keep_the_extension),
+        cmocka_unit_test(test_part_names_differ),
+        WITH_FOLDER(test_a_file_is_written_and_read),
+        WITH_FOLDER(test_an_empty_file),
+        WITH_FOLDER(test_reading_what_cannot_be_read),
+        WITH_FOLDER(test_writing_where_nothing_can_be),
+        WITH_FOLDER(test_a_full_disk_leaves_the_old_file),
+        WITH_FOLDER(test_publishing),
+        WITH_FOLDER(test_folders_are_made_with_their_parents),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,336 @@
+/* Statistics of image patches. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "image/statistics.h"
+
+static struct report report;
+
+static void expect_near(double value, double expected, double tolerance)
+{
+    if (!(fabs(value - expected) <= tolerance))
+        fail_msg("%.9g is not %.9g +- %.3g", value, expected, tolerance);
+}
+
+static float *make_map(size_t rows, size_t columns, float value)
+{
+    float *map = calloc(rows * columns, sizeof *map);
+    assert_non_null(map);
+    for (size_t i = 0; i < rows * columns; i++)
+        map[i] = value;
+    return map;
+}
+
+/* 0...1, the same sequence for the same state. */
+static double uniform(uint64_t *state)
+{
+    *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return ((double)(*state >> 11) + 0.5) / 9007199254740992.0;
+}
+
+/* Intensity of speckle with mean 1. */
+static float speckle(uint64_t *state)
+{
+    return (float)-log(uniform(state));
+}
+
+static void test_a_point_spreads_with_the_deviation_asked_for(void **state)
+{
+    (void)state;
+    const double deviations[][2] = {{0.0, 0.0}, {0.3, 0.7}, {1.0, 1.5}, {2.5, 0.0}, {4.0, 11.3}};
+    const size_t rows = 101;
+    const size_t columns = 141;
+    for (size_t test = 0; test < sizeof deviations / sizeof *deviations; test++) {
+        float *point = make_map(rows, columns, 0.0f);
+        float *mean = make_map(rows, columns, -1.0f);
+        point[50 * columns + 70] = 1.0f;
+        assert_int_equal(local_mean(&report, point, rows, columns, deviations[test][0],
+                                    deviations[test][1], mean),
+                         SONJECT_OK);
+        double sum = 0.0;
+        double row_variance = 0.0;
+        double column_variance = 0.0;
+        double fourth = 0.0;
+        for (size_t row = 0; row < rows; row++)
+            for (size_t i = 0; i < columns; i++) {
+                const double weight = (double)mean[row * columns + i];
+                const double y = (double)row - 50.0;
+                const double x = (double)i - 70.0;
+                assert_true(weight >= 0.0);
+                sum += weight;
+                row_variance += weight * y * y;
+                column_variance += weight * x * x;
+                fourth += weight * x * x * x * x;
+            }
+        /* the map is float: 6e-8 a pixel, times squares that weigh the tails */
+        expect_near(sum, 1.0, 1e-6);
+        expect_near(row_variance, deviations[test][0] * deviations[test][0], 1e-5);
+        expect_near(column_variance, deviations[test][1] * deviations[test][1], 1e-4);
+        /* three running means of equal width have a kurtosis of 3 - 1.2 / 3 = 2.6 */
+        if (deviations[test][1] > 4.0)
+            expect_near(fourth / (column_variance * column_variance), 2.6, 0.02);
+        free(point);
+        free(mean);
+    }
+}
+
+static void test_a_constant_stays_so_up_to_the_edges(void **state)
+{
+    (void)state;
+    const double deviations[] = {0.4, 1.0, 3.0, 50.0, 1e9, INFINITY};
+    const size_t sizes[][2] = {{1, 1}, {1, 9}, {9, 1}, {2, 3}, {40, 37}};
+    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
+        for (size_t j = 0; j < sizeof deviations / sizeof *deviations; j++) {
+            const size_t rows = sizes[i][0];
+            const size_t columns = sizes[i][1];
+            float *map = make_map(rows, columns, 0.3f);
+            float *mean = make_map(rows, columns, -1.0f);
+            assert_int_equal(
+                local_mean(&report, map, rows, columns, deviations[j], deviations[j], mean),
+                SONJECT_OK);
+            for (size_t k = 0; k < rows * columns; k++)
+                expect_near((double)mean[k], (double)0.3f, 1e-7);
+            free(map);
+            free(mean);
+        }
+}
+
+static void test_a_wide_mean_is_the_mean_of_all(void **state)
+{
+    (void)state;
+    const size_t rows = 13;
+    const size_t columns = 29;
+    float *map = make_map(rows, columns, 0.0f);
+    float *mean = make_map(rows, columns, 0.0f);
+    uint64_t random = 5;
+    double sum = 0.0;
+    for (size_t i = 0; i < rows * columns; i++)
+        sum += (double)(map[i] = speckle(&random));
+    assert_int_equal(local_mean(&report, map, rows, columns, 1e6, 1e6, mean), SONJECT_OK);
+    for (size_t i = 0; i < rows * columns; i++)
+        expect_near((double)mean[i], sum / (double)(rows * columns), 1e-6);
+    free(map);
+    free(mean);
+}
+
+/* Against the definition, pixel by pixel: a running mean with fractional ends, three times. */
+static void smooth_slowly(double *line, size_t count, double deviation)
+{
+    const double variance = deviation * deviation / 3.0;
+    const double radius = floor((sqrt(1.0 + 12.0 * variance) - 1.0) / 2.0);
+    /* the end weight w makes the variance of the window right: the squares of its offsets are
+     * radius (radius + 1) (2 radius + 1) / 3 inside and (radius + 1)^2 w at both ends */
+    const double inside = radius * (radius + 1.0) * (2.0 * radius + 1.0) / 3.0;
+    const double end = (radius + 1.0) * (radius + 1.0);
+    const double weight = (variance * (2.0 * radius + 1.0) - inside) / (2.0 * end - 2.0 * variance);
+    double *from = calloc(count, sizeof *from);
+    assert_non_null(from);
+    for (int pass = 0; pass < 3; pass++) {
+        memcpy(from, line, count * sizeof *line);
+        for (size_t i = 0; i < count; i++) {
+            double sum = 0.0;
+            double total = 0.0;
+            for (size_t j = 0; j < count; j++) {
+                const double distance = fabs((double)i - (double)j);
+                const double here =
+                    distance <= radius ? 1.0 : (distance <= radius + 1.0 ? weight : 0.0);
+                sum += here * from[j];
+                total += here;
+            }
+            line[i] = sum / total;
+        }
+    }
+    free(from);
+}
+
+static void test_edges(void **state)
+{
+    (void)state;
+    const double deviations[] = {0.2, 0.9, 2.0, 7.7, 30.0};
+    enum {
+        COUNT = 61
+    };
+    uint64_t random = 3;
+    float values[COUNT];
+    float along[COUNT];
+    float across[COUNT];
+    double expected[COUNT];
+    for (size_t test = 0; test < sizeof deviations / sizeof *deviations; test++) {
+        for (size_t i = 0; i < COUNT; i++)
+            expected[i] = (double)(values[i] = speckle(&random));
+        smooth_slowly(expected, COUNT, deviations[test]);
+        assert_int_equal(local_mean(&report, values, 1, COUNT, 9.0, deviations[test], along),
+                         SONJECT_OK);
+        assert_int_equal(local_mean(&report, values, COUNT, 1, deviations[test], 9.0, across),
+                         SONJECT_OK);
+        for (size_t i = 0; i < COUNT; i++) {
+            expect_near((double)along[i], expected[i], 1e-6); /* float results of about 1 */
+            expect_near((double)across[i], expected[i], 1e-6);
+        }
+    }
+}
+
+/* An echo far above everything must not leave rounding errors where it is out of reach. */
+static void test_a_bright_echo_leaves_no_trace(void **state)
+{
+    (void)state;
+    const size_t columns = 300;
+    float *map = make_map(1, columns, 1e-6f);
+    float *mean = make_map(1, columns, 0.0f);
+    map[20] = 1e12f;
+    assert_int_equal(local_mean(&report, map, 1, columns, 1.0, 3.0, mean), SONJECT_OK);
+    for (size_t i = 60; i < columns; i++)
+        expect_near((double)mean[i], 1e-6, 1e-12);
+    free(map);
+    free(mean);
+}
+
+static void test_mean_and_deviation(void **state)
+{
+    (void)state;
+    const float values[] = {2.0f, 4.0f, 4.0f, 4.0f, 5.0f, 5.0f, 7.0f, 9.0f};
+    float *many = make_map(1000, 1000, 16777217.0f);
+    double mean;
+    double deviation;
+    mean_and_deviation(values, 8, &mean, &deviation);
+    assert_true(mean == 5.0 && deviation == 2.0);
+    mean_and_deviation(many, 1000000, &mean, &deviation); /* float sums would stand still */
+    assert_true(mean == (double)many[0] && deviation == 0.0);
+    free(many);
+}
+
+/* Speckled seabed with a square hole of the given energy ratio; blank everywhere where wanted. */
+static double floor_of(double shadow, size_t hole, size_t blank_columns)
+{
+    const size_t rows = 200;
+    const size_t columns = 180;
+    float *intensity = make_map(rows, columns, 0.0f);
+    float *level = make_map(rows, columns, 2.5f);
+    uint64_t random = 11;
+    double ratio = -1.0;
+    for (size_t row = 0; row < rows; row++)
+        for (size_t i = 0; i < columns; i++) {
+            const int is_hole = row >= 61 && row < 61 + hole && i >= 97 && i < 97 + hole;
+            intensity[row * columns + i] = 2.5f * speckle(&random) *
+                                           (float)(is_hole ? shadow : 1.0) *
+                                           (float)(i < blank_columns ? 0.0 : 1.0);
+        }
+    assert_int_equal(estimate_noise_floor(&report, intensity, level, rows, columns, &ratio),
+                     SONJECT_OK);
+    free(intensity);
+    free(level);
+    return 10.0 * log10(ratio);
+}
+
+static void test_noise_floor(void **state)
+{
+    (void)state;
+    /* 49 looks a block have a deviation of 1/7 or 0.6 dB; the least of the nine blocks in a hole of
+     * 30 pixels lies about 1.5 deviations low, 1 dB; four deviations about that */
+    expect_near(floor_of(pow(10.0, -2.5), 30, 0), -26.0, 2.5);
+    expect_near(floor_of(pow(10.0, -2.5), 30, 50), -26.0, 2.5); /* blank columns do not count */
+    expect_near(floor_of(1.0, 0, 0), -20.0, 1e-9);              /* no shadow */
+    expect_near(floor_of(1e-6, 30, 0), -30.0, 1e-9);            /* clipped shadow */
+    expect_near(floor_of(pow(10.0, -2.5), 5, 0), -20.0, 1e-9);  /* a hole smaller than a block */
+}
+
+static void test_noise_floor_of_a_small_patch(void **state)
+{
+    (void)state;
+    const float intensity[] = {0.004f, 0.006f};
+    const float level[] = {1.0f, 1.0f};
+    double ratio;
+    assert_int_equal(estimate_noise_floor(&report, intensity, level, 1, 2, &ratio), SONJECT_OK);
+    expect_near(ratio, 0.005, 1e-9);
+}
+
+static double distance_of(const float *a, const float *b, size_t count)
+{
+    double distance = -1.0;
+    assert_int_equal(histogram_distance(&report, a, b, count, &distance), SONJECT_OK);
+    return distance;
+}
+
+static void test_histogram_distance(void **state)
+{
+    (void)state;
+    const float a[] = {1.0f, 2.0f, 3.0f, 4.0f};
+    const float shuffled[] = {40.0f, 20.0f, 10.0f, 30.0f};
+    const float equal[] = {5.0f, 5.0f, 5.0f, 5.0f};
+    const float nothing[] = {0.0f, 0.0f, 0.0f, 0.0f};
+    const float twice[] = {0.0f, 0.0f, 0.0f, 8.0f};
+    assert_true(distance_of(a, a, 4) == 0.0);
+    assert_true(distance_of(a, shuffled, 4) == 0.0); /* same shape: the mean is divided out */
+    assert_true(distance_of(equal, nothing, 4) == 1.0);
+    /* a / 2.5 = 0.4 0.8 1.2 1.6 against four times 1: 2 of 4 lie below */
+    assert_true(distance_of(a, equal, 4) == 0.5);
+    assert_true(distance_of(equal, a, 4) == 0.5);
+    assert_true(distance_of(a, twice, 4) == 0.75);
+    assert_true(distance_of(a, a, 0) == 0.0);
+}
+
+/* Rayleigh against exponential amplitude, each over its mean: 1 - exp(-pi/4 x^2) and 1 - exp(-x)
+ * are furthest apart near x = 0.43, by 0.2156. */
+static void test_histogram_distance_of_known_distributions(void **state)
+{
+    (void)state;
+    const size_t count = 100000;
+    float *rayleigh = make_map(1, count, 0.0f);
+    float *exponential = make_map(1, count, 0.0f);
+    uint64_t random = 17;
+    double expected = 0.0;
+    for (size_t i = 0; i < count; i++) {
+        rayleigh[i] = sqrtf(speckle(&random));
+        exponential[i] = 3.0f * speckle(&random);
+    }
+    for (double x = 0.0; x < 5.0; x += 0.001)
+        expected = fmax(expected, fabs(exp(-x) - exp(-3.14159265358979323846 / 4.0 * x * x)));
+    /* a cumulative fraction of 100,000 has a deviation of at most 0.0016, two of them 0.0022: four
+     * deviations */
+    expect_near(distance_of(rayleigh, exponential, count), expected, 0.009);
+    free(rayleigh);
+    free(exponential);
+}
+
+static void test_correlation(void **state)
+{
+    (void)state;
+    const float a[] = {1.0f, 2.0f, 3.0f, 4.0f};
+    const float up[] = {30.0f, 50.0f, 70.0f, 90.0f};
+    const float down[] = {4.0f, 3.0f, 2.0f, 1.0f};
+    const float across[] = {1.0f, -1.0f, -1.0f, 1.0f};
+    const float equal[] = {5.0f, 5.0f, 5.0f, 5.0f};
+    const float some[] = {1.0f, 3.0f, 2.0f, 4.0f};
+    expect_near(correlation(a, up, 4), 1.0, 1e-12);
+    expect_near(correlation(a, down, 4), -1.0, 1e-12);
+    expect_near(correlation(a, across, 4), 0.0, 1e-12);
+    expect_near(correlation(a, some, 4), 0.8, 1e-12);
+    assert_true(correlation(a, equal, 4) == 0.0);
+    assert_true(correlation(a, up, 0) == 0.0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_point_spreads_with_the_deviation_asked_for),
+        cmocka_unit_test(test_a_constant_stays_so_up_to_the_edges),
+        cmocka_unit_test(test_a_wide_mean_is_the_mean_of_all),
+        cmocka_unit_test(test_edges),
+        cmocka_unit_test(test_a_bright_echo_leaves_no_trace),
+        cmocka_unit_test(test_mean_and_deviation),
+        cmocka_unit_test(test_noise_floor),
+        cmocka_unit_test(test_noise_floor_of_a_small_patch),
+        cmocka_unit_test(test_histogram_distance),
+        cmocka_unit_test(test_histogram_distance_of_known_distributions),
+        cmocka_unit_test(test_correlation),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
