@@ -74,6 +74,7 @@ typedef struct sonject_seabed_file_params {
     sonject_sonar_params sonar; /* resolution and metadata */
 } sonject_seabed_file_params;
 
+/* The defaults of each structure, and column 0 at 44 m slant range. */
 SONJECT_API void sonject_seabed_file_params_init(sonject_seabed_file_params *params);
 
 /* Writes a synthetic seabed with its geometry as metadata. Errors: ARGUMENT, INPUT, STORAGE,

@@ -17,6 +17,7 @@ void sonject_seabed_file_params_init(sonject_seabed_file_params *params)
     params->struct_size = sizeof *params;
     sonject_synthetic_params_init(&params->synthetic);
     sonject_geometry_params_init(&params->geometry);
+    params->geometry.first_slant_range_m = 44.0;
     sonject_sonar_params_init(&params->sonar);
 }
 

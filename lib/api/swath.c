@@ -100,8 +100,7 @@ static sonject_status open_and_describe(struct report *report, const struct scen
     return status;
 }
 
-sonject_status swath_describe(struct report *report, const struct scene *scene,
-                              struct swath *swath)
+sonject_status swath_describe(struct report *report, const struct scene *scene, struct swath *swath)
 {
     struct raster_file *file;
     const sonject_status status = open_and_describe(report, scene, swath, &file);
@@ -123,17 +122,25 @@ static sonject_status identify(struct report *report, struct swath *swath, const
 }
 
 static sonject_status bad_pixel(struct report *report, const struct scene *scene,
-                                const struct swath *swath, size_t index)
+                                const struct swath *swath, size_t index, const char *what)
 {
     const size_t pixel = swath->is_complex ? index / 2 : index;
+    const size_t columns = (size_t)swath->patch.columns;
     return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: the pixel at row %llu, column %llu is not a finite number: mend the "
-                          "image or choose another patch",
+                          "%s: the pixel at row %llu, column %llu is %s: mend the image or choose "
+                          "another patch",
                           scene->input_path,
-                          (unsigned long long)(swath->patch.first_row +
-                                               pixel / (size_t)swath->patch.columns),
-                          (unsigned long long)(swath->patch.first_column +
-                                               pixel % (size_t)swath->patch.columns));
+                          (unsigned long long)(swath->patch.first_row + pixel / columns),
+                          (unsigned long long)(swath->patch.first_column + pixel % columns), what);
+}
+
+static sonject_status check_signs(struct report *report, const struct scene *scene,
+                                  const struct swath *swath, size_t count)
+{
+    for (size_t i = 0; !swath->is_complex && i < count; i++)
+        if (swath->pixels[i] < 0.0f)
+            return bad_pixel(report, scene, swath, i, "a negative amplitude");
+    return SONJECT_OK;
 }
 
 static sonject_status read_patch(struct report *report, const struct scene *scene,
@@ -154,7 +161,9 @@ static sonject_status read_patch(struct report *report, const struct scene *scen
         status = transfer_to_amplitude(&scene->transfer, swath->layout.type, swath->stored, count,
                                        swath->pixels, &bad, &swath->clipped);
         if (status != SONJECT_OK)
-            status = bad_pixel(report, scene, swath, bad);
+            status = bad_pixel(report, scene, swath, bad, "not a finite number");
+        else
+            status = check_signs(report, scene, swath, count);
     }
     return status == SONJECT_OK ? identify(report, swath, swath->stored, bytes) : status;
 }
@@ -181,8 +190,8 @@ static sonject_status make_patch(struct report *report, const struct scene *scen
                    row_floats * sizeof(float));
         /* kept for writing the swath back around the patch */
         swath->stored = (void *)whole.pixels;
-        status = identify(report, swath, whole.pixels, whole.rows * whole.columns * parts *
-                                                           sizeof(float));
+        status = identify(report, swath, whole.pixels,
+                          whole.rows * whole.columns * parts * sizeof(float));
     }
     if (status != SONJECT_OK && !swath->stored)
         free((void *)whole.pixels);

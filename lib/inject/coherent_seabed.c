@@ -1,24 +1,86 @@
 #include "inject/coherent_seabed.h"
 
 #include <math.h>
+#include <stdbool.h>
 
-/* Mean energy of sum(taps * c) over that of sum(taps * white noise), where c has itself passed the
- * taps once, as a measured image has passed the sonar: sum over lags of the taps' autocorrelation
- * squared, over its value at 0 squared. */
-static double energy_gain(double (*response)(const struct point_response *, double),
-                          const struct point_response *of, double step, int reach)
+/* One direction of the fine grid: a pixel's value is spread over its cells, and the image takes
+ * the response's value at each cell's distance. */
+struct direction {
+    double (*response)(const struct point_response *, double);
+    const struct point_response *of;
+    double pixel_m;
+    int per_pixel;  /* cells */
+    int reach;      /* pixels, of the response */
+    bool is_linear; /* cells interpolate between pixels (columns), or copy their own (rows) */
+};
+
+/* Distance of a cell from the pixel that is formed, m: see struct line_grid. */
+static double cell_distance(const struct direction *d, int cell)
 {
-    double at_zero = 0.0;
+    const double shift = d->is_linear ? 0.0 : 0.5 / d->per_pixel - 0.5;
+    return ((double)cell / d->per_pixel + shift) * d->pixel_m;
+}
+
+/* What the formed pixel takes of the measured pixel `lag` pixels away. */
+static double pixel_weight(const struct direction *d, int lag)
+{
+    const int first = d->is_linear ? (lag - 1) * d->per_pixel : lag * d->per_pixel;
+    const int count = d->is_linear ? 2 * d->per_pixel : d->per_pixel;
     double sum = 0.0;
-    for (int lag = 0; lag <= 2 * reach; lag++) {
-        double correlation = 0.0;
-        for (int i = -reach; i + lag <= reach; i++)
-            correlation += response(of, i * step) * response(of, (i + lag) * step);
-        if (lag == 0)
-            at_zero = correlation;
-        sum += (lag == 0 ? 1.0 : 2.0) * correlation * correlation;
+    for (int cell = first; cell < first + count; cell++) {
+        const double share =
+            d->is_linear ? 1.0 - fabs((double)cell / d->per_pixel - (double)lag) : 1.0;
+        sum += share * d->response(d->of, cell_distance(d, cell));
     }
-    return sum / (at_zero * at_zero);
+    return sum;
+}
+
+/* Sum over the cells of response times response `lag` pixels away. */
+static double autocorrelation(const struct direction *d, int lag)
+{
+    double sum = 0.0;
+    for (int cell = -d->reach * d->per_pixel; cell <= d->reach * d->per_pixel; cell++)
+        sum += d->response(d->of, cell_distance(d, cell)) *
+               d->response(d->of, cell_distance(d, cell + lag * d->per_pixel));
+    return sum;
+}
+
+/* Mean energy of the formed image over that which speckle of the same energies would have. The
+ * measured pixels have passed the sonar's response once already, so they are correlated by its
+ * autocorrelation. */
+static double energy_gain(const struct direction *d)
+{
+    const double white = autocorrelation(d, 0);
+    double sum = 0.0;
+    for (int lag = 0; lag <= 2 * d->reach; lag++) {
+        double pairs = 0.0;
+        for (int i = -d->reach; i + lag <= d->reach; i++)
+            pairs += pixel_weight(d, i) * pixel_weight(d, i + lag);
+        sum += (lag == 0 ? 1.0 : 2.0) * pairs * autocorrelation(d, lag) / white;
+    }
+    return sum / white;
+}
+
+static double scale_of(const struct rough_trace *trace, const struct tracer *tracer)
+{
+    const struct patch_view *view = &tracer->view;
+    const struct direction columns = {
+        range_response,
+        &tracer->response,
+        view->column_spacing_m,
+        (int)trace->grid.bins_per_pixel,
+        pulse_reach_bins(view, &tracer->response, 1),
+        true,
+    };
+    const struct direction rows = {
+        along_track_response,
+        &tracer->response,
+        view->row_spacing_m,
+        (int)trace->grid.strips_per_row,
+        (int)ceil(24.0 * tracer->response.resolution_m / view->row_spacing_m),
+        false,
+    };
+    return 1.0 / sqrt(energy_gain(&columns) * energy_gain(&rows));
 }
 
 static double clamp_index(double index, size_t count)
@@ -32,13 +94,7 @@ void coherent_seabed_lines(const struct rough_trace *trace, const struct tracer 
                            float *imaginary_part)
 {
     const struct patch_view *view = &tracer->view;
-    const double strip = view->row_spacing_m / trace->grid.strips_per_row;
-    const double bin = view->column_spacing_m / trace->grid.bins_per_pixel;
-    const int bin_reach = pulse_reach_bins(view, &tracer->response, trace->grid.bins_per_pixel);
-    const int strip_reach = (int)ceil(24.0 * tracer->response.resolution_m / strip);
-    const double gain = energy_gain(range_response, &tracer->response, bin, bin_reach) *
-                        energy_gain(along_track_response, &tracer->response, strip, strip_reach);
-    const double scale = 1.0 / sqrt(gain);
+    const double scale = scale_of(trace, tracer);
     for (int32_t s = 0; s < strips.count; s++) {
         const double row =
             clamp_index(floor((double)(strips.first + s) / trace->grid.strips_per_row), view->rows);

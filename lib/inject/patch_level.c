@@ -46,7 +46,7 @@ static sonject_status take_intensity(struct patch_level *level, struct report *r
                 "the patch's pixel at row %zu, column %zu is %s: mend the image",
                 view->is_mirrored ? view->rows - 1 - row : row, i % view->columns,
                 isnan(a) || isnan(b)
-                    ? "not a number"
+                    ? "not a number (NaN)"
                     : (intensity > 1e30 ? "too large or infinite" : "a negative amplitude"));
         level->intensity[i] = (float)intensity;
         sum += intensity;
