@@ -11,7 +11,9 @@ FUNCTION struct interval tube_interval(struct vector3 point, struct vector3 dire
     const real across = direction.y * direction.y + direction.z * direction.z;
     const mask is_parallel = MASK_OF(across < 1.0e-14f);
     const real safe = CHOOSE(is_parallel, SPLAT(1.0e-14f), across);
-    const real middle = -(point.y * direction.y + point.z * direction.z) / safe;
+    /* a ray along the axis stays where it is */
+    const real middle =
+        CHOOSE(is_parallel, SPLAT(0.0f), -(point.y * direction.y + point.z * direction.z) / safe);
     const real y = point.y + direction.y * middle;
     const real z = point.z + direction.z * middle;
     const real square = radius * radius - (y * y + z * z);

@@ -88,7 +88,7 @@ static const char *const glyphs[] = {
     "0M0E 0Q",                                    /* i */
     "2M2C1A0A 2Q",                                /* j */
     "0Q0E 6M0H 2J6E",                             /* k */
-    "0Q0E",                                       /* l */
+    "0Q0G1E2E",                                   /* l */
     "0M0E 0J1L2M3M4L4E 4J5L6M7M8L8E",             /* m */
     "0M0E 0J1L3M4M6L7J7E",                        /* n */
     "3E4E6F7H7J6L4M3M1L0J0H1F3E",                 /* o */

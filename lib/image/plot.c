@@ -36,6 +36,7 @@ struct plot {
     const struct plot_frame *frame;
     const struct plot_panel *panels;
     uint32_t count;
+    const char *range_label;
     struct plot_scale along_track, range;
     int64_t panel_height, panel_width; /* in the picture */
     double minimum_db, maximum_db;
@@ -139,7 +140,7 @@ static int64_t position_of(double value, double first, double spacing,
 static void draw_rows_axis(struct plot *plot, int64_t x, int64_t y)
 {
     const struct plot_frame *frame = plot->frame;
-    const char *name = strcmp(frame->range_label, "column") == 0 ? "row" : "along-track, m";
+    const char *name = strcmp(plot->range_label, "column") == 0 ? "row" : "along-track, m";
     char label[TICK_LABEL_CAPACITY];
     for (int64_t i = plot->row_ticks.first; i <= plot->row_ticks.last; i++) {
         const char *number = plot_tick_label(&plot->row_ticks, i, label);
@@ -176,9 +177,8 @@ static void draw_ticks(struct plot *plot, int64_t x, int64_t y)
                   bottom + TICK_LENGTH + LABEL_GAP + FONT_CAPITAL_HEIGHT, number,
                   TICK_LABEL_CAPACITY, TEXT_RIGHTWARDS, ink);
     }
-    draw_text(&plot->canvas,
-              x + (plot->panel_width - text_length(frame->range_label, SIZE_MAX)) / 2,
-              bottom + TICK_LENGTH + 3 * LABEL_GAP + 2 * FONT_CAPITAL_HEIGHT, frame->range_label,
+    draw_text(&plot->canvas, x + (plot->panel_width - text_length(plot->range_label, SIZE_MAX)) / 2,
+              bottom + TICK_LENGTH + 3 * LABEL_GAP + 2 * FONT_CAPITAL_HEIGHT, plot->range_label,
               SIZE_MAX, TEXT_RIGHTWARDS, ink);
 }
 
@@ -295,6 +295,7 @@ sonject_status plot_panels(struct report *report, const struct plot_frame *frame
     plot.frame = frame;
     plot.panels = panels;
     plot.count = count;
+    plot.range_label = frame->range_label ? frame->range_label : "";
     plot_scales(frame, count > 1 ? SIDE_BY_SIDE : SINGLE_PANEL, &plot.along_track, &plot.range);
     plot.panel_height = (int64_t)plot.along_track.cells * plot.along_track.up;
     plot.panel_width = (int64_t)plot.range.cells * plot.range.up;

@@ -20,7 +20,7 @@ struct plot_frame {
     /* "slant range, m" or "ground range, m"; "column": axes in pixels, the other one called "row"
      */
     const char *range_label;
-    /* grey scale; unless minimum < maximum it is chosen from the first panel of amplitudes: 1st and
+    /* grey scale; unless minimum < maximum it is chosen from the first panel of amplitudes: 3rd and
      * 99.8th percentile of what is drawn */
     double minimum_db, maximum_db;
     double difference_db; /* > 0 */

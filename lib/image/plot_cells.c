@@ -11,7 +11,7 @@
 #define LOWEST_DB      -900.0
 #define HIGHEST_DB     780.0
 #define BINS_PER_DB    100
-#define PERCENTILE_LOW 0.05
+#define PERCENTILE_LOW 0.03
 #define PERCENTILE_TOP 0.998
 
 /* The scale that draws `pixels` pixels about `length` picture pixels long. */

@@ -25,7 +25,7 @@ sonject_status plot_cells(struct report *report, const struct plot_panel *panel,
                           const struct plot_scale *along_track, const struct plot_scale *range,
                           float *values);
 
-/* The 1st and 99.8th percentile of the finite values, at least 1 dB apart. Errors: INPUT (there are
+/* The 3rd and 99.8th percentile of the finite values, at least 1 dB apart. Errors: INPUT (there are
  * none), MEMORY. */
 sonject_status plot_limits(struct report *report, const float *decibels, size_t count,
                            double *minimum, double *maximum);

@@ -37,7 +37,7 @@ struct plot_ticks plot_ticks_between(double low, double high, double most)
 {
     const struct plot_ticks none = {0, -1, 1, 0};
     struct plot_ticks ticks = {0, -1, 1, -LARGEST_EXPONENT};
-    if (!(isfinite(low) && isfinite(high) && high > low && most >= 1.0))
+    if (!(isfinite(low) && isfinite(high) && high - low >= step_of(&ticks) && most >= 1.0))
         return none;
     while (ticks.exponent <= LARGEST_EXPONENT && step_of(&ticks) * (most + SLACK) < high - low)
         widen(&ticks);

@@ -7,7 +7,6 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "io/byte_file.h"
 #include "io/jpeg_segments.h"
 #include "io/png_chunks.h"
 #include "io/tiff_structure.h"
@@ -84,13 +83,14 @@ static sonject_status check_tiff(struct report *report, const char *path)
     return status;
 }
 
-sonject_status image_kind_check(struct report *report, const char *path, enum image_kind kind)
+sonject_status image_kind_check(struct report *report, const char *path, enum image_kind kind,
+                                struct byte_ranges *parts)
 {
     switch (kind) {
     case IMAGE_PNG:
-        return png_check(report, path);
+        return png_check(report, path, parts);
     case IMAGE_JPEG:
-        return jpeg_check(report, path);
+        return jpeg_check(report, path, parts);
     case IMAGE_TIFF:
         break;
     }

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 
 #include "base/report.h"
+#include "io/byte_file.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -23,8 +24,10 @@ sonject_status image_kind_of(struct report *report, const char *path, enum image
 bool image_kind_of_name(const char *path, enum image_kind *kind);
 
 /* Checks what can be told without decoding: that the file is not cut short, and that its pixels are
- * of a kind that sonject reads. Errors: INPUT, STORAGE, MEMORY. */
-sonject_status image_kind_check(struct report *report, const char *path, enum image_kind kind);
+ * of a kind that sonject reads. Adds to parts what a decoder needs of the file; nothing if it needs
+ * all. Errors: INPUT, STORAGE, MEMORY. */
+sonject_status image_kind_check(struct report *report, const char *path, enum image_kind kind,
+                                struct byte_ranges *parts);
 
 #ifdef __cplusplus
 }

@@ -117,21 +117,41 @@ static bool has_end(const struct jpeg_reader *reader)
     return false;
 }
 
-sonject_status jpeg_check(struct report *report, const char *path)
+static bool is_application(const struct jpeg_reader *reader)
+{
+    return (reader->marker & 0xF0) == MARKER_APPLICATION;
+}
+
+/* Segments up to the first scan's. */
+static sonject_status check_segments(struct report *report, const char *path,
+                                     struct jpeg_reader *reader, struct byte_ranges *parts)
+{
+    bool has_frame = false;
+    bool has_memory = byte_ranges_add(parts, 0, 2);
+    while (next_segment(reader) && reader->marker != MARKER_SCAN_START) {
+        if (is_frame(reader->marker)) {
+            const sonject_status status = check_frame(report, path, reader);
+            if (status != SONJECT_OK)
+                return status;
+            has_frame = true;
+        }
+        if (!is_application(reader))
+            has_memory = byte_ranges_add(parts, reader->place, reader->segment_bytes) && has_memory;
+    }
+    if (reader->marker != MARKER_SCAN_START || !has_frame || !has_end(reader))
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: damaged JPEG: cut short", path);
+    has_memory =
+        byte_ranges_add(parts, reader->place, reader->file_bytes - reader->place) && has_memory;
+    return has_memory ? SONJECT_OK : report_out_of_memory(report, path);
+}
+
+sonject_status jpeg_check(struct report *report, const char *path, struct byte_ranges *parts)
 {
     struct jpeg_reader reader;
-    bool has_frame = false;
-    sonject_status status = SONJECT_OK;
-    bool is_good = open_jpeg(&reader, path);
-    while (is_good && status == SONJECT_OK && reader.marker != MARKER_SCAN_START) {
-        is_good = next_segment(&reader);
-        if (is_good && is_frame(reader.marker)) {
-            has_frame = true;
-            status = check_frame(report, path, &reader);
-        }
-    }
-    if (status == SONJECT_OK && !(is_good && has_frame && has_end(&reader)))
-        status = report_failure(report, SONJECT_ERROR_INPUT, "%s: damaged JPEG: cut short", path);
+    const sonject_status status =
+        open_jpeg(&reader, path)
+            ? check_segments(report, path, &reader, parts)
+            : report_failure(report, SONJECT_ERROR_INPUT, "%s: cannot be read as JPEG", path);
     close_jpeg(&reader);
     return status;
 }

@@ -11,9 +11,11 @@
 #include "io/byte_order.h"
 
 #define SIGNATURE_BYTES      8
-#define PIXELS_MAX           ((uint64_t)1 << 40)
 #define INTERLACED_BYTES_MAX ((uint64_t)1 << 30) /* interlaced pictures are decoded whole */
 #define DEFLATE_RATIO_MAX    1032
+#define SIDE_MAX             1000000 /* of libpng */
+#define TEXTS_MAX            16      /* that are read */
+#define TEXT_BYTES_MAX       65536
 
 struct png_reader {
     FILE *file;
@@ -21,7 +23,18 @@ struct png_reader {
     uint64_t place;       /* of the current chunk */
     uint64_t chunk_bytes; /* with length, name and checksum */
     char name[5];
+    uint32_t checksums[256]; /* of the 256 bytes */
 };
+
+static void make_checksums(struct png_reader *reader)
+{
+    for (uint32_t byte = 0; byte < 256; byte++) {
+        uint32_t sum = byte;
+        for (int bit = 0; bit < 8; bit++)
+            sum = sum & 1 ? sum >> 1 ^ UINT32_C(0xEDB88320) : sum >> 1;
+        reader->checksums[byte] = sum;
+    }
+}
 
 static bool open_png(struct png_reader *reader, const char *path)
 {
@@ -29,6 +42,7 @@ static bool open_png(struct png_reader *reader, const char *path)
                                                              '\r', '\n', 0x1A, '\n'};
     unsigned char head[SIGNATURE_BYTES];
     memset(reader, 0, sizeof *reader);
+    make_checksums(reader);
     reader->file = byte_file_open(path, &reader->file_bytes);
     reader->chunk_bytes = SIGNATURE_BYTES; /* what the first chunk lies behind */
     return reader->file && byte_file_read(reader->file, 0, head, sizeof head) &&
@@ -51,6 +65,25 @@ static bool next_chunk(struct png_reader *reader)
     reader->chunk_bytes = number_from_bytes(head, 4, true) + 12;
     memcpy(reader->name, head + 4, 4);
     return reader->chunk_bytes <= reader->file_bytes - reader->place;
+}
+
+/* True if the current chunk's checksum is that of its name and content. */
+static bool is_intact(const struct png_reader *reader)
+{
+    unsigned char bytes[16384];
+    uint32_t sum = UINT32_C(0xFFFFFFFF);
+    uint64_t place = reader->place + 4;
+    const uint64_t end = reader->place + reader->chunk_bytes - 4;
+    while (place < end) {
+        const size_t some = end - place < sizeof bytes ? (size_t)(end - place) : sizeof bytes;
+        if (!byte_file_read(reader->file, place, bytes, some))
+            return false;
+        for (size_t i = 0; i < some; i++)
+            sum = reader->checksums[(sum ^ bytes[i]) & 0xFF] ^ sum >> 8;
+        place += some;
+    }
+    return byte_file_read(reader->file, end, bytes, 4) &&
+           number_from_bytes(bytes, 4, true) == (sum ^ UINT32_C(0xFFFFFFFF));
 }
 
 static bool is_chunk(const struct png_reader *reader, const char *name)
@@ -95,7 +128,7 @@ static sonject_status check_header(struct report *report, const char *path,
 {
     unsigned char header[13];
     if (!next_chunk(reader) || !is_chunk(reader, "IHDR") ||
-        reader->chunk_bytes != sizeof header + 12 ||
+        reader->chunk_bytes != sizeof header + 12 || !is_intact(reader) ||
         !byte_file_read(reader->file, reader->place + 8, header, sizeof header))
         return cut_short(report, path);
     const uint64_t columns = number_from_bytes(header, 4, true);
@@ -103,10 +136,11 @@ static sonject_status check_header(struct report *report, const char *path,
     if (rows == 0 || columns == 0)
         return report_failure(report, SONJECT_ERROR_INPUT, "%s: damaged PNG: it has no pixels",
                               path);
-    if (rows > INT32_MAX || columns > INT32_MAX || rows > PIXELS_MAX / columns)
+    if (rows > SIDE_MAX || columns > SIDE_MAX)
         return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: claims %llu x %llu pixels, which is more than 2^40", path,
-                              (unsigned long long)rows, (unsigned long long)columns);
+                              "%s: claims %llu x %llu pixels; a PNG is read up to a million each "
+                              "way: convert it to TIFF",
+                              path, (unsigned long long)rows, (unsigned long long)columns);
     *bytes = rows * (columns * (header[8] / 8) + 1);
     if (header[12] != 0 && *bytes > INTERLACED_BYTES_MAX)
         return report_failure(report, SONJECT_ERROR_INPUT,
@@ -117,13 +151,15 @@ static sonject_status check_header(struct report *report, const char *path,
 }
 
 static sonject_status check_chunks(struct report *report, const char *path,
-                                   struct png_reader *reader)
+                                   struct png_reader *reader, struct byte_ranges *parts)
 {
     uint64_t bytes = 0;
     uint64_t compressed = 0;
+    int texts = 0;
     const sonject_status status = check_header(report, path, reader, &bytes);
     if (status != SONJECT_OK)
         return status;
+    bool has_memory = byte_ranges_add(parts, 0, SIGNATURE_BYTES + reader->chunk_bytes);
     do {
         if (!next_chunk(reader))
             return cut_short(report, path);
@@ -131,20 +167,30 @@ static sonject_status check_chunks(struct report *report, const char *path,
             return report_failure(
                 report, SONJECT_ERROR_INPUT,
                 "%s: has a transparent grey level; convert it to plain grey first", path);
-        if (is_chunk(reader, "IDAT"))
-            compressed += reader->chunk_bytes;
+        const bool is_pixels = is_chunk(reader, "IDAT");
+        const bool is_needed = is_pixels || is_chunk(reader, "IEND");
+        const bool is_text = is_chunk(reader, "tEXt") && reader->chunk_bytes <= TEXT_BYTES_MAX &&
+                             texts < TEXTS_MAX && is_intact(reader);
+        if (is_needed && !is_intact(reader))
+            return report_failure(report, SONJECT_ERROR_INPUT,
+                                  "%s: damaged PNG: the checksum at byte %llu is wrong", path,
+                                  (unsigned long long)reader->place);
+        if (is_needed || is_text)
+            has_memory = byte_ranges_add(parts, reader->place, reader->chunk_bytes) && has_memory;
+        compressed += is_pixels ? reader->chunk_bytes : 0;
+        texts += is_text;
     } while (!is_chunk(reader, "IEND"));
-    if (bytes / DEFLATE_RATIO_MAX > compressed)
+    if (bytes / DEFLATE_RATIO_MAX > compressed || compressed == 0)
         return cut_short(report, path);
-    return SONJECT_OK;
+    return has_memory ? SONJECT_OK : report_out_of_memory(report, path);
 }
 
-sonject_status png_check(struct report *report, const char *path)
+sonject_status png_check(struct report *report, const char *path, struct byte_ranges *parts)
 {
     struct png_reader reader;
     const sonject_status status =
         open_png(&reader, path)
-            ? check_chunks(report, path, &reader)
+            ? check_chunks(report, path, &reader, parts)
             : report_failure(report, SONJECT_ERROR_INPUT, "%s: cannot be read as PNG", path);
     close_png(&reader);
     return status;

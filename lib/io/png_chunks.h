@@ -3,14 +3,16 @@
 #define SONJECT_IO_PNG_CHUNKS_H
 
 #include "base/report.h"
+#include "io/byte_file.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-/* Checks that the file is whole and of a kind that sonject reads: 8 or 16 bit grey. Errors: INPUT.
- */
-sonject_status png_check(struct report *report, const char *path);
+/* Checks that the file is whole and of a kind that sonject reads: 8 or 16 bit grey. Adds to parts
+ * what a decoder needs of it: pixels and texts, whose checksums are right. What else there may be
+ * would only make it print warnings. Errors: INPUT, MEMORY. */
+sonject_status png_check(struct report *report, const char *path, struct byte_ranges *parts);
 
 /* Writes at result the pixels of the PNG encoded with all that the PNG source says besides: texts,
  * resolution, and chunks that only its maker knows. name: of the finished file, for messages. A

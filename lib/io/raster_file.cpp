@@ -19,6 +19,7 @@ extern "C" {
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include "io/byte_file.h"
 #include "io/image_kind.h"
 #include "io/jpeg_segments.h"
 #include "io/png_chunks.h"
@@ -30,6 +31,9 @@ namespace
 {
 
 constexpr uint64_t strip_bytes = 64u << 20;
+constexpr uint64_t png_side_max = 1000000;  /* of libpng */
+constexpr uint64_t jpeg_side_max = 65500;   /* of libjpeg */
+constexpr size_t give_up_bytes = 64 * 1024; /* a PNG's pixels come in chunks of 8 KB */
 constexpr uint64_t pixels_max = uint64_t(1) << 40;
 
 /* Coarser coding would show in the noise of every pixel of the swath, not only near the target. */
@@ -114,7 +118,8 @@ class part_file
     char *const name;
 };
 
-/* Where encoders write to: keeps the reason why writing failed, which they forget. */
+/* Where encoders write to. They must not learn of a failure, for they would print it or end the
+ * process: the bytes are dropped, and whoever drives the encoder asks for the error. */
 class file_sink final : public OIIO::Filesystem::IOProxy
 {
   public:
@@ -129,9 +134,10 @@ class file_sink final : public OIIO::Filesystem::IOProxy
     file_sink(const file_sink &) = delete;
     file_sink &operator=(const file_sink &) = delete;
 
+    /* not "file": OpenImageIO would take this for a proxy of its own and look for a FILE in it */
     const char *proxytype() const override
     {
-        return "file";
+        return "sink";
     }
     int64_t tell() override
     {
@@ -140,12 +146,14 @@ class file_sink final : public OIIO::Filesystem::IOProxy
     bool seek(int64_t offset) override
     {
         position = offset;
-        return error_number == 0 && check(fseeko(file, offset, SEEK_SET) == 0);
+        if (file && error_number == 0)
+            check(fseeko(file, offset, SEEK_SET) == 0);
+        return true;
     }
     size_t write(const void *bytes, size_t count) override
     {
-        if (error_number != 0 || !check(std::fwrite(bytes, 1, count, file) == count))
-            return 0;
+        if (file && error_number == 0)
+            check(std::fwrite(bytes, 1, count, file) == count);
         position += int64_t(count);
         end = position > end ? position : end;
         return count;
@@ -156,26 +164,100 @@ class file_sink final : public OIIO::Filesystem::IOProxy
     }
 
     /* 0, or the errno of the first failure. */
+    int error_so_far() const
+    {
+        return error_number;
+    }
     int finish()
     {
-        if (file)
-            check(std::fclose(file) == 0);
+        if (file && std::fclose(file) != 0)
+            check(false);
         file = nullptr;
         return error_number;
     }
 
   private:
-    bool check(bool is_good)
+    void check(bool is_good)
     {
         if (!is_good && error_number == 0)
             error_number = errno != 0 ? errno : EIO;
-        return is_good;
     }
 
     std::FILE *file;
     int error_number;
     int64_t position = 0;
     int64_t end = 0;
+};
+
+/* Parts of a file as if there were nothing between them. */
+class file_view final : public OIIO::Filesystem::IOProxy
+{
+  public:
+    /* parts must stay where they are */
+    file_view(const std::string &path, const struct byte_ranges &chosen)
+        : IOProxy(path, Read), parts(chosen), file(byte_file_open(path.c_str(), &file_bytes))
+    {
+        for (size_t i = 0; i < parts.count; i++)
+            total += parts.list[i].count;
+    }
+    ~file_view() override
+    {
+        if (file)
+            std::fclose(file);
+    }
+    file_view(const file_view &) = delete;
+    file_view &operator=(const file_view &) = delete;
+
+    const char *proxytype() const override
+    {
+        return "view";
+    }
+    int64_t tell() override
+    {
+        return position;
+    }
+    bool seek(int64_t offset) override
+    {
+        position = offset;
+        return offset >= 0;
+    }
+    size_t read(void *bytes, size_t count) override
+    {
+        const size_t got = pread(bytes, count, position);
+        position += int64_t(got);
+        return got;
+    }
+    size_t pread(void *bytes, size_t count, int64_t offset) override
+    {
+        unsigned char *to = static_cast<unsigned char *>(bytes);
+        size_t got = 0;
+        uint64_t start = uint64_t(offset);
+        for (size_t i = 0; file && i < parts.count && got < count; i++) {
+            const struct byte_range &part = parts.list[i];
+            if (start >= part.count) {
+                start -= part.count;
+                continue;
+            }
+            const uint64_t left = part.count - start;
+            const size_t some = left < count - got ? size_t(left) : count - got;
+            if (!byte_file_read(file, part.place + start, to + got, some))
+                break;
+            got += some;
+            start = 0;
+        }
+        return got;
+    }
+    size_t size() const override
+    {
+        return size_t(total);
+    }
+
+  private:
+    const struct byte_ranges &parts;
+    uint64_t file_bytes = 0;
+    std::FILE *file;
+    uint64_t total = 0;
+    int64_t position = 0;
 };
 
 uint64_t row_bytes(const struct raster_layout &layout)
@@ -196,27 +278,51 @@ class image_writer
     /* description: a text that the file keeps; name: of the finished file, for messages */
     image_writer(struct report *where, const char *path, const char *name, enum image_kind kind,
                  const struct raster_layout &image, const std::string &description)
-        : report(where), final_name(name), layout(image), sink(path)
+        : report(where), final_name(name), layout(image), is_png(kind == IMAGE_PNG), sink(path)
     {
+        if (sink.error_so_far() != 0)
+            fail();
         if (kind == IMAGE_TIFF)
             write_head(description);
         else
             open_encoder(path, kind, description);
     }
 
+    /* libpng prints a complaint where an image is given up before its first pixels are in the file.
+     */
+    ~image_writer()
+    {
+        try {
+            for (uint32_t noise = 1;
+                 is_png && !is_finished && sink.size() < give_up_bytes && next_row < layout.rows;) {
+                std::vector<unsigned char> row(size_t(row_bytes(layout)));
+                for (unsigned char &byte : row)
+                    byte =
+                        static_cast<unsigned char>((noise = noise * 1664525u + 1013904223u) >> 24);
+                write_rows(next_row, next_row + 1, row.data());
+            }
+        } catch (...) {
+            /* it is given up anyway */
+        }
+    }
+    image_writer(const image_writer &) = delete;
+    image_writer &operator=(const image_writer &) = delete;
+
     void write_rows(uint64_t first, uint64_t end, const void *pixels)
     {
+        next_row = end;
         const bool is_written = encoder
                                     ? encoder->write_scanlines(int(first), int(end), 0,
                                                                encoder->spec().format, pixels) &&
                                           !encoder->has_error()
                                     : write(pixels, (end - first) * row_bytes(layout));
-        if (!is_written)
+        if (!is_written || sink.error_so_far() != 0)
             fail();
     }
 
     void finish()
     {
+        is_finished = true;
         const bool is_closed = !encoder || (encoder->close() && !encoder->has_error());
         if (sink.finish() != 0 || !is_closed)
             fail();
@@ -254,7 +360,8 @@ class image_writer
 
     bool write(const void *bytes, uint64_t count)
     {
-        return sink.write(bytes, size_t(count)) == count;
+        sink.write(bytes, size_t(count));
+        return sink.error_so_far() == 0;
     }
 
     [[noreturn]] void fail()
@@ -270,6 +377,9 @@ class image_writer
     struct report *report;
     const char *final_name;
     const struct raster_layout layout;
+    const bool is_png;
+    bool is_finished = false;
+    uint64_t next_row = 0;
     file_sink sink;
     std::unique_ptr<OIIO::ImageOutput> encoder; /* none for TIFF */
 };
@@ -295,8 +405,21 @@ struct raster_file {
     std::string path;
     enum image_kind kind;
     struct raster_layout layout;
+    struct byte_ranges parts = {};
+    std::unique_ptr<OIIO::Filesystem::IOProxy>
+        view;                          /* if the decoder does not see the whole file */
+    std::vector<unsigned char> copied; /* what it sees, where it must lie in memory */
     std::unique_ptr<OIIO::ImageInput> input;
     OIIO::ImageSpec spec;
+
+    raster_file() = default;
+    ~raster_file()
+    {
+        input.reset();
+        std::free(parts.list);
+    }
+    raster_file(const raster_file &) = delete;
+    raster_file &operator=(const raster_file &) = delete;
 
     /* Reads whole rows (from a tiled image: those columns) into pixels. */
     void read(struct report *report, const struct region &region, void *pixels)
@@ -322,6 +445,20 @@ struct raster_file {
 namespace
 {
 
+/* OpenImageIO reads a JPEG from its own file or from memory. */
+void choose_view(struct raster_file &file)
+{
+    std::unique_ptr<file_view> view = std::make_unique<file_view>(file.path, file.parts);
+    if (file.kind == IMAGE_JPEG) {
+        file.copied.resize(view->size());
+        file.copied.resize(view->pread(file.copied.data(), file.copied.size(), 0));
+        file.view =
+            std::make_unique<OIIO::Filesystem::IOMemReader>(file.copied.data(), file.copied.size());
+    } else {
+        file.view = std::move(view);
+    }
+}
+
 void open_input(struct report *report, struct raster_file &file)
 {
     const char *path = file.path.c_str();
@@ -335,6 +472,11 @@ void open_input(struct report *report, struct raster_file &file)
     file.input->threads(1);
     /* pixels as they are stored, not multiplied by anything */
     configuration.attribute("oiio:UnassociatedAlpha", 1);
+    if (file.parts.count > 0) {
+        choose_view(file);
+        OIIO::Filesystem::IOProxy *proxy = file.view.get();
+        configuration.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+    }
     const bool is_open = file.input->open(file.path, file.spec, configuration);
     const std::string reason = file.input->geterror(); /* of warnings too */
     if (!is_open || !reason.empty())
@@ -372,23 +514,39 @@ void take_layout(struct report *report, struct raster_file &file)
                                      path, spec.format.c_str())};
 }
 
-/* Rows of an image without tiles: strips of whole rows, of which the region's columns are kept. */
+/* Rows that are decoded together. From within a strip libtiff does not start where channels are
+ * stored apart. */
+uint64_t rows_of_strip(const struct raster_file &file)
+{
+    const bool is_compressed = file.spec.get_string_attribute("compression") != "none";
+    const int rows = file.spec.get_int_attribute("tiff:RowsPerStrip", 1);
+    return file.kind == IMAGE_TIFF && is_compressed && rows > 1 ? uint64_t(rows) : 1;
+}
+
+/* Rows of an image without tiles: whole ones, of which the region's columns are kept. */
 void read_by_rows(struct report *report, struct raster_file &file, const struct region &region,
                   unsigned char *pixels)
 {
     const uint64_t pixel = file.layout.channels * pixel_bytes(file.layout.type);
-    const uint64_t at_once = rows_at_once(file.layout);
-    const uint64_t end = region.first_row + region.rows;
+    const uint64_t unit = rows_of_strip(file);
+    const uint64_t some = rows_at_once(file.layout) / unit * unit;
+    const uint64_t at_once = some > 0 ? some : unit;
+    const uint64_t region_end = region.first_row + region.rows;
+    const uint64_t wanted_end = (region_end - 1) / unit * unit + unit;
+    const uint64_t end = wanted_end < file.layout.rows ? wanted_end : file.layout.rows;
+    const uint64_t start = region.first_row / unit * unit;
     const uint64_t kept = region.columns * pixel;
-    std::vector<unsigned char> strip(
-        size_t((at_once < region.rows ? at_once : region.rows) * row_bytes(file.layout)));
-    for (uint64_t row = region.first_row; row < end; row += at_once) {
-        const uint64_t rows = end - row < at_once ? end - row : at_once;
-        file.read(report, {row, 0, rows, file.layout.columns}, strip.data());
-        for (uint64_t i = 0; i < rows; i++, pixels += kept)
-            std::memcpy(pixels,
-                        strip.data() + i * row_bytes(file.layout) + region.first_column * pixel,
-                        kept);
+    std::vector<unsigned char> rows(
+        size_t((at_once < end - start ? at_once : end - start) * row_bytes(file.layout)));
+    for (uint64_t first = start; first < end; first += at_once) {
+        const uint64_t last = end - first < at_once ? end : first + at_once;
+        file.read(report, {first, 0, last - first, file.layout.columns}, rows.data());
+        for (uint64_t row = first; row < last; row++)
+            if (row >= region.first_row && row < region_end)
+                std::memcpy(pixels + (row - region.first_row) * kept,
+                            rows.data() + (row - first) * row_bytes(file.layout) +
+                                region.first_column * pixel,
+                            kept);
     }
 }
 
@@ -439,7 +597,7 @@ std::unique_ptr<struct raster_file> open_file(struct report *report, const char 
     std::unique_ptr<struct raster_file> file(new struct raster_file);
     file->path = path;
     require(image_kind_of(report, path, &file->kind));
-    require(image_kind_check(report, path, file->kind));
+    require(image_kind_check(report, path, file->kind, &file->parts));
     open_input(report, *file);
     take_layout(report, *file);
     return file;
@@ -633,9 +791,11 @@ enum image_kind kind_to_write(struct report *report, const char *path,
                                      "%s: this format does not hold %u channels: write .tif with 1 "
                                      "to 3",
                                      path, layout.channels)};
-    const uint64_t side_max = uint64_t(std::numeric_limits<int>::max());
+    const uint64_t side_max = kind == IMAGE_PNG    ? png_side_max
+                              : kind == IMAGE_JPEG ? jpeg_side_max
+                                                   : uint64_t(std::numeric_limits<int>::max());
     if (layout.rows == 0 || layout.columns == 0 || layout.rows > side_max ||
-        layout.columns > side_max / 16)
+        layout.columns > side_max || layout.rows > pixels_max / layout.columns)
         throw failure{report_failure(
             report, SONJECT_ERROR_UNSUPPORTED, "%s: %llu x %llu pixels cannot be written", path,
             (unsigned long long)layout.rows, (unsigned long long)layout.columns)};

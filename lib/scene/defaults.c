@@ -8,7 +8,6 @@
 #include <sonject/seabed.h>
 #include <sonject/sonar.h>
 
-#define PI 3.14159265358979323846
 
 void sonject_sonar_params_init(sonject_sonar_params *sonar)
 {
@@ -66,14 +65,14 @@ void sonject_synthetic_params_init(sonject_synthetic_params *synthetic)
     synthetic->rows = 400;
     synthetic->columns = 400;
     synthetic->seed = 1;
-    synthetic->speckle_shape = 4.0;
-    synthetic->texture_length_m = 0.3;
-    synthetic->ripple_wavelength_m = 0.5;
-    synthetic->ripple_contrast = 0.5;
-    synthetic->ripple_heading_rad = PI / 3.0;
-    synthetic->patch_contrast_db = 3.0;
-    synthetic->patch_length_m = 4.0;
-    synthetic->mean_amplitude = 0.2;
+    synthetic->speckle_shape = 10.0;
+    synthetic->texture_length_m = 0.1;
+    synthetic->ripple_wavelength_m = 0.6;
+    synthetic->ripple_contrast = 0.6;
+    synthetic->ripple_heading_rad = 1.25;
+    synthetic->patch_contrast_db = 4.0;
+    synthetic->patch_length_m = 5.0;
+    synthetic->mean_amplitude = 0.1;
 }
 
 void sonject_injection_params_init(sonject_injection_params *injection)

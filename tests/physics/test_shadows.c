@@ -146,14 +146,14 @@ static void test_sphere(void **unused)
         const size_t middle = (size_t)(0.5 * (near + far));
         print_message("radius %.2f m, %.1f m over the seabed\n", a, -burials[i / 2]);
         /* the rows beside, which |W|^2 brings in, have a shorter shadow */
-        expect_close("shadow begins, column", crossing(row, 0, middle), near, 0.3);
-        expect_close("shadow ends, column", crossing(row, middle, COLUMNS - 1), far, 0.3);
+        expect_close("shadow begins, column", crossing(row, 0, middle), near, 0.06);
+        expect_close("shadow ends, column", crossing(row, middle, COLUMNS - 1), far, 0.06);
         /* in the middle of the shadow its width is that of the sphere */
         double line[ROWS];
         along_track(visibility, (size_t)(column_of_ground(&bench, h / tan(depression)) + 0.5), 1,
                     line);
         expect_close("width, rows", crossing(line, 100, ROWS - 1) - crossing(line, 0, 100),
-                     2.0 * a / 0.025, 0.5);
+                     2.0 * a / 0.025, 0.15);
         free(visibility);
         bench_close(&bench);
     }

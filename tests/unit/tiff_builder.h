@@ -29,6 +29,7 @@ struct tiff_bytes {
     const struct tiff_build *build;
     unsigned char *bytes;
     size_t count;
+    uint64_t entries; /* of the directory in the making */
 };
 
 static inline void tiff_put(struct tiff_bytes *out, uint64_t number, size_t size)
@@ -47,6 +48,7 @@ static inline void tiff_put_entry(struct tiff_bytes *out, uint64_t tag, uint64_t
                                   uint64_t count, uint64_t value)
 {
     const size_t size = type == 3 ? 2 : tiff_wide(out);
+    out->entries++;
     tiff_put(out, tag, 2);
     tiff_put(out, type, 2);
     tiff_put(out, count, tiff_wide(out));
@@ -98,7 +100,10 @@ static inline void tiff_put_directory(struct tiff_bytes *out,
     const uint64_t channels = build->layout.channels;
     const uint64_t format = build->layout.type == PIXEL_FLOAT32 ? 3 : 1;
     const uint64_t bits = 8 * pixel_bytes(build->layout.type);
-    tiff_put(out, 17, build->is_big ? 8 : 2);
+    const size_t head = out->count;
+    const size_t head_bytes = build->is_big ? 8 : 2;
+    out->entries = 0;
+    tiff_put(out, 0, head_bytes);
     tiff_put_entry(out, 254, place_type, 1, kind);
     tiff_put_entry(out, 256, 3, 1, build->layout.columns);
     tiff_put_entry(out, 257, 3, 1, build->layout.rows);
@@ -108,11 +113,11 @@ static inline void tiff_put_directory(struct tiff_bytes *out,
     if (!build->is_tiled)
         tiff_put_entry(out, 273, place_type, structure->block_count, offsets);
     tiff_put_entry(out, 277, 3, 1, channels);
-    tiff_put_entry(out, 278, 3, 1, build->block_rows);
-    if (!build->is_tiled)
+    if (!build->is_tiled) {
+        tiff_put_entry(out, 278, 3, 1, build->block_rows);
         tiff_put_entry(out, 279, place_type, structure->block_count, counts);
+    }
     tiff_put_entry(out, 284, 3, 1, build->is_separate ? 2 : 1);
-    tiff_put_entry(out, 305, 2, 4, 0x20202020); /* a blank text of this length fits in */
     tiff_put_entry(out, 317, 3, 1, build->predictor);
     if (build->is_tiled) {
         tiff_put_entry(out, 322, 3, 1, build->block_columns);
@@ -120,12 +125,11 @@ static inline void tiff_put_directory(struct tiff_bytes *out,
         tiff_put_entry(out, 324, place_type, structure->block_count, offsets);
         tiff_put_entry(out, 325, place_type, structure->block_count, counts);
     }
-    tiff_put_entry(out, 338, 3, channels > 1 ? 1 : 0, build->extra_channel);
+    if (channels > 1)
+        tiff_put_entry(out, 338, 3, 1, build->extra_channel);
     tiff_put_entry(out, 339, 3, channels, build->sample_format ? build->sample_format : format);
     tiff_put_entry(out, 65000, 2, sizeof TIFF_PRIVATE_TEXT, text);
-    if (!build->is_tiled) /* as many entries as with tiles */
-        for (uint64_t tag = 65001; tag < 65003; tag++)
-            tiff_put_entry(out, tag, 3, 1, 7);
+    number_to_bytes(out->entries, out->bytes + head, head_bytes, build->is_big_endian);
 }
 
 static inline struct tiff_structure tiff_structure_of(const struct tiff_build *build)
@@ -136,7 +140,8 @@ static inline struct tiff_structure tiff_structure_of(const struct tiff_build *b
         .is_big_endian = build->is_big_endian,
         .is_tiled = build->is_tiled,
         .is_separate = build->is_separate && build->layout.channels > 1,
-        .compression = build->compression,
+        .compression =
+            build->compression == TIFF_OLD_DEFLATE ? (uint32_t)TIFF_DEFLATE : build->compression,
         .predictor = build->predictor,
         .block_rows = build->block_rows,
         .block_columns = build->is_tiled ? build->block_columns : build->layout.columns};
@@ -152,7 +157,7 @@ static inline unsigned char *build_tiff(const struct tiff_build *build, const vo
                                         size_t *count)
 {
     const struct tiff_structure structure = tiff_structure_of(build);
-    struct tiff_bytes out = {build, calloc(TIFF_BUILD_CAPACITY, 1), 0};
+    struct tiff_bytes out = {build, calloc(TIFF_BUILD_CAPACITY, 1), 0, 0};
     uint64_t *places = calloc((size_t)structure.block_count, sizeof *places);
     size_t *counts = calloc((size_t)structure.block_count, sizeof *counts);
     assert_true(out.bytes && places && counts && structure.block_count > 1);

@@ -1,0 +1,961 @@
+/* Image files: what is written comes back, and a copy differs from its source in the patch alone.
+ */
+#define _POSIX_C_SOURCE 200809L
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <signal.h>
+#include <sys/resource.h>
+
+#include "io/raster_file.h"
+#include "temporary_folder.h"
+#include "tiff_builder.h"
+
+#define ROWS    53
+#define COLUMNS 71
+
+static const struct raster_layout grey8 = {ROWS, COLUMNS, 1, PIXEL_UINT8};
+static const struct raster_layout grey16 = {ROWS, COLUMNS, 1, PIXEL_UINT16};
+static const struct raster_layout real32 = {ROWS, COLUMNS, 1, PIXEL_FLOAT32};
+static const struct raster_layout complex32 = {ROWS, COLUMNS, 2, PIXEL_FLOAT32};
+static const struct region patch_region = {17, 23, 20, 31};
+
+static struct report report;
+
+static struct region whole_of(const struct raster_layout *layout)
+{
+    const struct region region = {0, 0, layout->rows, layout->columns};
+    return region;
+}
+
+static size_t pixel_size(const struct raster_layout *layout)
+{
+    return layout->channels * pixel_bytes(layout->type);
+}
+
+/* Pixels of a region, for free(); noisy, so that compression has to work. */
+static unsigned char *make_pixels(const struct raster_layout *layout, const struct region *region,
+                                  uint32_t seed)
+{
+    size_t bytes = 0;
+    assert_true(region_bytes(layout, region, &bytes));
+    unsigned char *pixels = calloc(bytes, 1);
+    float *floats = (float *)(void *)pixels;
+    assert_non_null(pixels);
+    for (size_t i = 0; i < bytes; i++) {
+        seed = seed * 1664525u + 1013904223u;
+        if (layout->type == PIXEL_FLOAT32 && i % 4 == 0)
+            floats[i / 4] = (float)(seed >> 8) * 1e-5f - 60.0f;
+        else if (layout->type != PIXEL_FLOAT32)
+            pixels[i] = (unsigned char)(seed >> 24);
+    }
+    return pixels;
+}
+
+static void expect_ok(sonject_status status)
+{
+    if (status != SONJECT_OK)
+        fail_msg("status %d: %s", (int)status, report.message);
+}
+
+static unsigned char *read_file(const char *path, const struct raster_layout *expected,
+                                const struct region *region)
+{
+    struct raster_file *file;
+    struct raster_layout layout;
+    size_t bytes = 0;
+    expect_ok(raster_file_open(&report, path, &file));
+    raster_file_layout(file, &layout);
+    assert_int_equal(layout.rows, expected->rows);
+    assert_int_equal(layout.columns, expected->columns);
+    assert_int_equal(layout.channels, expected->channels);
+    assert_int_equal(layout.type, expected->type);
+    assert_true(region_bytes(&layout, region, &bytes));
+    unsigned char *pixels = calloc(bytes, 1);
+    assert_non_null(pixels);
+    expect_ok(raster_file_read(&report, file, region, pixels));
+    raster_file_close(&file);
+    assert_null(file);
+    return pixels;
+}
+
+/* The file's pixels are those of whole, but in region those of patch (NULL: no patch). */
+static void expect_pixels(const char *path, const struct raster_layout *layout,
+                          const unsigned char *whole, const struct region *region,
+                          const unsigned char *patch)
+{
+    const struct region everything = whole_of(layout);
+    const size_t size = pixel_size(layout);
+    unsigned char *pixels = read_file(path, layout, &everything);
+    for (uint64_t row = 0; row < layout->rows; row++)
+        for (uint64_t i = 0; i < layout->columns; i++) {
+            const bool is_patch =
+                patch && row >= region->first_row && row < region->first_row + region->rows &&
+                i >= region->first_column && i < region->first_column + region->columns;
+            const unsigned char *expected =
+                is_patch ? patch + ((row - region->first_row) * region->columns + i -
+                                    region->first_column) *
+                                       size
+                         : whole + (row * layout->columns + i) * size;
+            if (memcmp(pixels + (row * layout->columns + i) * size, expected, size) != 0)
+                fail_msg("%s: the pixel at row %d, column %d is wrong", path, (int)row, (int)i);
+        }
+    free(pixels);
+}
+
+static void expect_message(const char *path, const char *part)
+{
+    if (!strstr(report.message, path) || !strstr(report.message, part))
+        fail_msg("'%s' does not name '%s' and '%s'", report.message, path, part);
+}
+
+static void expect_no_open(const char *path, const char *part)
+{
+    struct raster_file *file = (struct raster_file *)&report;
+    if (raster_file_open(&report, path, &file) != SONJECT_ERROR_INPUT)
+        fail_msg("%s was not refused (%s)", path, part);
+    assert_null(file);
+    expect_message(path, part);
+}
+
+struct format {
+    const char *name;
+    const struct raster_layout *layout;
+};
+
+static const struct format lossless[] = {{"a.tif", &grey8},  {"b.tiff", &grey16},
+                                         {"c.TIF", &real32}, {"d.tif", &complex32},
+                                         {"e.png", &grey8},  {"f.PNG", &grey16}};
+
+static void test_what_is_written_comes_back(void **state)
+{
+    struct temporary_folder *folder = *state;
+    for (size_t i = 0; i < sizeof lossless / sizeof *lossless; i++) {
+        const struct raster_layout *layout = lossless[i].layout;
+        const char *path = temporary_file(folder, lossless[i].name);
+        const struct region everything = whole_of(layout);
+        unsigned char *pixels = make_pixels(layout, &everything, 1);
+        expect_ok(raster_file_write(&report, path, layout, NULL, NULL, 0, pixels));
+        expect_pixels(path, layout, pixels, NULL, NULL);
+        assert_int_equal(count_entries(folder->path), i + 1);
+        free(pixels);
+    }
+}
+
+static void test_regions_are_cut_out(void **state)
+{
+    struct temporary_folder *folder = *state;
+    const char *path = temporary_file(folder, "a.tif");
+    const struct region everything = whole_of(&complex32);
+    const struct region regions[] = {{0, 0, 1, 1}, {52, 70, 1, 1}, {17, 23, 20, 31}, {0, 5, 53, 1}};
+    const size_t size = pixel_size(&complex32);
+    unsigned char *pixels = make_pixels(&complex32, &everything, 1);
+    expect_ok(raster_file_write(&report, path, &complex32, NULL, NULL, 0, pixels));
+    for (size_t i = 0; i < sizeof regions / sizeof *regions; i++) {
+        unsigned char *part = read_file(path, &complex32, &regions[i]);
+        for (uint64_t row = 0; row < regions[i].rows; row++)
+            assert_memory_equal(
+                part + row * regions[i].columns * size,
+                pixels + ((regions[i].first_row + row) * COLUMNS + regions[i].first_column) * size,
+                regions[i].columns * size);
+        free(part);
+    }
+    free(pixels);
+}
+
+/* Decoders run forwards; asking for earlier rows, or the same ones again, must not confuse them. */
+static void test_regions_in_any_order(void **state)
+{
+    struct temporary_folder *folder = *state;
+    static const char *const names[] = {"a.tif", "a.png", "a.jpg"};
+    const struct region everything = whole_of(&grey8);
+    const struct region regions[] = {{30, 5, 10, 20}, {2, 7, 20, 3}, {2, 7, 20, 3}, {52, 0, 1, 71}};
+    unsigned char *pixels = make_pixels(&grey8, &everything, 1);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const char *path = temporary_file(folder, names[i]);
+        struct raster_file *file;
+        expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
+        unsigned char *stored = read_file(path, &grey8, &everything);
+        expect_ok(raster_file_open(&report, path, &file));
+        for (size_t j = 0; j < sizeof regions / sizeof *regions; j++) {
+            unsigned char part[ROWS * COLUMNS];
+            expect_ok(raster_file_read(&report, file, &regions[j], part));
+            for (uint64_t row = 0; row < regions[j].rows; row++)
+                assert_memory_equal(part + row * regions[j].columns,
+                                    stored + (regions[j].first_row + row) * COLUMNS +
+                                        regions[j].first_column,
+                                    regions[j].columns);
+        }
+        raster_file_close(&file);
+        free(stored);
+    }
+    free(pixels);
+}
+
+static void test_a_region_outside_is_refused(void **state)
+{
+    struct temporary_folder *folder = *state;
+    const char *path = temporary_file(folder, "a.png");
+    const struct region everything = whole_of(&grey8);
+    const struct region outside = {40, 0, 14, 1};
+    unsigned char *pixels = make_pixels(&grey8, &everything, 1);
+    struct raster_file *file;
+    expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
+    expect_ok(raster_file_open(&report, path, &file));
+    assert_int_equal(raster_file_read(&report, file, &outside, pixels), SONJECT_ERROR_INPUT);
+    raster_file_close(&file);
+    assert_int_equal(raster_file_copy_with_patch(&report, path, path, &outside, pixels, NULL, NULL),
+                     SONJECT_ERROR_INPUT);
+    assert_int_equal(raster_file_write_placed(&report, path, &grey8, &outside, pixels),
+                     SONJECT_ERROR_STORAGE);
+    expect_pixels(path, &grey8, pixels, NULL, NULL);
+    free(pixels);
+}
+
+static void test_attributes(void **state)
+{
+    struct temporary_folder *folder = *state;
+    static const char *const names[] = {"a.tif", "b.png", "c.jpg"};
+    static const struct raster_attribute attributes[] = {{"sonject:frequency", "100000 Hz"},
+                                                         {"sonject:side", "port"}};
+    static const char *const channels[] = {"intensity"};
+    const struct region everything = whole_of(&grey8);
+    unsigned char *pixels = make_pixels(&grey8, &everything, 1);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const char *path = temporary_file(folder, names[i]);
+        char value[10];
+        struct raster_file *file;
+        expect_ok(raster_file_write(&report, path, &grey8, channels, attributes, 2, pixels));
+        expect_ok(raster_file_open(&report, path, &file));
+        assert_true(raster_file_attribute(file, "sonject:frequency", value, sizeof value));
+        assert_string_equal(value, "100000 Hz"); /* just fits */
+        assert_false(raster_file_attribute(file, "sonject:frequency", value, sizeof value - 1));
+        assert_true(raster_file_attribute(file, "sonject:side", value, sizeof value));
+        assert_string_equal(value, "port");
+        assert_true(raster_file_attribute(file, "channels", value, sizeof value));
+        assert_string_equal(value, "intensity");
+        assert_false(raster_file_attribute(file, "frequency", value, sizeof value));
+        assert_false(raster_file_attribute(file, "sonject:side", value, 0));
+        assert_int_equal(raster_file_is_lossless(file), i < 2);
+        raster_file_close(&file);
+    }
+    free(pixels);
+}
+
+static void test_the_same_pixels_give_the_same_file(void **state)
+{
+    struct temporary_folder *folder = *state;
+    static const char *const names[] = {"a.tif", "b.png", "c.jpg"};
+    const struct region everything = whole_of(&grey8);
+    unsigned char *pixels = make_pixels(&grey8, &everything, 1);
+    unsigned char *first[3];
+    size_t counts[3];
+    for (size_t i = 0; i < 3; i++) {
+        const char *path = temporary_file(folder, names[i]);
+        expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
+        first[i] = bytes_of_file(path, &counts[i]);
+    }
+    sleep(1); /* a file that holds the second of its making would differ now */
+    for (size_t i = 0; i < 3; i++) {
+        size_t count;
+        const char *path = temporary_file(folder, names[i]);
+        expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
+        unsigned char *again = bytes_of_file(path, &count);
+        assert_int_equal(count, counts[i]);
+        assert_memory_equal(again, first[i], count);
+        free(again);
+        free(first[i]);
+    }
+    free(pixels);
+}
+
+static void test_what_a_format_does_not_hold(void **state)
+{
+    struct temporary_folder *folder = *state;
+    const struct raster_layout colour = {4, 4, 3, PIXEL_UINT8};
+    const struct raster_layout empty = {0, 4, 1, PIXEL_UINT8};
+    const struct raster_layout two = {4, 4, 2, PIXEL_UINT8};
+    const struct raster_layout small = {4, 4, 1, PIXEL_FLOAT32};
+    const struct raster_layout wide = {4, 4, 1, PIXEL_UINT16};
+    const struct format refused[] = {{"a.png", &small}, {"a.jpg", &small}, {"a.jpg", &wide},
+                                     {"a.exr", &small}, {"a", &small},     {"a.png", &two},
+                                     {"a.png", &empty}, {"a.tif", &empty}};
+    const float pixels[48] = {0};
+    for (size_t i = 0; i < sizeof refused / sizeof *refused; i++)
+        if (raster_file_write(&report, temporary_file(folder, refused[i].name), refused[i].layout,
+                              NULL, NULL, 0, pixels) != SONJECT_ERROR_UNSUPPORTED)
+            fail_msg("%s (case %zu) was taken", refused[i].name, i);
+    assert_int_equal(count_entries(folder->path), 0);
+    expect_ok(raster_file_write(&report, temporary_file(folder, "a.png"), &colour, NULL, NULL, 0,
+                                pixels));
+    expect_no_open(folder->file, "3 channels");
+    expect_ok(raster_file_write(&report, temporary_file(folder, "a.tif"), &colour, NULL, NULL, 0,
+                                pixels));
+    expect_no_open(folder->file, "has 3 channels; sonject reads 1 (amplitude) or 2");
+    expect_ok(raster_file_write(&report, temporary_file(folder, "a.jpg"), &colour, NULL, NULL, 0,
+                                pixels));
+    expect_no_open(folder->file, "3 channels");
+}
+
+static void test_placed(void **state)
+{
+    struct temporary_folder *folder = *state;
+    for (size_t i = 0; i < sizeof lossless / sizeof *lossless; i++) {
+        const struct raster_layout *layout = lossless[i].layout;
+        const char *path = temporary_file(folder, lossless[i].name);
+        unsigned char *patch = make_pixels(layout, &patch_region, 3);
+        unsigned char *zeros = calloc(ROWS * COLUMNS, pixel_size(layout));
+        assert_non_null(zeros);
+        expect_ok(raster_file_write_placed(&report, path, layout, &patch_region, patch));
+        expect_pixels(path, layout, zeros, &patch_region, patch);
+        free(zeros);
+        free(patch);
+    }
+}
+
+/* Copies source into the folder and compares pixels; returns the copy's name. */
+static const char *copy_and_compare(struct temporary_folder *folder, const char *source,
+                                    const char *name, const struct raster_layout *layout,
+                                    const struct region *region, const unsigned char *pixels)
+{
+    char from[TEMPORARY_CAPACITY + 300];
+    snprintf(from, sizeof from, "%s", source);
+    const char *path = temporary_file(folder, name);
+    unsigned char *patch = make_pixels(layout, region, 99);
+    expect_ok(raster_file_copy_with_patch(&report, from, path, region, patch, NULL, NULL));
+    expect_pixels(path, layout, pixels, region, patch);
+    free(patch);
+    return path;
+}
+
+static void test_png_keeps_what_it_says(void **state)
+{
+    struct temporary_folder *folder = *state;
+    /* a chunk of a kind that nobody knows, whose checksum nobody looks at */
+    static const unsigned char chunk[] = {0,   0,   0,   4,   's', 'o', 'N', 'r',
+                                          'a', 'b', 'c', 'd', 1,   2,   3,   4};
+    static const struct raster_attribute attribute = {"sonject:side", "port"};
+    const struct raster_layout *layouts[] = {&grey8, &grey16};
+    for (size_t i = 0; i < 2; i++) {
+        const struct region everything = whole_of(layouts[i]);
+        unsigned char *pixels = make_pixels(layouts[i], &everything, 1);
+        const char *path = temporary_file(folder, "a.png");
+        size_t count;
+        expect_ok(raster_file_write(&report, path, layouts[i], NULL, &attribute, 1, pixels));
+        unsigned char *bytes = bytes_of_file(path, &count);
+        unsigned char *longer = calloc(count + sizeof chunk, 1);
+        const size_t head = 8 + 25; /* signature and IHDR */
+        memcpy(longer, bytes, head);
+        memcpy(longer + head, chunk, sizeof chunk);
+        memcpy(longer + head + sizeof chunk, bytes + head, count - head);
+        write_bytes(path, longer, count + sizeof chunk);
+        path = copy_and_compare(folder, path, "b.png", layouts[i], &patch_region, pixels);
+        size_t copy_count;
+        unsigned char *copy = bytes_of_file(path, &copy_count);
+        assert_memory_equal(copy, longer, head + sizeof chunk);
+        struct raster_file *file;
+        char value[8];
+        expect_ok(raster_file_open(&report, path, &file));
+        assert_true(raster_file_attribute(file, "sonject:side", value, sizeof value));
+        assert_string_equal(value, "port");
+        raster_file_close(&file);
+        free(copy);
+        free(longer);
+        free(bytes);
+        free(pixels);
+    }
+}
+
+static void test_jpeg_keeps_what_it_says_and_nearly_all_pixels(void **state)
+{
+    struct temporary_folder *folder = *state;
+    static const unsigned char segment[] = {0xFF, 0xE7, 0, 9, 's', 'o', 'n', 'a', 'r', '!', 0};
+    const struct region everything = whole_of(&grey8);
+    unsigned char *pixels = make_pixels(&grey8, &everything, 1);
+    unsigned char *patch = make_pixels(&grey8, &patch_region, 2);
+    char source[TEMPORARY_CAPACITY + 300];
+    size_t count;
+    snprintf(source, sizeof source, "%s", temporary_file(folder, "a.jpg"));
+    expect_ok(raster_file_write(&report, source, &grey8, NULL, NULL, 0, pixels));
+    unsigned char *bytes = bytes_of_file(source, &count);
+    unsigned char *longer = calloc(count + sizeof segment, 1);
+    memcpy(longer, bytes, 2);
+    memcpy(longer + 2, segment, sizeof segment);
+    memcpy(longer + 2 + sizeof segment, bytes + 2, count - 2);
+    write_bytes(source, longer, count + sizeof segment);
+    const char *path = temporary_file(folder, "b.jpg");
+    expect_ok(raster_file_copy_with_patch(&report, source, path, &patch_region, patch, NULL, NULL));
+    size_t copy_count;
+    unsigned char *copy = bytes_of_file(path, &copy_count);
+    assert_memory_equal(copy, longer, 2 + sizeof segment);
+    unsigned char *before = read_file(source, &grey8, &everything);
+    unsigned char *after = read_file(path, &grey8, &everything);
+    for (uint64_t row = 0; row < ROWS; row++)
+        for (uint64_t i = 0; i < COLUMNS; i++) {
+            const bool is_patch = row >= patch_region.first_row &&
+                                  row - patch_region.first_row < patch_region.rows &&
+                                  i >= patch_region.first_column &&
+                                  i - patch_region.first_column < patch_region.columns;
+            const int expected = is_patch
+                                     ? patch[(row - patch_region.first_row) * patch_region.columns +
+                                             i - patch_region.first_column]
+                                     : before[row * COLUMNS + i];
+            /* at quality 98 the frequencies of a block are kept in steps of 1...5 of 2040 */
+            if (abs(after[row * COLUMNS + i] - expected) > 5)
+                fail_msg("row %d, column %d: %d is not about %d", (int)row, (int)i,
+                         after[row * COLUMNS + i], expected);
+        }
+    free(before);
+    free(after);
+    free(copy);
+    free(longer);
+    free(bytes);
+    free(pixels);
+    free(patch);
+}
+
+struct coding {
+    uint32_t compression, predictor;
+};
+
+/* Bytes of b that are not those of a; what b is longer does not count. */
+static size_t count_changes(const unsigned char *a, size_t a_count, const unsigned char *b)
+{
+    size_t changes = 0;
+    for (size_t i = 0; i < a_count; i++)
+        changes += a[i] != b[i];
+    return changes;
+}
+
+static void expect_copy_of_build(struct temporary_folder *folder, const struct tiff_build *build)
+{
+    const struct region everything = whole_of(&build->layout);
+    unsigned char *pixels = make_pixels(&build->layout, &everything, 7);
+    const char *path = temporary_file(folder, "a.tif");
+    size_t count;
+    size_t copy_count;
+    unsigned char *source = build_tiff(build, pixels, &count);
+    write_bytes(path, source, count);
+    expect_pixels(path, &build->layout, pixels, NULL, NULL);
+    path = copy_and_compare(folder, path, "b.tif", &build->layout, &patch_region, pixels);
+    unsigned char *copy = bytes_of_file(path, &copy_count);
+    const size_t changes = count_changes(source, count, copy);
+    if (build->compression == TIFF_UNCOMPRESSED) {
+        assert_int_equal(copy_count, count);
+        assert_true(changes > 0 && changes <= patch_region.rows * patch_region.columns *
+                                                  pixel_size(&build->layout));
+    } else {
+        /* two entries of the directory: type, count and place of each */
+        assert_true(copy_count > count);
+        assert_true(changes > 0 && changes <= 2 * 18);
+    }
+    free(copy);
+    free(source);
+    free(pixels);
+}
+
+static void test_tiff_of_every_build(void **state)
+{
+    struct temporary_folder *folder = *state;
+    static const struct coding codings[] = {
+        {TIFF_UNCOMPRESSED, 1}, {TIFF_PACKBITS, 1}, {TIFF_LZW, 1},
+        {TIFF_LZW, 2},          {TIFF_DEFLATE, 1},  {TIFF_DEFLATE, 2},
+        {TIFF_OLD_DEFLATE, 1},  {TIFF_LZW, 3},      {TIFF_DEFLATE, 3}};
+    const struct raster_layout *layouts[] = {&grey8, &grey16, &real32, &complex32};
+    for (unsigned i = 0; i < 9 * 4 * 16; i++) {
+        const struct coding *coding = &codings[i / 64];
+        struct tiff_build build = {.layout = *layouts[i / 16 % 4],
+                                   .is_big = i & 1,
+                                   .is_big_endian = (i & 2) != 0,
+                                   .is_tiled = (i & 4) != 0,
+                                   .is_separate = (i & 8) != 0,
+                                   .has_second_page = (i & 1) != 0,
+                                   .compression = coding->compression,
+                                   .predictor = coding->predictor,
+                                   .block_rows = 16,
+                                   .block_columns = 32};
+        if ((coding->predictor == 3 && build.layout.type != PIXEL_FLOAT32) ||
+            (build.is_separate && build.layout.channels == 1))
+            continue;
+        expect_copy_of_build(folder, &build);
+    }
+}
+
+/* Some writers store equal tiles once: changing one must not change the others. */
+static void test_blocks_that_are_stored_once(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct tiff_build build = {.layout = grey8,
+                               .is_tiled = true,
+                               .shares_blocks = true,
+                               .compression = TIFF_UNCOMPRESSED,
+                               .predictor = 1,
+                               .block_rows = 16,
+                               .block_columns = 32};
+    build.layout.rows = 48;
+    build.layout.columns = 64;
+    unsigned char pixels[48 * 64];
+    size_t count;
+    for (size_t i = 0; i < sizeof pixels; i++) /* all tiles are equal */
+        pixels[i] = (unsigned char)((i / 64 % 16) * 16 + i % 32);
+    unsigned char *source = build_tiff(&build, pixels, &count);
+    const struct region corner = {20, 40, 3, 3};
+    const char *path = temporary_file(folder, "a.tif");
+    write_bytes(path, source, count);
+    expect_pixels(path, &build.layout, pixels, NULL, NULL);
+    (void)copy_and_compare(folder, path, "b.tif", &build.layout, &corner, pixels);
+    free(source);
+}
+
+static void expect_build_refused(struct temporary_folder *folder, const struct tiff_build *build,
+                                 const char *part)
+{
+    const struct region everything = whole_of(&build->layout);
+    unsigned char *pixels = make_pixels(&build->layout, &everything, 7);
+    size_t count;
+    unsigned char *source = build_tiff(build, pixels, &count);
+    const char *path = temporary_file(folder, "a.tif");
+    write_bytes(path, source, count);
+    expect_no_open(path, part);
+    free(source);
+    free(pixels);
+}
+
+static void test_tiff_that_is_not_for_sonject(void **state)
+{
+    struct temporary_folder *folder = *state;
+    const struct tiff_build plain = {
+        .layout = grey8, .compression = TIFF_UNCOMPRESSED, .predictor = 1, .block_rows = 16};
+    struct tiff_build build = plain;
+    build.bits = 1;
+    expect_build_refused(folder, &build, "1-bit");
+    build.bits = 4;
+    expect_build_refused(folder, &build, "4-bit");
+    build.bits = 0;
+    build.sample_format = 2;
+    expect_build_refused(folder, &build, "signed");
+    build.sample_format = 6;
+    expect_build_refused(folder, &build, "complex");
+    build = plain;
+    build.photometric = 1 + 0;
+    expect_build_refused(folder, &build, "0 is white");
+    build.photometric = 1 + 3;
+    expect_build_refused(folder, &build, "palette");
+    build = plain;
+    build.compression = 7;
+    expect_build_refused(folder, &build, "compression (number 7)");
+    build = plain;
+    build.has_second_page = true;
+    build.second_page_kind = 1;
+    expect_build_refused(folder, &build, "smaller copies");
+    build = plain;
+    build.layout = complex32;
+    build.extra_channel = 2;
+    expect_build_refused(folder, &build, "transparency");
+}
+
+/* Makes the checksum of the PNG's first chunk right. */
+static void sum_png_header(unsigned char *png)
+{
+    uint32_t sum = 0xFFFFFFFF;
+    for (size_t i = 12; i < 29; i++) {
+        sum ^= png[i];
+        for (int bit = 0; bit < 8; bit++)
+            sum = sum & 1 ? sum >> 1 ^ 0xEDB88320 : sum >> 1;
+    }
+    number_to_bytes(~sum & 0xFFFFFFFF, png + 29, 4, true);
+}
+
+static void test_png_that_is_not_for_sonject(void **state)
+{
+    struct temporary_folder *folder = *state;
+    const struct region everything = whole_of(&grey8);
+    unsigned char *pixels = make_pixels(&grey8, &everything, 1);
+    const char *path = temporary_file(folder, "a.png");
+    size_t count;
+    expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
+    unsigned char *bytes = bytes_of_file(path, &count);
+    static const struct {
+        unsigned char bits, colours;
+        const char *part;
+    } cases[] = {{1, 0, "1-bit"}, {4, 0, "4-bit"},       {8, 2, "3 channels"}, {8, 3, "palette"},
+                 {8, 4, "2 ch"},  {16, 6, "4 channels"}, {8, 1, "unknown"},    {8, 255, "unknown"}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        bytes[24] = cases[i].bits;
+        bytes[25] = cases[i].colours;
+        sum_png_header(bytes);
+        write_bytes(path, bytes, count);
+        expect_no_open(path, cases[i].part);
+    }
+    free(bytes);
+    free(pixels);
+}
+
+static void put_big(unsigned char *bytes, uint64_t number)
+{
+    number_to_bytes(number, bytes, 4, true);
+}
+
+static void test_absurd_dimensions(void **state)
+{
+    struct temporary_folder *folder = *state;
+    const struct region everything = whole_of(&grey8);
+    static const uint64_t sides[][2] = {{1u << 31, 1u << 31},
+                                        {(1u << 31) - 1, (1u << 31) - 1},
+                                        {1u << 20, (1u << 20) + 1},
+                                        {0, 5},
+                                        {5, 0},
+                                        {1u << 19, 1u << 19},
+                                        {1, (1u << 31) - 1},
+                                        {(1u << 31) - 1, 1},
+                                        {0xFFFFFFFF, 0xFFFFFFFF}};
+    unsigned char *pixels = make_pixels(&grey8, &everything, 1);
+    size_t count;
+    const char *path = temporary_file(folder, "a.png");
+    expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
+    unsigned char *png = bytes_of_file(path, &count);
+    for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
+        put_big(png + 16, sides[i][0]);
+        put_big(png + 20, sides[i][1]);
+        sum_png_header(png);
+        write_bytes(path, png, count);
+        expect_no_open(path, "");
+    }
+    free(png);
+    path = temporary_file(folder, "a.tif");
+    expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
+    unsigned char *tiff = bytes_of_file(path, &count);
+    for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
+        const bool is_big_endian = tiff[0] == 'M';
+        number_to_bytes(sides[i][0], tiff + 10 + 8, 4, is_big_endian); /* the first two entries */
+        number_to_bytes(sides[i][1], tiff + 22 + 8, 4, is_big_endian);
+        write_bytes(path, tiff, count);
+        expect_no_open(path, "");
+    }
+    free(tiff);
+    free(pixels);
+}
+
+static void test_files_that_are_no_images(void **state)
+{
+    struct temporary_folder *folder = *state;
+    expect_no_open(temporary_file(folder, "missing.tif"), "No such file");
+    expect_no_open(folder->path, "directory");
+    write_bytes(temporary_file(folder, "a.tif"), "", 0);
+    expect_no_open(folder->file, "empty");
+    write_bytes(temporary_file(folder, "a.tif"), "Please convert me.", 18);
+    expect_no_open(folder->file, "not a TIFF, PNG or JPEG");
+    write_bytes(temporary_file(folder, "a.tif"), "GIF89a", 6);
+    expect_no_open(folder->file, "not a TIFF, PNG or JPEG");
+    const unsigned char pixels[4] = {0};
+    const struct region region = {0, 0, 1, 1};
+    char missing[TEMPORARY_CAPACITY + 300];
+    snprintf(missing, sizeof missing, "%s", temporary_file(folder, "missing.tif"));
+    assert_int_equal(raster_file_copy_with_patch(&report, missing, temporary_file(folder, "b.tif"),
+                                                 &region, pixels, NULL, NULL),
+                     SONJECT_ERROR_INPUT);
+    expect_message(missing, "No such file");
+    assert_int_equal(count_entries(folder->path), 1);
+}
+
+/* What a damaged file may lead to. */
+struct damage {
+    const char *source, *copy;
+    unsigned char *patch;
+    size_t taken, refused; /* files */
+};
+
+static void try_damaged(struct damage *damage, const unsigned char *bytes, size_t count)
+{
+    struct raster_file *file;
+    FILE *out = fopen(damage->source, "wb");
+    if (!out || fwrite(bytes, 1, count, out) != count || fclose(out) != 0)
+        return;
+    unlink(damage->copy);
+    sonject_status status = raster_file_open(&report, damage->source, &file);
+    if (status == SONJECT_OK) {
+        struct raster_layout layout;
+        raster_file_layout(file, &layout);
+        if (region_is_inside(&layout, &patch_region) && layout.channels == 1 &&
+            layout.type == PIXEL_UINT8)
+            status = raster_file_read(&report, file, &patch_region, damage->patch);
+        raster_file_close(&file);
+        if (status == SONJECT_OK)
+            status = raster_file_copy_with_patch(&report, damage->source, damage->copy,
+                                                 &patch_region, damage->patch, NULL, NULL);
+    }
+    const bool has_copy = access(damage->copy, F_OK) == 0;
+    if (status == SONJECT_OK && has_copy)
+        damage->taken++;
+    else if (status == SONJECT_ERROR_INPUT && !has_copy && strstr(report.message, damage->source))
+        damage->refused++;
+}
+
+/* Everything that goes to stdout or stderr meanwhile lands in a file. */
+struct silence {
+    int kept_out, kept_error;
+};
+
+static struct silence listen_to_output(const char *path)
+{
+    const struct silence silence = {dup(1), dup(2)};
+    fflush(stdout);
+    fflush(stderr);
+    FILE *file = fopen(path, "wb");
+    if (file) {
+        (void)dup2(fileno(file), 1);
+        (void)dup2(fileno(file), 2);
+        fclose(file);
+    }
+    return silence;
+}
+
+static void stop_listening(struct silence silence)
+{
+    fflush(stdout);
+    fflush(stderr);
+    (void)dup2(silence.kept_out, 1);
+    (void)dup2(silence.kept_error, 2);
+    close(silence.kept_out);
+    close(silence.kept_error);
+}
+
+static void expect_silence(const char *path)
+{
+    size_t count;
+    unsigned char *said = bytes_of_file(path, &count);
+    if (count > 0)
+        fail_msg("something was printed: %s", (const char *)said);
+    free(said);
+}
+
+static const char *const damaged_names[] = {"plain.tif", "deflate.tif", "lzw.tif", "a.png",
+                                            "a.jpg"};
+
+/* A good file to do harm to, for free(). */
+static unsigned char *make_victim(struct temporary_folder *folder, size_t index,
+                                  const unsigned char *pixels, size_t *count)
+{
+    const struct tiff_build build = {.layout = grey8,
+                                     .compression = index == 1 ? TIFF_DEFLATE : TIFF_LZW,
+                                     .predictor = 2,
+                                     .is_tiled = index == 2,
+                                     .has_second_page = true,
+                                     .block_rows = 16,
+                                     .block_columns = 16};
+    const char *path = temporary_file(folder, damaged_names[index]);
+    if (index == 1 || index == 2)
+        return build_tiff(&build, pixels, count);
+    expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
+    return bytes_of_file(path, count);
+}
+
+struct damage_paths {
+    char source[TEMPORARY_CAPACITY + 300];
+    char copy[TEMPORARY_CAPACITY + 310];
+    char output[TEMPORARY_CAPACITY + 300];
+};
+
+static struct damage_paths name_damage(struct temporary_folder *folder, size_t index)
+{
+    struct damage_paths paths;
+    snprintf(paths.source, sizeof paths.source, "%s", temporary_file(folder, damaged_names[index]));
+    snprintf(paths.output, sizeof paths.output, "%s", temporary_file(folder, "output"));
+    snprintf(paths.copy, sizeof paths.copy, "%s/copy-%s", folder->path, damaged_names[index]);
+    return paths;
+}
+
+static void test_files_that_are_cut_short(void **state)
+{
+    struct temporary_folder *folder = *state;
+    const struct region everything = whole_of(&grey8);
+    unsigned char *pixels = make_pixels(&grey8, &everything, 1);
+    unsigned char *patch = make_pixels(&grey8, &patch_region, 2);
+    for (size_t i = 0; i < sizeof damaged_names / sizeof *damaged_names; i++) {
+        size_t count;
+        unsigned char *bytes = make_victim(folder, i, pixels, &count);
+        const struct damage_paths paths = name_damage(folder, i);
+        struct damage damage = {paths.source, paths.copy, patch, 0, 0};
+        size_t tried = 0;
+        const struct silence silence = listen_to_output(paths.output);
+        /* every length near the beginning and the end, some between */
+        for (size_t length = 0; length < count; tried++) {
+            try_damaged(&damage, bytes, length);
+            length += length > 300 && length + 320 < count ? 13 : 1;
+        }
+        stop_listening(silence);
+        expect_silence(paths.output);
+        if (damage.refused != tried)
+            fail_msg("%s: of %zu, %zu were refused and %zu taken", damaged_names[i], tried,
+                     damage.refused, damage.taken);
+        try_damaged(&damage, bytes, count);
+        assert_int_equal(damage.taken, 1);
+        (void)unlink(paths.copy);
+        (void)unlink(paths.source);
+        (void)unlink(paths.output);
+        assert_int_equal(count_entries(folder->path), 0);
+        free(bytes);
+    }
+    free(patch);
+    free(pixels);
+}
+
+/* Changed bytes give some other image or none, but never a crash, a half-written file or noise. */
+static void test_files_that_are_damaged(void **state)
+{
+    struct temporary_folder *folder = *state;
+    const struct region everything = whole_of(&grey8);
+    unsigned char *pixels = make_pixels(&grey8, &everything, 1);
+    unsigned char *patch = make_pixels(&grey8, &patch_region, 2);
+    uint32_t random = 1;
+    for (size_t i = 0; i < sizeof damaged_names / sizeof *damaged_names; i++) {
+        size_t count;
+        unsigned char *bytes = make_victim(folder, i, pixels, &count);
+        const struct damage_paths paths = name_damage(folder, i);
+        struct damage damage = {paths.source, paths.copy, patch, 0, 0};
+        const size_t tries = 150;
+        const struct silence silence = listen_to_output(paths.output);
+        for (size_t attempt = 0; attempt < tries; attempt++) {
+            unsigned char kept[3];
+            size_t places[3];
+            /* half of them among the first and last bytes, where directories are */
+            for (int j = 0; j < 3; j++) {
+                random = random * 1664525u + 1013904223u;
+                places[j] = random % 4 < 2   ? (random >> 8) % count
+                            : random % 4 < 3 ? (random >> 8) % 200
+                                             : count - 1 - (random >> 8) % 300;
+                kept[j] = bytes[places[j]];
+                bytes[places[j]] = (unsigned char)(random >> 24);
+            }
+            try_damaged(&damage, bytes, count);
+            for (int j = 3; j-- > 0;)
+                bytes[places[j]] = kept[j];
+        }
+        stop_listening(silence);
+        expect_silence(paths.output);
+        if (damage.taken + damage.refused != tries)
+            fail_msg("%s: of %zu, %zu were refused and %zu taken, last: %s", damaged_names[i],
+                     tries, damage.refused, damage.taken, report.message);
+        (void)unlink(paths.copy);
+        (void)unlink(paths.source);
+        (void)unlink(paths.output);
+        assert_int_equal(count_entries(folder->path), 0);
+        free(bytes);
+    }
+    free(patch);
+    free(pixels);
+}
+
+static int cancel(void *user, double fraction, const char *stage)
+{
+    int *calls = user;
+    assert_true(fraction >= 0.0 && fraction <= 1.0 && stage != NULL);
+    return ++*calls == 1;
+}
+
+static int count_calls(void *user, double fraction, const char *stage)
+{
+    int *calls = user;
+    (void)stage;
+    assert_true(fraction > 0.0 && fraction <= 1.0);
+    ++*calls;
+    return 0;
+}
+
+static void test_cancelling(void **state)
+{
+    struct temporary_folder *folder = *state;
+    static const char *const names[] = {"a.tif", "a.png", "a.jpg"};
+    const struct region everything = whole_of(&grey8);
+    unsigned char *pixels = make_pixels(&grey8, &everything, 1);
+    for (size_t i = 0; i < 3; i++) {
+        char source[TEMPORARY_CAPACITY + 300];
+        char copy[TEMPORARY_CAPACITY + 310];
+        snprintf(source, sizeof source, "%s", temporary_file(folder, names[i]));
+        snprintf(copy, sizeof copy, "%s/copy-%s", folder->path, names[i]);
+        int calls = 0;
+        expect_ok(raster_file_write(&report, source, &grey8, NULL, NULL, 0, pixels));
+        assert_int_equal(raster_file_copy_with_patch(&report, source, copy, &patch_region, pixels,
+                                                     cancel, &calls),
+                         SONJECT_CANCELLED);
+        assert_int_equal(count_entries(folder->path), i + 1);
+        calls = 0;
+        expect_ok(raster_file_copy_with_patch(&report, source, copy, &patch_region, pixels,
+                                              count_calls, &calls));
+        assert_true(calls > 0);
+        unlink(copy);
+    }
+    free(pixels);
+}
+
+/* A limit on the size of files is as near as a test gets to a full disk. */
+static void test_a_full_disk(void **state)
+{
+    struct temporary_folder *folder = *state;
+    static const char *const names[] = {"a.tif", "a.png", "a.jpg"};
+    const struct region everything = whole_of(&grey8);
+    unsigned char *pixels = make_pixels(&grey8, &everything, 1);
+    struct rlimit kept;
+    struct rlimit low;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &kept), 0);
+    low = kept;
+    signal(SIGXFSZ, SIG_IGN);
+    for (size_t i = 0; i < 3; i++) {
+        char source[TEMPORARY_CAPACITY + 300];
+        char copy[TEMPORARY_CAPACITY + 310];
+        snprintf(source, sizeof source, "%s", temporary_file(folder, names[i]));
+        snprintf(copy, sizeof copy, "%s/copy-%s", folder->path, names[i]);
+        expect_ok(raster_file_write(&report, source, &grey8, NULL, NULL, 0, pixels));
+        for (rlim_t limit = 0; limit < 3000; limit += 200) {
+            low.rlim_cur = limit;
+            assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
+            const sonject_status copied = raster_file_copy_with_patch(
+                &report, source, copy, &patch_region, pixels, NULL, NULL);
+            const bool names_it = strstr(report.message, copy) != NULL &&
+                                  strstr(report.message, "File too large") != NULL;
+            const sonject_status written =
+                raster_file_write(&report, copy, &grey8, NULL, NULL, 0, pixels);
+            assert_int_equal(setrlimit(RLIMIT_FSIZE, &kept), 0);
+            if (copied != SONJECT_ERROR_STORAGE || !names_it || written != SONJECT_ERROR_STORAGE)
+                fail_msg("%s, limit %d: copy %d, write %d, message '%s'", names[i], (int)limit,
+                         (int)copied, (int)written, report.message);
+            expect_message(copy, "File too large");
+            assert_int_equal(count_entries(folder->path), i + 1);
+        }
+    }
+    free(pixels);
+}
+
+#define WITH_FOLDER(test)                                                                          \
+    cmocka_unit_test_setup_teardown(test, make_temporary_folder, remove_temporary_folder)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        WITH_FOLDER(test_what_is_written_comes_back),
+        WITH_FOLDER(test_regions_are_cut_out),
+        WITH_FOLDER(test_regions_in_any_order),
+        WITH_FOLDER(test_a_region_outside_is_refused),
+        WITH_FOLDER(test_attributes),
+        WITH_FOLDER(test_the_same_pixels_give_the_same_file),
+        WITH_FOLDER(test_what_a_format_does_not_hold),
+        WITH_FOLDER(test_placed),
+        WITH_FOLDER(test_png_keeps_what_it_says),
+        WITH_FOLDER(test_jpeg_keeps_what_it_says_and_nearly_all_pixels),
+        WITH_FOLDER(test_tiff_of_every_build),
+        WITH_FOLDER(test_blocks_that_are_stored_once),
+        WITH_FOLDER(test_tiff_that_is_not_for_sonject),
+        WITH_FOLDER(test_png_that_is_not_for_sonject),
+        WITH_FOLDER(test_absurd_dimensions),
+        WITH_FOLDER(test_files_that_are_no_images),
+        WITH_FOLDER(test_files_that_are_cut_short),
+        WITH_FOLDER(test_files_that_are_damaged),
+        WITH_FOLDER(test_cancelling),
+        WITH_FOLDER(test_a_full_disk),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
