@@ -1,9 +1,9 @@
 /* Records that host and device share. Four-byte members only, so no compiler pads them; the host
- * asserts every size (lib/trace/records.c). */
+ * asserts every size (lib/trace/tracer.c). */
 #ifndef SONJECT_KERNELS_LAYOUT_H
 #define SONJECT_KERNELS_LAYOUT_H
 
-#include "width.h"
+#include "record_types.h"
 
 enum shape_kind {
     SHAPE_PLANE = 0,

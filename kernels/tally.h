@@ -4,6 +4,7 @@
 #define SONJECT_KERNELS_TALLY_H
 
 #include "layout.h"
+#include "width.h"
 
 /* A value this large is a fault of scaling: 2^12 of them would still fit. */
 #ifdef TALLY_IS_SHARED

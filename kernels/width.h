@@ -5,6 +5,8 @@
 #ifndef SONJECT_KERNELS_WIDTH_H
 #define SONJECT_KERNELS_WIDTH_H
 
+#include "record_types.h"
+
 #ifndef WIDTH
 #define WIDTH 1
 #endif
@@ -15,9 +17,6 @@
 #define FUNCTION    static inline
 #define GLOBAL      __global
 #define CONSTANT    __constant
-#define RECORD_INT  int
-#define RECORD_WORD uint
-#define TALLY       long
 #define JOIN_(a, b) a##b
 #define JOIN(a, b)  JOIN_(a, b)
 #if WIDTH == 1
@@ -72,9 +71,6 @@ typedef JOIN(int, WIDTH) mask;
 #define FUNCTION static inline
 #define GLOBAL
 #define CONSTANT
-#define RECORD_INT  int32_t
-#define RECORD_WORD uint32_t
-#define TALLY       int64_t
 #if WIDTH == 1
 typedef float real;
 typedef int32_t whole;

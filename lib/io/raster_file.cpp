@@ -31,6 +31,7 @@ namespace
 {
 
 constexpr uint64_t strip_bytes = 64u << 20;
+constexpr int png_filter_none = 8;          /* of libpng */
 constexpr uint64_t png_side_max = 1000000;  /* of libpng */
 constexpr uint64_t jpeg_side_max = 65500;   /* of libjpeg */
 constexpr size_t give_up_bytes = 64 * 1024; /* a PNG's pixels come in chunks of 8 KB */
@@ -277,7 +278,8 @@ class image_writer
   public:
     /* description: a text that the file keeps; name: of the finished file, for messages */
     image_writer(struct report *where, const char *path, const char *name, enum image_kind kind,
-                 const struct raster_layout &image, const std::string &description)
+                 const struct raster_layout &image, const std::string &description,
+                 bool is_mask = false)
         : report(where), final_name(name), layout(image), is_png(kind == IMAGE_PNG), sink(path)
     {
         if (sink.error_so_far() != 0)
@@ -285,7 +287,7 @@ class image_writer
         if (kind == IMAGE_TIFF)
             write_head(description);
         else
-            open_encoder(path, kind, description);
+            open_encoder(path, kind, description, is_mask);
     }
 
     /* libpng prints a complaint where an image is given up before its first pixels are in the file.
@@ -340,7 +342,8 @@ class image_writer
             fail();
     }
 
-    void open_encoder(const char *path, enum image_kind kind, const std::string &description)
+    void open_encoder(const char *path, enum image_kind kind, const std::string &description,
+                      bool is_mask)
     {
         OIIO::ImageSpec spec(int(layout.columns), int(layout.rows), int(layout.channels),
                              stored_type(layout.type));
@@ -350,6 +353,10 @@ class image_writer
             spec.attribute("Compression", jpeg_quality);
         if (!description.empty())
             spec.attribute(description_name, description);
+        if (is_mask) { /* mostly zeros: nothing is gained by trying hard */
+            spec.attribute("png:filter", png_filter_none);
+            spec.attribute("png:compressionLevel", 1);
+        }
         encoder = OIIO::ImageOutput::create(format_name(kind));
         if (!encoder)
             fail();
@@ -849,7 +856,7 @@ sonject_status raster_file_write_placed(struct report *report, const char *path,
             throw failure{report_failure(report, SONJECT_ERROR_STORAGE,
                                          "%s: the region is not inside the image", path)};
         const part_file part(path);
-        image_writer output(report, part.name, path, kind, *layout, "");
+        image_writer output(report, part.name, path, kind, *layout, "", true);
         const uint64_t at_once = rows_at_once(*layout);
         std::vector<unsigned char> strip(
             size_t((at_once < layout->rows ? at_once : layout->rows) * row_bytes(*layout)));
