@@ -47,13 +47,14 @@ install_packages() {
     apt install --no-install-recommends $missing
 }
 
-# Builds into ./build; a folder that an earlier call left, finished or not, is used again.
+# Builds into ./build; a folder that an earlier call left, finished or not, is used again. Arguments
+# go to meson setup.
 build_release() {
     if [ -f build/meson-private/coredata.dat ]; then
-        meson setup --reconfigure build --buildtype=release ||
-            meson setup --wipe build --buildtype=release
+        meson setup --reconfigure build --buildtype=release "$@" ||
+            meson setup --wipe build --buildtype=release "$@"
     else
-        meson setup build --buildtype=release
+        meson setup build --buildtype=release "$@"
     fi
     ninja -C build
 }

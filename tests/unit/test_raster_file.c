@@ -1,6 +1,7 @@
 /* Image files: what is written comes back, and a copy differs from its source in the patch alone.
  */
-#define _POSIX_C_SOURCE 200809L
+#define _POSIX_C_SOURCE   200809L
+#define _FILE_OFFSET_BITS 64
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,6 +13,7 @@
 #include <sys/resource.h>
 
 #include "io/raster_file.h"
+#include "io/tiff_head.h"
 #include "temporary_folder.h"
 #include "tiff_builder.h"
 
@@ -640,6 +642,33 @@ static void test_absurd_dimensions(void **state)
     free(pixels);
 }
 
+/* A file with holes: only its head and its last row are really there. */
+static void test_more_than_4_gb(void **state)
+{
+    struct temporary_folder *folder = *state;
+    const struct raster_layout layout = {70000, 70000, 1, PIXEL_UINT8};
+    const struct region last = {69998, 69990, 2, 10};
+    const struct region first = {0, 0, 1, 3};
+    const char *path = temporary_file(folder, "a.tif");
+    size_t count;
+    unsigned char *head = tiff_make_head(&layout, "", &count);
+    FILE *file = fopen(path, "wb");
+    assert_true(head && file);
+    assert_int_equal(fwrite(head, 1, count, file), count);
+    assert_int_equal(fseeko(file, (off_t)(count + layout.rows * layout.columns - 3), SEEK_SET), 0);
+    assert_int_equal(fwrite("end", 1, 3, file), 3);
+    assert_int_equal(fclose(file), 0);
+    unsigned char *pixels = read_file(path, &layout, &last);
+    assert_memory_equal(pixels, "\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0\0end", 20);
+    free(pixels);
+    pixels = read_file(path, &layout, &first);
+    assert_memory_equal(pixels, "\0\0", 3);
+    assert_int_equal(truncate(path, (off_t)(count + layout.rows * layout.columns - 1)), 0);
+    expect_no_open(path, "cut short");
+    free(pixels);
+    free(head);
+}
+
 static void test_files_that_are_no_images(void **state)
 {
     struct temporary_folder *folder = *state;
@@ -951,6 +980,7 @@ int main(void)
         WITH_FOLDER(test_tiff_that_is_not_for_sonject),
         WITH_FOLDER(test_png_that_is_not_for_sonject),
         WITH_FOLDER(test_absurd_dimensions),
+        WITH_FOLDER(test_more_than_4_gb),
         WITH_FOLDER(test_files_that_are_no_images),
         WITH_FOLDER(test_files_that_are_cut_short),
         WITH_FOLDER(test_files_that_are_damaged),
