@@ -8,6 +8,10 @@
 
 #include "base/report.h"
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 /* The message "path: cannot <action>: <reason>" for an errno. Returns STORAGE. */
 sonject_status file_failure(struct report *report, const char *path, const char *action, int error);
 
@@ -43,5 +47,9 @@ char *path_join(const char *folder, const char *name);
 
 /* The folder part of path ("" if none), to be given to free(). */
 char *path_folder(const char *path);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -7,6 +7,10 @@
 #include <sonject/context.h>
 #include <sonject/status.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 #define REPORT_CAPACITY 1024
 
 struct report {
@@ -31,5 +35,9 @@ sonject_status report_out_of_memory(struct report *report, const char *what);
 
 /* Sends a line to the log, if there is one. */
 void report_news(struct report *report, const char *format, ...) REPORT_FORMAT(2);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

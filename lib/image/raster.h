@@ -6,6 +6,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum pixel_type {
     PIXEL_UINT8,
     PIXEL_UINT16,
@@ -32,5 +36,9 @@ bool region_bytes(const struct raster_layout *layout, const struct region *regio
 
 /* True if region is not empty and lies inside the layout; safe against overflow. */
 bool region_is_inside(const struct raster_layout *layout, const struct region *region);
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

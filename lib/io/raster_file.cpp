@@ -1,395 +1,33 @@
-extern "C" {
-#include "base/file.h"
-#include "base/report.h"
-#include "image/raster.h"
-}
 #include "io/raster_file.h"
 
-#include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <limits>
 #include <memory>
 #include <new>
-#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
-#include "io/byte_file.h"
 #include "io/image_kind.h"
 #include "io/jpeg_segments.h"
 #include "io/png_chunks.h"
-#include "io/tiff_head.h"
+#include "io/raster_failure.hpp"
+#include "io/raster_streams.hpp"
+#include "io/raster_writer.hpp"
 #include "io/tiff_patch.h"
-#include "io/tiff_structure.h"
+
+using namespace raster;
 
 namespace
 {
 
-constexpr uint64_t strip_bytes = 64u << 20;
-constexpr int png_filter_none = 8;          /* of libpng */
-constexpr uint64_t png_side_max = 1000000;  /* of libpng */
-constexpr uint64_t jpeg_side_max = 65500;   /* of libjpeg */
-constexpr size_t give_up_bytes = 64 * 1024; /* a PNG's pixels come in chunks of 8 KB */
+constexpr uint64_t png_side_max = 1000000; /* of libpng */
+constexpr uint64_t jpeg_side_max = 65500;  /* of libjpeg */
 constexpr uint64_t pixels_max = uint64_t(1) << 40;
-
-/* Coarser coding would show in the noise of every pixel of the swath, not only near the target. */
-constexpr const char *jpeg_quality = "jpeg:98";
-
-/* What keeps text attributes, as lines of "name=value": every format has it. */
-constexpr const char *description_name = "ImageDescription";
-
-/* Thrown where a report has the message already. */
-struct failure {
-    sonject_status status;
-};
-
-void require(sonject_status status)
-{
-    if (status != SONJECT_OK)
-        throw failure{status};
-}
-
-/* Runs work and turns every exception into a status. */
-template <typename Work> sonject_status guarded(struct report *report, const char *path, Work work)
-{
-    try {
-        work();
-        return SONJECT_OK;
-    } catch (const failure &known) {
-        return known.status;
-    } catch (const std::bad_alloc &) {
-        return report_out_of_memory(report, path);
-    } catch (const std::length_error &) {
-        return report_out_of_memory(report, path);
-    } catch (const std::exception &unforeseen) {
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: %s", path, unforeseen.what());
-    } catch (...) {
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: cannot be processed", path);
-    }
-}
-
-OIIO::TypeDesc stored_type(enum pixel_type type)
-{
-    switch (type) {
-    case PIXEL_UINT8:
-        return OIIO::TypeDesc::UINT8;
-    case PIXEL_UINT16:
-        return OIIO::TypeDesc::UINT16;
-    case PIXEL_FLOAT32:
-        break;
-    }
-    return OIIO::TypeDesc::FLOAT;
-}
-
-const char *format_name(enum image_kind kind)
-{
-    switch (kind) {
-    case IMAGE_PNG:
-        return "png";
-    case IMAGE_JPEG:
-        return "jpeg";
-    case IMAGE_TIFF:
-        break;
-    }
-    return "tiff";
-}
-
-/* A file name that is removed when it goes out of scope, unless it was published before. */
-class part_file
-{
-  public:
-    explicit part_file(const char *path) : name(file_part_name(path))
-    {
-        if (!name)
-            throw std::bad_alloc();
-    }
-    ~part_file()
-    {
-        file_discard(name);
-        std::free(name);
-    }
-    part_file(const part_file &) = delete;
-    part_file &operator=(const part_file &) = delete;
-
-    char *const name;
-};
-
-/* Where encoders write to. They must not learn of a failure, for they would print it or end the
- * process: the bytes are dropped, and whoever drives the encoder asks for the error. */
-class file_sink final : public OIIO::Filesystem::IOProxy
-{
-  public:
-    explicit file_sink(const char *path)
-        : IOProxy(path, Write), file(std::fopen(path, "wb")), error_number(file ? 0 : errno)
-    {
-    }
-    ~file_sink() override
-    {
-        finish();
-    }
-    file_sink(const file_sink &) = delete;
-    file_sink &operator=(const file_sink &) = delete;
-
-    /* not "file": OpenImageIO would take this for a proxy of its own and look for a FILE in it */
-    const char *proxytype() const override
-    {
-        return "sink";
-    }
-    int64_t tell() override
-    {
-        return position;
-    }
-    bool seek(int64_t offset) override
-    {
-        position = offset;
-        if (file && error_number == 0)
-            check(fseeko(file, offset, SEEK_SET) == 0);
-        return true;
-    }
-    size_t write(const void *bytes, size_t count) override
-    {
-        if (file && error_number == 0)
-            check(std::fwrite(bytes, 1, count, file) == count);
-        position += int64_t(count);
-        end = position > end ? position : end;
-        return count;
-    }
-    size_t size() const override
-    {
-        return size_t(end);
-    }
-
-    /* 0, or the errno of the first failure. */
-    int error_so_far() const
-    {
-        return error_number;
-    }
-    int finish()
-    {
-        if (file && std::fclose(file) != 0)
-            check(false);
-        file = nullptr;
-        return error_number;
-    }
-
-  private:
-    void check(bool is_good)
-    {
-        if (!is_good && error_number == 0)
-            error_number = errno != 0 ? errno : EIO;
-    }
-
-    std::FILE *file;
-    int error_number;
-    int64_t position = 0;
-    int64_t end = 0;
-};
-
-/* Parts of a file as if there were nothing between them. */
-class file_view final : public OIIO::Filesystem::IOProxy
-{
-  public:
-    /* parts must stay where they are */
-    file_view(const std::string &path, const struct byte_ranges &chosen)
-        : IOProxy(path, Read), parts(chosen), file(byte_file_open(path.c_str(), &file_bytes))
-    {
-        for (size_t i = 0; i < parts.count; i++)
-            total += parts.list[i].count;
-    }
-    ~file_view() override
-    {
-        if (file)
-            std::fclose(file);
-    }
-    file_view(const file_view &) = delete;
-    file_view &operator=(const file_view &) = delete;
-
-    const char *proxytype() const override
-    {
-        return "view";
-    }
-    int64_t tell() override
-    {
-        return position;
-    }
-    bool seek(int64_t offset) override
-    {
-        position = offset;
-        return offset >= 0;
-    }
-    size_t read(void *bytes, size_t count) override
-    {
-        const size_t got = pread(bytes, count, position);
-        position += int64_t(got);
-        return got;
-    }
-    size_t pread(void *bytes, size_t count, int64_t offset) override
-    {
-        unsigned char *to = static_cast<unsigned char *>(bytes);
-        size_t got = 0;
-        uint64_t start = uint64_t(offset);
-        for (size_t i = 0; file && i < parts.count && got < count; i++) {
-            const struct byte_range &part = parts.list[i];
-            if (start >= part.count) {
-                start -= part.count;
-                continue;
-            }
-            const uint64_t left = part.count - start;
-            const size_t some = left < count - got ? size_t(left) : count - got;
-            if (!byte_file_read(file, part.place + start, to + got, some))
-                break;
-            got += some;
-            start = 0;
-        }
-        return got;
-    }
-    size_t size() const override
-    {
-        return size_t(total);
-    }
-
-  private:
-    const struct byte_ranges &parts;
-    uint64_t file_bytes = 0;
-    std::FILE *file;
-    uint64_t total = 0;
-    int64_t position = 0;
-};
-
-uint64_t row_bytes(const struct raster_layout &layout)
-{
-    return layout.columns * layout.channels * pixel_bytes(layout.type);
-}
-
-uint64_t rows_at_once(const struct raster_layout &layout)
-{
-    const uint64_t rows = strip_bytes / row_bytes(layout);
-    return rows > 0 ? rows : 1;
-}
-
-/* An image as it is written, row by row. */
-class image_writer
-{
-  public:
-    /* description: a text that the file keeps; name: of the finished file, for messages */
-    image_writer(struct report *where, const char *path, const char *name, enum image_kind kind,
-                 const struct raster_layout &image, const std::string &description,
-                 bool is_mask = false)
-        : report(where), final_name(name), layout(image), is_png(kind == IMAGE_PNG), sink(path)
-    {
-        if (sink.error_so_far() != 0)
-            fail();
-        if (kind == IMAGE_TIFF)
-            write_head(description);
-        else
-            open_encoder(path, kind, description, is_mask);
-    }
-
-    /* libpng prints a complaint where an image is given up before its first pixels are in the file.
-     */
-    ~image_writer()
-    {
-        try {
-            for (uint32_t noise = 1;
-                 is_png && !is_finished && sink.size() < give_up_bytes && next_row < layout.rows;) {
-                std::vector<unsigned char> row(size_t(row_bytes(layout)));
-                for (unsigned char &byte : row)
-                    byte =
-                        static_cast<unsigned char>((noise = noise * 1664525u + 1013904223u) >> 24);
-                write_rows(next_row, next_row + 1, row.data());
-            }
-        } catch (...) {
-            /* it is given up anyway */
-        }
-    }
-    image_writer(const image_writer &) = delete;
-    image_writer &operator=(const image_writer &) = delete;
-
-    void write_rows(uint64_t first, uint64_t end, const void *pixels)
-    {
-        next_row = end;
-        const bool is_written = encoder
-                                    ? encoder->write_scanlines(int(first), int(end), 0,
-                                                               encoder->spec().format, pixels) &&
-                                          !encoder->has_error()
-                                    : write(pixels, (end - first) * row_bytes(layout));
-        if (!is_written || sink.error_so_far() != 0)
-            fail();
-    }
-
-    void finish()
-    {
-        is_finished = true;
-        const bool is_closed = !encoder || (encoder->close() && !encoder->has_error());
-        if (sink.finish() != 0 || !is_closed)
-            fail();
-    }
-
-  private:
-    void write_head(const std::string &description)
-    {
-        size_t count = 0;
-        const std::unique_ptr<unsigned char, decltype(&std::free)> head(
-            tiff_make_head(&layout, description.c_str(), &count), &std::free);
-        if (!head)
-            throw std::bad_alloc();
-        if (!write(head.get(), count))
-            fail();
-    }
-
-    void open_encoder(const char *path, enum image_kind kind, const std::string &description,
-                      bool is_mask)
-    {
-        OIIO::ImageSpec spec(int(layout.columns), int(layout.rows), int(layout.channels),
-                             stored_type(layout.type));
-        OIIO::Filesystem::IOProxy *proxy = &sink;
-        spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-        if (kind == IMAGE_JPEG)
-            spec.attribute("Compression", jpeg_quality);
-        if (!description.empty())
-            spec.attribute(description_name, description);
-        if (is_mask) { /* mostly zeros: nothing is gained by trying hard */
-            spec.attribute("png:filter", png_filter_none);
-            spec.attribute("png:compressionLevel", 1);
-        }
-        encoder = OIIO::ImageOutput::create(format_name(kind));
-        if (!encoder)
-            fail();
-        encoder->threads(1);
-        if (!encoder->open(path, spec))
-            fail();
-    }
-
-    bool write(const void *bytes, uint64_t count)
-    {
-        sink.write(bytes, size_t(count));
-        return sink.error_so_far() == 0;
-    }
-
-    [[noreturn]] void fail()
-    {
-        const std::string reason = encoder ? encoder->geterror() : OIIO::geterror();
-        const int error_number = sink.finish();
-        if (error_number != 0)
-            throw failure{file_failure(report, final_name, "write", error_number)};
-        throw failure{report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot write: %s",
-                                     final_name, reason.c_str())};
-    }
-
-    struct report *report;
-    const char *final_name;
-    const struct raster_layout layout;
-    const bool is_png;
-    bool is_finished = false;
-    uint64_t next_row = 0;
-    file_sink sink;
-    std::unique_ptr<OIIO::ImageOutput> encoder; /* none for TIFF */
-};
 
 /* Puts the part of the patch that lies in rows first...end over these rows. */
 void overlay(const struct raster_layout &layout, const struct region &region, const void *patch,
@@ -694,17 +332,20 @@ void encode_copy(const copy_order &order, struct raster_file &source, const char
 {
     const struct raster_layout &layout = source.layout;
     const uint64_t at_once = rows_at_once(layout);
-    image_writer output(order.report, encoded, order.path, source.kind, layout, "");
+    std::unique_ptr<image_writer> output;
     std::vector<unsigned char> strip(
         size_t((at_once < layout.rows ? at_once : layout.rows) * row_bytes(layout)));
     for (uint64_t row = 0; row < layout.rows; row += at_once) {
         const uint64_t end = layout.rows - row < at_once ? layout.rows : row + at_once;
         source.read(order.report, {row, 0, end - row, layout.columns}, strip.data());
         overlay(layout, *order.region, order.pixels, row, end, strip.data());
-        output.write_rows(row, end, strip.data());
+        if (!output)
+            output = std::make_unique<image_writer>(order.report, encoded, order.path, source.kind,
+                                                    layout, "");
+        output->write_rows(row, end, strip.data());
         order.tell(double(end) / double(layout.rows));
     }
-    output.finish();
+    output->finish();
 }
 
 void copy_encoded(const copy_order &order, struct raster_file &source, const char *result)
@@ -737,17 +378,30 @@ void copy_tiff(const copy_order &order, struct raster_file &source, const char *
     require(tiff_copy_with_patch(order.report, &patch));
 }
 
-/* Whatever went into the copy must come out of it: a file that says contradictory things of itself
- * may fool the writer, but not the reader as well. */
-void check_copy(const copy_order &order, const struct raster_file &source, const char *result)
+bool holds_patch(const copy_order &order, const char *path)
 {
     size_t bytes = 0;
-    const std::unique_ptr<struct raster_file> copy = open_file(order.report, result);
-    if (!region_bytes(&source.layout, order.region, &bytes))
+    const std::unique_ptr<struct raster_file> copy = open_file(order.report, path);
+    if (!region_bytes(&copy->layout, order.region, &bytes))
         throw std::bad_alloc();
     std::vector<unsigned char> pixels(bytes);
     read_region(order.report, *copy, *order.region, pixels.data());
-    if (raster_file_is_lossless(copy.get()) && std::memcmp(pixels.data(), order.pixels, bytes) != 0)
+    return !raster_file_is_lossless(copy.get()) ||
+           std::memcmp(pixels.data(), order.pixels, bytes) == 0;
+}
+
+/* Whatever went into the copy must come out of it: a file that says contradictory things of itself
+ * may fool the writer, but not the reader as well. */
+void check_copy(const copy_order &order, const char *path)
+{
+    bool is_good = false;
+    try {
+        is_good = holds_patch(order, path);
+    } catch (const failure &known) {
+        if (known.status != SONJECT_ERROR_INPUT)
+            throw;
+    }
+    if (!is_good)
         throw failure{report_failure(order.report, SONJECT_ERROR_INPUT,
                                      "%s: damaged: its pixels cannot be replaced", order.source)};
 }
@@ -770,7 +424,7 @@ sonject_status raster_file_copy_with_patch(struct report *report, const char *so
             copy_tiff(order, *file, part.name);
         else
             copy_encoded(order, *file, part.name);
-        check_copy(order, *file, part.name);
+        check_copy(order, part.name);
         require(file_publish(report, part.name, path));
     });
 }

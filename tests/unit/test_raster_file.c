@@ -513,6 +513,78 @@ static void test_blocks_that_are_stored_once(void **state)
     free(source);
 }
 
+/* The new place must come with the new size: here blocks grow a lot. */
+static void test_blocks_that_grow(void **state)
+{
+    struct temporary_folder *folder = *state;
+    const struct tiff_build build = {.layout = grey8,
+                                     .has_runs = true,
+                                     .compression = TIFF_PACKBITS,
+                                     .predictor = 1,
+                                     .block_rows = 16};
+    unsigned char pixels[ROWS * COLUMNS];
+    size_t count;
+    for (size_t i = 0; i < sizeof pixels; i++)
+        pixels[i] = (unsigned char)(i / COLUMNS);
+    unsigned char *source = build_tiff(&build, pixels, &count);
+    const char *path = temporary_file(folder, "a.tif");
+    write_bytes(path, source, count);
+    expect_pixels(path, &grey8, pixels, NULL, NULL);
+    path = copy_and_compare(folder, path, "b.tif", &grey8, &patch_region, pixels);
+    struct tiff_structure structure;
+    expect_ok(tiff_structure_read(&report, path, &structure));
+    assert_true(structure.counts[0] < 16 * COLUMNS); /* untouched: runs */
+    assert_true(structure.counts[1] > 16 * COLUMNS); /* every byte for itself */
+    tiff_structure_clear(&structure);
+    free(source);
+}
+
+/* Deflate stores at most 65535 bytes at a time. */
+static void test_large_blocks(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct tiff_build build = {.compression = TIFF_DEFLATE, .predictor = 1, .block_rows = 256};
+    const struct raster_layout layout = {300, 513, 1, PIXEL_UINT8};
+    build.layout = layout;
+    const struct region everything = whole_of(&layout);
+    unsigned char *pixels = make_pixels(&layout, &everything, 7);
+    size_t count;
+    unsigned char *source = build_tiff(&build, pixels, &count);
+    const char *path = temporary_file(folder, "a.tif");
+    write_bytes(path, source, count);
+    expect_pixels(path, &layout, pixels, NULL, NULL);
+    (void)copy_and_compare(folder, path, "b.tif", &layout, &patch_region, pixels);
+    free(source);
+    free(pixels);
+}
+
+/* A strip that is said to lie where the directory is: the patch would destroy it. */
+static void test_a_file_that_contradicts_itself(void **state)
+{
+    struct temporary_folder *folder = *state;
+    const struct tiff_build build = {.layout = grey8,
+                                     .has_second_page = true,
+                                     .last_is_later = 150,
+                                     .compression = TIFF_UNCOMPRESSED,
+                                     .predictor = 1,
+                                     .block_rows = 16};
+    const struct region bottom = {ROWS - 5, 0, 5, COLUMNS};
+    const struct region everything = whole_of(&grey8);
+    unsigned char *pixels = make_pixels(&grey8, &everything, 7);
+    size_t count;
+    unsigned char *source = build_tiff(&build, pixels, &count);
+    char path[TEMPORARY_CAPACITY + 300];
+    snprintf(path, sizeof path, "%s", temporary_file(folder, "a.tif"));
+    write_bytes(path, source, count);
+    assert_int_equal(raster_file_copy_with_patch(&report, path, temporary_file(folder, "b.tif"),
+                                                 &bottom, pixels, NULL, NULL),
+                     SONJECT_ERROR_INPUT);
+    expect_message(path, "cannot be replaced");
+    assert_int_equal(count_entries(folder->path), 1);
+    free(source);
+    free(pixels);
+}
+
 static void expect_build_refused(struct temporary_folder *folder, const struct tiff_build *build,
                                  const char *part)
 {
@@ -627,6 +699,11 @@ static void test_absurd_dimensions(void **state)
         write_bytes(path, png, count);
         expect_no_open(path, "");
     }
+    put_big(png + 16, 1000001); /* more than libpng reads, but not too much for the file's size */
+    put_big(png + 20, 1);
+    sum_png_header(png);
+    write_bytes(path, png, count);
+    expect_no_open(path, "million");
     free(png);
     path = temporary_file(folder, "a.tif");
     expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
@@ -691,11 +768,34 @@ static void test_files_that_are_no_images(void **state)
     assert_int_equal(count_entries(folder->path), 1);
 }
 
+/* libjpeg fills what is missing with grey and only warns. */
+static void test_a_jpeg_that_ends_early(void **state)
+{
+    struct temporary_folder *folder = *state;
+    const struct region everything = whole_of(&grey8);
+    const char *path = temporary_file(folder, "a.jpg");
+    unsigned char *pixels = make_pixels(&grey8, &everything, 1);
+    struct raster_file *file;
+    size_t count;
+    expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
+    unsigned char *bytes = bytes_of_file(path, &count);
+    bytes[count / 2] = 0xFF;
+    bytes[count / 2 + 1] = 0xD9;
+    write_bytes(path, bytes, count);
+    expect_ok(raster_file_open(&report, path, &file));
+    assert_int_equal(raster_file_read(&report, file, &everything, pixels), SONJECT_ERROR_INPUT);
+    expect_message(path, "cut short or damaged");
+    raster_file_close(&file);
+    free(bytes);
+    free(pixels);
+}
+
 /* What a damaged file may lead to. */
 struct damage {
     const char *source, *copy;
     unsigned char *patch;
-    size_t taken, refused; /* files */
+    size_t taken, refused;  /* files */
+    size_t refused_at_once; /* when they were opened */
 };
 
 static void try_damaged(struct damage *damage, const unsigned char *bytes, size_t count)
@@ -706,6 +806,7 @@ static void try_damaged(struct damage *damage, const unsigned char *bytes, size_
         return;
     unlink(damage->copy);
     sonject_status status = raster_file_open(&report, damage->source, &file);
+    damage->refused_at_once += status == SONJECT_ERROR_INPUT;
     if (status == SONJECT_OK) {
         struct raster_layout layout;
         raster_file_layout(file, &layout);
@@ -808,7 +909,7 @@ static void test_files_that_are_cut_short(void **state)
         size_t count;
         unsigned char *bytes = make_victim(folder, i, pixels, &count);
         const struct damage_paths paths = name_damage(folder, i);
-        struct damage damage = {paths.source, paths.copy, patch, 0, 0};
+        struct damage damage = {paths.source, paths.copy, patch, 0, 0, 0};
         size_t tried = 0;
         const struct silence silence = listen_to_output(paths.output);
         /* every length near the beginning and the end, some between */
@@ -818,9 +919,9 @@ static void test_files_that_are_cut_short(void **state)
         }
         stop_listening(silence);
         expect_silence(paths.output);
-        if (damage.refused != tried)
-            fail_msg("%s: of %zu, %zu were refused and %zu taken", damaged_names[i], tried,
-                     damage.refused, damage.taken);
+        if (damage.refused != tried || damage.refused_at_once != tried)
+            fail_msg("%s: of %zu, %zu were refused, %zu at once, and %zu taken", damaged_names[i],
+                     tried, damage.refused, damage.refused_at_once, damage.taken);
         try_damaged(&damage, bytes, count);
         assert_int_equal(damage.taken, 1);
         (void)unlink(paths.copy);
@@ -845,7 +946,7 @@ static void test_files_that_are_damaged(void **state)
         size_t count;
         unsigned char *bytes = make_victim(folder, i, pixels, &count);
         const struct damage_paths paths = name_damage(folder, i);
-        struct damage damage = {paths.source, paths.copy, patch, 0, 0};
+        struct damage damage = {paths.source, paths.copy, patch, 0, 0, 0};
         const size_t tries = 150;
         const struct silence silence = listen_to_output(paths.output);
         for (size_t attempt = 0; attempt < tries; attempt++) {
@@ -977,11 +1078,15 @@ int main(void)
         WITH_FOLDER(test_jpeg_keeps_what_it_says_and_nearly_all_pixels),
         WITH_FOLDER(test_tiff_of_every_build),
         WITH_FOLDER(test_blocks_that_are_stored_once),
+        WITH_FOLDER(test_blocks_that_grow),
+        WITH_FOLDER(test_large_blocks),
+        WITH_FOLDER(test_a_file_that_contradicts_itself),
         WITH_FOLDER(test_tiff_that_is_not_for_sonject),
         WITH_FOLDER(test_png_that_is_not_for_sonject),
         WITH_FOLDER(test_absurd_dimensions),
         WITH_FOLDER(test_more_than_4_gb),
         WITH_FOLDER(test_files_that_are_no_images),
+        WITH_FOLDER(test_a_jpeg_that_ends_early),
         WITH_FOLDER(test_files_that_are_cut_short),
         WITH_FOLDER(test_files_that_are_damaged),
         WITH_FOLDER(test_cancelling),

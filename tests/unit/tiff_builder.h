@@ -16,7 +16,9 @@
 struct tiff_build {
     struct raster_layout layout;
     bool is_big, is_big_endian, is_tiled, is_separate;
-    bool shares_blocks; /* all blocks lie in the first one's place */
+    bool shares_blocks;     /* all blocks lie in the first one's place */
+    bool has_runs;          /* PackBits of rows of equal pixels */
+    uint64_t last_is_later; /* the last block is said to lie so many bytes further on */
     bool has_second_page;
     uint32_t second_page_kind; /* 1: a smaller copy of the first */
     uint32_t compression, predictor;
@@ -56,6 +58,20 @@ static inline void tiff_put_entry(struct tiff_bytes *out, uint64_t tag, uint64_t
         tiff_put(out, i / size < count ? value : 0, size);
 }
 
+/* Rows that repeat their first byte, in runs of up to 128; returns how long that is. */
+static inline size_t tiff_code_runs(const unsigned char *values, size_t row_bytes, uint64_t rows,
+                                    unsigned char *coded)
+{
+    size_t count = 0;
+    for (uint64_t row = 0; row < rows; row++)
+        for (size_t i = 0; i < row_bytes; i += 128) {
+            const size_t run = row_bytes - i < 128 ? row_bytes - i : 128;
+            coded[count++] = (unsigned char)(257 - run);
+            coded[count++] = values[row * row_bytes];
+        }
+    return count;
+}
+
 /* The part of pixels that a block holds, coded; returns its place. */
 static inline uint64_t tiff_put_block(struct tiff_bytes *out,
                                       const struct tiff_structure *structure, uint64_t block,
@@ -81,8 +97,11 @@ static inline uint64_t tiff_put_block(struct tiff_bytes *out,
                        in_block * size);
     unsigned char *coded =
         tiff_encode_block(structure, values, tiff_block_rows(structure, block), count);
-    const uint64_t place = out->count;
     assert_non_null(coded);
+    if (out->build->has_runs)
+        *count = tiff_code_runs(values, (size_t)structure->block_columns * in_block * size,
+                                tiff_block_rows(structure, block), coded);
+    const uint64_t place = out->count;
     assert_true(out->count + *count <= TIFF_BUILD_CAPACITY);
     memcpy(out->bytes + out->count, coded, *count);
     out->count += *count;
@@ -93,7 +112,7 @@ static inline uint64_t tiff_put_block(struct tiff_bytes *out,
 
 static inline void tiff_put_directory(struct tiff_bytes *out,
                                       const struct tiff_structure *structure, uint64_t kind,
-                                      uint64_t offsets, uint64_t counts, uint64_t text)
+                                      uint64_t offsets, uint64_t counts)
 {
     const struct tiff_build *build = out->build;
     const uint64_t place_type = build->is_big ? 16 : 4;
@@ -128,7 +147,7 @@ static inline void tiff_put_directory(struct tiff_bytes *out,
     if (channels > 1)
         tiff_put_entry(out, 338, 3, 1, build->extra_channel);
     tiff_put_entry(out, 339, 3, channels, build->sample_format ? build->sample_format : format);
-    tiff_put_entry(out, 65000, 2, sizeof TIFF_PRIVATE_TEXT, text);
+    tiff_put_entry(out, 65000, 2, sizeof TIFF_PRIVATE_TEXT, 0);
     number_to_bytes(out->entries, out->bytes + head, head_bytes, build->is_big_endian);
 }
 
@@ -173,6 +192,7 @@ static inline unsigned char *build_tiff(const struct tiff_build *build, const vo
         if (build->shares_blocks)
             places[i] = places[0];
     }
+    places[structure.block_count - 1] += build->last_is_later;
     out.count += out.count % 2;
     const uint64_t place_list = out.count;
     for (uint64_t i = 0; i < structure.block_count; i++)
@@ -180,16 +200,20 @@ static inline unsigned char *build_tiff(const struct tiff_build *build, const vo
     const uint64_t count_list = out.count;
     for (uint64_t i = 0; i < structure.block_count; i++)
         tiff_put(&out, counts[i], tiff_wide(&out));
-    const uint64_t text = out.count;
-    memcpy(out.bytes + out.count, TIFF_PRIVATE_TEXT, sizeof TIFF_PRIVATE_TEXT);
-    out.count += sizeof TIFF_PRIVATE_TEXT + sizeof TIFF_PRIVATE_TEXT % 2;
     number_to_bytes(out.count, out.bytes + first_directory, tiff_wide(&out), build->is_big_endian);
-    tiff_put_directory(&out, &structure, 0, place_list, count_list, text);
+    tiff_put_directory(&out, &structure, 0, place_list, count_list);
+    size_t text_entries[2] = {out.count - tiff_wide(&out), out.count - tiff_wide(&out)};
     if (build->has_second_page) {
         tiff_put(&out, out.count + tiff_wide(&out), tiff_wide(&out));
-        tiff_put_directory(&out, &structure, build->second_page_kind, place_list, count_list, text);
+        tiff_put_directory(&out, &structure, build->second_page_kind, place_list, count_list);
+        text_entries[1] = out.count - tiff_wide(&out);
     }
     tiff_put(&out, 0, tiff_wide(&out));
+    for (int i = 0; i < 2; i++) /* the last entry's value */
+        number_to_bytes(out.count, out.bytes + text_entries[i], tiff_wide(&out),
+                        build->is_big_endian);
+    memcpy(out.bytes + out.count, TIFF_PRIVATE_TEXT, sizeof TIFF_PRIVATE_TEXT);
+    out.count += sizeof TIFF_PRIVATE_TEXT;
     free(places);
     free(counts);
     *count = out.count;
