@@ -94,7 +94,8 @@ static void describe_objects(struct text *text, const struct scene *scene,
         const struct placement *placement = &placements[i];
         const double top = top_of(scene, placement, i);
         const double range = placement_range(placement, view) * view->range_ratio;
-        text_add(text, "object %-3u %s (%s): row %.1f, slant range %.2f m, top %.3f m, shadow %.2f m\n",
+        text_add(text,
+                 "object %-3u %s (%s): row %.1f, slant range %.2f m, top %.3f m, shadow %.2f m\n",
                  (unsigned)(i + 1), scene->objects[i].name, shape_name(scene->objects[i].shape),
                  view_row_of_x(view, placement->centre[0]), range, top,
                  shadow_length(view, placement, top));
@@ -108,8 +109,8 @@ static void mark(char plan[MAP_ROWS][MAP_COLUMNS + 1], const struct patch_view *
     for (int row = 0; row < MAP_ROWS; row++)
         for (int column = 0; column < MAP_COLUMNS; column++) {
             const double x = view_x_of_row(view, (row + 0.5) / MAP_ROWS * (double)view->rows);
-            const double range = view_apparent_range(
-                view, (column + 0.5) / MAP_COLUMNS * (double)view->columns);
+            const double range =
+                view_apparent_range(view, (column + 0.5) / MAP_COLUMNS * (double)view->columns);
             const double y = view_ground_range(view, range);
             const double half_x = 0.5 * (double)view->rows / MAP_ROWS * view->row_spacing_m;
             const double half_y =

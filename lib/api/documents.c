@@ -57,7 +57,8 @@ static json_t *box_document(const struct run_facts *facts, const sonject_box *bo
     add(document, "along_track_m",
         number(geometry->first_along_track_m + ((double)row - 0.5) * geometry->row_spacing_m));
     add(document, "slant_range_m",
-        number(geometry->first_slant_range_m + ((double)column - 0.5) * geometry->column_spacing_m));
+        number(geometry->first_slant_range_m +
+               ((double)column - 0.5) * geometry->column_spacing_m));
     add(document, "length_m", number((double)box->rows * geometry->row_spacing_m));
     add(document, "width_m", number((double)box->columns * geometry->column_spacing_m));
     return document;
@@ -130,8 +131,8 @@ static uint32_t category_of(const struct scene *scene, uint32_t index)
         while (strcmp(scene->objects[first].class_name, scene->objects[i].class_name) != 0)
             first++;
         category += first == i;
-        if (i < index && strcmp(scene->objects[i].class_name,
-                                scene->objects[index].class_name) == 0)
+        if (i < index &&
+            strcmp(scene->objects[i].class_name, scene->objects[index].class_name) == 0)
             return category;
     }
     return category;

@@ -30,8 +30,7 @@ void geometry_notes_init(struct geometry_notes *notes, const sonject_sonar_param
     note(notes, 6, "sonject:first_slant_range_m",
          geometry->first_slant_range_m + first_column * geometry->column_spacing_m);
     notes->attributes[7].name = "sonject:side";
-    notes->attributes[7].value =
-        geometry->side == SONJECT_SIDE_STARBOARD ? "starboard" : "port";
+    notes->attributes[7].value = geometry->side == SONJECT_SIDE_STARBOARD ? "starboard" : "port";
     notes->attributes[8].name = "sonject:range_axis";
     notes->attributes[8].value = "slant";
 }

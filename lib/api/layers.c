@@ -21,8 +21,8 @@ static sonject_status write_float_layer(struct report *report, const struct geom
     attributes[GEOMETRY_NOTES_COUNT] =
         (struct raster_attribute){"sonject:phase_sign", "exp(+i 2 pi f t)"};
     attributes[GEOMETRY_NOTES_COUNT + 1] = (struct raster_attribute){
-        "sonject:normalisation", channels == 2 ? "target_strength, |pixel|^2 in m^2"
-                                               : "target_strength, pixel in m^2"};
+        "sonject:normalisation",
+        channels == 2 ? "target_strength, |pixel|^2 in m^2" : "target_strength, pixel in m^2"};
     static const char *const complex_names[] = {"real", "imag"};
     return raster_file_write(report, path, &layout, channels == 2 ? complex_names : NULL,
                              attributes, sizeof attributes / sizeof *attributes, pixels);
@@ -62,8 +62,8 @@ static sonject_status draw_panels(struct report *report, const struct scene *sce
     struct plot_frame frame;
     frame.rows = swath->patch.rows;
     frame.columns = swath->patch.columns;
-    frame.first_along_track_m = geometry->first_along_track_m +
-                                (double)swath->patch.first_row * geometry->row_spacing_m;
+    frame.first_along_track_m =
+        geometry->first_along_track_m + (double)swath->patch.first_row * geometry->row_spacing_m;
     frame.row_spacing_m = geometry->row_spacing_m;
     frame.first_range_m = geometry->first_slant_range_m +
                           (double)swath->patch.first_column * geometry->column_spacing_m;

@@ -81,9 +81,8 @@ static sonject_status read_reduced(struct report *report, const char *path,
         return report_out_of_memory(report, path);
     unsigned char *stored = allocate_array(bytes, 1);
     float *linear = allocate_array((size_t)layout.columns, layout.channels * sizeof *linear);
-    sonject_status status = stored && linear && image->amplitude
-                                ? SONJECT_OK
-                                : report_out_of_memory(report, path);
+    sonject_status status =
+        stored && linear && image->amplitude ? SONJECT_OK : report_out_of_memory(report, path);
     for (; status == SONJECT_OK && strip.first_row < layout.rows; strip.first_row += strip.rows) {
         if (strip.rows > layout.rows - strip.first_row)
             strip.rows = layout.rows - strip.first_row;
@@ -106,16 +105,18 @@ static sonject_status to_ground_range(struct report *report, struct view_image *
     if (!(altitude > 0.0))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "a ground range axis needs the altitude: give --altitude");
-    const double last = frame->first_range_m + frame->column_spacing_m * (double)(image->columns - 1);
+    const double last =
+        frame->first_range_m + frame->column_spacing_m * (double)(image->columns - 1);
     if (last <= altitude)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "no column lies beyond the altitude of %g m", altitude);
-    const double start = sqrt(fmax(0.0, frame->first_range_m * frame->first_range_m -
-                                            altitude * altitude));
+    const double start =
+        sqrt(fmax(0.0, frame->first_range_m * frame->first_range_m - altitude * altitude));
     const double end = sqrt(last * last - altitude * altitude);
-    const size_t columns = (size_t)fmax(1.0, fmin(floor((end - start) / frame->column_spacing_m) + 1.0,
-                                                  4.0 * SIDE_LIMIT));
-    const double step = columns > 1 ? (end - start) / (double)(columns - 1) : frame->column_spacing_m;
+    const size_t columns = (size_t)fmax(
+        1.0, fmin(floor((end - start) / frame->column_spacing_m) + 1.0, 4.0 * SIDE_LIMIT));
+    const double step =
+        columns > 1 ? (end - start) / (double)(columns - 1) : frame->column_spacing_m;
     float *ground = allocate_array(image->rows * columns, sizeof *ground);
     if (!ground)
         return report_out_of_memory(report, "the ground range image");

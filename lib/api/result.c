@@ -21,7 +21,8 @@ static sonject_status take_pixels(struct report *report, const sonject_pixels *p
         pixels->columns > limit || pixels->rows * pixels->columns > limit)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "the patch of %llu x %llu pixels is empty or has more than 2^31",
-                              (unsigned long long)pixels->rows, (unsigned long long)pixels->columns);
+                              (unsigned long long)pixels->rows,
+                              (unsigned long long)pixels->columns);
     const size_t row_bytes = (size_t)pixels->columns * parts * sizeof(float);
     const size_t stride = pixels->row_stride ? (size_t)pixels->row_stride : row_bytes;
     if (stride < row_bytes)
@@ -67,8 +68,7 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *sce
         return null_argument(&context->report, "scene");
     struct injection_input input;
     float *owned = NULL;
-    sonject_status status =
-        find_input(&context->report, &scene->scene, pixels, &input, &owned);
+    sonject_status status = find_input(&context->report, &scene->scene, pixels, &input, &owned);
     struct device *device = NULL;
     if (status == SONJECT_OK)
         status = context_device(context, &device);

@@ -101,8 +101,8 @@ static sonject_status run_swath(struct sonject_context *context, const struct sc
     input.pixels = swath->pixels;
     sonject_status status = context_device(context, &device);
     if (status == SONJECT_OK)
-        status = injection_run(&context->report, device, scene, &input, tell_stage, &tracing,
-                               &result);
+        status =
+            injection_run(&context->report, device, scene, &input, tell_stage, &tracing, &result);
     if (status != SONJECT_OK)
         return status;
     result.statistics.input_clipped = swath->clipped;
@@ -164,8 +164,8 @@ sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
         return null_argument(&context->report, "scene");
     sonject_run_params taken;
     sonject_run_params_init(&taken);
-    const sonject_status status = params_take(&context->report, &taken, sizeof taken, params,
-                                              sizeof taken, "run parameters");
+    const sonject_status status =
+        params_take(&context->report, &taken, sizeof taken, params, sizeof taken, "run parameters");
     if (status != SONJECT_OK)
         return status;
     if (!taken.folder || !taken.folder[0])

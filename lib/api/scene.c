@@ -12,8 +12,8 @@
         if (!(scene_handle))                                                                       \
             return SONJECT_ERROR_ARGUMENT;                                                         \
         type taken = (scene_handle)->scene.member;                                                 \
-        sonject_status status = params_take((scene_handle)->report, &taken, sizeof taken, params,  \
-                                            sizeof taken, name);                                   \
+        sonject_status status =                                                                    \
+            params_take((scene_handle)->report, &taken, sizeof taken, params, sizeof taken, name); \
         if (status == SONJECT_OK)                                                                  \
             status = checker(&taken, (scene_handle)->report, NULL);                                \
         if (status == SONJECT_OK)                                                                  \
@@ -44,8 +44,7 @@ void sonject_scene_release(sonject_scene **scene)
 }
 
 sonject_status sonject_scene_read(sonject_context *context, const char *path,
-                                  const char *const *overrides, size_t count,
-                                  sonject_scene **scene)
+                                  const char *const *overrides, size_t count, sonject_scene **scene)
 {
     if (!context || !scene)
         return SONJECT_ERROR_ARGUMENT;
@@ -136,9 +135,11 @@ sonject_status sonject_scene_set_input_uniform(sonject_scene *scene, uint32_t ro
     return status;
 }
 
-static sonject_status take_synthetic(sonject_scene *scene, const sonject_synthetic_params *synthetic)
+static sonject_status take_synthetic(sonject_scene *scene,
+                                     const sonject_synthetic_params *synthetic)
 {
-    SET_CHECKED(scene, sonject_synthetic_params, synthetic, synthetic, check_synthetic, "synthetic");
+    SET_CHECKED(scene, sonject_synthetic_params, synthetic, synthetic, check_synthetic,
+                "synthetic");
 }
 
 sonject_status sonject_scene_set_input_synthetic(sonject_scene *scene,

@@ -36,8 +36,8 @@ static sonject_status check_all(struct report *report, const sonject_seabed_file
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: a synthetic seabed is written as .tif or .png", params->image);
     if (params->synthetic.complex_pixels && !ends_with(params->image, ".tif"))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: complex pixels need .tif", params->image);
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: complex pixels need .tif",
+                              params->image);
     sonject_status status = check_synthetic(&params->synthetic, report, NULL);
     if (status == SONJECT_OK)
         status = check_geometry(&params->geometry, report, NULL);
@@ -86,9 +86,9 @@ sonject_status sonject_seabed_write(sonject_context *context,
         geometry_notes_init(&notes, &taken.sonar, &taken.geometry, 0.0, 0.0);
         if (is_png)
             to_bytes((float *)input.pixels, input.rows * input.columns);
-        status = raster_file_write(report, taken.image, &layout,
-                                   input.is_complex ? complex_names : NULL, notes.attributes,
-                                   GEOMETRY_NOTES_COUNT, input.pixels);
+        status =
+            raster_file_write(report, taken.image, &layout, input.is_complex ? complex_names : NULL,
+                              notes.attributes, GEOMETRY_NOTES_COUNT, input.pixels);
         free((void *)input.pixels);
     }
     scene_clear(&scene);

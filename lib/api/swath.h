@@ -12,12 +12,13 @@
 struct swath {
     struct raster_layout layout; /* of the whole swath */
     struct region patch;
-    void *stored;                /* the patch's pixels as the file stores them; NULL if made */
-    float *pixels;               /* the patch, linear: amplitudes or pairs */
+    void *stored;  /* the patch's pixels as the file stores them; NULL if made */
+    float *pixels; /* the patch, linear: amplitudes or pairs */
     bool is_complex;
     bool is_lossless;
-    uint64_t clipped;            /* pixels at full scale */
-    char identity[HASH_TEXT_CAPACITY]; /* of path, size, time and patch pixels; of parameters if made */
+    uint64_t clipped;                  /* pixels at full scale */
+    char identity[HASH_TEXT_CAPACITY]; /* of path, size, time and patch pixels; of parameters if
+                                          made */
 };
 
 /* Finds layout and patch without reading pixels (a made swath: from its parameters). Errors: INPUT,
@@ -33,9 +34,9 @@ void swath_close(struct swath *swath);
  * NULL when memory is out. */
 char *swath_image_name(const struct scene *scene);
 
-/* Writes the swath with the result's patch at path, in the input's format, type and transfer; pixels
- * that were not touched keep their stored bytes. *clipped gets the number of touched pixels that
- * full scale cut. Errors: INPUT, STORAGE, MEMORY, CANCELLED. */
+/* Writes the swath with the result's patch at path, in the input's format, type and transfer;
+ * pixels that were not touched keep their stored bytes. *clipped gets the number of touched pixels
+ * that full scale cut. Errors: INPUT, STORAGE, MEMORY, CANCELLED. */
 sonject_status swath_write(struct report *report, const struct scene *scene,
                            const struct swath *swath, const struct injection_result *result,
                            const char *path, sonject_progress_function progress, void *user,

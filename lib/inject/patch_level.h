@@ -9,11 +9,12 @@
 
 /* Owned planes, rows x columns of the view. */
 struct patch_level {
-    float *intensity;    /* measured */
-    float *level;        /* smooth local mean of it, > 0 */
-    float *map;          /* reflectivity over mu0 for the tracer */
-    float *cell_energy;  /* expected cross-section of a pixel of plain seabed (mu0), m^2; a column each */
-    double noise_ratio;  /* noise energy over level */
+    float *intensity;   /* measured */
+    float *level;       /* smooth local mean of it, > 0 */
+    float *map;         /* reflectivity over mu0 for the tracer */
+    float *cell_energy; /* expected cross-section of a pixel of plain seabed (mu0), m^2; a column
+                           each */
+    double noise_ratio; /* noise energy over level */
 };
 
 /* pixels: amplitudes or pairs, in the view's row order. Errors: INPUT (nothing but zeros; not a

@@ -8,7 +8,6 @@
 #include <sonject/seabed.h>
 #include <sonject/sonar.h>
 
-
 void sonject_sonar_params_init(sonject_sonar_params *sonar)
 {
     memset(sonar, 0, sizeof *sonar);
