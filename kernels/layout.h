@@ -18,8 +18,10 @@ enum random_stream {
     STREAM_SEABED_SPECKLE = 2,
     STREAM_NOISE = 3,
     STREAM_INPUT_PHASE = 4,
-    STREAM_SMOOTH_RAYS = 256,   /* + object */
-    STREAM_OBJECT_SPECKLE = 512 /* + object */
+    STREAM_CHAIN_SPECKLE = 5,
+    STREAM_SMOOTH_RAYS = 256,    /* + object */
+    STREAM_OBJECT_SPECKLE = 512, /* + object */
+    STREAM_CHAIN_RAYS = 769      /* + first surface: object, -1 the seabed, -2 any */
 };
 
 /* Bits that a work-item reports; any of them fails the run. */
@@ -27,6 +29,26 @@ enum fault {
     FAULT_NOT_A_NUMBER = 1,
     FAULT_OVERFLOW = 2,
     FAULT_OUTSIDE_TILE = 4
+};
+
+enum reflection_kind {
+    REFLECTION_NONE = 0, /* no smooth part */
+    REFLECTION_CONSTANT = 1,
+    REFLECTION_FLUID = 2
+};
+
+/* What a surface does with sound; the record of a sonject_material_params. */
+struct surface_record {
+    RECORD_INT reflection_kind;
+    float reflection;    /* amplitude; CONSTANT */
+    float density_ratio; /* FLUID */
+    float index_real;    /* FLUID: square of the refractive index k2/k, real and imaginary part */
+    float index_imaginary;
+    float roughness_phase;  /* 2 k eta: P = roughness_phase * cos(angle) */
+    float lambert;          /* mu */
+    float lambert_exponent; /* n >= 1 */
+    float glossy_albedo;
+    float glossy_slope; /* rms */
 };
 
 /* One object in the frame of a launch. */
@@ -38,10 +60,7 @@ struct object_record {
     float half_width;      /* m: plane */
     float radius;          /* m: sphere, cylinder, capsule */
     float bounding_radius; /* m, about the centre */
-    float reflection;      /* amplitude of the smooth part */
-    float roughness_phase; /* 2 k eta: P = roughness_phase * cos(angle) */
-    float lambert;         /* mu */
-    RECORD_INT has_smooth_part;
+    struct surface_record surface;
     /* Where the object's echoes and shadow are tallied, in the tile buffer (incoherent part). */
     RECORD_WORD tile_offset;     /* first element */
     RECORD_INT tile_first_strip; /* strips of the launch's track */
@@ -90,8 +109,39 @@ struct fan_record {
     float inverse_wavelength; /* 1/m */
     RECORD_WORD seed_low, seed_high, stream;
     RECORD_INT objects;
-    RECORD_INT only_object; /* smooth part: the object whose glints are wanted */
+    RECORD_INT only_object; /* smooth part: the object whose glints are wanted; chains: the first
+                               surface, -1 the seabed, -2 any */
     RECORD_INT segments;    /* work-items that share a strip */
+};
+
+/* A sphere around a part of a target; a target lies within the union of its spheres. */
+struct sphere_record {
+    float centre_x, centre_y, centre_z; /* m, in the frame */
+    float radius;
+};
+
+enum chain_estimator {
+    CHAINS_CONNECT = 0,    /* every hit is connected to the source */
+    CHAINS_BRUTE_FORCE = 1 /* a path counts when it meets the source's rectangle by itself */
+};
+
+/* How chains of several interactions are walked and where their echoes are tallied: planes of the
+ * whole track's strips times bins. */
+struct chain_record {
+    RECORD_INT interactions; /* most surfaces that a path may meet */
+    RECORD_INT estimator;
+    RECORD_INT is_focused;     /* echoes go to the mean of first and last hit, else to the first */
+    RECORD_INT is_reciprocal;  /* focused, and the source is a point at the receiver: a path between
+                                  seabed and target found one way also stands for its reverse */
+    RECORD_INT forward_is_map; /* the seabed's lambert part is times the map */
+    RECORD_INT spheres;        /* of targets */
+    float seabed_share;     /* of the seabed's rays that are followed, over the sum of the targets'
+                               openings as seen from there; 0: all are */
+    RECORD_INT first_order; /* lowest that is tallied */
+    RECORD_INT planes;      /* orders kept apart from first_order on, or 1: all in one */
+    RECORD_INT tally_first_strip;
+    RECORD_INT tally_strips;
+    struct surface_record seabed;
 };
 
 /* What a work-item counted. */
@@ -99,7 +149,7 @@ struct outcome_record {
     RECORD_WORD queries; /* rays and visibility tests */
     RECORD_WORD impulses;
     RECORD_WORD faults;
-    RECORD_WORD reserved;
+    RECORD_WORD rays; /* that were followed */
 };
 
 #endif

@@ -1,35 +1,123 @@
-/* What a surface returns: the split of its energy between rough and smooth part. */
+/* What a surface returns: the split of its energy between smooth and rough part, and the rough
+ * part's directions. Directions are unit vectors away from the surface; the normal is on the side
+ * that the sound is on. */
 #ifndef SONJECT_KERNELS_SURFACE_H
 #define SONJECT_KERNELS_SURFACE_H
 
 #include "elementary.h"
+#include "fluid.h"
 #include "layout.h"
+#include "lobes.h"
+#include "vector3.h"
 
-/* Fraction of the smooth surface's energy that roughness takes out of the mirror direction,
- * 1 - exp(-P^2), P = 2 k eta cos(angle). */
-FUNCTION real scattered_fraction(GLOBAL const struct object_record *object, real cosine)
+FUNCTION int has_smooth_part(GLOBAL const struct surface_record *surface)
 {
-    const real phase = object->roughness_phase * cosine;
-    return 1.0f - exponential_of_negative(-phase * phase);
+    return surface->reflection_kind != REFLECTION_NONE;
 }
 
-/* Cross-section per unit area and solid angle over cos cos (the f of kernels/MATH.md): Lambert's
- * mu, held at both angles below what roughness takes from the smooth part. The product is
- * reciprocal, and its albedo stays below the fraction at the incident angle. */
-FUNCTION real rough_scattering(GLOBAL const struct object_record *object, real cosine_in,
-                               real cosine_out)
+FUNCTION int has_rough_part(GLOBAL const struct surface_record *surface)
 {
-    const real lambert = SPLAT(object->lambert);
-    if (!object->has_smooth_part)
-        return lambert;
-    return lambert * scattered_fraction(object, cosine_in) * scattered_fraction(object, cosine_out);
+    return surface->lambert > 0.0f || surface->glossy_albedo > 0.0f;
 }
 
-/* Amplitude of the mirror-like part, R exp(-P^2 / 2). */
-FUNCTION real smooth_reflection(GLOBAL const struct object_record *object, real cosine)
+/* R at the cosine of the angle of incidence, a complex number. */
+FUNCTION void plane_reflection(GLOBAL const struct surface_record *surface, real cosine,
+                               real *real_part, real *imaginary_part)
 {
-    const real phase = object->roughness_phase * cosine;
-    return object->reflection * exponential_of_negative(-0.5f * phase * phase);
+    if (surface->reflection_kind == REFLECTION_FLUID) {
+        fluid_reflection(surface, cosine, real_part, imaginary_part);
+        return;
+    }
+    *real_part = SPLAT(surface->reflection);
+    *imaginary_part = SPLAT(0.0f);
+}
+
+/* Amplitude of the mirror-like part, R exp(-P^2 / 2), P = 2 k eta cos(angle). */
+FUNCTION void smooth_reflection(GLOBAL const struct surface_record *surface, real cosine,
+                                real *real_part, real *imaginary_part)
+{
+    const real phase = surface->roughness_phase * cosine;
+    const real kept = exponential_of_negative(-0.5f * phase * phase);
+    plane_reflection(surface, cosine, real_part, imaginary_part);
+    *real_part = *real_part * kept;
+    *imaginary_part = *imaginary_part * kept;
+}
+
+/* Energy of the mirror-like part, |R|^2 exp(-P^2). */
+FUNCTION real mirror_energy(GLOBAL const struct surface_record *surface, real cosine)
+{
+    real real_part, imaginary_part;
+    smooth_reflection(surface, cosine, &real_part, &imaginary_part);
+    return real_part * real_part + imaginary_part * imaginary_part;
+}
+
+/* What roughness takes out of the mirror direction of a smooth surface, 1 - exp(-P^2); of a
+ * fluid's, whose reflection depends on the angle, |R|^2 of it. */
+FUNCTION real scattered_fraction(GLOBAL const struct surface_record *surface, real cosine)
+{
+    const real phase = surface->roughness_phase * cosine;
+    const real fraction = 1.0f - exponential_of_negative(-phase * phase);
+    if (surface->reflection_kind != REFLECTION_FLUID)
+        return fraction;
+    real real_part, imaginary_part;
+    fluid_reflection(surface, cosine, &real_part, &imaginary_part);
+    return fraction * (real_part * real_part + imaginary_part * imaginary_part);
+}
+
+/* Scattering per area and solid angle over cos cos (the f of kernels/MATH.md) from one direction
+ * into the other; the same both ways. 0 where a direction is not above the surface. */
+FUNCTION real rough_scattering(GLOBAL const struct surface_record *surface, struct vector3 normal,
+                               struct vector3 one, struct vector3 other)
+{
+    const real cosine_one = dot3(normal, one);
+    const real cosine_other = dot3(normal, other);
+    const mask is_above = MASK_OF(cosine_one > 0.0f) & MASK_OF(cosine_other > 0.0f);
+    real scattering =
+        surface->lambert * diffuse_shape(cosine_one, cosine_other, surface->lambert_exponent);
+    if (surface->glossy_albedo > 0.0f)
+        scattering +=
+            surface->glossy_albedo * cone_scattering(normal, one, other, surface->glossy_slope);
+    if (has_smooth_part(surface))
+        scattering = scattering * scattered_fraction(surface, cosine_one) *
+                     scattered_fraction(surface, cosine_other);
+    return CHOOSE(is_above, scattering, SPLAT(0.0f));
+}
+
+/* Share of the cone in the directions that are drawn. */
+FUNCTION float cone_share(GLOBAL const struct surface_record *surface)
+{
+    const float all = 3.14159265359f * surface->lambert + surface->glossy_albedo;
+    return all > 0.0f ? surface->glossy_albedo / all : 0.0f;
+}
+
+/* A direction of the rough part for sound that came along -back, by three uniform deviates. It may
+ * lie below the surface: then its scattering is 0. */
+FUNCTION struct vector3 sample_rough_direction(GLOBAL const struct surface_record *surface,
+                                               struct vector3 normal, struct vector3 back,
+                                               real choice, real u, real v)
+{
+    const float share = cone_share(surface);
+    if (share == 0.0f)
+        return sample_diffuse(normal, surface->lambert_exponent, u, v);
+    const struct vector3 in_cone = sample_cone(normal, back, surface->glossy_slope, u, v);
+    if (share == 1.0f)
+        return in_cone;
+    return choose3(MASK_OF(choice < share), in_cone,
+                   sample_diffuse(normal, surface->lambert_exponent, u, v));
+}
+
+/* Density of these directions, 1/sr; 0 below the surface. */
+FUNCTION real rough_direction_density(GLOBAL const struct surface_record *surface,
+                                      struct vector3 normal, struct vector3 back,
+                                      struct vector3 direction)
+{
+    const float share = cone_share(surface);
+    const real cosine = dot3(normal, direction);
+    const real diffuse = diffuse_density(cosine, surface->lambert_exponent);
+    if (share == 0.0f)
+        return diffuse;
+    const real cone = cone_density(normal, back, direction, surface->glossy_slope);
+    return CHOOSE(MASK_OF(cosine > 0.0f), share * cone + (1.0f - share) * diffuse, SPLAT(0.0f));
 }
 
 #endif

@@ -6,13 +6,15 @@
 #include "fan.h"
 #include "intersection.h"
 #include "random.h"
+#include "reflectivity_map.h"
 #include "surface.h"
 #include "tally.h"
 
 /* A hit as seen by the source: where its echo lies and whether it gets there. */
 struct connection {
-    real range;  /* half the path less the reference range */
-    real cosine; /* of the angle between normal and the way to the source */
+    real range;               /* half the path less the reference range */
+    real cosine;              /* of the angle between normal and the way to the source */
+    struct vector3 direction; /* from the hit */
     mask is_open;
 };
 
@@ -38,6 +40,7 @@ FUNCTION struct connection connect_to_source(const struct fan_record *fan,
     struct connection connection;
     connection.range = range + 0.5f * square / (path + r);
     connection.cosine = dot3(way, normal);
+    connection.direction = way;
     /* start off the surface by more than its rounding, less than anything that throws a shadow */
     const struct vector3 start = along3(hit, normal, SPLAT(2.0e-5f));
     const struct nearest_hit blocking = find_nearest_hit(objects, fan->objects, start, way, 0.0f);
@@ -51,18 +54,6 @@ struct rough_echo {
     int seabed_bin[WIDTH], target_bin[WIDTH], object[WIDTH];
     float row[WIDTH], column[WIDTH]; /* of the reflectivity map */
 };
-
-FUNCTION float map_value(const struct fan_record *fan, GLOBAL const float *map, float row,
-                         float column)
-{
-    if (fan->map_rows == 0)
-        return 1.0f;
-    int r = (int)(row + 0.5f);
-    int c = (int)(column + 0.5f);
-    r = r < 0 ? 0 : r >= fan->map_rows ? fan->map_rows - 1 : r;
-    c = c < 0 ? 0 : c >= fan->map_columns ? fan->map_columns - 1 : c;
-    return map[(long)r * fan->map_columns + c];
-}
 
 FUNCTION GLOBAL TALLY *tile_element(GLOBAL const struct object_record *object, GLOBAL TALLY *tiles,
                                     int plane, int strip, int bin)
@@ -167,8 +158,8 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
         const real distance = CHOOSE(here, nearest.distance, SPLAT(0.0f));
         const struct vector3 normal =
             object_normal(&objects[i], ray.closest, ray.direction, distance);
-        const real cosine_in = larger(-dot3(normal, ray.direction), SPLAT(0.0f));
-        real cosine_out = cosine_in;
+        const struct vector3 back = reversed3(ray.direction);
+        struct vector3 out = back;
         mask is_open = here;
         if (fan->source_side > 0.0f) {
             const struct connection way =
@@ -176,13 +167,13 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
                                   normal, target_range, source_along, source_across);
             outcome->queries += count_lanes(here);
             is_open = is_open & way.is_open;
-            cosine_out = larger(way.cosine, SPLAT(0.0f));
+            out = way.direction;
             target_range = CHOOSE(here, way.range, target_range);
         }
-        energy =
-            CHOOSE(is_open,
-                   rough_scattering(&objects[i], cosine_in, cosine_out) * cosine_out * target_area,
-                   energy);
+        energy = CHOOSE(is_open,
+                        rough_scattering(&objects[i].surface, normal, back, out) *
+                            dot3(normal, out) * target_area,
+                        energy);
     }
     const whole seabed_bins = nearest_bin(bed_bin);
     const whole target_bins = nearest_bin(target_range * fan->bins_per_metre + fan->first_bin);
@@ -214,11 +205,12 @@ FUNCTION struct outcome_record trace_rough_strip(const struct fan_record *fan,
          group += (RECORD_WORD)fan->segments) {
         struct rough_echo echo;
         const RECORD_WORD left = fan->rays - group * WIDTH;
-        outcome.queries += left < WIDTH ? left : WIDTH;
+        outcome.rays += left < WIDTH ? left : WIDTH;
         trace_rough_group(fan, objects, strip, key, group * WIDTH, &echo, &outcome);
         for (int lane = 0; lane < WIDTH; lane++)
             tally_rough_echo(fan, objects, map, seabed, tiles, strip, &echo, lane, &outcome);
     }
+    outcome.queries += outcome.rays;
     return outcome;
 }
 

@@ -72,8 +72,10 @@ FUNCTION void trace_smooth_group(const struct fan_record *fan,
     const struct cell_phase phase =
         integrate_cell(fan, &ray, normal, cosine, range, offset_along,
                        (across - 0.5f) * width_across, SPLAT(width_along), width_across);
-    const real amplitude = smooth_reflection(object, cosine) * phase.integral * width_along *
-                           width_across * fan->inverse_wavelength * fan->quanta;
+    const real amplitude =
+        phase.integral * width_along * width_across * fan->inverse_wavelength * fan->quanta;
+    real reflection_real, reflection_imaginary;
+    smooth_reflection(&object->surface, cosine, &reflection_real, &reflection_imaginary);
     real sine_of_phase, cosine_of_phase;
     const real limited = smaller(larger(phase.range, SPLAT(-1.0e4f)), SPLAT(1.0e4f));
     sine_cosine_of_cycles(limited * fan->cycles_per_metre + fan->first_cycles, &sine_of_phase,
@@ -86,8 +88,10 @@ FUNCTION void trace_smooth_group(const struct fan_record *fan,
     const real fraction = kept - REAL_OF(bin);
     const whole bin_or_none = CHOOSE(is_counted, bin, bin - bin - 1);
     /* times -i */
-    const real real_part = amplitude * sine_of_phase;
-    const real imaginary_part = -amplitude * cosine_of_phase;
+    const real real_part =
+        amplitude * (reflection_real * sine_of_phase + reflection_imaginary * cosine_of_phase);
+    const real imaginary_part =
+        amplitude * (reflection_imaginary * sine_of_phase - reflection_real * cosine_of_phase);
     STORE_REAL(real_part, echo->real_part);
     STORE_REAL(imaginary_part, echo->imaginary_part);
     STORE_REAL(fraction, echo->fraction);
@@ -126,11 +130,12 @@ FUNCTION struct outcome_record trace_smooth_strip(const struct fan_record *fan,
              group += (RECORD_WORD)fan->segments) {
             struct smooth_echo echo;
             const RECORD_WORD left = fan->rays - group * WIDTH;
-            outcome.queries += left < WIDTH ? left : WIDTH;
+            outcome.rays += left < WIDTH ? left : WIDTH;
             trace_smooth_group(fan, objects, strip, stratum, key, group * WIDTH, &echo);
             for (int lane = 0; lane < WIDTH; lane++)
                 tally_smooth_echo(line, &echo, lane, &outcome);
         }
+    outcome.queries += outcome.rays;
     return outcome;
 }
 

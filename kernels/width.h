@@ -14,9 +14,8 @@
 #ifdef __OPENCL_C_VERSION__
 
 #pragma OPENCL FP_CONTRACT OFF
-#define FUNCTION    static inline
+#define FUNCTION    static inline __attribute__((always_inline)) /* vectors travel badly by call */
 #define GLOBAL      __global
-#define CONSTANT    __constant
 #define JOIN_(a, b) a##b
 #define JOIN(a, b)  JOIN_(a, b)
 #if WIDTH == 1
@@ -70,7 +69,6 @@ typedef JOIN(int, WIDTH) mask;
 
 #define FUNCTION static inline
 #define GLOBAL
-#define CONSTANT
 #if WIDTH == 1
 typedef float real;
 typedef int32_t whole;

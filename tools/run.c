@@ -17,6 +17,7 @@ struct run_options {
     const char *device;
     struct whole_argument seed;
     struct text_list overrides;
+    bool is_verbose;
     bool is_quiet;
 };
 
@@ -29,6 +30,8 @@ static const struct argument arguments[] = {
      ARGUMENT_TEXT, false, offsetof(struct run_options, device)},
     {"--set", NULL, "KEY.PATH=VALUE", "replaces or adds a key of the scene; may be repeated",
      ARGUMENT_TEXTS, false, offsetof(struct run_options, overrides)},
+    {"--verbose", NULL, NULL, "also tells the device, what was built for it, the noise floor, ...",
+     ARGUMENT_FLAG, false, offsetof(struct run_options, is_verbose)},
     {"--quiet", NULL, NULL, "no progress bar, no news; only what is wrong", ARGUMENT_FLAG, false,
      offsetof(struct run_options, is_quiet)},
 };
@@ -75,7 +78,7 @@ static int work(const void *verb_options)
     sonject_context_params params;
     sonject_context_params_init(&params);
     params.device_name = options->device;
-    params.log = options->is_quiet ? NULL : progress_log;
+    params.log = options->is_verbose && !options->is_quiet ? progress_log : NULL;
     params.log_user = &progress;
     sonject_context *context = NULL;
     int was_finished = 0;

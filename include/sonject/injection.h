@@ -13,6 +13,15 @@ typedef enum sonject_injection_mode {
     SONJECT_MODE_RESYNTHESISE = 1 /* the whole patch is traced anew from the reflectivity map */
 } sonject_injection_mode;
 
+/* How paths to the source are found. */
+typedef enum sonject_estimator {
+    SONJECT_ESTIMATOR_CONNECT = 0, /* every hit is connected to the source; targets are sampled on
+                                      purpose */
+    SONJECT_ESTIMATOR_BRUTE_FORCE = 1 /* the paper's: rays are spawned into hemisphere and specular
+                                         cone and count when they happen to hit the source's
+                                         rectangle (transducer side > 0); resynthesise only */
+} sonject_estimator;
+
 /* Which column an echo of several interactions goes to. With one interaction both are the same. */
 typedef enum sonject_column_rule {
     SONJECT_COLUMNS_FOCUSED = 0, /* mean along-track position of first and last hit */
@@ -29,9 +38,14 @@ typedef struct sonject_injection_params {
                                 above this level over the seabed; default -40; -200...0 */
     double ray_scale;        /* factor on the number of rays; default 1; 1/64...4096 */
     uint64_t seed;
+    uint32_t interactions;   /* surfaces that a path may meet, 1...8 */
+    uint32_t estimator;      /* sonject_estimator */
+    uint32_t order_energies; /* 1: keep the energy of each number of interactions (layers) */
+    uint32_t reserved;
 } sonject_injection_params;
 
-/* Composite, focused columns, estimated noise, -40 dB, ray scale 1, seed 1. */
+/* Composite, focused columns, estimated noise, -40 dB, ray scale 1, seed 1, one
+ * interaction, connected. */
 SONJECT_API void sonject_injection_params_init(sonject_injection_params *injection);
 
 SONJECT_END_DECLARATIONS

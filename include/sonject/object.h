@@ -5,6 +5,7 @@
 #include <stdint.h>
 
 #include <sonject/export.h>
+#include <sonject/material.h>
 
 SONJECT_BEGIN_DECLARATIONS
 
@@ -24,21 +25,6 @@ typedef enum sonject_position_kind {
                                           as the image's geometry counts them */
     SONJECT_POSITION_PIXELS = 2 /* along: row, range: column of the swath, centres at integers */
 } sonject_position_kind;
-
-/* How much sound a surface returns, in two parts that are never mixed (kernels/MATH.md).
- * Smooth: the mirror-like part, amplitude reflection * exp(-P^2/2), P = 2 k roughness cos(angle).
- * Rough: a Lambert part of coefficient lambert, reduced by (1 - exp(-P^2)) at both angles when the
- * surface also has a smooth part, so that no more energy leaves than came. */
-typedef struct sonject_material_params {
-    uint32_t struct_size;
-    uint32_t reserved;
-    double reflection;  /* -1...1, amplitude, 0: no smooth part */
-    double roughness_m; /* rms height, >= 0 */
-    double lambert;     /* mu >= 0, linear; pi*mu <= reflection^2, or <= 1 where reflection is 0 */
-} sonject_material_params;
-
-/* Weathered steel: reflection 0.9, roughness 1 mm, mu = -10 dB. */
-SONJECT_API void sonject_material_params_init(sonject_material_params *material);
 
 #define SONJECT_NAME_CAPACITY 64
 

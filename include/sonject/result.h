@@ -66,6 +66,13 @@ SONJECT_API sonject_status sonject_result_size(const sonject_result *result, uin
 SONJECT_API sonject_status sonject_result_layer(const sonject_result *result, sonject_layer layer,
                                                 void *buffer, size_t bytes);
 
+/* Copies the expected cross-section in m^2, as SONJECT_LAYER_ENERGY counts it, of the paths that
+ * meet exactly `order` surfaces, 1...interactions: float, rows x columns, packed, into buffer of
+ * exactly that many bytes. Kept where the scene's injection asked for order_energies; all orders
+ * add up to that layer. Errors: ARGUMENT (not asked for, no such order, wrong size). */
+SONJECT_API sonject_status sonject_result_order_energy(const sonject_result *result, uint32_t order,
+                                                       void *buffer, size_t bytes);
+
 /* Whole pixels of the patch (of the swath in truth files); rows = columns = 0: empty. */
 typedef struct sonject_box {
     uint64_t first_row;

@@ -5,6 +5,7 @@
 #include <sonject/context.h>
 #include <sonject/image.h>
 #include <sonject/injection.h>
+#include <sonject/material.h>
 #include <sonject/object.h>
 #include <sonject/result.h>
 #include <sonject/run.h>

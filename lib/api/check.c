@@ -72,6 +72,10 @@ static void describe_patch(struct text *text, const struct scene *scene, const s
     text_add(text, "sonar      %.4g kHz, bandwidth %.4g kHz, altitude %.3g m, wavelength %.4g mm\n",
              scene->sonar.centre_frequency_hz / 1e3, scene->sonar.bandwidth_hz / 1e3,
              scene->sonar.altitude_m, view->wavelength_m * 1e3);
+    text_add(text, "injection  %s, paths that meet up to %u surface%s\n",
+             scene->injection.mode == SONJECT_MODE_RESYNTHESISE ? "resynthesise" : "composite",
+             (unsigned)scene->injection.interactions,
+             scene->injection.interactions == 1 ? "" : "s");
 }
 
 /* Length on the ground of the shadow of something as high as the object's top. */

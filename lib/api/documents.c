@@ -219,7 +219,10 @@ static json_t *options_document(const struct scene *scene)
     add(document, "ray_scale", number(scene->injection.ray_scale));
     add(document, "influence_db", number(scene->injection.influence_db));
     add(document, "seabed_lambert_db", number(10.0 * log10(scene->seabed.lambert)));
-    add(document, "interactions", count(1));
+    add(document, "interactions", count(scene->injection.interactions));
+    add(document, "estimator",
+        json_string(scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE ? "brute_force"
+                                                                                : "connect"));
     return document;
 }
 

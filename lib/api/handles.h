@@ -46,6 +46,10 @@ sonject_status params_take(struct report *report, void *to, size_t to_size, cons
 sonject_status params_give(struct report *report, void *to, const void *from, size_t from_size,
                            size_t smallest, const char *name);
 
+/* News of the noise floor, where it was estimated. */
+void tell_noise_floor(struct report *report, const struct scene *scene,
+                      const sonject_statistics *statistics);
+
 /* report_failure(ARGUMENT, "... must not be NULL") */
 sonject_status null_argument(struct report *report, const char *name);
 

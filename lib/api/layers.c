@@ -1,6 +1,7 @@
 #include "api/layers.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -99,6 +100,29 @@ static sonject_status write_quicklook(struct report *report, const struct scene 
     return status;
 }
 
+/* Orders that this result has not may be there from a run before. */
+static sonject_status write_order_energies(struct report *report,
+                                           const struct geometry_notes *notes,
+                                           const struct swath *swath,
+                                           const struct injection_result *result,
+                                           const char *folder)
+{
+    sonject_status status = SONJECT_OK;
+    for (uint32_t i = 0; status == SONJECT_OK && i < SCENE_INTERACTIONS_MAX; i++) {
+        char name[32];
+        snprintf(name, sizeof name, "energy_order_%u.tif", (unsigned)i + 1);
+        char *path = path_join(folder, name);
+        if (!path)
+            return report_out_of_memory(report, "a path");
+        if (i < result->orders)
+            status = write_float_layer(report, notes, swath, 1, result->order_energy[i], path);
+        else
+            file_discard(path);
+        free(path);
+    }
+    return status;
+}
+
 sonject_status write_layers(struct report *report, const struct scene *scene,
                             const struct swath *swath, const struct injection_result *result,
                             const char *folder)
@@ -127,5 +151,7 @@ sonject_status write_layers(struct report *report, const struct scene *scene,
                                 path);
         free(path);
     }
+    if (status == SONJECT_OK)
+        status = write_order_energies(report, &notes, swath, result, folder);
     return status;
 }

@@ -56,6 +56,14 @@ static sonject_status find_input(struct report *report, const struct scene *scen
     return status;
 }
 
+void tell_noise_floor(struct report *report, const struct scene *scene,
+                      const sonject_statistics *statistics)
+{
+    if (scene->injection.estimate_noise)
+        report_news(report, "noise floor estimated from the patch: %.1f dB over the mean seabed",
+                    statistics->noise_floor_db);
+}
+
 sonject_status sonject_inject(sonject_context *context, const sonject_scene *scene,
                               const sonject_pixels *pixels, sonject_progress_function progress,
                               void *user, sonject_result **result)
@@ -83,11 +91,13 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *sce
                                &made->result);
     }
     free(owned);
-    if (status == SONJECT_OK)
-        *result = made;
-    else
+    if (status != SONJECT_OK) {
         free(made);
-    return status;
+        return status;
+    }
+    tell_noise_floor(&context->report, &scene->scene, &made->result.statistics);
+    *result = made;
+    return SONJECT_OK;
 }
 
 void sonject_result_release(sonject_result **result)
@@ -167,6 +177,30 @@ sonject_status sonject_result_layer(const sonject_result *result, sonject_layer 
         return report_failure(result->report, SONJECT_ERROR_ARGUMENT,
                               "layer %d has %zu bytes, the buffer %zu", (int)layer, needed, bytes);
     memcpy(buffer, memory.data, needed);
+    return SONJECT_OK;
+}
+
+sonject_status sonject_result_order_energy(const sonject_result *result, uint32_t order,
+                                           void *buffer, size_t bytes)
+{
+    if (!result)
+        return SONJECT_ERROR_ARGUMENT;
+    if (!buffer)
+        return null_argument(result->report, "buffer");
+    const uint32_t orders = result->result.orders;
+    if (orders == 0)
+        return report_failure(result->report, SONJECT_ERROR_ARGUMENT,
+                              "the energies of the orders were not kept: set order_energies");
+    if (order < 1 || order > orders)
+        return report_failure(result->report, SONJECT_ERROR_ARGUMENT,
+                              "there is no order %u, only 1 to %u", (unsigned)order,
+                              (unsigned)orders);
+    const size_t needed = result->result.rows * result->result.columns * sizeof(float);
+    if (bytes != needed)
+        return report_failure(result->report, SONJECT_ERROR_ARGUMENT,
+                              "the energy of an order has %zu bytes, the buffer %zu", needed,
+                              bytes);
+    memcpy(buffer, result->result.order_energy[order - 1], needed);
     return SONJECT_OK;
 }
 

@@ -37,6 +37,18 @@ void sonject_run_params_init(sonject_run_params *params)
     params->struct_size = sizeof *params;
 }
 
+static void tell_clipped(struct report *report, const sonject_statistics *statistics)
+{
+    if (statistics->input_clipped > 0)
+        report_news(report,
+                    "%llu pixels of the patch are at the image's full scale, so their true "
+                    "amplitude may be larger",
+                    (unsigned long long)statistics->input_clipped);
+    if (statistics->output_clipped > 0)
+        report_news(report, "%llu changed pixels are cut at the image's full scale",
+                    (unsigned long long)statistics->output_clipped);
+}
+
 static sonject_status write_documents(struct report *report, struct run_facts *facts,
                                       const char *folder, double run_start, double write_start)
 {
@@ -105,10 +117,13 @@ static sonject_status run_swath(struct sonject_context *context, const struct sc
             injection_run(&context->report, device, scene, &input, tell_stage, &tracing, &result);
     if (status != SONJECT_OK)
         return status;
+    tell_noise_floor(&context->report, scene, &result.statistics);
     result.statistics.input_clipped = swath->clipped;
     facts->result = &result;
     facts->device = device;
     status = write_results(&context->report, facts, &result, folder, start, progress, user);
+    if (status == SONJECT_OK)
+        tell_clipped(&context->report, &result.statistics);
     injection_result_clear(&result);
     return status;
 }

@@ -1,11 +1,28 @@
 #include "api/scene_hash.h"
 
+#include <math.h>
 #include <string.h>
 
 #include <sonject/version.h>
 
 /* Members one by one: the padding of a structure is not part of its value. */
 #define ADD(hash, member) hash_add(hash, &(member), sizeof(member))
+
+static void add_material(struct hash *hash, const sonject_material_params *material)
+{
+    /* NaN has many patterns and one meaning, the seabed's own */
+    const double lambert = isnan(material->lambert) ? -1.0 : material->lambert;
+    ADD(hash, material->reflection_kind);
+    ADD(hash, material->reflection);
+    ADD(hash, material->roughness_m);
+    ADD(hash, lambert);
+    ADD(hash, material->lambert_exponent);
+    ADD(hash, material->glossy_albedo);
+    ADD(hash, material->glossy_slope);
+    ADD(hash, material->density_ratio);
+    ADD(hash, material->speed_ratio);
+    ADD(hash, material->loss);
+}
 
 static void add_sonar(struct hash *hash, const struct scene *scene)
 {
@@ -24,6 +41,8 @@ static void add_sonar(struct hash *hash, const struct scene *scene)
     ADD(hash, scene->seabed.lambert);
     ADD(hash, scene->seabed.level_radius_m);
     ADD(hash, scene->seabed.despeckle_radius_m);
+    ADD(hash, scene->seabed.forward_rule);
+    add_material(hash, &scene->seabed.forward);
 }
 
 static void add_image(struct hash *hash, const struct scene *scene)
@@ -60,9 +79,7 @@ static void add_object(struct hash *hash, const sonject_object_params *object)
     ADD(hash, object->pitch_rad);
     ADD(hash, object->roll_rad);
     ADD(hash, object->burial_m);
-    ADD(hash, object->material.reflection);
-    ADD(hash, object->material.roughness_m);
-    ADD(hash, object->material.lambert);
+    add_material(hash, &object->material);
 }
 
 static void add_injection(struct hash *hash, const sonject_injection_params *injection)
@@ -74,6 +91,9 @@ static void add_injection(struct hash *hash, const sonject_injection_params *inj
     ADD(hash, injection->influence_db);
     ADD(hash, injection->ray_scale);
     ADD(hash, injection->seed);
+    ADD(hash, injection->interactions);
+    ADD(hash, injection->estimator);
+    ADD(hash, injection->order_energies);
 }
 
 sonject_status scene_hash(struct report *report, const struct scene *scene,

@@ -6,6 +6,7 @@
 
 #include <sonject/version.h>
 
+#include "base/clock.h"
 #include "base/hash.h"
 #include "base/memory.h"
 #include "cl/cache.h"
@@ -133,10 +134,14 @@ sonject_status program_get(struct report *report, struct device *device, enum de
         if (!key_of(device, source, options, key))
             return report_out_of_memory(report, "the program cache");
         *program = from_cache(device, key, options);
-        if (!*program) {
+        if (*program) {
+            report_news(report, "%s taken from the cache", source->name);
+        } else {
+            const double start = clock_seconds();
             const sonject_status status = build(report, device, source, options, program);
             if (status != SONJECT_OK)
                 return status;
+            report_news(report, "%s built in %.1f s", source->name, clock_seconds() - start);
             into_cache(device, key, *program);
         }
     }

@@ -147,9 +147,7 @@ static void compose_pixel(const struct scene *scene, const struct patch_level *l
     result->field[2 * i] = (float)(real_part / scale);
     result->field[2 * i + 1] = (float)(imaginary_part / scale);
     result->visibility[i] = (float)parts.visibility;
-    result->energy[i] =
-        (float)(echoes->target_energy[i] +
-                fmax(0.0, (double)echoes->seabed_energy[i] - echoes->lost_energy[i]));
+    result->energy[i] = echoes->energy[i];
 }
 
 sonject_status compose(struct tracer *tracer, const struct patch_level *level,

@@ -7,18 +7,15 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "form/form.h"
+#include "inject/chain_echoes.h"
 #include "inject/coherent_seabed.h"
 #include "trace/smooth.h"
 
-/* Progress of the stages, as fractions of a run. */
-#define ROUGH_SHARE  0.5
-#define OBJECT_SHARE 0.4
-
-static sonject_status tell(const struct echo_request *request, struct tracer *tracer,
-                           double fraction, const char *stage)
+sonject_status echo_request_tell(const struct echo_request *request, struct report *report,
+                                 double fraction, const char *stage)
 {
     if (request->progress && request->progress(request->user, fraction, stage))
-        return report_failure(tracer->report, SONJECT_CANCELLED, "cancelled while %s", stage);
+        return report_failure(report, SONJECT_CANCELLED, "cancelled while %s", stage);
     return SONJECT_OK;
 }
 
@@ -34,12 +31,14 @@ static sonject_status allocate_planes(struct echoes *echoes, struct tracer *trac
     echoes->seabed_energy = allocate_array(pixels, sizeof(float));
     echoes->lost_energy = allocate_array(pixels, sizeof(float));
     echoes->target_energy = allocate_array(pixels, sizeof(float));
+    echoes->energy = allocate_array(pixels, sizeof(float));
     echoes->target_real = allocate_array(pixels, sizeof(float));
     echoes->target_imaginary = allocate_array(pixels, sizeof(float));
     echoes->seabed_real = wants_field ? allocate_array(pixels, sizeof(float)) : NULL;
     echoes->seabed_imaginary = wants_field ? allocate_array(pixels, sizeof(float)) : NULL;
     if (!echoes->objects || !echoes->seabed_energy || !echoes->lost_energy ||
-        !echoes->target_energy || !echoes->target_real || !echoes->target_imaginary ||
+        !echoes->target_energy || !echoes->energy || !echoes->target_real ||
+        !echoes->target_imaginary ||
         (wants_field && (!echoes->seabed_real || !echoes->seabed_imaginary)))
         return report_out_of_memory(tracer->report, "the patch");
     return SONJECT_OK;
@@ -56,6 +55,9 @@ void echoes_clear(struct echoes *echoes)
     free(echoes->seabed_energy);
     free(echoes->lost_energy);
     free(echoes->target_energy);
+    free(echoes->energy);
+    for (int i = 0; i < SCENE_INTERACTIONS_MAX; i++)
+        free(echoes->order_energy[i]);
     free(echoes->target_real);
     free(echoes->target_imaginary);
     free(echoes->seabed_real);
@@ -130,10 +132,10 @@ static sonject_status trace_chunks(struct seabed_work *work, struct echoes *echo
         echoes->form_s += clock_seconds() - traced;
         strips.first += strips.count;
         if (status == SONJECT_OK)
-            status = tell(request, tracer,
-                          ROUGH_SHARE * (strips.first - trace->grid.strips.first) /
-                              trace->grid.strips.count,
-                          "tracing the seabed");
+            status = echo_request_tell(request, tracer->report,
+                                       ROUGH_SHARE * (strips.first - trace->grid.strips.first) /
+                                           trace->grid.strips.count,
+                                       "tracing the seabed");
     }
     return status;
 }
@@ -280,7 +282,8 @@ static sonject_status draw_rough_object(struct echoes *echoes, struct tracer *tr
 {
     const struct rough_tile *tile = &trace->tiles[number];
     struct form_lines lines;
-    if (tile->grid.bins.count == 0 || tracer->scene->objects[number].material.lambert == 0.0)
+    const sonject_material_params *material = &tracer->scene->objects[number].material;
+    if (tile->grid.bins.count == 0 || (material->lambert == 0.0 && material->glossy_albedo == 0.0))
         return SONJECT_OK;
     sonject_status status = form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view,
                                              &tracer->response, FORM_SPECKLE, &tile->grid);
@@ -345,6 +348,7 @@ static sonject_status compute_objects(struct echoes *echoes, struct tracer *trac
                                       const struct echo_request *request,
                                       const struct rough_trace *trace, const float *tiles)
 {
+    const bool is_brute_force = tracer->scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE;
     sonject_status status = SONJECT_OK;
     for (uint32_t i = 0; status == SONJECT_OK && i < echoes->object_count; i++) {
         const double start = clock_seconds();
@@ -353,7 +357,8 @@ static sonject_status compute_objects(struct echoes *echoes, struct tracer *trac
         status = form_rough_object(echoes, tracer, trace, tiles, i);
         if (status == SONJECT_OK)
             status = compute_glints(echoes, tracer, i);
-        if (status == SONJECT_OK)
+        /* brute force draws all that is rough at once */
+        if (status == SONJECT_OK && !is_brute_force)
             status = draw_rough_object(echoes, tracer, trace, tiles, i);
         echoes->form_s =
             formed_before + (clock_seconds() - start - (echoes->trace_s - traced_before));
@@ -361,9 +366,9 @@ static sonject_status compute_objects(struct echoes *echoes, struct tracer *trac
             const struct object_echo *echo = &echoes->objects[i];
             add_window(echoes->target_energy, echoes->columns, echo->energy,
                        echo->energy ? echoes->rows : 0, echo->first_column, echo->columns);
-            status =
-                tell(request, tracer, ROUGH_SHARE + OBJECT_SHARE * (i + 1) / echoes->object_count,
-                     "tracing the objects");
+            status = echo_request_tell(request, tracer->report,
+                                       ROUGH_SHARE + OBJECT_SHARE * (i + 1) / echoes->object_count,
+                                       "tracing the objects");
         }
     }
     return status;
@@ -384,6 +389,8 @@ sonject_status echoes_compute(struct echoes *echoes, struct tracer *tracer,
             status = compute_seabed(echoes, tracer, request, &trace, tiles);
         if (status == SONJECT_OK)
             status = compute_objects(echoes, tracer, request, &trace, tiles);
+        if (status == SONJECT_OK)
+            status = chain_echoes_compute(echoes, tracer, request);
         free(tiles);
         rough_trace_end(&trace);
     }

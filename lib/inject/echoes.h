@@ -25,6 +25,11 @@ struct echoes {
     float *target_real, *target_imaginary; /* one realisation, m */
     float *seabed_real,
         *seabed_imaginary; /* one realisation of what is in view; NULL if unwanted */
+    float *energy;         /* expected from everything that was traced */
+    /* Expected from paths of k interactions at [k - 1], k <= orders; NULL unless the scene asks for
+     * them. */
+    float *order_energy[SCENE_INTERACTIONS_MAX];
+    uint32_t orders;
     struct object_echo *objects;
     uint32_t object_count;
     double trace_s, form_s; /* wall clock */
@@ -44,6 +49,15 @@ struct echo_request {
     sonject_progress_function progress;                      /* may be NULL */
     void *user;
 };
+
+/* Progress of the stages, as fractions of a run: the seabed, the objects, several interactions. */
+#define ROUGH_SHARE  0.4
+#define OBJECT_SHARE 0.25
+#define CHAINS_SHARE 0.3
+
+/* Tells the caller how far the work is. Errors: CANCELLED, if that says so. */
+sonject_status echo_request_tell(const struct echo_request *request, struct report *report,
+                                 double fraction, const char *stage);
 
 /* Traces and forms all of it. On failure *echoes is empty. Errors: INPUT, DEVICE, MEMORY,
  * CANCELLED. */

@@ -29,6 +29,8 @@ void injection_result_clear(struct injection_result *result)
     free(result->image);
     free(result->field);
     free(result->energy);
+    for (int i = 0; i < SCENE_INTERACTIONS_MAX; i++)
+        free(result->order_energy[i]);
     free(result->visibility);
     free(result->highlight);
     free(result->shadow);
@@ -92,6 +94,8 @@ static void unmirror(struct injection_result *result, char *scratch)
     flip_rows(result->image, rows, columns * (result->is_complex ? 2 : 1) * sizeof(float), scratch);
     flip_rows(result->field, rows, columns * 2 * sizeof(float), scratch);
     flip_rows(result->energy, rows, columns * sizeof(float), scratch);
+    for (uint32_t i = 0; i < result->orders; i++)
+        flip_rows(result->order_energy[i], rows, columns * sizeof(float), scratch);
     flip_rows(result->visibility, rows, columns * sizeof(float), scratch);
     flip_rows(result->highlight, rows, columns, scratch);
     flip_rows(result->shadow, rows, columns, scratch);
@@ -161,6 +165,16 @@ static void fill_statistics(const struct tracer *tracer, const struct patch_leve
         statistics->changed_pixels += result->influence[i] != 0;
 }
 
+/* The energies of each order become the result's. */
+static void hand_over_orders(struct echoes *echoes, struct injection_result *result)
+{
+    result->orders = echoes->orders;
+    for (uint32_t i = 0; i < echoes->orders; i++) {
+        result->order_energy[i] = echoes->order_energy[i];
+        echoes->order_energy[i] = NULL;
+    }
+}
+
 /* Reflectivity of unit mean square for the coherent map: the pixels over the root of the level. */
 static float *coherent_plane(const struct patch_level *level, const float *pixels, size_t count,
                              size_t part)
@@ -209,6 +223,7 @@ static sonject_status trace_and_compose(struct tracer *tracer, const float *pixe
         if (status == SONJECT_OK) {
             find_truth(tracer, &level, &echoes, result);
             fill_statistics(tracer, &level, &echoes, clock_seconds() - start, result);
+            hand_over_orders(&echoes, result);
         }
         echoes_clear(&echoes);
     }
@@ -226,6 +241,11 @@ static sonject_status check_combination(struct report *report, const struct scen
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "the coherent seabed map needs a complex image: use map: intensity "
                               "or despeckled");
+    if (scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
+        (scene->injection.mode != SONJECT_MODE_RESYNTHESISE || scene->sonar.transducer_side_m <= 0))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the brute force estimator needs mode: resynthesise and a transducer "
+                              "that rays can hit: give its side");
     return SONJECT_OK;
 }
 

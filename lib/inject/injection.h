@@ -26,6 +26,8 @@ struct injection_result {
     float *image; /* kind of the input */
     float *field; /* pairs; m */
     float *energy, *visibility;
+    float *order_energy[SCENE_INTERACTIONS_MAX]; /* as in struct echoes */
+    uint32_t orders;
     uint8_t *highlight, *shadow, *labels, *influence;
     sonject_object_truth *objects;
     uint32_t object_count;

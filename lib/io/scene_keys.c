@@ -34,6 +34,8 @@ static const char *unit_of(const struct field *field)
         return "text";
     case FIELD_PATH:
         return "file name";
+    case FIELD_NAMED:
+        return "name";
     case FIELD_SPECIAL:
         return field->unit ? field->unit : "whole number";
     default:
@@ -53,7 +55,7 @@ static void list_field(struct listing *listing, const char *path, const struct f
     listing->count++;
 }
 
-/* Sections are at most three deep. */
+/* Sections are at most four deep. */
 static void list_section(struct listing *listing, const char *prefix, const struct section *section)
 {
     for (size_t i = 0; i < section->count; i++) {
@@ -61,7 +63,7 @@ static void list_section(struct listing *listing, const char *prefix, const stru
         char path[64];
         char below[sizeof path + 4];
         snprintf(path, sizeof path, "%s%s", prefix, field->key);
-        if (field->kind == FIELD_WORD || !field->section)
+        if (field->kind == FIELD_WORD || field->kind == FIELD_NAMED || !field->section)
             list_field(listing, path, field);
         if (!field->section)
             continue;

@@ -9,13 +9,7 @@
 #include "base/text.h"
 #include "io/scene_schema.h"
 
-/* Keys in a message, "a, b, c". */
-struct word_list {
-    char text[300];
-    size_t count;
-};
-
-static void list_word(struct word_list *list, const char *word)
+void list_word(struct word_list *list, const char *word)
 {
     const size_t length = strlen(list->text);
     snprintf(list->text + length, sizeof list->text - length, "%s%s", list->count ? ", " : "",
@@ -69,8 +63,7 @@ sonject_status place_check(struct reader *reader, const struct tree_node *node, 
     return refuse_key(reader, node, key, "%s", check->message + strlen(key) + 1);
 }
 
-/* The text of a single value; NULL after a message, whose status is INPUT. */
-static const char *need_text(struct reader *reader, const struct tree_node *node)
+const char *read_text(struct reader *reader, const struct tree_node *node)
 {
     if (tree_is_null(node)) {
         refuse_value(reader, node, "has no value; write one or remove the key");
@@ -88,7 +81,7 @@ sonject_status read_quantity(struct reader *reader, const struct tree_node *node
                              enum quantity quantity, double *value)
 {
     char problem[200];
-    const char *text = need_text(reader, node);
+    const char *text = read_text(reader, node);
     if (!text)
         return SONJECT_ERROR_INPUT;
     if (!quantity_from_text(quantity, text, value, problem, sizeof problem))
@@ -100,7 +93,7 @@ static sonject_status read_count(struct reader *reader, const struct field *fiel
                                  const struct tree_node *node, uint64_t *count)
 {
     char excerpt[40];
-    const char *text = need_text(reader, node);
+    const char *text = read_text(reader, node);
     if (!text)
         return SONJECT_ERROR_INPUT;
     if (!text_to_count(text, count))
@@ -116,7 +109,7 @@ static sonject_status read_count(struct reader *reader, const struct field *fiel
 static sonject_status read_bool(struct reader *reader, const struct tree_node *node, bool *value)
 {
     char excerpt[40];
-    const char *text = need_text(reader, node);
+    const char *text = read_text(reader, node);
     if (!text)
         return SONJECT_ERROR_INPUT;
     *value = strcmp(text, "true") == 0;
@@ -126,12 +119,20 @@ static sonject_status read_bool(struct reader *reader, const struct tree_node *n
     return SONJECT_OK;
 }
 
+sonject_status refuse_word(const struct reader *reader, const struct tree_node *node,
+                           const char *word, const struct word_list *known, const char *near)
+{
+    char excerpt[40];
+    return refuse_value(reader, node, "'%s' is not one of %s%s%s%s",
+                        text_excerpt(excerpt, sizeof excerpt, word), known->text,
+                        near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+}
+
 static sonject_status read_word(struct reader *reader, const struct field *field,
                                 const struct tree_node *node, uint32_t *value)
 {
     struct word_list list = {{0}, 0};
-    char excerpt[40];
-    const char *text = need_text(reader, node);
+    const char *text = read_text(reader, node);
     if (!text)
         return SONJECT_ERROR_INPUT;
     for (uint32_t i = 0; i < FIELD_WORDS_MAX && field->words[i]; i++) {
@@ -147,14 +148,12 @@ static sonject_status read_word(struct reader *reader, const struct field *field
         snprintf(key, sizeof key, "{%s: ...}", field->section->fields[i].key);
         list_word(&list, key);
     }
-    return refuse_value(reader, node, "'%s' is not one of %s%s%s%s",
-                        text_excerpt(excerpt, sizeof excerpt, text), list.text,
-                        near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    return refuse_word(reader, node, text, &list, near);
 }
 
 static sonject_status read_label(struct reader *reader, const struct tree_node *node, char *label)
 {
-    const char *text = need_text(reader, node);
+    const char *text = read_text(reader, node);
     if (!text)
         return SONJECT_ERROR_INPUT;
     if (strlen(text) >= SONJECT_NAME_CAPACITY)
@@ -168,7 +167,7 @@ static sonject_status read_label(struct reader *reader, const struct tree_node *
 /* A path in the file is meant from the file's folder, one of an override from where the user is. */
 static sonject_status read_path(struct reader *reader, const struct tree_node *node, char **path)
 {
-    const char *text = need_text(reader, node);
+    const char *text = read_text(reader, node);
     if (!text)
         return SONJECT_ERROR_INPUT;
     if (*text == 0 || !text_is_printable(text))
@@ -217,6 +216,10 @@ static sonject_status read_field(struct reader *reader, const struct field *fiel
     case FIELD_PATH:
         return read_path(reader, node, destination);
     case FIELD_SECTION:
+        return read_subsection(reader, field->section, node, destination);
+    case FIELD_NAMED:
+        if (node->kind == TREE_TEXT && !tree_is_null(node))
+            return field->read(reader, node, destination);
         return read_subsection(reader, field->section, node, destination);
     case FIELD_SPECIAL:
         break;

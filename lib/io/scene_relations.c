@@ -67,6 +67,10 @@ sonject_status finish_scene(struct reader *reader, const struct tree_node *node,
     if (scene->seabed.map == SONJECT_MAP_COHERENT && !is_complex)
         return refuse_key(reader, node, "seabed.map",
                           "coherent needs complex pixels; set complex: true in input if they are");
+    if (scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
+        !(scene->sonar.transducer_side_m > 0.0))
+        return refuse_key(reader, node, "injection.estimator",
+                          "brute_force needs a source that rays can hit; set transducer in sonar");
     return SONJECT_OK;
 }
 

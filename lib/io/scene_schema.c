@@ -1,26 +1,8 @@
 /* The tables. A line: key, meaning, what it is, where it goes. */
-#include "io/scene_schema.h"
-
-#define COUNT(fields) (sizeof(fields) / sizeof(fields)[0])
+#include "io/scene_fields.h"
 
 #define SIDE_MAX  (UINT64_C(1) << 20)
 #define INDEX_MAX (UINT64_C(1) << 40)
-
-#define QUANTITY(structure, member, kind_of_quantity)                                              \
-    .kind = FIELD_QUANTITY, .quantity = kind_of_quantity, .offset = offsetof(structure, member)
-#define COUNT32(structure, member, limit)                                                          \
-    .kind = FIELD_COUNT32, .offset = offsetof(structure, member), .maximum = limit
-#define COUNT64(structure, member, limit)                                                          \
-    .kind = FIELD_COUNT64, .offset = offsetof(structure, member), .maximum = limit
-#define WORD(structure, member)  .kind = FIELD_WORD, .offset = offsetof(structure, member), .words
-#define LABEL(structure, member) .kind = FIELD_LABEL, .offset = offsetof(structure, member)
-
-/* A section that fills a structure of its own, and one that fills its parent's. */
-#define PART(structure, member, table)                                                             \
-    .kind = FIELD_SECTION, .offset = offsetof(structure, member), .section = &(table)
-#define SAME(table) .kind = FIELD_SECTION, .offset = 0, .section = &(table)
-
-#define REQUIRED .is_required = true
 
 static const struct field uniform_fields[] = {
     {"rows", "track positions", COUNT32(struct scene, uniform_rows, SIDE_MAX), REQUIRED},
@@ -170,6 +152,8 @@ static const struct field seabed_fields[] = {
      QUANTITY(STRUCTURE, level_radius_m, QUANTITY_LENGTH)},
     {"despeckle_radius", "of the despeckled map's local mean",
      QUANTITY(STRUCTURE, despeckle_radius_m, QUANTITY_LENGTH)},
+    {"forward", "surface for sound that does not go straight back: a sediment's name, or a section",
+     .kind = FIELD_NAMED, .offset = 0, .section = &forward_section, .read = read_sediment_name},
 };
 static const struct section seabed_section = {seabed_fields, COUNT(seabed_fields), finish_seabed};
 #undef STRUCTURE
@@ -189,19 +173,16 @@ static const struct field injection_fields[] = {
      QUANTITY(STRUCTURE, influence_db, QUANTITY_DECIBEL)},
     {"rays", "factor on the number of rays", QUANTITY(STRUCTURE, ray_scale, QUANTITY_NUMBER)},
     {"seed", "of all random numbers of the injection", COUNT64(STRUCTURE, seed, UINT64_MAX)},
+    {"interactions", "surfaces that a path may meet, 1 to 8",
+     COUNT32(STRUCTURE, interactions, SCENE_INTERACTIONS_MAX)},
+    {"estimator", "how paths to the source are found: all hits connected to it, or by chance",
+     WORD(STRUCTURE, estimator) = {[SONJECT_ESTIMATOR_CONNECT] = "connect",
+                                   [SONJECT_ESTIMATOR_BRUTE_FORCE] = "brute_force"}},
+    {"order_energies", "also keep the energy of each number of interactions", .kind = FIELD_FLAG32,
+     .offset = offsetof(STRUCTURE, order_energies)},
 };
 static const struct section injection_section = {injection_fields, COUNT(injection_fields),
                                                  finish_injection};
-#undef STRUCTURE
-
-#define STRUCTURE sonject_material_params
-static const struct field material_fields[] = {
-    {"reflection", "amplitude of the mirror-like part, -1 to 1",
-     QUANTITY(STRUCTURE, reflection, QUANTITY_NUMBER)},
-    {"roughness", "rms height", QUANTITY(STRUCTURE, roughness_m, QUANTITY_LENGTH)},
-    {"lambert", "coefficient mu of the rough part", QUANTITY(STRUCTURE, lambert, QUANTITY_LEVEL)},
-};
-static const struct section material_section = {material_fields, COUNT(material_fields), NULL};
 #undef STRUCTURE
 
 #define STRUCTURE sonject_object_params
@@ -239,7 +220,9 @@ static const struct field object_fields[] = {
     {"roll", "about the nose direction", QUANTITY(STRUCTURE, roll_rad, QUANTITY_ANGLE)},
     {"burial", "depth of the lowest point below the seabed",
      QUANTITY(STRUCTURE, burial_m, QUANTITY_LENGTH)},
-    {"material", "surface of the object", PART(STRUCTURE, material, material_section)},
+    {"material", "surface of the object: a material's name, or a section", .kind = FIELD_NAMED,
+     .offset = offsetof(STRUCTURE, material), .section = &material_section,
+     .read = read_material_name},
 };
 const struct section object_section = {object_fields, COUNT(object_fields), finish_object};
 #undef STRUCTURE

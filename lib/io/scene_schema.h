@@ -23,6 +23,7 @@ enum field_kind {
     FIELD_LABEL,    /* char[SONJECT_NAME_CAPACITY] */
     FIELD_PATH,     /* char *, owned by the scene */
     FIELD_SECTION,  /* a structure; the same one as its parent's where offset is 0 */
+    FIELD_NAMED,    /* the same, or a single text that `read` takes into the structure */
     FIELD_SPECIAL   /* read by a function of its own */
 };
 
@@ -68,6 +69,20 @@ sonject_status read_section(struct reader *reader, const struct section *section
 sonject_status read_quantity(struct reader *reader, const struct tree_node *node,
                              enum quantity quantity, double *value);
 
+/* The text of a single value; NULL after a message, whose status is INPUT. */
+const char *read_text(struct reader *reader, const struct tree_node *node);
+
+/* Words in a message, "a, b, c". */
+struct word_list {
+    char text[300];
+    size_t count;
+};
+void list_word(struct word_list *list, const char *word);
+
+/* "'steal' is not one of a, b, c; did you mean 'b'?" Returns INPUT. near: NULL for no hint. */
+sonject_status refuse_word(const struct reader *reader, const struct tree_node *node,
+                           const char *word, const struct word_list *known, const char *near);
+
 /* The message about the value at the reader's path. Returns INPUT. */
 sonject_status refuse_value(const struct reader *reader, const struct tree_node *node,
                             const char *format, ...) REPORT_FORMAT(3);
@@ -112,5 +127,17 @@ sonject_status finish_object(struct reader *reader, const struct tree_node *node
 
 /* The objects' table, for read_objects. */
 extern const struct section object_section;
+
+/* Materials, in scene_material.c. A sonject_material_params, and the same within a
+ * sonject_seabed_params with what else is said about the seabed there. */
+extern const struct section material_section;
+extern const struct section forward_section;
+
+/* Take the name of a material, of the seabed's sediment: the latter's backscatter stays the
+ * seabed's own. structure: as above. */
+sonject_status read_material_name(struct reader *reader, const struct tree_node *node,
+                                  void *structure);
+sonject_status read_sediment_name(struct reader *reader, const struct tree_node *node,
+                                  void *structure);
 
 #endif

@@ -1,17 +1,14 @@
 /* Ranges of the values of a scene. Beyond what the public headers state, magnitudes are kept to
  * what a sonar can meet, so that no later computation overflows. */
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/text.h"
+#include "scene/ranges.h"
 #include "scene/scene.h"
 
 #define PI 3.14159265358979323846
 
-#define LENGTH_MIN_M     1e-6
-#define LENGTH_MAX_M     1e6
 #define FREQUENCY_MIN_HZ 1.0
 #define FREQUENCY_MAX_HZ 1e9
 #define SIDE_MAX         (UINT32_C(1) << 20)
@@ -21,68 +18,11 @@
 /* 1/pi written in decimal digits must not be refused for its last bit. */
 #define ENERGY_SLACK (1.0 + 1e-12)
 
-struct check {
-    struct report *report;
-    const char **key;
-    sonject_status status; /* of the first failure */
-};
-
-REPORT_FORMAT(3)
-static void fail(struct check *check, const char *key, const char *format, ...)
-{
-    char what[400];
-    va_list arguments;
-    if (check->status != SONJECT_OK)
-        return;
-    va_start(arguments, format);
-    vsnprintf(what, sizeof what, format, arguments);
-    va_end(arguments);
-    if (check->key)
-        *check->key = key;
-    check->status = report_failure(check->report, SONJECT_ERROR_INPUT, "%s %s", key, what);
-}
-
-/* NaN fails every comparison, so ranges are asked for, never violations. */
-static void within(struct check *check, const char *key, double value, double minimum,
-                   double maximum, const char *unit)
-{
-    if (!(value >= minimum && value <= maximum))
-        fail(check, key, "must be %g...%g%s, not %g", minimum, maximum, unit, value);
-}
-
-static void positive_length(struct check *check, const char *key, double value_m)
-{
-    within(check, key, value_m, LENGTH_MIN_M, LENGTH_MAX_M, " m");
-}
-
-static void length(struct check *check, const char *key, double value_m)
-{
-    within(check, key, value_m, 0.0, LENGTH_MAX_M, " m");
-}
-
-static void coordinate(struct check *check, const char *key, double value_m)
-{
-    within(check, key, value_m, -LENGTH_MAX_M, LENGTH_MAX_M, " m");
-}
-
-static void finite(struct check *check, const char *key, double value)
-{
-    if (!isfinite(value))
-        fail(check, key, "must be a finite number, not %g", value);
-}
-
-static void one_of(struct check *check, const char *key, uint32_t value, uint32_t count)
-{
-    if (value >= count)
-        fail(check, key, "has no choice number %lu; the last is %lu", (unsigned long)value,
-             (unsigned long)count - 1);
-}
-
 static void side_length(struct check *check, const char *key, uint32_t pixels)
 {
     if (pixels < 1 || pixels > SIDE_MAX)
-        fail(check, key, "must be 1...%lu pixels, not %lu", (unsigned long)SIDE_MAX,
-             (unsigned long)pixels);
+        check_failure(check, key, "must be 1...%lu pixels, not %lu", (unsigned long)SIDE_MAX,
+                      (unsigned long)pixels);
 }
 
 static void swath_size(struct check *check, uint32_t rows, uint32_t columns)
@@ -90,29 +30,31 @@ static void swath_size(struct check *check, uint32_t rows, uint32_t columns)
     side_length(check, "rows", rows);
     side_length(check, "columns", columns);
     if ((uint64_t)rows * columns > SWATH_PIXELS_MAX)
-        fail(check, "rows", "times columns must be at most 2^31 pixels, not %lu x %lu",
-             (unsigned long)rows, (unsigned long)columns);
+        check_failure(check, "rows", "times columns must be at most 2^31 pixels, not %lu x %lu",
+                      (unsigned long)rows, (unsigned long)columns);
 }
 
 sonject_status check_sonar(const sonject_sonar_params *sonar, struct report *report,
                            const char **key)
 {
     struct check check = {report, key, SONJECT_OK};
-    within(&check, "frequency", sonar->centre_frequency_hz, FREQUENCY_MIN_HZ, FREQUENCY_MAX_HZ,
-           " Hz");
-    within(&check, "bandwidth", sonar->bandwidth_hz, FREQUENCY_MIN_HZ, FREQUENCY_MAX_HZ, " Hz");
+    check_within(&check, "frequency", sonar->centre_frequency_hz, FREQUENCY_MIN_HZ,
+                 FREQUENCY_MAX_HZ, " Hz");
+    check_within(&check, "bandwidth", sonar->bandwidth_hz, FREQUENCY_MIN_HZ, FREQUENCY_MAX_HZ,
+                 " Hz");
     if (sonar->bandwidth_hz >= 2.0 * sonar->centre_frequency_hz)
-        fail(&check, "bandwidth", "must be below twice the frequency, %g Hz, not %g Hz",
-             2.0 * sonar->centre_frequency_hz, sonar->bandwidth_hz);
-    positive_length(&check, "altitude", sonar->altitude_m);
+        check_failure(&check, "bandwidth", "must be below twice the frequency, %g Hz, not %g Hz",
+                      2.0 * sonar->centre_frequency_hz, sonar->bandwidth_hz);
+    check_positive_length(&check, "altitude", sonar->altitude_m);
     if (sonar->along_track_resolution_m != 0.0)
-        positive_length(&check, "resolution", sonar->along_track_resolution_m);
-    length(&check, "transducer", sonar->transducer_side_m);
-    one_of(&check, "response", sonar->response_window, SONJECT_WINDOW_TAYLOR + 1);
-    finite(&check, "response.taylor.sidelobes", sonar->taylor_sidelobe_db);
+        check_positive_length(&check, "resolution", sonar->along_track_resolution_m);
+    check_length(&check, "transducer", sonar->transducer_side_m);
+    check_choice(&check, "response", sonar->response_window, SONJECT_WINDOW_TAYLOR + 1);
+    check_finite(&check, "response.taylor.sidelobes", sonar->taylor_sidelobe_db);
     if (sonar->response_window == SONJECT_WINDOW_TAYLOR) {
-        within(&check, "response.taylor.sidelobes", sonar->taylor_sidelobe_db, 1.0, 120.0, " dB");
-        within(&check, "response.taylor.terms", sonar->taylor_terms, 2.0, 16.0, "");
+        check_within(&check, "response.taylor.sidelobes", sonar->taylor_sidelobe_db, 1.0, 120.0,
+                     " dB");
+        check_within(&check, "response.taylor.terms", sonar->taylor_terms, 2.0, 16.0, "");
     }
     return check.status;
 }
@@ -121,25 +63,29 @@ sonject_status check_medium(const sonject_medium_params *medium, struct report *
                             const char **key)
 {
     struct check check = {report, key, SONJECT_OK};
-    within(&check, "sound_speed", medium->sound_speed_mps, 100.0, 10000.0, " m/s");
+    check_within(&check, "sound_speed", medium->sound_speed_mps, 100.0, 10000.0, " m/s");
     if (medium->reference_sound_speed_mps != 0.0)
-        within(&check, "reference_sound_speed", medium->reference_sound_speed_mps, 100.0, 10000.0,
-               " m/s");
+        check_within(&check, "reference_sound_speed", medium->reference_sound_speed_mps, 100.0,
+                     10000.0, " m/s");
     return check.status;
 }
 
 sonject_status check_seabed(const sonject_seabed_params *seabed, struct report *report,
                             const char **key)
 {
+    static const struct material_keys forward_keys = MATERIAL_KEYS("forward.");
     struct check check = {report, key, SONJECT_OK};
-    one_of(&check, "map", seabed->map, SONJECT_MAP_COHERENT + 1);
+    check_choice(&check, "map", seabed->map, SONJECT_MAP_COHERENT + 1);
     if (!(seabed->lambert > 0.0 && PI * seabed->lambert <= ENERGY_SLACK))
-        fail(&check, "lambert",
-             "must be above 0 and at most 1/pi (-4.97 dB), or the seabed returns more than it "
-             "receives; it is %g",
-             seabed->lambert);
-    positive_length(&check, "level_radius", seabed->level_radius_m);
-    positive_length(&check, "despeckle_radius", seabed->despeckle_radius_m);
+        check_failure(
+            &check, "lambert",
+            "must be above 0 and at most 1/pi (-4.97 dB), or the seabed returns more than it "
+            "receives; it is %g",
+            seabed->lambert);
+    check_positive_length(&check, "level_radius", seabed->level_radius_m);
+    check_positive_length(&check, "despeckle_radius", seabed->despeckle_radius_m);
+    check_choice(&check, "forward.rule", seabed->forward_rule, SONJECT_FORWARD_MAP + 1);
+    check_material(&check, &forward_keys, &seabed->forward, seabed->lambert);
     return check.status;
 }
 
@@ -147,13 +93,13 @@ sonject_status check_geometry(const sonject_geometry_params *geometry, struct re
                               const char **key)
 {
     struct check check = {report, key, SONJECT_OK};
-    one_of(&check, "side", geometry->side, SONJECT_SIDE_STARBOARD + 1);
-    positive_length(&check, "row_spacing", geometry->row_spacing_m);
-    positive_length(&check, "column_spacing", geometry->column_spacing_m);
+    check_choice(&check, "side", geometry->side, SONJECT_SIDE_STARBOARD + 1);
+    check_positive_length(&check, "row_spacing", geometry->row_spacing_m);
+    check_positive_length(&check, "column_spacing", geometry->column_spacing_m);
     if (isnan(geometry->first_slant_range_m))
-        fail(&check, "first_slant_range", "must be set: the slant range of column 0 in m");
-    length(&check, "first_slant_range", geometry->first_slant_range_m);
-    coordinate(&check, "first_along_track", geometry->first_along_track_m);
+        check_failure(&check, "first_slant_range", "must be set: the slant range of column 0 in m");
+    check_length(&check, "first_slant_range", geometry->first_slant_range_m);
+    check_coordinate(&check, "first_along_track", geometry->first_along_track_m);
     return check.status;
 }
 
@@ -161,16 +107,16 @@ sonject_status check_transfer(const sonject_transfer_params *transfer, struct re
                               const char **key)
 {
     struct check check = {report, key, SONJECT_OK};
-    one_of(&check, "kind", transfer->kind, SONJECT_TRANSFER_SCHLICK + 1);
-    finite(&check, "parameter", transfer->parameter);
-    finite(&check, "offset", transfer->offset);
+    check_choice(&check, "kind", transfer->kind, SONJECT_TRANSFER_SCHLICK + 1);
+    check_finite(&check, "parameter", transfer->parameter);
+    check_finite(&check, "offset", transfer->offset);
     if (transfer->kind == SONJECT_TRANSFER_DECIBEL) {
-        within(&check, "parameter", transfer->parameter, 1e-6, 1e3, " dB per unit");
-        within(&check, "offset", transfer->offset, -1e3, 1e3, " dB");
+        check_within(&check, "parameter", transfer->parameter, 1e-6, 1e3, " dB per unit");
+        check_within(&check, "offset", transfer->offset, -1e3, 1e3, " dB");
     } else if (transfer->kind == SONJECT_TRANSFER_GAMMA) {
-        within(&check, "parameter", transfer->parameter, 0.01, 100.0, " (an exponent)");
+        check_within(&check, "parameter", transfer->parameter, 0.01, 100.0, " (an exponent)");
     } else if (transfer->kind == SONJECT_TRANSFER_SCHLICK) {
-        within(&check, "parameter", transfer->parameter, 1.0, 1e6, "");
+        check_within(&check, "parameter", transfer->parameter, 1.0, 1e6, "");
     }
     return check.status;
 }
@@ -179,15 +125,25 @@ sonject_status check_injection(const sonject_injection_params *injection, struct
                                const char **key)
 {
     struct check check = {report, key, SONJECT_OK};
-    one_of(&check, "mode", injection->mode, SONJECT_MODE_RESYNTHESISE + 1);
-    one_of(&check, "columns", injection->column_rule, SONJECT_COLUMNS_PAPER + 1);
-    one_of(&check, "noise_floor", injection->estimate_noise, 2);
-    finite(&check, "noise_floor", injection->noise_floor_db);
+    check_choice(&check, "mode", injection->mode, SONJECT_MODE_RESYNTHESISE + 1);
+    check_choice(&check, "columns", injection->column_rule, SONJECT_COLUMNS_PAPER + 1);
+    check_choice(&check, "noise_floor", injection->estimate_noise, 2);
+    check_finite(&check, "noise_floor", injection->noise_floor_db);
     if (!injection->estimate_noise && !(injection->noise_floor_db < 0.0))
-        fail(&check, "noise_floor", "must be below 0 dB, the seabed's own level, not %g dB",
-             injection->noise_floor_db);
-    within(&check, "influence", injection->influence_db, -200.0, 0.0, " dB");
-    within(&check, "rays", injection->ray_scale, 1.0 / 64.0, 4096.0, " times the usual number");
+        check_failure(&check, "noise_floor",
+                      "must be below 0 dB, the seabed's own level, not %g dB",
+                      injection->noise_floor_db);
+    check_within(&check, "influence", injection->influence_db, -200.0, 0.0, " dB");
+    check_within(&check, "rays", injection->ray_scale, 1.0 / 64.0, 4096.0,
+                 " times the usual number");
+    check_within(&check, "interactions", injection->interactions, 1.0, SCENE_INTERACTIONS_MAX,
+                 " surfaces");
+    check_choice(&check, "estimator", injection->estimator, SONJECT_ESTIMATOR_BRUTE_FORCE + 1);
+    check_choice(&check, "order_energies", injection->order_energies, 2);
+    if (injection->estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
+        injection->mode != SONJECT_MODE_RESYNTHESISE)
+        check_failure(&check, "estimator",
+                      "brute_force traces the whole patch and needs mode: resynthesise");
     return check.status;
 }
 
@@ -206,10 +162,10 @@ sonject_status check_patch(const sonject_patch_params *patch, struct report *rep
         return SONJECT_OK;
     for (int i = 0; i < 4; i++)
         if (values[i].value > SWATH_INDEX_MAX)
-            fail(&check, values[i].key, "must be at most 2^40 pixels");
+            check_failure(&check, values[i].key, "must be at most 2^40 pixels");
     for (int i = 2; i < 4; i++)
         if (values[i].value == 0)
-            fail(&check, values[i].key, "must be at least 1 pixel");
+            check_failure(&check, values[i].key, "must be at least 1 pixel");
     return check.status;
 }
 
@@ -226,87 +182,77 @@ sonject_status check_synthetic(const sonject_synthetic_params *synthetic, struct
 {
     struct check check = {report, key, SONJECT_OK};
     swath_size(&check, synthetic->rows, synthetic->columns);
-    one_of(&check, "complex", synthetic->complex_pixels, 2);
+    check_choice(&check, "complex", synthetic->complex_pixels, 2);
     if (!(synthetic->speckle_shape >= 0.01))
-        fail(&check, "speckle_shape",
-             "must be at least 0.01, or inf for Rayleigh amplitudes, not %g",
-             synthetic->speckle_shape);
-    positive_length(&check, "texture_length", synthetic->texture_length_m);
-    positive_length(&check, "ripple_wavelength", synthetic->ripple_wavelength_m);
-    within(&check, "ripple_contrast", synthetic->ripple_contrast, 0.0, 1.0, "");
-    finite(&check, "ripple_heading", synthetic->ripple_heading_rad);
-    within(&check, "patch_contrast", synthetic->patch_contrast_db, 0.0, 100.0, " dB");
-    positive_length(&check, "patch_length", synthetic->patch_length_m);
-    within(&check, "mean_amplitude", synthetic->mean_amplitude, 1e-6, 1e6, "");
+        check_failure(&check, "speckle_shape",
+                      "must be at least 0.01, or inf for Rayleigh amplitudes, not %g",
+                      synthetic->speckle_shape);
+    check_positive_length(&check, "texture_length", synthetic->texture_length_m);
+    check_positive_length(&check, "ripple_wavelength", synthetic->ripple_wavelength_m);
+    check_within(&check, "ripple_contrast", synthetic->ripple_contrast, 0.0, 1.0, "");
+    check_finite(&check, "ripple_heading", synthetic->ripple_heading_rad);
+    check_within(&check, "patch_contrast", synthetic->patch_contrast_db, 0.0, 100.0, " dB");
+    check_positive_length(&check, "patch_length", synthetic->patch_length_m);
+    check_within(&check, "mean_amplitude", synthetic->mean_amplitude, 1e-6, 1e6, "");
     return check.status;
-}
-
-static void check_material(struct check *check, const sonject_material_params *material)
-{
-    within(check, "material.reflection", material->reflection, -1.0, 1.0, "");
-    within(check, "material.roughness", material->roughness_m, 0.0, 1.0, " m");
-    const double available =
-        material->reflection == 0.0 ? 1.0 : material->reflection * material->reflection;
-    if (!(material->lambert >= 0.0 && PI * material->lambert <= available * ENERGY_SLACK))
-        fail(check, "material.lambert",
-             "must be 0...%.4g (%s / pi), or the surface returns more than it receives; it is %g",
-             available / PI, material->reflection == 0.0 ? "1" : "reflection^2", material->lambert);
 }
 
 static void check_label(struct check *check, const char *key, const char *text)
 {
     if (!memchr(text, 0, SONJECT_NAME_CAPACITY))
-        fail(check, key, "must be at most %d bytes long", SONJECT_NAME_CAPACITY - 1);
+        check_failure(check, key, "must be at most %d bytes long", SONJECT_NAME_CAPACITY - 1);
     else if (!text_is_printable(text))
-        fail(check, key, "must be UTF-8 text without control characters");
+        check_failure(check, key, "must be UTF-8 text without control characters");
 }
 
 static void check_size(struct check *check, const sonject_object_params *object)
 {
     if (object->shape != SONJECT_SHAPE_SPHERE)
-        positive_length(check, "length", object->length_m);
+        check_positive_length(check, "length", object->length_m);
     if (object->shape == SONJECT_SHAPE_PLANE)
-        positive_length(check, "width", object->width_m);
+        check_positive_length(check, "width", object->width_m);
     else
-        positive_length(check, "diameter", object->diameter_m);
+        check_positive_length(check, "diameter", object->diameter_m);
     if (object->shape == SONJECT_SHAPE_CAPSULE && object->length_m < object->diameter_m)
-        fail(check, "length",
-             "of a capsule includes its round ends and must be at least its diameter, %g m, not "
-             "%g m",
-             object->diameter_m, object->length_m);
-    finite(check, "length", object->length_m);
-    finite(check, "width", object->width_m);
-    finite(check, "diameter", object->diameter_m);
+        check_failure(
+            check, "length",
+            "of a capsule includes its round ends and must be at least its diameter, %g m, not "
+            "%g m",
+            object->diameter_m, object->length_m);
+    check_finite(check, "length", object->length_m);
+    check_finite(check, "width", object->width_m);
+    check_finite(check, "diameter", object->diameter_m);
 }
 
 static void check_position(struct check *check, const sonject_object_params *object)
 {
-    one_of(check, "position", object->position_kind, SONJECT_POSITION_PIXELS + 1);
+    check_choice(check, "position", object->position_kind, SONJECT_POSITION_PIXELS + 1);
     if (object->position_kind == SONJECT_POSITION_PIXELS) {
         const double limit = (double)SWATH_INDEX_MAX;
-        within(check, "position.row", object->position_along, -1.0, limit, "");
-        within(check, "position.column", object->position_range, -1.0, limit, "");
+        check_within(check, "position.row", object->position_along, -1.0, limit, "");
+        check_within(check, "position.column", object->position_range, -1.0, limit, "");
     } else if (object->position_kind == SONJECT_POSITION_METRES) {
-        coordinate(check, "position.along_track", object->position_along);
-        length(check, "position.slant_range", object->position_range);
+        check_coordinate(check, "position.along_track", object->position_along);
+        check_length(check, "position.slant_range", object->position_range);
     }
-    finite(check, "position", object->position_along);
-    finite(check, "position", object->position_range);
+    check_finite(check, "position", object->position_along);
+    check_finite(check, "position", object->position_range);
 }
 
 sonject_status check_object(const sonject_object_params *object, struct report *report,
                             const char **key)
 {
+    static const struct material_keys material_keys = MATERIAL_KEYS("material.");
     struct check check = {report, key, SONJECT_OK};
     check_label(&check, "name", object->name);
     check_label(&check, "class", object->class_name);
-    one_of(&check, "shape", object->shape, SONJECT_SHAPE_CAPSULE + 1);
+    check_choice(&check, "shape", object->shape, SONJECT_SHAPE_CAPSULE + 1);
     check_size(&check, object);
     check_position(&check, object);
-    finite(&check, "heading", object->heading_rad);
-    finite(&check, "pitch", object->pitch_rad);
-    finite(&check, "roll", object->roll_rad);
-    coordinate(&check, "burial", object->burial_m);
-    check_material(&check, &object->material);
+    check_finite(&check, "heading", object->heading_rad);
+    check_finite(&check, "pitch", object->pitch_rad);
+    check_finite(&check, "roll", object->roll_rad);
+    check_coordinate(&check, "burial", object->burial_m);
+    check_material(&check, &material_keys, &object->material, NAN);
     return check.status;
 }

@@ -35,6 +35,10 @@ void sonject_seabed_params_init(sonject_seabed_params *seabed)
     seabed->lambert = pow(10.0, -2.7);
     seabed->level_radius_m = 3.0;
     seabed->despeckle_radius_m = 0.1;
+    sonject_material_params_init(&seabed->forward);
+    seabed->forward.reflection = 0.0;
+    seabed->forward.roughness_m = 0.0;
+    seabed->forward.lambert = NAN;
 }
 
 /* No first slant range is right for most images, so there is none until the caller gives it. */
@@ -85,6 +89,7 @@ void sonject_injection_params_init(sonject_injection_params *injection)
     injection->influence_db = -40.0;
     injection->ray_scale = 1.0;
     injection->seed = 1;
+    injection->interactions = 1;
 }
 
 void sonject_material_params_init(sonject_material_params *material)
@@ -94,6 +99,10 @@ void sonject_material_params_init(sonject_material_params *material)
     material->reflection = 0.9;
     material->roughness_m = 1.0e-3;
     material->lambert = 0.1;
+    material->lambert_exponent = 1.0;
+    material->glossy_slope = 0.1;
+    material->density_ratio = 1.0;
+    material->speed_ratio = 1.0;
 }
 
 void sonject_object_params_init(sonject_object_params *object)

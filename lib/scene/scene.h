@@ -10,7 +10,8 @@
 
 #include "base/report.h"
 
-#define SCENE_OBJECTS_MAX 250 /* ids must fit the 8-bit label image */
+#define SCENE_OBJECTS_MAX      250 /* ids must fit the 8-bit label image */
+#define SCENE_INTERACTIONS_MAX 8
 
 struct scene {
     sonject_sonar_params sonar;

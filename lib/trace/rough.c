@@ -6,76 +6,15 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "trace/patch_fan.h"
 
 #define PI           3.14159265358979323846
-#define RAYS_PER_BIN 2 /* at the far edge, where elevation covers most range */
-#define RAYS_MAX     67108864.0
-
-static double apparent_range_of_bin(const struct rough_trace *trace, const struct tracer *tracer,
-                                    double bin)
-{
-    return view_apparent_range(&tracer->view, bin / trace->grid.bins_per_pixel);
-}
+#define RAYS_PER_BIN 2.0
 
 static double bin_of_apparent_range(const struct rough_trace *trace, const struct tracer *tracer,
                                     double range)
 {
     return view_column_of_range(&tracer->view, range) * trace->grid.bins_per_pixel;
-}
-
-/* Depression of the seabed at a true range; straight down within the altitude. */
-static double seabed_depression(const struct tracer *tracer, double range)
-{
-    const double sine = tracer->view.altitude_m / range;
-    return sine < 1.0 ? asin(sine) : 0.5 * PI;
-}
-
-/* Elevation of the highest object over the central direction. */
-static double highest_elevation(const struct tracer *tracer, double central_depression,
-                                double lowest)
-{
-    double highest = lowest;
-    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
-        const struct placement *placement = &tracer->placements[i];
-        const double depression =
-            atan2(tracer->view.altitude_m - placement->centre[2], placement->centre[1]);
-        const double across[3] = {0.0, sin(depression), cos(depression)};
-        const double extent =
-            placement_half_extent(placement, tracer->scene->objects[i].shape, across);
-        const double range = placement_range(placement, &tracer->view);
-        const double top = central_depression - depression + asin(fmin(1.0, 1.05 * extent / range));
-        highest = fmax(highest, top);
-    }
-    return highest;
-}
-
-/* Elevations from the seabed at the first bin up to the last bin's or the highest object's. */
-static sonject_status lay_fan(struct rough_trace *trace, struct tracer *tracer,
-                              double central_depression)
-{
-    const double ratio = tracer->view.range_ratio;
-    const double near = apparent_range_of_bin(trace, tracer, trace->grid.bins.first - 0.5) / ratio;
-    const double far = apparent_range_of_bin(
-                           trace, tracer, trace->grid.bins.first + trace->grid.bins.count - 0.5) /
-                       ratio;
-    const double far_depression = seabed_depression(tracer, far);
-    const double lowest = central_depression - seabed_depression(tracer, near);
-    const double highest =
-        highest_elevation(tracer, central_depression, central_depression - far_depression);
-    const double bin = tracer->view.column_spacing_m / trace->grid.bins_per_pixel / ratio;
-    const double step_for_seabed = tan(far_depression) * bin / far;
-    const double step_for_objects = bin / far;
-    const double step = fmin(step_for_seabed, step_for_objects) /
-                        (RAYS_PER_BIN * tracer->scene->injection.ray_scale);
-    const double rays = ceil((highest - lowest) / step);
-    if (!(rays < RAYS_MAX))
-        return report_failure(tracer->report, SONJECT_ERROR_INPUT,
-                              "the patch needs %.3g rays a ping: use a smaller patch or fewer rays",
-                              rays);
-    trace->fan.rays = (uint32_t)rays;
-    trace->fan.first_elevation = (float)lowest;
-    trace->fan.elevation_step = (float)((highest - lowest) / rays);
-    return SONJECT_OK;
 }
 
 /* Bins where an object's echoes and shadow can lie: from its nearest point to where the ray over
@@ -189,19 +128,16 @@ sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *trace
     memset(trace, 0, sizeof *trace);
     const struct patch_view *view = &tracer->view;
     line_grid_for_patch(&trace->grid, view, &tracer->response);
-    const double middle = view_apparent_range(view, 0.5 * (double)(view->columns - 1));
-    const double origin[3] = {view_x_of_row(view, 0.5 * (double)(view->rows - 1)),
-                              view_ground_range(view, middle), 0.0};
+    double origin[3];
+    patch_fan_origin(origin, view);
     struct object_record *records = allocate_array(tracer->scene->object_count, sizeof *records);
     if (!records)
         return report_out_of_memory(tracer->report, "objects");
-    fan_record_init(&trace->fan, tracer, origin, &trace->grid);
     object_records_init(records, tracer, origin);
+    sonject_status status =
+        patch_fan_init(&trace->fan, tracer, &trace->grid, map != NULL, RAYS_PER_BIN);
     trace->fan.stream = STREAM_ROUGH_RAYS;
     trace->fan.seabed_lambert = (float)tracer->scene->seabed.lambert;
-    trace->fan.map_rows = map ? (int32_t)view->rows : 0;
-    trace->fan.map_columns = map ? (int32_t)view->columns : 0;
-    sonject_status status = lay_fan(trace, tracer, atan2(view->altitude_m, origin[1]));
     if (status == SONJECT_OK)
         status = lay_tiles(trace, tracer, records);
     if (status == SONJECT_OK) {

@@ -12,8 +12,10 @@
 #define TALLY_BYTES ((size_t)64 << 20)
 
 /* Host and device must agree on every byte. */
-typedef char object_record_is_packed[sizeof(struct object_record) == 26 * 4 ? 1 : -1];
+typedef char object_record_is_packed[sizeof(struct object_record) == 32 * 4 ? 1 : -1];
 typedef char fan_record_is_packed[sizeof(struct fan_record) == 33 * 4 ? 1 : -1];
+typedef char chain_record_is_packed[sizeof(struct chain_record) == 21 * 4 ? 1 : -1];
+typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
 typedef char outcome_record_is_packed[sizeof(struct outcome_record) == 4 * 4 ? 1 : -1];
 
 float power_of_two_below(double value)
@@ -59,6 +61,27 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
     fan->segments = 1;
 }
 
+void surface_record_init(struct surface_record *record, const sonject_material_params *material,
+                         double wavelength_m)
+{
+    /* k2/k = (1 + i loss) / speed ratio */
+    const double slowness = 1.0 / (material->speed_ratio * material->speed_ratio);
+    memset(record, 0, sizeof *record);
+    record->reflection_kind = material->reflection_kind == SONJECT_REFLECTION_FLUID
+                                  ? REFLECTION_FLUID
+                              : material->reflection != 0.0 ? REFLECTION_CONSTANT
+                                                            : REFLECTION_NONE;
+    record->reflection = (float)material->reflection;
+    record->density_ratio = (float)material->density_ratio;
+    record->index_real = (float)((1.0 - material->loss * material->loss) * slowness);
+    record->index_imaginary = (float)(2.0 * material->loss * slowness);
+    record->roughness_phase = (float)(4.0 * PI * material->roughness_m / wavelength_m);
+    record->lambert = (float)material->lambert;
+    record->lambert_exponent = (float)material->lambert_exponent;
+    record->glossy_albedo = (float)material->glossy_albedo;
+    record->glossy_slope = (float)material->glossy_slope;
+}
+
 void object_records_init(struct object_record *records, const struct tracer *tracer,
                          const double origin[3])
 {
@@ -78,11 +101,7 @@ void object_records_init(struct object_record *records, const struct tracer *tra
         record->half_width = (float)placement->half_width_m;
         record->radius = (float)placement->radius_m;
         record->bounding_radius = (float)placement->bounding_radius_m;
-        record->reflection = (float)object->material.reflection;
-        record->roughness_phase =
-            (float)(4.0 * PI * object->material.roughness_m / tracer->view.wavelength_m);
-        record->lambert = (float)object->material.lambert;
-        record->has_smooth_part = object->material.reflection != 0.0;
+        surface_record_init(&record->surface, &object->material, tracer->view.wavelength_m);
     }
 }
 
@@ -99,6 +118,7 @@ static sonject_status add_outcomes(struct tracer *tracer, const struct outcome_r
 {
     uint32_t faults = 0;
     for (size_t i = 0; i < count; i++) {
+        tracer->counts.rays += outcomes[i].rays;
         tracer->counts.queries += outcomes[i].queries;
         tracer->counts.impulses += outcomes[i].impulses;
         faults |= outcomes[i].faults;
@@ -148,10 +168,8 @@ sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_
     }
     if (status == SONJECT_OK)
         status = buffer_read(report, device, outcome_buffer, 0, items * sizeof *outcomes, outcomes);
-    if (status == SONJECT_OK) {
-        tracer->counts.rays += (uint64_t)fan->rays * fan->strata * (uint64_t)fan->strips;
+    if (status == SONJECT_OK)
         status = add_outcomes(tracer, outcomes, items);
-    }
     buffer_release(&fan_buffer);
     buffer_release(&outcome_buffer);
     free(outcomes);

@@ -37,6 +37,10 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
 void object_records_init(struct object_record *records, const struct tracer *tracer,
                          const double origin[3]);
 
+/* The record of a material whose lambert is a number. */
+void surface_record_init(struct surface_record *record, const sonject_material_params *material,
+                         double wavelength_m);
+
 /* Runs a trace kernel over the fan's strips and adds up what the work-items report. Arguments: the
  * fan first, then `buffers`, then the outcomes. Sets fan->segments. Errors: DEVICE (also faults
  * that the kernel reports), MEMORY. */

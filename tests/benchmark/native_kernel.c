@@ -1,4 +1,5 @@
 #define WIDTH 16
+#include "kernels/trace_chains.h"
 #include "kernels/trace_rough.h"
 #include "kernels/trace_smooth.h"
 
@@ -19,4 +20,14 @@ void native_trace_smooth(const struct fan_record *fan, const struct object_recor
     for (int strip = first; strip < last; strip++)
         for (int segment = 0; segment < fan->segments; segment++)
             outcomes[strip] = trace_smooth_strip(fan, objects, tally, strip, segment);
+}
+
+void native_trace_chains(const struct fan_record *fan, const struct chain_record *chains,
+                         const struct object_record *objects, const struct sphere_record *spheres,
+                         int64_t *tallies, int first, int last, struct outcome_record *outcomes)
+{
+    for (int strip = first; strip < last; strip++)
+        for (int segment = 0; segment < fan->segments; segment++)
+            outcomes[strip] =
+                trace_chains_strip(fan, chains, objects, spheres, NULL, tallies, strip, segment);
 }

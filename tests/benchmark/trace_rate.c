@@ -2,62 +2,19 @@
  * with 16 lanes, on the same scene (a capsule on a Lambert seabed, as in the paper's Figure 6) and
  * the same number of cores, in the same run. Prints one line a kernel; fails only if the two
  * disagree in a single bit. */
-#define _POSIX_C_SOURCE 200809L
-#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "benchmark_scene.h"
 #include "cl/launch.h"
 #include "native_kernel.h"
 #include "trace/rough.h"
 #include "trace/smooth.h"
 
-#define REPEATS     7
-#define THREADS_MAX 64
-
-struct scene_of_benchmark {
-    struct report report;
-    struct scene scene;
-    struct tracer tracer;
-    struct placement placement;
-};
-
-static void fail(const struct report *report, const char *what)
-{
-    fprintf(stderr, "%s: %s\n", what, report->message);
-    exit(1);
-}
-
-static void set_up(struct scene_of_benchmark *set)
-{
-    sonject_object_params capsule;
-    memset(set, 0, sizeof *set);
-    scene_init(&set->scene);
-    set->scene.injection.ray_scale = 16.0; /* kernels, not launches, are what is timed */
-    set->scene.geometry.first_slant_range_m = 43.6;
-    sonject_object_params_init(&capsule);
-    capsule.shape = SONJECT_SHAPE_CAPSULE;
-    capsule.length_m = 2.3;
-    capsule.diameter_m = 0.3;
-    capsule.heading_rad = 0.6;
-    capsule.burial_m = 0.1;
-    sonject_context_params params;
-    sonject_context_params_init(&params);
-    set->tracer.report = &set->report;
-    set->tracer.scene = &set->scene;
-    set->tracer.placements = &set->placement;
-    if (scene_append_object(&set->scene, &set->report, &capsule) != SONJECT_OK ||
-        device_open(&set->report, &params, &set->tracer.device) != SONJECT_OK ||
-        patch_view_init(&set->tracer.view, &set->report, &set->scene, 0.0, 0.0, 512, 512) !=
-            SONJECT_OK ||
-        placement_init(&set->placement, &set->report, &set->tracer.view, 0.0, 0.0,
-                       &set->scene.objects[0]) != SONJECT_OK)
-        fail(&set->report, "set-up");
-    point_response_init(&set->tracer.response, &set->scene.sonar, 1500.0, 0.025);
-}
+#define REPEATS 7
 
 /* One share of the strips on its own thread. */
 struct share {
@@ -83,17 +40,14 @@ static void *run_share(void *argument)
 
 static void run_native(struct share work, unsigned threads)
 {
-    pthread_t workers[THREADS_MAX];
     struct share shares[THREADS_MAX];
     const int strips = work.fan->strips;
     for (unsigned i = 0; i < threads; i++) {
         shares[i] = work;
         shares[i].first = (int)((long)strips * i / threads);
         shares[i].last = (int)((long)strips * (i + 1) / threads);
-        pthread_create(&workers[i], NULL, run_share, &shares[i]);
     }
-    for (unsigned i = 0; i < threads; i++)
-        pthread_join(workers[i], NULL);
+    benchmark_run_threads(run_share, shares, sizeof *shares, threads);
 }
 
 struct rates {
@@ -109,7 +63,7 @@ static void print_rates(const char *name, const struct rates *rates)
 }
 
 /* Runs both versions REPEATS times, keeps the best times, and compares the tallies. */
-static int compare(struct scene_of_benchmark *set, struct fan_record *fan, cl_kernel kernel,
+static int compare(struct benchmark_scene *set, struct fan_record *fan, cl_kernel kernel,
                    cl_mem objects, cl_mem tallies, cl_mem tiles, size_t tally_count,
                    size_t tile_count, int is_smooth, struct rates *rates)
 {
@@ -124,19 +78,18 @@ static int compare(struct scene_of_benchmark *set, struct fan_record *fan, cl_ke
     if (!from_device || !native || !native_tiles || !outcomes ||
         buffer_create(report, device, 0, NULL, &map) != SONJECT_OK ||
         buffer_read(report, device, objects, 0, sizeof record, &record) != SONJECT_OK)
-        fail(report, "buffers");
+        benchmark_fail(report, "buffers");
     const cl_mem rough_buffers[] = {objects, map, tallies, tiles};
     const cl_mem smooth_buffers[] = {objects, tallies};
     rates->device_s = rates->native_s = 1e9;
-    const unsigned threads =
-        device->compute_units < THREADS_MAX ? device->compute_units : THREADS_MAX;
+    const unsigned threads = benchmark_threads(device);
     for (int i = 0; i < REPEATS; i++) {
         if (buffer_clear(report, device, tallies, tally_count * sizeof(int64_t)) != SONJECT_OK)
-            fail(report, "clear");
+            benchmark_fail(report, "clear");
         double start = clock_seconds();
         if (trace_launch(&set->tracer, kernel, fan, is_smooth ? smooth_buffers : rough_buffers,
                          is_smooth ? 2 : 4) != SONJECT_OK)
-            fail(report, "launch");
+            benchmark_fail(report, "launch");
         double taken = clock_seconds() - start;
         rates->device_s = taken < rates->device_s ? taken : rates->device_s;
         memset(native, 0, tally_count * sizeof *native);
@@ -149,7 +102,7 @@ static int compare(struct scene_of_benchmark *set, struct fan_record *fan, cl_ke
     rates->paths = (double)fan->rays * fan->strata * fan->strips;
     if (buffer_read(report, device, tallies, 0, tally_count * sizeof(int64_t), from_device) !=
         SONJECT_OK)
-        fail(report, "read");
+        benchmark_fail(report, "read");
     const int differs = memcmp(native, from_device, tally_count * sizeof *native) != 0;
     buffer_release(&map);
     free(from_device);
@@ -161,15 +114,16 @@ static int compare(struct scene_of_benchmark *set, struct fan_record *fan, cl_ke
 
 int main(void)
 {
-    static struct scene_of_benchmark set;
+    static struct benchmark_scene set;
     static struct rough_trace rough;
     struct smooth_trace smooth;
     struct rates rates;
-    set_up(&set);
+    benchmark_set_up(&set, 512);
+    set.scene.injection.ray_scale = 16.0; /* kernels, not launches, are what is timed */
     printf("device: %s, %u lanes, %u cores\n", set.tracer.device->name,
            (unsigned)set.tracer.device->width, (unsigned)set.tracer.device->compute_units);
     if (rough_trace_begin(&rough, &set.tracer, NULL) != SONJECT_OK)
-        fail(&set.report, "rough part");
+        benchmark_fail(&set.report, "rough part");
     rough.fan.first_strip = rough.grid.strips.first;
     rough.fan.strips = rough.grid.strips.count;
     int differs = compare(&set, &rough.fan, rough.on_device.kernel, rough.on_device.objects,
@@ -177,7 +131,7 @@ int main(void)
                           rough.tile_elements, 0, &rates);
     print_rates("seabed and rough surfaces", &rates);
     if (smooth_trace_begin(&smooth, &set.tracer, 0) != SONJECT_OK)
-        fail(&set.report, "smooth part");
+        benchmark_fail(&set.report, "smooth part");
     smooth.fan.first_strip = smooth.grid.strips.first;
     smooth.fan.strips = smooth_trace_chunk(&smooth);
     differs |=
@@ -188,7 +142,6 @@ int main(void)
     printf("device and native C agree in every bit: %s\n", differs ? "NO" : "yes");
     rough_trace_end(&rough);
     smooth_trace_end(&smooth);
-    device_close(&set.tracer.device);
-    scene_clear(&set.scene);
+    benchmark_clear(&set);
     return differs;
 }

@@ -59,6 +59,39 @@ def test_a_run_leaves_the_promised_files(sonject, scene, tmp_path, swath):
     )
 
 
+def energies_of_orders(folder):
+    return [images.read_tiff(path) for path in sorted(folder.glob("energy_order_*.tif"))]
+
+
+def test_energies_of_orders_make_up_the_energy(sonject, scene, tmp_path):
+    asked = ["--set", "injection.order_energies=true"]
+    for interactions in (1, 2, 3):
+        name = f"result {interactions}"
+        chosen = ["--set", f"injection.interactions={interactions}"]
+        answer = sonject("run", scene, "-o", name, *asked, *chosen)
+        assert answer.returncode == 0, answer.stderr
+        folder = tmp_path / name
+        names = {f"energy_order_{order}.tif" for order in range(1, interactions + 1)}
+        assert {path.name for path in folder.iterdir()} == RESULTS | names
+        energies = energies_of_orders(folder)
+        assert all(energy.dtype == numpy.float32 for energy in energies)
+        assert all(energy.shape == (ROWS, COLUMNS) for energy in energies)
+        total = images.read_tiff(folder / "energy.tif")
+        # Each of up to four numbers is rounded to single precision (2^-24 of itself).
+        assert numpy.allclose(sum(energies), total, rtol=5 * 2.0**-24, atol=0)
+        options = json.loads((folder / "run.json").read_text())["options"]
+        assert options["interactions"] == interactions
+        assert options["estimator"] == "connect"
+
+
+def test_orders_of_an_earlier_run_do_not_stay(sonject, scene, tmp_path):
+    asked = ["--set", "injection.order_energies=true"]
+    assert sonject("run", scene, "-o", "result", *asked).returncode == 0
+    assert len(energies_of_orders(tmp_path / "result")) == 1
+    assert sonject("run", scene, "-o", "result").returncode == 0
+    assert {path.name for path in (tmp_path / "result").iterdir()} == RESULTS
+
+
 def test_an_8_bit_swath_stays_one(sonject, scene, tmp_path, swath):
     grey = numpy.clip(numpy.rint(swath * 255), 0, 255).astype(numpy.uint8)
     (tmp_path / "swath.png").write_bytes(images.png_bytes(grey))
@@ -102,6 +135,25 @@ def test_set_changes_the_scene(sonject, scene, tmp_path):
 def test_quiet_is_quiet(sonject, scene):
     answer = sonject("run", scene, "-o", "result", "--quiet")
     assert (answer.returncode, answer.stdout, answer.stderr) == (0, "", "")
+
+
+def test_verbose_tells_what_happens(sonject, scene, tmp_path):
+    swath = numpy.full((ROWS, COLUMNS), 100, numpy.uint8)
+    swath[3, 4:7] = 255
+    (tmp_path / "swath.png").write_bytes(images.png_bytes(swath))
+    chosen = ["--set", "input.path=swath.png"]
+    usual = sonject("run", scene, "-o", "usual", *chosen)
+    assert usual.stderr == "sonject: the result is in usual\n"
+    answer = sonject("run", scene, "-o", "result", *chosen, "--verbose")
+    assert (answer.returncode, answer.stdout) == (0, "")
+    *news, last = answer.stderr.splitlines()
+    assert last == "sonject: the result is in result"
+    assert all(line.startswith("sonject: ") for line in news)
+    for words in ("device '", "trace_rough.cl taken from the cache", "noise floor estimated",
+                  "3 pixels of the patch are at the image's full scale"):
+        assert len([line for line in news if words in line]) == 1, (words, news)
+    quiet = sonject("run", scene, "-o", "quiet", *chosen, "--verbose", "--quiet")
+    assert (quiet.returncode, quiet.stdout, quiet.stderr) == (0, "", "")
 
 
 def test_no_home_and_no_cache_are_no_reason_to_fail(sonject, scene, tmp_path):

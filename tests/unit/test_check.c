@@ -142,7 +142,34 @@ static const struct number {
     {"material.reflection", offsetof(struct all, sphere.material.reflection), -1.01, -1.0, 1.0,
      1.01},
     {"material.roughness", offsetof(struct all, sphere.material.roughness_m), -0.1, 0.0, 1.0, 1.1},
+    /* reflection^2 / pi = 0.257831 */
     {"material.lambert", offsetof(struct all, sphere.material.lambert), -0.1, 0.0, 0.2578, 0.2579},
+    {"material.exponent", offsetof(struct all, sphere.material.lambert_exponent), 0.9, 1.0, 64.0,
+     64.1},
+    /* reflection^2 - pi * lambert = 0.495841 */
+    {"material.glossy.albedo", offsetof(struct all, sphere.material.glossy_albedo), -0.1, 0.0,
+     0.4958, 0.4959},
+    {"material.glossy.slope", offsetof(struct all, sphere.material.glossy_slope), 0.009, 0.01, 1.0,
+     1.1},
+    {"material.fluid.density", offsetof(struct all, sphere.material.density_ratio), 0.0009, 0.001,
+     100.0, 101.0},
+    {"material.fluid.speed", offsetof(struct all, sphere.material.speed_ratio), 0.009, 0.01, 20.0,
+     20.1},
+    {"material.fluid.loss", offsetof(struct all, sphere.material.loss), -0.1, 0.0, 1.0, 1.1},
+    {"forward.reflection", offsetof(struct all, seabed.forward.reflection), -1.01, -1.0, 1.0, 1.01},
+    {"forward.roughness", offsetof(struct all, seabed.forward.roughness_m), -0.1, 0.0, 1.0, 1.1},
+    {"forward.exponent", offsetof(struct all, seabed.forward.lambert_exponent), 0.9, 1.0, 64.0,
+     64.1},
+    /* 1 - pi * 10^-2.7 = 0.993732 */
+    {"forward.glossy.albedo", offsetof(struct all, seabed.forward.glossy_albedo), -0.1, 0.0, 0.9937,
+     0.9938},
+    {"forward.glossy.slope", offsetof(struct all, seabed.forward.glossy_slope), 0.009, 0.01, 1.0,
+     1.1},
+    {"forward.fluid.density", offsetof(struct all, seabed.forward.density_ratio), 0.0009, 0.001,
+     100.0, 101.0},
+    {"forward.fluid.speed", offsetof(struct all, seabed.forward.speed_ratio), 0.009, 0.01, 20.0,
+     20.1},
+    {"forward.fluid.loss", offsetof(struct all, seabed.forward.loss), -0.1, 0.0, 1.0, 1.1},
 };
 
 static void put(struct all *all, const struct number *number, double value)
@@ -210,7 +237,13 @@ static void test_choices(void **state)
         {"columns", offsetof(struct all, injection.column_rule), SONJECT_COLUMNS_PAPER},
         {"noise_floor", offsetof(struct all, injection.estimate_noise), 1},
         {"complex", offsetof(struct all, synthetic.complex_pixels), 1},
+        {"order_energies", offsetof(struct all, injection.order_energies), 1},
         {"position", offsetof(struct all, sphere.position_kind), SONJECT_POSITION_PIXELS},
+        {"material.reflection", offsetof(struct all, sphere.material.reflection_kind),
+         SONJECT_REFLECTION_FLUID},
+        {"forward.reflection", offsetof(struct all, seabed.forward.reflection_kind),
+         SONJECT_REFLECTION_FLUID},
+        {"forward.rule", offsetof(struct all, seabed.forward_rule), SONJECT_FORWARD_MAP},
     };
     struct all all;
     (void)state;
@@ -297,6 +330,90 @@ static void test_relations(void **state)
     expect_refused(&all, "position.column", "2e12");
 }
 
+static void test_interactions(void **state)
+{
+    struct all all;
+    (void)state;
+    for (uint32_t i = 1; i <= 8; i++) {
+        make_good(&all);
+        all.injection.interactions = i;
+        expect_taken(&all, "interactions", i);
+    }
+    all.injection.interactions = 0;
+    expect_refused(&all, "interactions", "none");
+    all.injection.interactions = 9;
+    expect_refused(&all, "interactions", "9");
+    all.injection.interactions = UINT32_MAX;
+    expect_refused(&all, "interactions", "2^32 - 1");
+}
+
+static void test_brute_force_traces_the_whole_patch(void **state)
+{
+    struct all all;
+    (void)state;
+    make_good(&all);
+    all.injection.estimator = SONJECT_ESTIMATOR_BRUTE_FORCE;
+    expect_refused(&all, "estimator", "brute force of a composite");
+    all.injection.mode = SONJECT_MODE_RESYNTHESISE;
+    expect_taken(&all, "estimator", SONJECT_ESTIMATOR_BRUTE_FORCE);
+    all.injection.estimator = SONJECT_ESTIMATOR_BRUTE_FORCE + 1;
+    expect_refused(&all, "estimator", "an unknown choice");
+}
+
+/* pi * lambert + glossy_albedo against what there is: reflection^2, or 1 where there is no smooth
+ * part or a fluid's. */
+static void test_no_surface_returns_more_than_it_receives(void **state)
+{
+    struct all all;
+    sonject_material_params *material = &all.sphere.material;
+    (void)state;
+    make_good(&all);
+    material->reflection = -0.5;
+    material->lambert = 0.0795; /* 0.25 / pi = 0.0795775 */
+    expect_taken(&all, "material.lambert", 0.0795);
+    material->lambert = 0.0796;
+    expect_refused(&all, "material.lambert", "more than reflection^2 / pi");
+    material->lambert = 0.0;
+    material->glossy_albedo = 0.25;
+    expect_taken(&all, "material.glossy.albedo", 0.25);
+    material->glossy_albedo = 0.2501;
+    expect_refused(&all, "material.glossy.albedo", "more than reflection^2");
+    material->reflection_kind = SONJECT_REFLECTION_FLUID;
+    material->glossy_albedo = 1.0;
+    expect_taken(&all, "material.glossy.albedo", 1.0);
+    material->lambert = 0.001;
+    expect_refused(&all, "material.glossy.albedo", "more than is left");
+    material->lambert = NAN;
+    expect_refused(&all, "material.lambert", "NaN, which only a seabed may have");
+}
+
+static void test_the_seabeds_forward_material(void **state)
+{
+    struct all all;
+    sonject_material_params *forward = &all.seabed.forward;
+    (void)state;
+    make_good(&all);
+    assert_true(isnan(forward->lambert));
+    all.seabed.lambert = 0.02;
+    forward->reflection = 0.2;
+    expect_refused(&all, "forward.lambert", "the seabed's own, 0.0628 of 0.04");
+    forward->reflection = 0.3;
+    expect_taken(&all, "forward.lambert", 0.02);
+    forward->glossy_albedo = 0.0271; /* 0.09 - pi * 0.02 = 0.027168 */
+    expect_taken(&all, "forward.glossy.albedo", 0.0271);
+    forward->glossy_albedo = 0.0272;
+    expect_refused(&all, "forward.glossy.albedo", "more than is left");
+    forward->lambert = 0.0;
+    expect_taken(&all, "forward.lambert", 0.0);
+    forward->glossy_albedo = 0.0;
+    forward->lambert = 0.0287; /* 0.09 / pi = 0.028648 */
+    expect_refused(&all, "forward.lambert", "a number of its own that is too large");
+    forward->reflection_kind = SONJECT_REFLECTION_FLUID;
+    expect_taken(&all, "forward.lambert", 0.0287);
+    forward->lambert = INFINITY;
+    expect_refused(&all, "forward.lambert", "infinity");
+}
+
 static void test_sizes_of_swath_and_patch(void **state)
 {
     struct report report = {{0}, NULL, NULL};
@@ -362,6 +479,11 @@ static void test_defaults(void **state)
     assert_int_equal(scene.injection.column_rule, SONJECT_COLUMNS_FOCUSED);
     assert_true(scene.injection.estimate_noise == 1 && scene.injection.seed == 1);
     assert_true(scene.injection.influence_db == -40.0 && scene.injection.ray_scale == 1.0);
+    assert_int_equal(scene.injection.interactions, 1);
+    assert_int_equal(scene.injection.estimator, SONJECT_ESTIMATOR_CONNECT);
+    assert_int_equal(scene.injection.order_energies, 0);
+    assert_int_equal(scene.seabed.forward_rule, SONJECT_FORWARD_MODEL);
+    assert_true(isnan(scene.seabed.forward.lambert) && scene.seabed.forward.reflection == 0.0);
     assert_int_equal(scene.synthetic.rows, 400);
     assert_int_equal(scene.input_kind, SONJECT_INPUT_MEMORY);
     assert_int_equal(scene.transfer.kind, SONJECT_TRANSFER_AMPLITUDE);
@@ -370,6 +492,7 @@ static void test_defaults(void **state)
     assert_true(object.shape == SONJECT_SHAPE_SPHERE && object.diameter_m == 0.5);
     assert_true(object.material.reflection == 0.9 && object.material.roughness_m == 1e-3);
     assert_true(object.material.lambert == 0.1 && object.burial_m == 0.0);
+    assert_true(object.material.lambert_exponent == 1.0 && object.material.glossy_albedo == 0.0);
     scene_clear(&scene);
 }
 
@@ -403,6 +526,10 @@ int main(void)
         cmocka_unit_test(test_choices),
         cmocka_unit_test(test_window_and_transfer_parameters),
         cmocka_unit_test(test_relations),
+        cmocka_unit_test(test_interactions),
+        cmocka_unit_test(test_brute_force_traces_the_whole_patch),
+        cmocka_unit_test(test_no_surface_returns_more_than_it_receives),
+        cmocka_unit_test(test_the_seabeds_forward_material),
         cmocka_unit_test(test_sizes_of_swath_and_patch),
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_defaults),

@@ -224,6 +224,101 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
     expect_all(state, wrong, COUNT(wrong));
 }
 
+#define MATERIAL OBJECT "sphere\n    diameter: 1\n    material: " /* its value on line 7 */
+#define KNOWN_MATERIALS                                                                            \
+    "steel, concrete, rubber, wood, rock, gravel, coarse sand, medium sand, fine sand, silt, clay"
+
+static void test_materials(void **state)
+{
+    static const struct wrong wrong[] = {
+        {MATERIAL "stele\n", ":7:15: objects[0].material: 'stele' is not one of " KNOWN_MATERIALS
+                             "; did you mean 'steel'?"},
+        {MATERIAL "{name: bronze}\n",
+         ":7:22: objects[0].material.name: 'bronze' is not one of " KNOWN_MATERIALS},
+        {MATERIAL "{name: }\n",
+         ":7:22: objects[0].material.name: has no value; write one or remove the key"},
+        {MATERIAL "[steel]\n", ":7:15: objects[0].material: must be a section of 'key: value' "
+                               "lines, not a list"},
+        {MATERIAL "{nmae: steel}\n",
+         ":7:16: objects[0].material.nmae: unknown key; did you mean 'name'?"},
+        {MATERIAL "{sediment: silt}\n",
+         ":7:16: objects[0].material.sediment: unknown key; known here are name, reflection, "
+         "roughness, lambert, exponent, glossy, fluid"},
+        {MATERIAL "{reflection: 2}\n",
+         ":7:28: objects[0].material.reflection: must be -1...1, not 2"},
+        {MATERIAL "{exponent: 0.5}\n",
+         ":7:26: objects[0].material.exponent: must be 1...64, not 0.5"},
+        {MATERIAL "{glossy: {slope: 0.2}}\n",
+         ":7:24: objects[0].material.glossy.albedo: missing; add it (fraction of the energy that "
+         "the cone returns at most)"},
+        {MATERIAL "{glossy: {albedo: 0.1, slope: 2}}\n",
+         ":7:45: objects[0].material.glossy.slope: must be 0.01...1, not 2"},
+        {MATERIAL "{reflection: 0.5, lambert: 0.05, glossy: {albedo: 0.2}}\n",
+         ":7:65: objects[0].material.glossy.albedo: must be 0...0.09292 (reflection^2 - pi "
+         "lambert), or the surface returns more than it receives; it is 0.2"},
+        {MATERIAL "{fluid: {density: 2}}\n",
+         ":7:23: objects[0].material.fluid.speed: missing; a fluid needs it (ratio to the "
+         "water's)"},
+        {MATERIAL "{fluid: {density: 2, speed: 30}}\n",
+         ":7:43: objects[0].material.fluid.speed: must be 0.01...20 times the water's, not 30"},
+        {MATERIAL "{fluid: {density: 2, speed: 3, loss: -1}}\n",
+         ":7:52: objects[0].material.fluid.loss: must be 0...1, not -1"},
+        {MATERIAL "{reflection: 0.9, fluid: {density: 2, speed: 3}}\n",
+         ":7:28: objects[0].material.reflection: fluid tells the reflection at every angle; remove "
+         "one of the two"},
+    };
+    expect_all(state, wrong, COUNT(wrong));
+}
+
+static void test_the_seabeds_forward_material(void **state)
+{
+    static const struct wrong wrong[] = {
+        {BASE "seabed: {forward: medium snad}\n",
+         ":4:19: seabed.forward: 'medium snad' is not one of " KNOWN_MATERIALS
+         "; did you mean 'medium sand'?"},
+        {BASE "seabed: {forward: {sediment: mud}}\n",
+         ":4:30: seabed.forward.sediment: 'mud' is not one of " KNOWN_MATERIALS},
+        {BASE "seabed: {forward: {name: silt}}\n",
+         ":4:20: seabed.forward.name: unknown key; known here are sediment, rule, reflection, "
+         "roughness, lambert, exponent, glossy, fluid"},
+        {BASE "seabed: {forward: {rule: mpa}}\n",
+         ":4:26: seabed.forward.rule: 'mpa' is not one of model, map; did you mean 'map'?"},
+        {BASE "seabed: {forward: {lambert: 0 dB}}\n",
+         ":4:29: seabed.forward.lambert: must be 0...0.3183 (1 / pi), or the surface returns more "
+         "than it receives; it is 1"},
+        {BASE "seabed: {lambert: 0.02, forward: {reflection: 0.2}}\n",
+         ":4:34: seabed.forward.lambert: must be 0...0.01273 (reflection^2 / pi), or the surface "
+         "returns more than it receives; it is the seabed's own, 0.02"},
+        {BASE "seabed: {forward: {sediment: clay, reflection: 0.3, fluid: {loss: 0}}}\n",
+         ":4:48: seabed.forward.reflection: fluid tells the reflection at every angle; remove one "
+         "of the two"},
+    };
+    expect_all(state, wrong, COUNT(wrong));
+}
+
+static void test_interactions(void **state)
+{
+    static const struct wrong wrong[] = {
+        {BASE "injection: {interactions: 0}\n",
+         ":4:27: injection.interactions: must be 1...8 surfaces, not 0"},
+        {BASE "injection: {interactions: 9}\n", ":4:27: injection.interactions: must be at most 8"},
+        {BASE "injection: {interactions: two}\n",
+         ":4:27: injection.interactions: 'two' is not a whole number from 0 to 8"},
+        {BASE "injection: {estimator: conect}\n",
+         ":4:24: injection.estimator: 'conect' is not one of connect, brute_force; did you mean "
+         "'connect'?"},
+        {BASE "injection: {estimator: brute_force}\n",
+         ":4:24: injection.estimator: brute_force traces the whole patch and needs mode: "
+         "resynthesise"},
+        {BASE "injection: {estimator: brute_force, mode: resynthesise}\n",
+         ":4:24: injection.estimator: brute_force needs a source that rays can hit; set transducer "
+         "in sonar"},
+        {BASE "injection: {order_energies: 2}\n",
+         ":4:29: injection.order_energies: '2' is neither true nor false"},
+    };
+    expect_all(state, wrong, COUNT(wrong));
+}
+
 static void test_yaml_that_is_not_wanted(void **state)
 {
     static const struct wrong wrong[] = {
@@ -339,6 +434,9 @@ int main(void)
         cmocka_unit_test(test_missing_keys),
         cmocka_unit_test(test_wrong_values),
         cmocka_unit_test(test_keys_that_exclude_or_need_each_other),
+        cmocka_unit_test(test_materials),
+        cmocka_unit_test(test_the_seabeds_forward_material),
+        cmocka_unit_test(test_interactions),
         cmocka_unit_test(test_yaml_that_is_not_wanted),
         cmocka_unit_test(test_overrides_that_are_wrong),
         cmocka_unit_test(test_a_missing_file_is_named),

@@ -27,7 +27,8 @@ static const char small[] = "sonject: 1\n"
                             "    row_spacing: 2.5 cm\n"
                             "    column_spacing: 2.5 cm\n"
                             "    first_slant_range: 40 m\n"
-                            "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
+                            "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m, "
+                            "transducer: 5 cm}\n"
                             "objects:\n"
                             "  - {shape: sphere, diameter: 0.5 m}\n";
 
@@ -144,6 +145,30 @@ static const struct key_case {
      NULL},
     {"seabed.despeckle_radius", small, "5 cm", TYPE_DOUBLE, SCENE(seabed.despeckle_radius_m), 0.05,
      NULL, NULL},
+    {"seabed.forward", small, "medium sand", TYPE_U32, SCENE(seabed.forward.reflection_kind),
+     SONJECT_REFLECTION_FLUID, NULL, NULL},
+    {"seabed.forward.sediment", small, "silt", TYPE_U32, SCENE(seabed.forward.reflection_kind),
+     SONJECT_REFLECTION_FLUID, NULL, NULL},
+    {"seabed.forward.rule", small, "map", TYPE_U32, SCENE(seabed.forward_rule), SONJECT_FORWARD_MAP,
+     NULL, NULL},
+    {"seabed.forward.reflection", small, "0.25", TYPE_DOUBLE, SCENE(seabed.forward.reflection),
+     0.25, NULL, NULL},
+    {"seabed.forward.roughness", small, "5 mm", TYPE_DOUBLE, SCENE(seabed.forward.roughness_m),
+     0.005, NULL, NULL},
+    {"seabed.forward.lambert", small, "0.125", TYPE_DOUBLE, SCENE(seabed.forward.lambert), 0.125,
+     NULL, NULL},
+    {"seabed.forward.exponent", small, "2", TYPE_DOUBLE, SCENE(seabed.forward.lambert_exponent),
+     2.0, NULL, NULL},
+    {"seabed.forward.glossy.albedo", small, "0.5", TYPE_DOUBLE, SCENE(seabed.forward.glossy_albedo),
+     0.5, NULL, NULL},
+    {"seabed.forward.glossy.slope", small, "0.25", TYPE_DOUBLE, SCENE(seabed.forward.glossy_slope),
+     0.25, NULL, "seabed.forward.glossy.albedo=0.5"},
+    {"seabed.forward.fluid.density", small, "1.5", TYPE_DOUBLE, SCENE(seabed.forward.density_ratio),
+     1.5, NULL, "seabed.forward.fluid.speed=1.25"},
+    {"seabed.forward.fluid.speed", small, "1.25", TYPE_DOUBLE, SCENE(seabed.forward.speed_ratio),
+     1.25, NULL, "seabed.forward.fluid.density=1.5"},
+    {"seabed.forward.fluid.loss", small, "0.125", TYPE_DOUBLE, SCENE(seabed.forward.loss), 0.125,
+     NULL, "seabed.forward.sediment=clay"},
     {"injection.mode", small, "resynthesise", TYPE_U32, SCENE(injection.mode),
      SONJECT_MODE_RESYNTHESISE, NULL, NULL},
     {"injection.columns", small, "paper", TYPE_U32, SCENE(injection.column_rule),
@@ -154,6 +179,12 @@ static const struct key_case {
      NULL, NULL},
     {"injection.rays", small, "0.5", TYPE_DOUBLE, SCENE(injection.ray_scale), 0.5, NULL, NULL},
     {"injection.seed", small, "2199023255552", TYPE_U64, SCENE(injection.seed), 2199023255552.0,
+     NULL, NULL},
+    {"injection.interactions", small, "3", TYPE_U32, SCENE(injection.interactions), 3.0, NULL,
+     NULL},
+    {"injection.estimator", small, "brute_force", TYPE_U32, SCENE(injection.estimator),
+     SONJECT_ESTIMATOR_BRUTE_FORCE, NULL, "injection.mode=resynthesise"},
+    {"injection.order_energies", small, "true", TYPE_U32, SCENE(injection.order_energies), 1.0,
      NULL, NULL},
     {"objects[].name", small, "M\xC3\xBCll 7: #1", TYPE_TEXT, OBJECT(name), 0.0,
      "M\xC3\xBCll 7: #1", NULL},
@@ -186,6 +217,22 @@ static const struct key_case {
      0.002, NULL, NULL},
     {"objects[].material.lambert", small, "0.125", TYPE_DOUBLE, OBJECT(material.lambert), 0.125,
      NULL, NULL},
+    {"objects[].material", small, "gravel", TYPE_U32, OBJECT(material.reflection_kind),
+     SONJECT_REFLECTION_FLUID, NULL, NULL},
+    {"objects[].material.name", small, "fine-sand", TYPE_U32, OBJECT(material.reflection_kind),
+     SONJECT_REFLECTION_FLUID, NULL, NULL},
+    {"objects[].material.exponent", small, "4", TYPE_DOUBLE, OBJECT(material.lambert_exponent), 4.0,
+     NULL, NULL},
+    {"objects[].material.glossy.albedo", small, "0.25", TYPE_DOUBLE, OBJECT(material.glossy_albedo),
+     0.25, NULL, NULL},
+    {"objects[].material.glossy.slope", small, "0.5", TYPE_DOUBLE, OBJECT(material.glossy_slope),
+     0.5, NULL, "objects[0].material={glossy: {albedo: 0.25}}"},
+    {"objects[].material.fluid.density", small, "8", TYPE_DOUBLE, OBJECT(material.density_ratio),
+     8.0, NULL, "objects[0].material={fluid: {speed: 4}}"},
+    {"objects[].material.fluid.speed", small, "4", TYPE_DOUBLE, OBJECT(material.speed_ratio), 4.0,
+     NULL, "objects[0].material={fluid: {density: 8}}"},
+    {"objects[].material.fluid.loss", small, "0.0625", TYPE_DOUBLE, OBJECT(material.loss), 0.0625,
+     NULL, "objects[0].material={fluid: {density: 8, speed: 4}}"},
 };
 
 static double number_at(const void *structure, const struct key_case *key)
@@ -304,6 +351,51 @@ static void test_words_and_forms(void **state)
     assert_int_equal(folder->scene.objects[0].position_kind, SONJECT_POSITION_METRES);
 }
 
+/* A name fills in all of a material; keys beside it change it; a seabed keeps its backscatter. */
+static void test_named_materials(void **state)
+{
+    struct scene_folder *folder = *state;
+    const char *overrides[] = {"objects[0].material={name: concrete, roughness: 7 mm}",
+                               "seabed.forward={sediment: medium_sand, rule: map, roughness: 5 mm}",
+                               "seabed.lambert=-30 dB"};
+    const char *as_constant[] = {"objects[0].material={name: fine sand, reflection: 0.75}",
+                                 "seabed.forward={sediment: silt, lambert: 0.0625, fluid: {loss: "
+                                 "0.03125}}"};
+    sonject_material_params expected;
+    const sonject_material_params *material;
+    write_scene(folder, small, strlen(small));
+    if (read_scene(folder, overrides, COUNT(overrides)) != SONJECT_OK)
+        fail_msg("%s", folder->report.message);
+    sonject_material_params_init(&expected);
+    assert_int_equal(sonject_material_named("concrete", &expected), SONJECT_OK);
+    expected.roughness_m = 0.007;
+    assert_memory_equal(&folder->scene.objects[0].material, &expected, sizeof expected);
+    assert_int_equal(sonject_material_named("medium sand", &expected), SONJECT_OK);
+    material = &folder->scene.seabed.forward;
+    assert_true(isnan(material->lambert) && material->roughness_m == 0.005);
+    assert_true(material->density_ratio == expected.density_ratio);
+    assert_true(material->speed_ratio == expected.speed_ratio && material->loss == expected.loss);
+    assert_true(fabs(folder->scene.seabed.lambert / 1e-3 - 1.0) < 1e-15); /* rounding of pow */
+    if (read_scene(folder, as_constant, COUNT(as_constant)) != SONJECT_OK)
+        fail_msg("%s", folder->report.message);
+    material = &folder->scene.objects[0].material;
+    assert_int_equal(material->reflection_kind, SONJECT_REFLECTION_CONSTANT);
+    assert_true(material->reflection == 0.75);
+    assert_int_equal(sonject_material_named("silt", &expected), SONJECT_OK);
+    material = &folder->scene.seabed.forward;
+    assert_true(material->lambert == 0.0625 && material->loss == 0.03125);
+    assert_true(material->density_ratio == expected.density_ratio);
+}
+
+static void test_a_fluid_replaces_a_constant_reflection(void **state)
+{
+    struct scene_folder *folder = *state;
+    const char *fluid = "objects[0].material={name: steel, fluid: {density: 8, speed: 4}}";
+    write_scene(folder, small, strlen(small));
+    assert_int_equal(read_scene(folder, &fluid, 1), SONJECT_OK);
+    assert_int_equal(folder->scene.objects[0].material.reflection_kind, SONJECT_REFLECTION_FLUID);
+}
+
 static void test_paths_are_meant_from_where_they_stand(void **state)
 {
     struct scene_folder *folder = *state;
@@ -379,6 +471,7 @@ static void test_examples_are_good(void **state)
         {"figure4", SONJECT_INPUT_UNIFORM, SONJECT_MODE_RESYNTHESISE, 1},
         {"figure5", SONJECT_INPUT_FILE, SONJECT_MODE_RESYNTHESISE, 0},
         {"figure6", SONJECT_INPUT_FILE, SONJECT_MODE_COMPOSITE, 1},
+        {"figure7", SONJECT_INPUT_FILE, SONJECT_MODE_COMPOSITE, 1},
     };
     struct scene_folder *folder = *state;
     for (size_t i = 0; i < COUNT(examples); i++) {
@@ -394,6 +487,8 @@ static void test_examples_are_good(void **state)
         assert_true(folder->scene.sonar.centre_frequency_hz == 100e3);
         assert_true(folder->scene.sonar.bandwidth_hz == 30e3);
         assert_true(folder->scene.sonar.altitude_m == 10.0);
+        assert_int_equal(folder->scene.injection.interactions,
+                         strcmp(examples[i].name, "figure7") == 0 ? 2 : 1);
     }
 }
 
@@ -420,6 +515,8 @@ int main(void)
         cmocka_unit_test(test_every_key_has_a_case),
         cmocka_unit_test(test_defaults_stay_where_nothing_is_said),
         cmocka_unit_test(test_words_and_forms),
+        cmocka_unit_test(test_named_materials),
+        cmocka_unit_test(test_a_fluid_replaces_a_constant_reflection),
         cmocka_unit_test(test_paths_are_meant_from_where_they_stand),
         cmocka_unit_test(test_overrides_change_and_add),
         cmocka_unit_test(test_sections_may_be_empty),

@@ -18,8 +18,11 @@ from .actions import check, inject, quicklook, run, write_seabed
 from .context import Context, Device, default_context, devices
 from .enumerations import (
     ColumnRule,
+    Estimator,
+    ForwardRule,
     Mode,
     RangeAxis,
+    ReflectionKind,
     ResponseWindow,
     SeabedMap,
     Side,
@@ -27,6 +30,7 @@ from .enumerations import (
     TransferKind,
 )
 from .errors import Cancelled, SonjectError
+from .material import Material
 from .objects import (
     Capsule,
     Cylinder,
@@ -40,7 +44,6 @@ from .objects import (
 from .parameters import (
     Geometry,
     Injection,
-    Material,
     Medium,
     Patch,
     Seabed,
@@ -67,6 +70,8 @@ __all__ = [
     "Context",
     "Cylinder",
     "Device",
+    "Estimator",
+    "ForwardRule",
     "Geometry",
     "Injection",
     "Material",
@@ -81,6 +86,7 @@ __all__ = [
     "Plane",
     "Progress",
     "RangeAxis",
+    "ReflectionKind",
     "ResponseWindow",
     "Result",
     "Scene",

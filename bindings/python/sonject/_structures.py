@@ -108,16 +108,26 @@ class sonject_injection_params(Structure):
         ("influence_db", c_double),
         ("ray_scale", c_double),
         ("seed", c_uint64),
+        ("interactions", c_uint32),
+        ("estimator", c_uint32),
+        ("order_energies", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
 class sonject_material_params(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
-        ("reserved", c_uint32),
+        ("reflection_kind", c_uint32),
         ("reflection", c_double),
         ("roughness_m", c_double),
         ("lambert", c_double),
+        ("lambert_exponent", c_double),
+        ("glossy_albedo", c_double),
+        ("glossy_slope", c_double),
+        ("density_ratio", c_double),
+        ("speed_ratio", c_double),
+        ("loss", c_double),
     ]
 
 
@@ -247,6 +257,9 @@ class sonject_seabed_params(Structure):
         ("lambert", c_double),
         ("level_radius_m", c_double),
         ("despeckle_radius_m", c_double),
+        ("forward_rule", c_uint32),
+        ("reserved", c_uint32),
+        ("forward", sonject_material_params),
     ]
 
 

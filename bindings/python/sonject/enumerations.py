@@ -49,6 +49,20 @@ class ColumnRule(enum.IntEnum):
     PAPER = 1
 
 
+class Estimator(enum.IntEnum):
+    """sonject_estimator: how paths to the source are found."""
+
+    CONNECT = 0
+    BRUTE_FORCE = 1
+
+
+class ReflectionKind(enum.IntEnum):
+    """sonject_reflection_kind: how the reflection coefficient depends on the angle."""
+
+    CONSTANT = 0
+    FLUID = 1
+
+
 class Shape(enum.IntEnum):
     """sonject_shape."""
 
@@ -108,6 +122,13 @@ class SeabedMap(enum.IntEnum):
     INTENSITY = 0
     DESPECKLED = 1
     COHERENT = 2
+
+
+class ForwardRule(enum.IntEnum):
+    """sonject_forward_rule: what scatters sound at the seabed that does not go straight back."""
+
+    MODEL = 0
+    MAP = 1
 
 
 class ResponseWindow(enum.IntEnum):

@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Union
 from . import _structures as s
 from ._values import fill, initialised
 from .enumerations import PositionKind, Shape
-from .parameters import Material
+from .material import Material
 
 
 @dataclass(frozen=True)

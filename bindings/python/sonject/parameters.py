@@ -9,58 +9,28 @@ from __future__ import annotations
 import ctypes
 import enum
 import math
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Mapping, Optional, Type
 
 from . import _structures as s
-from ._values import choice, fill, initialised, sized
+from ._parameters import Parameters, library_default
+from ._values import fill, sized
 from .enumerations import (
     ColumnRule,
+    Estimator,
+    ForwardRule,
     Mode,
     ResponseWindow,
     SeabedMap,
     Side,
     TransferKind,
 )
+from .material import Material
 
 
 def from_degrees(angle: float) -> float:
     """An angle in radians from one in degrees: ``heading_rad=from_degrees(30)``."""
     return math.radians(angle)
-
-
-def library_default() -> Any:
-    """A field whose default the library gives."""
-    return field(default=None)
-
-
-@dataclass(kw_only=True)
-class Parameters:
-    """Mirrors one C structure; fields have the names of the structure's."""
-
-    _structure: ClassVar[Type[ctypes.Structure]]
-    _choices: ClassVar[Mapping[str, Type[enum.IntEnum]]] = {}
-
-    def __post_init__(self) -> None:
-        defaults = initialised(self._structure)
-        for entry in fields(self):
-            if getattr(self, entry.name) is None:
-                setattr(self, entry.name, getattr(defaults, entry.name))
-            if entry.name in self._choices:
-                kind = self._choices[entry.name]
-                setattr(self, entry.name, choice(entry.name, kind, getattr(self, entry.name)))
-
-    def _values(self) -> dict[str, Any]:
-        values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
-        for name, kind in self._choices.items():
-            values[name] = choice(name, kind, values[name])
-        return values
-
-    def to_structure(self) -> Any:
-        """The C structure. Raises TypeError or ValueError where a value does not fit into it."""
-        structure = initialised(self._structure)
-        fill(structure, self._values())
-        return structure
 
 
 @dataclass(kw_only=True)
@@ -102,16 +72,35 @@ class Seabed(Parameters):
 
     map: the reflectivity when the patch is resynthesised; lambert: backscatter per area and solid
     angle at normal incidence, linear, at most 1/pi; level_radius_m: of the smooth local mean that
-    lambert stands for; despeckle_radius_m: of the despeckled map.
+    lambert stands for; despeckle_radius_m: of the despeckled map; forward: the surface for sound
+    that does not go straight back, as between seabed and target, whose lambert is NaN for the
+    seabed's own, as in ``Material.named("fine sand", lambert=math.nan)``; forward_rule: whether the map counts there too.
     """
 
     _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_seabed_params
-    _choices: ClassVar[Mapping[str, Type[enum.IntEnum]]] = {"map": SeabedMap}
+    _choices: ClassVar[Mapping[str, Type[enum.IntEnum]]] = {
+        "map": SeabedMap,
+        "forward_rule": ForwardRule,
+    }
 
     map: SeabedMap = library_default()
     lambert: float = library_default()
     level_radius_m: float = library_default()
     despeckle_radius_m: float = library_default()
+    forward_rule: ForwardRule = library_default()
+    forward: Material = library_default()
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if isinstance(self.forward, s.sonject_material_params):
+            self.forward = Material.from_structure(self.forward)
+
+    def _values(self) -> dict[str, Any]:
+        values = super()._values()
+        if not isinstance(self.forward, Material):
+            raise TypeError(f"forward must be a Material, not {self.forward!r}")
+        values["forward"] = self.forward.to_structure()
+        return values
 
 
 @dataclass(kw_only=True)
@@ -154,13 +143,16 @@ class Injection(Parameters):
     the whole patch anew; column_rule: column of an echo of several interactions; noise_floor_db:
     noise energy over the local mean seabed energy, below 0, None: estimated from the patch;
     influence_db: level of change over the seabed from which a pixel is the objects'; ray_scale:
-    factor on the number of rays; seed: of all random numbers.
+    factor on the number of rays; seed: of all random numbers; interactions: surfaces that a path
+    may meet, 1...8; estimator: how paths to the source are found; order_energies: whether the
+    result keeps the energy of each number of interactions.
     """
 
     _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_injection_params
     _choices: ClassVar[Mapping[str, Type[enum.IntEnum]]] = {
         "mode": Mode,
         "column_rule": ColumnRule,
+        "estimator": Estimator,
     }
 
     mode: Mode = library_default()
@@ -168,12 +160,16 @@ class Injection(Parameters):
     influence_db: float = library_default()
     ray_scale: float = library_default()
     seed: int = library_default()
+    interactions: int = library_default()
+    estimator: Estimator = library_default()
+    order_energies: bool = library_default()
     noise_floor_db: Optional[float] = None
 
     def __post_init__(self) -> None:
         given = self.noise_floor_db
         super().__post_init__()
         self.noise_floor_db = given
+        self.order_energies = bool(self.order_energies)
 
     def _values(self) -> dict[str, Any]:
         values = super()._values()
@@ -181,21 +177,6 @@ class Injection(Parameters):
         if self.noise_floor_db is None:
             del values["noise_floor_db"]
         return values
-
-
-@dataclass(kw_only=True)
-class Material(Parameters):
-    """How much sound a surface returns.
-
-    reflection: amplitude of the mirror-like part, -1...1; roughness_m: rms height; lambert:
-    coefficient mu of the rough part, linear.
-    """
-
-    _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_material_params
-
-    reflection: float = library_default()
-    roughness_m: float = library_default()
-    lambert: float = library_default()
 
 
 @dataclass(kw_only=True)

@@ -14,7 +14,8 @@ from . import _structures as s
 from ._handle import Handle
 from ._values import sized
 from .context import Context
-from .enumerations import Layer, PixelKind
+from .enumerations import Layer, PixelKind, Status
+from .errors import SonjectError
 
 Array = numpy.typing.NDArray[Any]
 
@@ -195,6 +196,24 @@ class Result(Handle):
     def influence(self) -> Array:
         """uint8; 255 where the image was changed."""
         return self._layer(Layer.INFLUENCE)
+
+    @cached_property
+    def order_energies(self) -> list[Array]:
+        """float32, one for each number of interactions from 1 on: the part of energy that paths
+        have which meet so many surfaces. Empty unless the injection asked for order_energies."""
+        energies: list[Array] = []
+        while True:
+            energy = numpy.empty(self.shape, numpy.float32)
+            order = len(energies) + 1
+            try:
+                self._context.call(
+                    "sonject_result_order_energy", self, order, energy.ctypes.data, energy.nbytes
+                )
+            except SonjectError as error:
+                if error.status is not Status.ERROR_ARGUMENT:
+                    raise
+                return energies
+            energies.append(energy)
 
     @cached_property
     def objects(self) -> list[ObjectTruth]:

@@ -98,7 +98,17 @@ def test_log_errors_are_raised(amplitude_patch, make_scene):
             sonject.inject(amplitude_patch, scene)
         except LookupError as error:
             assert "from the log" in str(error)
-        assert all(isinstance(line, str) for line in lines)
+        assert lines and all(isinstance(line, str) for line in lines)
+
+
+def test_the_log_tells_device_programs_and_noise_floor(amplitude_patch, make_scene):
+    lines = []
+    with sonject.Context(cache_folder="", log=lines.append) as context:
+        sonject.inject(amplitude_patch, make_scene(context=context))
+    assert [line for line in lines if line.startswith("device '")] == lines[:1]
+    assert any("trace_rough.cl built in" in line for line in lines)
+    assert lines[-1].startswith("noise floor estimated")
+    assert not any("\n" in line for line in lines)
 
 
 def run_python(code, **environment):

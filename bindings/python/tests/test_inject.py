@@ -67,6 +67,48 @@ def test_truth_and_statistics(patch, make_scene):
     assert math.isnan(result.statistics.correlation)
 
 
+def test_orders_make_up_the_energy(patch, make_scene):
+    injection = sonject.Injection(interactions=2, order_energies=True)
+    objects = [sonject.Sphere(diameter_m=0.5, material=sonject.Material.named("concrete"))]
+    result = sonject.inject(patch, make_scene(injection=injection, objects=objects))
+    first, second = result.order_energies
+    assert first.dtype == second.dtype == numpy.float32
+    assert first.shape == second.shape == (ROWS, COLUMNS)
+    assert numpy.all(first >= 0) and numpy.all(second >= 0)
+    assert numpy.any(second > 0)
+    # Each of three numbers is rounded to single precision (2^-24 of itself).
+    assert numpy.allclose(first + second, result.energy, rtol=4 * 2.0**-24, atol=0)
+
+
+def test_orders_are_kept_only_where_asked_for(amplitude_patch, make_scene):
+    assert sonject.inject(amplitude_patch, make_scene()).order_energies == []
+    asked = make_scene(injection=sonject.Injection(order_energies=True))
+    result = sonject.inject(amplitude_patch, asked)
+    (first,) = result.order_energies
+    assert numpy.array_equal(first, result.energy)
+
+
+def test_orders_that_are_not_there_are_refused(amplitude_patch, make_scene):
+    asked = make_scene(injection=sonject.Injection(order_energies=True))
+    result = sonject.inject(amplitude_patch, asked)
+    energy = numpy.empty((ROWS, COLUMNS), numpy.float32)
+
+    def copy(result, order, size=energy.nbytes):
+        result.context.call(
+            "sonject_result_order_energy", result, order, energy.ctypes.data, size
+        )
+
+    copy(result, 1)
+    for order in (0, 2, 2**32 - 1):
+        with pytest.raises(sonject.SonjectError, match=f"no order {order}, only 1 to 1") as caught:
+            copy(result, order)
+        assert caught.value.status is sonject.Status.ERROR_ARGUMENT
+    with pytest.raises(sonject.SonjectError, match=f"has {energy.nbytes} bytes, the buffer 4"):
+        copy(result, 1, 4)
+    with pytest.raises(sonject.SonjectError, match="set order_energies"):
+        copy(sonject.inject(amplitude_patch, make_scene()), 1)
+
+
 def test_the_same_input_gives_the_same_bits(patch, make_scene):
     first = sonject.inject(patch, make_scene())
     second = sonject.inject(patch, make_scene())

@@ -48,6 +48,45 @@ def test_pixel_positions_are_row_then_column():
     assert (thing.position_kind, thing.position_along, thing.position_range) == (2, 3.0, 4.0)
 
 
+def test_named_materials():
+    names = sonject.Material.names()
+    assert {"steel", "concrete", "rubber", "wood", "rock", "gravel", "coarse sand"} <= set(names)
+    assert {"medium sand", "fine sand", "silt", "clay"} <= set(names)
+    for name in names:
+        named = sonject.Material.named(name)
+        assert named.to_structure().reflection_kind == named.reflection_kind, name
+        assert sonject.Material.named(name.replace(" ", "_")) == named
+    steel = sonject.Material.named("steel", roughness_m=0.004)
+    assert steel.roughness_m == 0.004
+    assert steel.lambert == sonject.Material.named("steel").lambert
+    with pytest.raises(ValueError, match="'stele' is not one of .*steel"):
+        sonject.Material.named("stele")
+
+
+def test_the_seabeds_forward_material():
+    seabed = sonject.Seabed()
+    assert (seabed.forward.reflection, seabed.forward.roughness_m) == (0.0, 0.0)
+    assert math.isnan(seabed.forward.lambert)
+    assert seabed.forward_rule is sonject.ForwardRule.MODEL
+    sand = sonject.Material(
+        reflection_kind="fluid", density_ratio=1.8, speed_ratio=1.1, loss=0.01, lambert=math.nan
+    )
+    structure = sonject.Seabed(forward=sand, forward_rule="map").to_structure()
+    assert (structure.forward_rule, structure.forward.reflection_kind) == (1, 1)
+    assert (structure.forward.density_ratio, structure.forward.speed_ratio) == (1.8, 1.1)
+    assert structure.forward.loss == 0.01
+    assert math.isnan(structure.forward.lambert)
+
+
+def test_interactions():
+    given = sonject.Injection(interactions=3, order_energies=True, estimator="brute_force")
+    structure = given.to_structure()
+    assert (structure.interactions, structure.order_energies, structure.estimator) == (3, 1, 1)
+    default = sonject.Injection()
+    assert (default.interactions, default.order_energies) == (1, False)
+    assert default.estimator is sonject.Estimator.CONNECT
+
+
 def test_noise_floor_is_estimated_unless_given():
     assert sonject.Injection().to_structure().estimate_noise == 1
     given = sonject.Injection(noise_floor_db=-20.0).to_structure()
@@ -91,6 +130,8 @@ def test_what_a_field_would_cut_or_wrap_is_refused(make, message):
         (lambda: sonject.Sphere(diameter_m=1, name=b"x"), "name must be a text"),
         (lambda: sonject.Sphere(diameter_m=1, position=(1, 2)), "position must be"),
         (lambda: sonject.Sphere(diameter_m=1, material="steel"), "material must be"),
+        (lambda: sonject.Seabed(forward="fine sand"), "forward must be"),
+        (lambda: sonject.Material.named(7), "name must be a text"),
     ],
 )
 def test_wrong_types_are_refused(make, message):

@@ -1,0 +1,47 @@
+/* The measured image as the seabed's reflectivity. */
+#ifndef SONJECT_KERNELS_REFLECTIVITY_MAP_H
+#define SONJECT_KERNELS_REFLECTIVITY_MAP_H
+
+#include "chain_hit.h"
+#include "layout.h"
+#include "width.h"
+
+/* Reflectivity over mu0 at the pixel nearest to a row and column; 1 without a map. */
+FUNCTION float map_value(const struct fan_record *fan, GLOBAL const float *map, float row,
+                         float column)
+{
+    if (fan->map_rows == 0)
+        return 1.0f;
+    int r = (int)(row + 0.5f);
+    int c = (int)(column + 0.5f);
+    r = r < 0 ? 0 : r >= fan->map_rows ? fan->map_rows - 1 : r;
+    c = c < 0 ? 0 : c >= fan->map_columns ? fan->map_columns - 1 : c;
+    return map[(long)r * fan->map_columns + c];
+}
+
+/* The map at hits of a chain on the seabed where it rules sound that goes on, else 1. */
+FUNCTION real map_factor(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
+                         GLOBAL const float *map, const struct chain_hit *hit)
+{
+    const mask on_seabed = hit->is_hit & MASK_OF(hit->surface == -1);
+    if (!chains->forward_is_map || !ANY(on_seabed))
+        return SPLAT(1.0f);
+    /* slant range abreast of the point less the reference range, as in way_to_source */
+    const float r = fan->reference_range;
+    const real square =
+        hit->point.y * hit->point.y + hit->point.z * hit->point.z +
+        2.0f * r * (hit->point.y * fan->cosine_depression - hit->point.z * fan->sine_depression);
+    const real range = square / (SQUARE_ROOT(larger(square + r * r, SPLAT(0.0f))) + r);
+    const real row = fan->map_row_at_origin + hit->point.x * fan->map_rows_per_metre;
+    const real column = fan->map_first_column + range * fan->map_columns_per_metre;
+    const real safe_row = smaller(larger(row, SPLAT(-1.0f)), SPLAT(1.0e8f));
+    const real safe_column = smaller(larger(column, SPLAT(-1.0f)), SPLAT(1.0e8f));
+    float rows[WIDTH], columns[WIDTH], values[WIDTH];
+    STORE_REAL(safe_row, rows);
+    STORE_REAL(safe_column, columns);
+    for (int lane = 0; lane < WIDTH; lane++)
+        values[lane] = map_value(fan, map, rows[lane], columns[lane]);
+    return CHOOSE(on_seabed, LOAD_REAL(values), SPLAT(1.0f));
+}
+
+#endif

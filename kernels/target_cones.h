@@ -1,0 +1,99 @@
+/* Directions from a point towards the targets: uniform over the cones of the spheres that hold
+ * them, so that sound between seabed and target is looked for where it can be. */
+#ifndef SONJECT_KERNELS_TARGET_CONES_H
+#define SONJECT_KERNELS_TARGET_CONES_H
+
+#include "elementary.h"
+#include "layout.h"
+#include "vector3.h"
+
+#define TARGET_SPHERES_MAX 256
+
+/* The cones of all spheres as seen from a point. An opening is 1 - cosine of the cone's half angle;
+ * 0 where the point is inside the sphere, which then is all around. */
+struct target_cones {
+    real openings[TARGET_SPHERES_MAX];
+    real sum;
+    mask is_inside; /* of some sphere */
+};
+
+FUNCTION struct vector3 to_sphere(GLOBAL const struct sphere_record *sphere, struct vector3 point)
+{
+    struct vector3 way;
+    way.x = sphere->centre_x - point.x;
+    way.y = sphere->centre_y - point.y;
+    way.z = sphere->centre_z - point.z;
+    return way;
+}
+
+FUNCTION void view_targets(GLOBAL const struct sphere_record *spheres, int count,
+                           struct vector3 point, struct target_cones *cones)
+{
+    cones->sum = SPLAT(0.0f);
+    cones->is_inside = MASK_OF(cones->sum > 1.0f);
+    for (int i = 0; i < count; i++) {
+        const struct vector3 way = to_sphere(&spheres[i], point);
+        const real square_distance = dot3(way, way);
+        const float square_radius = spheres[i].radius * spheres[i].radius;
+        const mask is_outside = MASK_OF(square_distance > square_radius * 1.0001f);
+        const real square_sine = CHOOSE(is_outside, square_radius / square_distance, SPLAT(0.0f));
+        cones->openings[i] = square_sine / (1.0f + SQUARE_ROOT(1.0f - square_sine));
+        cones->sum += cones->openings[i];
+        cones->is_inside = cones->is_inside | ~is_outside;
+    }
+}
+
+/* A direction in the cone of one sphere, chosen in proportion to the cones' solid angles. */
+FUNCTION struct vector3 sample_target_direction(GLOBAL const struct sphere_record *spheres,
+                                                int count, struct vector3 point,
+                                                const struct target_cones *cones, real choice,
+                                                real u, real v)
+{
+    const real wanted = choice * cones->sum;
+    real before = SPLAT(0.0f);
+    real opening = SPLAT(0.0f);
+    struct vector3 way;
+    way.x = SPLAT(0.0f);
+    way.y = SPLAT(0.0f);
+    way.z = SPLAT(1.0f);
+    for (int i = 0; i < count; i++) {
+        const mask is_next = MASK_OF(before <= wanted) & MASK_OF(cones->openings[i] > 0.0f);
+        way = choose3(is_next, to_sphere(&spheres[i], point), way);
+        opening = CHOOSE(is_next, cones->openings[i], opening);
+        before += cones->openings[i];
+    }
+    const real inverse = 1.0f / SQUARE_ROOT(dot3(way, way));
+    struct vector3 axis;
+    axis.x = way.x * inverse;
+    axis.y = way.y * inverse;
+    axis.z = way.z * inverse;
+    const real fall = u * opening; /* 1 - cosine */
+    const real sine = SQUARE_ROOT(fall * (2.0f - fall));
+    real sine_about, cosine_about;
+    sine_cosine_of_cycles(v, &sine_about, &cosine_about);
+    struct vector3 first, second;
+    tangents3(axis, &first, &second);
+    return combine3(axis, 1.0f - fall, first, sine * cosine_about, second, sine * sine_about);
+}
+
+/* Density of these directions, 1/sr: the number of cones that hold the direction over the sum of
+ * their solid angles. */
+FUNCTION real target_direction_density(GLOBAL const struct sphere_record *spheres, int count,
+                                       struct vector3 point, const struct target_cones *cones,
+                                       struct vector3 direction)
+{
+    real holding = SPLAT(0.0f);
+    for (int i = 0; i < count; i++) {
+        const struct vector3 way = to_sphere(&spheres[i], point);
+        const real along = dot3(way, direction);
+        const real square_miss = dot3(way, way) - along * along;
+        const mask is_in_cone = MASK_OF(cones->openings[i] > 0.0f) & MASK_OF(along > 0.0f) &
+                                MASK_OF(square_miss <= spheres[i].radius * spheres[i].radius);
+        holding += CHOOSE(is_in_cone, SPLAT(1.0f), SPLAT(0.0f));
+    }
+    const mask is_some = MASK_OF(cones->sum > 0.0f);
+    return CHOOSE(is_some, holding / CHOOSE(is_some, cones->sum, SPLAT(1.0f)), SPLAT(0.0f)) *
+           0.15915494309f;
+}
+
+#endif

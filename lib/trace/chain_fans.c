@@ -1,0 +1,122 @@
+#include "trace/chain_fans.h"
+
+#include <math.h>
+
+#include "trace/patch_fan.h"
+
+#define PATCH_RAYS_PER_BIN  2.0 /* brute force */
+#define SEABED_RAYS_PER_BIN 8.0 /* near the objects; thinned out with distance */
+/* An object is small, and what it mirrors spreads far; its rough part matters between objects. */
+#define OBJECT_RAYS_PER_BIN 32.0
+#define ROUGH_RAYS_PER_BIN  4.0 /* where the seabed's rays stand for its own */
+
+/* Seabed further than this many times an object's size from it hears nothing of it: the solid angle
+ * of the object falls with the square, the sine of the way towards it with the distance, which
+ * leaves -60 dB of the seabed's own echo at 16 bounding radii. */
+#define REACH 16.0
+
+static struct span strips_between(const struct tracer *tracer, const struct line_grid *grid,
+                                  double first_x, double last_x)
+{
+    const double per_row = grid->strips_per_row;
+    const double first = floor((view_row_of_x(&tracer->view, first_x) + 0.5) * per_row) - 1.0;
+    const double last = floor((view_row_of_x(&tracer->view, last_x) + 0.5) * per_row) + 1.0;
+    const struct span strips = {(int32_t)first, (int32_t)(last - first) + 1};
+    return strips;
+}
+
+/* Where seabed can be that exchanges sound with some object. */
+struct surroundings {
+    double first_x, last_x;       /* along-track, m */
+    double near_range, far_range; /* true slant range, m */
+};
+
+static struct surroundings surroundings_of_objects(const struct tracer *tracer)
+{
+    const struct patch_view *view = &tracer->view;
+    struct surroundings around = {INFINITY, -INFINITY, INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
+        const struct placement *placement = &tracer->placements[i];
+        const double reach = (1.0 + REACH) * placement->bounding_radius_m;
+        const double ground = placement->centre[1];
+        around.first_x = fmin(around.first_x, placement->centre[0] - reach);
+        around.last_x = fmax(around.last_x, placement->centre[0] + reach);
+        around.near_range =
+            fmin(around.near_range, hypot(fmax(0.0, ground - reach), view->altitude_m));
+        around.far_range = fmax(around.far_range, hypot(ground + reach, view->altitude_m));
+    }
+    return around;
+}
+
+static sonject_status lay_seabed_fan(struct chain_fan *fan, struct tracer *tracer,
+                                     const struct line_grid *grid, double central_depression)
+{
+    const struct patch_view *view = &tracer->view;
+    const struct surroundings around = surroundings_of_objects(tracer);
+    /* an echo never comes before that of its first hit, so seabed beyond the patch has none in it
+     */
+    const double patch_end = view_apparent_range(view, (grid->bins.first + grid->bins.count - 0.5) /
+                                                           grid->bins_per_pixel) /
+                             view->range_ratio;
+    const double far = fmin(around.far_range, patch_end);
+    fan->strips = strips_between(tracer, grid, around.first_x, around.last_x);
+    fan->record.only_object = -1;
+    return fan_lay_rays(&fan->record, tracer->report,
+                        central_depression - seabed_depression(view, around.near_range),
+                        central_depression - seabed_depression(view, far),
+                        fan_elevation_step(tracer, grid, far, SEABED_RAYS_PER_BIN));
+}
+
+static sonject_status lay_object_fan(struct chain_fan *fan, struct tracer *tracer,
+                                     const struct line_grid *grid, double central_depression,
+                                     uint32_t object)
+{
+    static const double along[3] = {1.0, 0.0, 0.0};
+    const struct placement *placement = &tracer->placements[object];
+    const uint32_t shape = tracer->scene->objects[object].shape;
+    const double depression =
+        atan2(tracer->view.altitude_m - placement->centre[2], placement->centre[1]);
+    const double across[3] = {0.0, sin(depression), cos(depression)};
+    const double range = placement_range(placement, &tracer->view);
+    const double half_angle =
+        asin(fmin(1.0, 1.02 * placement_half_extent(placement, shape, across) /
+                           (range - placement->bounding_radius_m)));
+    const double half_length = placement_half_extent(placement, shape, along);
+    const double middle = central_depression - depression;
+    const sonject_material_params *material = &tracer->scene->objects[object].material;
+    const bool is_mirror =
+        material->reflection_kind == SONJECT_REFLECTION_FLUID || material->reflection != 0.0;
+    const bool is_stood_for = tracer->scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED &&
+                              tracer->scene->sonar.transducer_side_m == 0.0;
+    const double rays_per_bin =
+        is_mirror || !is_stood_for ? OBJECT_RAYS_PER_BIN : ROUGH_RAYS_PER_BIN;
+    fan->strips = strips_between(tracer, grid, placement->centre[0] - half_length,
+                                 placement->centre[0] + half_length);
+    fan->record.only_object = (int32_t)object;
+    return fan_lay_rays(&fan->record, tracer->report, middle - half_angle, middle + half_angle,
+                        fan_elevation_step(tracer, grid, range, rays_per_bin));
+}
+
+uint32_t chain_fan_count(const struct tracer *tracer)
+{
+    return tracer->scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE
+               ? 1
+               : 1 + tracer->scene->object_count;
+}
+
+sonject_status chain_fan_init(struct chain_fan *fan, struct tracer *tracer,
+                              const struct line_grid *grid, bool has_map, uint32_t i)
+{
+    const struct patch_view *view = &tracer->view;
+    double origin[3];
+    patch_fan_origin(origin, view);
+    const double central_depression = atan2(view->altitude_m, origin[1]);
+    sonject_status status = patch_fan_init(&fan->record, tracer, grid, has_map, PATCH_RAYS_PER_BIN);
+    fan->strips = grid->strips;
+    fan->record.only_object = -2;
+    if (status == SONJECT_OK && chain_fan_count(tracer) > 1)
+        status = i == 0 ? lay_seabed_fan(fan, tracer, grid, central_depression)
+                        : lay_object_fan(fan, tracer, grid, central_depression, i - 1);
+    fan->record.stream = (uint32_t)(STREAM_CHAIN_RAYS + fan->record.only_object);
+    return status;
+}

@@ -1,0 +1,174 @@
+#include "trace/chains.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "cl/launch.h"
+#include "cl/program.h"
+#include "trace/patch_fan.h"
+#include "trace/target_spheres.h"
+
+#define PI              3.14159265358979323846
+#define SEABED_SHARE    8.0f /* then all within about four widths of a target are followed */
+#define TALLY_BYTES_MAX ((size_t)1 << 30)
+
+static sonject_material_params seabed_material(const struct scene *scene)
+{
+    sonject_material_params material = scene->seabed.forward;
+    if (isnan(material.lambert))
+        material.lambert = scene->seabed.lambert;
+    return material;
+}
+
+static void chain_record_init(struct chain_record *record, const struct chain_trace *trace,
+                              const struct tracer *tracer, uint32_t spheres)
+{
+    const struct scene *scene = tracer->scene;
+    const sonject_material_params seabed = seabed_material(scene);
+    const bool is_brute_force = scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE;
+    memset(record, 0, sizeof *record);
+    record->interactions = (int32_t)scene->injection.interactions;
+    record->estimator = is_brute_force ? CHAINS_BRUTE_FORCE : CHAINS_CONNECT;
+    record->is_focused = scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED;
+    record->is_reciprocal = record->is_focused && scene->sonar.transducer_side_m == 0.0;
+    record->forward_is_map = scene->seabed.forward_rule == SONJECT_FORWARD_MAP;
+    record->spheres = (int32_t)spheres;
+    record->seabed_share = SEABED_SHARE;
+
+    record->first_order = (int32_t)trace->first_order;
+    record->planes = (int32_t)trace->planes;
+    record->tally_first_strip = trace->grid.strips.first;
+    record->tally_strips = trace->grid.strips.count;
+    surface_record_init(&record->seabed, &seabed, tracer->view.wavelength_m);
+}
+
+/* The most that one ray can bring is its wavefront times a surface that returns everything into a
+ * narrow cone; quanta leave three powers of ten for that over Lambert's law. */
+static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tracer)
+{
+    struct fan_record fan;
+    const sonject_status status = patch_fan_init(&fan, tracer, &trace->grid, trace->has_map, 1.0);
+    if (status != SONJECT_OK)
+        return status;
+    const double wavefront =
+        (double)fan.strip_width * fan.elevation_step * 2.0 * fan.reference_range;
+    trace->quanta = power_of_two_below(ldexp(1.0, 40) / (wavefront / PI));
+    trace->energy_of_quantum = view_energy_scale(&tracer->view) / trace->quanta;
+    return SONJECT_OK;
+}
+
+static sonject_status make_buffers(struct chain_trace *trace, struct tracer *tracer,
+                                   const float *map)
+{
+    struct report *report = tracer->report;
+    struct device *device = tracer->device;
+    const uint32_t objects = tracer->scene->object_count;
+    struct object_record *records = allocate_array(objects, sizeof *records);
+    struct sphere_record *spheres = allocate_array(TARGET_SPHERES_MAX, sizeof *spheres);
+    struct chain_record chains;
+    double origin[3];
+    sonject_status status =
+        records && spheres ? SONJECT_OK : report_out_of_memory(report, "objects");
+    if (status == SONJECT_OK) {
+        patch_fan_origin(origin, &tracer->view);
+        object_records_init(records, tracer, origin);
+        chain_record_init(&chains, trace, tracer, target_spheres_init(spheres, tracer, origin));
+        status = buffer_create(report, device, sizeof chains, &chains, &trace->chains);
+    }
+    if (status == SONJECT_OK)
+        status = buffer_create(report, device, objects * sizeof *records, records, &trace->objects);
+    if (status == SONJECT_OK)
+        status = buffer_create(report, device, TARGET_SPHERES_MAX * sizeof *spheres, spheres,
+                               &trace->spheres);
+    if (status == SONJECT_OK)
+        status = buffer_create(report, device,
+                               map ? tracer->view.rows * tracer->view.columns * sizeof *map : 0,
+                               map, &trace->map);
+    free(records);
+    free(spheres);
+    return status;
+}
+
+static sonject_status make_tallies(struct chain_trace *trace, struct tracer *tracer)
+{
+    const size_t cells = line_grid_cells(&trace->grid);
+    const size_t bytes = trace->planes * cells * sizeof(int64_t);
+    if (cells > TALLY_BYTES_MAX / sizeof(int64_t) / trace->planes ||
+        bytes > tracer->device->allocation_limit)
+        return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                              "the patch of %zu x %zu pixels is too large for %u interactions: use "
+                              "a smaller patch",
+                              tracer->view.rows, tracer->view.columns,
+                              (unsigned)tracer->scene->injection.interactions);
+    sonject_status status =
+        buffer_create(tracer->report, tracer->device, bytes, NULL, &trace->tallies);
+    if (status == SONJECT_OK)
+        status = buffer_clear(tracer->report, tracer->device, trace->tallies, bytes);
+    return status;
+}
+
+sonject_status chain_trace_begin(struct chain_trace *trace, struct tracer *tracer, const float *map)
+{
+    const sonject_injection_params *injection = &tracer->scene->injection;
+    const bool is_brute_force = injection->estimator == SONJECT_ESTIMATOR_BRUTE_FORCE;
+    memset(trace, 0, sizeof *trace);
+    if (!is_brute_force && (injection->interactions < 2 || tracer->scene->object_count == 0))
+        return SONJECT_OK;
+    trace->first_order = is_brute_force ? 1 : 2;
+    trace->orders = injection->interactions - trace->first_order + 1;
+    trace->planes = injection->order_energies ? trace->orders : 1;
+    line_grid_for_patch(&trace->grid, &tracer->view, &tracer->response);
+    trace->has_map = map != NULL;
+    sonject_status status = choose_quanta(trace, tracer);
+    if (status == SONJECT_OK)
+        status = make_buffers(trace, tracer, map);
+    if (status == SONJECT_OK)
+        status = make_tallies(trace, tracer);
+    if (status == SONJECT_OK)
+        status = kernel_create(tracer->report, tracer->device, PROGRAM_TRACE_CHAINS, "trace_chains",
+                               &trace->kernel);
+    if (status != SONJECT_OK)
+        chain_trace_end(trace);
+    return status;
+}
+
+void chain_trace_end(struct chain_trace *trace)
+{
+    if (trace->kernel)
+        clReleaseKernel(trace->kernel);
+    trace->kernel = NULL;
+    buffer_release(&trace->chains);
+    buffer_release(&trace->objects);
+    buffer_release(&trace->spheres);
+    buffer_release(&trace->map);
+    buffer_release(&trace->tallies);
+}
+
+sonject_status chain_trace_strips(struct chain_trace *trace, struct tracer *tracer,
+                                  struct chain_fan *fan, struct span strips)
+{
+    const cl_mem buffers[] = {trace->chains, trace->objects, trace->spheres, trace->map,
+                              trace->tallies};
+    fan->record.first_strip = strips.first;
+    fan->record.strips = strips.count;
+    fan->record.quanta = trace->quanta;
+    return trace_launch(tracer, trace->kernel, &fan->record, buffers, 5);
+}
+
+sonject_status chain_trace_read(struct chain_trace *trace, struct tracer *tracer, uint32_t plane,
+                                float *energy)
+{
+    const size_t cells = line_grid_cells(&trace->grid);
+    const void *mapped;
+    const sonject_status status = buffer_map(tracer->report, tracer->device, trace->tallies,
+                                             trace->planes * cells * sizeof(int64_t), &mapped);
+    if (status != SONJECT_OK)
+        return status;
+    const int64_t *tallies = (const int64_t *)mapped + plane * cells;
+    for (size_t i = 0; i < cells; i++)
+        energy[i] = (float)((double)tallies[i] * trace->energy_of_quantum);
+    buffer_unmap(tracer->device, trace->tallies, mapped);
+    return SONJECT_OK;
+}

@@ -1,0 +1,60 @@
+#define _POSIX_C_SOURCE 200809L
+#include "benchmark_scene.h"
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+void benchmark_fail(const struct report *report, const char *what)
+{
+    fprintf(stderr, "%s: %s\n", what, report->message);
+    exit(1);
+}
+
+void benchmark_set_up(struct benchmark_scene *set, size_t pixels)
+{
+    sonject_object_params capsule;
+    memset(set, 0, sizeof *set);
+    scene_init(&set->scene);
+    set->scene.geometry.first_slant_range_m = 50.0 - 0.0125 * (double)pixels;
+    sonject_object_params_init(&capsule);
+    capsule.shape = SONJECT_SHAPE_CAPSULE;
+    capsule.length_m = 2.3;
+    capsule.diameter_m = 0.3;
+    capsule.heading_rad = 0.6;
+    capsule.burial_m = 0.1;
+    sonject_context_params params;
+    sonject_context_params_init(&params);
+    set->tracer.report = &set->report;
+    set->tracer.scene = &set->scene;
+    set->tracer.placements = &set->placement;
+    if (scene_append_object(&set->scene, &set->report, &capsule) != SONJECT_OK ||
+        device_open(&set->report, &params, &set->tracer.device) != SONJECT_OK ||
+        patch_view_init(&set->tracer.view, &set->report, &set->scene, 0.0, 0.0, pixels, pixels) !=
+            SONJECT_OK ||
+        placement_init(&set->placement, &set->report, &set->tracer.view, 0.0, 0.0,
+                       &set->scene.objects[0]) != SONJECT_OK)
+        benchmark_fail(&set->report, "set-up");
+    point_response_init(&set->tracer.response, &set->scene.sonar, 1500.0, 0.025);
+}
+
+void benchmark_clear(struct benchmark_scene *set)
+{
+    device_close(&set->tracer.device);
+    scene_clear(&set->scene);
+}
+
+unsigned benchmark_threads(const struct device *device)
+{
+    return device->compute_units < THREADS_MAX ? device->compute_units : THREADS_MAX;
+}
+
+void benchmark_run_threads(void *(*work)(void *), void *elements, size_t size, unsigned threads)
+{
+    pthread_t workers[THREADS_MAX];
+    for (unsigned i = 0; i < threads; i++)
+        pthread_create(&workers[i], NULL, work, (char *)elements + i * size);
+    for (unsigned i = 0; i < threads; i++)
+        pthread_join(workers[i], NULL);
+}

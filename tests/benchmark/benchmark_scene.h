@@ -1,0 +1,28 @@
+/* The scene that benchmarks run on: a capsule on a Lambert seabed, as in the paper's Figures 6 and
+ * 7, on the default device. */
+#ifndef SONJECT_TESTS_BENCHMARK_SCENE_H
+#define SONJECT_TESTS_BENCHMARK_SCENE_H
+
+#include "trace/tracer.h"
+
+#define THREADS_MAX 64
+
+struct benchmark_scene {
+    struct report report;
+    struct scene scene;
+    struct tracer tracer;
+    struct placement placement;
+};
+
+/* Lays a patch of pixels x pixels around 50 m. Ends the program where something fails. */
+void benchmark_set_up(struct benchmark_scene *set, size_t pixels);
+void benchmark_clear(struct benchmark_scene *set);
+void benchmark_fail(const struct report *report, const char *what);
+
+/* As many threads as the device has cores, for the native side. */
+unsigned benchmark_threads(const struct device *device);
+
+/* Runs work on each of `threads` elements of `size` bytes, and waits for all. */
+void benchmark_run_threads(void *(*work)(void *), void *elements, size_t size, unsigned threads);
+
+#endif

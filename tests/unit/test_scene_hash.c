@@ -1,0 +1,177 @@
+/* What counts as the same inputs of a run. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <string.h>
+
+#include "api/scene_hash.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+static void hash_of(const struct scene *scene, const char *identity, char text[HASH_TEXT_CAPACITY])
+{
+    struct report report = {{0}, NULL, NULL};
+    assert_int_equal(scene_hash(&report, scene, identity, text), SONJECT_OK);
+}
+
+static void make_scene(struct scene *scene)
+{
+    struct report report = {{0}, NULL, NULL};
+    sonject_object_params object;
+    scene_init(scene);
+    sonject_object_params_init(&object);
+    assert_int_equal(scene_append_object(scene, &report, &object), SONJECT_OK);
+}
+
+#define SCENE(member)                                                                              \
+    {                                                                                              \
+#member, offsetof(struct scene, member), sizeof((struct scene *)0)->member                 \
+    }
+#define OBJECT(member)                                                                             \
+    {                                                                                              \
+#member, offsetof(sonject_object_params, member),                                          \
+            sizeof((sonject_object_params *)0)->member                                             \
+    }
+#define MATERIAL(KIND, material)                                                                   \
+    KIND(material.reflection_kind), KIND(material.reflection), KIND(material.roughness_m),         \
+        KIND(material.lambert), KIND(material.lambert_exponent), KIND(material.glossy_albedo),     \
+        KIND(material.glossy_slope), KIND(material.density_ratio), KIND(material.speed_ratio),     \
+        KIND(material.loss)
+
+struct member {
+    const char *name;
+    size_t offset, bytes;
+};
+
+static const struct member of_scene[] = {
+    SCENE(sonar.response_window),
+    SCENE(sonar.centre_frequency_hz),
+    SCENE(sonar.bandwidth_hz),
+    SCENE(sonar.altitude_m),
+    SCENE(sonar.along_track_resolution_m),
+    SCENE(sonar.transducer_side_m),
+    SCENE(sonar.taylor_sidelobe_db),
+    SCENE(sonar.taylor_terms),
+    SCENE(medium.sound_speed_mps),
+    SCENE(medium.reference_sound_speed_mps),
+    SCENE(seabed.map),
+    SCENE(seabed.lambert),
+    SCENE(seabed.level_radius_m),
+    SCENE(seabed.despeckle_radius_m),
+    SCENE(seabed.forward_rule),
+    MATERIAL(SCENE, seabed.forward),
+    SCENE(geometry.side),
+    SCENE(geometry.row_spacing_m),
+    SCENE(geometry.column_spacing_m),
+    SCENE(geometry.first_along_track_m),
+    SCENE(geometry.first_slant_range_m),
+    SCENE(transfer.kind),
+    SCENE(transfer.parameter),
+    SCENE(transfer.offset),
+    SCENE(injection.mode),
+    SCENE(injection.column_rule),
+    SCENE(injection.estimate_noise),
+    SCENE(injection.noise_floor_db),
+    SCENE(injection.influence_db),
+    SCENE(injection.ray_scale),
+    SCENE(injection.seed),
+    SCENE(injection.interactions),
+    SCENE(injection.estimator),
+    SCENE(injection.order_energies),
+    SCENE(patch.first_row),
+    SCENE(patch.first_column),
+    SCENE(patch.rows),
+    SCENE(patch.columns),
+    SCENE(input_kind),
+};
+
+static const struct member of_object[] = {
+    OBJECT(shape),         OBJECT(length_m),           OBJECT(width_m),        OBJECT(diameter_m),
+    OBJECT(position_kind), OBJECT(position_along),     OBJECT(position_range), OBJECT(heading_rad),
+    OBJECT(pitch_rad),     OBJECT(roll_rad),           OBJECT(burial_m),       OBJECT(name),
+    OBJECT(class_name),    MATERIAL(OBJECT, material),
+};
+
+/* Turns one bit of a member, which a double's value follows unless it is NaN. */
+static void expect_counted(const struct scene *scene, void *structure, const struct member *member)
+{
+    char before[HASH_TEXT_CAPACITY], after[HASH_TEXT_CAPACITY];
+    unsigned char *byte = (unsigned char *)structure + member->offset;
+    double number = 0.0;
+    if (member->bytes == sizeof number)
+        memcpy(&number, byte, sizeof number);
+    if (isnan(number))
+        memset(byte, 0, member->bytes);
+    hash_of(scene, NULL, before);
+    byte[0] ^= 1;
+    hash_of(scene, NULL, after);
+    byte[0] ^= 1;
+    if (strcmp(before, after) == 0)
+        fail_msg("%s is not counted", member->name);
+}
+
+static void test_every_member_counts(void **state)
+{
+    struct scene scene;
+    (void)state;
+    make_scene(&scene);
+    for (size_t i = 0; i < COUNT(of_scene); i++)
+        expect_counted(&scene, &scene, &of_scene[i]);
+    for (size_t i = 0; i < COUNT(of_object); i++)
+        expect_counted(&scene, scene.objects, &of_object[i]);
+    scene_clear(&scene);
+}
+
+static void test_input_and_number_of_objects_count(void **state)
+{
+    struct scene scene;
+    char one[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];
+    (void)state;
+    make_scene(&scene);
+    hash_of(&scene, "some image", one);
+    hash_of(&scene, "another image", other);
+    assert_string_not_equal(one, other);
+    scene.object_count = 0;
+    hash_of(&scene, "some image", other);
+    assert_string_not_equal(one, other);
+    scene_clear(&scene);
+}
+
+/* The seabed's own mu0 is a NaN of any sign and payload; what is between members is nothing. */
+static void test_nan_is_one_value_and_padding_none(void **state)
+{
+    struct scene scene;
+    char one[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];
+    const uint64_t patterns[] = {UINT64_C(0x7FF8000000000000), UINT64_C(0xFFF8000000000001)};
+    (void)state;
+    make_scene(&scene);
+    memcpy(&scene.seabed.forward.lambert, &patterns[0], sizeof patterns[0]);
+    hash_of(&scene, NULL, one);
+    memcpy(&scene.seabed.forward.lambert, &patterns[1], sizeof patterns[1]);
+    hash_of(&scene, NULL, other);
+    assert_string_equal(one, other);
+    scene.seabed.forward.struct_size++;
+    scene.seabed.reserved++;
+    scene.injection.reserved++;
+    hash_of(&scene, NULL, other);
+    assert_string_equal(one, other);
+    scene.seabed.forward.lambert = 0.0;
+    hash_of(&scene, NULL, other);
+    assert_string_not_equal(one, other);
+    scene_clear(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_member_counts),
+        cmocka_unit_test(test_input_and_number_of_objects_count),
+        cmocka_unit_test(test_nan_is_one_value_and_padding_none),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
