@@ -313,9 +313,8 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
                                      GLOBAL const float *map, const struct chain *chain,
                                      RECORD_WORD draw)
 {
-    real choice, unused, u, v;
-    two_uniforms(chain->key, chain->number, draw, &u, &v);
-    two_uniforms(chain->key, chain->number, draw + 1, &choice, &unused);
+    real u, v, choice;
+    three_uniforms(chain->key, chain->number, draw, &u, &v, &choice);
     const struct chain_hit *hit = &chain->hit;
     struct chain_step step;
     step.direction = hit->back;

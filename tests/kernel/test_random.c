@@ -146,6 +146,39 @@ static void test_streams_are_independent(void **unused)
     assert_true(fabs(correlation_between(one, one)) > 100.0);
 }
 
+/* The third deviate fills its cells evenly (chi-square of 64 cells: 63 +- 11.2, four of those), and
+ * goes with neither of the others, whose spare bits it is made of. */
+static void test_third_uniform(void **unused)
+{
+    (void)unused;
+    const struct random_key key = random_key_of(3, 0, STREAM_CHAIN_RAYS, 7);
+    enum {
+        COUNT = 200000,
+        CELLS = 64
+    };
+    unsigned counts[CELLS] = {0};
+    double with_first = 0.0;
+    double with_second = 0.0;
+    for (uint32_t ray = 0; ray < COUNT; ray++) {
+        float u, v, p, q, choice;
+        three_uniforms(key, ray, 2, &u, &v, &choice);
+        two_uniforms(key, ray, 2, &p, &q);
+        assert_true(u == p && v == q);
+        assert_true(choice > 0.0f && choice < 1.0f);
+        counts[(int)(choice * CELLS)]++;
+        with_first += (u - 0.5) * (choice - 0.5);
+        with_second += (v - 0.5) * (choice - 0.5);
+    }
+    double square = 0.0;
+    for (int i = 0; i < CELLS; i++)
+        square += pow(counts[i] - (double)COUNT / CELLS, 2.0) / ((double)COUNT / CELLS);
+    print_message("chi-square %.1f of 63\n", square);
+    assert_true(fabs(square - 63.0) < 4.0 * 11.2);
+    /* a term has variance 1/144 */
+    assert_true(fabs(with_first) < 4.0 * sqrt(COUNT / 144.0));
+    assert_true(fabs(with_second) < 4.0 * sqrt(COUNT / 144.0));
+}
+
 static int compare_doubles(const void *a, const void *b)
 {
     const double x = *(const double *)a;
@@ -199,9 +232,9 @@ static void test_complex_normal(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_known_answers),  cmocka_unit_test(test_uniforms_stay_inside),
-        cmocka_unit_test(test_uniformity),     cmocka_unit_test(test_streams_are_independent),
-        cmocka_unit_test(test_complex_normal),
+        cmocka_unit_test(test_known_answers), cmocka_unit_test(test_uniforms_stay_inside),
+        cmocka_unit_test(test_uniformity),    cmocka_unit_test(test_streams_are_independent),
+        cmocka_unit_test(test_third_uniform), cmocka_unit_test(test_complex_normal),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -88,7 +88,8 @@ static void connect_source(struct tracing *tracing, const struct path *path,
     struct reference_vector source = path->sonar;
     if (side > 0.0) {
         source.x += side * (next_uniform(tracing) - 0.5);
-        source = reference_sum(source, side * (next_uniform(tracing) - 0.5), tracing->source_across);
+        source =
+            reference_sum(source, side * (next_uniform(tracing) - 0.5), tracing->source_across);
     }
     const struct reference_vector way = reference_sum(source, -1.0, hit->point);
     const double square = reference_dot(way, way), last_leg = sqrt(square);

@@ -5,7 +5,8 @@
    hit, r1 away. A path over X1 ... Xk brings, one-way patterns being 1,
      E = dA / r1^2 x [product over i < k of f_i cos(theta_i) / pdf_i] x f_k cos(theta_k) / r_s^2,
    f = mu (Lambert), pdf = cos(theta) / pi, r_s from Xk to the source, which moves with the ray.
-   Order 1 of a plain seabed is so mu sin(grazing) dA / r^4, times r^4 in a target-strength image. */
+   Order 1 of a plain seabed is so mu sin(grazing) dA / r^4, times r^4 in a target-strength image.
+ */
 #ifndef SONJECT_TESTS_REFERENCE_PATHS_H
 #define SONJECT_TESTS_REFERENCE_PATHS_H
 

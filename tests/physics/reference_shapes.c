@@ -1,6 +1,7 @@
 #include "reference_shapes.h"
 
 #include <math.h>
+#include <string.h>
 
 #define LIFT_M 1e-9 /* far above rounding at some 100 m (1e-14), far below every size */
 
@@ -37,6 +38,29 @@ struct reference_vector reference_unit(struct reference_vector a)
     return reference_sum(reference_vector(0.0, 0.0, 0.0), 1.0 / sqrt(reference_dot(a, a)), a);
 }
 
+struct reference_object *reference_add_object(struct reference_scene *scene,
+                                              enum reference_shape shape, double radius,
+                                              double lambert)
+{
+    struct reference_object *object = &scene->objects[scene->object_count++];
+    memset(object, 0, sizeof *object);
+    object->shape = shape;
+    object->radius = radius;
+    object->lambert = lambert;
+    object->axes[0] = reference_vector(1.0, 0.0, 0.0);
+    object->axes[1] = reference_vector(0.0, 1.0, 0.0);
+    object->axes[2] = reference_vector(0.0, 0.0, 1.0);
+    return object;
+}
+
+void reference_turn(struct reference_object *object, double heading, double pitch)
+{
+    object->axes[0] =
+        reference_vector(cos(pitch) * cos(heading), cos(pitch) * sin(heading), -sin(pitch));
+    object->axes[1] = reference_vector(-sin(heading), cos(heading), 0.0);
+    object->axes[2] = reference_cross(object->axes[0], object->axes[1]);
+}
+
 /* Roots of a t^2 + 2 b t + c = 0, its discriminant b^2 - a c given by whoever knows it without
    cancellation. */
 static int quadratic_roots(double a, double b, double c, double discriminant, double roots[2])
@@ -64,9 +88,9 @@ static void meet_sphere(struct meeting *nearest, struct reference_vector o,
     const struct reference_vector from = reference_vector(o.x - shift, o.y, o.z);
     const struct reference_vector moment = reference_cross(from, d);
     double roots[2];
-    const int count = quadratic_roots(1.0, reference_dot(from, d),
-                                      reference_dot(from, from) - radius * radius,
-                                      radius * radius - reference_dot(moment, moment), roots);
+    const int count =
+        quadratic_roots(1.0, reference_dot(from, d), reference_dot(from, from) - radius * radius,
+                        radius * radius - reference_dot(moment, moment), roots);
     for (int i = 0; i < count; i++) {
         const struct reference_vector outwards = reference_sum(from, roots[i], d);
         if (end == 0 || outwards.x * end >= 0.0)
@@ -80,9 +104,9 @@ static void meet_side(struct meeting *nearest, struct reference_vector o, struct
 {
     const double a = d.y * d.y + d.z * d.z, moment = o.y * d.z - o.z * d.y;
     double roots[2];
-    const int count = quadratic_roots(a, o.y * d.y + o.z * d.z,
-                                      o.y * o.y + o.z * o.z - radius * radius,
-                                      a * radius * radius - moment * moment, roots);
+    const int count =
+        quadratic_roots(a, o.y * d.y + o.z * d.z, o.y * o.y + o.z * o.z - radius * radius,
+                        a * radius * radius - moment * moment, roots);
     for (int i = 0; i < count; i++) {
         const struct reference_vector at = reference_sum(o, roots[i], d);
         if (fabs(at.x) <= half_length)
@@ -177,10 +201,9 @@ bool reference_nearest(const struct reference_scene *scene, struct reference_vec
     if (isinf(nearest.distance))
         return false;
     if (reference_dot(nearest.normal, direction) > 0.0)
-        nearest.normal =
-            reference_vector(-nearest.normal.x, -nearest.normal.y, -nearest.normal.z);
-    nearest.point = reference_sum(reference_sum(origin, nearest.distance, direction), LIFT_M,
-                                  nearest.normal);
+        nearest.normal = reference_vector(-nearest.normal.x, -nearest.normal.y, -nearest.normal.z);
+    nearest.point =
+        reference_sum(reference_sum(origin, nearest.distance, direction), LIFT_M, nearest.normal);
     *hit = nearest;
     return true;
 }

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "bench.h"
+#include "reference_paths.h"
 #include "trace/chains.h"
 
 #define ORDERS   3
@@ -111,7 +112,8 @@ static struct energies trace_seeds(struct bench *bench, uint64_t first_seed)
 }
 
 /* |a / b - ratio| within four standard errors, where there is energy that is known to 20 %; far
- * beyond the target, where there is less than 1 % of the most, what lies outside the patch counts. */
+ * beyond the target, where there is less than 1 % of the most, what lies outside the patch counts.
+ */
 static void expect_ratio(const char *what, const struct energies *a, const struct energies *b,
                          int order, double ratio, double systematic)
 {
@@ -188,9 +190,74 @@ static void test_focused_columns(void **unused)
     bench_close(&bench);
 }
 
+/* The reference's scene and request for the same bench: first hits on the strips of the grid,
+ * seabed from well before the patch to its end. */
+static void lay_reference(const struct bench *bench, struct reference_scene *scene,
+                          struct reference_request *request)
+{
+    const struct placement *capsule = &bench->tracer.placements[0];
+    const struct patch_view *view = &bench->tracer.view;
+    struct line_grid grid;
+    line_grid_for_patch(&grid, view, &bench->tracer.response);
+    memset(scene, 0, sizeof *scene);
+    memset(request, 0, sizeof *request);
+    scene->seabed_lambert = bench->scene.seabed.lambert;
+    scene->object_count = 1;
+    struct reference_object *object = &scene->objects[0];
+    object->shape = REFERENCE_CAPSULE;
+    object->length = bench->scene.objects[0].length_m;
+    object->radius = capsule->radius_m;
+    object->lambert = bench->scene.objects[0].material.lambert;
+    object->centre = reference_vector(capsule->centre[0], capsule->centre[1], capsule->centre[2]);
+    for (int axis = 0; axis < 3; axis++)
+        object->axes[axis] = reference_vector(capsule->axes[axis][0], capsule->axes[axis][1],
+                                              capsule->axes[axis][2]);
+    request->estimator = REFERENCE_CONNECT;
+    request->limit = ORDERS;
+    request->rays = 24000000;
+    request->seed = 7;
+    request->altitude = view->altitude_m;
+    const double strips = grid.strips_per_row;
+    request->first_x = view_x_of_row(view, grid.strips.first / strips - 0.5);
+    request->last_x = view_x_of_row(view, (grid.strips.first + grid.strips.count) / strips - 0.5);
+    request->first_elevation = asin(view->altitude_m / 52.9);
+    request->last_elevation = asin(view->altitude_m / 34.0);
+    request->bins = RANGES;
+    request->first_range = MIDDLE_M - 0.5 * RANGES * RANGE_M;
+    request->bin_width = RANGE_M;
+}
+
+/* Against a reference that shares nothing with the kernels but the physics: plain double precision,
+ * cosine sampling, its own shapes. Half a bin of 3 mm at either end of a range is systematic. */
+static void test_reference(void **unused)
+{
+    (void)unused;
+    static struct reference_energy reference;
+    struct reference_scene scene;
+    struct reference_request request;
+    struct bench bench;
+    make_scene(&bench);
+    const struct energies traced = trace_seeds(&bench, 100);
+    lay_reference(&bench, &scene, &request);
+    assert_int_equal(reference_trace(&scene, &request, &reference), 0);
+    for (int order = 1; order < ORDERS; order++)
+        for (int range = RANGES / 2 - 2; range < RANGES / 2 + 2; range++) {
+            const struct reference_value expected =
+                reference.bins[REFERENCE_ALL_ENDS][order][range];
+            const double mean = mean_of(&traced, order, range);
+            const double error = hypot(expected.error, error_of(&traced, order, range));
+            print_message("order %d, %+.2f m: %.4g m2, reference %.4g +- %.2g\n", order + 1,
+                          (range - RANGES / 2 + 0.5) * RANGE_M, mean, expected.mean, error);
+            assert_true(error < 0.1 * expected.mean);
+            assert_true(fabs(mean - expected.mean) <= 4.0 * error + 0.01 * expected.mean);
+        }
+    bench_close(&bench);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_reference),
         cmocka_unit_test(test_two_estimators),
         cmocka_unit_test(test_reciprocity),
         cmocka_unit_test(test_focused_columns),
