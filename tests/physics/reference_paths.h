@@ -60,7 +60,8 @@ struct reference_value {
 };
 
 /* Index [ends][order - 1][bin]: energies over the whole track interval. Those of `all_ranges` count
-   every path, also outside the bins. */
+   every path, also outside the bins: meant for `pressure`, as r^4 gives rare far paths over an
+   endless seabed a variance without bound. */
 struct reference_energy {
     struct reference_value bins[REFERENCE_ENDS][REFERENCE_ORDERS][REFERENCE_BINS];
     struct reference_value all_ranges[REFERENCE_ENDS][REFERENCE_ORDERS];

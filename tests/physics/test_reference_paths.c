@@ -252,9 +252,10 @@ static void reverse_paths_are_equal(void **state)
     struct reference_object *sphere = reference_add_object(&scene, REFERENCE_SPHERE, 0.5, 0.2);
     sphere->centre = reference_vector(0.2, ground, 0.6);
     const double range = hypot(ground, altitude - 0.6);
-    /* Half a path within the bins exceeds the range of the centre by less than 0.75 m, its legs to
-       the centre less than 1.5 m in sum more: the seabed is less than 3 m aside, 10.3 m nearer
-       (1 - cos 45 deg a metre) and 1.8 m farther (1 + cos 45 deg). */
+    /* Half a path within the bins exceeds the range of the sphere's centre by less than 0.75 m, and
+       by way of the centre it is up to its radius longer: 2.5 m for the whole path. So the seabed
+       is less than 2.5 m aside, 8.6 m nearer (1 - cos 45 deg a metre) and 1.5 m farther (1 + cos 45
+       deg); the fan holds a little more. */
     const struct reference_request request = {.estimator = REFERENCE_CONNECT,
                                               .limit = 2,
                                               .rays = 20000000,
