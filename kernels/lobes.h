@@ -68,18 +68,27 @@ FUNCTION real facet_density(real cosine, float slope)
     return CHOOSE(is_above, density, SPLAT(0.0f));
 }
 
-/* The mean of two directions: the normal of the facet that mirrors one into the other. */
-FUNCTION struct vector3 facet_between(struct vector3 one, struct vector3 other)
+/* The facet that mirrors one direction into another. */
+struct mirror_facet {
+    struct vector3 normal;
+    real half_angle; /* cosine between its normal and either direction */
+};
+
+/* The sum of the directions is twice that cosine long: near grazing their product with the normal
+ * would cancel. */
+FUNCTION struct mirror_facet facet_between(struct vector3 one, struct vector3 other)
 {
-    struct vector3 sum;
-    sum.x = one.x + other.x;
-    sum.y = one.y + other.y;
-    sum.z = one.z + other.z;
-    const real inverse = 1.0f / SQUARE_ROOT(larger(dot3(sum, sum), SPLAT(1.0e-20f)));
-    sum.x = sum.x * inverse;
-    sum.y = sum.y * inverse;
-    sum.z = sum.z * inverse;
-    return sum;
+    struct mirror_facet facet;
+    facet.normal.x = one.x + other.x;
+    facet.normal.y = one.y + other.y;
+    facet.normal.z = one.z + other.z;
+    const real length = larger(SQUARE_ROOT(dot3(facet.normal, facet.normal)), SPLAT(2.0e-6f));
+    const real inverse = 1.0f / length;
+    facet.normal.x = facet.normal.x * inverse;
+    facet.normal.y = facet.normal.y * inverse;
+    facet.normal.z = facet.normal.z * inverse;
+    facet.half_angle = 0.5f * length;
+    return facet;
 }
 
 /* Scattering of the cone over cos cos, both directions above the surface: facets mirror, and shade
@@ -88,15 +97,15 @@ FUNCTION struct vector3 facet_between(struct vector3 one, struct vector3 other)
 FUNCTION real cone_scattering(struct vector3 normal, struct vector3 one, struct vector3 other,
                               float slope)
 {
-    const struct vector3 facet = facet_between(one, other);
+    const struct mirror_facet facet = facet_between(one, other);
     const real cosine_one = dot3(normal, one);
     const real cosine_other = dot3(normal, other);
-    const real tilt = dot3(normal, facet);
-    const real half_angle = larger(dot3(one, facet), SPLAT(1.0e-6f));
+    const real tilt = dot3(normal, facet.normal);
     /* the shading is divided by both cosines here, and so is never a quotient of zeros */
     const real least = smaller(cosine_one, cosine_other);
     const real most = larger(larger(cosine_one, cosine_other), SPLAT(1.0e-6f));
-    const real shading = smaller(2.0f * tilt / half_angle, 1.0f / larger(least, SPLAT(1.0e-6f)));
+    const real shading =
+        smaller(2.0f * tilt / facet.half_angle, 1.0f / larger(least, SPLAT(1.0e-6f)));
     return facet_density(tilt, slope) * 0.25f * shading / most;
 }
 
@@ -104,10 +113,9 @@ FUNCTION real cone_scattering(struct vector3 normal, struct vector3 one, struct 
 FUNCTION real cone_density(struct vector3 normal, struct vector3 back, struct vector3 direction,
                            float slope)
 {
-    const struct vector3 facet = facet_between(back, direction);
-    const real tilt = dot3(normal, facet);
-    const real half_angle = larger(dot3(back, facet), SPLAT(1.0e-6f));
-    return facet_density(tilt, slope) * tilt / (4.0f * half_angle);
+    const struct mirror_facet facet = facet_between(back, direction);
+    const real tilt = dot3(normal, facet.normal);
+    return facet_density(tilt, slope) * tilt / (4.0f * facet.half_angle);
 }
 
 /* The direction into which a random facet mirrors sound that came along -back; it may lie below the

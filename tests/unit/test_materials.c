@@ -1,0 +1,165 @@
+/* Materials by name. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <string.h>
+
+#include <sonject/material.h>
+
+#include "scene/scene.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+/* Those that sonject/material.h promises. */
+static const char *const promised[] = {"steel",     "concrete", "rubber",      "wood",
+                                       "rock",      "gravel",   "coarse sand", "medium sand",
+                                       "fine sand", "silt",     "clay"};
+
+static sonject_material_params take(const char *name)
+{
+    sonject_material_params material;
+    memset(&material, 0x55, sizeof material); /* nothing of it must remain */
+    if (sonject_material_named(name, &material) != SONJECT_OK)
+        fail_msg("%s is not known", name);
+    return material;
+}
+
+static void expect_same(const sonject_material_params *a, const sonject_material_params *b)
+{
+    assert_true(a->struct_size == b->struct_size && a->reflection_kind == b->reflection_kind);
+    assert_true(a->reflection == b->reflection && a->roughness_m == b->roughness_m);
+    assert_true(a->lambert == b->lambert && a->lambert_exponent == b->lambert_exponent);
+    assert_true(a->glossy_albedo == b->glossy_albedo && a->glossy_slope == b->glossy_slope);
+    assert_true(a->density_ratio == b->density_ratio && a->speed_ratio == b->speed_ratio);
+    assert_true(a->loss == b->loss);
+}
+
+static void test_blanks_in_names(void **state)
+{
+    (void)state;
+    static const char *const spellings[][3] = {
+        {"coarse sand", "coarse_sand", "coarse-sand"},
+        {"medium sand", "medium_sand", "medium-sand"},
+        {"fine sand", "fine_sand", "fine-sand"},
+    };
+    for (size_t i = 0; i < COUNT(spellings); i++) {
+        const sonject_material_params plain = take(spellings[i][0]);
+        for (size_t k = 1; k < 3; k++) {
+            const sonject_material_params other = take(spellings[i][k]);
+            expect_same(&plain, &other);
+        }
+    }
+}
+
+static void test_unknown_names(void **state)
+{
+    (void)state;
+    static const char *const unknown[] = {"",
+                                          " ",
+                                          "Steel",
+                                          "stee",
+                                          "steel ",
+                                          " steel",
+                                          "sand",
+                                          "coarse  sand",
+                                          "coarse",
+                                          "coarse sand ",
+                                          "coarse.sand",
+                                          "coarsesand",
+                                          "_",
+                                          "silt_",
+                                          "clay\n",
+                                          "unobtainium"};
+    sonject_material_params untouched;
+    memset(&untouched, 0x55, sizeof untouched);
+    for (size_t i = 0; i < COUNT(unknown) + 1; i++) {
+        const char *name = i < COUNT(unknown) ? unknown[i] : NULL;
+        sonject_material_params material = untouched;
+        if (sonject_material_named(name, &material) != SONJECT_ERROR_ARGUMENT)
+            fail_msg("'%s' was taken", name ? name : "NULL");
+        assert_memory_equal(&material, &untouched, sizeof material);
+    }
+    assert_int_equal(sonject_material_named("steel", NULL), SONJECT_ERROR_ARGUMENT);
+    assert_int_equal(sonject_material_named("silt", NULL), SONJECT_ERROR_ARGUMENT);
+    assert_int_equal(sonject_material_named(NULL, NULL), SONJECT_ERROR_ARGUMENT);
+}
+
+static void test_list_of_names(void **state)
+{
+    (void)state;
+    for (uint32_t i = 0; i < COUNT(promised); i++) {
+        const char *name = sonject_material_name(i);
+        assert_non_null(name);
+        int times = 0;
+        for (size_t k = 0; k < COUNT(promised); k++)
+            times += strcmp(name, promised[k]) == 0;
+        if (times != 1)
+            fail_msg("%s is not in the header", name);
+        for (uint32_t k = 0; k < i; k++)
+            assert_string_not_equal(name, sonject_material_name(k));
+    }
+    assert_null(sonject_material_name(COUNT(promised)));
+    assert_null(sonject_material_name(COUNT(promised) + 1));
+    assert_null(sonject_material_name(UINT32_MAX));
+}
+
+static void test_values_are_allowed(void **state)
+{
+    (void)state;
+    for (size_t i = 0; i < COUNT(promised); i++) {
+        struct report report = {{0}, NULL, NULL};
+        const char *key = NULL;
+        sonject_object_params object;
+        sonject_object_params_init(&object);
+        object.material = take(promised[i]);
+        assert_int_equal(object.material.struct_size, sizeof object.material);
+        if (check_object(&object, &report, &key) != SONJECT_OK)
+            fail_msg("%s: %s", promised[i], report.message);
+        /* of a smooth and a rough part; nothing that the tables do not give */
+        assert_true(object.material.roughness_m > 0.0 && object.material.lambert > 0.0);
+        assert_true(object.material.lambert_exponent == 1.0);
+        assert_true(object.material.glossy_albedo == 0.0);
+    }
+}
+
+/* What tells the materials apart. */
+static void test_order_of_values(void **state)
+{
+    (void)state;
+    const sonject_material_params steel = take("steel");
+    sonject_material_params initial;
+    sonject_material_params_init(&initial);
+    expect_same(&steel, &initial);
+    /* sediments: from gravel to clay density, speed, loss and roughness fall */
+    static const char *const sediments[] = {"gravel",    "coarse sand", "medium sand",
+                                            "fine sand", "silt",        "clay"};
+    for (size_t i = 0; i < COUNT(sediments); i++) {
+        const sonject_material_params sediment = take(sediments[i]);
+        assert_int_equal(sediment.reflection_kind, SONJECT_REFLECTION_FLUID);
+        /* Mackenzie's constant, -27 dB */
+        assert_true(sediment.lambert > 1.9952e-3 && sediment.lambert < 1.9953e-3 * 1.0001);
+        if (i == 0)
+            continue;
+        const sonject_material_params coarser = take(sediments[i - 1]);
+        assert_true(sediment.density_ratio < coarser.density_ratio);
+        assert_true(sediment.speed_ratio < coarser.speed_ratio);
+        assert_true(sediment.loss < coarser.loss);
+        assert_true(sediment.roughness_m < coarser.roughness_m);
+    }
+    /* silt and clay are slower than the water, all sands faster */
+    assert_true(take("fine sand").speed_ratio > 1.0 && take("silt").speed_ratio < 1.0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_blanks_in_names), cmocka_unit_test(test_unknown_names),
+        cmocka_unit_test(test_list_of_names),   cmocka_unit_test(test_values_are_allowed),
+        cmocka_unit_test(test_order_of_values),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
