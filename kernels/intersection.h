@@ -72,7 +72,7 @@ FUNCTION struct vector3 shape_normal(GLOBAL const struct object_record *object,
  * is first moved to its closest approach to the object, so that single precision holds the shape
  * and not the range (physics.md section 9 at 500 m). */
 FUNCTION real object_distance(GLOBAL const struct object_record *object, struct vector3 point,
-                              struct vector3 direction, float minimum)
+                              struct vector3 direction, real minimum)
 {
     const struct vector3 relative = from_centre(object, point);
     const real approach = -dot3(relative, direction);
@@ -112,7 +112,7 @@ FUNCTION struct nearest_hit find_nearest_hit(GLOBAL const struct object_record *
     nearest.distance = SPLAT(FAR_AWAY);
     nearest.object = WHOLE_OF(SPLAT(-1.0f));
     for (int i = 0; i < count; i++) {
-        const real distance = object_distance(&objects[i], point, direction, minimum);
+        const real distance = object_distance(&objects[i], point, direction, SPLAT(minimum));
         const mask is_nearer = MASK_OF(distance < nearest.distance);
         nearest.distance = CHOOSE(is_nearer, distance, nearest.distance);
         nearest.object = CHOOSE(is_nearer, WHOLE_OF(SPLAT((float)i)), nearest.object);

@@ -19,9 +19,11 @@ enum random_stream {
     STREAM_NOISE = 3,
     STREAM_INPUT_PHASE = 4,
     STREAM_CHAIN_SPECKLE = 5,
-    STREAM_SMOOTH_RAYS = 256,    /* + object */
-    STREAM_OBJECT_SPECKLE = 512, /* + object */
-    STREAM_CHAIN_RAYS = 769      /* + first surface: object, -1 the seabed, -2 any */
+    STREAM_SMOOTH_RAYS = 256,          /* + object */
+    STREAM_OBJECT_SPECKLE = 512,       /* + object */
+    STREAM_CHAIN_RAYS = 769,           /* + first surface: object, -1 the seabed, -2 any */
+    STREAM_MIRRORED_RAYS = 1024,       /* + 256 * number of the pair of sources + object */
+    STREAM_MIRRORED_ROUGH_RAYS = 65536 /* likewise */
 };
 
 /* Bits that a work-item reports; any of them fails the run. */
@@ -49,6 +51,9 @@ struct surface_record {
     float lambert_exponent; /* n >= 1 */
     float glossy_albedo;
     float glossy_slope; /* rms */
+    RECORD_INT
+    rough_is_apart; /* the rough part is not what roughness takes from the mirror (sediment
+                       returns sound from its volume too); the mirror gives way to it */
 };
 
 /* One object in the frame of a launch. */
@@ -142,6 +147,35 @@ struct chain_record {
     RECORD_INT tally_first_strip;
     RECORD_INT tally_strips;
     struct surface_record seabed;
+};
+
+/* The plane mirrors that sound may meet on its way; both are level. */
+enum mirror_kind {
+    MIRROR_SEABED = 0,
+    MIRROR_SURFACE = 1,
+    MIRROR_KINDS = 2
+};
+
+struct mirror_record {
+    float height; /* z of the plane in the frame, m */
+    struct surface_record surface;
+};
+
+/* The sonar or one of its images in the mirrors: it moves along
+ * y = z = -range * (0, cos, -sin)(depression) of the frame. */
+struct source_record {
+    float range;                              /* m, from its track to the frame's origin */
+    float cosine_depression, sine_depression; /* sine < 0: the source is below the origin */
+    RECORD_INT bounces;     /* mirrors that fold the straight line from the source to an object */
+    RECORD_INT last_mirror; /* enum mirror_kind: the one next to the object; they alternate */
+};
+
+/* Two sources between which an object carries sound. The launch's fan goes out from `outgoing`; its
+ * first_bin and first_cycles belong to half the path by way of the frame's origin. */
+struct source_pair_record {
+    struct source_record outgoing, returning;
+    struct mirror_record mirrors[MIRROR_KINDS];
+    float echoes; /* 2 where the reverse path is an echo of its own, else 1 */
 };
 
 /* What a work-item counted. */

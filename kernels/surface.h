@@ -17,7 +17,9 @@ FUNCTION int has_smooth_part(GLOBAL const struct surface_record *surface)
 
 FUNCTION int has_rough_part(GLOBAL const struct surface_record *surface)
 {
-    return surface->lambert > 0.0f || surface->glossy_albedo > 0.0f;
+    const int takes_some = surface->reflection_kind == REFLECTION_NONE || surface->rough_is_apart ||
+                           surface->roughness_phase > 0.0f;
+    return takes_some && (surface->lambert > 0.0f || surface->glossy_albedo > 0.0f);
 }
 
 /* R at the cosine of the angle of incidence, a complex number. */
@@ -43,12 +45,21 @@ FUNCTION void smooth_reflection(GLOBAL const struct surface_record *surface, rea
     *imaginary_part = *imaginary_part * kept;
 }
 
+/* The most that the rough part may return of what comes, pi mu + g. */
+FUNCTION float rough_albedo(GLOBAL const struct surface_record *surface)
+{
+    return 3.14159265359f * surface->lambert + surface->glossy_albedo;
+}
+
 /* Energy of the mirror-like part, |R|^2 exp(-P^2). */
 FUNCTION real mirror_energy(GLOBAL const struct surface_record *surface, real cosine)
 {
     real real_part, imaginary_part;
     smooth_reflection(surface, cosine, &real_part, &imaginary_part);
-    return real_part * real_part + imaginary_part * imaginary_part;
+    const real energy = real_part * real_part + imaginary_part * imaginary_part;
+    if (surface->rough_is_apart)
+        return energy * (1.0f - rough_albedo(surface));
+    return energy;
 }
 
 /* What roughness takes out of the mirror direction of a smooth surface, 1 - exp(-P^2); of a
@@ -77,16 +88,16 @@ FUNCTION real rough_scattering(GLOBAL const struct surface_record *surface, stru
     if (surface->glossy_albedo > 0.0f)
         scattering +=
             surface->glossy_albedo * cone_scattering(normal, one, other, surface->glossy_slope);
-    if (has_smooth_part(surface))
-        scattering = scattering * scattered_fraction(surface, cosine_one) *
-                     scattered_fraction(surface, cosine_other);
+    if (has_smooth_part(surface) && !surface->rough_is_apart)
+        scattering = scattering * (scattered_fraction(surface, cosine_one) *
+                                   scattered_fraction(surface, cosine_other));
     return CHOOSE(is_above, scattering, SPLAT(0.0f));
 }
 
 /* Share of the cone in the directions that are drawn. */
 FUNCTION float cone_share(GLOBAL const struct surface_record *surface)
 {
-    const float all = 3.14159265359f * surface->lambert + surface->glossy_albedo;
+    const float all = rough_albedo(surface);
     return all > 0.0f ? surface->glossy_albedo / all : 0.0f;
 }
 

@@ -122,7 +122,7 @@ struct ways_counted {
     mask is_counted, stands_for_reverse;
 };
 
-FUNCTION struct ways_counted count_ways(GLOBAL const struct chain_record *chains,
+FUNCTION struct ways_counted count_ways(GLOBAL const struct chain_record *chains, int order,
                                         const struct chain *chain)
 {
     const mask none = chain->is_alive & 0;
@@ -136,16 +136,20 @@ FUNCTION struct ways_counted count_ways(GLOBAL const struct chain_record *chains
         ways.stands_for_reverse =
             ways.stands_for_reverse | (~chain->began_smooth & began_on_seabed & ~ends_on_seabed);
     }
+    /* one object seen by way of the seabed's mirror is a pair of sources' (trace_rough_mirrored.h)
+     */
+    if (order == 2 && chains->estimator == CHAINS_CONNECT)
+        ways.is_counted = ways.is_counted & ~(chain->began_smooth & began_on_seabed);
     return ways;
 }
 
 /* Keeps the echo that a hit sends to the source: energy is that of the path, way the one to the
  * source. */
 FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
-                        const struct chain *chain, real energy, real range, real normalisation,
-                        struct chain_echo *echo)
+                        int order, const struct chain *chain, real energy, real range,
+                        real normalisation, struct chain_echo *echo)
 {
-    const struct ways_counted ways = count_ways(chains, chain);
+    const struct ways_counted ways = count_ways(chains, order, chain);
     const mask both = ways.stands_for_reverse;
     real kept = energy * normalisation;
     const whole none = WHOLE_OF(SPLAT((float)NO_STRIP));
@@ -171,8 +175,8 @@ FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_
  * by the fourth power of half the path (MATH.md). */
 FUNCTION void connect_chain(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
                             GLOBAL const struct object_record *objects, GLOBAL const float *map,
-                            const struct chain *chain, RECORD_WORD draw, struct chain_echo *echo,
-                            struct outcome_record *outcome)
+                            int order, const struct chain *chain, RECORD_WORD draw,
+                            struct chain_echo *echo, struct outcome_record *outcome)
 {
     const struct chain_hit *hit = &chain->hit;
     real receiver_x = chain->first_x;
@@ -199,7 +203,7 @@ FUNCTION void connect_chain(const struct fan_record *fan, GLOBAL const struct ch
         CHOOSE(is_open, chain->energy * scattering * cosine / (way.path * way.path), SPLAT(0.0f));
     const real half_path = fan->reference_range + way.range;
     const real square = half_path * half_path;
-    keep_echo(fan, chains, chain, energy, way.range, square * square, echo);
+    keep_echo(fan, chains, order, chain, energy, way.range, square * square, echo);
 }
 
 /* How a chain goes on from a hit. */
@@ -282,7 +286,7 @@ FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *c
     const real energy = mirror_energy(surface, cosine);
     real probability = SPLAT(1.0f);
     if (has_rough_part(surface)) {
-        const float rough = 3.14159265f * surface->lambert + surface->glossy_albedo;
+        const float rough = rough_albedo(surface);
         probability = smaller(larger(energy / (energy + rough), SPLAT(0.1f)), SPLAT(0.9f));
     }
     const mask is_mirror = MASK_OF(choice < probability);
@@ -339,7 +343,7 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
  * arrive. Per unit of the source's strength a rectangle of area A seen under the angle theta stands
  * for 1 / (A cos theta). */
 FUNCTION void count_arrival(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
-                            const struct chain *chain, const struct chain_step *step,
+                            int order, const struct chain *chain, const struct chain_step *step,
                             real to_next_hit, struct chain_echo *echo)
 {
     const struct vector3 to = to_receiver(fan, chain->hit.point, chain->first_x);
@@ -363,7 +367,7 @@ FUNCTION void count_arrival(const struct fan_record *fan, GLOBAL const struct ch
     const real range = 0.5f * (chain->range + chain->length + (path - fan->reference_range));
     const real half_path = fan->reference_range + range;
     const real square = half_path * half_path;
-    keep_echo(fan, chains, chain, energy, range, square * square, echo);
+    keep_echo(fan, chains, order, chain, energy, range, square * square, echo);
 }
 
 #define THIN_BLOCK 64u /* rays that are followed, or not, together; whatever the width */
@@ -438,7 +442,7 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
     for (int order = 1; order <= chains->interactions && ANY(chain.is_alive); order++) {
         const RECORD_WORD draw = 4u * (RECORD_WORD)order;
         if (is_connected && order >= chains->first_order) {
-            connect_chain(fan, chains, objects, map, &chain, draw + 2, &echo, outcome);
+            connect_chain(fan, chains, objects, map, order, &chain, draw + 2, &echo, outcome);
             tally_chain_echo(fan, chains, tallies, order, &echo, outcome);
         }
         if (is_connected && order == chains->interactions)
@@ -451,7 +455,7 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
         if (!is_connected) {
             const real clear =
                 CHOOSE(next.is_hit, next.distance, CHOOSE(goes_on, SPLAT(FAR_AWAY), SPLAT(-1.0f)));
-            count_arrival(fan, chains, &chain, &step, clear, &echo);
+            count_arrival(fan, chains, order, &chain, &step, clear, &echo);
             tally_chain_echo(fan, chains, tallies, order, &echo, outcome);
         }
         if (order == 1)

@@ -1,5 +1,5 @@
-/* Entry point: one work-item traces one segment of one strip. */
-#include "trace_rough.h"
+/* Entry points: one work-item traces one segment of one strip. */
+#include "trace_rough_mirrored.h"
 
 __kernel void trace_rough(__global const struct fan_record *fan_buffer,
                           __global const struct object_record *objects, __global const float *map,
@@ -12,4 +12,18 @@ __kernel void trace_rough(__global const struct fan_record *fan_buffer,
     if (strip < fan.strips)
         outcomes[get_global_id(0)] =
             trace_rough_strip(&fan, objects, map, seabed, tiles, strip, segment);
+}
+
+__kernel void trace_rough_mirrored(__global const struct fan_record *fan_buffer,
+                                   __global const struct object_record *objects,
+                                   __global long *tiles,
+                                   __global const struct source_pair_record *pair,
+                                   __global struct outcome_record *outcomes)
+{
+    const struct fan_record fan = *fan_buffer;
+    const int strip = (int)(get_global_id(0) / (size_t)fan.segments);
+    const int segment = (int)(get_global_id(0) % (size_t)fan.segments);
+    if (strip < fan.strips)
+        outcomes[get_global_id(0)] =
+            trace_rough_mirrored_strip(&fan, pair, objects, tiles, strip, segment);
 }

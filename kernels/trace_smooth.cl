@@ -1,5 +1,5 @@
-/* Entry point: one work-item traces one segment of one sub-strip. */
-#include "trace_smooth.h"
+/* Entry points: one work-item traces one segment of one sub-strip. */
+#include "trace_smooth_mirrored.h"
 
 __kernel void trace_smooth(__global const struct fan_record *fan_buffer,
                            __global const struct object_record *objects, __global long *tally,
@@ -10,4 +10,18 @@ __kernel void trace_smooth(__global const struct fan_record *fan_buffer,
     const int segment = (int)(get_global_id(0) % (size_t)fan.segments);
     if (strip < fan.strips)
         outcomes[get_global_id(0)] = trace_smooth_strip(&fan, objects, tally, strip, segment);
+}
+
+__kernel void trace_smooth_mirrored(__global const struct fan_record *fan_buffer,
+                                    __global const struct object_record *objects,
+                                    __global long *tally,
+                                    __global const struct source_pair_record *pair,
+                                    __global struct outcome_record *outcomes)
+{
+    const struct fan_record fan = *fan_buffer;
+    const int strip = (int)(get_global_id(0) / (size_t)fan.segments);
+    const int segment = (int)(get_global_id(0) % (size_t)fan.segments);
+    if (strip < fan.strips)
+        outcomes[get_global_id(0)] =
+            trace_smooth_mirrored_strip(&fan, pair, objects, tally, strip, segment);
 }

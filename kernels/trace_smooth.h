@@ -17,65 +17,67 @@ struct smooth_echo {
     int bin[WIDTH];                                /* -1: no echo */
 };
 
-/* Range of the cell's middle (less the reference range) and the in-cell phase integral. */
-struct cell_phase {
-    real range;
-    real integral;
+/* A ray and the cell of wavefront that it stands for. */
+struct wavefront_cell {
+    struct fan_ray ray;
+    mask is_ray;
+    float width_along;                  /* m */
+    real offset_along, fraction_across; /* where the ray met it: m off its middle; 0...1 */
 };
 
-/* The path's gradient over the cell is -2 n.q/(n.d) along q, the direction across the ray. */
-FUNCTION struct cell_phase integrate_cell(const struct fan_record *fan, const struct fan_ray *ray,
-                                          struct vector3 normal, real cosine, real range,
-                                          real offset_along, real offset_across, real width_along,
-                                          real width_across)
+FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan, int strip,
+                                                 int stratum, struct random_key key,
+                                                 RECORD_WORD first_ray)
 {
-    const real gradient_along = 2.0f * normal.x / cosine;
-    const real gradient_across = 2.0f * dot3(normal, ray->upward) / cosine;
+    const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
+    struct wavefront_cell cell;
+    real along;
+    two_uniforms(key, number, (RECORD_WORD)stratum, &along, &cell.fraction_across);
+    cell.is_ray = MASK_OF(number < fan->rays);
+    cell.width_along = fan->strip_width / (float)fan->strata;
+    cell.offset_along = (along - 0.5f) * cell.width_along;
+    const float middle = strip_position(fan, strip) +
+                         ((float)stratum + 0.5f - 0.5f * (float)fan->strata) * cell.width_along;
+    cell.ray = fan_ray_at(fan, middle + cell.offset_along,
+                          fan->first_elevation +
+                              (REAL_OF(number) + cell.fraction_across) * fan->elevation_step);
+    return cell;
+}
+
+/* Half the path by way of the cell's middle (less the reference range), and the amplitude of the
+ * cell over its reflection coefficient, in quanta. */
+struct cell_phase {
+    real range;
+    real amplitude;
+};
+
+/* gradient: of the whole path, along-track and across the ray. range: half the path by way of the
+ * hit; range_out: from the source to the hit. */
+FUNCTION struct cell_phase integrate_cell(const struct fan_record *fan,
+                                          const struct wavefront_cell *cell, real gradient_along,
+                                          real gradient_across, real range, real range_out)
+{
+    const float width_along = cell->width_along;
+    const real width_across = fan->elevation_step * range_out;
+    const real offset_across = (cell->fraction_across - 0.5f) * width_across;
     const float per_cycle =
         0.5f * fan->inverse_wavelength; /* k w g / 2 in cycles is w g / (2 lambda) */
     struct cell_phase phase;
-    phase.range = range - 0.5f * (gradient_along * offset_along + gradient_across * offset_across);
+    phase.range =
+        range - 0.5f * (gradient_along * cell->offset_along + gradient_across * offset_across);
     const real limit = SPLAT(4.0e6f);
-    phase.integral =
+    const real integral =
         sinc_of_cycles(smaller(magnitude(per_cycle * width_along * gradient_along), limit)) *
         sinc_of_cycles(smaller(magnitude(per_cycle * width_across * gradient_across), limit));
+    phase.amplitude = integral * width_along * width_across * fan->inverse_wavelength * fan->quanta;
     return phase;
 }
 
-FUNCTION void trace_smooth_group(const struct fan_record *fan,
-                                 GLOBAL const struct object_record *objects, int strip, int stratum,
-                                 struct random_key key, RECORD_WORD first_ray,
-                                 struct smooth_echo *echo)
+/* -i times amplitude times reflection, at the phase and in the bin of a half path. */
+FUNCTION void put_smooth_echo(const struct fan_record *fan, mask is_hit, struct cell_phase phase,
+                              real reflection_real, real reflection_imaginary,
+                              struct smooth_echo *echo)
 {
-    const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
-    const mask is_ray = MASK_OF(number < fan->rays);
-    real along, across;
-    two_uniforms(key, number, (RECORD_WORD)stratum, &along, &across);
-    const float width_along = fan->strip_width / (float)fan->strata;
-    const real offset_along = (along - 0.5f) * width_along;
-    const float middle = strip_position(fan, strip) +
-                         ((float)stratum + 0.5f - 0.5f * (float)fan->strata) * width_along;
-    const struct fan_ray ray =
-        fan_ray_at(fan, middle + offset_along,
-                   fan->first_elevation + (REAL_OF(number) + across) * fan->elevation_step);
-    const struct nearest_hit nearest =
-        find_nearest_hit(objects, fan->objects, ray.closest, ray.direction, -fan->reference_range);
-    const mask is_hit =
-        is_ray & MASK_OF(nearest.object == fan->only_object) &
-        MASK_OF(nearest.distance < seabed_distance(fan, ray.closest, ray.direction));
-    const real distance = CHOOSE(is_hit, nearest.distance, SPLAT(0.0f));
-    const GLOBAL struct object_record *object = &objects[fan->only_object];
-    const struct vector3 normal = object_normal(object, ray.closest, ray.direction, distance);
-    const real cosine = larger(-dot3(normal, ray.direction), SPLAT(1.0e-6f));
-    const real range = ray.range_at_closest + distance;
-    const real width_across = fan->elevation_step * (fan->reference_range + range);
-    const struct cell_phase phase =
-        integrate_cell(fan, &ray, normal, cosine, range, offset_along,
-                       (across - 0.5f) * width_across, SPLAT(width_along), width_across);
-    const real amplitude =
-        phase.integral * width_along * width_across * fan->inverse_wavelength * fan->quanta;
-    real reflection_real, reflection_imaginary;
-    smooth_reflection(&object->surface, cosine, &reflection_real, &reflection_imaginary);
     real sine_of_phase, cosine_of_phase;
     const real limited = smaller(larger(phase.range, SPLAT(-1.0e4f)), SPLAT(1.0e4f));
     sine_cosine_of_cycles(limited * fan->cycles_per_metre + fan->first_cycles, &sine_of_phase,
@@ -87,15 +89,40 @@ FUNCTION void trace_smooth_group(const struct fan_record *fan,
     const whole bin = WHOLE_OF(kept);
     const real fraction = kept - REAL_OF(bin);
     const whole bin_or_none = CHOOSE(is_counted, bin, bin - bin - 1);
-    /* times -i */
-    const real real_part =
-        amplitude * (reflection_real * sine_of_phase + reflection_imaginary * cosine_of_phase);
-    const real imaginary_part =
-        amplitude * (reflection_imaginary * sine_of_phase - reflection_real * cosine_of_phase);
+    const real real_part = phase.amplitude * (reflection_real * sine_of_phase +
+                                              reflection_imaginary * cosine_of_phase);
+    const real imaginary_part = phase.amplitude * (reflection_imaginary * sine_of_phase -
+                                                   reflection_real * cosine_of_phase);
     STORE_REAL(real_part, echo->real_part);
     STORE_REAL(imaginary_part, echo->imaginary_part);
     STORE_REAL(fraction, echo->fraction);
     STORE_WHOLE(bin_or_none, echo->bin);
+}
+
+FUNCTION void trace_smooth_group(const struct fan_record *fan,
+                                 GLOBAL const struct object_record *objects, int strip, int stratum,
+                                 struct random_key key, RECORD_WORD first_ray,
+                                 struct smooth_echo *echo)
+{
+    const struct wavefront_cell cell = wavefront_cell_at(fan, strip, stratum, key, first_ray);
+    const struct fan_ray ray = cell.ray;
+    const struct nearest_hit nearest =
+        find_nearest_hit(objects, fan->objects, ray.closest, ray.direction, -fan->reference_range);
+    const mask is_hit =
+        cell.is_ray & MASK_OF(nearest.object == fan->only_object) &
+        MASK_OF(nearest.distance < seabed_distance(fan, ray.closest, ray.direction));
+    const real distance = CHOOSE(is_hit, nearest.distance, SPLAT(0.0f));
+    const GLOBAL struct object_record *object = &objects[fan->only_object];
+    const struct vector3 normal = object_normal(object, ray.closest, ray.direction, distance);
+    const real cosine = larger(-dot3(normal, ray.direction), SPLAT(1.0e-6f));
+    const real range = ray.range_at_closest + distance;
+    /* the path's gradient along a direction q across the ray is -2 n.q/(n.d) */
+    const struct cell_phase phase = integrate_cell(fan, &cell, 2.0f * normal.x / cosine,
+                                                   2.0f * dot3(normal, ray.upward) / cosine, range,
+                                                   fan->reference_range + range);
+    real reflection_real, reflection_imaginary;
+    smooth_reflection(&object->surface, cosine, &reflection_real, &reflection_imaginary);
+    put_smooth_echo(fan, is_hit, phase, reflection_real, reflection_imaginary, echo);
 }
 
 /* Shares an echo between the two bins about it: linear in range, so that the pulse's envelope moves

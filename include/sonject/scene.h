@@ -12,6 +12,7 @@
 #include <sonject/object.h>
 #include <sonject/seabed.h>
 #include <sonject/sonar.h>
+#include <sonject/surface.h>
 
 SONJECT_BEGIN_DECLARATIONS
 
@@ -61,6 +62,10 @@ SONJECT_API sonject_status sonject_scene_set_medium(sonject_scene *scene,
                                                     const sonject_medium_params *medium);
 SONJECT_API sonject_status sonject_scene_set_seabed(sonject_scene *scene,
                                                     const sonject_seabed_params *seabed);
+/* depth 0 takes the surface away. That it lies above the sonar is checked when the scene is used.
+ */
+SONJECT_API sonject_status sonject_scene_set_surface(sonject_scene *scene,
+                                                     const sonject_surface_params *surface);
 SONJECT_API sonject_status sonject_scene_set_geometry(sonject_scene *scene,
                                                       const sonject_geometry_params *geometry);
 SONJECT_API sonject_status sonject_scene_set_transfer(sonject_scene *scene,

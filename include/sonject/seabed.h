@@ -15,12 +15,12 @@ typedef enum sonject_seabed_map {
     SONJECT_MAP_COHERENT = 2    /* complex reflectivity; needs a complex image */
 } sonject_seabed_map;
 
-/* What scatters sound at the seabed that does not come straight from the sonar and go straight back,
- * as between seabed and target. */
+/* What scatters sound at the seabed that does not come straight from the sonar and go straight
+ * back, as between seabed and target. */
 typedef enum sonject_forward_rule {
     SONJECT_FORWARD_MODEL = 0, /* the material `forward` alone */
-    SONJECT_FORWARD_MAP = 1    /* the material, its rough part times the measured reflectivity as for
-                                  sound that goes straight back */
+    SONJECT_FORWARD_MAP = 1 /* the material, its rough part times the measured reflectivity as for
+                               sound that goes straight back */
 } sonject_forward_rule;
 
 typedef struct sonject_seabed_params {
@@ -32,7 +32,8 @@ typedef struct sonject_seabed_params {
     double despeckle_radius_m; /* > 0 */
     uint32_t forward_rule;     /* sonject_forward_rule */
     uint32_t reserved;
-    sonject_material_params forward; /* its lambert: NaN stands for the seabed's own mu0 */
+    sonject_material_params forward; /* its lambert: NaN stands for the seabed's own mu0. Its rough
+                                        part is the same at every angle, smooth part or not */
 } sonject_seabed_params;
 
 /* Mackenzie's level (-27 dB), 3 m level radius, 0.1 m despeckle radius, intensity map; forward: the

@@ -13,6 +13,7 @@
 #include <sonject/seabed.h>
 #include <sonject/sonar.h>
 #include <sonject/status.h>
+#include <sonject/surface.h>
 #include <sonject/version.h>
 
 #endif

@@ -82,6 +82,12 @@ sonject_status sonject_scene_set_seabed(sonject_scene *scene, const sonject_seab
     SET_CHECKED(scene, sonject_seabed_params, seabed, seabed, check_seabed, "seabed");
 }
 
+sonject_status sonject_scene_set_surface(sonject_scene *scene,
+                                         const sonject_surface_params *surface)
+{
+    SET_CHECKED(scene, sonject_surface_params, surface, surface, check_surface, "surface");
+}
+
 sonject_status sonject_scene_set_geometry(sonject_scene *scene,
                                           const sonject_geometry_params *geometry)
 {

@@ -43,6 +43,8 @@ static void add_sonar(struct hash *hash, const struct scene *scene)
     ADD(hash, scene->seabed.despeckle_radius_m);
     ADD(hash, scene->seabed.forward_rule);
     add_material(hash, &scene->seabed.forward);
+    ADD(hash, scene->surface.water_depth_m);
+    add_material(hash, &scene->surface.material);
 }
 
 static void add_image(struct hash *hash, const struct scene *scene)

@@ -9,7 +9,8 @@
 #include "form/form.h"
 #include "inject/chain_echoes.h"
 #include "inject/coherent_seabed.h"
-#include "trace/smooth.h"
+#include "trace/glints.h"
+#include "trace/rough_mirrored.h"
 
 sonject_status echo_request_tell(const struct echo_request *request, struct report *report,
                                  double fraction, const char *stage)
@@ -165,7 +166,11 @@ static sonject_status compute_seabed(struct echoes *echoes, struct tracer *trace
                                   &tracer->response, FORM_SPECKLE, &trace->grid);
     if (status == SONJECT_OK)
         status = trace_chunks(&work, echoes, tracer, request);
-    const double start = clock_seconds();
+    double start = clock_seconds();
+    if (status == SONJECT_OK)
+        status = rough_trace_mirrored(trace, tracer);
+    echoes->trace_s += clock_seconds() - start;
+    start = clock_seconds();
     if (status == SONJECT_OK)
         status = form_lines_finish(&work.energy_lines, echoes->seabed_energy, unused);
     if (status == SONJECT_OK && wants_field)
@@ -299,20 +304,20 @@ static sonject_status draw_rough_object(struct echoes *echoes, struct tracer *tr
 }
 
 static sonject_status trace_glints(struct echoes *echoes, struct tracer *tracer,
-                                   struct smooth_trace *trace, struct form_lines *lines)
+                                   struct glints *glints, struct form_lines *lines)
 {
-    const size_t chunk = (size_t)smooth_trace_chunk(trace) * (size_t)trace->grid.bins.count;
+    const size_t chunk = (size_t)glints_chunk(glints) * (size_t)glints->grid.bins.count;
     float *real_part = allocate_array(chunk, sizeof(float));
     float *imaginary_part = allocate_array(chunk, sizeof(float));
     sonject_status status =
         real_part && imaginary_part ? SONJECT_OK : report_out_of_memory(tracer->report, "glints");
-    const int32_t end = trace->grid.strips.first + trace->grid.strips.count;
-    struct span strips = {trace->grid.strips.first, smooth_trace_chunk(trace)};
+    const int32_t end = glints->grid.strips.first + glints->grid.strips.count;
+    struct span strips = {glints->grid.strips.first, glints_chunk(glints)};
     while (status == SONJECT_OK && strips.first < end) {
         if (strips.count > end - strips.first)
             strips.count = end - strips.first;
         const double start = clock_seconds();
-        status = smooth_trace_strips(trace, tracer, strips, real_part, imaginary_part);
+        status = glints_trace(glints, tracer, strips, real_part, imaginary_part);
         const double traced = clock_seconds();
         echoes->trace_s += traced - start;
         if (status == SONJECT_OK)
@@ -327,20 +332,22 @@ static sonject_status trace_glints(struct echoes *echoes, struct tracer *tracer,
 
 static sonject_status compute_glints(struct echoes *echoes, struct tracer *tracer, uint32_t number)
 {
-    struct smooth_trace trace;
+    struct glints glints;
     struct form_lines lines;
-    sonject_status status = smooth_trace_begin(&trace, tracer, number);
-    if (status != SONJECT_OK || trace.grid.strips.count == 0)
+    sonject_status status = glints_begin(&glints, tracer, number);
+    if (status != SONJECT_OK)
         return status;
-    status = form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view,
-                              &tracer->response, FORM_GLINT, &trace.grid);
-    if (status == SONJECT_OK) {
-        status = trace_glints(echoes, tracer, &trace, &lines);
-        if (status == SONJECT_OK)
-            status = finish_field(echoes, &lines, &echoes->objects[number]);
-        form_lines_end(&lines);
+    if (glints.grid.strips.count > 0) {
+        status = form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view,
+                                  &tracer->response, FORM_GLINT, &glints.grid);
+        if (status == SONJECT_OK) {
+            status = trace_glints(echoes, tracer, &glints, &lines);
+            if (status == SONJECT_OK)
+                status = finish_field(echoes, &lines, &echoes->objects[number]);
+            form_lines_end(&lines);
+        }
     }
-    smooth_trace_end(&trace);
+    glints_end(&glints);
     return status;
 }
 

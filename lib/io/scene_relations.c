@@ -67,6 +67,11 @@ sonject_status finish_scene(struct reader *reader, const struct tree_node *node,
     if (scene->seabed.map == SONJECT_MAP_COHERENT && !is_complex)
         return refuse_key(reader, node, "seabed.map",
                           "coherent needs complex pixels; set complex: true in input if they are");
+    if (scene->surface.water_depth_m > 0.0 &&
+        scene->surface.water_depth_m <= scene->sonar.altitude_m)
+        return refuse_key(reader, node, "surface.depth",
+                          "must be above the sonar's altitude of %g m, not %g m",
+                          scene->sonar.altitude_m, scene->surface.water_depth_m);
     if (scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
         !(scene->sonar.transducer_side_m > 0.0))
         return refuse_key(reader, node, "injection.estimator",
@@ -123,6 +128,7 @@ FINISH(patch, sonject_patch_params)
 FINISH(sonar, sonject_sonar_params)
 FINISH(medium, sonject_medium_params)
 FINISH(seabed, sonject_seabed_params)
+FINISH(surface, sonject_surface_params)
 FINISH(injection, sonject_injection_params)
 
 sonject_status finish_transfer(struct reader *reader, const struct tree_node *node, void *structure)

@@ -158,6 +158,19 @@ static const struct field seabed_fields[] = {
 static const struct section seabed_section = {seabed_fields, COUNT(seabed_fields), finish_seabed};
 #undef STRUCTURE
 
+#define STRUCTURE sonject_surface_params
+static const struct field surface_fields[] = {
+    {"depth", "of the water: height of the surface over the mean seabed",
+     QUANTITY(STRUCTURE, water_depth_m, QUANTITY_LENGTH), REQUIRED},
+    {"reflection", "amplitude of the mirror-like part, -1 to 1",
+     QUANTITY(STRUCTURE, material.reflection, QUANTITY_NUMBER)},
+    {"roughness", "rms height of the waves",
+     QUANTITY(STRUCTURE, material.roughness_m, QUANTITY_LENGTH)},
+};
+static const struct section surface_section = {surface_fields, COUNT(surface_fields),
+                                               finish_surface};
+#undef STRUCTURE
+
 #define STRUCTURE sonject_injection_params
 static const struct field injection_fields[] = {
     {"mode", "keep the measured pixels around the target, or trace the patch anew",
@@ -238,6 +251,8 @@ static const struct field scene_fields[] = {
      REQUIRED},
     {"medium", "the water", PART(STRUCTURE, medium, medium_section)},
     {"seabed", "the seabed", PART(STRUCTURE, seabed, seabed_section)},
+    {"surface", "the sea surface; by default none is heard",
+     PART(STRUCTURE, surface, surface_section)},
     {"injection", "how targets are put into the image",
      PART(STRUCTURE, injection, injection_section)},
     {"objects", "list of the targets", .kind = FIELD_SPECIAL, .read = read_objects,

@@ -119,6 +119,7 @@ sonject_status finish_response(struct reader *reader, const struct tree_node *no
                                void *structure);
 sonject_status finish_medium(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status finish_seabed(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status finish_surface(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status finish_injection(struct reader *reader, const struct tree_node *node,
                                 void *structure);
 sonject_status finish_position(struct reader *reader, const struct tree_node *node,

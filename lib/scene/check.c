@@ -89,6 +89,20 @@ sonject_status check_seabed(const sonject_seabed_params *seabed, struct report *
     return check.status;
 }
 
+sonject_status check_surface(const sonject_surface_params *surface, struct report *report,
+                             const char **key)
+{
+    static const struct material_keys keys = MATERIAL_KEYS("");
+    struct check check = {report, key, SONJECT_OK};
+    check_length(&check, "depth", surface->water_depth_m);
+    check_material(&check, &keys, &surface->material, NAN);
+    if (surface->material.lambert != 0.0)
+        check_failure(&check, keys.lambert, "must be 0: the sea surface has no rough part");
+    if (surface->material.glossy_albedo != 0.0)
+        check_failure(&check, keys.albedo, "must be 0: the sea surface has no rough part");
+    return check.status;
+}
+
 sonject_status check_geometry(const sonject_geometry_params *geometry, struct report *report,
                               const char **key)
 {

@@ -7,6 +7,7 @@
 #include <sonject/object.h>
 #include <sonject/seabed.h>
 #include <sonject/sonar.h>
+#include <sonject/surface.h>
 
 void sonject_sonar_params_init(sonject_sonar_params *sonar)
 {
@@ -39,6 +40,16 @@ void sonject_seabed_params_init(sonject_seabed_params *seabed)
     seabed->forward.reflection = 0.0;
     seabed->forward.roughness_m = 0.0;
     seabed->forward.lambert = NAN;
+}
+
+void sonject_surface_params_init(sonject_surface_params *surface)
+{
+    memset(surface, 0, sizeof *surface);
+    surface->struct_size = sizeof *surface;
+    sonject_material_params_init(&surface->material);
+    surface->material.reflection = -1.0;
+    surface->material.roughness_m = 0.0;
+    surface->material.lambert = 0.0;
 }
 
 /* No first slant range is right for most images, so there is none until the caller gives it. */

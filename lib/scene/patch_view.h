@@ -21,7 +21,7 @@ struct patch_view {
 };
 
 /* The scene's geometry shifted to the region that starts at first_row, first_column of the swath.
- * Errors: INPUT (patch not beyond the altitude, no pixels). */
+ * Errors: INPUT (patch not beyond the altitude, no pixels, sea surface not above the sonar). */
 sonject_status patch_view_init(struct patch_view *view, struct report *report,
                                const struct scene *scene, double first_row, double first_column,
                                size_t rows, size_t columns);

@@ -11,6 +11,7 @@ void scene_init(struct scene *scene)
     sonject_sonar_params_init(&scene->sonar);
     sonject_medium_params_init(&scene->medium);
     sonject_seabed_params_init(&scene->seabed);
+    sonject_surface_params_init(&scene->surface);
     sonject_geometry_params_init(&scene->geometry);
     sonject_transfer_params_init(&scene->transfer);
     sonject_injection_params_init(&scene->injection);

@@ -17,6 +17,7 @@ struct scene {
     sonject_sonar_params sonar;
     sonject_medium_params medium;
     sonject_seabed_params seabed;
+    sonject_surface_params surface;
     sonject_geometry_params geometry;
     sonject_transfer_params transfer;
     sonject_injection_params injection;
@@ -50,6 +51,8 @@ sonject_status check_medium(const sonject_medium_params *medium, struct report *
                             const char **key);
 sonject_status check_seabed(const sonject_seabed_params *seabed, struct report *report,
                             const char **key);
+sonject_status check_surface(const sonject_surface_params *surface, struct report *report,
+                             const char **key);
 sonject_status check_geometry(const sonject_geometry_params *geometry, struct report *report,
                               const char **key);
 sonject_status check_transfer(const sonject_transfer_params *transfer, struct report *report,

@@ -10,7 +10,6 @@
 #include "trace/patch_fan.h"
 #include "trace/target_spheres.h"
 
-#define PI              3.14159265358979323846
 #define SEABED_SHARE    8.0f /* then all within about four widths of a target are followed */
 #define TALLY_BYTES_MAX ((size_t)1 << 30)
 
@@ -42,10 +41,11 @@ static void chain_record_init(struct chain_record *record, const struct chain_tr
     record->tally_first_strip = trace->grid.strips.first;
     record->tally_strips = trace->grid.strips.count;
     surface_record_init(&record->seabed, &seabed, tracer->view.wavelength_m);
+    record->seabed.rough_is_apart = true; /* as for sound that goes straight back */
 }
 
-/* The most that one ray can bring is its wavefront times a surface that returns everything into a
- * narrow cone; quanta leave three powers of ten for that over Lambert's law. */
+/* The most that one ray can bring is about its wavefront times the brightest scattering; quanta
+ * leave four powers of ten over that, since directions that are drawn rarely count for many. */
 static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tracer)
 {
     struct fan_record fan;
@@ -54,7 +54,7 @@ static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tr
         return status;
     const double wavefront =
         (double)fan.strip_width * fan.elevation_step * 2.0 * fan.reference_range;
-    trace->quanta = power_of_two_below(ldexp(1.0, 40) / (wavefront / PI));
+    trace->quanta = power_of_two_below(ldexp(1.0, 37) / (wavefront * brightest_scattering(tracer)));
     trace->energy_of_quantum = view_energy_scale(&tracer->view) / trace->quanta;
     return SONJECT_OK;
 }

@@ -7,8 +7,8 @@
 #include "base/memory.h"
 #include "cl/launch.h"
 #include "trace/patch_fan.h"
+#include "trace/source_pairs.h"
 
-#define PI           3.14159265358979323846
 #define RAYS_PER_BIN 2.0
 
 static double bin_of_apparent_range(const struct rough_trace *trace, const struct tracer *tracer,
@@ -18,7 +18,7 @@ static double bin_of_apparent_range(const struct rough_trace *trace, const struc
 }
 
 /* Bins where an object's echoes and shadow can lie: from its nearest point to where the ray over
- * its top meets the seabed. */
+ * its top meets the seabed, or to its last echo by way of mirrors. */
 static struct span tile_bins(const struct rough_trace *trace, const struct tracer *tracer,
                              uint32_t number)
 {
@@ -40,8 +40,10 @@ static struct span tile_bins(const struct rough_trace *trace, const struct trace
     const double ratio = tracer->view.range_ratio;
     const double first =
         floor(bin_of_apparent_range(trace, tracer, (first_range - slack) * ratio)) - 2.0;
+    const struct span mirrored = mirrored_bins(tracer, number, &trace->grid);
     const double last =
-        ceil(bin_of_apparent_range(trace, tracer, (last_range + slack) * ratio)) + 2.0;
+        fmax(ceil(bin_of_apparent_range(trace, tracer, (last_range + slack) * ratio)) + 2.0,
+             mirrored.first + mirrored.count);
     const double limit = trace->grid.bins.first + trace->grid.bins.count;
     struct span bins;
     bins.first = (int32_t)fmin(fmax(first, trace->grid.bins.first), limit);
@@ -69,6 +71,17 @@ static struct span tile_strips(const struct rough_trace *trace, const struct tra
     return strips;
 }
 
+void rough_tile_describe(const struct rough_trace *trace, uint32_t object,
+                         struct object_record *record)
+{
+    const struct rough_tile *tile = &trace->tiles[object];
+    record->tile_offset = (uint32_t)tile->offset;
+    record->tile_first_strip = tile->grid.strips.first;
+    record->tile_strips = tile->grid.strips.count;
+    record->tile_first_bin = tile->grid.bins.first - trace->grid.bins.first;
+    record->tile_bins = tile->grid.bins.count;
+}
+
 static sonject_status lay_tiles(struct rough_trace *trace, struct tracer *tracer,
                                 struct object_record *records)
 {
@@ -79,11 +92,7 @@ static sonject_status lay_tiles(struct rough_trace *trace, struct tracer *tracer
         tile->grid.strips = tile_strips(trace, tracer, i);
         tile->grid.bins = tile_bins(trace, tracer, i);
         tile->offset = elements;
-        records[i].tile_offset = (uint32_t)elements;
-        records[i].tile_first_strip = tile->grid.strips.first;
-        records[i].tile_strips = tile->grid.strips.count;
-        records[i].tile_first_bin = tile->grid.bins.first - trace->grid.bins.first;
-        records[i].tile_bins = tile->grid.bins.count;
+        rough_tile_describe(trace, i, &records[i]);
         elements += line_grid_cells(&tile->grid) * TILE_PLANES;
         if (elements > (size_t)1 << 31)
             return report_failure(tracer->report, SONJECT_ERROR_INPUT,
@@ -94,7 +103,7 @@ static sonject_status lay_tiles(struct rough_trace *trace, struct tracer *tracer
 }
 
 /* Quanta so fine that the weakest seabed still counts in millions, and so coarse that the
- * brightest surface (mu = 1/pi, or the map's brightest seabed) stays below the limit. */
+ * brightest surface (an object's, or the map's brightest seabed) stays below the limit. */
 static void choose_quanta(struct rough_trace *trace, const struct tracer *tracer, const float *map)
 {
     double brightest = 1.0;
@@ -103,7 +112,8 @@ static void choose_quanta(struct rough_trace *trace, const struct tracer *tracer
             brightest = fmax(brightest, map[i]);
     const double wavefront = (double)trace->fan.strip_width * trace->fan.elevation_step * 2.0 *
                              trace->fan.reference_range;
-    const double most = wavefront * fmax(1.0 / PI, tracer->scene->seabed.lambert * brightest);
+    const double most =
+        wavefront * fmax(brightest_scattering(tracer), tracer->scene->seabed.lambert * brightest);
     trace->fan.quanta = power_of_two_below(ldexp(1.0, 44) / most);
     trace->energy_of_quantum = view_energy_scale(&tracer->view) / trace->fan.quanta;
 }

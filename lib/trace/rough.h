@@ -26,6 +26,10 @@ sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *trace
                                  const float *map);
 void rough_trace_end(struct rough_trace *trace);
 
+/* Tells an object's record where its tile is. */
+void rough_tile_describe(const struct rough_trace *trace, uint32_t object,
+                         struct object_record *record);
+
 /* How many strips a call of rough_trace_strips may take. */
 int32_t rough_trace_chunk(const struct rough_trace *trace);
 

@@ -2,6 +2,7 @@
 #ifndef SONJECT_TRACE_SMOOTH_H
 #define SONJECT_TRACE_SMOOTH_H
 
+#include "trace/source_pairs.h"
 #include "trace/tracer.h"
 
 struct smooth_trace {
@@ -9,12 +10,18 @@ struct smooth_trace {
     double amplitude_of_quantum; /* m */
     struct fan_record fan;
     struct trace_device on_device;
+    cl_mem sources; /* source_pair_record; NULL: straight there and back */
 };
 
 /* Prepares a trace of one object's glints; as rough_trace_begin. An object without a smooth part
  * has grid.strips.count 0 and nothing to trace. */
 sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tracer,
                                   uint32_t object);
+
+/* The same by way of mirrors. grid.bins.count is 0, and there is nothing to trace, where no such
+ * echo can reach the patch. */
+sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tracer *tracer,
+                                           uint32_t object, const struct source_pair *pair);
 void smooth_trace_end(struct smooth_trace *trace);
 
 int32_t smooth_trace_chunk(const struct smooth_trace *trace);

@@ -12,10 +12,11 @@
 #define TALLY_BYTES ((size_t)64 << 20)
 
 /* Host and device must agree on every byte. */
-typedef char object_record_is_packed[sizeof(struct object_record) == 32 * 4 ? 1 : -1];
+typedef char object_record_is_packed[sizeof(struct object_record) == 33 * 4 ? 1 : -1];
 typedef char fan_record_is_packed[sizeof(struct fan_record) == 33 * 4 ? 1 : -1];
-typedef char chain_record_is_packed[sizeof(struct chain_record) == 21 * 4 ? 1 : -1];
+typedef char chain_record_is_packed[sizeof(struct chain_record) == 22 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
+typedef char source_pair_record_is_packed[sizeof(struct source_pair_record) == 35 * 4 ? 1 : -1];
 typedef char outcome_record_is_packed[sizeof(struct outcome_record) == 4 * 4 ? 1 : -1];
 
 float power_of_two_below(double value)
@@ -61,6 +62,17 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
     fan->segments = 1;
 }
 
+double fan_edge_of_object(const struct fan_record *fan, const struct tracer *tracer,
+                          uint32_t object)
+{
+    const struct placement *placement = &tracer->placements[object];
+    const double range = fan->reference_range;
+    const double across[3] = {0.0, fan->sine_depression, fan->cosine_depression};
+    const double extent =
+        1.02 * placement_half_extent(placement, tracer->scene->objects[object].shape, across);
+    return asin(fmin(1.0, extent / (range - placement->bounding_radius_m)));
+}
+
 void surface_record_init(struct surface_record *record, const sonject_material_params *material,
                          double wavelength_m)
 {
@@ -80,6 +92,19 @@ void surface_record_init(struct surface_record *record, const sonject_material_p
     record->lambert_exponent = (float)material->lambert_exponent;
     record->glossy_albedo = (float)material->glossy_albedo;
     record->glossy_slope = (float)material->glossy_slope;
+}
+
+double brightest_scattering(const struct tracer *tracer)
+{
+    double brightest = 1.0 / PI;
+    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
+        const sonject_material_params *material = &tracer->scene->objects[i].material;
+        const double cone =
+            material->glossy_albedo / (4.0 * PI * material->glossy_slope * material->glossy_slope);
+        brightest =
+            fmax(brightest, 0.5 * material->lambert * (material->lambert_exponent + 1.0) + cone);
+    }
+    return brightest;
 }
 
 void object_records_init(struct object_record *records, const struct tracer *tracer,

@@ -41,6 +41,15 @@ void object_records_init(struct object_record *records, const struct tracer *tra
 void surface_record_init(struct surface_record *record, const sonject_material_params *material,
                          double wavelength_m);
 
+/* Half the angle in rad that an object fills in elevation, seen from where a fan starts that aims
+ * at the object's centre; a little more than that. */
+double fan_edge_of_object(const struct fan_record *fan, const struct tracer *tracer,
+                          uint32_t object);
+
+/* The most that an object's rough part scatters (f at normal incidence and mirror direction), at
+ * least Lambert's 1/pi: tallies are scaled by it. */
+double brightest_scattering(const struct tracer *tracer);
+
 /* Runs a trace kernel over the fan's strips and adds up what the work-items report. Arguments: the
  * fan first, then `buffers`, then the outcomes. Sets fan->segments. Errors: DEVICE (also faults
  * that the kernel reports), MEMORY. */

@@ -56,6 +56,7 @@ SIZES = {
     "sonject_medium_params": 24,
     "sonject_seabed_params": 120,
     "sonject_material_params": 80,
+    "sonject_surface_params": 96,
     "sonject_object_params": 296,
     "sonject_geometry_params": 40,
     "sonject_transfer_params": 24,

@@ -12,11 +12,12 @@
 #include <string.h>
 
 #include "image_formation.h"
-#include "trace_rough.h"
-#include "trace_smooth.h"
+#include "trace_rough_mirrored.h"
+#include "trace_smooth_mirrored.h"
 
 #include "cl/launch.h"
 #include "physics/bench.h"
+#include "trace/rough_mirrored.h"
 
 #define ROWS    96
 #define COLUMNS 128
@@ -107,12 +108,17 @@ static void expect_same(const char *what, const struct tallies *a, const struct 
 }
 
 /* A sum without weight would let a dead trace pass. */
-static void expect_alive(const struct tallies *tallies)
+static bool is_alive(const struct tallies *tallies)
 {
     size_t filled = 0;
     for (size_t i = 0; i < tallies->lines; i++)
         filled += tallies->line[i] != 0;
-    assert_true(filled > tallies->lines / 20);
+    return filled > tallies->lines / 20;
+}
+
+static void expect_alive(const struct tallies *tallies)
+{
+    assert_true(is_alive(tallies));
 }
 
 static struct tallies trace_rough_on_device(struct bench *bench, const float *map, int32_t chunk)
@@ -192,15 +198,28 @@ static struct tallies trace_rough_as_c(struct bench *bench, const float *map)
     return tallies;
 }
 
-static struct tallies trace_smooth_on_device(struct bench *bench, uint32_t object, int32_t chunk)
+/* By way of mirrors where there is a pair of sources, else straight. */
+static void begin_smooth(struct smooth_trace *trace, struct bench *bench, uint32_t object,
+                         const struct source_pair *pair)
+{
+    const sonject_status status =
+        pair ? smooth_trace_begin_mirrored(trace, &bench->tracer, object, pair)
+             : smooth_trace_begin(trace, &bench->tracer, object);
+    if (status != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+}
+
+static struct tallies trace_smooth_on_device(struct bench *bench, uint32_t object,
+                                             const struct source_pair *pair, int32_t wanted_chunk)
 {
     struct smooth_trace trace;
     struct tallies tallies = {0, 0, NULL, NULL, {0, 0, 0, 0}};
     memset(&bench->tracer.counts, 0, sizeof bench->tracer.counts);
-    if (smooth_trace_begin(&trace, &bench->tracer, object) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    begin_smooth(&trace, bench, object, pair);
     const size_t bins = (size_t)trace.grid.bins.count;
     const int32_t count = trace.grid.strips.count;
+    const int32_t most = smooth_trace_chunk(&trace);
+    const int32_t chunk = wanted_chunk < most ? wanted_chunk : most;
     tallies.lines = 2 * line_grid_cells(&trace.grid);
     tallies.line = calloc(tallies.lines, sizeof(int64_t));
     float *a = calloc(tallies.lines, sizeof *a);
@@ -222,14 +241,20 @@ static struct tallies trace_smooth_on_device(struct bench *bench, uint32_t objec
     return tallies;
 }
 
-static struct tallies trace_smooth_as_c(struct bench *bench, uint32_t object)
+static struct tallies trace_smooth_as_c(struct bench *bench, uint32_t object,
+                                        const struct source_pair *pair)
 {
     struct smooth_trace trace;
+    struct source_pair_record sources;
     struct object_record objects[BENCH_OBJECTS];
     struct tallies tallies = {0, 0, NULL, NULL, {0, 0, 0, 0}};
-    if (smooth_trace_begin(&trace, &bench->tracer, object) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    begin_smooth(&trace, bench, object, pair);
+    assert_true(trace.grid.bins.count > 0);
     read_objects(bench, trace.on_device.objects, objects);
+    if (pair)
+        assert_int_equal(buffer_read(&bench->report, bench->tracer.device, trace.sources, 0,
+                                     sizeof sources, &sources),
+                         SONJECT_OK);
     tallies.lines = 2 * line_grid_cells(&trace.grid);
     tallies.line = calloc(tallies.lines, sizeof(int64_t));
     assert_non_null(tallies.line);
@@ -237,7 +262,10 @@ static struct tallies trace_smooth_as_c(struct bench *bench, uint32_t object)
     trace.fan.strips = trace.grid.strips.count;
     trace.fan.segments = 1;
     for (int strip = 0; strip < trace.fan.strips; strip++)
-        count_outcome(&tallies, trace_smooth_strip(&trace.fan, objects, tallies.line, strip, 0));
+        count_outcome(&tallies,
+                      pair ? trace_smooth_mirrored_strip(&trace.fan, &sources, objects,
+                                                         tallies.line, strip, 0)
+                           : trace_smooth_strip(&trace.fan, objects, tallies.line, strip, 0));
     tallies.counts.rays = (uint64_t)trace.fan.rays * trace.fan.strata * (uint64_t)trace.fan.strips;
     smooth_trace_end(&trace);
     return tallies;
@@ -292,28 +320,115 @@ static void test_rough_tallies(void **unused)
     on_every_device(compare_rough, 1);
 }
 
+/* Whether there was anything to compare. */
+static bool compare_pair(struct bench *bench, uint32_t object, const struct source_pair *pair)
+{
+    struct tallies expected = trace_smooth_as_c(bench, object, pair);
+    const bool had_echoes = is_alive(&expected);
+    static const int32_t chunks[] = {1 << 20, 1 << 20, 37, 5};
+    for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
+        struct tallies measured = trace_smooth_on_device(bench, object, pair, chunks[i]);
+        expect_same("smooth", &measured, &expected);
+        tallies_clear(&measured);
+    }
+    tallies_clear(&expected);
+    return had_echoes;
+}
+
 static void compare_smooth(struct bench *bench, enum scene_kind kind)
 {
     if (kind != SCENE_ALL_SHAPES)
         return; /* neither source nor map matter to glints */
     make_scene(bench, kind);
-    for (uint32_t object = 0; object < bench->scene.object_count; object++) {
-        struct tallies expected = trace_smooth_as_c(bench, object);
-        expect_alive(&expected);
-        static const int32_t chunks[] = {1 << 20, 1 << 20, 37, 5};
-        for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
-            struct tallies measured = trace_smooth_on_device(bench, object, chunks[i]);
-            expect_same("smooth", &measured, &expected);
-            tallies_clear(&measured);
-        }
-        tallies_clear(&expected);
-    }
+    for (uint32_t object = 0; object < bench->scene.object_count; object++)
+        assert_true(compare_pair(bench, object, NULL));
 }
 
 static void test_smooth_tallies(void **unused)
 {
     (void)unused;
     on_every_device(compare_smooth, 1);
+}
+
+/* A fluid seabed, a rough surface, and pairs of the sonar and its images in both. */
+static void compare_mirrored(struct bench *bench, enum scene_kind kind)
+{
+    static const size_t numbers[][2] = {{0, 1}, {1, 1}, {0, 2}, {1, 4}, {2, 4}};
+    struct sound_source sources[SOURCES_MAX];
+    if (kind != SCENE_ALL_SHAPES)
+        return;
+    make_scene(bench, kind);
+    bench->scene.seabed.forward.reflection_kind = SONJECT_REFLECTION_FLUID;
+    bench->scene.seabed.forward.density_ratio = 1.845;
+    bench->scene.seabed.forward.speed_ratio = 1.1782;
+    bench->scene.seabed.forward.loss = 0.01624;
+    bench->scene.surface.water_depth_m = 7.5;
+    bench->scene.surface.material.roughness_m = 1e-3;
+    assert_int_equal(sources_list(&bench->scene, 2, sources), 5);
+    size_t alive = 0;
+    for (uint32_t object = 0; object < bench->scene.object_count; object++)
+        for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+            const struct source_pair pair = {&sources[numbers[i][0]], &sources[numbers[i][1]],
+                                             (uint32_t)i};
+            alive += compare_pair(bench, object, &pair);
+        }
+    /* of 20: the plate is not seen from two sides everywhere */
+    assert_true(alive >= 15);
+}
+
+static void test_mirrored_tallies(void **unused)
+{
+    (void)unused;
+    on_every_device(compare_mirrored, 1);
+}
+
+/* Tiles of the rough part by way of mirrors, on a fresh trace. */
+static int64_t *mirrored_tiles(struct bench *bench, size_t *elements)
+{
+    struct rough_trace trace;
+    if (rough_trace_begin(&trace, &bench->tracer, NULL) != SONJECT_OK ||
+        rough_trace_mirrored(&trace, &bench->tracer) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+    *elements = trace.tile_elements;
+    int64_t *tiles = calloc(*elements, sizeof *tiles);
+    assert_non_null(tiles);
+    assert_int_equal(buffer_read(&bench->report, bench->tracer.device, trace.tile_buffer, 0,
+                                 *elements * sizeof *tiles, tiles),
+                     SONJECT_OK);
+    rough_trace_end(&trace);
+    return tiles;
+}
+
+static void compare_rough_mirrored(struct bench *bench, enum scene_kind kind)
+{
+    static int64_t *first; /* of the first width */
+    static size_t first_elements;
+    size_t elements;
+    if (kind != SCENE_ALL_SHAPES)
+        return;
+    bench->scene.seabed.forward.reflection = 0.9;
+    bench->scene.surface.water_depth_m = 7.5;
+    bench->scene.injection.interactions = 4;
+    make_scene(bench, kind);
+    int64_t *tiles = mirrored_tiles(bench, &elements);
+    if (!first) {
+        size_t filled = 0;
+        for (size_t i = 0; i < elements; i++)
+            filled += tiles[i] != 0;
+        assert_true(filled > 1000);
+        first = tiles;
+        first_elements = elements;
+        return;
+    }
+    assert_int_equal(elements, first_elements);
+    assert_memory_equal(tiles, first, elements * sizeof *tiles);
+    free(tiles);
+}
+
+static void test_rough_mirrored_tallies(void **unused)
+{
+    (void)unused;
+    on_every_device(compare_rough_mirrored, 1);
 }
 
 /* Planes of lines or pixels, real part first. */
@@ -542,10 +657,9 @@ static void test_one_core(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rough_tallies),
-        cmocka_unit_test(test_smooth_tallies),
-        cmocka_unit_test(test_image_formation),
-        cmocka_unit_test(test_one_core),
+        cmocka_unit_test(test_rough_tallies),    cmocka_unit_test(test_smooth_tallies),
+        cmocka_unit_test(test_mirrored_tallies), cmocka_unit_test(test_rough_mirrored_tallies),
+        cmocka_unit_test(test_image_formation),  cmocka_unit_test(test_one_core),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

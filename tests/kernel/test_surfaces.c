@@ -521,9 +521,11 @@ static void test_weights(void **unused)
 /* ---- Reflection ---- */
 
 /* Error of R: roundings of its own, and those of s^2 = n^2 - sin^2, which the square root enlarges
- * near the critical angle. */
+ * near the critical angle. A constant has only its rounding. */
 static double reflection_error(const struct surface_record *surface, double cosine)
 {
+    if (surface->reflection_kind != REFLECTION_FLUID)
+        return SINGLE_PRECISION;
     const double m = (double)surface->density_ratio;
     const double complex square =
         (double)surface->index_real - 1.0 + cosine * cosine + (double)surface->index_imaginary * I;
@@ -670,6 +672,31 @@ static void test_mirror_part(void **unused)
     }
 }
 
+/* A sediment's rough part is its own, at every angle, and the mirror gives way to it. */
+static void test_rough_part_apart(void **unused)
+{
+    (void)unused;
+    const struct surface_record rough_part = rough(0.05, 1.0, 0.0, 0.1);
+    for (int smooth = 0; smooth < SMOOTH_KINDS; smooth++) {
+        struct surface_record surface = over_smooth(smooth, &rough_part);
+        surface.rough_is_apart = 1;
+        surface.lambert = 0.05f;
+        for (size_t i = 0; i < sizeof furnace_angles / sizeof *furnace_angles; i++) {
+            const double angle = furnace_angles[i] * PI / 180.0;
+            const double cosine = (double)(float)cos(angle);
+            double scattered;
+            const double mirror = exact_mirror(&surface, cosine, &scattered);
+            const double left = mirror * (1.0 - PI * 0.05);
+            const double found = (double)mirror_energy(&surface, (float)cosine);
+            const double returned = albedo(&surface, angle);
+            /* the errors of R near the critical angle, and those of the quadrature */
+            assert_true(fabs(found - left) < 2.0 * reflection_error(&surface, cosine) + 2e-6);
+            assert_true(fabs(returned - PI * 0.05) < 1e-4);
+            assert_true(found + returned < 1.0 + 1e-4);
+        }
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -678,7 +705,7 @@ int main(void)
         cmocka_unit_test(test_reciprocity),        cmocka_unit_test(test_weights),
         cmocka_unit_test(test_fluid_reflection),   cmocka_unit_test(test_critical_angle),
         cmocka_unit_test(test_intromission_angle), cmocka_unit_test(test_grazing_limit),
-        cmocka_unit_test(test_mirror_part),
+        cmocka_unit_test(test_mirror_part),        cmocka_unit_test(test_rough_part_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -101,23 +101,22 @@ size_t bench_devices(char names[BENCH_DEVICES][128])
 
 struct echo_line bench_glint_line(struct bench *bench, uint32_t object)
 {
-    struct smooth_trace trace;
+    struct glints glints;
     struct echo_line line;
-    expect_ok(bench, smooth_trace_begin(&trace, &bench->tracer, object));
-    line.bins = (size_t)trace.grid.bins.count;
-    line.spacing_m = bench->tracer.view.column_spacing_m / trace.grid.bins_per_pixel;
-    line.first_range_m = bench->tracer.view.first_range_m + trace.grid.bins.first * line.spacing_m;
+    expect_ok(bench, glints_begin(&glints, &bench->tracer, object));
+    line.bins = (size_t)glints.grid.bins.count;
+    line.spacing_m = bench->tracer.view.column_spacing_m / glints.grid.bins_per_pixel;
+    line.first_range_m = bench->tracer.view.first_range_m + glints.grid.bins.first * line.spacing_m;
     line.real_part = calloc(line.bins, sizeof(double));
     line.imaginary_part = calloc(line.bins, sizeof(double));
-    const int32_t chunk = smooth_trace_chunk(&trace);
+    const int32_t chunk = glints_chunk(&glints);
     float *real_part = calloc((size_t)chunk * line.bins, sizeof(float));
     float *imaginary_part = calloc((size_t)chunk * line.bins, sizeof(float));
     assert_true(line.real_part && line.imaginary_part && real_part && imaginary_part);
-    for (int32_t done = 0; done < trace.grid.strips.count; done += chunk) {
-        const int32_t left = trace.grid.strips.count - done;
-        const struct span strips = {trace.grid.strips.first + done, left < chunk ? left : chunk};
-        expect_ok(bench,
-                  smooth_trace_strips(&trace, &bench->tracer, strips, real_part, imaginary_part));
+    for (int32_t done = 0; done < glints.grid.strips.count; done += chunk) {
+        const int32_t left = glints.grid.strips.count - done;
+        const struct span strips = {glints.grid.strips.first + done, left < chunk ? left : chunk};
+        expect_ok(bench, glints_trace(&glints, &bench->tracer, strips, real_part, imaginary_part));
         for (size_t i = 0; i < (size_t)strips.count * line.bins; i++) {
             line.real_part[i % line.bins] += real_part[i];
             line.imaginary_part[i % line.bins] += imaginary_part[i];
@@ -125,7 +124,7 @@ struct echo_line bench_glint_line(struct bench *bench, uint32_t object)
     }
     free(real_part);
     free(imaginary_part);
-    smooth_trace_end(&trace);
+    glints_end(&glints);
     return line;
 }
 

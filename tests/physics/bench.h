@@ -7,8 +7,8 @@
 #include "form/form.h"
 #include "inject/echoes.h"
 #include "inject/patch_level.h"
+#include "trace/glints.h"
 #include "trace/rough.h"
-#include "trace/smooth.h"
 #include "trace/tracer.h"
 
 #define PI            3.14159265358979323846
@@ -47,8 +47,8 @@ double bench_wavenumber(const struct bench *bench);
 #define BENCH_DEVICES 16
 size_t bench_devices(char names[BENCH_DEVICES][128]);
 
-/* Coherent part of one object with no cross-range response at all: the sum of all its sub-strips,
- * bin by bin, along apparent range. */
+/* Coherent part of one object, mirrors and all, with no cross-range response at all: the sum of all
+ * its sub-strips, bin by bin, along apparent range. */
 struct echo_line {
     size_t bins;
     double first_range_m, spacing_m; /* apparent range of bin 0, and from bin to bin */

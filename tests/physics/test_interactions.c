@@ -254,6 +254,54 @@ static void test_reference(void **unused)
     bench_close(&bench);
 }
 
+/* An object seen by way of the seabed's mirror belongs to the pairs of sources
+ * (trace_rough_mirrored.h). Chains, which could find it too, must not count it again: over a mirror
+ * without a rough part they have nothing else to find. */
+static void test_mirrored_object_is_left_to_pairs(void **unused)
+{
+    (void)unused;
+    struct bench bench;
+    make_scene(&bench);
+    bench.scene.injection.interactions = 2;
+    bench.scene.injection.column_rule = SONJECT_COLUMNS_FOCUSED;
+    bench.scene.seabed.forward.reflection = 0.9;
+    bench.scene.seabed.forward.lambert = 0.0;
+    struct energies energies;
+    memset(&energies, 0, sizeof energies);
+    bench_ready(&bench);
+    trace_once(&bench, &energies);
+    assert_true(bench.tracer.counts.queries > bench.tracer.counts.rays + 1000);
+    for (int range = 0; range < RANGES; range++)
+        assert_true(energies.sum[1][range] == 0.0);
+    bench_close(&bench);
+}
+
+/* The narrowest cones are 2500 times as bright as Lambert's law; tallies must hold them. A tilted
+ * plate mirrors past the sonar, a sphere into it. */
+static void test_narrowest_cone_is_in_scale(void **unused)
+{
+    (void)unused;
+    static const double slopes[] = {0.01, 0.03};
+    for (size_t i = 0; i < sizeof slopes / sizeof *slopes; i++) {
+        struct bench bench;
+        struct echoes echoes;
+        bench_open(&bench, NULL, 120, 160, MIDDLE_M);
+        bench_add(&bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.5);
+        bench_add(&bench, SONJECT_SHAPE_PLANE, 1.0, 0.6, 0.0)->roll_rad = 68.0 * PI / 180.0;
+        for (uint32_t k = 0; k < bench.scene.object_count; k++) {
+            bench.scene.objects[k].material.reflection = 0.0;
+            bench.scene.objects[k].material.lambert = 0.0;
+            bench.scene.objects[k].material.glossy_albedo = 1.0;
+            bench.scene.objects[k].material.glossy_slope = slopes[i];
+        }
+        bench.scene.injection.interactions = 3;
+        bench_ready(&bench);
+        bench_echoes(&bench, NULL, SEABED_FIELD_NONE, &echoes);
+        echoes_clear(&echoes);
+        bench_close(&bench);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -261,6 +309,8 @@ int main(void)
         cmocka_unit_test(test_two_estimators),
         cmocka_unit_test(test_reciprocity),
         cmocka_unit_test(test_focused_columns),
+        cmocka_unit_test(test_mirrored_object_is_left_to_pairs),
+        cmocka_unit_test(test_narrowest_cone_is_in_scale),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

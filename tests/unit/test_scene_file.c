@@ -141,6 +141,11 @@ static const struct key_case {
     {"seabed.lambert", small, "0.25", TYPE_DOUBLE, SCENE(seabed.lambert), 0.25, NULL, NULL},
     {"seabed.map", small, "despeckled", TYPE_U32, SCENE(seabed.map), SONJECT_MAP_DESPECKLED, NULL,
      NULL},
+    {"surface.depth", small, "20 m", TYPE_DOUBLE, SCENE(surface.water_depth_m), 20.0, NULL, NULL},
+    {"surface.reflection", small, "-0.9", TYPE_DOUBLE, SCENE(surface.material.reflection), -0.9,
+     NULL, "surface.depth=20 m"},
+    {"surface.roughness", small, "5 cm", TYPE_DOUBLE, SCENE(surface.material.roughness_m), 0.05,
+     NULL, "surface.depth=20 m"},
     {"seabed.level_radius", small, "4 m", TYPE_DOUBLE, SCENE(seabed.level_radius_m), 4.0, NULL,
      NULL},
     {"seabed.despeckle_radius", small, "5 cm", TYPE_DOUBLE, SCENE(seabed.despeckle_radius_m), 0.05,
@@ -472,6 +477,7 @@ static void test_examples_are_good(void **state)
         {"figure5", SONJECT_INPUT_FILE, SONJECT_MODE_RESYNTHESISE, 0},
         {"figure6", SONJECT_INPUT_FILE, SONJECT_MODE_COMPOSITE, 1},
         {"figure7", SONJECT_INPUT_FILE, SONJECT_MODE_COMPOSITE, 1},
+        {"surface", SONJECT_INPUT_SYNTHETIC, SONJECT_MODE_COMPOSITE, 2},
     };
     struct scene_folder *folder = *state;
     for (size_t i = 0; i < COUNT(examples); i++) {
@@ -488,7 +494,9 @@ static void test_examples_are_good(void **state)
         assert_true(folder->scene.sonar.bandwidth_hz == 30e3);
         assert_true(folder->scene.sonar.altitude_m == 10.0);
         assert_int_equal(folder->scene.injection.interactions,
-                         strcmp(examples[i].name, "figure7") == 0 ? 2 : 1);
+                         strcmp(examples[i].name, "figure7") == 0   ? 2
+                         : strcmp(examples[i].name, "surface") == 0 ? 3
+                                                                    : 1);
     }
 }
 

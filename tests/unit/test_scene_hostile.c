@@ -20,7 +20,8 @@
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
-static const char *const examples[] = {"demo", "figure4", "figure5", "figure6", "figure7"};
+static const char *const examples[] = {"demo",    "figure4", "figure5",
+                                       "figure6", "figure7", "surface"};
 
 static size_t lines_of(const char *text, size_t bytes)
 {

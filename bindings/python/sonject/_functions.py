@@ -43,6 +43,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     ),
     "sonject_scene_release": (None, [POINTER(_scene)]),
     "sonject_scene_set_sonar": (_status, [_scene, POINTER(s.sonject_sonar_params)]),
+    "sonject_surface_params_init": (None, [POINTER(s.sonject_surface_params)]),
+    "sonject_scene_set_surface": (_status, [_scene, POINTER(s.sonject_surface_params)]),
     "sonject_scene_set_medium": (_status, [_scene, POINTER(s.sonject_medium_params)]),
     "sonject_scene_set_seabed": (_status, [_scene, POINTER(s.sonject_seabed_params)]),
     "sonject_scene_set_geometry": (_status, [_scene, POINTER(s.sonject_geometry_params)]),

@@ -263,6 +263,15 @@ class sonject_seabed_params(Structure):
     ]
 
 
+class sonject_surface_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("water_depth_m", c_double),
+        ("material", sonject_material_params),
+    ]
+
+
 class sonject_patch_params(Structure):
     _fields_ = [
         ("struct_size", c_uint32),

@@ -104,6 +104,32 @@ class Seabed(Parameters):
 
 
 @dataclass(kw_only=True)
+class Surface(Parameters):
+    """The sea surface, a plane over the seabed that reflects as a mirror.
+
+    water_depth_m: its height over the mean seabed, above the sonar; 0: so far away that nothing of it
+    is heard. material: reflection -1 for air above water; roughness_m is the rms height of the waves.
+    """
+
+    _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_surface_params
+
+    water_depth_m: float = library_default()
+    material: Material = library_default()
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if isinstance(self.material, s.sonject_material_params):
+            self.material = Material.from_structure(self.material)
+
+    def _values(self) -> dict[str, Any]:
+        values = super()._values()
+        if not isinstance(self.material, Material):
+            raise TypeError(f"material must be a Material, not {self.material!r}")
+        values["material"] = self.material.to_structure()
+        return values
+
+
+@dataclass(kw_only=True)
 class Geometry(Parameters):
     """Where the pixels lie: rows are track positions, columns slant ranges, both pixel centres.
 

@@ -16,6 +16,7 @@ from .parameters import (
     Medium,
     Patch,
     Seabed,
+    Surface,
     Sonar,
     Synthetic,
     Transfer,
@@ -28,7 +29,7 @@ Input = Union[PathLike, Uniform, Synthetic]
 class Scene(Handle):
     """What the sonar sees. Each setting is checked, and copied, when it is made.
 
-    sonar, medium, seabed, geometry, injection: None for the defaults (but geometry needs at least
+    sonar, medium, seabed, surface, geometry, injection: None for the defaults (but geometry needs at least
     the first slant range before anything can be injected); objects: up to 250; input: an image
     file, Uniform or Synthetic, None where inject is given an array; transfer, patch: of an image
     file; context: None for the thread's own one.
@@ -42,6 +43,7 @@ class Scene(Handle):
         sonar: Optional[Sonar] = None,
         medium: Optional[Medium] = None,
         seabed: Optional[Seabed] = None,
+        surface: Optional[Surface] = None,
         geometry: Optional[Geometry] = None,
         injection: Optional[Injection] = None,
         objects: Iterable[Object] = (),
@@ -56,6 +58,7 @@ class Scene(Handle):
             ("sonar", sonar, Sonar),
             ("medium", medium, Medium),
             ("seabed", seabed, Seabed),
+            ("surface", surface, Surface),
             ("geometry", geometry, Geometry),
             ("injection", injection, Injection),
             ("transfer", transfer, Transfer),
@@ -113,6 +116,9 @@ class Scene(Handle):
 
     def set_seabed(self, seabed: Seabed) -> None:
         self._set("seabed", seabed, Seabed)
+
+    def set_surface(self, surface: Surface) -> None:
+        self._set("surface", surface, Surface)
 
     def set_geometry(self, geometry: Geometry) -> None:
         self._set("geometry", geometry, Geometry)

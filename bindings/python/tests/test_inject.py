@@ -76,8 +76,8 @@ def test_orders_make_up_the_energy(patch, make_scene):
     assert first.shape == second.shape == (ROWS, COLUMNS)
     assert numpy.all(first >= 0) and numpy.all(second >= 0)
     assert numpy.any(second > 0)
-    # Each of three numbers is rounded to single precision (2^-24 of itself).
-    assert numpy.allclose(first + second, result.energy, rtol=4 * 2.0**-24, atol=0)
+    # Pixels are formed of some 200 positive energies in single precision, each order by itself.
+    assert numpy.allclose(first + second, result.energy, rtol=64 * 2.0**-24, atol=0)
 
 
 def test_orders_are_kept_only_where_asked_for(amplitude_patch, make_scene):

@@ -1,0 +1,165 @@
+/* Ways between an object and two sources, each the sonar or an image of it in level mirrors. A line
+ * between source and object is straight in unfolded space; what stands in its way is looked for
+ * along the folded line (kernels/MATH.md, "Mirrors"). */
+#ifndef SONJECT_KERNELS_MIRRORS_H
+#define SONJECT_KERNELS_MIRRORS_H
+
+#include "fan.h"
+#include "intersection.h"
+#include "surface.h"
+
+/* The way from a hit to a source. */
+struct leg {
+    mask is_open;
+    real reflection_real, reflection_imaginary; /* product of the mirrors' coherent amplitudes */
+};
+
+/* direction: from the hit to the source in unfolded space, unit; length: m. Lanes that are not
+ * wanted stay closed. */
+FUNCTION struct leg follow_leg(GLOBAL const struct source_pair_record *pair,
+                               GLOBAL const struct source_record *source,
+                               GLOBAL const struct object_record *objects, int count,
+                               struct vector3 point, struct vector3 direction, real length,
+                               mask is_wanted)
+{
+    struct leg leg;
+    leg.is_open = is_wanted;
+    leg.reflection_real = SPLAT(1.0f);
+    leg.reflection_imaginary = SPLAT(0.0f);
+    const real cosine = magnitude(direction.z); /* the same at every bounce: mirrors are level */
+    int kind = source->last_mirror;
+    for (int bounce = 0; bounce < source->bounces && ANY(leg.is_open); bounce++) {
+        GLOBAL const struct mirror_record *mirror = &pair->mirrors[kind];
+        const mask is_level = MASK_OF(cosine < 1.0e-6f);
+        const real step = (mirror->height - point.z) / CHOOSE(is_level, SPLAT(1.0f), direction.z);
+        const struct nearest_hit blocking =
+            find_nearest_hit(objects, count, point, direction, 0.0f);
+        leg.is_open = leg.is_open & ~is_level & MASK_OF(blocking.distance > step);
+        point = along3(point, direction, step);
+        direction.z = -direction.z;
+        length = length - step;
+        real one_real, one_imaginary;
+        smooth_reflection(&mirror->surface, cosine, &one_real, &one_imaginary);
+        const real product_real =
+            leg.reflection_real * one_real - leg.reflection_imaginary * one_imaginary;
+        leg.reflection_imaginary =
+            leg.reflection_real * one_imaginary + leg.reflection_imaginary * one_real;
+        leg.reflection_real = product_real;
+        kind = 1 - kind;
+    }
+    if (ANY(leg.is_open)) {
+        const struct nearest_hit blocking =
+            find_nearest_hit(objects, count, point, direction, 0.0f);
+        leg.is_open = leg.is_open & MASK_OF(blocking.distance > length);
+    }
+    return leg;
+}
+
+/* The straight line from a source to a hit. */
+struct line_from_source {
+    struct vector3 direction; /* unit, towards the hit */
+    real length;              /* m */
+    real excess;              /* length less the source's range, formed without subtracting */
+};
+
+FUNCTION struct line_from_source line_from_source(GLOBAL const struct source_record *source,
+                                                  struct vector3 hit)
+{
+    const float range = source->range;
+    const real along = hit.y * source->cosine_depression - hit.z * source->sine_depression;
+    const real change = 2.0f * range * along + (hit.y * hit.y + hit.z * hit.z);
+    struct line_from_source line;
+    line.length = SQUARE_ROOT(range * range + change);
+    line.excess = change / (line.length + range);
+    line.direction.x = SPLAT(0.0f);
+    line.direction.y = (range * source->cosine_depression + hit.y) / line.length;
+    line.direction.z = (hit.z - range * source->sine_depression) / line.length;
+    return line;
+}
+
+/* Distance along a fan's rays from which on they are past their last mirror. */
+FUNCTION real distance_past_mirrors(const struct fan_record *fan,
+                                    GLOBAL const struct source_pair_record *pair,
+                                    const struct fan_ray *ray)
+{
+    if (pair->outgoing.bounces == 0)
+        return SPLAT(-fan->reference_range);
+    const real slope = ray->direction.z;
+    const mask is_away = pair->outgoing.last_mirror == MIRROR_SEABED ? MASK_OF(slope > 1.0e-6f)
+                                                                     : MASK_OF(slope < -1.0e-6f);
+    const float height = pair->mirrors[pair->outgoing.last_mirror].height;
+    return CHOOSE(is_away, (height - ray->closest.z) / CHOOSE(is_away, slope, SPLAT(1.0f)),
+                  SPLAT(FAR_AWAY));
+}
+
+/* Where a fan's rays meet the object, past their mirrors and above the seabed. */
+struct mirrored_hit {
+    mask is_hit;
+    struct vector3 point, normal;
+    real range;  /* from the outgoing source less the reference range */
+    real cosine; /* of the angle of incidence */
+};
+
+FUNCTION struct mirrored_hit find_mirrored_hit(const struct fan_record *fan,
+                                               GLOBAL const struct source_pair_record *pair,
+                                               GLOBAL const struct object_record *object,
+                                               const struct fan_ray *ray, mask is_ray)
+{
+    const real distance = object_distance(object, ray->closest, ray->direction,
+                                          distance_past_mirrors(fan, pair, ray));
+    struct mirrored_hit hit;
+    hit.is_hit = is_ray & MASK_OF(distance < 0.5f * FAR_AWAY) &
+                 MASK_OF(distance < seabed_distance(fan, ray->closest, ray->direction));
+    const real safe = CHOOSE(hit.is_hit, distance, SPLAT(0.0f));
+    hit.point = along3(ray->closest, ray->direction, safe);
+    hit.normal = object_normal(object, ray->closest, ray->direction, safe);
+    hit.range = ray->range_at_closest + safe;
+    hit.cosine = -dot3(hit.normal, ray->direction);
+    /* from inside: the mirror's point is buried in the object */
+    hit.is_hit = hit.is_hit & MASK_OF(hit.cosine > 0.0f);
+    return hit;
+}
+
+/* The path from the outgoing source by way of a hit home to the other. */
+struct mirrored_path {
+    mask is_open;
+    struct line_from_source back; /* from the returning source to the hit */
+    real length_out;
+    real range;       /* half the path less that by way of the frame's origin */
+    real spreading;   /* square of half the path over the product of both legs */
+    real cosine_back; /* between the normal and the way home */
+    real reflection_real, reflection_imaginary; /* of all mirrors */
+};
+
+FUNCTION struct mirrored_path follow_path(const struct fan_record *fan,
+                                          GLOBAL const struct source_pair_record *pair,
+                                          GLOBAL const struct object_record *objects,
+                                          const struct mirrored_hit *hit,
+                                          struct vector3 direction_out,
+                                          struct outcome_record *outcome)
+{
+    struct mirrored_path path;
+    path.back = line_from_source(&pair->returning, hit->point);
+    path.length_out = fan->reference_range + hit->range;
+    path.range = 0.5f * (hit->range + path.back.excess);
+    const real half_path = 0.5f * (path.length_out + path.back.length);
+    path.spreading = (half_path / path.length_out) * (half_path / path.back.length);
+    path.cosine_back = -dot3(hit->normal, path.back.direction);
+    const mask is_lit = hit->is_hit & MASK_OF(path.cosine_back > 0.0f);
+    /* start off the surface by more than its rounding, less than anything that throws a shadow */
+    const struct vector3 start = along3(hit->point, hit->normal, SPLAT(2.0e-5f));
+    const struct leg out = follow_leg(pair, &pair->outgoing, objects, fan->objects, start,
+                                      reversed3(direction_out), path.length_out, is_lit);
+    const struct leg home =
+        follow_leg(pair, &pair->returning, objects, fan->objects, start,
+                   reversed3(path.back.direction), path.back.length, out.is_open);
+    outcome->queries += count_lanes(is_lit) + count_lanes(out.is_open);
+    path.is_open = home.is_open;
+    path.reflection_real = out.reflection_real * home.reflection_real -
+                           out.reflection_imaginary * home.reflection_imaginary;
+    path.reflection_imaginary = out.reflection_real * home.reflection_imaginary +
+                                out.reflection_imaginary * home.reflection_real;
+    return path;
+}
+
+#endif

@@ -1,0 +1,74 @@
+/* The incoherent part by way of mirrors: the fan goes out from one source, every hit of the rough
+ * object connects to the other (kernels/MATH.md, "Mirrors"). Both sources are points. */
+#ifndef SONJECT_KERNELS_TRACE_ROUGH_MIRRORED_H
+#define SONJECT_KERNELS_TRACE_ROUGH_MIRRORED_H
+
+#include "mirrors.h"
+#include "trace_rough.h"
+
+/* Energies of one group of rays, lane by lane, ready to be tallied. */
+struct mirrored_echo {
+    float energy[WIDTH]; /* quanta; 0: none */
+    int bin[WIDTH];
+};
+
+FUNCTION void trace_rough_mirrored_group(const struct fan_record *fan,
+                                         GLOBAL const struct source_pair_record *pair,
+                                         GLOBAL const struct object_record *objects, int strip,
+                                         struct random_key key, RECORD_WORD first_ray,
+                                         struct mirrored_echo *echo, struct outcome_record *outcome)
+{
+    const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
+    GLOBAL const struct object_record *object = &objects[fan->only_object];
+    real along, across;
+    two_uniforms(key, number, 0, &along, &across);
+    const struct fan_ray ray =
+        fan_ray_at(fan, strip_position(fan, strip) + (along - 0.5f) * fan->strip_width,
+                   fan->first_elevation + (REAL_OF(number) + across) * fan->elevation_step);
+    const struct mirrored_hit hit =
+        find_mirrored_hit(fan, pair, object, &ray, MASK_OF(number < fan->rays));
+    const struct mirrored_path path = follow_path(fan, pair, objects, &hit, ray.direction, outcome);
+    const real wavefront = fan->strip_width * fan->elevation_step * path.length_out;
+    const real mirrors = path.reflection_real * path.reflection_real +
+                         path.reflection_imaginary * path.reflection_imaginary;
+    const real energy = rough_scattering(&object->surface, hit.normal, reversed3(ray.direction),
+                                         reversed3(path.back.direction)) *
+                        path.cosine_back * wavefront * (path.spreading * path.spreading) * mirrors *
+                        (pair->echoes * pair->echoes * fan->quanta);
+    const real kept = CHOOSE(path.is_open, energy, SPLAT(0.0f));
+    const whole bin = nearest_bin(path.range * fan->bins_per_metre + fan->first_bin);
+    STORE_REAL(kept, echo->energy);
+    STORE_WHOLE(bin, echo->bin);
+}
+
+/* Traces the share `segment` of a strip's fan into the object's tile. */
+FUNCTION struct outcome_record trace_rough_mirrored_strip(
+    const struct fan_record *fan, GLOBAL const struct source_pair_record *pair,
+    GLOBAL const struct object_record *objects, GLOBAL TALLY *tiles, int strip, int segment)
+{
+    struct outcome_record outcome = {0, 0, 0, 0};
+    const int track_strip = fan->first_strip + strip;
+    const struct random_key key =
+        random_key_of(fan->seed_low, fan->seed_high, fan->stream, (RECORD_WORD)track_strip);
+    GLOBAL const struct object_record *object = &objects[fan->only_object];
+    const RECORD_WORD groups = (fan->rays + WIDTH - 1u) / WIDTH;
+    for (RECORD_WORD group = (RECORD_WORD)segment; group < groups;
+         group += (RECORD_WORD)fan->segments) {
+        struct mirrored_echo echo;
+        const RECORD_WORD left = fan->rays - group * WIDTH;
+        outcome.rays += left < WIDTH ? left : WIDTH;
+        trace_rough_mirrored_group(fan, pair, objects, strip, key, group * WIDTH, &echo, &outcome);
+        for (int lane = 0; lane < WIDTH; lane++) {
+            GLOBAL TALLY *tally =
+                tile_element(object, tiles, TILE_ENERGY, track_strip, echo.bin[lane]);
+            if (!tally || echo.energy[lane] == 0.0f)
+                continue; /* beyond the patch's ranges */
+            tally_add(tally, echo.energy[lane], &outcome.faults);
+            outcome.impulses++;
+        }
+    }
+    outcome.queries += outcome.rays;
+    return outcome;
+}
+
+#endif

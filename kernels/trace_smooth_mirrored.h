@@ -1,0 +1,63 @@
+/* The coherent part by way of mirrors: the fan goes out from one source, physical optics takes the
+ * sound from a smooth object to the other (kernels/MATH.md, "Mirrors"). */
+#ifndef SONJECT_KERNELS_TRACE_SMOOTH_MIRRORED_H
+#define SONJECT_KERNELS_TRACE_SMOOTH_MIRRORED_H
+
+#include "mirrors.h"
+#include "trace_smooth.h"
+
+FUNCTION void trace_smooth_mirrored_group(const struct fan_record *fan,
+                                          GLOBAL const struct source_pair_record *pair,
+                                          GLOBAL const struct object_record *objects, int strip,
+                                          int stratum, struct random_key key, RECORD_WORD first_ray,
+                                          struct smooth_echo *echo, struct outcome_record *outcome)
+{
+    const struct wavefront_cell cell = wavefront_cell_at(fan, strip, stratum, key, first_ray);
+    GLOBAL const struct object_record *object = &objects[fan->only_object];
+    const struct mirrored_hit hit = find_mirrored_hit(fan, pair, object, &cell.ray, cell.is_ray);
+    const struct mirrored_path path =
+        follow_path(fan, pair, objects, &hit, cell.ray.direction, outcome);
+    const real cosine_out = larger(hit.cosine, SPLAT(1.0e-4f));
+    const real bend = 1.0f + dot3(path.back.direction, cell.ray.direction);
+    const real gradient_along = bend * hit.normal.x / cosine_out;
+    const real gradient_across = bend * dot3(hit.normal, cell.ray.upward) / cosine_out +
+                                 dot3(path.back.direction, cell.ray.upward);
+    struct cell_phase phase =
+        integrate_cell(fan, &cell, gradient_along, gradient_across, path.range, path.length_out);
+    phase.amplitude = phase.amplitude * (0.5f * pair->echoes) *
+                      (1.0f + path.cosine_back / cosine_out) * path.spreading;
+    real one_real, one_imaginary;
+    smooth_reflection(&object->surface, 0.5f * (cosine_out + magnitude(path.cosine_back)),
+                      &one_real, &one_imaginary);
+    put_smooth_echo(fan, path.is_open, phase,
+                    one_real * path.reflection_real - one_imaginary * path.reflection_imaginary,
+                    one_real * path.reflection_imaginary + one_imaginary * path.reflection_real,
+                    echo);
+}
+
+/* As trace_smooth_strip. */
+FUNCTION struct outcome_record trace_smooth_mirrored_strip(
+    const struct fan_record *fan, GLOBAL const struct source_pair_record *pair,
+    GLOBAL const struct object_record *objects, GLOBAL TALLY *tally, int strip, int segment)
+{
+    struct outcome_record outcome = {0, 0, 0, 0};
+    const struct random_key key = random_key_of(fan->seed_low, fan->seed_high, fan->stream,
+                                                (RECORD_WORD)(fan->first_strip + strip));
+    GLOBAL TALLY *line = tally + (long)strip * fan->bins * 2;
+    const RECORD_WORD groups = (fan->rays + WIDTH - 1u) / WIDTH;
+    for (int stratum = 0; stratum < (int)fan->strata; stratum++)
+        for (RECORD_WORD group = (RECORD_WORD)segment; group < groups;
+             group += (RECORD_WORD)fan->segments) {
+            struct smooth_echo echo;
+            const RECORD_WORD left = fan->rays - group * WIDTH;
+            outcome.rays += left < WIDTH ? left : WIDTH;
+            trace_smooth_mirrored_group(fan, pair, objects, strip, stratum, key, group * WIDTH,
+                                        &echo, &outcome);
+            for (int lane = 0; lane < WIDTH; lane++)
+                tally_smooth_echo(line, &echo, lane, &outcome);
+        }
+    outcome.queries += outcome.rays;
+    return outcome;
+}
+
+#endif

@@ -1,0 +1,98 @@
+#include "trace/rough_mirrored.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "cl/launch.h"
+#include "trace/source_pairs.h"
+
+#define RAYS_PER_BIN 2
+
+static bool is_rough(const sonject_material_params *material)
+{
+    return material->lambert > 0.0 || material->glossy_albedo > 0.0;
+}
+
+/* As dense as the fan that goes straight to the objects. */
+static void lay_fan(struct fan_record *fan, const struct rough_trace *trace,
+                    const struct tracer *tracer, uint32_t object)
+{
+    const double edge = fan_edge_of_object(fan, tracer, object);
+    const double bin =
+        tracer->view.column_spacing_m / trace->grid.bins_per_pixel / tracer->view.range_ratio;
+    const double step =
+        bin / fan->reference_range / (RAYS_PER_BIN * tracer->scene->injection.ray_scale);
+    const double rays = ceil(2.0 * edge / step) + 1.0;
+    fan->rays = (uint32_t)rays;
+    fan->first_elevation = (float)-edge;
+    fan->elevation_step = (float)(2.0 * edge / rays);
+    fan->only_object = (int32_t)object;
+}
+
+static sonject_status trace_pair(struct rough_trace *trace, struct tracer *tracer,
+                                 const struct trace_device *on_device, uint32_t object,
+                                 const struct source_pair *pair)
+{
+    const struct rough_tile *tile = &trace->tiles[object];
+    struct source_pair_record record;
+    struct fan_record fan;
+    cl_mem sources = NULL;
+    source_pair_aim(&fan, &record, tracer, object, pair, &trace->grid);
+    lay_fan(&fan, trace, tracer, object);
+    fan.stream = STREAM_MIRRORED_ROUGH_RAYS + 256 * pair->number + object;
+    fan.quanta = trace->fan.quanta;
+    fan.first_strip = tile->grid.strips.first;
+    fan.strips = tile->grid.strips.count;
+    sonject_status status =
+        buffer_create(tracer->report, tracer->device, sizeof record, &record, &sources);
+    const cl_mem buffers[] = {on_device->objects, trace->tile_buffer, sources};
+    if (status == SONJECT_OK)
+        status = trace_launch(tracer, on_device->kernel, &fan, buffers, 3);
+    buffer_release(&sources);
+    return status;
+}
+
+static sonject_status trace_pairs(struct rough_trace *trace, struct tracer *tracer,
+                                  const struct trace_device *on_device, uint32_t object)
+{
+    struct source_pairs pairs;
+    struct source_pair pair;
+    sonject_status status = SONJECT_OK;
+    source_pairs_begin(&pairs, tracer, object);
+    while (status == SONJECT_OK && source_pairs_next(&pairs, &pair))
+        if (source_pair_bins_in_patch(tracer, object, &pair, &trace->grid).count > 0)
+            status = trace_pair(trace, tracer, on_device, object, &pair);
+    return status;
+}
+
+static sonject_status trace_object(struct rough_trace *trace, struct tracer *tracer,
+                                   uint32_t object)
+{
+    struct trace_device on_device;
+    struct object_record *records = allocate_array(tracer->scene->object_count, sizeof *records);
+    if (!records)
+        return report_out_of_memory(tracer->report, "objects");
+    object_records_init(records, tracer, tracer->placements[object].centre);
+    rough_tile_describe(trace, object, &records[object]);
+    sonject_status status = trace_device_init(&on_device, tracer, PROGRAM_TRACE_ROUGH,
+                                              "trace_rough_mirrored", records, 1, 1);
+    free(records);
+    if (status != SONJECT_OK)
+        return status;
+    status = trace_pairs(trace, tracer, &on_device, object);
+    trace_device_clear(&on_device);
+    return status;
+}
+
+sonject_status rough_trace_mirrored(struct rough_trace *trace, struct tracer *tracer)
+{
+    sonject_status status = SONJECT_OK;
+    for (uint32_t i = 0; status == SONJECT_OK && i < tracer->scene->object_count; i++)
+        if (is_rough(&tracer->scene->objects[i].material) &&
+            line_grid_cells(&trace->tiles[i].grid) > 0 &&
+            mirrored_bins(tracer, i, &trace->grid).count > 0)
+            status = trace_object(trace, tracer, i);
+    return status;
+}

@@ -1,0 +1,196 @@
+#include "trace/source_pairs.h"
+
+#include <math.h>
+#include <string.h>
+
+#define PI                3.14159265358979323846
+#define BINS_MAX          1.0e9 /* beyond any patch, within a 32-bit number */
+#define LOSS_EXPONENT_MAX 30.0  /* mirrors that keep less than exp(-30) return nothing */
+
+/* Range from a source's track to the object's centre. */
+static double source_range(const struct sound_source *source, const struct placement *placement)
+{
+    return hypot(placement->centre[1], source->height_m - placement->centre[2]);
+}
+
+/* Half the path by way of the object's centre. */
+static double half_path(const struct source_pair *pair, const struct placement *placement)
+{
+    return 0.5 *
+           (source_range(pair->outgoing, placement) + source_range(pair->returning, placement));
+}
+
+/* How far the object's points lie before or behind its centre, seen from a source: its extent along
+ * the line of sight, and what a wavefront's curvature adds at the bounding sphere's edge. */
+static double reach_from(const struct sound_source *source, const struct placement *placement,
+                         uint32_t shape)
+{
+    const double range = source_range(source, placement);
+    const double sight[3] = {0.0, placement->centre[1] / range,
+                             (placement->centre[2] - source->height_m) / range};
+    const double bound = placement->bounding_radius_m;
+    return 1.01 * placement_half_extent(placement, shape, sight) + bound * bound / (range - bound);
+}
+
+struct span source_pair_bins(const struct tracer *tracer, uint32_t object,
+                             const struct source_pair *pair, const struct line_grid *grid)
+{
+    const struct patch_view *view = &tracer->view;
+    const struct placement *placement = &tracer->placements[object];
+    const uint32_t shape = tracer->scene->objects[object].shape;
+    const double range = half_path(pair, placement);
+    const double reach = 0.5 * (reach_from(pair->outgoing, placement, shape) +
+                                reach_from(pair->returning, placement, shape));
+    const double per_metre = grid->bins_per_pixel / view->column_spacing_m;
+    const double first = ((range - reach) * view->range_ratio - view->first_range_m) * per_metre;
+    const double last = ((range + reach) * view->range_ratio - view->first_range_m) * per_metre;
+    struct span bins;
+    bins.first = (int32_t)fmin(floor(first), BINS_MAX) - 1;
+    bins.count = (int32_t)fmin(ceil(last), BINS_MAX) + 2 - bins.first;
+    return bins;
+}
+
+struct span source_pair_bins_in_patch(const struct tracer *tracer, uint32_t object,
+                                      const struct source_pair *pair, const struct line_grid *grid)
+{
+    struct span bins = source_pair_bins(tracer, object, pair, grid);
+    const int32_t pulse = pulse_reach_bins(&tracer->view, &tracer->response, grid->bins_per_pixel);
+    const int32_t end_of_patch =
+        (int32_t)((tracer->view.columns - 1) * grid->bins_per_pixel) + 1 + pulse;
+    const int32_t end = bins.first + bins.count;
+    bins.first = bins.first > -pulse ? bins.first : -pulse;
+    bins.count = (end < end_of_patch ? end : end_of_patch) - bins.first;
+    bins.count = bins.count > 0 ? bins.count : 0;
+    return bins;
+}
+
+/* Exponent of what the mirrors' roughness takes off the amplitude on the way from a source: P^2/2
+ * at every bounce. */
+static double roughness_exponent(const struct tracer *tracer, const struct sound_source *source,
+                                 const struct placement *placement)
+{
+    const double drop = source->height_m - placement->centre[2];
+    const double sine = fabs(drop) / hypot(placement->centre[1], drop);
+    double exponent = 0.0;
+    int kind = (int)source->last_mirror;
+    for (uint32_t bounce = 0; bounce < source->bounces; bounce++, kind = 1 - kind) {
+        double height;
+        const sonject_material_params *material;
+        if (!scene_mirror(tracer->scene, (enum mirror_kind)kind, &height, &material))
+            continue;
+        const double phase = 4.0 * PI * material->roughness_m * sine / tracer->view.wavelength_m;
+        exponent += 0.5 * phase * phase;
+    }
+    return exponent;
+}
+
+void source_pairs_begin(struct source_pairs *pairs, const struct tracer *tracer, uint32_t object)
+{
+    pairs->tracer = tracer;
+    pairs->placement = &tracer->placements[object];
+    pairs->count =
+        sources_list(tracer->scene, tracer->scene->injection.interactions - 1, pairs->sources);
+    pairs->outgoing = 0;
+    pairs->returning = 0;
+}
+
+static bool is_heard(const struct source_pairs *pairs)
+{
+    const struct sound_source *outgoing = &pairs->sources[pairs->outgoing];
+    const struct sound_source *returning = &pairs->sources[pairs->returning];
+    return 1 + outgoing->bounces + returning->bounces <=
+               pairs->tracer->scene->injection.interactions &&
+           roughness_exponent(pairs->tracer, outgoing, pairs->placement) +
+                   roughness_exponent(pairs->tracer, returning, pairs->placement) <
+               LOSS_EXPONENT_MAX;
+}
+
+bool source_pairs_next(struct source_pairs *pairs, struct source_pair *pair)
+{
+    do {
+        if (++pairs->returning >= pairs->count) {
+            pairs->outgoing++;
+            pairs->returning = pairs->outgoing;
+        }
+        if (pairs->outgoing >= pairs->count)
+            return false;
+    } while (!is_heard(pairs));
+    pair->outgoing = &pairs->sources[pairs->outgoing];
+    pair->returning = &pairs->sources[pairs->returning];
+    pair->number = (uint32_t)(pairs->outgoing * SOURCES_MAX + pairs->returning);
+    return true;
+}
+
+struct span span_join(struct span one, struct span other)
+{
+    if (one.count == 0 || other.count == 0)
+        return one.count == 0 ? other : one;
+    const int32_t end = one.first + one.count;
+    const int32_t other_end = other.first + other.count;
+    struct span both;
+    both.first = one.first < other.first ? one.first : other.first;
+    both.count = (end > other_end ? end : other_end) - both.first;
+    return both;
+}
+
+struct span mirrored_bins(const struct tracer *tracer, uint32_t object,
+                          const struct line_grid *grid)
+{
+    struct source_pairs pairs;
+    struct source_pair pair;
+    struct span bins = {0, 0};
+    source_pairs_begin(&pairs, tracer, object);
+    while (source_pairs_next(&pairs, &pair))
+        bins = span_join(bins, source_pair_bins_in_patch(tracer, object, &pair, grid));
+    return bins;
+}
+
+static struct source_record source_record_of(const struct sound_source *source,
+                                             const struct placement *placement)
+{
+    const double range = source_range(source, placement);
+    struct source_record record;
+    record.range = (float)range;
+    record.cosine_depression = (float)(placement->centre[1] / range);
+    record.sine_depression = (float)((source->height_m - placement->centre[2]) / range);
+    record.bounces = (int32_t)source->bounces;
+    record.last_mirror = (int32_t)source->last_mirror;
+    return record;
+}
+
+static void source_pair_record_init(struct source_pair_record *record, const struct tracer *tracer,
+                                    const struct placement *placement,
+                                    const struct source_pair *pair)
+{
+    memset(record, 0, sizeof *record);
+    record->outgoing = source_record_of(pair->outgoing, placement);
+    record->returning = source_record_of(pair->returning, placement);
+    record->echoes = pair->outgoing == pair->returning ? 1.0f : 2.0f;
+    for (int kind = 0; kind < MIRROR_KINDS; kind++) {
+        double height;
+        const sonject_material_params *material;
+        if (!scene_mirror(tracer->scene, (enum mirror_kind)kind, &height, &material))
+            continue;
+        record->mirrors[kind].height = (float)(height - placement->centre[2]);
+        surface_record_init(&record->mirrors[kind].surface, material, tracer->view.wavelength_m);
+    }
+}
+
+void source_pair_aim(struct fan_record *fan, struct source_pair_record *record,
+                     const struct tracer *tracer, uint32_t object, const struct source_pair *pair,
+                     const struct line_grid *grid)
+{
+    const struct patch_view *view = &tracer->view;
+    const struct placement *placement = &tracer->placements[object];
+    const double range = half_path(pair, placement);
+    const double cycles = 2.0 * range / view->wavelength_m;
+    source_pair_record_init(record, tracer, placement, pair);
+    fan_record_init(fan, tracer, placement->centre, grid);
+    fan->reference_range = record->outgoing.range;
+    fan->cosine_depression = record->outgoing.cosine_depression;
+    fan->sine_depression = record->outgoing.sine_depression;
+    fan->first_cycles = (float)(cycles - floor(cycles));
+    fan->first_bin = (float)((range * view->range_ratio - view->first_range_m) *
+                                 grid->bins_per_pixel / view->column_spacing_m -
+                             grid->bins.first);
+}
