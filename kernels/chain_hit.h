@@ -4,6 +4,7 @@
 
 #include "fan.h"
 #include "intersection.h"
+#include "random.h"
 #include "surface.h"
 
 struct chain_hit {
@@ -87,5 +88,20 @@ FUNCTION struct vector3 start_from(const struct chain_hit *hit)
 {
     return along3(hit->point, hit->normal, SPLAT(2.0e-5f));
 }
+
+/* One group of chains under way. */
+struct chain {
+    struct chain_hit hit;
+    struct random_key key;
+    word number;  /* of the ray, for its random numbers */
+    real energy;  /* what the receiver would get per unit of irradiance at the hit and unit of
+                     scattering, m^2 sr, in quanta */
+    real range;   /* from the receiver to the first hit less the reference range */
+    real length;  /* from the first hit to this one */
+    real first_x; /* along-track, of the first hit */
+    whole first_surface;
+    mask began_smooth; /* the first hit was a mirror bounce: nothing finds the reverse path */
+    mask is_alive;
+};
 
 #endif

@@ -183,6 +183,20 @@ void bench_echoes(struct bench *bench, const float *map, enum seabed_field field
     expect_ok(bench, echoes_compute(echoes, &bench->tracer, &request));
 }
 
+void bench_trace_chains(struct bench *bench, struct chain_trace *trace)
+{
+    struct tracer *tracer = &bench->tracer;
+    sonject_status status = chain_trace_begin(trace, tracer, NULL);
+    for (uint32_t i = 0; status == SONJECT_OK && i < chain_fan_count(tracer); i++) {
+        struct chain_fan fan;
+        status = chain_fan_init(&fan, tracer, &trace->grid, false, i);
+        if (status == SONJECT_OK)
+            status = chain_trace_strips(trace, tracer, &fan, fan.strips);
+    }
+    if (status != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+}
+
 void expect_close(const char *what, double measured, double expected, double tolerance)
 {
     print_message("%s: %.6g, expected %.6g +- %.2g\n", what, measured, expected, tolerance);

@@ -7,6 +7,7 @@
 #include "form/form.h"
 #include "inject/echoes.h"
 #include "inject/patch_level.h"
+#include "trace/chains.h"
 #include "trace/glints.h"
 #include "trace/rough.h"
 #include "trace/tracer.h"
@@ -75,6 +76,10 @@ double decibels_of_energy(double ratio);
 /* echoes_compute with nothing but the request's map and field. */
 void bench_echoes(struct bench *bench, const float *map, enum seabed_field field,
                   struct echoes *echoes);
+
+/* Traces chains of several interactions from all fans. The trace is to be given to
+ * chain_trace_end. */
+void bench_trace_chains(struct bench *bench, struct chain_trace *trace);
 
 /* Prints and compares: |measured - expected| <= tolerance. */
 void expect_close(const char *what, double measured, double expected, double tolerance);

@@ -67,13 +67,8 @@ static void trace_once(struct bench *bench, struct energies *energies)
 {
     struct chain_trace trace;
     struct tracer *tracer = &bench->tracer;
-    sonject_status status = chain_trace_begin(&trace, tracer, NULL);
-    for (uint32_t i = 0; status == SONJECT_OK && i < chain_fan_count(tracer); i++) {
-        struct chain_fan fan;
-        status = chain_fan_init(&fan, tracer, &trace.grid, false, i);
-        if (status == SONJECT_OK)
-            status = chain_trace_strips(&trace, tracer, &fan, fan.strips);
-    }
+    bench_trace_chains(bench, &trace);
+    sonject_status status = SONJECT_OK;
     const size_t cells = line_grid_cells(&trace.grid);
     float *plane = malloc(cells * sizeof *plane);
     assert_non_null(plane);

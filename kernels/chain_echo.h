@@ -1,0 +1,191 @@
+/* The echo of a chain of sound: from a hit to the source, into bins and strips (kernels/MATH.md,
+ * "Chains"). */
+#ifndef SONJECT_KERNELS_CHAIN_ECHO_H
+#define SONJECT_KERNELS_CHAIN_ECHO_H
+
+#include "chain_hit.h"
+#include "reflectivity_map.h"
+#include "tally.h"
+
+/* Where the source is as seen from a hit. */
+struct source_way {
+    struct vector3 direction;
+    real path;
+    real range; /* of half the whole path, less the reference range */
+};
+
+/* The receiver is at -reference_range * central direction of the plane x = ray's x. */
+FUNCTION struct vector3 to_receiver(const struct fan_record *fan, struct vector3 point, real x)
+{
+    struct vector3 way;
+    way.x = x - point.x;
+    way.y = -fan->reference_range * fan->cosine_depression - point.y;
+    way.z = fan->reference_range * fan->sine_depression - point.z;
+    return way;
+}
+
+/* The way to the point (aside, up) of the source's rectangle, which spans x and the fan's central
+ * upward direction about the receiver at receiver_x. Its length less the reference range R is
+ * formed without subtracting ranges: |s - p|^2 - R^2 = |p|^2 - 2 s.p + up^2 (+ x^2), s the source,
+ * up across s. */
+FUNCTION struct source_way way_to_source(const struct fan_record *fan, const struct chain *chain,
+                                         real receiver_x, real aside, real up)
+{
+    const struct vector3 point = chain->hit.point;
+    const float r = fan->reference_range;
+    struct source_way way;
+    struct vector3 to = to_receiver(fan, point, receiver_x + aside);
+    to.y += up * fan->sine_depression;
+    to.z += up * fan->cosine_depression;
+    way.path = SQUARE_ROOT(dot3(to, to));
+    const real inverse = 1.0f / way.path;
+    way.direction.x = to.x * inverse;
+    way.direction.y = to.y * inverse;
+    way.direction.z = to.z * inverse;
+    const real height_along =
+        point.y * fan->cosine_depression - point.z * fan->sine_depression; /* of p towards R */
+    const real height_across = point.y * fan->sine_depression + point.z * fan->cosine_depression;
+    const real excess = (to.x * to.x + point.y * point.y + point.z * point.z +
+                         2.0f * r * height_along - 2.0f * up * height_across + up * up) /
+                        (way.path + r);
+    /* in focused columns the receiver is not abreast of the first hit: that leg is longer too */
+    const real shift = chain->first_x - receiver_x;
+    const real first = r + chain->range;
+    const real longer = shift * shift / (SQUARE_ROOT(first * first + shift * shift) + first);
+    way.range = 0.5f * (chain->range + longer + chain->length + excess);
+    return way;
+}
+
+/* Energies of one group of rays, lane by lane, ready to be tallied. */
+struct chain_echo {
+    float energy[WIDTH]; /* quanta; 0: none */
+    int bin[WIDTH];
+    int strip[WIDTH], reverse_strip[WIDTH]; /* of the whole track; reverse -2^30: no such echo */
+};
+
+#define NO_STRIP (-1073741824)
+
+/* The strip of the whole track at x; NO_STRIP outside it. */
+FUNCTION whole strip_at(const struct fan_record *fan, real x)
+{
+    const real strip = (x - fan->first_strip_x) / fan->strip_width;
+    return WHOLE_OF(smaller(larger(strip, SPLAT(-1.0e6f)), SPLAT(1.0e6f)) + 1000000.5f) - 1000000;
+}
+
+FUNCTION void tally_chain_echo(const struct fan_record *fan,
+                               GLOBAL const struct chain_record *chains, GLOBAL TALLY *tallies,
+                               int order, const struct chain_echo *echo,
+                               struct outcome_record *outcome)
+{
+    const int plane = chains->planes > 1 ? order - chains->first_order : 0;
+    for (int lane = 0; lane < WIDTH; lane++) {
+        const float energy = echo->energy[lane];
+        const int bin = echo->bin[lane];
+        if (!(energy > 0.0f) && energy == energy)
+            continue;
+        if (bin < 0 || bin >= fan->bins)
+            continue;
+        const int strip = echo->strip[lane] - chains->tally_first_strip;
+        const int reverse = echo->reverse_strip[lane] - chains->tally_first_strip;
+        GLOBAL TALLY *line = tallies + (long)plane * chains->tally_strips * fan->bins + bin;
+        if (strip >= 0 && strip < chains->tally_strips)
+            tally_add(line + (long)strip * fan->bins, energy, &outcome->faults);
+        if (reverse >= 0 && reverse < chains->tally_strips)
+            tally_add(line + (long)reverse * fan->bins, energy, &outcome->faults);
+        outcome->impulses++;
+    }
+}
+
+/* A path that was found one way may also stand for its reverse. What began with a mirror bounce
+ * does, because nothing finds the reverse: its last hit would be the mirror. In focused columns,
+ * where both are seen from the same place, so do the chains that began on the seabed and end on a
+ * target: they are led there on purpose, and those found from the target are left out for them. */
+struct ways_counted {
+    mask is_counted, stands_for_reverse;
+};
+
+FUNCTION struct ways_counted count_ways(GLOBAL const struct chain_record *chains, int order,
+                                        const struct chain *chain)
+{
+    const mask none = chain->is_alive & 0;
+    const mask began_on_seabed = MASK_OF(chain->first_surface == -1);
+    const mask ends_on_seabed = MASK_OF(chain->hit.surface == -1);
+    struct ways_counted ways;
+    ways.is_counted = ~none;
+    ways.stands_for_reverse = chains->estimator == CHAINS_CONNECT ? chain->began_smooth : none;
+    if (chains->is_reciprocal) {
+        ways.is_counted = ~(~chain->began_smooth & ~began_on_seabed & ends_on_seabed);
+        ways.stands_for_reverse =
+            ways.stands_for_reverse | (~chain->began_smooth & began_on_seabed & ~ends_on_seabed);
+    }
+    /* one object seen by way of the seabed's mirror is a pair of sources' (trace_rough_mirrored.h)
+     */
+    if (order == 2 && chains->estimator == CHAINS_CONNECT)
+        ways.is_counted = ways.is_counted & ~(chain->began_smooth & began_on_seabed);
+    return ways;
+}
+
+/* Keeps the echo that a hit sends to the source: energy is that of the path, way the one to the
+ * source. */
+FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
+                        int order, const struct chain *chain, real energy, real range,
+                        real normalisation, struct chain_echo *echo)
+{
+    const struct ways_counted ways = count_ways(chains, order, chain);
+    const mask both = ways.stands_for_reverse;
+    real kept = energy * normalisation;
+    const whole none = WHOLE_OF(SPLAT((float)NO_STRIP));
+    whole strip, reverse;
+    if (chains->is_focused) {
+        /* a path and its reverse are one echo of twice the amplitude */
+        kept = CHOOSE(both, kept * 4.0f, kept * 2.0f);
+        strip = strip_at(fan, 0.5f * (chain->first_x + chain->hit.point.x));
+        reverse = none;
+    } else {
+        strip = strip_at(fan, chain->first_x);
+        reverse = CHOOSE(both, strip_at(fan, chain->hit.point.x), none);
+    }
+    kept = CHOOSE(ways.is_counted & chain->is_alive, kept, SPLAT(0.0f));
+    const whole bin = nearest_bin(range * fan->bins_per_metre + fan->first_bin);
+    STORE_REAL(kept, echo->energy);
+    STORE_WHOLE(bin, echo->bin);
+    STORE_WHOLE(strip, echo->strip);
+    STORE_WHOLE(reverse, echo->reverse_strip);
+}
+
+/* Connects the hit to the source and gives the echo: energy f cos / r^2 at the source, normalised
+ * by the fourth power of half the path (MATH.md). */
+FUNCTION void connect_chain(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
+                            GLOBAL const struct object_record *objects, GLOBAL const float *map,
+                            int order, const struct chain *chain, RECORD_WORD draw,
+                            struct chain_echo *echo, struct outcome_record *outcome)
+{
+    const struct chain_hit *hit = &chain->hit;
+    real receiver_x = chain->first_x;
+    real source_aside = SPLAT(0.0f);
+    real source_up = SPLAT(0.0f);
+    if (chains->is_focused)
+        receiver_x = 0.5f * (chain->first_x + hit->point.x);
+    if (fan->source_side > 0.0f) {
+        real along, across;
+        two_uniforms(chain->key, chain->number, draw, &along, &across);
+        source_aside = (along - 0.5f) * fan->source_side;
+        source_up = (across - 0.5f) * fan->source_side;
+    }
+    const struct source_way way = way_to_source(fan, chain, receiver_x, source_aside, source_up);
+    const real scattering =
+        scattering_at(fan, chains, objects, hit, way.direction) * map_factor(fan, chains, map, hit);
+    const real cosine = dot3(hit->normal, way.direction);
+    mask is_open = chain->is_alive & MASK_OF(scattering > 0.0f);
+    if (ANY(is_open)) {
+        outcome->queries += count_lanes(is_open);
+        is_open = is_open & is_open_way(fan, objects, start_from(hit), way.direction, way.path);
+    }
+    const real energy =
+        CHOOSE(is_open, chain->energy * scattering * cosine / (way.path * way.path), SPLAT(0.0f));
+    const real half_path = fan->reference_range + way.range;
+    const real square = half_path * half_path;
+    keep_echo(fan, chains, order, chain, energy, way.range, square * square, echo);
+}
+
+#endif
