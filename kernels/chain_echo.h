@@ -10,8 +10,9 @@
 /* Where the source is as seen from a hit. */
 struct source_way {
     struct vector3 direction;
-    real path;
-    real range; /* of half the whole path, less the reference range */
+    real path;      /* to the source, or to where it seems to be if layers bend the ray */
+    real spreading; /* of the energy on the way, 1/m^2 */
+    real range;     /* of half the whole path, less the reference range */
 };
 
 /* The receiver is at -reference_range * central direction of the plane x = ray's x. */
@@ -22,6 +23,15 @@ FUNCTION struct vector3 to_receiver(const struct fan_record *fan, struct vector3
     way.y = -fan->reference_range * fan->cosine_depression - point.y;
     way.z = fan->reference_range * fan->sine_depression - point.z;
     return way;
+}
+
+/* The first leg less the reference range. In focused columns the receiver is not abreast of the
+ * first hit: that leg is longer then. */
+FUNCTION real first_leg(const struct chain *chain, real receiver_x)
+{
+    const real shift = chain->first_x - receiver_x;
+    const real first = chain->first_reach;
+    return chain->range + shift * shift / (SQUARE_ROOT(first * first + shift * shift) + first);
 }
 
 /* The way to the point (aside, up) of the source's rectangle, which spans x and the fan's central
@@ -38,6 +48,7 @@ FUNCTION struct source_way way_to_source(const struct fan_record *fan, const str
     to.y += up * fan->sine_depression;
     to.z += up * fan->cosine_depression;
     way.path = SQUARE_ROOT(dot3(to, to));
+    way.spreading = 1.0f / (way.path * way.path);
     const real inverse = 1.0f / way.path;
     way.direction.x = to.x * inverse;
     way.direction.y = to.y * inverse;
@@ -48,11 +59,35 @@ FUNCTION struct source_way way_to_source(const struct fan_record *fan, const str
     const real excess = (to.x * to.x + point.y * point.y + point.z * point.z +
                          2.0f * r * height_along - 2.0f * up * height_across + up * up) /
                         (way.path + r);
-    /* in focused columns the receiver is not abreast of the first hit: that leg is longer too */
-    const real shift = chain->first_x - receiver_x;
-    const real first = r + chain->range;
-    const real longer = shift * shift / (SQUARE_ROOT(first * first + shift * shift) + first);
-    way.range = 0.5f * (chain->range + longer + chain->length + excess);
+    way.range = 0.5f * (first_leg(chain, receiver_x) + chain->length + excess);
+    return way;
+}
+
+/* The same through layers: in the upright plane of point and source the ray is looked up, then
+ * turned to where that plane stands. */
+FUNCTION struct source_way way_through_layers(const struct fan_record *fan,
+                                              GLOBAL const struct ray_piece_record *pieces,
+                                              const struct chain *chain, real receiver_x,
+                                              real aside, real up)
+{
+    const struct vector3 point = chain->hit.point;
+    const real off = receiver_x + aside - point.x;
+    const real abreast = fan->table.ground_range + point.y;
+    const real ground = SQUARE_ROOT(abreast * abreast + off * off);
+    const struct ray_to_point ray =
+        find_ray_to(fan->table, pieces, fan->cosine_depression, fan->sine_depression,
+                    point.y + off * off / (ground + abreast), point.z);
+    /* the source point lies `up` across the ray, at a distance of the wavefront's radius */
+    const real path = SQUARE_ROOT(ray.wavefront * ray.wavefront + up * up);
+    const real level = (ray.wavefront * ray.directions.away_y + up * ray.directions.away_z) / path;
+    struct source_way way;
+    way.path = path;
+    way.direction.x = level * off / ground;
+    way.direction.y = -level * abreast / ground;
+    way.direction.z = (up * ray.directions.away_y - ray.wavefront * ray.directions.away_z) / path;
+    way.spreading = ray.spreading / (ground * ray.wavefront);
+    way.range =
+        0.5f * (first_leg(chain, receiver_x) + chain->length + ray.range + (path - ray.wavefront));
     return way;
 }
 
@@ -155,7 +190,9 @@ FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_
 
 /* Connects the hit to the source and gives the echo: energy f cos / r^2 at the source, normalised
  * by the fourth power of half the path (MATH.md). */
-FUNCTION void connect_chain(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
+FUNCTION void connect_chain(const struct fan_record *fan,
+                            GLOBAL const struct ray_piece_record *pieces,
+                            GLOBAL const struct chain_record *chains,
                             GLOBAL const struct object_record *objects, GLOBAL const float *map,
                             int order, const struct chain *chain, RECORD_WORD draw,
                             struct chain_echo *echo, struct outcome_record *outcome)
@@ -172,9 +209,13 @@ FUNCTION void connect_chain(const struct fan_record *fan, GLOBAL const struct ch
         source_aside = (along - 0.5f) * fan->source_side;
         source_up = (across - 0.5f) * fan->source_side;
     }
-    const struct source_way way = way_to_source(fan, chain, receiver_x, source_aside, source_up);
-    const real scattering =
-        scattering_at(fan, chains, objects, hit, way.direction) * map_factor(fan, chains, map, hit);
+    struct source_way way;
+    if (fan->table.pieces > 0)
+        way = way_through_layers(fan, pieces, chain, receiver_x, source_aside, source_up);
+    else
+        way = way_to_source(fan, chain, receiver_x, source_aside, source_up);
+    const real scattering = scattering_at(fan, chains, objects, hit, way.direction) *
+                            map_factor(fan, pieces, chains, map, hit);
     const real cosine = dot3(hit->normal, way.direction);
     mask is_open = chain->is_alive & MASK_OF(scattering > 0.0f);
     if (ANY(is_open)) {
@@ -182,7 +223,7 @@ FUNCTION void connect_chain(const struct fan_record *fan, GLOBAL const struct ch
         is_open = is_open & is_open_way(fan, objects, start_from(hit), way.direction, way.path);
     }
     const real energy =
-        CHOOSE(is_open, chain->energy * scattering * cosine / (way.path * way.path), SPLAT(0.0f));
+        CHOOSE(is_open, chain->energy * scattering * cosine * way.spreading, SPLAT(0.0f));
     const real half_path = fan->reference_range + way.range;
     const real square = half_path * half_path;
     keep_echo(fan, chains, order, chain, energy, way.range, square * square, echo);

@@ -93,12 +93,14 @@ FUNCTION struct vector3 start_from(const struct chain_hit *hit)
 struct chain {
     struct chain_hit hit;
     struct random_key key;
-    word number;  /* of the ray, for its random numbers */
-    real energy;  /* what the receiver would get per unit of irradiance at the hit and unit of
-                     scattering, m^2 sr, in quanta */
-    real range;   /* from the receiver to the first hit less the reference range */
-    real length;  /* from the first hit to this one */
-    real first_x; /* along-track, of the first hit */
+    word number;      /* of the ray, for its random numbers */
+    real energy;      /* what the receiver would get per unit of irradiance at the hit and unit of
+                         scattering, m^2 sr, in quanta */
+    real range;       /* from the receiver to the first hit less the reference range */
+    real length;      /* from the first hit to this one */
+    real first_x;     /* along-track, of the first hit */
+    real first_reach; /* ground range of the first hit over the cosine of the grazing angle: without
+                         layers the range */
     whole first_surface;
     mask began_smooth; /* the first hit was a mirror bounce: nothing finds the reverse path */
     mask is_alive;

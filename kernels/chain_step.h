@@ -112,6 +112,7 @@ FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *c
 }
 
 FUNCTION struct chain_step next_step(const struct fan_record *fan,
+                                     GLOBAL const struct ray_piece_record *pieces,
                                      GLOBAL const struct chain_record *chains,
                                      GLOBAL const struct object_record *objects,
                                      GLOBAL const struct sphere_record *spheres,
@@ -135,7 +136,7 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
         step.weight = CHOOSE(here, from.weight, step.weight);
         step.is_mirror = CHOOSE(here, from.is_mirror, step.is_mirror);
     }
-    const real factor = map_factor(fan, chains, map, hit);
+    const real factor = map_factor(fan, pieces, chains, map, hit);
     step.weight = CHOOSE(step.is_mirror, step.weight, step.weight * factor);
     return step;
 }

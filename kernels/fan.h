@@ -5,6 +5,7 @@
 #include "elementary.h"
 #include "interval.h"
 #include "layout.h"
+#include "ray_table.h"
 
 /* A ray through the frame's neighbourhood, counted from its point closest to the origin: at 500 m
  * the sonar's own coordinates would eat the digits that the phase needs. */
@@ -12,13 +13,18 @@ struct fan_ray {
     struct vector3 closest;   /* point closest to the frame's origin (in the plane of the strip) */
     struct vector3 direction; /* unit, away from the sonar */
     struct vector3 upward;    /* unit, across the ray, towards larger elevation */
-    real range_at_closest;    /* range there less the reference range, <= 0 */
+    real range_at_closest;    /* range there less the reference range */
+    real wavefront;           /* m; the wavefront's width per rad of elevation there; it grows by
+                                 1 m per m, and without layers it is the range */
+    real spreading;           /* of layers: struct water_ray; else of no meaning */
 };
 
 /* x: track position; elevation: rad over the direction from the track to the origin.
  * With d the central direction and u upward of it, the ray's direction is d cos e + u sin e, and it
  * passes the origin at R sin e (u cos e - d sin e), at range R cos e. */
-FUNCTION struct fan_ray fan_ray_at(const struct fan_record *fan, real x, real elevation)
+FUNCTION struct fan_ray fan_ray_at(const struct fan_record *fan,
+                                   GLOBAL const struct ray_piece_record *pieces, real x,
+                                   real elevation)
 {
     real sine, cosine;
     sine_cosine_of_cycles(elevation * 0.15915494309f, &sine, &cosine);
@@ -30,12 +36,33 @@ FUNCTION struct fan_ray fan_ray_at(const struct fan_record *fan, real x, real el
     ray.upward.x = SPLAT(0.0f);
     ray.upward.y = -ray.direction.z;
     ray.upward.z = ray.direction.y;
-    const real offset = fan->reference_range * sine;
+    real offset = fan->reference_range * sine;
+    ray.range_at_closest = -offset * sine / (1.0f + cosine);
+    ray.wavefront = fan->reference_range + ray.range_at_closest;
+    ray.spreading = SPLAT(1.0f);
+    if (fan->table.pieces > 0) {
+        const struct table_ray bent = look_up_ray(fan->table, pieces, elevation);
+        offset = bent.offset;
+        ray.range_at_closest = bent.range;
+        ray.wavefront = bent.wavefront;
+        ray.spreading = bent.spreading;
+    }
     ray.closest.x = x;
     ray.closest.y = offset * ray.upward.y;
     ray.closest.z = offset * ray.upward.z;
-    ray.range_at_closest = -offset * sine / (1.0f + cosine);
     return ray;
+}
+
+/* What layers do to the amplitude of an echo from a point of the ray, over that in isovelocity
+ * water: there and back, normalised by the square of the range. */
+FUNCTION real refraction_gain(const struct fan_record *fan, const struct fan_ray *ray,
+                              real distance)
+{
+    if (fan->table.pieces == 0)
+        return SPLAT(1.0f);
+    const real range = fan->reference_range + (ray->range_at_closest + distance);
+    const real ground = fan->table.ground_range + (ray->closest.y + distance * ray->direction.y);
+    return ray->spreading * range * range / (ground * (ray->wavefront + distance));
 }
 
 /* Along-track position of the middle of a strip of this launch. */

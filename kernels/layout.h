@@ -82,8 +82,25 @@ enum tile_plane {
     TILE_PLANES = 3
 };
 
+/* Where the rays of a source are that layers of water bend: pieces of elevation, each a cubic. */
+struct ray_table_record {
+    RECORD_INT pieces; /* 0: no layers, rays are straight */
+    RECORD_INT first_piece;
+    float first_elevation; /* rad from the central direction */
+    float pieces_per_radian, radians_per_piece;
+    float ground_range; /* m, horizontal, from the track to the frame's origin */
+};
+
+/* Coefficients in the share 0...1 of the piece that lies below a ray's elevation. */
+struct ray_piece_record {
+    float offset[4]; /* of the ray from the frame's origin, m */
+    float range;     /* at the lower end, less the reference range, m */
+    float spreading, spreading_growth;
+};
+
 /* A fan of rays over a track, in a frame that the host centres on what is traced. The sonar moves
- * along y = z = -reference_range * (0, cos, -sin)(depression) of that frame. */
+ * along y = z = -reference_range * (0, cos, -sin)(depression) of that frame; where layers bend the
+ * rays it only seems to. Ranges are travel times times the sound speed around the origin. */
 struct fan_record {
     float reference_range;                    /* m, from the track to the frame's origin */
     float cosine_depression, sine_depression; /* of the direction from the track to the origin */
@@ -117,6 +134,7 @@ struct fan_record {
     RECORD_INT only_object; /* smooth part: the object whose glints are wanted; chains: the first
                                surface, -1 the seabed, -2 any */
     RECORD_INT segments;    /* work-items that share a strip */
+    struct ray_table_record table;
 };
 
 /* A sphere around a part of a target; a target lies within the union of its spheres. */
@@ -157,7 +175,8 @@ enum mirror_kind {
 };
 
 struct mirror_record {
-    float height; /* z of the plane in the frame, m */
+    float height;      /* z of the plane in the frame, m */
+    float speed_ratio; /* of the water at the mirror over that around the object */
     struct surface_record surface;
 };
 
@@ -168,6 +187,7 @@ struct source_record {
     float cosine_depression, sine_depression; /* sine < 0: the source is below the origin */
     RECORD_INT bounces;     /* mirrors that fold the straight line from the source to an object */
     RECORD_INT last_mirror; /* enum mirror_kind: the one next to the object; they alternate */
+    struct ray_table_record table;
 };
 
 /* Two sources between which an object carries sound. The launch's fan goes out from `outgoing`; its

@@ -14,6 +14,15 @@ struct leg {
     real reflection_real, reflection_imaginary; /* product of the mirrors' coherent amplitudes */
 };
 
+/* Cosine of incidence on a mirror of sound that comes to the object with another: Snell's law. */
+FUNCTION real cosine_at_mirror(GLOBAL const struct mirror_record *mirror, real cosine)
+{
+    if (mirror->speed_ratio == 1.0f)
+        return cosine;
+    const float square = mirror->speed_ratio * mirror->speed_ratio;
+    return SQUARE_ROOT(larger(1.0f - (1.0f - cosine * cosine) * square, SPLAT(0.0f)));
+}
+
 /* direction: from the hit to the source in unfolded space, unit; length: m. Lanes that are not
  * wanted stay closed. */
 FUNCTION struct leg follow_leg(GLOBAL const struct source_pair_record *pair,
@@ -27,19 +36,26 @@ FUNCTION struct leg follow_leg(GLOBAL const struct source_pair_record *pair,
     leg.reflection_real = SPLAT(1.0f);
     leg.reflection_imaginary = SPLAT(0.0f);
     const real cosine = magnitude(direction.z); /* the same at every bounce: mirrors are level */
+    const int is_bent = source->table.pieces > 0;
+    int is_seen = 1; /* through layers, only what is in the water around the object */
     int kind = source->last_mirror;
     for (int bounce = 0; bounce < source->bounces && ANY(leg.is_open); bounce++) {
         GLOBAL const struct mirror_record *mirror = &pair->mirrors[kind];
         const mask is_level = MASK_OF(cosine < 1.0e-6f);
         const real step = (mirror->height - point.z) / CHOOSE(is_level, SPLAT(1.0f), direction.z);
-        const struct nearest_hit blocking =
-            find_nearest_hit(objects, count, point, direction, 0.0f);
-        leg.is_open = leg.is_open & ~is_level & MASK_OF(blocking.distance > step);
+        if (is_seen) {
+            const struct nearest_hit blocking =
+                find_nearest_hit(objects, count, point, direction, 0.0f);
+            leg.is_open = leg.is_open & MASK_OF(blocking.distance > step);
+        }
+        leg.is_open = leg.is_open & ~is_level;
+        is_seen = is_seen && !(is_bent && kind == MIRROR_SURFACE);
         point = along3(point, direction, step);
         direction.z = -direction.z;
         length = length - step;
         real one_real, one_imaginary;
-        smooth_reflection(&mirror->surface, cosine, &one_real, &one_imaginary);
+        smooth_reflection(&mirror->surface, cosine_at_mirror(mirror, cosine), &one_real,
+                          &one_imaginary);
         const real product_real =
             leg.reflection_real * one_real - leg.reflection_imaginary * one_imaginary;
         leg.reflection_imaginary =
@@ -47,7 +63,7 @@ FUNCTION struct leg follow_leg(GLOBAL const struct source_pair_record *pair,
         leg.reflection_real = product_real;
         kind = 1 - kind;
     }
-    if (ANY(leg.is_open)) {
+    if (is_seen && ANY(leg.is_open)) {
         const struct nearest_hit blocking =
             find_nearest_hit(objects, count, point, direction, 0.0f);
         leg.is_open = leg.is_open & MASK_OF(blocking.distance > length);
@@ -55,25 +71,46 @@ FUNCTION struct leg follow_leg(GLOBAL const struct source_pair_record *pair,
     return leg;
 }
 
-/* The straight line from a source to a hit. */
+/* The line from a source to a hit. */
 struct line_from_source {
     struct vector3 direction; /* unit, towards the hit */
-    real length;              /* m */
-    real excess;              /* length less the source's range, formed without subtracting */
+    real wavefront;           /* width per rad of elevation at the hit: without layers its length */
+    real excess;              /* range less the source's range, formed without subtracting */
+    real spreading;           /* of layers: struct water_ray */
 };
 
+FUNCTION struct line_from_source line_through_layers(GLOBAL const struct source_record *source,
+                                                     GLOBAL const struct ray_piece_record *pieces,
+                                                     struct vector3 hit)
+{
+    const struct ray_to_point ray = find_ray_to(source->table, pieces, source->cosine_depression,
+                                                source->sine_depression, hit.y, hit.z);
+    struct line_from_source line;
+    line.direction.x = SPLAT(0.0f);
+    line.direction.y = ray.directions.away_y;
+    line.direction.z = ray.directions.away_z;
+    line.wavefront = ray.wavefront;
+    line.excess = ray.range;
+    line.spreading = ray.spreading;
+    return line;
+}
+
 FUNCTION struct line_from_source line_from_source(GLOBAL const struct source_record *source,
+                                                  GLOBAL const struct ray_piece_record *pieces,
                                                   struct vector3 hit)
 {
+    if (source->table.pieces > 0)
+        return line_through_layers(source, pieces, hit);
     const float range = source->range;
     const real along = hit.y * source->cosine_depression - hit.z * source->sine_depression;
     const real change = 2.0f * range * along + (hit.y * hit.y + hit.z * hit.z);
     struct line_from_source line;
-    line.length = SQUARE_ROOT(range * range + change);
-    line.excess = change / (line.length + range);
+    line.wavefront = SQUARE_ROOT(range * range + change);
+    line.excess = change / (line.wavefront + range);
+    line.spreading = SPLAT(1.0f);
     line.direction.x = SPLAT(0.0f);
-    line.direction.y = (range * source->cosine_depression + hit.y) / line.length;
-    line.direction.z = (hit.z - range * source->sine_depression) / line.length;
+    line.direction.y = (range * source->cosine_depression + hit.y) / line.wavefront;
+    line.direction.z = (hit.z - range * source->sine_depression) / line.wavefront;
     return line;
 }
 
@@ -124,35 +161,52 @@ FUNCTION struct mirrored_hit find_mirrored_hit(const struct fan_record *fan,
 struct mirrored_path {
     mask is_open;
     struct line_from_source back; /* from the returning source to the hit */
-    real length_out;
-    real range;       /* half the path less that by way of the frame's origin */
-    real spreading;   /* square of half the path over the product of both legs */
-    real cosine_back; /* between the normal and the way home */
+    real wavefront_out;           /* width per rad of the fan's elevation at the hit */
+    real range;                   /* half the path less that by way of the frame's origin */
+    real spreading;               /* square of half the path over the product of both legs */
+    real cosine_back;             /* between the normal and the way home */
     real reflection_real, reflection_imaginary; /* of all mirrors */
 };
 
+/* Square root of both legs' intensities, normalised by the square of half the path. A leg that no
+ * layer bends has the spreading cos(grazing angle). */
+FUNCTION real spreading_through_layers(const struct fan_record *fan,
+                                       GLOBAL const struct source_pair_record *pair,
+                                       const struct fan_ray *ray, const struct mirrored_hit *hit,
+                                       const struct mirrored_path *path, real half_path)
+{
+    const real out = fan->table.pieces > 0 ? ray->spreading : ray->direction.y;
+    const real back =
+        pair->returning.table.pieces > 0 ? path->back.spreading : path->back.direction.y;
+    const real ground = pair->outgoing.table.ground_range + hit->point.y;
+    return SQUARE_ROOT(out * back / (path->wavefront_out * path->back.wavefront)) * half_path *
+           half_path / ground;
+}
+
 FUNCTION struct mirrored_path follow_path(const struct fan_record *fan,
+                                          GLOBAL const struct ray_piece_record *pieces,
                                           GLOBAL const struct source_pair_record *pair,
                                           GLOBAL const struct object_record *objects,
-                                          const struct mirrored_hit *hit,
-                                          struct vector3 direction_out,
+                                          const struct fan_ray *ray, const struct mirrored_hit *hit,
                                           struct outcome_record *outcome)
 {
     struct mirrored_path path;
-    path.back = line_from_source(&pair->returning, hit->point);
-    path.length_out = fan->reference_range + hit->range;
+    path.back = line_from_source(&pair->returning, pieces, hit->point);
+    path.wavefront_out = ray->wavefront + (hit->range - ray->range_at_closest);
     path.range = 0.5f * (hit->range + path.back.excess);
-    const real half_path = 0.5f * (path.length_out + path.back.length);
-    path.spreading = (half_path / path.length_out) * (half_path / path.back.length);
+    const real half_path = 0.5f * (fan->reference_range + pair->returning.range) + path.range;
+    path.spreading = (half_path / path.wavefront_out) * (half_path / path.back.wavefront);
+    if (fan->table.pieces > 0 || pair->returning.table.pieces > 0)
+        path.spreading = spreading_through_layers(fan, pair, ray, hit, &path, half_path);
     path.cosine_back = -dot3(hit->normal, path.back.direction);
     const mask is_lit = hit->is_hit & MASK_OF(path.cosine_back > 0.0f);
     /* start off the surface by more than its rounding, less than anything that throws a shadow */
     const struct vector3 start = along3(hit->point, hit->normal, SPLAT(2.0e-5f));
     const struct leg out = follow_leg(pair, &pair->outgoing, objects, fan->objects, start,
-                                      reversed3(direction_out), path.length_out, is_lit);
+                                      reversed3(ray->direction), path.wavefront_out, is_lit);
     const struct leg home =
         follow_leg(pair, &pair->returning, objects, fan->objects, start,
-                   reversed3(path.back.direction), path.back.length, out.is_open);
+                   reversed3(path.back.direction), path.back.wavefront, out.is_open);
     outcome->queries += count_lanes(is_lit) + count_lanes(out.is_open);
     path.is_open = home.is_open;
     path.reflection_real = out.reflection_real * home.reflection_real -

@@ -19,19 +19,31 @@ FUNCTION float map_value(const struct fan_record *fan, GLOBAL const float *map, 
     return map[(long)r * fan->map_columns + c];
 }
 
+/* Slant range of a point from the track less the reference range. */
+FUNCTION real range_abreast(const struct fan_record *fan,
+                            GLOBAL const struct ray_piece_record *pieces, struct vector3 point)
+{
+    if (fan->table.pieces > 0)
+        return find_ray_to(fan->table, pieces, fan->cosine_depression, fan->sine_depression,
+                           point.y, point.z)
+            .range;
+    /* formed as in way_to_source */
+    const float r = fan->reference_range;
+    const real square =
+        point.y * point.y + point.z * point.z +
+        2.0f * r * (point.y * fan->cosine_depression - point.z * fan->sine_depression);
+    return square / (SQUARE_ROOT(larger(square + r * r, SPLAT(0.0f))) + r);
+}
+
 /* The map at hits of a chain on the seabed where it rules sound that goes on, else 1. */
-FUNCTION real map_factor(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
-                         GLOBAL const float *map, const struct chain_hit *hit)
+FUNCTION real map_factor(const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
+                         GLOBAL const struct chain_record *chains, GLOBAL const float *map,
+                         const struct chain_hit *hit)
 {
     const mask on_seabed = hit->is_hit & MASK_OF(hit->surface == -1);
     if (!chains->forward_is_map || !ANY(on_seabed))
         return SPLAT(1.0f);
-    /* slant range abreast of the point less the reference range, as in way_to_source */
-    const float r = fan->reference_range;
-    const real square =
-        hit->point.y * hit->point.y + hit->point.z * hit->point.z +
-        2.0f * r * (hit->point.y * fan->cosine_depression - hit->point.z * fan->sine_depression);
-    const real range = square / (SQUARE_ROOT(larger(square + r * r, SPLAT(0.0f))) + r);
+    const real range = range_abreast(fan, pieces, hit->point);
     const real row = fan->map_row_at_origin + hit->point.x * fan->map_rows_per_metre;
     const real column = fan->map_first_column + range * fan->map_columns_per_metre;
     const real safe_row = smaller(larger(row, SPLAT(-1.0f)), SPLAT(1.0e8f));

@@ -43,14 +43,15 @@ FUNCTION void count_arrival(const struct fan_record *fan, GLOBAL const struct ch
 /* Seabed far from the targets exchanges little sound with them, so of its rays only some blocks are
  * followed and stand for the others. Returns what a ray of each of WIDTH blocks stands for, 0: not
  * followed. */
-FUNCTION real thin_out(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
+FUNCTION real thin_out(const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
+                       GLOBAL const struct chain_record *chains,
                        GLOBAL const struct sphere_record *spheres, struct random_key key, int strip,
                        word block)
 {
     if (chains->seabed_share == 0.0f || fan->only_object != -1)
         return SPLAT(1.0f);
     const real rays = (REAL_OF(block) + 0.5f) * (float)THIN_BLOCK;
-    const struct fan_ray middle = fan_ray_at(fan, SPLAT(strip_position(fan, strip)),
+    const struct fan_ray middle = fan_ray_at(fan, pieces, SPLAT(strip_position(fan, strip)),
                                              fan->first_elevation + rays * fan->elevation_step);
     const real to_seabed = seabed_distance(fan, middle.closest, middle.direction);
     const mask is_seabed = MASK_OF(to_seabed < 0.5f * FAR_AWAY);
@@ -67,8 +68,10 @@ FUNCTION real thin_out(const struct fan_record *fan, GLOBAL const struct chain_r
 }
 
 /* Sends out one group of rays. */
-FUNCTION void begin_chain(const struct fan_record *fan, GLOBAL const struct object_record *objects,
-                          int strip, struct random_key key, RECORD_WORD first_ray, float stands_for,
+FUNCTION void begin_chain(const struct fan_record *fan,
+                          GLOBAL const struct ray_piece_record *pieces,
+                          GLOBAL const struct object_record *objects, int strip,
+                          struct random_key key, RECORD_WORD first_ray, float stands_for,
                           struct chain *chain)
 {
     chain->key = key;
@@ -77,8 +80,9 @@ FUNCTION void begin_chain(const struct fan_record *fan, GLOBAL const struct obje
     real along, across;
     two_uniforms(key, chain->number, 0, &along, &across);
     const real x = strip_position(fan, strip) + (along - 0.5f) * fan->strip_width;
-    const struct fan_ray ray = fan_ray_at(
-        fan, x, fan->first_elevation + (REAL_OF(chain->number) + across) * fan->elevation_step);
+    const struct fan_ray ray =
+        fan_ray_at(fan, pieces, x,
+                   fan->first_elevation + (REAL_OF(chain->number) + across) * fan->elevation_step);
     chain->hit =
         find_chain_hit(fan, objects, ray.closest, ray.direction, -fan->reference_range, is_ray);
     chain->range = ray.range_at_closest + chain->hit.distance;
@@ -89,13 +93,21 @@ FUNCTION void begin_chain(const struct fan_record *fan, GLOBAL const struct obje
     if (fan->only_object >= -1)
         chain->is_alive = chain->is_alive & MASK_OF(chain->hit.surface == fan->only_object);
     chain->began_smooth = chain->is_alive & 0;
-    /* the strip of wavefront w r de over r^2 */
-    chain->energy = stands_for * fan->strip_width * fan->elevation_step * fan->quanta /
-                    CHOOSE(chain->is_alive, fan->reference_range + chain->range, SPLAT(1.0f));
+    /* the strip of wavefront w r de over r^2; through layers r de widens and 1/r^2 is s/(ground r)
+     */
+    const real ground =
+        fan->table.pieces > 0 ? fan->table.ground_range + chain->hit.point.y : SPLAT(1.0f);
+    chain->first_reach =
+        fan->table.pieces > 0 ? ground / ray.direction.y : fan->reference_range + chain->range;
+    const real spreading =
+        fan->table.pieces > 0 ? ray.spreading / ground : 1.0f / chain->first_reach;
+    chain->energy = stands_for * fan->strip_width * fan->elevation_step * fan->quanta *
+                    CHOOSE(chain->is_alive, spreading, SPLAT(1.0f));
 }
 
 /* Follows one group of WIDTH rays of a strip over all their interactions. */
 FUNCTION void trace_chain_group(const struct fan_record *fan,
+                                GLOBAL const struct ray_piece_record *pieces,
                                 GLOBAL const struct chain_record *chains,
                                 GLOBAL const struct object_record *objects,
                                 GLOBAL const struct sphere_record *spheres, GLOBAL const float *map,
@@ -106,16 +118,18 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
     struct chain chain;
     struct chain_echo echo;
     const int is_connected = chains->estimator == CHAINS_CONNECT;
-    begin_chain(fan, objects, strip, key, first_ray, stands_for, &chain);
+    begin_chain(fan, pieces, objects, strip, key, first_ray, stands_for, &chain);
     for (int order = 1; order <= chains->interactions && ANY(chain.is_alive); order++) {
         const RECORD_WORD draw = 4u * (RECORD_WORD)order;
         if (is_connected && order >= chains->first_order) {
-            connect_chain(fan, chains, objects, map, order, &chain, draw + 2, &echo, outcome);
+            connect_chain(fan, pieces, chains, objects, map, order, &chain, draw + 2, &echo,
+                          outcome);
             tally_chain_echo(fan, chains, tallies, order, &echo, outcome);
         }
         if (is_connected && order == chains->interactions)
             break;
-        const struct chain_step step = next_step(fan, chains, objects, spheres, map, &chain, draw);
+        const struct chain_step step =
+            next_step(fan, pieces, chains, objects, spheres, map, &chain, draw);
         const mask goes_on = chain.is_alive & MASK_OF(step.weight > 0.0f);
         outcome->queries += count_lanes(goes_on);
         const struct chain_hit next =
@@ -137,6 +151,7 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
 
 /* Follows the block of rays that begins with first_ray. */
 FUNCTION void trace_chain_block(const struct fan_record *fan,
+                                GLOBAL const struct ray_piece_record *pieces,
                                 GLOBAL const struct chain_record *chains,
                                 GLOBAL const struct object_record *objects,
                                 GLOBAL const struct sphere_record *spheres, GLOBAL const float *map,
@@ -149,12 +164,13 @@ FUNCTION void trace_chain_block(const struct fan_record *fan,
     outcome->rays += count;
     outcome->queries += count;
     for (RECORD_WORD ray = 0; ray < count; ray += WIDTH)
-        trace_chain_group(fan, chains, objects, spheres, map, tallies, strip, key, first_ray + ray,
-                          stands_for, outcome);
+        trace_chain_group(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
+                          first_ray + ray, stands_for, outcome);
 }
 
 /* Traces the share `segment` of a strip's fan. tallies: planes x tally_strips x bins. */
 FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
+                                                  GLOBAL const struct ray_piece_record *pieces,
                                                   GLOBAL const struct chain_record *chains,
                                                   GLOBAL const struct object_record *objects,
                                                   GLOBAL const struct sphere_record *spheres,
@@ -168,12 +184,12 @@ FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
     const RECORD_WORD stride = (RECORD_WORD)fan->segments * WIDTH;
     for (RECORD_WORD some = (RECORD_WORD)segment * WIDTH; some < blocks; some += stride) {
         const real stands_for =
-            thin_out(fan, chains, spheres, key, strip, SPLAT_WORD(some) + LANE_NUMBERS);
+            thin_out(fan, pieces, chains, spheres, key, strip, SPLAT_WORD(some) + LANE_NUMBERS);
         float lanes[WIDTH];
         STORE_REAL(stands_for, lanes);
         for (RECORD_WORD lane = 0; lane < WIDTH && some + lane < blocks; lane++)
             if (lanes[lane] > 0.0f)
-                trace_chain_block(fan, chains, objects, spheres, map, tallies, strip, key,
+                trace_chain_block(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
                                   (some + lane) * THIN_BLOCK, lanes[lane], &outcome);
     }
     return outcome;

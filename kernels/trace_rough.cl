@@ -2,6 +2,7 @@
 #include "trace_rough_mirrored.h"
 
 __kernel void trace_rough(__global const struct fan_record *fan_buffer,
+ __global const struct ray_piece_record *pieces,
                           __global const struct object_record *objects, __global const float *map,
                           __global long *seabed, __global long *tiles,
                           __global struct outcome_record *outcomes)
@@ -11,10 +12,11 @@ __kernel void trace_rough(__global const struct fan_record *fan_buffer,
     const int segment = (int)(get_global_id(0) % (size_t)fan.segments);
     if (strip < fan.strips)
         outcomes[get_global_id(0)] =
-            trace_rough_strip(&fan, objects, map, seabed, tiles, strip, segment);
+            trace_rough_strip(&fan, pieces, objects, map, seabed, tiles, strip, segment);
 }
 
 __kernel void trace_rough_mirrored(__global const struct fan_record *fan_buffer,
+ __global const struct ray_piece_record *pieces,
                                    __global const struct object_record *objects,
                                    __global long *tiles,
                                    __global const struct source_pair_record *pair,
@@ -25,5 +27,5 @@ __kernel void trace_rough_mirrored(__global const struct fan_record *fan_buffer,
     const int segment = (int)(get_global_id(0) % (size_t)fan.segments);
     if (strip < fan.strips)
         outcomes[get_global_id(0)] =
-            trace_rough_mirrored_strip(&fan, pair, objects, tiles, strip, segment);
+            trace_rough_mirrored_strip(&fan, pieces, pair, objects, tiles, strip, segment);
 }

@@ -23,12 +23,13 @@ struct connection {
 FUNCTION struct connection connect_to_source(const struct fan_record *fan,
                                              GLOBAL const struct object_record *objects,
                                              const struct fan_ray *ray, struct vector3 hit,
-                                             struct vector3 normal, real range, real along,
+                                             struct vector3 normal, real distance, real along,
                                              real across)
 {
-    /* from the hit back to the receiver is -direction * r; the source point lies an offset beside
-     */
-    const real r = fan->reference_range + range;
+    /* from the hit back to the receiver (to where it seems to be, if layers bend the ray) is
+     * -direction * r; the source point lies an offset beside */
+    const real r = ray->wavefront + distance;
+    const real range = ray->range_at_closest + distance;
     const real offset_x = (along - 0.5f) * fan->source_side;
     const real offset_up = (across - 0.5f) * fan->source_side;
     const real square = offset_x * offset_x + offset_up * offset_up;
@@ -105,6 +106,7 @@ FUNCTION void tally_rough_echo(const struct fan_record *fan,
 
 /* Traces one group of WIDTH rays of a strip. */
 FUNCTION void trace_rough_group(const struct fan_record *fan,
+                                GLOBAL const struct ray_piece_record *pieces,
                                 GLOBAL const struct object_record *objects, int strip,
                                 struct random_key key, RECORD_WORD first_ray,
                                 struct rough_echo *echo, struct outcome_record *outcome)
@@ -114,15 +116,15 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     real along, across;
     two_uniforms(key, number, 0, &along, &across);
     const real x = strip_position(fan, strip) + (along - 0.5f) * fan->strip_width;
-    const struct fan_ray ray =
-        fan_ray_at(fan, x, fan->first_elevation + (REAL_OF(number) + across) * fan->elevation_step);
+    const struct fan_ray ray = fan_ray_at(
+        fan, pieces, x, fan->first_elevation + (REAL_OF(number) + across) * fan->elevation_step);
     const real to_seabed = seabed_distance(fan, ray.closest, ray.direction);
     const struct nearest_hit nearest =
         find_nearest_hit(objects, fan->objects, ray.closest, ray.direction, -fan->reference_range);
     const mask on_object = is_ray & MASK_OF(nearest.distance < to_seabed);
 
     const real seabed_range = ray.range_at_closest + to_seabed;
-    const float wavefront = fan->strip_width * fan->elevation_step; /* times range: area */
+    const float strip_of_cell = fan->strip_width * fan->elevation_step; /* times wavefront: area */
     const real seabed_cosine = -ray.direction.z;
     real bed_range = seabed_range;
     real bed_cosine = seabed_cosine;
@@ -137,20 +139,24 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
         up.z = SPLAT(1.0f);
         const struct connection way =
             connect_to_source(fan, objects, &ray, along3(ray.closest, ray.direction, to_seabed), up,
-                              seabed_range, source_along, source_across);
+                              to_seabed, source_along, source_across);
         outcome->queries += count_lanes(bed_open);
         bed_range = way.range;
         bed_cosine = way.cosine;
         bed_open = bed_open & (way.is_open | on_object);
     }
-    const real bed_energy = fan->seabed_lambert * bed_cosine * wavefront *
-                            (fan->reference_range + seabed_range) * fan->quanta;
+    const real bed_gain = refraction_gain(fan, &ray, to_seabed);
+    const real bed_energy = fan->seabed_lambert * bed_cosine * strip_of_cell *
+                            (ray.wavefront + to_seabed) * (bed_gain * bed_gain) * fan->quanta;
     const real bed_bin =
         CHOOSE(bed_open, bed_range * fan->bins_per_metre + fan->first_bin, SPLAT(-9.0f));
 
     real energy = SPLAT(0.0f);
-    real target_range = ray.range_at_closest + CHOOSE(on_object, nearest.distance, SPLAT(0.0f));
-    const real target_area = wavefront * (fan->reference_range + target_range) * fan->quanta;
+    const real to_target = CHOOSE(on_object, nearest.distance, SPLAT(0.0f));
+    real target_range = ray.range_at_closest + to_target;
+    const real target_gain = refraction_gain(fan, &ray, to_target);
+    const real target_area =
+        strip_of_cell * (ray.wavefront + to_target) * (target_gain * target_gain) * fan->quanta;
     for (int i = 0; i < fan->objects && ANY(on_object); i++) {
         const mask here = on_object & MASK_OF(nearest.object == i);
         if (!ANY(here))
@@ -164,7 +170,7 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
         if (fan->source_side > 0.0f) {
             const struct connection way =
                 connect_to_source(fan, objects, &ray, along3(ray.closest, ray.direction, distance),
-                                  normal, target_range, source_along, source_across);
+                                  normal, distance, source_along, source_across);
             outcome->queries += count_lanes(here);
             is_open = is_open & way.is_open;
             out = way.direction;
@@ -193,6 +199,7 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
 
 /* Traces the share `segment` of a strip's fan. */
 FUNCTION struct outcome_record trace_rough_strip(const struct fan_record *fan,
+                                                 GLOBAL const struct ray_piece_record *pieces,
                                                  GLOBAL const struct object_record *objects,
                                                  GLOBAL const float *map, GLOBAL TALLY *seabed,
                                                  GLOBAL TALLY *tiles, int strip, int segment)
@@ -206,7 +213,7 @@ FUNCTION struct outcome_record trace_rough_strip(const struct fan_record *fan,
         struct rough_echo echo;
         const RECORD_WORD left = fan->rays - group * WIDTH;
         outcome.rays += left < WIDTH ? left : WIDTH;
-        trace_rough_group(fan, objects, strip, key, group * WIDTH, &echo, &outcome);
+        trace_rough_group(fan, pieces, objects, strip, key, group * WIDTH, &echo, &outcome);
         for (int lane = 0; lane < WIDTH; lane++)
             tally_rough_echo(fan, objects, map, seabed, tiles, strip, &echo, lane, &outcome);
     }

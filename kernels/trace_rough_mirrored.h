@@ -13,6 +13,7 @@ struct mirrored_echo {
 };
 
 FUNCTION void trace_rough_mirrored_group(const struct fan_record *fan,
+                                         GLOBAL const struct ray_piece_record *pieces,
                                          GLOBAL const struct source_pair_record *pair,
                                          GLOBAL const struct object_record *objects, int strip,
                                          struct random_key key, RECORD_WORD first_ray,
@@ -23,12 +24,12 @@ FUNCTION void trace_rough_mirrored_group(const struct fan_record *fan,
     real along, across;
     two_uniforms(key, number, 0, &along, &across);
     const struct fan_ray ray =
-        fan_ray_at(fan, strip_position(fan, strip) + (along - 0.5f) * fan->strip_width,
+        fan_ray_at(fan, pieces, strip_position(fan, strip) + (along - 0.5f) * fan->strip_width,
                    fan->first_elevation + (REAL_OF(number) + across) * fan->elevation_step);
     const struct mirrored_hit hit =
         find_mirrored_hit(fan, pair, object, &ray, MASK_OF(number < fan->rays));
-    const struct mirrored_path path = follow_path(fan, pair, objects, &hit, ray.direction, outcome);
-    const real wavefront = fan->strip_width * fan->elevation_step * path.length_out;
+    const struct mirrored_path path = follow_path(fan, pieces, pair, objects, &ray, &hit, outcome);
+    const real wavefront = fan->strip_width * fan->elevation_step * path.wavefront_out;
     const real mirrors = path.reflection_real * path.reflection_real +
                          path.reflection_imaginary * path.reflection_imaginary;
     const real energy = rough_scattering(&object->surface, hit.normal, reversed3(ray.direction),
@@ -43,8 +44,9 @@ FUNCTION void trace_rough_mirrored_group(const struct fan_record *fan,
 
 /* Traces the share `segment` of a strip's fan into the object's tile. */
 FUNCTION struct outcome_record trace_rough_mirrored_strip(
-    const struct fan_record *fan, GLOBAL const struct source_pair_record *pair,
-    GLOBAL const struct object_record *objects, GLOBAL TALLY *tiles, int strip, int segment)
+    const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
+    GLOBAL const struct source_pair_record *pair, GLOBAL const struct object_record *objects,
+    GLOBAL TALLY *tiles, int strip, int segment)
 {
     struct outcome_record outcome = {0, 0, 0, 0};
     const int track_strip = fan->first_strip + strip;
@@ -57,7 +59,8 @@ FUNCTION struct outcome_record trace_rough_mirrored_strip(
         struct mirrored_echo echo;
         const RECORD_WORD left = fan->rays - group * WIDTH;
         outcome.rays += left < WIDTH ? left : WIDTH;
-        trace_rough_mirrored_group(fan, pair, objects, strip, key, group * WIDTH, &echo, &outcome);
+        trace_rough_mirrored_group(fan, pieces, pair, objects, strip, key, group * WIDTH, &echo,
+                                   &outcome);
         for (int lane = 0; lane < WIDTH; lane++) {
             GLOBAL TALLY *tally =
                 tile_element(object, tiles, TILE_ENERGY, track_strip, echo.bin[lane]);

@@ -2,6 +2,7 @@
 #include "trace_smooth_mirrored.h"
 
 __kernel void trace_smooth(__global const struct fan_record *fan_buffer,
+ __global const struct ray_piece_record *pieces,
                            __global const struct object_record *objects, __global long *tally,
                            __global struct outcome_record *outcomes)
 {
@@ -9,10 +10,11 @@ __kernel void trace_smooth(__global const struct fan_record *fan_buffer,
     const int strip = (int)(get_global_id(0) / (size_t)fan.segments);
     const int segment = (int)(get_global_id(0) % (size_t)fan.segments);
     if (strip < fan.strips)
-        outcomes[get_global_id(0)] = trace_smooth_strip(&fan, objects, tally, strip, segment);
+        outcomes[get_global_id(0)] = trace_smooth_strip(&fan, pieces, objects, tally, strip, segment);
 }
 
 __kernel void trace_smooth_mirrored(__global const struct fan_record *fan_buffer,
+ __global const struct ray_piece_record *pieces,
                                     __global const struct object_record *objects,
                                     __global long *tally,
                                     __global const struct source_pair_record *pair,
@@ -23,5 +25,5 @@ __kernel void trace_smooth_mirrored(__global const struct fan_record *fan_buffer
     const int segment = (int)(get_global_id(0) % (size_t)fan.segments);
     if (strip < fan.strips)
         outcomes[get_global_id(0)] =
-            trace_smooth_mirrored_strip(&fan, pair, objects, tally, strip, segment);
+            trace_smooth_mirrored_strip(&fan, pieces, pair, objects, tally, strip, segment);
 }

@@ -25,8 +25,9 @@ struct wavefront_cell {
     real offset_along, fraction_across; /* where the ray met it: m off its middle; 0...1 */
 };
 
-FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan, int strip,
-                                                 int stratum, struct random_key key,
+FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
+                                                 GLOBAL const struct ray_piece_record *pieces,
+                                                 int strip, int stratum, struct random_key key,
                                                  RECORD_WORD first_ray)
 {
     const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
@@ -38,7 +39,7 @@ FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan, i
     cell.offset_along = (along - 0.5f) * cell.width_along;
     const float middle = strip_position(fan, strip) +
                          ((float)stratum + 0.5f - 0.5f * (float)fan->strata) * cell.width_along;
-    cell.ray = fan_ray_at(fan, middle + cell.offset_along,
+    cell.ray = fan_ray_at(fan, pieces, middle + cell.offset_along,
                           fan->first_elevation +
                               (REAL_OF(number) + cell.fraction_across) * fan->elevation_step);
     return cell;
@@ -52,13 +53,13 @@ struct cell_phase {
 };
 
 /* gradient: of the whole path, along-track and across the ray. range: half the path by way of the
- * hit; range_out: from the source to the hit. */
+ * hit; wavefront: its width per rad of elevation at the hit. */
 FUNCTION struct cell_phase integrate_cell(const struct fan_record *fan,
                                           const struct wavefront_cell *cell, real gradient_along,
-                                          real gradient_across, real range, real range_out)
+                                          real gradient_across, real range, real wavefront)
 {
     const float width_along = cell->width_along;
-    const real width_across = fan->elevation_step * range_out;
+    const real width_across = fan->elevation_step * wavefront;
     const real offset_across = (cell->fraction_across - 0.5f) * width_across;
     const float per_cycle =
         0.5f * fan->inverse_wavelength; /* k w g / 2 in cycles is w g / (2 lambda) */
@@ -100,11 +101,13 @@ FUNCTION void put_smooth_echo(const struct fan_record *fan, mask is_hit, struct 
 }
 
 FUNCTION void trace_smooth_group(const struct fan_record *fan,
+                                 GLOBAL const struct ray_piece_record *pieces,
                                  GLOBAL const struct object_record *objects, int strip, int stratum,
                                  struct random_key key, RECORD_WORD first_ray,
                                  struct smooth_echo *echo)
 {
-    const struct wavefront_cell cell = wavefront_cell_at(fan, strip, stratum, key, first_ray);
+    const struct wavefront_cell cell =
+        wavefront_cell_at(fan, pieces, strip, stratum, key, first_ray);
     const struct fan_ray ray = cell.ray;
     const struct nearest_hit nearest =
         find_nearest_hit(objects, fan->objects, ray.closest, ray.direction, -fan->reference_range);
@@ -117,9 +120,10 @@ FUNCTION void trace_smooth_group(const struct fan_record *fan,
     const real cosine = larger(-dot3(normal, ray.direction), SPLAT(1.0e-6f));
     const real range = ray.range_at_closest + distance;
     /* the path's gradient along a direction q across the ray is -2 n.q/(n.d) */
-    const struct cell_phase phase = integrate_cell(fan, &cell, 2.0f * normal.x / cosine,
-                                                   2.0f * dot3(normal, ray.upward) / cosine, range,
-                                                   fan->reference_range + range);
+    struct cell_phase phase =
+        integrate_cell(fan, &cell, 2.0f * normal.x / cosine,
+                       2.0f * dot3(normal, ray.upward) / cosine, range, ray.wavefront + distance);
+    phase.amplitude = phase.amplitude * refraction_gain(fan, &ray, distance);
     real reflection_real, reflection_imaginary;
     smooth_reflection(&object->surface, cosine, &reflection_real, &reflection_imaginary);
     put_smooth_echo(fan, is_hit, phase, reflection_real, reflection_imaginary, echo);
@@ -144,6 +148,7 @@ FUNCTION void tally_smooth_echo(GLOBAL TALLY *tally, const struct smooth_echo *e
 
 /* Traces the share `segment` of a sub-strip's fan; tally: strips x bins x (real, imaginary). */
 FUNCTION struct outcome_record trace_smooth_strip(const struct fan_record *fan,
+                                                  GLOBAL const struct ray_piece_record *pieces,
                                                   GLOBAL const struct object_record *objects,
                                                   GLOBAL TALLY *tally, int strip, int segment)
 {
@@ -158,7 +163,7 @@ FUNCTION struct outcome_record trace_smooth_strip(const struct fan_record *fan,
             struct smooth_echo echo;
             const RECORD_WORD left = fan->rays - group * WIDTH;
             outcome.rays += left < WIDTH ? left : WIDTH;
-            trace_smooth_group(fan, objects, strip, stratum, key, group * WIDTH, &echo);
+            trace_smooth_group(fan, pieces, objects, strip, stratum, key, group * WIDTH, &echo);
             for (int lane = 0; lane < WIDTH; lane++)
                 tally_smooth_echo(line, &echo, lane, &outcome);
         }

@@ -7,23 +7,25 @@
 #include "trace_smooth.h"
 
 FUNCTION void trace_smooth_mirrored_group(const struct fan_record *fan,
+                                          GLOBAL const struct ray_piece_record *pieces,
                                           GLOBAL const struct source_pair_record *pair,
                                           GLOBAL const struct object_record *objects, int strip,
                                           int stratum, struct random_key key, RECORD_WORD first_ray,
                                           struct smooth_echo *echo, struct outcome_record *outcome)
 {
-    const struct wavefront_cell cell = wavefront_cell_at(fan, strip, stratum, key, first_ray);
+    const struct wavefront_cell cell =
+        wavefront_cell_at(fan, pieces, strip, stratum, key, first_ray);
     GLOBAL const struct object_record *object = &objects[fan->only_object];
     const struct mirrored_hit hit = find_mirrored_hit(fan, pair, object, &cell.ray, cell.is_ray);
     const struct mirrored_path path =
-        follow_path(fan, pair, objects, &hit, cell.ray.direction, outcome);
+        follow_path(fan, pieces, pair, objects, &cell.ray, &hit, outcome);
     const real cosine_out = larger(hit.cosine, SPLAT(1.0e-4f));
     const real bend = 1.0f + dot3(path.back.direction, cell.ray.direction);
     const real gradient_along = bend * hit.normal.x / cosine_out;
     const real gradient_across = bend * dot3(hit.normal, cell.ray.upward) / cosine_out +
                                  dot3(path.back.direction, cell.ray.upward);
     struct cell_phase phase =
-        integrate_cell(fan, &cell, gradient_along, gradient_across, path.range, path.length_out);
+        integrate_cell(fan, &cell, gradient_along, gradient_across, path.range, path.wavefront_out);
     phase.amplitude = phase.amplitude * (0.5f * pair->echoes) *
                       (1.0f + path.cosine_back / cosine_out) * path.spreading;
     real one_real, one_imaginary;
@@ -37,8 +39,9 @@ FUNCTION void trace_smooth_mirrored_group(const struct fan_record *fan,
 
 /* As trace_smooth_strip. */
 FUNCTION struct outcome_record trace_smooth_mirrored_strip(
-    const struct fan_record *fan, GLOBAL const struct source_pair_record *pair,
-    GLOBAL const struct object_record *objects, GLOBAL TALLY *tally, int strip, int segment)
+    const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
+    GLOBAL const struct source_pair_record *pair, GLOBAL const struct object_record *objects,
+    GLOBAL TALLY *tally, int strip, int segment)
 {
     struct outcome_record outcome = {0, 0, 0, 0};
     const struct random_key key = random_key_of(fan->seed_low, fan->seed_high, fan->stream,
@@ -51,8 +54,8 @@ FUNCTION struct outcome_record trace_smooth_mirrored_strip(
             struct smooth_echo echo;
             const RECORD_WORD left = fan->rays - group * WIDTH;
             outcome.rays += left < WIDTH ? left : WIDTH;
-            trace_smooth_mirrored_group(fan, pair, objects, strip, stratum, key, group * WIDTH,
-                                        &echo, &outcome);
+            trace_smooth_mirrored_group(fan, pieces, pair, objects, strip, stratum, key,
+                                        group * WIDTH, &echo, &outcome);
             for (int lane = 0; lane < WIDTH; lane++)
                 tally_smooth_echo(line, &echo, lane, &outcome);
         }

@@ -9,6 +9,7 @@
 #include <sonject/export.h>
 #include <sonject/image.h>
 #include <sonject/injection.h>
+#include <sonject/medium.h>
 #include <sonject/object.h>
 #include <sonject/seabed.h>
 #include <sonject/sonar.h>
@@ -60,6 +61,26 @@ SONJECT_API sonject_status sonject_scene_set_sonar(sonject_scene *scene,
                                                    const sonject_sonar_params *sonar);
 SONJECT_API sonject_status sonject_scene_set_medium(sonject_scene *scene,
                                                     const sonject_medium_params *medium);
+/* Replaces the water by level layers with refraction at the planes between them. bottoms_m: height
+ * of each layer's lower edge over the mean seabed, count of them, the first 0, rising; the last
+ * layer has no upper edge. sound_speeds_mps: 100...10000 each. densities: of the layers in any one
+ * unit, above 0, NULL where they are equal; where they differ, planes also reflect (Rayleigh) and
+ * what they transmit goes on. Up to 4096 layers; count 0: isovelocity water again. All is copied;
+ * on failure the scene is unchanged. Errors: ARGUMENT, INPUT, MEMORY. */
+SONJECT_API sonject_status sonject_scene_set_water_layers(sonject_scene *scene,
+                                                          const double *bottoms_m,
+                                                          const double *sound_speeds_mps,
+                                                          const double *densities, size_t count);
+
+/* The same for a measured profile: sound speeds at heights_m over the mean seabed, rising, at least
+ * two, linear in between and constant beyond, turned into layers so thin that the sound speed
+ * changes by at most 1/20000 from one to the next. Errors: ARGUMENT, INPUT (also: more layers than
+ * 4096), MEMORY. */
+SONJECT_API sonject_status sonject_scene_set_sound_speed_profile(sonject_scene *scene,
+                                                                 const double *heights_m,
+                                                                 const double *sound_speeds_mps,
+                                                                 size_t count);
+
 SONJECT_API sonject_status sonject_scene_set_seabed(sonject_scene *scene,
                                                     const sonject_seabed_params *seabed);
 /* depth 0 takes the surface away. That it lies above the sonar is checked when the scene is used.

@@ -1,4 +1,4 @@
-/* The sonar as its images show it, and the water that it works in. SI units. */
+/* The sonar as its images show it. SI units. */
 #ifndef SONJECT_SONAR_H
 #define SONJECT_SONAR_H
 
@@ -32,17 +32,6 @@ typedef struct sonject_sonar_params {
 
 /* 100 kHz, 30 kHz bandwidth, 10 m altitude, point source, rectangular window. */
 SONJECT_API void sonject_sonar_params_init(sonject_sonar_params *sonar);
-
-typedef struct sonject_medium_params {
-    uint32_t struct_size;
-    uint32_t reserved;
-    double sound_speed_mps;           /* of the water, 100...10000 */
-    double reference_sound_speed_mps; /* that the image processor assumed; 0: the same. A target at
-                                         range r appears at r * reference / true */
-} sonject_medium_params;
-
-/* Isovelocity water at 1500 m/s. */
-SONJECT_API void sonject_medium_params_init(sonject_medium_params *medium);
 
 SONJECT_END_DECLARATIONS
 

@@ -50,7 +50,19 @@ static void text_add(struct text *text, const char *format, ...)
 
 static double grazing_degrees(const struct patch_view *view, double apparent_range)
 {
-    return asin(view_grazing_sine(view, apparent_range)) * DEGREES_PER_RADIAN;
+    return view_grazing(view, apparent_range) * DEGREES_PER_RADIAN;
+}
+
+static void describe_water(struct text *text, const struct water_way *way)
+{
+    const struct water *water = way->water;
+    text_add(text, "water      %.1f m/s around seabed and objects", water->straight_speed_mps);
+    if (water->count == 1)
+        text_add(text, "\n");
+    else
+        text_add(text, " up to %.2f m, %.1f m/s at the sonar, %zu layers%s\n",
+                 water->layers[1].bottom_m, water_layer_at(water, way->sonar_height_m)->speed_mps,
+                 water->count, way->is_straight ? ", none of which the sound crosses" : "");
 }
 
 static void describe_patch(struct text *text, const struct scene *scene, const struct swath *swath,
@@ -72,6 +84,7 @@ static void describe_patch(struct text *text, const struct scene *scene, const s
     text_add(text, "sonar      %.4g kHz, bandwidth %.4g kHz, altitude %.3g m, wavelength %.4g mm\n",
              scene->sonar.centre_frequency_hz / 1e3, scene->sonar.bandwidth_hz / 1e3,
              scene->sonar.altitude_m, view->wavelength_m * 1e3);
+    describe_water(text, &view->water);
     text_add(text, "injection  %s, paths that meet up to %u surface%s\n",
              scene->injection.mode == SONJECT_MODE_RESYNTHESISE ? "resynthesise" : "composite",
              (unsigned)scene->injection.interactions,
@@ -82,7 +95,7 @@ static void describe_patch(struct text *text, const struct scene *scene, const s
 static double shadow_length(const struct patch_view *view, const struct placement *placement,
                             double top)
 {
-    return top > 0.0 ? placement->centre[1] * top / (view->altitude_m - top) : 0.0;
+    return top > 0.0 ? top / tan(water_way_grazing(&view->water, placement->centre[1], top)) : 0.0;
 }
 
 static double top_of(const struct scene *scene, const struct placement *placement, uint32_t i)
@@ -99,9 +112,11 @@ static void describe_objects(struct text *text, const struct scene *scene,
         const double top = top_of(scene, placement, i);
         const double range = placement_range(placement, view) * view->range_ratio;
         text_add(text,
-                 "object %-3u %s (%s): row %.1f, slant range %.2f m, top %.3f m, shadow %.2f m\n",
+                 "object %-3u %s (%s): row %.1f, slant range %.2f m, grazing angle %.1f deg, top "
+                 "%.3f m, shadow %.2f m\n",
                  (unsigned)(i + 1), scene->objects[i].name, shape_name(scene->objects[i].shape),
-                 view_row_of_x(view, placement->centre[0]), range, top,
+                 view_row_of_x(view, placement->centre[0]), range,
+                 placement_grazing(placement, view) * DEGREES_PER_RADIAN, top,
                  shadow_length(view, placement, top));
     }
 }
@@ -163,6 +178,7 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
         return null_argument(report, "scene");
     const struct scene *scene = &handle->scene;
     struct swath swath;
+    struct water water = {NULL, 0, 0.0};
     struct patch_view view;
     struct placement *placements = allocate_array(scene->object_count, sizeof *placements);
     if (!placements)
@@ -171,7 +187,7 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
     if (status == SONJECT_OK)
         status = injection_check(report, scene, (double)swath.patch.first_row,
                                  (double)swath.patch.first_column, (size_t)swath.patch.rows,
-                                 (size_t)swath.patch.columns, &view, placements);
+                                 (size_t)swath.patch.columns, &water, &view, placements);
     if (status == SONJECT_OK) {
         struct text text = {NULL, 0, 0, false};
         describe_patch(&text, scene, &swath, &view);
@@ -185,6 +201,7 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
         }
     }
     free(placements);
+    water_clear(&water);
     return status;
 }
 

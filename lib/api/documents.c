@@ -88,6 +88,8 @@ static json_t *object_document(const struct run_facts *facts, uint32_t index)
     add(document, "slant_range_m", number(truth->slant_range_m));
     add(document, "ground_range_m", number(truth->ground_range_m));
     add(document, "height_m", number(truth->height_m));
+    add(document, "grazing_deg", number(truth->grazing_rad * DEGREES_PER_RADIAN));
+    add(document, "transmission_loss_db", number(truth->transmission_loss_db));
     add(document, "row", number(truth->row + (double)facts->swath->patch.first_row));
     add(document, "column", number(truth->column + (double)facts->swath->patch.first_column));
     add(document, "visible", json_boolean(truth->is_visible));

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "io/scene_file.h"
+#include "medium/profile.h"
 
 /* Takes a structure into a local copy, checks it, and only then changes the scene. */
 #define SET_CHECKED(scene_handle, type, member, params, checker, name)                             \
@@ -75,6 +76,65 @@ sonject_status sonject_scene_set_sonar(sonject_scene *scene, const sonject_sonar
 sonject_status sonject_scene_set_medium(sonject_scene *scene, const sonject_medium_params *medium)
 {
     SET_CHECKED(scene, sonject_medium_params, medium, medium, check_medium, "medium");
+}
+
+/* Takes the layers over. */
+static void replace_layers(struct scene *scene, struct water_layer *layers, size_t count)
+{
+    free(scene->water_layers);
+    scene->water_layers = layers;
+    scene->water_layer_count = count;
+}
+
+sonject_status sonject_scene_set_water_layers(sonject_scene *scene, const double *bottoms_m,
+                                              const double *sound_speeds_mps,
+                                              const double *densities, size_t count)
+{
+    if (!scene)
+        return SONJECT_ERROR_ARGUMENT;
+    if (count == 0) {
+        replace_layers(&scene->scene, NULL, 0);
+        return SONJECT_OK;
+    }
+    if (!bottoms_m || !sound_speeds_mps)
+        return null_argument(scene->report, "bottoms_m and sound_speeds_mps");
+    if (count > WATER_LAYERS_MAX)
+        return report_failure(scene->report, SONJECT_ERROR_INPUT,
+                              "layers: %zu of them; at most %d are possible", count,
+                              WATER_LAYERS_MAX);
+    struct water_layer *layers = allocate_array(count, sizeof *layers);
+    if (!layers)
+        return report_out_of_memory(scene->report, "the layers of water");
+    for (size_t i = 0; i < count; i++) {
+        layers[i].bottom_m = bottoms_m[i];
+        layers[i].speed_mps = sound_speeds_mps[i];
+        layers[i].density = densities ? densities[i] : 1.0;
+    }
+    const sonject_status status = check_water_layers(layers, count, scene->report, NULL);
+    if (status == SONJECT_OK)
+        replace_layers(&scene->scene, layers, count);
+    else
+        free(layers);
+    return status;
+}
+
+sonject_status sonject_scene_set_sound_speed_profile(sonject_scene *scene, const double *heights_m,
+                                                     const double *sound_speeds_mps, size_t count)
+{
+    struct water_layer *layers = NULL;
+    size_t layer_count = 0;
+    if (!scene)
+        return SONJECT_ERROR_ARGUMENT;
+    if (!heights_m || !sound_speeds_mps)
+        return null_argument(scene->report, "heights_m and sound_speeds_mps");
+    sonject_status status =
+        check_sound_speed_profile(heights_m, sound_speeds_mps, count, scene->report, NULL);
+    if (status == SONJECT_OK)
+        status = layers_of_profile(heights_m, sound_speeds_mps, count, scene->report, &layers,
+                                   &layer_count);
+    if (status == SONJECT_OK)
+        replace_layers(&scene->scene, layers, layer_count);
+    return status;
 }
 
 sonject_status sonject_scene_set_seabed(sonject_scene *scene, const sonject_seabed_params *seabed)

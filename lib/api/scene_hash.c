@@ -24,6 +24,17 @@ static void add_material(struct hash *hash, const sonject_material_params *mater
     ADD(hash, material->loss);
 }
 
+static void add_water_layers(struct hash *hash, const struct scene *scene)
+{
+    const uint64_t count = scene->water_layer_count;
+    ADD(hash, count);
+    for (size_t i = 0; i < scene->water_layer_count; i++) {
+        ADD(hash, scene->water_layers[i].bottom_m);
+        ADD(hash, scene->water_layers[i].speed_mps);
+        ADD(hash, scene->water_layers[i].density);
+    }
+}
+
 static void add_sonar(struct hash *hash, const struct scene *scene)
 {
     const sonject_sonar_params *sonar = &scene->sonar;
@@ -37,6 +48,7 @@ static void add_sonar(struct hash *hash, const struct scene *scene)
     ADD(hash, sonar->taylor_terms);
     ADD(hash, scene->medium.sound_speed_mps);
     ADD(hash, scene->medium.reference_sound_speed_mps);
+    ADD(hash, scene->medium.absorption_db_per_m);
     ADD(hash, scene->seabed.map);
     ADD(hash, scene->seabed.lambert);
     ADD(hash, scene->seabed.level_radius_m);
@@ -106,6 +118,7 @@ sonject_status scene_hash(struct report *report, const struct scene *scene,
         return report_out_of_memory(report, "a hash");
     hash_add_text(hash, sonject_version());
     add_sonar(hash, scene);
+    add_water_layers(hash, scene);
     add_image(hash, scene);
     add_injection(hash, &scene->injection);
     for (uint32_t i = 0; i < scene->object_count; i++)

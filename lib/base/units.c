@@ -28,6 +28,9 @@ static const struct units units_of[] = {
     [QUANTITY_ANGLE] = {"deg, rad", {{"deg", 0}, {"rad", 0}}},
     [QUANTITY_DECIBEL] = {"dB", {{"dB", 0}}},
     [QUANTITY_LEVEL] = {"dB", {{"dB", 0}}},
+    [QUANTITY_ABSORPTION] = {"dB/m, dB/km", {{"dB/m", 0}, {"dB/km", -3}}},
+    [QUANTITY_TEMPERATURE] = {"C", {{"C", 0}}},
+    [QUANTITY_DENSITY] = {"kg/m3, g/cm3", {{"kg/m3", 0}, {"g/cm3", 3}}},
 };
 
 static bool is_blank(char c)

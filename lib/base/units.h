@@ -6,13 +6,16 @@
 #include <stddef.h>
 
 enum quantity {
-    QUANTITY_NUMBER,    /* no unit allowed */
-    QUANTITY_LENGTH,    /* m (bare numbers too); km, cm, mm */
-    QUANTITY_FREQUENCY, /* Hz (bare numbers too); kHz, MHz */
-    QUANTITY_SPEED,     /* m/s (bare numbers too); km/s */
-    QUANTITY_ANGLE,     /* radians out; deg (bare numbers too), rad */
-    QUANTITY_DECIBEL,   /* dB (bare numbers too) */
-    QUANTITY_LEVEL      /* linear energy ratio out; "-27 dB" or a bare linear number */
+    QUANTITY_NUMBER,      /* no unit allowed */
+    QUANTITY_LENGTH,      /* m (bare numbers too); km, cm, mm */
+    QUANTITY_FREQUENCY,   /* Hz (bare numbers too); kHz, MHz */
+    QUANTITY_SPEED,       /* m/s (bare numbers too); km/s */
+    QUANTITY_ANGLE,       /* radians out; deg (bare numbers too), rad */
+    QUANTITY_DECIBEL,     /* dB (bare numbers too) */
+    QUANTITY_LEVEL,       /* linear energy ratio out; "-27 dB" or a bare linear number */
+    QUANTITY_ABSORPTION,  /* dB/m (bare numbers too); dB/km */
+    QUANTITY_TEMPERATURE, /* degrees Celsius: C (bare numbers too) */
+    QUANTITY_DENSITY      /* kg/m3 (bare numbers too); g/cm3 */
 };
 
 /* Parses the whole text. On success *value is in SI units as listed above. On failure returns false

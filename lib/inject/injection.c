@@ -14,10 +14,13 @@
 
 sonject_status injection_check(struct report *report, const struct scene *scene, double first_row,
                                double first_column, size_t rows, size_t columns,
-                               struct patch_view *view, struct placement *placements)
+                               struct water *water, struct patch_view *view,
+                               struct placement *placements)
 {
-    sonject_status status =
-        patch_view_init(view, report, scene, first_row, first_column, rows, columns);
+    sonject_status status = scene_lay_water(scene, report, water);
+    if (status == SONJECT_OK)
+        status =
+            patch_view_init(view, report, scene, water, first_row, first_column, rows, columns);
     for (uint32_t i = 0; status == SONJECT_OK && i < scene->object_count; i++)
         status = placement_init(&placements[i], report, view, first_row, first_column,
                                 &scene->objects[i]);
@@ -258,6 +261,7 @@ sonject_status injection_run(struct report *report, struct device *device,
     struct placement *placements = allocate_array(scene->object_count, sizeof *placements);
     if (!placements)
         return report_out_of_memory(report, "objects");
+    struct water water = {NULL, 0, 0.0};
     struct tracer tracer;
     memset(&tracer, 0, sizeof tracer);
     tracer.report = report;
@@ -267,12 +271,17 @@ sonject_status injection_run(struct report *report, struct device *device,
     sonject_status status = check_combination(report, scene, input->is_complex);
     if (status == SONJECT_OK)
         status = injection_check(report, scene, input->first_row, input->first_column, input->rows,
-                                 input->columns, &tracer.view, placements);
+                                 input->columns, &water, &tracer.view, placements);
+    if (status == SONJECT_OK && scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
+        !tracer.view.water.is_straight)
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "the brute force estimator follows straight rays only: use connect "
+                                "where layers of water bend them");
     if (status == SONJECT_OK)
         status = result_init(result, report, scene, input);
     if (status == SONJECT_OK) {
         const size_t row_bytes = input->columns * (input->is_complex ? 2 : 1) * sizeof(float);
-        const double reference = tracer.view.range_ratio * scene->medium.sound_speed_mps;
+        const double reference = tracer.view.range_ratio * water.straight_speed_mps;
         /* a row of the widest layer, the field */
         char *scratch = allocate_array(input->columns, 2 * sizeof(float));
         float *pixels = allocate_array(input->rows, row_bytes);
@@ -296,6 +305,7 @@ sonject_status injection_run(struct report *report, struct device *device,
         free(pixels);
     }
     free(placements);
+    water_clear(&water);
     if (status != SONJECT_OK)
         injection_result_clear(result);
     return status;

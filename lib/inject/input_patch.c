@@ -5,15 +5,14 @@
 
 #include "base/memory.h"
 #include "image/synthetic.h"
+#include "scene/patch_view.h"
 #include "scene/point_response.h"
 
 static sonject_status make_synthetic(struct report *report, const struct scene *scene,
                                      struct injection_input *input)
 {
     const sonject_synthetic_params *synthetic = &scene->synthetic;
-    const double reference = scene->medium.reference_sound_speed_mps > 0.0
-                                 ? scene->medium.reference_sound_speed_mps
-                                 : scene->medium.sound_speed_mps;
+    const double reference = scene_reference_speed(scene);
     struct point_response response;
     point_response_init(&response, &scene->sonar, reference, scene->geometry.row_spacing_m);
     input->is_complex = synthetic->complex_pixels != 0;

@@ -14,11 +14,13 @@
 double seabed_cell_energy(const struct patch_view *view, const struct point_response *response,
                           double mu, double apparent_range_m)
 {
-    const double sine = view_grazing_sine(view, apparent_range_m);
-    const double cosine = sqrt(fmax(1e-12, 1.0 - sine * sine));
+    const double grazing = view_grazing(view, apparent_range_m);
+    const double sine = sin(grazing);
+    const double cosine = fmax(1e-6, cos(grazing));
     const double area = along_track_energy_width(response) * range_energy_width(response) /
                         (view->range_ratio * cosine);
-    return mu * sine * sine * area * view_energy_scale(view);
+    return mu * sine * sine * area * view_energy_scale(view) *
+           view_refraction_gain(view, apparent_range_m);
 }
 
 void patch_level_clear(struct patch_level *level)

@@ -130,6 +130,14 @@ static void find_object(const struct patch_level *level, const struct echoes *ec
     truth->shadow_contrast_db = decibels_over(&shadow);
 }
 
+static double transmission_loss(const struct tracer *tracer, const struct placement *placement,
+                                double grazing)
+{
+    const struct water_ray ray = water_way_ray(&tracer->view.water, grazing, placement->centre[2]);
+    return 10.0 * log10(ray.ground_range_m * ray.wavefront_m / ray.spreading) +
+           tracer->scene->medium.absorption_db_per_m * ray.length_m;
+}
+
 static void locate(const struct tracer *tracer, uint32_t number, sonject_object_truth *truth)
 {
     const struct placement *placement = &tracer->placements[number];
@@ -141,6 +149,8 @@ static void locate(const struct tracer *tracer, uint32_t number, sonject_object_
     truth->slant_range_m = placement_range(placement, view) * view->range_ratio;
     truth->row = view_row_of_x(view, placement->centre[0]);
     truth->column = view_column_of_range(view, truth->slant_range_m);
+    truth->grazing_rad = placement_grazing(placement, view);
+    truth->transmission_loss_db = transmission_loss(tracer, placement, truth->grazing_rad);
 }
 
 void find_truth(const struct tracer *tracer, const struct patch_level *level,

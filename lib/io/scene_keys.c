@@ -21,6 +21,9 @@ static const char *unit_of(const struct field *field)
         [QUANTITY_ANGLE] = "deg, rad",
         [QUANTITY_DECIBEL] = "dB",
         [QUANTITY_LEVEL] = "dB, or a linear number",
+        [QUANTITY_ABSORPTION] = "dB/m, dB/km",
+        [QUANTITY_TEMPERATURE] = "C",
+        [QUANTITY_DENSITY] = "kg/m3, g/cm3",
     };
     switch (field->kind) {
     case FIELD_QUANTITY:
@@ -35,7 +38,7 @@ static const char *unit_of(const struct field *field)
     case FIELD_PATH:
         return "file name";
     case FIELD_NAMED:
-        return "name";
+        return field->unit ? field->unit : "name";
     case FIELD_SPECIAL:
         return field->unit ? field->unit : "whole number";
     default:
@@ -67,7 +70,7 @@ static void list_section(struct listing *listing, const char *prefix, const stru
             list_field(listing, path, field);
         if (!field->section)
             continue;
-        snprintf(below, sizeof below, "%s%s", path, field->kind == FIELD_SPECIAL ? "[]." : ".");
+        snprintf(below, sizeof below, "%s%s", path, field->is_list ? "[]." : ".");
         list_section(listing, below, field->section);
     }
 }

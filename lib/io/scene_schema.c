@@ -131,15 +131,6 @@ static const struct field sonar_fields[] = {
 static const struct section sonar_section = {sonar_fields, COUNT(sonar_fields), finish_sonar};
 #undef STRUCTURE
 
-#define STRUCTURE sonject_medium_params
-static const struct field medium_fields[] = {
-    {"sound_speed", "of the water", QUANTITY(STRUCTURE, sound_speed_mps, QUANTITY_SPEED)},
-    {"reference_sound_speed", "that the image processor assumed; by default the true one",
-     QUANTITY(STRUCTURE, reference_sound_speed_mps, QUANTITY_SPEED)},
-};
-static const struct section medium_section = {medium_fields, COUNT(medium_fields), finish_medium};
-#undef STRUCTURE
-
 #define STRUCTURE sonject_seabed_params
 static const struct field seabed_fields[] = {
     {"lambert", "backscatter mu at normal incidence, -27 dB on Mackenzie's seabed",
@@ -240,6 +231,8 @@ static const struct field object_fields[] = {
 const struct section object_section = {object_fields, COUNT(object_fields), finish_object};
 #undef STRUCTURE
 
+/* Keys are read in this order, whatever the file's: the water needs the sonar's frequency and the
+ * surface's depth. */
 #define STRUCTURE struct scene
 static const struct field scene_fields[] = {
     {"sonject", "version of the format, 1", .kind = FIELD_SPECIAL, .read = read_version, REQUIRED},
@@ -249,13 +242,13 @@ static const struct field scene_fields[] = {
      PART(STRUCTURE, patch, patch_section)},
     {"sonar", "the sonar: frequency, bandwidth and altitude", PART(STRUCTURE, sonar, sonar_section),
      REQUIRED},
-    {"medium", "the water", PART(STRUCTURE, medium, medium_section)},
     {"seabed", "the seabed", PART(STRUCTURE, seabed, seabed_section)},
     {"surface", "the sea surface; by default none is heard",
      PART(STRUCTURE, surface, surface_section)},
+    {"medium", "the water", .kind = FIELD_SPECIAL, .read = read_medium, .section = &medium_section},
     {"injection", "how targets are put into the image",
      PART(STRUCTURE, injection, injection_section)},
     {"objects", "list of the targets", .kind = FIELD_SPECIAL, .read = read_objects,
-     .section = &object_section},
+     .section = &object_section, .is_list = true},
 };
 const struct section scene_section = {scene_fields, COUNT(scene_fields), finish_scene};

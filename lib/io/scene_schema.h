@@ -35,6 +35,7 @@ struct field {
     const char *meaning;
     enum field_kind kind;
     bool is_required;
+    bool is_list; /* the section is that of each entry */
     enum quantity quantity;
     size_t offset;                      /* of the destination in the section's structure */
     uint64_t maximum;                   /* of a count */
@@ -117,7 +118,6 @@ sonject_status finish_patch(struct reader *reader, const struct tree_node *node,
 sonject_status finish_sonar(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status finish_response(struct reader *reader, const struct tree_node *node,
                                void *structure);
-sonject_status finish_medium(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status finish_seabed(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status finish_surface(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status finish_injection(struct reader *reader, const struct tree_node *node,
@@ -125,6 +125,11 @@ sonject_status finish_injection(struct reader *reader, const struct tree_node *n
 sonject_status finish_position(struct reader *reader, const struct tree_node *node,
                                void *structure);
 sonject_status finish_object(struct reader *reader, const struct tree_node *node, void *structure);
+
+/* The water, in scene_medium.c. Its table fills a struct of its own, so read_medium reads it, when
+ * sonar and surface are known. */
+extern const struct section medium_section;
+sonject_status read_medium(struct reader *reader, const struct tree_node *node, void *structure);
 
 /* The objects' table, for read_objects. */
 extern const struct section object_section;

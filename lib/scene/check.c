@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "scene/ranges.h"
+#include "scene/check_material.h"
 #include "scene/scene.h"
 
 #define PI 3.14159265358979323846
@@ -67,6 +67,7 @@ sonject_status check_medium(const sonject_medium_params *medium, struct report *
     if (medium->reference_sound_speed_mps != 0.0)
         check_within(&check, "reference_sound_speed", medium->reference_sound_speed_mps, 100.0,
                      10000.0, " m/s");
+    check_within(&check, "absorption", medium->absorption_db_per_m, 0.0, 100.0, " dB/m");
     return check.status;
 }
 

@@ -1,7 +1,7 @@
 /* Ranges of a material's values. */
 #include <math.h>
 
-#include "scene/ranges.h"
+#include "scene/check_material.h"
 
 #define PI 3.14159265358979323846
 

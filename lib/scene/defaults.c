@@ -4,6 +4,7 @@
 
 #include <sonject/image.h>
 #include <sonject/injection.h>
+#include <sonject/medium.h>
 #include <sonject/object.h>
 #include <sonject/seabed.h>
 #include <sonject/sonar.h>

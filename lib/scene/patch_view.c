@@ -2,14 +2,34 @@
 
 #include <math.h>
 
+#include "scene/placement.h"
+
+#define PI 3.14159265358979323846
+
+sonject_status scene_lay_water(const struct scene *scene, struct report *report,
+                               struct water *water)
+{
+    double highest = 0.0;
+    for (uint32_t i = 0; i < scene->object_count; i++)
+        highest = fmax(highest, object_top(&scene->objects[i]));
+    return water_init(water, report, scene->water_layers, scene->water_layer_count,
+                      scene->medium.sound_speed_mps, highest);
+}
+
+double scene_reference_speed(const struct scene *scene)
+{
+    if (scene->medium.reference_sound_speed_mps > 0.0)
+        return scene->medium.reference_sound_speed_mps;
+    return scene->water_layer_count > 0 ? scene->water_layers[0].speed_mps
+                                        : scene->medium.sound_speed_mps;
+}
+
 sonject_status patch_view_init(struct patch_view *view, struct report *report,
-                               const struct scene *scene, double first_row, double first_column,
-                               size_t rows, size_t columns)
+                               const struct scene *scene, const struct water *water,
+                               double first_row, double first_column, size_t rows, size_t columns)
 {
     const sonject_geometry_params *geometry = &scene->geometry;
-    const double reference = scene->medium.reference_sound_speed_mps > 0.0
-                                 ? scene->medium.reference_sound_speed_mps
-                                 : scene->medium.sound_speed_mps;
+    const double reference = scene_reference_speed(scene);
     if (rows == 0 || columns == 0)
         return report_failure(report, SONJECT_ERROR_INPUT, "the patch has no pixels");
     if (scene->surface.water_depth_m > 0.0 &&
@@ -22,15 +42,16 @@ sonject_status patch_view_init(struct patch_view *view, struct report *report,
     view->columns = columns;
     view->row_spacing_m = geometry->row_spacing_m;
     view->column_spacing_m = geometry->column_spacing_m;
-    view->range_ratio = reference / scene->medium.sound_speed_mps;
+    view->range_ratio = reference / water->straight_speed_mps;
     view->altitude_m = scene->sonar.altitude_m;
-    view->wavelength_m = scene->medium.sound_speed_mps / scene->sonar.centre_frequency_hz;
+    view->water = water_way_direct(water, view->altitude_m);
+    view->wavelength_m = water->straight_speed_mps / scene->sonar.centre_frequency_hz;
     view->is_mirrored = geometry->side == SONJECT_SIDE_STARBOARD;
     const double along = geometry->first_along_track_m + first_row * geometry->row_spacing_m;
     view->first_x_m =
         view->is_mirrored ? -(along + (double)(rows - 1) * geometry->row_spacing_m) : along;
     view->first_range_m = geometry->first_slant_range_m + first_column * geometry->column_spacing_m;
-    if (!(view->first_range_m > view->altitude_m * view->range_ratio))
+    if (!(view_ground_range(view, view->first_range_m) > 0.0))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "the patch starts at %.3f m slant range, which is not beyond the "
                               "altitude of %.3f m: move the patch outwards or correct "
@@ -61,15 +82,24 @@ double view_column_of_range(const struct patch_view *view, double apparent_range
 
 double view_ground_range(const struct patch_view *view, double apparent_range_m)
 {
-    const double range = apparent_range_m / view->range_ratio;
-    const double square = range * range - view->altitude_m * view->altitude_m;
-    return square > 0.0 ? sqrt(square) : 0.0;
+    return water_way_ground_range(&view->water, apparent_range_m / view->range_ratio);
 }
 
-double view_grazing_sine(const struct patch_view *view, double apparent_range_m)
+double view_grazing(const struct patch_view *view, double apparent_range_m)
 {
-    const double sine = view->altitude_m * view->range_ratio / apparent_range_m;
-    return sine < 1.0 ? sine : 1.0;
+    const double ground = view_ground_range(view, apparent_range_m);
+    return ground > 0.0 ? water_way_grazing(&view->water, ground, 0.0) : 0.5 * PI;
+}
+
+double view_refraction_gain(const struct patch_view *view, double apparent_range_m)
+{
+    if (view->water.is_straight)
+        return 1.0;
+    const struct water_ray ray =
+        water_way_ray(&view->water, view_grazing(view, apparent_range_m), 0.0);
+    const double gain = ray.spreading * ray.straight_range_m * ray.straight_range_m /
+                        (ray.ground_range_m * ray.wavefront_m);
+    return gain * gain;
 }
 
 double view_energy_scale(const struct patch_view *view)

@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "medium/water.h"
 #include "scene/scene.h"
 
 /* Starboard images are mirrored: x runs against the image's along-track axis and row n of the
@@ -14,17 +15,26 @@ struct patch_view {
     double row_spacing_m, column_spacing_m;
     double first_x_m;     /* of row 0 of the view */
     double first_range_m; /* apparent slant range of column 0 */
-    double range_ratio;   /* apparent over true range: reference over true sound speed */
+    double range_ratio;   /* apparent over straight range: reference over straight sound speed */
     double altitude_m;
-    double wavelength_m;
+    double wavelength_m; /* in the straight water, around seabed and targets */
     bool is_mirrored;
+    struct water_way water; /* of sound straight from the sonar */
 };
 
+/* The scene's water, straight up to the highest object. Errors: as water_init. */
+sonject_status scene_lay_water(const struct scene *scene, struct report *report,
+                               struct water *water);
+
+/* The sound speed that the image processor assumed. */
+double scene_reference_speed(const struct scene *scene);
+
 /* The scene's geometry shifted to the region that starts at first_row, first_column of the swath.
- * Errors: INPUT (patch not beyond the altitude, no pixels, sea surface not above the sonar). */
+ * water is borrowed. Errors: INPUT (patch not beyond the altitude, no pixels, sea surface not above
+ * the sonar, sonar not above the straight water's targets). */
 sonject_status patch_view_init(struct patch_view *view, struct report *report,
-                               const struct scene *scene, double first_row, double first_column,
-                               size_t rows, size_t columns);
+                               const struct scene *scene, const struct water *water,
+                               double first_row, double first_column, size_t rows, size_t columns);
 
 /* Along-track position (in the view's x) of a row, which may be fractional. */
 double view_x_of_row(const struct patch_view *view, double row);
@@ -36,8 +46,13 @@ double view_column_of_range(const struct patch_view *view, double apparent_range
 /* Horizontal range of the seabed point seen at an apparent slant range; 0 above the altitude. */
 double view_ground_range(const struct patch_view *view, double apparent_range_m);
 
-/* Sine of the grazing angle of the seabed at an apparent slant range. */
-double view_grazing_sine(const struct patch_view *view, double apparent_range_m);
+/* Grazing angle in rad of the seabed at an apparent slant range; straight down above the altitude.
+ */
+double view_grazing(const struct patch_view *view, double apparent_range_m);
+
+/* What refraction does to the energy of echoes of the seabed at an apparent slant range: 1 in
+ * isovelocity water. */
+double view_refraction_gain(const struct patch_view *view, double apparent_range_m);
 
 /* (apparent / true range)^4: what the target-strength normalisation by apparent range does to
  * energies when the processor's sound speed is off. */

@@ -5,6 +5,10 @@
 
 #define PI 3.14159265358979323846
 
+static const double along[3] = {1.0, 0.0, 0.0};
+static const double outward[3] = {0.0, 1.0, 0.0};
+static const double upward[3] = {0.0, 0.0, 1.0};
+
 /* Heading turns +x towards +y, pitch raises the nose, roll turns about it. In a mirrored view the
  * image's along-track axis is -x, so heading and roll change sense. */
 static void turn_axes(double axes[3][3], const sonject_object_params *object, bool is_mirrored)
@@ -72,7 +76,29 @@ double placement_half_extent(const struct placement *placement, uint32_t shape,
 
 double placement_range(const struct placement *placement, const struct patch_view *view)
 {
-    return hypot(placement->centre[1], view->altitude_m - placement->centre[2]);
+    return water_way_range(&view->water, placement->centre[1], placement->centre[2]);
+}
+
+double placement_grazing(const struct placement *placement, const struct patch_view *view)
+{
+    return water_way_grazing(&view->water, placement->centre[1], placement->centre[2]);
+}
+
+double placement_shadow_end(const struct placement *placement, uint32_t shape,
+                            const struct patch_view *view)
+{
+    const double top = placement->centre[2] + placement_half_extent(placement, shape, upward);
+    const double end = placement->centre[1] + placement_half_extent(placement, shape, outward);
+    return top > 0.0 ? end + top / tan(water_way_grazing(&view->water, end, top)) : end;
+}
+
+double object_top(const sonject_object_params *object)
+{
+    struct placement placement;
+    memset(&placement, 0, sizeof placement);
+    take_size(&placement, object);
+    turn_axes(placement.axes, object, false); /* to which side the sonar looks does not matter */
+    return 2.0 * placement_half_extent(&placement, object->shape, upward) - object->burial_m;
 }
 
 /* Row and column of the view under the object's centre. */
@@ -109,9 +135,6 @@ sonject_status placement_init(struct placement *placement, struct report *report
             view_apparent_range(view, column));
     take_size(placement, object);
     turn_axes(placement->axes, object, view->is_mirrored);
-    static const double upward[3] = {0.0, 0.0, 1.0};
-    static const double along[3] = {1.0, 0.0, 0.0};
-    static const double outward[3] = {0.0, 1.0, 0.0};
     const double half_height = placement_half_extent(placement, object->shape, upward);
     placement->centre[0] = view_x_of_row(view, row);
     placement->centre[1] = view_ground_range(view, view_apparent_range(view, column));

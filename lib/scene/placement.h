@@ -24,7 +24,19 @@ sonject_status placement_init(struct placement *placement, struct report *report
 double placement_half_extent(const struct placement *placement, uint32_t shape,
                              const double direction[3]);
 
-/* Slant range (true, m) from the track abreast of the centre to the centre. */
+/* Slant range in m (straight: travel time times the sound speed there) from the track abreast of
+ * the centre to the centre. */
 double placement_range(const struct placement *placement, const struct patch_view *view);
+
+/* Grazing angle, rad, of the sound that comes to the centre. */
+double placement_grazing(const struct placement *placement, const struct patch_view *view);
+
+/* Ground range at which the shadow of the object's top ends; that of its far end where nothing of
+ * it stands over the seabed. */
+double placement_shadow_end(const struct placement *placement, uint32_t shape,
+                            const struct patch_view *view);
+
+/* Height of the object's highest point over the mean seabed, wherever it lies. */
+double object_top(const sonject_object_params *object);
 
 #endif

@@ -24,6 +24,7 @@ void scene_clear(struct scene *scene)
 {
     free(scene->input_path);
     free(scene->objects);
+    free(scene->water_layers);
     scene_init(scene);
 }
 

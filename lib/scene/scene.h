@@ -9,6 +9,7 @@
 #include <sonject/scene.h>
 
 #include "base/report.h"
+#include "medium/water_layer.h"
 
 #define SCENE_OBJECTS_MAX      250 /* ids must fit the 8-bit label image */
 #define SCENE_INTERACTIONS_MAX 8
@@ -16,6 +17,8 @@
 struct scene {
     sonject_sonar_params sonar;
     sonject_medium_params medium;
+    struct water_layer *water_layers; /* owned; NULL: isovelocity water at medium's sound speed */
+    size_t water_layer_count;
     sonject_seabed_params seabed;
     sonject_surface_params surface;
     sonject_geometry_params geometry;

@@ -2,7 +2,10 @@
 
 #include <math.h>
 
+#include "trace/object_rays.h"
 #include "trace/patch_fan.h"
+
+#define PI 3.14159265358979323846
 
 #define PATCH_RAYS_PER_BIN  2.0 /* brute force */
 #define SEABED_RAYS_PER_BIN 8.0 /* near the objects; thinned out with distance */
@@ -27,13 +30,12 @@ static struct span strips_between(const struct tracer *tracer, const struct line
 
 /* Where seabed can be that exchanges sound with some object. */
 struct surroundings {
-    double first_x, last_x;       /* along-track, m */
-    double near_range, far_range; /* true slant range, m */
+    double first_x, last_x;         /* along-track, m */
+    double near_ground, far_ground; /* range, m */
 };
 
 static struct surroundings surroundings_of_objects(const struct tracer *tracer)
 {
-    const struct patch_view *view = &tracer->view;
     struct surroundings around = {INFINITY, -INFINITY, INFINITY, -INFINITY};
     for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
         const struct placement *placement = &tracer->placements[i];
@@ -41,48 +43,42 @@ static struct surroundings surroundings_of_objects(const struct tracer *tracer)
         const double ground = placement->centre[1];
         around.first_x = fmin(around.first_x, placement->centre[0] - reach);
         around.last_x = fmax(around.last_x, placement->centre[0] + reach);
-        around.near_range =
-            fmin(around.near_range, hypot(fmax(0.0, ground - reach), view->altitude_m));
-        around.far_range = fmax(around.far_range, hypot(ground + reach, view->altitude_m));
+        around.near_ground = fmin(around.near_ground, ground - reach);
+        around.far_ground = fmax(around.far_ground, ground + reach);
     }
     return around;
 }
 
 static sonject_status lay_seabed_fan(struct chain_fan *fan, struct tracer *tracer,
-                                     const struct line_grid *grid, double central_depression)
+                                     const struct line_grid *grid, double central)
 {
     const struct patch_view *view = &tracer->view;
     const struct surroundings around = surroundings_of_objects(tracer);
     /* an echo never comes before that of its first hit, so seabed beyond the patch has none in it
      */
-    const double patch_end = view_apparent_range(view, (grid->bins.first + grid->bins.count - 0.5) /
-                                                           grid->bins_per_pixel) /
-                             view->range_ratio;
-    const double far = fmin(around.far_range, patch_end);
+    const double patch_end = view_ground_range(
+        view, view_apparent_range(view, (grid->bins.first + grid->bins.count - 0.5) /
+                                            grid->bins_per_pixel));
+    const double far = water_way_grazing(&view->water, fmin(around.far_ground, patch_end), 0.0);
+    const double near = around.near_ground > 0.0
+                            ? water_way_grazing(&view->water, around.near_ground, 0.0)
+                            : 0.5 * PI;
     fan->strips = strips_between(tracer, grid, around.first_x, around.last_x);
     fan->record.only_object = -1;
-    return fan_lay_rays(&fan->record, tracer->report,
-                        central_depression - seabed_depression(view, around.near_range),
-                        central_depression - seabed_depression(view, far),
+    return fan_lay_rays(&fan->record, tracer->report, central - near, central - far,
                         fan_elevation_step(tracer, grid, far, SEABED_RAYS_PER_BIN));
 }
 
 static sonject_status lay_object_fan(struct chain_fan *fan, struct tracer *tracer,
-                                     const struct line_grid *grid, double central_depression,
-                                     uint32_t object)
+                                     const struct line_grid *grid, double central, uint32_t object)
 {
     static const double along[3] = {1.0, 0.0, 0.0};
     const struct placement *placement = &tracer->placements[object];
     const uint32_t shape = tracer->scene->objects[object].shape;
-    const double depression =
-        atan2(tracer->view.altitude_m - placement->centre[2], placement->centre[1]);
-    const double across[3] = {0.0, sin(depression), cos(depression)};
-    const double range = placement_range(placement, &tracer->view);
-    const double half_angle =
-        asin(fmin(1.0, 1.02 * placement_half_extent(placement, shape, across) /
-                           (range - placement->bounding_radius_m)));
+    const double grazing = placement_grazing(placement, &tracer->view);
+    const struct elevations edges = elevations_of_object(tracer, object, &tracer->view.water);
     const double half_length = placement_half_extent(placement, shape, along);
-    const double middle = central_depression - depression;
+    const double middle = central - grazing;
     const sonject_material_params *material = &tracer->scene->objects[object].material;
     const bool is_mirror =
         material->reflection_kind == SONJECT_REFLECTION_FLUID || material->reflection != 0.0;
@@ -93,8 +89,8 @@ static sonject_status lay_object_fan(struct chain_fan *fan, struct tracer *trace
     fan->strips = strips_between(tracer, grid, placement->centre[0] - half_length,
                                  placement->centre[0] + half_length);
     fan->record.only_object = (int32_t)object;
-    return fan_lay_rays(&fan->record, tracer->report, middle - half_angle, middle + half_angle,
-                        fan_elevation_step(tracer, grid, range, rays_per_bin));
+    return fan_lay_rays(&fan->record, tracer->report, middle + edges.lowest, middle + edges.highest,
+                        fan_elevation_step(tracer, grid, grazing, rays_per_bin));
 }
 
 uint32_t chain_fan_count(const struct tracer *tracer)
@@ -110,13 +106,13 @@ sonject_status chain_fan_init(struct chain_fan *fan, struct tracer *tracer,
     const struct patch_view *view = &tracer->view;
     double origin[3];
     patch_fan_origin(origin, view);
-    const double central_depression = atan2(view->altitude_m, origin[1]);
+    const double central = water_way_grazing(&view->water, origin[1], 0.0);
     sonject_status status = patch_fan_init(&fan->record, tracer, grid, has_map, PATCH_RAYS_PER_BIN);
     fan->strips = grid->strips;
     fan->record.only_object = -2;
     if (status == SONJECT_OK && chain_fan_count(tracer) > 1)
-        status = i == 0 ? lay_seabed_fan(fan, tracer, grid, central_depression)
-                        : lay_object_fan(fan, tracer, grid, central_depression, i - 1);
+        status = i == 0 ? lay_seabed_fan(fan, tracer, grid, central)
+                        : lay_object_fan(fan, tracer, grid, central, i - 1);
     fan->record.stream = (uint32_t)(STREAM_CHAIN_RAYS + fan->record.only_object);
     return status;
 }

@@ -123,6 +123,8 @@ sonject_status chain_trace_begin(struct chain_trace *trace, struct tracer *trace
     trace->has_map = map != NULL;
     sonject_status status = choose_quanta(trace, tracer);
     if (status == SONJECT_OK)
+        status = patch_rays_init(&trace->rays, &trace->table, tracer, &trace->grid);
+    if (status == SONJECT_OK)
         status = make_buffers(trace, tracer, map);
     if (status == SONJECT_OK)
         status = make_tallies(trace, tracer);
@@ -139,6 +141,7 @@ void chain_trace_end(struct chain_trace *trace)
     if (trace->kernel)
         clReleaseKernel(trace->kernel);
     trace->kernel = NULL;
+    ray_table_clear(&trace->rays);
     buffer_release(&trace->chains);
     buffer_release(&trace->objects);
     buffer_release(&trace->spheres);
@@ -154,7 +157,8 @@ sonject_status chain_trace_strips(struct chain_trace *trace, struct tracer *trac
     fan->record.first_strip = strips.first;
     fan->record.strips = strips.count;
     fan->record.quanta = trace->quanta;
-    return trace_launch(tracer, trace->kernel, &fan->record, buffers, 5);
+    fan->record.table = trace->table;
+    return trace_launch(tracer, trace->kernel, &fan->record, &trace->rays, buffers, 5);
 }
 
 sonject_status chain_trace_read(struct chain_trace *trace, struct tracer *tracer, uint32_t plane,

@@ -14,6 +14,8 @@ struct chain_trace {
     double energy_of_quantum; /* m^2 */
     float quanta;             /* of it */
     bool has_map;
+    struct ray_table rays; /* of all fans */
+    struct ray_table_record table;
     cl_kernel kernel;
     cl_mem chains, objects, spheres, map, tallies;
 };

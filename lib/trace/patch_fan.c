@@ -1,9 +1,12 @@
 #include "trace/patch_fan.h"
 
 #include <math.h>
+#include <string.h>
 
-#define PI       3.14159265358979323846
-#define RAYS_MAX 67108864.0
+#include "trace/object_rays.h"
+
+#define RAYS_MAX     67108864.0
+#define SURROUNDINGS 18.0 /* in bounding radii of an object; more than chains reach */
 
 void patch_fan_origin(double origin[3], const struct patch_view *view)
 {
@@ -13,46 +16,76 @@ void patch_fan_origin(double origin[3], const struct patch_view *view)
     origin[2] = 0.0;
 }
 
-double seabed_depression(const struct patch_view *view, double range_m)
+/* Apparent range at a bin coordinate. */
+static double range_of_bin(const struct tracer *tracer, const struct line_grid *grid, double bin)
 {
-    const double sine = view->altitude_m / range_m;
-    return sine < 1.0 ? asin(sine) : 0.5 * PI;
+    return view_apparent_range(&tracer->view, bin / grid->bins_per_pixel);
+}
+
+/* Seabed and heights that rays of the patch's frame come to. */
+struct region {
+    double near, far; /* ground range, m */
+    double top;       /* height, m */
+};
+
+static struct region region_of_patch(const struct tracer *tracer, const struct line_grid *grid)
+{
+    static const double upward[3] = {0.0, 0.0, 1.0};
+    const struct patch_view *view = &tracer->view;
+    struct region region;
+    region.near = view_ground_range(view, range_of_bin(tracer, grid, grid->bins.first - 0.5));
+    region.far = view_ground_range(
+        view, range_of_bin(tracer, grid, grid->bins.first + grid->bins.count - 0.5));
+    region.top = 0.0;
+    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
+        const struct placement *placement = &tracer->placements[i];
+        const double reach = SURROUNDINGS * placement->bounding_radius_m;
+        region.near = fmin(region.near, placement->centre[1] - reach);
+        region.far = fmax(region.far, placement->centre[1] + reach);
+        region.top =
+            fmax(region.top,
+                 placement->centre[2] +
+                     placement_half_extent(placement, tracer->scene->objects[i].shape, upward));
+    }
+    return region;
+}
+
+sonject_status patch_rays_init(struct ray_table *rays, struct ray_table_record *record,
+                               const struct tracer *tracer, const struct line_grid *grid)
+{
+    const struct water_way *way = &tracer->view.water;
+    const struct region region = region_of_patch(tracer, grid);
+    /* twice as far: rays over the highest object, and what is sought beside the region */
+    const double points[4][2] = {{region.near, 0.0},
+                                 {region.near, region.top},
+                                 {region.far, 0.0},
+                                 {2.0 * region.far, region.top}};
+    double origin[3];
+    patch_fan_origin(origin, &tracer->view);
+    memset(rays, 0, sizeof *rays);
+    return ray_table_add(
+        rays, tracer->report, way, origin[1], origin[2],
+        elevations_of_points(way, water_way_grazing(way, origin[1], origin[2]), points, 4), record);
 }
 
 /* Elevation of the highest object over the central direction. */
-static double highest_elevation(const struct tracer *tracer, double central_depression,
-                                double lowest)
+static double highest_elevation(const struct tracer *tracer, double central_grazing, double lowest)
 {
+    const struct patch_view *view = &tracer->view;
     double highest = lowest;
-    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
-        const struct placement *placement = &tracer->placements[i];
-        const double depression =
-            atan2(tracer->view.altitude_m - placement->centre[2], placement->centre[1]);
-        const double across[3] = {0.0, sin(depression), cos(depression)};
-        const double extent =
-            placement_half_extent(placement, tracer->scene->objects[i].shape, across);
-        const double range = placement_range(placement, &tracer->view);
-        const double top = central_depression - depression + asin(fmin(1.0, 1.05 * extent / range));
-        highest = fmax(highest, top);
-    }
+    for (uint32_t i = 0; i < tracer->scene->object_count; i++)
+        highest = fmax(highest, central_grazing - placement_grazing(&tracer->placements[i], view) +
+                                    elevations_of_object(tracer, i, &view->water).highest);
     return highest;
 }
 
-/* True range at a bin coordinate. */
-static double range_of_bin(const struct tracer *tracer, const struct line_grid *grid, double bin)
-{
-    return view_apparent_range(&tracer->view, bin / grid->bins_per_pixel) /
-           tracer->view.range_ratio;
-}
-
-double fan_elevation_step(const struct tracer *tracer, const struct line_grid *grid, double range_m,
-                          double rays_per_bin)
+double fan_elevation_step(const struct tracer *tracer, const struct line_grid *grid,
+                          double grazing_rad, double rays_per_bin)
 {
     const struct patch_view *view = &tracer->view;
     const double bin = view->column_spacing_m / grid->bins_per_pixel / view->range_ratio;
-    const double step_for_seabed = tan(seabed_depression(view, range_m)) * bin / range_m;
-    const double step_for_objects = bin / range_m;
-    return fmin(step_for_seabed, step_for_objects) /
+    const double radius = water_way_ray(&view->water, grazing_rad, 0.0).wavefront_m;
+    return fmin(tan(grazing_rad), 1.0) * bin / radius /
            (rays_per_bin * tracer->scene->injection.ray_scale);
 }
 
@@ -79,12 +112,11 @@ sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
     fan_record_init(fan, tracer, origin, grid);
     fan->map_rows = has_map ? (int32_t)view->rows : 0;
     fan->map_columns = has_map ? (int32_t)view->columns : 0;
-    const double central_depression = atan2(view->altitude_m, origin[1]);
-    const double near = range_of_bin(tracer, grid, grid->bins.first - 0.5);
-    const double far = range_of_bin(tracer, grid, grid->bins.first + grid->bins.count - 0.5);
-    const double lowest = central_depression - seabed_depression(view, near);
-    const double highest = highest_elevation(tracer, central_depression,
-                                             central_depression - seabed_depression(view, far));
-    return fan_lay_rays(fan, tracer->report, lowest, highest,
+    const double central = water_way_grazing(&view->water, origin[1], 0.0);
+    const double near = view_grazing(view, range_of_bin(tracer, grid, grid->bins.first - 0.5));
+    const double far =
+        view_grazing(view, range_of_bin(tracer, grid, grid->bins.first + grid->bins.count - 0.5));
+    return fan_lay_rays(fan, tracer->report, central - near,
+                        highest_elevation(tracer, central, central - far),
                         fan_elevation_step(tracer, grid, far, rays_per_bin));
 }

@@ -17,13 +17,16 @@ void patch_fan_origin(double origin[3], const struct patch_view *view);
 sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
                               const struct line_grid *grid, bool has_map, double rays_per_bin);
 
-/* Depression of the seabed at a true slant range; straight down within the altitude. */
-double seabed_depression(const struct patch_view *view, double range_m);
+/* Works out the rays of all fans in the patch's frame: from the sonar to the patch and to whatever
+ * is near the objects. The table is the caller's for ray_table_clear, also on failure. Errors: as
+ * ray_table_add. */
+sonject_status patch_rays_init(struct ray_table *rays, struct ray_table_record *record,
+                               const struct tracer *tracer, const struct line_grid *grid);
 
-/* Elevation step, rad, that puts rays_per_bin rays (times the scene's ray scale) into a bin at a
- * true range, where elevation covers most range. */
-double fan_elevation_step(const struct tracer *tracer, const struct line_grid *grid, double range_m,
-                          double rays_per_bin);
+/* Elevation step, rad, that puts rays_per_bin rays (times the scene's ray scale) into a bin where
+ * sound meets the seabed at a grazing angle, and elevation covers most range. */
+double fan_elevation_step(const struct tracer *tracer, const struct line_grid *grid,
+                          double grazing_rad, double rays_per_bin);
 
 /* Lays rays from a lowest to a highest elevation (rad over the central direction). Errors: INPUT
  * (too many rays). */

@@ -22,18 +22,13 @@ static double bin_of_apparent_range(const struct rough_trace *trace, const struc
 static struct span tile_bins(const struct rough_trace *trace, const struct tracer *tracer,
                              uint32_t number)
 {
-    static const double upward[3] = {0.0, 0.0, 1.0};
-    static const double outward[3] = {0.0, 1.0, 0.0};
     const struct placement *placement = &tracer->placements[number];
     const uint32_t shape = tracer->scene->objects[number].shape;
-    const double altitude = tracer->view.altitude_m;
-    const double top = placement->centre[2] + placement_half_extent(placement, shape, upward);
-    const double end = placement->centre[1] + placement_half_extent(placement, shape, outward);
-    const double shadow_end = top > 0.0 ? end * altitude / (altitude - top) : end;
+    const double shadow_end = placement_shadow_end(placement, shape, &tracer->view);
     const double first_range =
         placement_range(placement, &tracer->view) - placement->bounding_radius_m;
     const double last_range =
-        fmax(hypot(shadow_end, altitude),
+        fmax(water_way_range(&tracer->view.water, shadow_end, 0.0),
              placement_range(placement, &tracer->view) + placement->bounding_radius_m);
     const double slack =
         0.01 * placement->bounding_radius_m + tracer->scene->sonar.transducer_side_m;
@@ -146,6 +141,8 @@ sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *trace
     object_records_init(records, tracer, origin);
     sonject_status status =
         patch_fan_init(&trace->fan, tracer, &trace->grid, map != NULL, RAYS_PER_BIN);
+    if (status == SONJECT_OK)
+        status = patch_rays_init(&trace->rays, &trace->fan.table, tracer, &trace->grid);
     trace->fan.stream = STREAM_ROUGH_RAYS;
     trace->fan.seabed_lambert = (float)tracer->scene->seabed.lambert;
     if (status == SONJECT_OK)
@@ -163,6 +160,7 @@ sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *trace
 void rough_trace_end(struct rough_trace *trace)
 {
     trace_device_clear(&trace->on_device);
+    ray_table_clear(&trace->rays);
     buffer_release(&trace->map);
     buffer_release(&trace->tile_buffer);
 }
@@ -198,7 +196,8 @@ sonject_status rough_trace_strips(struct rough_trace *trace, struct tracer *trac
     sonject_status status = buffer_clear(tracer->report, tracer->device, trace->on_device.tallies,
                                          count * sizeof(int64_t));
     if (status == SONJECT_OK)
-        status = trace_launch(tracer, trace->on_device.kernel, &trace->fan, buffers, 4);
+        status =
+            trace_launch(tracer, trace->on_device.kernel, &trace->fan, &trace->rays, buffers, 4);
     if (status == SONJECT_OK)
         status =
             read_tallies(tracer, trace->on_device.tallies, count, trace->energy_of_quantum, seabed);

@@ -15,6 +15,7 @@ struct rough_trace {
     size_t tile_elements;     /* of all tiles and planes */
     double energy_of_quantum; /* m^2 */
     struct fan_record fan;
+    struct ray_table rays;
     struct trace_device on_device;
     cl_mem map, tile_buffer;
 };

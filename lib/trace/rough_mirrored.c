@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "trace/object_rays.h"
 #include "trace/source_pairs.h"
 
 #define RAYS_PER_BIN 2
@@ -17,17 +18,21 @@ static bool is_rough(const sonject_material_params *material)
 
 /* As dense as the fan that goes straight to the objects. */
 static void lay_fan(struct fan_record *fan, const struct rough_trace *trace,
-                    const struct tracer *tracer, uint32_t object)
+                    const struct tracer *tracer, uint32_t object, const struct water_way *way)
 {
-    const double edge = fan_edge_of_object(fan, tracer, object);
+    const struct placement *placement = &tracer->placements[object];
+    const struct elevations edges = elevations_of_object(tracer, object, way);
+    const double radius =
+        water_way_ray(way, water_way_grazing(way, placement->centre[1], placement->centre[2]),
+                      placement->centre[2])
+            .wavefront_m;
     const double bin =
         tracer->view.column_spacing_m / trace->grid.bins_per_pixel / tracer->view.range_ratio;
-    const double step =
-        bin / fan->reference_range / (RAYS_PER_BIN * tracer->scene->injection.ray_scale);
-    const double rays = ceil(2.0 * edge / step) + 1.0;
+    const double step = bin / radius / (RAYS_PER_BIN * tracer->scene->injection.ray_scale);
+    const double rays = ceil((edges.highest - edges.lowest) / step) + 1.0;
     fan->rays = (uint32_t)rays;
-    fan->first_elevation = (float)-edge;
-    fan->elevation_step = (float)(2.0 * edge / rays);
+    fan->first_elevation = (float)edges.lowest;
+    fan->elevation_step = (float)((edges.highest - edges.lowest) / rays);
     fan->only_object = (int32_t)object;
 }
 
@@ -39,17 +44,20 @@ static sonject_status trace_pair(struct rough_trace *trace, struct tracer *trace
     struct source_pair_record record;
     struct fan_record fan;
     cl_mem sources = NULL;
-    source_pair_aim(&fan, &record, tracer, object, pair, &trace->grid);
-    lay_fan(&fan, trace, tracer, object);
+    struct ray_table rays = {NULL, 0};
+    sonject_status status =
+        source_pair_aim(&fan, &record, &rays, tracer, object, pair, &trace->grid);
+    lay_fan(&fan, trace, tracer, object, &pair->outgoing->way);
     fan.stream = STREAM_MIRRORED_ROUGH_RAYS + 256 * pair->number + object;
     fan.quanta = trace->fan.quanta;
     fan.first_strip = tile->grid.strips.first;
     fan.strips = tile->grid.strips.count;
-    sonject_status status =
-        buffer_create(tracer->report, tracer->device, sizeof record, &record, &sources);
+    if (status == SONJECT_OK)
+        status = buffer_create(tracer->report, tracer->device, sizeof record, &record, &sources);
     const cl_mem buffers[] = {on_device->objects, trace->tile_buffer, sources};
     if (status == SONJECT_OK)
-        status = trace_launch(tracer, on_device->kernel, &fan, buffers, 3);
+        status = trace_launch(tracer, on_device->kernel, &fan, &rays, buffers, 3);
+    ray_table_clear(&rays);
     buffer_release(&sources);
     return status;
 }

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "trace/object_rays.h"
 
 #define STRIP_WAVELENGTHS  0.25  /* widest sub-strip: wider ones alias glints (physics.md 2) */
 #define CELL_WAVELENGTHS   0.125 /* spacing of rays on the wavefront */
@@ -32,16 +33,21 @@ static void lay_strips(struct line_grid *grid, const struct tracer *tracer, uint
         grid->strips.first;
 }
 
-static void lay_fan(struct smooth_trace *trace, const struct tracer *tracer, uint32_t number)
+static void lay_fan(struct smooth_trace *trace, const struct tracer *tracer, uint32_t number,
+                    const struct water_way *way)
 {
-    const double range = trace->fan.reference_range;
+    const struct placement *placement = &tracer->placements[number];
+    const double radius =
+        water_way_ray(way, water_way_grazing(way, placement->centre[1], placement->centre[2]),
+                      placement->centre[2])
+            .wavefront_m;
     const double cell =
         CELL_WAVELENGTHS * tracer->view.wavelength_m / sqrt(tracer->scene->injection.ray_scale);
-    const double edge = fan_edge_of_object(&trace->fan, tracer, number);
-    const double rays = ceil(2.0 * edge * range / cell) + 1.0;
+    const struct elevations edges = elevations_of_object(tracer, number, way);
+    const double rays = ceil((edges.highest - edges.lowest) * radius / cell) + 1.0;
     trace->fan.rays = (uint32_t)rays;
-    trace->fan.first_elevation = (float)-edge;
-    trace->fan.elevation_step = (float)(2.0 * edge / rays);
+    trace->fan.first_elevation = (float)edges.lowest;
+    trace->fan.elevation_step = (float)((edges.highest - edges.lowest) / rays);
     trace->fan.strata = (uint32_t)ceil(trace->fan.strip_width / cell - 1e-6);
     trace->fan.only_object = (int32_t)number;
 }
@@ -74,7 +80,7 @@ static sonject_status begin_on_device(struct smooth_trace *trace, struct tracer 
 sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tracer,
                                   uint32_t number)
 {
-    const struct sound_source sonar = {tracer->view.altitude_m, 0, MIRROR_SEABED};
+    const struct sound_source sonar = {tracer->view.water, 0, MIRROR_SEABED};
     const struct source_pair straight = {&sonar, &sonar, 0};
     memset(trace, 0, sizeof *trace);
     if (!material_is_smooth(&tracer->scene->objects[number].material))
@@ -85,9 +91,15 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
     trace->grid.bins = source_pair_bins(tracer, number, &straight, &trace->grid);
     fan_record_init(&trace->fan, tracer, origin, &trace->grid);
     trace->fan.stream = STREAM_SMOOTH_RAYS + number;
-    lay_fan(trace, tracer, number);
+    lay_fan(trace, tracer, number, &sonar.way);
     choose_quanta(trace, tracer);
-    return begin_on_device(trace, tracer, "trace_smooth", origin, trace->grid.strips.count);
+    sonject_status status =
+        object_rays_add(&trace->rays, tracer, number, &sonar.way, &trace->fan.table);
+    if (status == SONJECT_OK)
+        status = begin_on_device(trace, tracer, "trace_smooth", origin, trace->grid.strips.count);
+    if (status != SONJECT_OK)
+        smooth_trace_end(trace);
+    return status;
 }
 
 sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tracer *tracer,
@@ -100,14 +112,15 @@ sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tr
     trace->grid.bins = source_pair_bins_in_patch(tracer, number, pair, &trace->grid);
     if (trace->grid.bins.count == 0)
         return SONJECT_OK;
-    source_pair_aim(&trace->fan, &sources, tracer, number, pair, &trace->grid);
+    sonject_status status =
+        source_pair_aim(&trace->fan, &sources, &trace->rays, tracer, number, pair, &trace->grid);
     trace->fan.stream = STREAM_MIRRORED_RAYS + 256 * pair->number + number;
-    lay_fan(trace, tracer, number);
+    lay_fan(trace, tracer, number, &pair->outgoing->way);
     choose_quanta(trace, tracer);
     const int32_t strips =
         trace->grid.strips.count < MIRRORED_STRIPS ? trace->grid.strips.count : MIRRORED_STRIPS;
-    sonject_status status =
-        begin_on_device(trace, tracer, "trace_smooth_mirrored", placement->centre, strips);
+    if (status == SONJECT_OK)
+        status = begin_on_device(trace, tracer, "trace_smooth_mirrored", placement->centre, strips);
     if (status == SONJECT_OK)
         status = buffer_create(tracer->report, tracer->device, sizeof sources, &sources,
                                &trace->sources);
@@ -119,6 +132,7 @@ sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tr
 void smooth_trace_end(struct smooth_trace *trace)
 {
     trace_device_clear(&trace->on_device);
+    ray_table_clear(&trace->rays);
     buffer_release(&trace->sources);
 }
 
@@ -138,7 +152,7 @@ sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tr
     sonject_status status = buffer_clear(tracer->report, tracer->device, trace->on_device.tallies,
                                          2 * count * sizeof(int64_t));
     if (status == SONJECT_OK)
-        status = trace_launch(tracer, trace->on_device.kernel, &trace->fan, buffers,
+        status = trace_launch(tracer, trace->on_device.kernel, &trace->fan, &trace->rays, buffers,
                               trace->sources ? 3 : 2);
     if (status == SONJECT_OK)
         status = buffer_map(tracer->report, tracer->device, trace->on_device.tallies,

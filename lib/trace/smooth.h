@@ -9,6 +9,7 @@ struct smooth_trace {
     struct line_grid grid;       /* that the object covers */
     double amplitude_of_quantum; /* m */
     struct fan_record fan;
+    struct ray_table rays;
     struct trace_device on_device;
     cl_mem sources; /* source_pair_record; NULL: straight there and back */
 };

@@ -3,6 +3,8 @@
 #include <math.h>
 #include <string.h>
 
+#include "trace/object_rays.h"
+
 #define PI                3.14159265358979323846
 #define BINS_MAX          1.0e9 /* beyond any patch, within a 32-bit number */
 #define LOSS_EXPONENT_MAX 30.0  /* mirrors that keep less than exp(-30) return nothing */
@@ -10,7 +12,13 @@
 /* Range from a source's track to the object's centre. */
 static double source_range(const struct sound_source *source, const struct placement *placement)
 {
-    return hypot(placement->centre[1], source->height_m - placement->centre[2]);
+    return water_way_range(&source->way, placement->centre[1], placement->centre[2]);
+}
+
+/* Grazing angle of the sound that comes from a source to the object's centre. */
+static double source_grazing(const struct sound_source *source, const struct placement *placement)
+{
+    return water_way_grazing(&source->way, placement->centre[1], placement->centre[2]);
 }
 
 /* Half the path by way of the object's centre. */
@@ -25,11 +33,11 @@ static double half_path(const struct source_pair *pair, const struct placement *
 static double reach_from(const struct sound_source *source, const struct placement *placement,
                          uint32_t shape)
 {
-    const double range = source_range(source, placement);
-    const double sight[3] = {0.0, placement->centre[1] / range,
-                             (placement->centre[2] - source->height_m) / range};
+    const double grazing = source_grazing(source, placement);
+    const double radius = water_way_ray(&source->way, grazing, placement->centre[2]).wavefront_m;
+    const double sight[3] = {0.0, cos(grazing), -sin(grazing)};
     const double bound = placement->bounding_radius_m;
-    return 1.01 * placement_half_extent(placement, shape, sight) + bound * bound / (range - bound);
+    return 1.01 * placement_half_extent(placement, shape, sight) + bound * bound / (radius - bound);
 }
 
 struct span source_pair_bins(const struct tracer *tracer, uint32_t object,
@@ -64,13 +72,19 @@ struct span source_pair_bins_in_patch(const struct tracer *tracer, uint32_t obje
     return bins;
 }
 
+/* Sound speed at a mirror over that around the object. */
+static double mirror_speed_ratio(const struct tracer *tracer, double height)
+{
+    const struct water *water = tracer->view.water.water;
+    return water_layer_at(water, height)->speed_mps / water->straight_speed_mps;
+}
+
 /* Exponent of what the mirrors' roughness takes off the amplitude on the way from a source: P^2/2
  * at every bounce. */
 static double roughness_exponent(const struct tracer *tracer, const struct sound_source *source,
                                  const struct placement *placement)
 {
-    const double drop = source->height_m - placement->centre[2];
-    const double sine = fabs(drop) / hypot(placement->centre[1], drop);
+    const double cosine = cos(source_grazing(source, placement));
     double exponent = 0.0;
     int kind = (int)source->last_mirror;
     for (uint32_t bounce = 0; bounce < source->bounces; bounce++, kind = 1 - kind) {
@@ -78,7 +92,10 @@ static double roughness_exponent(const struct tracer *tracer, const struct sound
         const sonject_material_params *material;
         if (!scene_mirror(tracer->scene, (enum mirror_kind)kind, &height, &material))
             continue;
-        const double phase = 4.0 * PI * material->roughness_m * sine / tracer->view.wavelength_m;
+        const double ratio = mirror_speed_ratio(tracer, height);
+        const double sine = sqrt(fmax(0.0, 1.0 - pow(cosine * ratio, 2.0)));
+        const double phase =
+            4.0 * PI * material->roughness_m * sine / (tracer->view.wavelength_m * ratio);
         exponent += 0.5 * phase * phase;
     }
     return exponent;
@@ -88,8 +105,8 @@ void source_pairs_begin(struct source_pairs *pairs, const struct tracer *tracer,
 {
     pairs->tracer = tracer;
     pairs->placement = &tracer->placements[object];
-    pairs->count =
-        sources_list(tracer->scene, tracer->scene->injection.interactions - 1, pairs->sources);
+    pairs->count = sources_list(tracer->scene, tracer->view.water.water,
+                                tracer->scene->injection.interactions - 1, pairs->sources);
     pairs->outgoing = 0;
     pairs->returning = 0;
 }
@@ -148,11 +165,12 @@ struct span mirrored_bins(const struct tracer *tracer, uint32_t object,
 static struct source_record source_record_of(const struct sound_source *source,
                                              const struct placement *placement)
 {
-    const double range = source_range(source, placement);
+    const double grazing = source_grazing(source, placement);
     struct source_record record;
-    record.range = (float)range;
-    record.cosine_depression = (float)(placement->centre[1] / range);
-    record.sine_depression = (float)((source->height_m - placement->centre[2]) / range);
+    memset(&record, 0, sizeof record);
+    record.range = (float)source_range(source, placement);
+    record.cosine_depression = (float)cos(grazing);
+    record.sine_depression = (float)sin(grazing);
     record.bounces = (int32_t)source->bounces;
     record.last_mirror = (int32_t)source->last_mirror;
     return record;
@@ -171,14 +189,17 @@ static void source_pair_record_init(struct source_pair_record *record, const str
         const sonject_material_params *material;
         if (!scene_mirror(tracer->scene, (enum mirror_kind)kind, &height, &material))
             continue;
+        const double ratio = mirror_speed_ratio(tracer, height);
         record->mirrors[kind].height = (float)(height - placement->centre[2]);
-        surface_record_init(&record->mirrors[kind].surface, material, tracer->view.wavelength_m);
+        record->mirrors[kind].speed_ratio = (float)ratio;
+        surface_record_init(&record->mirrors[kind].surface, material,
+                            tracer->view.wavelength_m * ratio);
     }
 }
 
-void source_pair_aim(struct fan_record *fan, struct source_pair_record *record,
-                     const struct tracer *tracer, uint32_t object, const struct source_pair *pair,
-                     const struct line_grid *grid)
+sonject_status source_pair_aim(struct fan_record *fan, struct source_pair_record *record,
+                               struct ray_table *rays, const struct tracer *tracer, uint32_t object,
+                               const struct source_pair *pair, const struct line_grid *grid)
 {
     const struct patch_view *view = &tracer->view;
     const struct placement *placement = &tracer->placements[object];
@@ -193,4 +214,11 @@ void source_pair_aim(struct fan_record *fan, struct source_pair_record *record,
     fan->first_bin = (float)((range * view->range_ratio - view->first_range_m) *
                                  grid->bins_per_pixel / view->column_spacing_m -
                              grid->bins.first);
+    sonject_status status =
+        object_rays_add(rays, tracer, object, &pair->outgoing->way, &record->outgoing.table);
+    if (status == SONJECT_OK)
+        status =
+            object_rays_add(rays, tracer, object, &pair->returning->way, &record->returning.table);
+    fan->table = record->outgoing.table;
+    return status;
 }

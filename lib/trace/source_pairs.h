@@ -46,9 +46,10 @@ struct span mirrored_bins(const struct tracer *tracer, uint32_t object,
 struct span span_join(struct span one, struct span other);
 
 /* Fills in the pair's record, and a fan from the outgoing source, in a frame centred on the
- * object. The fan as fan_record_init, its bins and phases those of half the path. */
-void source_pair_aim(struct fan_record *fan, struct source_pair_record *record,
-                     const struct tracer *tracer, uint32_t object, const struct source_pair *pair,
-                     const struct line_grid *grid);
+ * object. The fan as fan_record_init, its bins and phases those of half the path. Appends the rays
+ * of both ways. Errors: as ray_table_add. */
+sonject_status source_pair_aim(struct fan_record *fan, struct source_pair_record *record,
+                               struct ray_table *rays, const struct tracer *tracer, uint32_t object,
+                               const struct source_pair *pair, const struct line_grid *grid);
 
 #endif

@@ -7,14 +7,15 @@
 #include <stdint.h>
 
 #include "kernels/layout.h"
+#include "medium/water.h"
 #include "scene/scene.h"
 
 #define SOURCES_MAX 15 /* the sonar, and two images for each of 1...7 bounces */
 
-/* A source seen from an object: sound travels to it along a straight line that is folded at
- * `bounces` mirrors in turn, from last_mirror (next to the object) outwards to the sonar. */
+/* A source seen from an object: sound comes from it by `bounces` mirrors in turn, the last of which
+ * is last_mirror. */
 struct sound_source {
-    double height_m; /* over the mean seabed; below it for an odd number of images in the seabed */
+    struct water_way way;
     uint32_t bounces;
     enum mirror_kind last_mirror; /* of no meaning without bounces */
 };
@@ -27,8 +28,8 @@ bool scene_mirror(const struct scene *scene, enum mirror_kind kind, double *heig
                   const sonject_material_params **material);
 
 /* Lists the sonar (first) and all of its images of up to `bounces` bounces, by bounces; returns
- * their number. */
-size_t sources_list(const struct scene *scene, uint32_t bounces,
+ * their number. water is borrowed by them. */
+size_t sources_list(const struct scene *scene, const struct water *water, uint32_t bounces,
                     struct sound_source sources[SOURCES_MAX]);
 
 #endif

@@ -13,10 +13,11 @@
 
 /* Host and device must agree on every byte. */
 typedef char object_record_is_packed[sizeof(struct object_record) == 33 * 4 ? 1 : -1];
-typedef char fan_record_is_packed[sizeof(struct fan_record) == 33 * 4 ? 1 : -1];
+typedef char fan_record_is_packed[sizeof(struct fan_record) == 39 * 4 ? 1 : -1];
 typedef char chain_record_is_packed[sizeof(struct chain_record) == 22 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
-typedef char source_pair_record_is_packed[sizeof(struct source_pair_record) == 35 * 4 ? 1 : -1];
+typedef char source_pair_record_is_packed[sizeof(struct source_pair_record) == 49 * 4 ? 1 : -1];
+typedef char ray_piece_record_is_packed[sizeof(struct ray_piece_record) == 7 * 4 ? 1 : -1];
 typedef char outcome_record_is_packed[sizeof(struct outcome_record) == 4 * 4 ? 1 : -1];
 
 float power_of_two_below(double value)
@@ -30,15 +31,16 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
                      const struct line_grid *grid)
 {
     const struct patch_view *view = &tracer->view;
-    const double drop = view->altitude_m - origin[2];
-    const double range = hypot(origin[1], drop);
+    const double range = water_way_range(&view->water, origin[1], origin[2]);
+    const double grazing = water_way_grazing(&view->water, origin[1], origin[2]);
     const double row_of_strip0 = 0.5 / grid->strips_per_row - 0.5;
     const double bins_per_apparent_metre = grid->bins_per_pixel / view->column_spacing_m;
     const double cycles = 2.0 * range / view->wavelength_m;
     memset(fan, 0, sizeof *fan);
     fan->reference_range = (float)range;
-    fan->cosine_depression = (float)(origin[1] / range);
-    fan->sine_depression = (float)(drop / range);
+    fan->cosine_depression = (float)cos(grazing);
+    fan->sine_depression = (float)sin(grazing);
+    fan->table.ground_range = (float)origin[1];
     fan->seabed_height = (float)-origin[2];
     fan->first_strip_x = (float)(view_x_of_row(view, row_of_strip0) - origin[0]);
     fan->strip_width = (float)(view->row_spacing_m / grid->strips_per_row);
@@ -60,17 +62,6 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
     fan->seed_high = (uint32_t)(tracer->scene->injection.seed >> 32);
     fan->objects = (int32_t)tracer->scene->object_count;
     fan->segments = 1;
-}
-
-double fan_edge_of_object(const struct fan_record *fan, const struct tracer *tracer,
-                          uint32_t object)
-{
-    const struct placement *placement = &tracer->placements[object];
-    const double range = fan->reference_range;
-    const double across[3] = {0.0, fan->sine_depression, fan->cosine_depression};
-    const double extent =
-        1.02 * placement_half_extent(placement, tracer->scene->objects[object].shape, across);
-    return asin(fmin(1.0, extent / (range - placement->bounding_radius_m)));
 }
 
 void surface_record_init(struct surface_record *record, const sonject_material_params *material,
@@ -168,34 +159,41 @@ static int32_t segments_for(const struct tracer *tracer, const struct fan_record
 }
 
 sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_record *fan,
-                            const cl_mem *buffers, size_t buffer_count)
+                            const struct ray_table *rays, const cl_mem *buffers,
+                            size_t buffer_count)
 {
     struct report *report = tracer->report;
     struct device *device = tracer->device;
     fan->segments = segments_for(tracer, fan);
     const size_t items = (size_t)fan->strips * (size_t)fan->segments;
     cl_mem fan_buffer = NULL;
+    cl_mem piece_buffer = NULL;
     cl_mem outcome_buffer = NULL;
     struct outcome_record *outcomes = allocate_array(items, sizeof *outcomes);
     sonject_status status = outcomes ? SONJECT_OK : report_out_of_memory(report, "trace counts");
     if (status == SONJECT_OK)
         status = buffer_create(report, device, sizeof *fan, fan, &fan_buffer);
     if (status == SONJECT_OK)
+        status = buffer_create(report, device, rays->count * sizeof *rays->pieces, rays->pieces,
+                               &piece_buffer);
+    if (status == SONJECT_OK)
         status = buffer_create(report, device, items * sizeof *outcomes, NULL, &outcome_buffer);
     if (status == SONJECT_OK) {
         struct kernel_argument arguments[8];
         arguments[0] = (struct kernel_argument){sizeof fan_buffer, &fan_buffer};
+        arguments[1] = (struct kernel_argument){sizeof piece_buffer, &piece_buffer};
         for (size_t i = 0; i < buffer_count; i++)
-            arguments[1 + i] = (struct kernel_argument){sizeof buffers[i], &buffers[i]};
-        arguments[1 + buffer_count] =
+            arguments[2 + i] = (struct kernel_argument){sizeof buffers[i], &buffers[i]};
+        arguments[2 + buffer_count] =
             (struct kernel_argument){sizeof outcome_buffer, &outcome_buffer};
-        status = kernel_run(report, device, kernel, arguments, buffer_count + 2, 1, &items);
+        status = kernel_run(report, device, kernel, arguments, buffer_count + 3, 1, &items);
     }
     if (status == SONJECT_OK)
         status = buffer_read(report, device, outcome_buffer, 0, items * sizeof *outcomes, outcomes);
     if (status == SONJECT_OK)
         status = add_outcomes(tracer, outcomes, items);
     buffer_release(&fan_buffer);
+    buffer_release(&piece_buffer);
     buffer_release(&outcome_buffer);
     free(outcomes);
     return status;

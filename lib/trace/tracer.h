@@ -12,6 +12,7 @@
 #include "scene/placement.h"
 #include "scene/point_response.h"
 #include "scene/scene.h"
+#include "trace/ray_table.h"
 
 struct trace_counts {
     uint64_t pings, rays, queries, impulses;
@@ -41,20 +42,16 @@ void object_records_init(struct object_record *records, const struct tracer *tra
 void surface_record_init(struct surface_record *record, const sonject_material_params *material,
                          double wavelength_m);
 
-/* Half the angle in rad that an object fills in elevation, seen from where a fan starts that aims
- * at the object's centre; a little more than that. */
-double fan_edge_of_object(const struct fan_record *fan, const struct tracer *tracer,
-                          uint32_t object);
-
 /* The most that an object's rough part scatters (f at normal incidence and mirror direction), at
  * least Lambert's 1/pi: tallies are scaled by it. */
 double brightest_scattering(const struct tracer *tracer);
 
 /* Runs a trace kernel over the fan's strips and adds up what the work-items report. Arguments: the
- * fan first, then `buffers`, then the outcomes. Sets fan->segments. Errors: DEVICE (also faults
- * that the kernel reports), MEMORY. */
+ * fan and its rays first, then `buffers`, then the outcomes. Sets fan->segments. Errors: DEVICE
+ * (also faults that the kernel reports), MEMORY. */
 sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_record *fan,
-                            const cl_mem *buffers, size_t buffer_count);
+                            const struct ray_table *rays, const cl_mem *buffers,
+                            size_t buffer_count);
 
 /* What both parts keep on the device. */
 struct trace_device {

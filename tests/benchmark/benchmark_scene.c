@@ -31,8 +31,9 @@ void benchmark_set_up(struct benchmark_scene *set, size_t pixels)
     set->tracer.placements = &set->placement;
     if (scene_append_object(&set->scene, &set->report, &capsule) != SONJECT_OK ||
         device_open(&set->report, &params, &set->tracer.device) != SONJECT_OK ||
-        patch_view_init(&set->tracer.view, &set->report, &set->scene, 0.0, 0.0, pixels, pixels) !=
-            SONJECT_OK ||
+        scene_lay_water(&set->scene, &set->report, &set->water) != SONJECT_OK ||
+        patch_view_init(&set->tracer.view, &set->report, &set->scene, &set->water, 0.0, 0.0, pixels,
+                        pixels) != SONJECT_OK ||
         placement_init(&set->placement, &set->report, &set->tracer.view, 0.0, 0.0,
                        &set->scene.objects[0]) != SONJECT_OK)
         benchmark_fail(&set->report, "set-up");
@@ -42,6 +43,7 @@ void benchmark_set_up(struct benchmark_scene *set, size_t pixels)
 void benchmark_clear(struct benchmark_scene *set)
 {
     device_close(&set->tracer.device);
+    water_clear(&set->water);
     scene_clear(&set->scene);
 }
 

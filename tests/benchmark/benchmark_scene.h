@@ -12,6 +12,7 @@ struct benchmark_scene {
     struct scene scene;
     struct tracer tracer;
     struct placement placement;
+    struct water water;
 };
 
 /* Lays a patch of pixels x pixels around 50 m. Ends the program where something fails. */

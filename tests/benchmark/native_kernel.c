@@ -11,7 +11,8 @@ void native_trace_rough(const struct fan_record *fan, const struct object_record
 {
     for (int strip = first; strip < last; strip++)
         for (int segment = 0; segment < fan->segments; segment++)
-            outcomes[strip] = trace_rough_strip(fan, objects, map, seabed, tiles, strip, segment);
+            outcomes[strip] =
+                trace_rough_strip(fan, NULL, objects, map, seabed, tiles, strip, segment);
 }
 
 void native_trace_smooth(const struct fan_record *fan, const struct object_record *objects,
@@ -19,7 +20,7 @@ void native_trace_smooth(const struct fan_record *fan, const struct object_recor
 {
     for (int strip = first; strip < last; strip++)
         for (int segment = 0; segment < fan->segments; segment++)
-            outcomes[strip] = trace_smooth_strip(fan, objects, tally, strip, segment);
+            outcomes[strip] = trace_smooth_strip(fan, NULL, objects, tally, strip, segment);
 }
 
 void native_trace_chains(const struct fan_record *fan, const struct chain_record *chains,
@@ -28,6 +29,6 @@ void native_trace_chains(const struct fan_record *fan, const struct chain_record
 {
     for (int strip = first; strip < last; strip++)
         for (int segment = 0; segment < fan->segments; segment++)
-            outcomes[strip] =
-                trace_chains_strip(fan, chains, objects, spheres, NULL, tallies, strip, segment);
+            outcomes[strip] = trace_chains_strip(fan, NULL, chains, objects, spheres, NULL, tallies,
+                                                 strip, segment);
 }

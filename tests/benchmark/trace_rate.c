@@ -79,6 +79,7 @@ static int compare(struct benchmark_scene *set, struct fan_record *fan, cl_kerne
         buffer_create(report, device, 0, NULL, &map) != SONJECT_OK ||
         buffer_read(report, device, objects, 0, sizeof record, &record) != SONJECT_OK)
         benchmark_fail(report, "buffers");
+    const struct ray_table rays = {NULL, 0}; /* isovelocity water */
     const cl_mem rough_buffers[] = {objects, map, tallies, tiles};
     const cl_mem smooth_buffers[] = {objects, tallies};
     rates->device_s = rates->native_s = 1e9;
@@ -87,7 +88,8 @@ static int compare(struct benchmark_scene *set, struct fan_record *fan, cl_kerne
         if (buffer_clear(report, device, tallies, tally_count * sizeof(int64_t)) != SONJECT_OK)
             benchmark_fail(report, "clear");
         double start = clock_seconds();
-        if (trace_launch(&set->tracer, kernel, fan, is_smooth ? smooth_buffers : rough_buffers,
+        if (trace_launch(&set->tracer, kernel, fan, &rays,
+                         is_smooth ? smooth_buffers : rough_buffers,
                          is_smooth ? 2 : 4) != SONJECT_OK)
             benchmark_fail(report, "launch");
         double taken = clock_seconds() - start;

@@ -191,8 +191,8 @@ static struct tallies trace_rough_as_c(struct bench *bench, const float *map)
     trace.fan.strips = trace.grid.strips.count;
     trace.fan.segments = 1;
     for (int strip = 0; strip < trace.fan.strips; strip++)
-        count_outcome(&tallies, trace_rough_strip(&trace.fan, objects, map, tallies.line,
-                                                  tallies.tile, strip, 0));
+        count_outcome(&tallies, trace_rough_strip(&trace.fan, trace.rays.pieces, objects, map,
+                                                  tallies.line, tallies.tile, strip, 0));
     tallies.counts.rays = (uint64_t)trace.fan.rays * (uint64_t)trace.fan.strips;
     rough_trace_end(&trace);
     return tallies;
@@ -263,9 +263,10 @@ static struct tallies trace_smooth_as_c(struct bench *bench, uint32_t object,
     trace.fan.segments = 1;
     for (int strip = 0; strip < trace.fan.strips; strip++)
         count_outcome(&tallies,
-                      pair ? trace_smooth_mirrored_strip(&trace.fan, &sources, objects,
-                                                         tallies.line, strip, 0)
-                           : trace_smooth_strip(&trace.fan, objects, tallies.line, strip, 0));
+                      pair ? trace_smooth_mirrored_strip(&trace.fan, trace.rays.pieces, &sources,
+                                                         objects, tallies.line, strip, 0)
+                           : trace_smooth_strip(&trace.fan, trace.rays.pieces, objects,
+                                                tallies.line, strip, 0));
     tallies.counts.rays = (uint64_t)trace.fan.rays * trace.fan.strata * (uint64_t)trace.fan.strips;
     smooth_trace_end(&trace);
     return tallies;
@@ -364,7 +365,7 @@ static void compare_mirrored(struct bench *bench, enum scene_kind kind)
     bench->scene.seabed.forward.loss = 0.01624;
     bench->scene.surface.water_depth_m = 7.5;
     bench->scene.surface.material.roughness_m = 1e-3;
-    assert_int_equal(sources_list(&bench->scene, 2, sources), 5);
+    assert_int_equal(sources_list(&bench->scene, &bench->water, 2, sources), 5);
     size_t alive = 0;
     for (uint32_t object = 0; object < bench->scene.object_count; object++)
         for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {

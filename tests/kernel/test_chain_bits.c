@@ -142,11 +142,12 @@ static int64_t *trace_as_c(struct bench *bench, const float *map, struct trace_c
         if (chain_fan_init(&fan, &bench->tracer, &trace.grid, trace.has_map, i) != SONJECT_OK)
             fail_msg("%s", bench->report.message);
         fan.record.quanta = trace.quanta;
+        fan.record.table = trace.table;
         fan.record.first_strip = fan.strips.first;
         fan.record.strips = fan.strips.count;
         for (int strip = 0; strip < fan.strips.count; strip++) {
-            const struct outcome_record outcome =
-                trace_chains_strip(&fan.record, chains, objects, spheres, map, tallies, strip, 0);
+            const struct outcome_record outcome = trace_chains_strip(
+                &fan.record, trace.rays.pieces, chains, objects, spheres, map, tallies, strip, 0);
             assert_int_equal(outcome.faults, 0);
             counts->rays += outcome.rays;
             counts->queries += outcome.queries;

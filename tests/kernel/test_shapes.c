@@ -502,7 +502,7 @@ static void test_fan(void **unused)
             fan.cosine_depression = (float)cos(depression);
             fan.sine_depression = (float)sin(depression);
             const float elevation = (float)(uniform(-5.0, 5.0) / ranges[r]);
-            const struct fan_ray ray = fan_ray_at(&fan, 0.25f, elevation);
+            const struct fan_ray ray = fan_ray_at(&fan, NULL, 0.25f, elevation);
             const double range = fan.reference_range;
             const double d_y = fan.cosine_depression, d_z = -fan.sine_depression;
             const double e = elevation;

@@ -40,6 +40,7 @@ void bench_open(struct bench *bench, const char *device, size_t rows, size_t col
 void bench_close(struct bench *bench)
 {
     device_close(&bench->tracer.device);
+    water_clear(&bench->water);
     scene_clear(&bench->scene);
 }
 
@@ -70,13 +71,15 @@ sonject_object_params *bench_add(struct bench *bench, sonject_shape shape, doubl
 void bench_ready(struct bench *bench)
 {
     struct tracer *tracer = &bench->tracer;
-    expect_ok(bench, patch_view_init(&tracer->view, &bench->report, &bench->scene, 0.0, 0.0,
-                                     bench->rows, bench->columns));
+    water_clear(&bench->water);
+    expect_ok(bench, scene_lay_water(&bench->scene, &bench->report, &bench->water));
+    expect_ok(bench, patch_view_init(&tracer->view, &bench->report, &bench->scene, &bench->water,
+                                     0.0, 0.0, bench->rows, bench->columns));
     for (uint32_t i = 0; i < bench->scene.object_count; i++)
         expect_ok(bench, placement_init(&bench->placements[i], &bench->report, &tracer->view, 0.0,
                                         0.0, &bench->scene.objects[i]));
     point_response_init(&tracer->response, &bench->scene.sonar,
-                        tracer->view.range_ratio * bench->scene.medium.sound_speed_mps,
+                        tracer->view.range_ratio * bench->water.straight_speed_mps,
                         tracer->view.row_spacing_m);
 }
 

@@ -19,6 +19,7 @@ struct bench {
     struct report report;
     struct scene scene;
     struct placement placements[BENCH_OBJECTS];
+    struct water water;
     struct tracer tracer;
     size_t rows, columns;
 };

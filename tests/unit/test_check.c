@@ -108,6 +108,7 @@ static const struct number {
     {"sound_speed", offsetof(struct all, medium.sound_speed_mps), 99.0, 100.0, 10000.0, 10001.0},
     {"reference_sound_speed", offsetof(struct all, medium.reference_sound_speed_mps), 99.0, 0.0,
      10000.0, 10001.0},
+    {"absorption", offsetof(struct all, medium.absorption_db_per_m), -0.1, 0.0, 100.0, 100.1},
     {"lambert", offsetof(struct all, seabed.lambert), 0.0, 1e-9, 0.3183098861837907, 0.3184},
     {"level_radius", offsetof(struct all, seabed.level_radius_m), 0.0, 1e-6, 1e6, 2e6},
     {"despeckle_radius", offsetof(struct all, seabed.despeckle_radius_m), 0.0, 1e-6, 1e6, 2e6},
@@ -470,7 +471,8 @@ static void test_defaults(void **state)
     assert_true(scene.sonar.centre_frequency_hz == 100e3 && scene.sonar.bandwidth_hz == 30e3);
     assert_true(scene.sonar.altitude_m == 10.0 && scene.sonar.transducer_side_m == 0.0);
     assert_int_equal(scene.sonar.response_window, SONJECT_WINDOW_RECTANGULAR);
-    assert_true(scene.medium.sound_speed_mps == 1500.0);
+    assert_true(scene.medium.sound_speed_mps == 1500.0 && scene.medium.absorption_db_per_m == 0.0);
+    assert_null(scene.water_layers);
     assert_true(fabs(10.0 * log10(scene.seabed.lambert) + 27.0) < 1e-12); /* rounding of log10 */
     assert_true(scene.seabed.level_radius_m == 3.0 && scene.seabed.despeckle_radius_m == 0.1);
     assert_true(scene.geometry.row_spacing_m == 0.025 && scene.geometry.column_spacing_m == 0.025);

@@ -42,7 +42,8 @@ static void test_unknown_keys(void **state)
         {BASE "medium:\n  sound_sped: 1500\n",
          ":5:3: medium.sound_sped: unknown key; did you mean 'sound_speed'?"},
         {BASE "medium:\n  salinity: 35\n",
-         ":5:3: medium.salinity: unknown key; known here are sound_speed, reference_sound_speed"},
+         ":5:3: medium.salinity: unknown key; known here are sound_speed, reference_sound_speed, "
+         "absorption, layers, profile"},
         {OBJECT "sphere\n    diamter: 1 m\n",
          ":6:5: objects[0].diamter: unknown key; did you mean 'diameter'?"},
         {BASE "objects:\n  - {shape: sphere, diameter: 1}\n  - {shape: plane, lenght: 1}\n",

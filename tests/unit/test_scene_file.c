@@ -46,6 +46,14 @@ static const char file[] = "sonject: 1\n"
                            "first_slant_range: 40}\n"
                            "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n";
 
+static const char casting[] = "sonject: 1\n"
+                              "input:\n"
+                              "  uniform: {rows: 4, columns: 5}\n"
+                              "  geometry: {row_spacing: 1, column_spacing: 1, "
+                              "first_slant_range: 40}\n"
+                              "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
+                              "surface: {depth: 20 m}\n";
+
 enum type {
     TYPE_DOUBLE,
     TYPE_U32,
@@ -62,13 +70,17 @@ static const struct key_case {
     const char *base;
     const char *value;
     enum type type;
-    size_t offset; /* in struct scene, or in the first object if the path starts with objects */
+    size_t offset; /* in struct scene; in the first object if the path starts with objects, in the
+                      layers if it starts with medium.layers or .profile */
     double number;
     const char *text;
     const char *other;
 } cases[] = {
 #define SCENE(member)  offsetof(struct scene, member)
 #define OBJECT(member) offsetof(sonject_object_params, member)
+#define LAYER(index, member)                                                                       \
+    ((index) * sizeof(struct water_layer) + offsetof(struct water_layer, member))
+#define CAST SOURCE_ROOT "/tests/unit/cast.csv"
     {"sonject", small, "1", TYPE_NOTHING, 0, 0.0, NULL, NULL},
     {"input.path", file, "swath-2.tif", TYPE_PATH, SCENE(input_path), 0.0, "swath-2.tif", NULL},
     {"input.complex", file, "true", TYPE_BOOL, SCENE(input_is_complex), 1.0, NULL, NULL},
@@ -138,6 +150,31 @@ static const struct key_case {
      NULL, NULL},
     {"medium.reference_sound_speed", small, "1490 m/s", TYPE_DOUBLE,
      SCENE(medium.reference_sound_speed_mps), 1490.0, NULL, NULL},
+    {"medium.absorption", small, "0.03 dB/m", TYPE_DOUBLE, SCENE(medium.absorption_db_per_m), 0.03,
+     NULL, NULL},
+    /* how these four become an absorption: test_scene_medium.c */
+    {"medium.absorption.temperature", small, "12 C", TYPE_NOTHING, 0, 0.0, NULL,
+     "medium.absorption={salinity: 35, depth: 20 m}"},
+    {"medium.absorption.salinity", small, "35", TYPE_NOTHING, 0, 0.0, NULL,
+     "medium.absorption={temperature: 12 C, depth: 20 m}"},
+    {"medium.absorption.depth", small, "20 m", TYPE_NOTHING, 0, 0.0, NULL,
+     "medium.absorption={temperature: 12 C, salinity: 35}"},
+    {"medium.absorption.ph", small, "7.7", TYPE_NOTHING, 0, 0.0, NULL,
+     "medium.absorption={temperature: 12 C, salinity: 35, depth: 20 m}"},
+    {"medium.layers[].bottom", small, "12 m", TYPE_DOUBLE, LAYER(1, bottom_m), 12.0, NULL,
+     "medium.layers=[{bottom: 0, sound_speed: 1490}, {sound_speed: 1500}]"},
+    {"medium.layers[].sound_speed", small, "1.51 km/s", TYPE_DOUBLE, LAYER(1, speed_mps), 1510.0,
+     NULL, "medium.layers=[{bottom: 0, sound_speed: 1490}, {bottom: 12}]"},
+    {"medium.layers[].density", small, "1.02 g/cm3", TYPE_DOUBLE, LAYER(1, density), 1020.0, NULL,
+     "medium.layers=[{bottom: 0, sound_speed: 1490, density: 1025}, {bottom: 12, sound_speed: "
+     "1500}]"},
+    {"medium.profile.file", casting, CAST, TYPE_DOUBLE, LAYER(1, bottom_m), 3.0, NULL, NULL},
+    {"medium.profile.heights", casting, "[4 m, 12 m]", TYPE_DOUBLE, LAYER(1, bottom_m), 4.0, NULL,
+     "medium.profile={sound_speeds: [1490, 1500]}"},
+    {"medium.profile.depths", casting, "[8 m, 15 m]", TYPE_DOUBLE, LAYER(1, bottom_m), 5.0, NULL,
+     "medium.profile={sound_speeds: [1500, 1490]}"},
+    {"medium.profile.sound_speeds", casting, "[1.48 km/s, 1500]", TYPE_DOUBLE, LAYER(0, speed_mps),
+     1480.0, NULL, "medium.profile={heights: [4 m, 12 m]}"},
     {"seabed.lambert", small, "0.25", TYPE_DOUBLE, SCENE(seabed.lambert), 0.25, NULL, NULL},
     {"seabed.map", small, "despeckled", TYPE_U32, SCENE(seabed.map), SONJECT_MAP_DESPECKLED, NULL,
      NULL},
@@ -279,21 +316,32 @@ static void expect_arrived(const struct key_case *key, const void *structure)
     }
 }
 
+static const void *structure_of(const struct scene *scene, const char *path)
+{
+    if (strncmp(path, "objects", 7) == 0)
+        return scene->objects;
+    if (strncmp(path, "medium.layers", 13) == 0 || strncmp(path, "medium.profile", 14) == 0)
+        return scene->water_layers;
+    return scene;
+}
+
+/* Lists are tried at their last entry: the only object, the second layer. */
 static void expect_case(struct scene_folder *folder, const struct key_case *key)
 {
-    char override[256];
+    char override[1400];
     const char *overrides[2];
     size_t count = 0;
     const char *behind = strchr(key->path, ']');
+    const char *list = !behind ? "" : key->path[0] == 'o' ? "objects[0]" : "medium.layers[1]";
     if (key->other)
         overrides[count++] = key->other;
-    snprintf(override, sizeof override, "%s%s=%s", behind ? "objects[0]" : "",
-             behind ? behind + 1 : key->path, key->value);
+    snprintf(override, sizeof override, "%s%s=%s", list, behind ? behind + 1 : key->path,
+             key->value);
     overrides[count++] = override;
     write_scene(folder, key->base, strlen(key->base));
     if (read_scene(folder, overrides, count) != SONJECT_OK)
         fail_msg("%s: %s", override, folder->report.message);
-    expect_arrived(key, behind ? (const void *)folder->scene.objects : &folder->scene);
+    expect_arrived(key, structure_of(&folder->scene, key->path));
 }
 
 static void test_every_key_arrives(void **state)
@@ -305,7 +353,7 @@ static void test_every_key_arrives(void **state)
 /* So that a key cannot be added to the tables without a case above. */
 static void test_every_key_has_a_case(void **state)
 {
-    struct scene_file_key keys[100];
+    struct scene_file_key keys[120];
     const size_t count = scene_file_keys(keys, COUNT(keys));
     (void)state;
     assert_int_equal(count, COUNT(cases));
@@ -471,13 +519,15 @@ static void test_examples_are_good(void **state)
         sonject_input_kind input;
         sonject_injection_mode mode;
         uint32_t objects;
+        double altitude;
     } examples[] = {
-        {"demo", SONJECT_INPUT_SYNTHETIC, SONJECT_MODE_COMPOSITE, 3},
-        {"figure4", SONJECT_INPUT_UNIFORM, SONJECT_MODE_RESYNTHESISE, 1},
-        {"figure5", SONJECT_INPUT_FILE, SONJECT_MODE_RESYNTHESISE, 0},
-        {"figure6", SONJECT_INPUT_FILE, SONJECT_MODE_COMPOSITE, 1},
-        {"figure7", SONJECT_INPUT_FILE, SONJECT_MODE_COMPOSITE, 1},
-        {"surface", SONJECT_INPUT_SYNTHETIC, SONJECT_MODE_COMPOSITE, 2},
+        {"demo", SONJECT_INPUT_SYNTHETIC, SONJECT_MODE_COMPOSITE, 3, 10.0},
+        {"figure4", SONJECT_INPUT_UNIFORM, SONJECT_MODE_RESYNTHESISE, 1, 10.0},
+        {"figure5", SONJECT_INPUT_FILE, SONJECT_MODE_RESYNTHESISE, 0, 10.0},
+        {"figure6", SONJECT_INPUT_FILE, SONJECT_MODE_COMPOSITE, 1, 10.0},
+        {"figure7", SONJECT_INPUT_FILE, SONJECT_MODE_COMPOSITE, 1, 10.0},
+        {"layers", SONJECT_INPUT_SYNTHETIC, SONJECT_MODE_COMPOSITE, 2, 20.0},
+        {"surface", SONJECT_INPUT_SYNTHETIC, SONJECT_MODE_COMPOSITE, 2, 10.0},
     };
     struct scene_folder *folder = *state;
     for (size_t i = 0; i < COUNT(examples); i++) {
@@ -492,7 +542,9 @@ static void test_examples_are_good(void **state)
         assert_int_equal(folder->scene.object_count, examples[i].objects);
         assert_true(folder->scene.sonar.centre_frequency_hz == 100e3);
         assert_true(folder->scene.sonar.bandwidth_hz == 30e3);
-        assert_true(folder->scene.sonar.altitude_m == 10.0);
+        assert_true(folder->scene.sonar.altitude_m == examples[i].altitude);
+        assert_int_equal(folder->scene.water_layer_count > 1,
+                         strcmp(examples[i].name, "layers") == 0);
         assert_int_equal(folder->scene.injection.interactions,
                          strcmp(examples[i].name, "figure7") == 0   ? 2
                          : strcmp(examples[i].name, "surface") == 0 ? 3

@@ -7,6 +7,7 @@
 #include <cmocka.h>
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "api/scene_hash.h"
@@ -59,6 +60,7 @@ static const struct member of_scene[] = {
     SCENE(sonar.taylor_terms),
     SCENE(medium.sound_speed_mps),
     SCENE(medium.reference_sound_speed_mps),
+    SCENE(medium.absorption_db_per_m),
     SCENE(seabed.map),
     SCENE(seabed.lambert),
     SCENE(seabed.level_radius_m),
@@ -127,6 +129,34 @@ static void test_every_member_counts(void **state)
     scene_clear(&scene);
 }
 
+static void test_layers_of_water_count(void **state)
+{
+    static const struct member of_layer[] = {
+        {"bottom_m", offsetof(struct water_layer, bottom_m), sizeof(double)},
+        {"speed_mps", offsetof(struct water_layer, speed_mps), sizeof(double)},
+        {"density", offsetof(struct water_layer, density), sizeof(double)},
+    };
+    const struct water_layer layers[] = {{0.0, 1490.0, 1.0}, {12.0, 1500.0, 1.0}};
+    struct scene scene;
+    char one[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];
+    (void)state;
+    make_scene(&scene);
+    hash_of(&scene, NULL, one);
+    scene.water_layers = malloc(sizeof layers);
+    assert_non_null(scene.water_layers);
+    memcpy(scene.water_layers, layers, sizeof layers);
+    scene.water_layer_count = 1;
+    hash_of(&scene, NULL, other);
+    assert_string_not_equal(one, other);
+    scene.water_layer_count = 2;
+    hash_of(&scene, NULL, one);
+    assert_string_not_equal(one, other);
+    for (size_t i = 0; i < 2 * COUNT(of_layer); i++)
+        expect_counted(&scene, &scene.water_layers[i / COUNT(of_layer)],
+                       &of_layer[i % COUNT(of_layer)]);
+    scene_clear(&scene);
+}
+
 static void test_input_and_number_of_objects_count(void **state)
 {
     struct scene scene;
@@ -170,6 +200,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_member_counts),
+        cmocka_unit_test(test_layers_of_water_count),
         cmocka_unit_test(test_input_and_number_of_objects_count),
         cmocka_unit_test(test_nan_is_one_value_and_padding_none),
     };

@@ -62,6 +62,14 @@ static void test_every_unit(void **state)
     expect(QUANTITY_DECIBEL, "-40", -40.0);
     expect(QUANTITY_DECIBEL, "-40 dB", -40.0);
     expect(QUANTITY_LEVEL, "0.002", 0.002);
+    expect(QUANTITY_ABSORPTION, "0.03", 0.03);
+    expect(QUANTITY_ABSORPTION, "0.03 dB/m", 0.03);
+    expect(QUANTITY_ABSORPTION, "34 dB/km", 0.034);
+    expect(QUANTITY_TEMPERATURE, "12.5", 12.5);
+    expect(QUANTITY_TEMPERATURE, "-1 C", -1.0);
+    expect(QUANTITY_DENSITY, "1025", 1025.0);
+    expect(QUANTITY_DENSITY, "1025 kg/m3", 1025.0);
+    expect(QUANTITY_DENSITY, "1.025 g/cm3", 1025.0);
 }
 
 static void test_angles_are_radians(void **state)
@@ -112,6 +120,9 @@ static void test_problems(void **state)
     expect_problem(QUANTITY_ANGLE, "30 degrees", "not one of deg, rad");
     expect_problem(QUANTITY_DECIBEL, "3 db", "unit 'db'");
     expect_problem(QUANTITY_SPEED, "3 knots", "m/s, km/s");
+    expect_problem(QUANTITY_ABSORPTION, "3 dB", "unit 'dB' is not one of dB/m, dB/km");
+    expect_problem(QUANTITY_TEMPERATURE, "285 K", "unit 'K' is not one of C");
+    expect_problem(QUANTITY_DENSITY, "3 kg", "unit 'kg' is not one of kg/m3, g/cm3");
     expect_problem(QUANTITY_NUMBER, "3 m", "'m' follows the number");
     expect_problem(QUANTITY_NUMBER, "", "'' is not a number");
     expect_problem(QUANTITY_LENGTH, "nan", "'nan' is not a number with a unit of m");

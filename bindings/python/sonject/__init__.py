@@ -52,6 +52,7 @@ from .parameters import (
     Synthetic,
     Transfer,
     Uniform,
+    absorption,
     from_degrees,
 )
 from .result import Box, ObjectTruth, Result, Statistics
@@ -104,6 +105,7 @@ __all__ = [
     "Transfer",
     "TransferKind",
     "Uniform",
+    "absorption",
     "check",
     "default_context",
     "devices",

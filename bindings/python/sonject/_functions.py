@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, c_char_p, c_int, c_size_t, c_uint32, c_uint64, c_void_p
+from ctypes import POINTER, c_char_p, c_double, c_int, c_size_t, c_uint32, c_uint64, c_void_p
 from typing import Any
 
 from . import _structures as s
@@ -35,6 +35,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sonject_object_params_init": (None, [POINTER(s.sonject_object_params)]),
     "sonject_sonar_params_init": (None, [POINTER(s.sonject_sonar_params)]),
     "sonject_medium_params_init": (None, [POINTER(s.sonject_medium_params)]),
+    "sonject_absorption": (c_double, [c_double, c_double, c_double, c_double, c_double]),
     "sonject_seabed_params_init": (None, [POINTER(s.sonject_seabed_params)]),
     "sonject_scene_create": (_status, [_context, POINTER(_scene)]),
     "sonject_scene_read": (
@@ -46,6 +47,14 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sonject_surface_params_init": (None, [POINTER(s.sonject_surface_params)]),
     "sonject_scene_set_surface": (_status, [_scene, POINTER(s.sonject_surface_params)]),
     "sonject_scene_set_medium": (_status, [_scene, POINTER(s.sonject_medium_params)]),
+    "sonject_scene_set_water_layers": (
+        _status,
+        [_scene, POINTER(c_double), POINTER(c_double), POINTER(c_double), c_size_t],
+    ),
+    "sonject_scene_set_sound_speed_profile": (
+        _status,
+        [_scene, POINTER(c_double), POINTER(c_double), c_size_t],
+    ),
     "sonject_scene_set_seabed": (_status, [_scene, POINTER(s.sonject_seabed_params)]),
     "sonject_scene_set_geometry": (_status, [_scene, POINTER(s.sonject_geometry_params)]),
     "sonject_scene_set_transfer": (_status, [_scene, POINTER(s.sonject_transfer_params)]),

@@ -192,6 +192,8 @@ class sonject_object_truth(Structure):
         ("target_strength_db", c_double),
         ("highlight_contrast_db", c_double),
         ("shadow_contrast_db", c_double),
+        ("grazing_rad", c_double),
+        ("transmission_loss_db", c_double),
     ]
 
 
@@ -247,6 +249,7 @@ class sonject_medium_params(Structure):
         ("reserved", c_uint32),
         ("sound_speed_mps", c_double),
         ("reference_sound_speed_mps", c_double),
+        ("absorption_db_per_m", c_double),
     ]
 
 

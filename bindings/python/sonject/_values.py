@@ -9,6 +9,8 @@ import operator
 import os
 from typing import Any, Mapping, Optional, Type, TypeVar, Union
 
+import numpy
+
 from ._library import load
 
 PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
@@ -34,6 +36,18 @@ def real_number(name: str, value: Any) -> float:
     if not isinstance(value, numbers.Real):
         raise TypeError(f"{name} must be a number, not {value!r}")
     return float(value)
+
+
+def real_numbers(name: str, values: Any) -> Any:
+    """values, an array or a sequence of numbers in one row, as an array of doubles."""
+    if isinstance(values, numpy.ma.MaskedArray):
+        raise TypeError(f"{name} must not be masked: its mask would be lost")
+    array = numpy.asarray(values)
+    if array.size > 0 and array.dtype.kind not in "iuf":
+        raise TypeError(f"{name} must be numbers, not {array.dtype}")
+    if array.ndim != 1:
+        raise ValueError(f"{name} must be in one row, not of shape {array.shape}")
+    return numpy.ascontiguousarray(array, dtype=numpy.float64)
 
 
 def choice(name: str, kind: Type[AnyEnum], value: Any) -> AnyEnum:

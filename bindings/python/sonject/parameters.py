@@ -13,8 +13,9 @@ from dataclasses import dataclass, fields
 from typing import Any, ClassVar, Mapping, Optional, Type
 
 from . import _structures as s
+from ._library import load
 from ._parameters import Parameters, library_default
-from ._values import fill, sized
+from ._values import fill, real_number, sized
 from .enumerations import (
     ColumnRule,
     Estimator,
@@ -31,6 +32,29 @@ from .material import Material
 def from_degrees(angle: float) -> float:
     """An angle in radians from one in degrees: ``heading_rad=from_degrees(30)``."""
     return math.radians(angle)
+
+
+def absorption(
+    frequency_hz: float,
+    temperature_celsius: float,
+    salinity_permille: float = 35.0,
+    depth_m: float = 0.0,
+    ph: float = 8.0,
+) -> float:
+    """Absorption of sea water in dB/m after Francois and Garrison (1982).
+
+    200 Hz...1 MHz, -2...30 degrees Celsius, 0...40 per mille, 0...5000 m below the sea surface,
+    pH 7...9; NaN outside of these.
+    """
+    return float(
+        load().sonject_absorption(
+            real_number("frequency_hz", frequency_hz),
+            real_number("temperature_celsius", temperature_celsius),
+            real_number("salinity_permille", salinity_permille),
+            real_number("depth_m", depth_m),
+            real_number("ph", ph),
+        )
+    )
 
 
 @dataclass(kw_only=True)
@@ -58,12 +82,18 @@ class Sonar(Parameters):
 
 @dataclass(kw_only=True)
 class Medium(Parameters):
-    """The water. reference_sound_speed_mps: that the image processor assumed; 0: the true one."""
+    """The water.
+
+    sound_speed_mps: of no meaning where the scene has layers or a profile;
+    reference_sound_speed_mps: that the image processor assumed; 0: the true one, around the seabed;
+    absorption_db_per_m: absorption() gives that of sea water.
+    """
 
     _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_medium_params
 
     sound_speed_mps: float = library_default()
     reference_sound_speed_mps: float = library_default()
+    absorption_db_per_m: float = library_default()
 
 
 @dataclass(kw_only=True)

@@ -55,7 +55,8 @@ class ObjectTruth:
     is_visible: some pixel is its own, or it casts a shadow; *_is_cut: touches the patch's edge;
     row, column: of its centre, in patch pixels; slant_range_m: apparent; height_m: of the centre
     over the seabed; target_strength_db: of its brightest pixel, re 1 m^2, -inf where nothing of it
-    is in view; contrasts: mean energy over the local seabed level.
+    is in view; contrasts: mean energy over the local seabed level; grazing_rad: of the sound that
+    comes straight to the centre; transmission_loss_db: one way, from 1 m off the sonar.
     """
 
     is_visible: bool
@@ -75,6 +76,8 @@ class ObjectTruth:
     target_strength_db: float
     highlight_contrast_db: float
     shadow_contrast_db: float
+    grazing_rad: float
+    transmission_loss_db: float
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from typing import Any, Iterable, Mapping, Optional, Type, Union
 
 from . import _structures as s
 from ._handle import Handle
-from ._values import PathLike, file_name, whole_number
+from ._values import PathLike, file_name, real_numbers, whole_number
 from .context import Context, default_context
 from .objects import Object
 from .parameters import (
@@ -113,6 +113,50 @@ class Scene(Handle):
 
     def set_medium(self, medium: Medium) -> None:
         self._set("medium", medium, Medium)
+
+    def _set_samples(self, name: str, columns: Mapping[str, Any]) -> None:
+        """Calls a function of columns of doubles, None for NULL, and their common length."""
+        arrays = {
+            key: None if values is None else real_numbers(key, values)
+            for key, values in columns.items()
+        }
+        (first, leading), *others = arrays.items()
+        for key, array in others:
+            if array is not None and array.size != leading.size:
+                raise ValueError(f"{key} has {array.size} values, {first} has {leading.size}")
+        double = ctypes.POINTER(ctypes.c_double)
+        pointers = [
+            None if array is None else array.ctypes.data_as(double) for array in arrays.values()
+        ]
+        self._context.call("sonject_scene_set_" + name, self, *pointers, leading.size)
+
+    def set_water_layers(
+        self, bottoms_m: Any, sound_speeds_mps: Any, densities: Any = None
+    ) -> None:
+        """Level layers of water, each of one sound speed, from the seabed upwards.
+
+        bottoms_m: height of each layer's lower edge over the mean seabed, the first 0, rising;
+        densities: in any one unit, None where they are equal. Lists or arrays; without any layer the
+        water has the medium's sound speed again.
+        """
+        self._set_samples(
+            "water_layers",
+            {
+                "bottoms_m": bottoms_m,
+                "sound_speeds_mps": sound_speeds_mps,
+                "densities": densities,
+            },
+        )
+
+    def set_sound_speed_profile(self, heights_m: Any, sound_speeds_mps: Any) -> None:
+        """Measured sound speeds at heights over the mean seabed, rising, which become layers.
+
+        Linear in between, constant beyond. Lists or arrays of at least two values.
+        """
+        self._set_samples(
+            "sound_speed_profile",
+            {"heights_m": heights_m, "sound_speeds_mps": sound_speeds_mps},
+        )
 
     def set_seabed(self, seabed: Seabed) -> None:
         self._set("seabed", seabed, Seabed)

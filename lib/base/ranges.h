@@ -1,10 +1,8 @@
 /* How the checks of a scene say that a value is out of range. */
-#ifndef SONJECT_SCENE_RANGES_H
-#define SONJECT_SCENE_RANGES_H
+#ifndef SONJECT_BASE_RANGES_H
+#define SONJECT_BASE_RANGES_H
 
 #include <stdint.h>
-
-#include <sonject/material.h>
 
 #include "base/report.h"
 
@@ -31,24 +29,5 @@ void check_choice(struct check *check, const char *key, uint32_t value, uint32_t
 void check_positive_length(struct check *check, const char *key, double value_m);
 void check_length(struct check *check, const char *key, double value_m);
 void check_coordinate(struct check *check, const char *key, double value_m);
-
-/* Names of a material's values where it is used. */
-struct material_keys {
-    const char *reflection, *roughness, *lambert, *exponent, *albedo, *slope, *density, *speed,
-        *loss;
-};
-
-/* MATERIAL_KEYS("material.") are those of an object's. */
-#define MATERIAL_KEYS(prefix)                                                                      \
-    {                                                                                              \
-        prefix "reflection", prefix "roughness", prefix "lambert", prefix "exponent",              \
-            prefix "glossy.albedo", prefix "glossy.slope", prefix "fluid.density",                 \
-            prefix "fluid.speed", prefix "fluid.loss"                                              \
-    }
-
-/* Ranges and energy bound of a material, as material.h states them. own_lambert: what its lambert
- * is where that is NaN; NaN where it must be a number. */
-void check_material(struct check *check, const struct material_keys *keys,
-                    const sonject_material_params *material, double own_lambert);
 
 #endif

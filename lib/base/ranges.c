@@ -1,4 +1,4 @@
-#include "scene/ranges.h"
+#include "base/ranges.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -1,0 +1,255 @@
+/* Tables of sound speeds: every way to write them, and files that are none. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "io/profile_table.h"
+#include "temporary_folder.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+static sonject_status read_bytes(void **state, const void *bytes, size_t count,
+                                 struct report *report, struct profile_table *table)
+{
+    const char *path = temporary_file(*state, "cast.csv");
+    write_bytes(path, bytes, count);
+    memset(report, 0, sizeof *report);
+    memset(table, 0, sizeof *table);
+    return profile_table_read(report, path, table);
+}
+
+/* The samples of all good tables here: 12 m and 1490.5 m/s, then 15.5 m and 1.5e3 m/s. */
+static void expect_taken(void **state, const char *text, bool is_depth)
+{
+    struct report report;
+    struct profile_table table;
+    if (read_bytes(state, text, strlen(text), &report, &table) != SONJECT_OK)
+        fail_msg("%s\nwas refused: %s", text, report.message);
+    assert_int_equal(table.count, 2);
+    assert_int_equal(table.is_depth, is_depth);
+    assert_true(table.positions_m[0] == 12.0 && table.positions_m[1] == 15.5);
+    assert_true(table.speeds_mps[0] == 1490.5 && table.speeds_mps[1] == 1500.0);
+    profile_table_clear(&table);
+}
+
+static void test_every_way_to_write_a_table(void **state)
+{
+    expect_taken(state, "height_m,sound_speed_mps\n12,1490.5\n15.5,1.5e3\n", false);
+    expect_taken(state, "height_m,sound_speed_mps\n12,1490.5\n15.5,1.5e3", false);
+    expect_taken(state, "depth_m;sound_speed_mps\r\n12;1490.5\r\n15.5;1500\r\n", true);
+    expect_taken(state, "depth_m sound_speed_mps\n12 1490.5\n15.5 1500\n", true);
+    expect_taken(state, "\tdepth_m\t  sound_speed_mps\n 12\t\t1490.5  \n15.5 \t1500\t\n", true);
+    expect_taken(state, "sound_speed_mps , height_m\n 1490.5 ,\t12\n1500, 15.5 \n", false);
+    expect_taken(state, "\xEF\xBB\xBFheight_m,sound_speed_mps\n12,1490.5\n15.5,1500\n", false);
+    expect_taken(state,
+                 "# of 20\xB0"
+                 "C\n\n \t \nheight_m,sound_speed_mps# metres\n#\n12,1490.5 # a\n\n"
+                 "15.5,1500#\n#",
+                 false);
+    expect_taken(state,
+                 "time;depth_m;temp, C;sound_speed_mps;\n"
+                 "10:00;12;4,5;1490.5;\n10:01;15.5;;1500;\n",
+                 true);
+}
+
+static void test_heights_rise_however_the_table_runs(void **state)
+{
+    static const struct {
+        const char *text;
+        double heights[3], speeds[3];
+    } tables[] = {
+        {"height_m,sound_speed_mps\n1,1501\n2,1502\n4,1504\n", {1, 2, 4}, {1501, 1502, 1504}},
+        {"height_m,sound_speed_mps\n4,1504\n2,1502\n1,1501\n", {1, 2, 4}, {1501, 1502, 1504}},
+        {"depth_m,sound_speed_mps\n1,1501\n2,1502\n4,1504\n", {16, 18, 19}, {1504, 1502, 1501}},
+        {"depth_m,sound_speed_mps\n4,1504\n2,1502\n1,1501\n", {16, 18, 19}, {1504, 1502, 1501}},
+        {"depth_m,sound_speed_mps\n19,1501\n20,1502\n24,1504\n", {-4, 0, 1}, {1504, 1502, 1501}},
+    };
+    for (size_t i = 0; i < COUNT(tables); i++) {
+        struct report report;
+        struct profile_table table;
+        if (read_bytes(state, tables[i].text, strlen(tables[i].text), &report, &table) !=
+            SONJECT_OK)
+            fail_msg("%s", report.message);
+        profile_table_to_heights(&table, 20.0);
+        assert_int_equal(table.count, 3);
+        assert_memory_equal(table.positions_m, tables[i].heights, sizeof tables[i].heights);
+        assert_memory_equal(table.speeds_mps, tables[i].speeds, sizeof tables[i].speeds);
+        profile_table_clear(&table);
+    }
+}
+
+/* message: behind the file's name. */
+static void expect_refused(void **state, const void *bytes, size_t count, const char *message)
+{
+    struct temporary_folder *folder = *state;
+    struct report report;
+    struct profile_table table;
+    if (read_bytes(state, bytes, count, &report, &table) != SONJECT_ERROR_INPUT)
+        fail_msg("not refused, though %s", message);
+    assert_null(table.positions_m);
+    const size_t place = strlen(folder->file);
+    if (strncmp(report.message, folder->file, place) != 0 ||
+        strcmp(report.message + place, message) != 0)
+        fail_msg("the message is\n%s\nand not\n%s%s", report.message, folder->file, message);
+}
+
+#define H "height_m,sound_speed_mps\n"
+
+static void test_tables_that_are_wrong(void **state)
+{
+    static const struct {
+        const char *text, *message;
+    } wrong[] = {
+        {"", ": there is nothing in it"},
+        {"# only a comment\n\n", ": there is nothing in it"},
+        {"12,1490\n15,1500\n", ":1: this line must name the columns, among them height_m or "
+                               "depth_m, and sound_speed_mps"},
+        {"\nheight_m\n12\n15\n", ":2: this line must name the columns, among them height_m or "
+                                 "depth_m, and sound_speed_mps"},
+        {"sound_speed_mps,height\n", ":1: this line must name the columns, among them height_m or "
+                                     "depth_m, and sound_speed_mps"},
+        {"height_m,depth_m,sound_speed_mps\n",
+         ":1: both height_m and depth_m are there; rename one"},
+        {"height_m,height_m,sound_speed_mps\n",
+         ":1: height_m: two columns of this name; rename one"},
+        {H, ":1: height_m: a profile needs at least two samples, not 0"},
+        {H "1,1500\n", ":2: height_m: a profile needs at least two samples, not 1"},
+        {H "1,1500\n2\n", ":3: has 1 column, but 2 have names"},
+        {H "1,1500\n2,\n", ":3: sound_speed_mps: '' is not a number"},
+        {H "1,1500\n2,1500,3\n", ":3: has 3 columns, but 2 have names"},
+        {H "1 1500\n2 1500\n", ":2: has 1 column, but 2 have names"},
+        {H "# two\n\n1,1500\n2,nan\n", ":5: sound_speed_mps: 'nan' is not a number"},
+        {H "1,1500\nNaN,1500\n", ":3: height_m: 'NaN' is not a number"},
+        {H "1,1500\n2,inf\n", ":3: sound_speed_mps: must be 100...10000 m/s, not inf"},
+        {H "1,1500\n-inf,1500\n", ":3: height_m: must be -1e+06...1e+06 m, not -inf"},
+        {H "1,1500\n1e999,1500\n", ":3: height_m: must be -1e+06...1e+06 m, not inf"},
+        {H "1,1.5\n2,1.6\n", ":2: sound_speed_mps: must be 100...10000 m/s, not 1.5"},
+        {"depth_m,sound_speed_mps\n-1,1500\n2,1500\n", ":2: depth_m: must be 0...1e+06 m, not -1"},
+        {H "1,1500\n2,1500 m/s\n", ":3: sound_speed_mps: '1500 m/s' is not a number"},
+        {"height_m;sound_speed_mps\n1;1500,5\n", ":2: sound_speed_mps: '1500,5' is not a number"},
+        {H "1,1500\n1,1501\n",
+         ":3: height_m: must rise or fall from one to the next by at least 1e-06 m; 1 follows 1"},
+        {H "1,1500\n2,1501\n2.0000001,1501\n",
+         ":4: height_m: must go on rising from one to the next by at least 1e-06 m; 2.0000001 "
+         "follows 2"},
+        {H "\n1,1500\n2,1501\n1.5,1501\n",
+         ":5: height_m: must go on rising from one to the next by at least 1e-06 m; 1.5 follows 2"},
+        {"depth_m,sound_speed_mps\n2,1500\n1,1501\n3,1501\n",
+         ":4: depth_m: must go on falling from one to the next by at least 1e-06 m; 3 follows 1"},
+        {H "1,1500\n\x01,1500\n", ":3: not UTF-8 text; is this a table?"},
+        {H "1,1500\n2,\xFF\n", ":3: not UTF-8 text; is this a table?"},
+        {H "1,12345678901234567890123456789012345678901234567890x\n",
+         ":2: sound_speed_mps: '123456789012345678901234567890123456...' is not a number"},
+    };
+    for (size_t i = 0; i < COUNT(wrong); i++)
+        expect_refused(state, wrong[i].text, strlen(wrong[i].text), wrong[i].message);
+    expect_refused(state, H "1,1500\n2,15\00000\n", sizeof H "1,1500\n2,15\00000\n" - 1,
+                   ":3: not UTF-8 text; is this a table?");
+    expect_refused(state, "\x89PNG\r\n\x1A\n", 8, ":1: not UTF-8 text; is this a table?");
+}
+
+static void test_limits(void **state)
+{
+    char *text = calloc(PROFILE_BYTES_MAX + 2, 1);
+    assert_non_null(text);
+    size_t length = (size_t)sprintf(text, H);
+    for (int i = 0; i < PROFILE_SAMPLES_MAX; i++)
+        length += (size_t)sprintf(text + length, "%d,1500\n", i);
+    struct report report;
+    struct profile_table table;
+    assert_int_equal(read_bytes(state, text, length, &report, &table), SONJECT_OK);
+    assert_int_equal(table.count, PROFILE_SAMPLES_MAX);
+    profile_table_clear(&table);
+    length += (size_t)sprintf(text + length, "%d,1500\n", PROFILE_SAMPLES_MAX);
+    expect_refused(state, text, length, ":4098: more than 4096 samples; thin them out");
+
+    length = (size_t)sprintf(text, "height_m,sound_speed_mps");
+    for (int i = 0; i < 62; i++)
+        length += (size_t)sprintf(text + length, ",c%d", i);
+    expect_refused(state, text, length,
+                   ":1: height_m: a profile needs at least two samples, not 0");
+    length += (size_t)sprintf(text + length, ",one\n");
+    expect_refused(state, text, length,
+                   ":1: more than 64 columns; remove those that are not needed");
+
+    memset(text, '#', PROFILE_BYTES_MAX + 1);
+    expect_refused(state, text, PROFILE_BYTES_MAX, ": there is nothing in it");
+    expect_refused(state, text, PROFILE_BYTES_MAX + 1, ": larger than 1048576 bytes");
+    memset(text, ',', PROFILE_BYTES_MAX);
+    expect_refused(state, text, PROFILE_BYTES_MAX,
+                   ":1: more than 64 columns; remove those that are not needed");
+    free(text);
+}
+
+static void test_files_that_cannot_be_read(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct report report = {{0}, NULL, NULL};
+    struct profile_table table = {NULL, NULL, 0, false};
+    assert_int_equal(profile_table_read(&report, temporary_file(folder, "absent.csv"), &table),
+                     SONJECT_ERROR_STORAGE);
+    assert_non_null(strstr(report.message, "absent.csv: cannot open"));
+    assert_int_equal(profile_table_read(&report, folder->path, &table), SONJECT_ERROR_STORAGE);
+    assert_non_null(strstr(report.message, "cannot read"));
+    assert_null(table.positions_m);
+}
+
+static void expect_answer(void **state, const unsigned char *bytes, size_t count)
+{
+    struct temporary_folder *folder = *state;
+    struct report report;
+    struct profile_table table;
+    const sonject_status status = read_bytes(state, bytes, count, &report, &table);
+    if (status == SONJECT_OK) {
+        assert_true(table.count >= 2 && table.count <= PROFILE_SAMPLES_MAX);
+        for (size_t i = 0; i < table.count; i++)
+            assert_true(isfinite(table.positions_m[i]) && table.speeds_mps[i] >= 100.0 &&
+                        table.speeds_mps[i] <= 10000.0);
+        profile_table_clear(&table);
+    } else {
+        assert_int_equal(status, SONJECT_ERROR_INPUT);
+        assert_int_equal(strncmp(report.message, folder->file, strlen(folder->file)), 0);
+        assert_null(strchr(report.message, '\n'));
+    }
+}
+
+static void test_damaged_files_get_an_answer(void **state)
+{
+    static const char good[] = "\xEF\xBB\xBF# cast\ntime;depth_m;sound_speed_mps\r\n"
+                               "1;0.5;1520.25\r\n2;1e1;1519\r\n3;+12.5;1490.5 # cold\r\n";
+    unsigned char bytes[sizeof good];
+    uint64_t random = 20240601;
+    for (size_t cut = 0; cut < sizeof good; cut++)
+        expect_answer(state, (const unsigned char *)good, cut);
+    for (int i = 0; i < 3000; i++) {
+        memcpy(bytes, good, sizeof good);
+        for (int j = 0; j <= i % 4; j++) {
+            random = random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+            bytes[(random >> 33) % (sizeof good - 1)] = (unsigned char)(random >> 56);
+        }
+        expect_answer(state, bytes, sizeof good - 1);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_every_way_to_write_a_table),
+        cmocka_unit_test(test_heights_rise_however_the_table_runs),
+        cmocka_unit_test(test_tables_that_are_wrong),
+        cmocka_unit_test(test_limits),
+        cmocka_unit_test(test_files_that_cannot_be_read),
+        cmocka_unit_test(test_damaged_files_get_an_answer),
+    };
+    return cmocka_run_group_tests(tests, make_temporary_folder, remove_temporary_folder);
+}

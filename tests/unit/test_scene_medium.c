@@ -1,0 +1,308 @@
+/* The water of scene files: layers, profiles, absorption. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene_folder.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+/* Three lines; the medium stands before what it needs. */
+#define BASE                                                                                       \
+    "sonject: 1\n"                                                                                 \
+    "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
+    "first_slant_range: 40}}\n"                                                                    \
+    "# the water\n"
+#define SONAR   "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
+#define SURFACE "surface: {depth: 25 m}\n"
+#define CAST    SOURCE_ROOT "/tests/unit/cast.csv"
+
+static void expect_layer(const struct scene *scene, size_t i, double bottom, double speed,
+                         double density)
+{
+    assert_true(i < scene->water_layer_count);
+    const struct water_layer *layer = &scene->water_layers[i];
+    if (!(layer->bottom_m == bottom && layer->speed_mps == speed && layer->density == density))
+        fail_msg("layer %zu: %.17g m, %.17g m/s, %.17g", i, layer->bottom_m, layer->speed_mps,
+                 layer->density);
+}
+
+static void test_layers(void **state)
+{
+    struct scene_folder *folder = *state;
+    expect_scene_taken(folder, BASE "medium:\n"
+                                    "  reference_sound_speed: 1500 m/s\n"
+                                    "  layers:\n"
+                                    "    - {bottom: 0 m, sound_speed: 1490 m/s, density: 1025}\n"
+                                    "    - {bottom: 1200 cm, sound_speed: 1.52 km/s,\n"
+                                    "       density: 1.024 g/cm3}\n" SONAR);
+    assert_int_equal(folder->scene.water_layer_count, 2);
+    expect_layer(&folder->scene, 0, 0.0, 1490.0, 1025.0);
+    expect_layer(&folder->scene, 1, 12.0, 1520.0, 1024.0);
+    assert_true(folder->scene.medium.reference_sound_speed_mps == 1500.0);
+    expect_scene_taken(folder, BASE "medium: {layers: [{bottom: 0, sound_speed: 1490}, "
+                                    "{sound_speed: 1510, bottom: 3}]}\n" SONAR);
+    expect_layer(&folder->scene, 1, 3.0, 1510.0, 1.0);
+    expect_scene_taken(folder, BASE "medium: {sound_speed: 1490}\n" SONAR);
+    assert_null(folder->scene.water_layers);
+    assert_int_equal(folder->scene.water_layer_count, 0);
+}
+
+/* From 1490 m/s at 3 m to 1490.25 m/s at 12 m over the seabed. */
+static void expect_corners(struct scene_folder *folder, const char *text)
+{
+    const struct scene *scene = &folder->scene;
+    expect_scene_taken(folder, text);
+    const size_t count = scene->water_layer_count;
+    /* 0.25 m/s: 3.36 steps of 1490 / 20000 m/s, so four layers */
+    assert_int_equal(count, 6);
+    expect_layer(scene, 0, 0.0, 1490.0, 1.0);
+    assert_true(scene->water_layers[1].bottom_m == 3.0);
+    expect_layer(scene, 5, 12.0, 1490.25, 1.0);
+}
+
+static void test_profiles(void **state)
+{
+    struct scene_folder *folder = *state;
+    expect_corners(folder, BASE "medium: {profile: {file: " CAST "}}\n" SONAR);
+    expect_corners(folder, BASE "medium: {profile: {heights: [3, 12 m], sound_speeds: [1490, "
+                                "1.49025 km/s]}}\n" SONAR);
+    expect_corners(folder, BASE "medium: {profile: {heights: [20, 12, 3], sound_speeds: [1490.25, "
+                                "1490.25, 1490]}}\n" SONAR);
+    expect_corners(folder, BASE "medium: {profile: {depths: [13 m, 22 m], sound_speeds: [1490.25, "
+                                "1490]}}\n" SONAR SURFACE);
+    expect_corners(folder, BASE "medium: {profile: {depths: [22, 13, 0], sound_speeds: [1490, "
+                                "1490.25, 1490.25]}}\n" SURFACE SONAR);
+}
+
+/* Beside the scene file; of an override, where the user is. */
+static void test_files_are_looked_for_beside_the_scene(void **state)
+{
+    struct scene_folder *folder = *state;
+    char beside[SCENE_FOLDER_CAPACITY + 16];
+    const char *absent = "medium.profile.file=cast-of-nobody.csv";
+    const char *there = "medium.profile.file=" CAST;
+    static const char text[] = BASE "medium: {profile: {file: cast.csv}}\n" SONAR;
+    snprintf(beside, sizeof beside, "%s/cast.csv", folder->folder);
+    FILE *cast = fopen(beside, "w");
+    assert_non_null(cast);
+    fputs("height_m sound_speed_mps\n1 1500\n2 1500\n", cast);
+    fclose(cast);
+    expect_scene_taken(folder, text);
+    assert_int_equal(folder->scene.water_layer_count, 1);
+    expect_layer(&folder->scene, 0, 0.0, 1500.0, 1.0);
+    cast = fopen(beside, "w");
+    assert_non_null(cast);
+    fputs("height_m sound_speed_mps\n1 1500\n2 warm\n", cast);
+    fclose(cast);
+    write_scene(folder, text, strlen(text));
+    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    assert_int_equal(strncmp(folder->report.message, beside, strlen(beside)), 0);
+    assert_string_equal(folder->report.message + strlen(beside),
+                        ":3: sound_speed_mps: 'warm' is not a number");
+    assert_int_equal(unlink(beside), 0);
+    char message[2 * SCENE_FOLDER_CAPACITY];
+    snprintf(message, sizeof message,
+             ":4:26: medium.profile.file: there is no file %s; check its name", beside);
+    expect_scene_refused(folder, text, message);
+    assert_int_equal(read_scene(folder, &absent, 1), SONJECT_ERROR_INPUT);
+    assert_string_equal(folder->report.message,
+                        "--set medium.profile.file: there is no file cast-of-nobody.csv; check its "
+                        "name");
+    assert_int_equal(read_scene(folder, &there, 1), SONJECT_OK);
+}
+
+static void test_absorption(void **state)
+{
+    struct scene_folder *folder = *state;
+    const double *absorption = &folder->scene.medium.absorption_db_per_m;
+    expect_scene_taken(folder, BASE "medium: {}\n" SONAR);
+    assert_true(*absorption == 0.0);
+    expect_scene_taken(folder, BASE "medium: {absorption: 0.03 dB/m}\n" SONAR);
+    assert_true(*absorption == 0.03);
+    expect_scene_taken(folder, BASE "medium: {absorption: 34 dB/km}\n" SONAR);
+    assert_true(*absorption == 0.034);
+    expect_scene_taken(folder, BASE "medium: {absorption: {temperature: 12 C, salinity: 34, depth: "
+                                    "20 m, ph: 7.9}}\n" SONAR);
+    assert_true(*absorption == sonject_absorption(100e3, 12.0, 34.0, 20.0, 7.9));
+    expect_scene_taken(folder, BASE "medium: {absorption: {temperature: -1, salinity: 5, depth: "
+                                    "0.2 km}}\n" SONAR);
+    assert_true(*absorption == sonject_absorption(100e3, -1.0, 5.0, 200.0, 8.0));
+    const char *frequency = "sonar.frequency=455 kHz";
+    assert_int_equal(read_scene(folder, &frequency, 1), SONJECT_OK);
+    assert_true(*absorption == sonject_absorption(455e3, -1.0, 5.0, 200.0, 8.0));
+}
+
+#define MEDIUM  BASE "medium:\n" /* its keys begin on line 5 */
+#define LAYERS  MEDIUM "  layers:\n"
+#define PROFILE MEDIUM "  profile: "
+
+static void test_what_is_wrong(void **state)
+{
+    static const struct {
+        const char *text, *message;
+    } wrong[] = {
+        {MEDIUM "  sound_speed: 1500\n  layers: [{bottom: 0, sound_speed: 1500}]\n",
+         ":5:3: medium: more than one of sound_speed, layers and profile is there; give one"},
+        {MEDIUM "  layers: []\n  profile: {}\n",
+         ":5:3: medium: more than one of sound_speed, layers and profile is there; give one"},
+        {MEDIUM "  profile: {}\n  sound_speed: 1500\n",
+         ":5:3: medium: more than one of sound_speed, layers and profile is there; give one"},
+        {MEDIUM "  layers: []\n",
+         ":5:11: medium.layers: must be a list, such as [{bottom: 0 m, sound_speed: 1490 m/s}, "
+         "{bottom: 12 m, ...}]"},
+        {MEDIUM "  layers: 1500\n",
+         ":5:11: medium.layers: must be a list, such as [{bottom: 0 m, sound_speed: 1490 m/s}, "
+         "{bottom: 12 m, ...}]"},
+        {LAYERS "    - 1500\n", ":6:7: medium.layers[0]: must be a section of 'key: value' lines, "
+                                "not a single value"},
+        {LAYERS "    - {bottom: 0}\n",
+         ":6:7: medium.layers[0].sound_speed: missing; add it (of the layer)"},
+        {LAYERS "    - {bottom: 0, sound_sped: 1500}\n",
+         ":6:19: medium.layers[0].sound_sped: unknown key; did you mean 'sound_speed'?"},
+        {LAYERS "    - {bottom: 0, sound_speed: fast}\n",
+         ":6:32: medium.layers[0].sound_speed: 'fast' is not a number with a unit of m/s, km/s"},
+        {LAYERS "    - {bottom: 0, sound_speed: 1}\n",
+         ":6:32: medium.layers[0].sound_speed: must be 100...10000 m/s, not 1"},
+        {LAYERS "    - {bottom: 1 m, sound_speed: 1500}\n",
+         ":6:16: medium.layers[0].bottom: must be 0 m: the first layer lies on the seabed; not "
+         "1 m"},
+        {LAYERS "    - {bottom: 0, sound_speed: 1500}\n    - {bottom: .inf, sound_speed: 1500}\n",
+         ":7:16: medium.layers[1].bottom: must be -1e+06...1e+06 m, not inf"},
+        {LAYERS "    - {bottom: 0, sound_speed: 1500}\n    - {bottom: 0, sound_speed: 1500}\n",
+         ":7:16: medium.layers[1].bottom: must lie over the one before it, 0 m, by at least 1e-06 "
+         "m, not at 0 m"},
+        {LAYERS "    - {bottom: 0, sound_speed: 1500}\n"
+                "    - {bottom: 1, sound_speed: 1500, density: 1000}\n",
+         ":7:47: medium.layers[1].density: give it for all layers or for none"},
+        {LAYERS "    - {bottom: 0, sound_speed: 1500, density: 1000}\n"
+                "    - {bottom: 1, sound_speed: 1500}\n",
+         ":7:7: medium.layers[1].density: give it for all layers or for none"},
+        {LAYERS "    - {bottom: 0, sound_speed: 1500, density: 0}\n",
+         ":6:47: medium.layers[0].density: must be 1e-06...1e+06, not 0"},
+        {PROFILE "cast.csv\n", ":5:12: medium.profile: must be a section of 'key: value' lines, "
+                               "not a single value"},
+        {PROFILE "{}\n",
+         ":5:12: medium.profile: none of file, heights and depths is there; give one"},
+        {PROFILE "{sound_speeds: [1500, 1500]}\n",
+         ":5:12: medium.profile: none of file, heights and depths is there; give one"},
+        {PROFILE "{heights: [1, 2], depths: [1, 2], sound_speeds: [1500, 1500]}\n",
+         ":5:12: medium.profile: more than one of file, heights and depths is there; give one"},
+        {PROFILE "{file: " CAST ", sound_speeds: [1500, 1500]}\n", NULL},
+        {PROFILE "{heights: [1, 2]}\n",
+         ":5:12: medium.profile.sound_speeds: missing; heights need it"},
+        {PROFILE "{heights: [1, 2], sound_speeds: [1500]}\n",
+         ":5:44: medium.profile.sound_speeds: has 1 entries, but heights has 2"},
+        {PROFILE "{depths: [1], sound_speeds: [1500]}\n",
+         ":5:21: medium.profile.depths: a profile needs at least two samples, not 1"},
+        {PROFILE "{heights: 1, sound_speeds: [1500]}\n",
+         ":5:22: medium.profile.heights: must be a list, such as [0 m, 12 m, 15 m]"},
+        {PROFILE "{heights: [1, 2], sound_speeds: []}\n",
+         ":5:44: medium.profile.sound_speeds: must be a list, such as [1490 m/s, 1500 m/s]"},
+        {PROFILE "{heights: [1, 2 kg], sound_speeds: [1500, 1500]}\n",
+         ":5:26: medium.profile.heights[1]: unit 'kg' is not one of m, km, cm, mm"},
+        {PROFILE "{heights: [1, [2]], sound_speeds: [1500, 1500]}\n",
+         ":5:26: medium.profile.heights[1]: must be a single value, not a list"},
+        {PROFILE "{heights: [1, 2], sound_speeds: [1500, .nan]}\n",
+         ":5:51: medium.profile.sound_speeds[1]: '.nan' is not a number with a unit of m/s, km/s"},
+        {PROFILE "{heights: [1, 2], sound_speeds: [15, 1500]}\n",
+         ":5:45: medium.profile.sound_speeds[0]: must be 100...10000 m/s, not 15"},
+        {PROFILE "{heights: [1, 3, 2], sound_speeds: [1500, 1500, 1500]}\n",
+         ":5:29: medium.profile.heights[2]: must go on rising from one to the next by at least "
+         "1e-06 m; 2 follows 3"},
+        {PROFILE "{depths: [1, 2], sound_speeds: [1500, 1500]}\n",
+         ":5:21: medium.profile.depths: depths are meant from the sea surface; set depth in "
+         "surface"},
+        {PROFILE "{depths: [40, 30], sound_speeds: [1500, 1500]}\n" SURFACE,
+         ":5:21: medium.profile.depths: must lie over the seabed: the whole profile is below it "
+         "(-5 m)"},
+        {PROFILE "{heights: [0, 9], sound_speeds: [1200, 1800]}\n",
+         ":5:22: medium.profile.heights: needs more than 4096 layers; take fewer samples, or "
+         "layers"},
+        {MEDIUM "  absorption: -1 dB/m\n",
+         ":5:15: medium.absorption: must be 0...100 dB/m, not -1"},
+        {MEDIUM "  absorption: 3 dB\n",
+         ":5:15: medium.absorption: unit 'dB' is not one of dB/m, dB/km"},
+        {MEDIUM "  absorption: sea\n",
+         ":5:15: medium.absorption: 'sea' is not a number with a unit of dB/m, dB/km"},
+        {MEDIUM "  absorption: [1]\n", ":5:15: medium.absorption: must be a section of 'key: "
+                                       "value' lines, not a list"},
+        {MEDIUM "  absorption: {temperature: 12 C}\n",
+         ":5:15: medium.absorption: salinity, depth are missing; add them"},
+        {MEDIUM "  absorption: {temperature: 31 C, salinity: 35, depth: 0}\n",
+         ":5:29: medium.absorption.temperature: must be -2...30 C, not 31"},
+        {MEDIUM "  absorption: {temperature: 285 K, salinity: 35, depth: 0}\n",
+         ":5:29: medium.absorption.temperature: unit 'K' is not one of C"},
+        {MEDIUM "  absorption: {temperature: 12, salinity: 41, depth: 0}\n",
+         ":5:43: medium.absorption.salinity: must be 0...40 per mille, not 41"},
+        {MEDIUM "  absorption: {temperature: 12, salinity: 35, depth: -1}\n",
+         ":5:54: medium.absorption.depth: must be 0...5000 m, not -1"},
+        {MEDIUM "  absorption: {temperature: 12, salinity: 35, depth: 1, ph: 4}\n",
+         ":5:61: medium.absorption.ph: must be 7...9, not 4"},
+    };
+    struct scene_folder *folder = *state;
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        char text[2000];
+        snprintf(text, sizeof text, "%s%s", wrong[i].text, SONAR);
+        if (wrong[i].message) {
+            expect_scene_refused(folder, text, wrong[i].message);
+        } else {
+            write_scene(folder, text, strlen(text));
+            assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+            assert_non_null(strstr(folder->report.message, ": medium.profile.sound_speeds: the "
+                                                           "file tells them; remove one of the "
+                                                           "two"));
+        }
+        assert_null(folder->scene.water_layers);
+    }
+    expect_scene_refused(folder,
+                         MEDIUM "  absorption: {temperature: 12, salinity: 35, depth: 1}\n"
+                                "sonar: {frequency: 2 MHz, bandwidth: 30 kHz, altitude: 10 m}\n",
+                         ":5:15: medium.absorption: is known from 200 Hz to 1 MHz, not at the "
+                         "sonar's 2e+06 Hz; give it in dB/m");
+}
+
+static void test_too_many_of_them(void **state)
+{
+    struct scene_folder *folder = *state;
+    const size_t capacity = 300000;
+    char *text = calloc(capacity, 1);
+    assert_non_null(text);
+    size_t length = (size_t)sprintf(text, "%s", LAYERS);
+    for (int i = 0; i < 4097; i++)
+        length += (size_t)sprintf(text + length, "    - {bottom: %d, sound_speed: 1500}\n", i);
+    sprintf(text + length, "%s", SONAR);
+    expect_scene_refused(folder, text,
+                         ":6:5: medium.layers: has 4097 entries; at most 4096 are possible");
+    length = (size_t)sprintf(text, "%s", PROFILE "{heights: [0");
+    for (int i = 1; i < 4097; i++)
+        length += (size_t)sprintf(text + length, ", %d", i);
+    sprintf(text + length, "%s", "], sound_speeds: [1500, 1500]}\n" SONAR);
+    expect_scene_refused(folder, text,
+                         ":5:22: medium.profile.heights: has 4097 entries; at most "
+                         "4096 are possible");
+    free(text);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_layers),
+        cmocka_unit_test(test_profiles),
+        cmocka_unit_test(test_files_are_looked_for_beside_the_scene),
+        cmocka_unit_test(test_absorption),
+        cmocka_unit_test(test_what_is_wrong),
+        cmocka_unit_test(test_too_many_of_them),
+    };
+    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
+}
