@@ -35,7 +35,7 @@ static const char *unit_of(const struct field *field)
     case FIELD_PATH:
         return "file name";
     case FIELD_NAMED:
-        return "name";
+        return field->unit ? field->unit : "name";
     case FIELD_SPECIAL:
         return field->unit ? field->unit : "whole number";
     default:

@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-#include <sonject/material.h>
+#include <sonject/object.h>
 
 #include "base/report.h"
 
@@ -50,5 +50,8 @@ struct material_keys {
  * is where that is NaN; NaN where it must be a number. */
 void check_material(struct check *check, const struct material_keys *keys,
                     const sonject_material_params *material, double own_lambert);
+
+/* Shape, sizes, ends and cuts of an object, as object.h states them. */
+void check_shape(struct check *check, const sonject_object_params *object);
 
 #endif
