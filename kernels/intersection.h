@@ -151,11 +151,15 @@ FUNCTION struct vector3 shape_normal(GLOBAL const struct object_record *object,
     }
 }
 
-/* How deep a point of the object's own frame lies under a cut. */
-FUNCTION real depth_under_cut(GLOBAL const struct cut_record *cut, struct vector3 point)
+/* The part of a ray that a cut leaves, in the object's own frame. */
+FUNCTION struct interval interval_under_cut(GLOBAL const struct cut_record *cut,
+                                            struct vector3 point, struct vector3 direction)
 {
-    return cut->offset -
-           (point.x * cut->normal_x + point.y * cut->normal_y + point.z * cut->normal_z);
+    const real depth =
+        cut->offset - (point.x * cut->normal_x + point.y * cut->normal_y + point.z * cut->normal_z);
+    const real loss =
+        direction.x * cut->normal_x + direction.y * cut->normal_y + direction.z * cut->normal_z;
+    return interval_of_half_space(depth, loss);
 }
 
 /* What the cuts leave of the shape. */
@@ -164,10 +168,7 @@ APART struct spans object_spans(GLOBAL const struct object_record *object, struc
 {
     struct spans spans = shape_spans(object, point, direction);
     for (int i = 0; i < object->cuts; i++) {
-        GLOBAL const struct cut_record *cut = &object->cut[i];
-        const real loss =
-            direction.x * cut->normal_x + direction.y * cut->normal_y + direction.z * cut->normal_z;
-        const struct interval left = interval_of_half_space(depth_under_cut(cut, point), loss);
+        const struct interval left = interval_under_cut(&object->cut[i], point, direction);
         spans.first = interval_overlap(spans.first, left);
         spans.second = interval_overlap(spans.second, left);
     }
@@ -206,36 +207,44 @@ FUNCTION real object_distance(GLOBAL const struct object_record *object, struct 
                    first_end_beyond(inside.second, approach, minimum));
 }
 
-/* In the object's own frame. The face of a cut takes the place of the shape's normal where the
- * point lies on it to within `rounding`. */
+/* The face of a cut takes the place of the shape's normal where the ray meets it at that very
+ * distance: object_spans found it by the same arithmetic, so it has the same bits. */
 APART struct vector3 normal_with_cuts(GLOBAL const struct object_record *object,
-                                      struct vector3 point, struct vector3 direction, real rounding)
+                                      struct vector3 point, struct vector3 direction, real distance)
 {
-    struct vector3 normal = shape_normal(object, point, direction);
-    for (int i = 0; i < object->cuts && is_solid(object); i++) {
+    const struct vector3 relative = from_centre(object, point);
+    const struct vector3 step = into_object(object, direction);
+    const struct vector3 hit =
+        into_object(object, from_centre(object, along3(point, direction, distance)));
+    struct vector3 normal = shape_normal(object, hit, step);
+    if (object->cuts == 0 || !is_solid(object))
+        return normal;
+    const real approach = -dot3(relative, direction);
+    const struct vector3 start = into_object(object, along3(relative, direction, approach));
+    for (int i = 0; i < object->cuts; i++) {
         GLOBAL const struct cut_record *cut = &object->cut[i];
+        const struct interval left = interval_under_cut(cut, start, step);
         struct vector3 face;
         face.x = SPLAT(cut->normal_x);
         face.y = SPLAT(cut->normal_y);
         face.z = SPLAT(cut->normal_z);
-        normal = choose3(MASK_OF(magnitude(depth_under_cut(cut, point)) < rounding), face, normal);
+        normal = choose3(MASK_OF(distance == approach + left.entry) |
+                             MASK_OF(distance == approach + left.exit),
+                         face, normal);
     }
     return normal;
 }
 
-/* Outward unit normal where the ray meets the object at that distance. */
+/* Outward unit normal where the ray meets the object at that distance, which object_distance gave
+ * for the same ray. */
 FUNCTION struct vector3 object_normal(GLOBAL const struct object_record *object,
                                       struct vector3 point, struct vector3 direction, real distance)
 {
-    const struct vector3 at = along3(point, direction, distance);
-    const struct vector3 hit = into_object(object, from_centre(object, at));
-    const struct vector3 way = into_object(object, direction);
-    if (is_plain(object))
-        return out_of_object(object, plain_normal(object, hit, way));
-    /* of a position: a few times 2^-24 of all that went into it */
-    const real rounding = 4.0e-7f * (magnitude(distance) + magnitude(at.x) + magnitude(at.y) +
-                                     magnitude(at.z) + object->bounding_radius);
-    return out_of_object(object, normal_with_cuts(object, hit, way, rounding));
+    if (!is_plain(object))
+        return out_of_object(object, normal_with_cuts(object, point, direction, distance));
+    const struct vector3 hit = from_centre(object, along3(point, direction, distance));
+    return out_of_object(
+        object, plain_normal(object, into_object(object, hit), into_object(object, direction)));
 }
 
 struct nearest_hit {
