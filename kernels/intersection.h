@@ -1,12 +1,18 @@
-/* Where rays meet objects. A new shape enters here, in its two switches. */
+/* Where rays meet objects. A new shape enters here, in shape_spans and shape_normal. */
 #ifndef SONJECT_KERNELS_INTERSECTION_H
 #define SONJECT_KERNELS_INTERSECTION_H
 
 #include "layout.h"
+#include "shapes/box.h"
 #include "shapes/capsule.h"
+#include "shapes/cone.h"
 #include "shapes/cylinder.h"
+#include "shapes/disc.h"
+#include "shapes/ellipsoid.h"
+#include "shapes/ended_cylinder.h"
 #include "shapes/plane.h"
 #include "shapes/sphere.h"
+#include "shapes/torus.h"
 
 /* Turns a vector of the launch's frame into the object's own. */
 FUNCTION struct vector3 into_object(GLOBAL const struct object_record *object, struct vector3 v)
@@ -36,8 +42,14 @@ FUNCTION struct vector3 from_centre(GLOBAL const struct object_record *object, s
     return relative;
 }
 
-/* In the object's own frame. */
-FUNCTION struct interval shape_interval(GLOBAL const struct object_record *object,
+/* Of the plainest shapes, which nothing cuts: in line, for most scenes hold no others. */
+FUNCTION int is_plain(GLOBAL const struct object_record *object)
+{
+    return object->shape <= SHAPE_CAPSULE && object->cuts == 0;
+}
+
+/* Plain shapes, in the object's own frame. */
+FUNCTION struct interval plain_interval(GLOBAL const struct object_record *object,
                                         struct vector3 point, struct vector3 direction)
 {
     switch (object->shape) {
@@ -52,8 +64,48 @@ FUNCTION struct interval shape_interval(GLOBAL const struct object_record *objec
     }
 }
 
-/* In the object's own frame, outward, unit. */
-FUNCTION struct vector3 shape_normal(GLOBAL const struct object_record *object,
+/* Any shape, uncut, in the object's own frame. */
+FUNCTION struct spans shape_spans(GLOBAL const struct object_record *object, struct vector3 point,
+                                  struct vector3 direction)
+{
+    switch (object->shape) {
+    case SHAPE_DISC:
+        return spans_of_one(disc_interval(point, direction, object->radius));
+    case SHAPE_ELLIPSOID:
+        return spans_of_one(ellipsoid_interval(point, direction, object->half_length,
+                                               object->half_width, object->half_height));
+    case SHAPE_BOX:
+        return spans_of_one(box_interval(point, direction, object->half_length, object->half_width,
+                                         object->half_height));
+    case SHAPE_WEDGE:
+        return spans_of_one(wedge_interval(
+            point, direction, object->half_length, object->half_width, object->half_height,
+            object->slant_across, object->slant_up, object->slant_offset));
+    case SHAPE_CONE:
+        return spans_of_one(cone_interval(point, direction, object->half_height, object->radius,
+                                          object->slant_across, object->slant_up,
+                                          object->slant_offset));
+    case SHAPE_TORUS:
+        return torus_spans(point, direction, object->radius, object->ring_radius);
+    case SHAPE_ENDED_CYLINDER:
+        return spans_of_one(
+            ended_cylinder_interval(point, direction, object->ends, object->radius));
+    case SHAPE_OPEN_CYLINDER:
+        return open_cylinder_spans(point, direction, object->ends, object->radius);
+    default:
+        return spans_of_one(plain_interval(object, point, direction));
+    }
+}
+
+/* Whether a cut lays open an inside, which its face then closes. */
+FUNCTION int is_solid(GLOBAL const struct object_record *object)
+{
+    return object->shape != SHAPE_PLANE && object->shape != SHAPE_DISC &&
+           object->shape != SHAPE_OPEN_CYLINDER;
+}
+
+/* Plain shapes, in the object's own frame, outward, unit. */
+FUNCTION struct vector3 plain_normal(GLOBAL const struct object_record *object,
                                      struct vector3 point, struct vector3 direction)
 {
     switch (object->shape) {
@@ -66,6 +118,71 @@ FUNCTION struct vector3 shape_normal(GLOBAL const struct object_record *object,
     default:
         return capsule_normal(point, object->half_length, object->radius);
     }
+}
+
+/* Any shape, uncut; on the side that the ray comes from where it has no inside. */
+FUNCTION struct vector3 shape_normal(GLOBAL const struct object_record *object,
+                                     struct vector3 point, struct vector3 direction)
+{
+    real highest;
+    switch (object->shape) {
+    case SHAPE_DISC:
+        return plane_normal(direction);
+    case SHAPE_ELLIPSOID:
+        return ellipsoid_normal(point, object->half_length, object->half_width,
+                                object->half_height);
+    case SHAPE_BOX:
+        return box_normal(point, object->half_length, object->half_width, object->half_height,
+                          &highest);
+    case SHAPE_WEDGE:
+        return wedge_normal(point, object->half_length, object->half_width, object->half_height,
+                            object->slant_across, object->slant_up, object->slant_offset);
+    case SHAPE_CONE:
+        return cone_normal(point, object->half_height, object->slant_across, object->slant_up,
+                           object->slant_offset);
+    case SHAPE_TORUS:
+        return torus_normal(point, object->radius);
+    case SHAPE_ENDED_CYLINDER:
+        return ended_cylinder_normal(point, object->ends, object->radius);
+    case SHAPE_OPEN_CYLINDER:
+        return open_cylinder_normal(point, direction, object->ends, object->radius);
+    default:
+        return plain_normal(object, point, direction);
+    }
+}
+
+/* The part of a ray that a cut leaves, in the object's own frame. */
+FUNCTION struct interval interval_under_cut(GLOBAL const struct cut_record *cut,
+                                            struct vector3 point, struct vector3 direction)
+{
+    const real depth =
+        cut->offset - (point.x * cut->normal_x + point.y * cut->normal_y + point.z * cut->normal_z);
+    const real loss =
+        direction.x * cut->normal_x + direction.y * cut->normal_y + direction.z * cut->normal_z;
+    return interval_of_half_space(depth, loss);
+}
+
+/* What the cuts leave of the shape. */
+APART struct spans object_spans(GLOBAL const struct object_record *object, struct vector3 point,
+                                struct vector3 direction)
+{
+    struct spans spans = shape_spans(object, point, direction);
+    for (int i = 0; i < object->cuts; i++) {
+        const struct interval left = interval_under_cut(&object->cut[i], point, direction);
+        spans.first = interval_overlap(spans.first, left);
+        spans.second = interval_overlap(spans.second, left);
+    }
+    return spans;
+}
+
+/* The first end of an interval beyond `minimum`; both counted from `start`. */
+FUNCTION real first_end_beyond(struct interval inside, real start, real minimum)
+{
+    const real entry = start + inside.entry;
+    const real exit = start + inside.exit;
+    const real first = CHOOSE(MASK_OF(entry > minimum), entry,
+                              CHOOSE(MASK_OF(exit > minimum), exit, SPLAT(FAR_AWAY)));
+    return CHOOSE(MASK_OF(inside.entry <= inside.exit), first, SPLAT(FAR_AWAY));
 }
 
 /* Distance along the ray to the first surface beyond `minimum`, FAR_AWAY if there is none. The ray
@@ -81,22 +198,53 @@ FUNCTION real object_distance(GLOBAL const struct object_record *object, struct 
         MASK_OF(dot3(closest, closest) <= object->bounding_radius * object->bounding_radius);
     if (!ANY(is_near))
         return SPLAT(FAR_AWAY);
-    const struct interval inside =
-        shape_interval(object, into_object(object, closest), into_object(object, direction));
-    const real entry = approach + inside.entry;
-    const real exit = approach + inside.exit;
-    const real first = CHOOSE(MASK_OF(entry > minimum), entry,
-                              CHOOSE(MASK_OF(exit > minimum), exit, SPLAT(FAR_AWAY)));
-    return CHOOSE(MASK_OF(inside.entry <= inside.exit), first, SPLAT(FAR_AWAY));
+    const struct vector3 start = into_object(object, closest);
+    const struct vector3 step = into_object(object, direction);
+    if (is_plain(object))
+        return first_end_beyond(plain_interval(object, start, step), approach, minimum);
+    const struct spans inside = object_spans(object, start, step);
+    return smaller(first_end_beyond(inside.first, approach, minimum),
+                   first_end_beyond(inside.second, approach, minimum));
 }
 
-/* Outward unit normal where the ray meets the object at that distance. */
+/* The face of a cut takes the place of the shape's normal where the ray meets it at that very
+ * distance: object_spans found it by the same arithmetic, so it has the same bits. */
+APART struct vector3 normal_with_cuts(GLOBAL const struct object_record *object,
+                                      struct vector3 point, struct vector3 direction, real distance)
+{
+    const struct vector3 relative = from_centre(object, point);
+    const struct vector3 step = into_object(object, direction);
+    const struct vector3 hit =
+        into_object(object, from_centre(object, along3(point, direction, distance)));
+    struct vector3 normal = shape_normal(object, hit, step);
+    if (object->cuts == 0 || !is_solid(object))
+        return normal;
+    const real approach = -dot3(relative, direction);
+    const struct vector3 start = into_object(object, along3(relative, direction, approach));
+    for (int i = 0; i < object->cuts; i++) {
+        GLOBAL const struct cut_record *cut = &object->cut[i];
+        const struct interval left = interval_under_cut(cut, start, step);
+        struct vector3 face;
+        face.x = SPLAT(cut->normal_x);
+        face.y = SPLAT(cut->normal_y);
+        face.z = SPLAT(cut->normal_z);
+        normal = choose3(MASK_OF(distance == approach + left.entry) |
+                             MASK_OF(distance == approach + left.exit),
+                         face, normal);
+    }
+    return normal;
+}
+
+/* Outward unit normal where the ray meets the object at that distance, which object_distance gave
+ * for the same ray. */
 FUNCTION struct vector3 object_normal(GLOBAL const struct object_record *object,
                                       struct vector3 point, struct vector3 direction, real distance)
 {
+    if (!is_plain(object))
+        return out_of_object(object, normal_with_cuts(object, point, direction, distance));
     const struct vector3 hit = from_centre(object, along3(point, direction, distance));
     return out_of_object(
-        object, shape_normal(object, into_object(object, hit), into_object(object, direction)));
+        object, plain_normal(object, into_object(object, hit), into_object(object, direction)));
 }
 
 struct nearest_hit {

@@ -1,4 +1,4 @@
-/* The part of a ray that runs inside a convex shape. */
+/* The parts of a ray that run inside a shape. */
 #ifndef SONJECT_KERNELS_INTERVAL_H
 #define SONJECT_KERNELS_INTERVAL_H
 
@@ -46,6 +46,33 @@ FUNCTION struct interval interval_of_slab(real start, real step, float extent)
     inside.entry = smaller(to_lower, to_upper);
     inside.exit = larger(to_lower, to_upper);
     return inside;
+}
+
+/* Inside a half space: by `depth` where the distance is 0, by `loss` less with each metre. */
+FUNCTION struct interval interval_of_half_space(real depth, real loss)
+{
+    const real safe = CHOOSE(MASK_OF(magnitude(loss) < 1.0e-20f), SPLAT(1.0e-20f), loss);
+    const real to_face = depth / safe;
+    const mask is_leaving = MASK_OF(safe > 0.0f);
+    struct interval inside;
+    inside.entry = CHOOSE(is_leaving, SPLAT(-FAR_AWAY), to_face);
+    inside.exit = CHOOSE(is_leaving, to_face, SPLAT(FAR_AWAY));
+    return inside;
+}
+
+/* What a ray has of any shape: `second` only of those that are not convex or not solid; it lies
+ * beyond the first where both are there. */
+struct spans {
+    struct interval first, second;
+};
+
+FUNCTION struct spans spans_of_one(struct interval only)
+{
+    struct spans spans;
+    spans.first = only;
+    spans.second.entry = SPLAT(FAR_AWAY);
+    spans.second.exit = SPLAT(-FAR_AWAY);
+    return spans;
 }
 
 #endif

@@ -9,7 +9,15 @@ enum shape_kind {
     SHAPE_PLANE = 0,
     SHAPE_SPHERE = 1,
     SHAPE_CYLINDER = 2,
-    SHAPE_CAPSULE = 3
+    SHAPE_CAPSULE = 3,
+    SHAPE_DISC = 4,
+    SHAPE_ELLIPSOID = 5,
+    SHAPE_BOX = 6,
+    SHAPE_WEDGE = 7,
+    SHAPE_CONE = 8,
+    SHAPE_TORUS = 9,
+    SHAPE_ENDED_CYLINDER = 10, /* solid: each end is flat or a part of a sphere */
+    SHAPE_OPEN_CYLINDER = 11   /* thin wall: at least one end is open */
 };
 
 /* What a random number is for; part of its key. */
@@ -56,15 +64,47 @@ struct surface_record {
                        returns sound from its volume too); the mirror gives way to it */
 };
 
+/* An end of a cylinder, counted outwards from the object's centre along its axis. */
+enum end_number {
+    END_NOSE = 0, /* towards +x */
+    END_TAIL = 1,
+    ENDS = 2
+};
+
+struct end_record {
+    float joint;     /* m: where the straight part ends */
+    float depth;     /* m: of the part of a sphere beyond it; 0: flat */
+    float curvature; /* 1/m: of that sphere */
+    RECORD_INT is_open;
+};
+
+/* What lies beyond a plane is cut off: x . normal > offset in the object's own frame. */
+struct cut_record {
+    float normal_x, normal_y, normal_z; /* unit */
+    float offset;                       /* m */
+};
+
+#define OBJECT_CUTS 2
+
 /* One object in the frame of a launch. */
 struct object_record {
     RECORD_INT shape;
     float centre_x, centre_y, centre_z; /* m, in the frame */
     float axes[9];         /* rows: the object's own x (nose), y and z axis in frame coordinates */
-    float half_length;     /* m: plane, cylinder; capsule: of its straight part */
-    float half_width;      /* m: plane */
-    float radius;          /* m: sphere, cylinder, capsule */
+    float half_length;     /* m, along x: plane, cylinder, box, wedge, ellipsoid; capsule: of its
+                              straight part */
+    float half_width;      /* m, along y: plane, box, wedge, ellipsoid */
+    float half_height;     /* m, along z: box, wedge, ellipsoid, cone */
+    float radius;          /* m: sphere, cylinder, capsule, disc; cone: the larger of its ends;
+                              torus: of the ring's middle line */
+    float ring_radius;     /* m: torus, of the ring's section */
+    float slant_across;    /* wedge: x, cone: radial component of the slanted face's unit normal */
+    float slant_up;        /* its z component */
+    float slant_offset;    /* m: of that face from the centre */
     float bounding_radius; /* m, about the centre */
+    struct end_record ends[ENDS];
+    RECORD_INT cuts;
+    struct cut_record cut[OBJECT_CUTS];
     struct surface_record surface;
     /* Where the object's echoes and shadow are tallied, in the tile buffer (incoherent part). */
     RECORD_WORD tile_offset;     /* first element */

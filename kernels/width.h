@@ -15,6 +15,7 @@
 
 #pragma OPENCL FP_CONTRACT OFF
 #define FUNCTION    static inline __attribute__((always_inline)) /* vectors travel badly by call */
+#define APART       static __attribute__((noinline)) /* what is rare and large is called instead */
 #define GLOBAL      __global
 #define JOIN_(a, b) a##b
 #define JOIN(a, b)  JOIN_(a, b)
@@ -68,6 +69,11 @@ typedef JOIN(int, WIDTH) mask;
 #include <string.h>
 
 #define FUNCTION static inline
+#ifdef __GNUC__
+#define APART static __attribute__((noinline, unused))
+#else
+#define APART static inline
+#endif
 #define GLOBAL
 #if WIDTH == 1
 typedef float real;

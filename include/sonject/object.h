@@ -9,16 +9,53 @@
 
 SONJECT_BEGIN_DECLARATIONS
 
-/* Lengths are overall. The axis of cylinder and capsule lies along the object's nose direction. */
+/* Lengths are overall. Length runs along the object's nose direction (own x), width across it (own
+ * y), height upwards when the pose is level (own z). */
 typedef enum sonject_shape {
     SONJECT_SHAPE_PLANE = 0,  /* rectangle length x width, facing up when pose is level; both sides
                                  reflect */
     SONJECT_SHAPE_SPHERE = 1, /* diameter */
-    SONJECT_SHAPE_CYLINDER = 2, /* length x diameter, flat ends */
-    SONJECT_SHAPE_CAPSULE = 3   /* length x diameter, length includes the spherical ends */
+    SONJECT_SHAPE_CYLINDER = 2,  /* length x diameter, axis along the nose; ends as nose_end and
+                                    tail_end say */
+    SONJECT_SHAPE_CAPSULE = 3,   /* length x diameter, length includes the spherical ends */
+    SONJECT_SHAPE_DISC = 4,      /* diameter, facing up when pose is level; both sides reflect */
+    SONJECT_SHAPE_ELLIPSOID = 5, /* length x width x height */
+    SONJECT_SHAPE_BOX = 6,       /* length x width x height */
+    SONJECT_SHAPE_WEDGE = 7,     /* length x width x height; the top slants from height at the tail
+                                    to front_height at the nose */
+    SONJECT_SHAPE_CONE = 8,      /* diameter x height, tip up when pose is level */
+    SONJECT_SHAPE_TRUNCATED_CONE = 9, /* diameter (below) and top_diameter x height */
+    SONJECT_SHAPE_TORUS = 10 /* diameter x height, lying flat when pose is level; its height is the
+                                thickness of the ring */
 } sonject_shape;
 
-/* How a position is given. The ground point under the object's centre is meant. */
+/* An end of a cylinder. With an open end the cylinder is a tube: its wall is thin and reflects on
+ * both sides. */
+typedef enum sonject_end {
+    SONJECT_END_FLAT = 0,
+    SONJECT_END_OPEN = 1,
+    SONJECT_END_SPHERICAL = 2 /* a part of a sphere that joins the rim */
+} sonject_end;
+
+/* How burial is given. */
+typedef enum sonject_burial_kind {
+    SONJECT_BURIAL_DEPTH = 0,    /* burial_m */
+    SONJECT_BURIAL_FRACTION = 1, /* burial_fraction */
+    SONJECT_BURIAL_PROUD = 2     /* proud_height_m */
+} sonject_burial_kind;
+
+/* A plane that cuts a part off an object: what lies more than distance_m from the centre towards a
+ * direction of the object's own. A solid shows a flat face there. */
+typedef struct sonject_cut {
+    double azimuth_rad;   /* of the direction, from the nose towards the object's own y */
+    double elevation_rad; /* towards the object's own z */
+    double distance_m;    /* of any sign */
+} sonject_cut;
+
+#define SONJECT_CUTS_CAPACITY 2
+
+/* How a position is given. The ground point under the object's centre is meant: the middle of its
+ * overall length, width and height, whatever is cut off. */
 typedef enum sonject_position_kind {
     SONJECT_POSITION_PATCH_CENTRE = 0, /* along = range = 0 */
     SONJECT_POSITION_METRES = 1,       /* along: along-track m, range: apparent slant range m, both
@@ -33,18 +70,31 @@ typedef struct sonject_object_params {
     uint32_t shape;                         /* sonject_shape */
     char name[SONJECT_NAME_CAPACITY];       /* UTF-8, terminated; "" becomes "object N" */
     char class_name[SONJECT_NAME_CAPACITY]; /* label class; "" becomes the shape's name */
-    double length_m;                        /* plane, cylinder, capsule (>= diameter) */
-    double width_m;                         /* plane */
-    double diameter_m;                      /* sphere, cylinder, capsule */
-    uint32_t position_kind;                 /* sonject_position_kind */
-    uint32_t reserved;
-    double position_along; /* see sonject_position_kind */
+    double length_m;        /* plane, cylinder, capsule (>= diameter), ellipsoid, box, wedge */
+    double width_m;         /* plane, ellipsoid, box, wedge */
+    double diameter_m;      /* sphere, cylinder, capsule, disc, cones, torus (> 2 height) */
+    uint32_t position_kind; /* sonject_position_kind */
+    uint32_t burial_kind;   /* sonject_burial_kind */
+    double position_along;  /* see sonject_position_kind */
     double position_range;
     double heading_rad; /* from along-track (+x) towards range (+y) */
     double pitch_rad;   /* raises the nose */
     double roll_rad;    /* about the nose direction */
     double burial_m;    /* depth of the lowest point below the seabed; negative: above it */
     sonject_material_params material;
+    double height_m;         /* ellipsoid, box, wedge, cones, torus */
+    double top_diameter_m;   /* truncated cone; 0: a cone; may be the larger one */
+    double front_height_m;   /* wedge: at the nose, 0...height */
+    uint32_t nose_end;       /* sonject_end, cylinder */
+    uint32_t tail_end;       /* likewise */
+    double nose_end_depth_m; /* of a spherical end, above 0...half the diameter; 0: half the
+                                diameter, a half sphere. The length includes it */
+    double tail_end_depth_m; /* likewise */
+    double burial_fraction;  /* 0...1 of the height that the object has in its pose */
+    double proud_height_m;   /* of the highest point above the seabed, 0...that height */
+    uint32_t cut_count;      /* of cuts that count */
+    uint32_t reserved;
+    sonject_cut cuts[SONJECT_CUTS_CAPACITY];
 } sonject_object_params;
 
 /* A proud sphere of 0.5 m diameter in the middle of the patch, default material. */

@@ -101,7 +101,7 @@ static double shadow_length(const struct patch_view *view, const struct placemen
 static double top_of(const struct scene *scene, const struct placement *placement, uint32_t i)
 {
     static const double upward[3] = {0.0, 0.0, 1.0};
-    return placement->centre[2] + placement_half_extent(placement, scene->objects[i].shape, upward);
+    return placement->centre[2] + placement_extent(placement, scene->objects[i].shape, upward);
 }
 
 static void describe_objects(struct text *text, const struct scene *scene,

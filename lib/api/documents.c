@@ -82,8 +82,12 @@ static json_t *object_document(const struct run_facts *facts, uint32_t index)
     add(document, "length_m", number(object->length_m));
     add(document, "width_m", number(object->width_m));
     add(document, "diameter_m", number(object->diameter_m));
+    add(document, "body_height_m", number(object->height_m));
+    add(document, "top_diameter_m", number(object->top_diameter_m));
+    add(document, "front_height_m", number(object->front_height_m));
+    add(document, "cuts", count(object->cut_count));
     add(document, "pose", pose);
-    add(document, "burial_m", number(object->burial_m));
+    add(document, "burial_m", number(burial_of_object(object)));
     add(document, "along_track_m", number(truth->along_track_m));
     add(document, "slant_range_m", number(truth->slant_range_m));
     add(document, "ground_range_m", number(truth->ground_range_m));

@@ -92,7 +92,23 @@ static void add_object(struct hash *hash, const sonject_object_params *object)
     ADD(hash, object->heading_rad);
     ADD(hash, object->pitch_rad);
     ADD(hash, object->roll_rad);
+    ADD(hash, object->burial_kind);
     ADD(hash, object->burial_m);
+    ADD(hash, object->burial_fraction);
+    ADD(hash, object->proud_height_m);
+    ADD(hash, object->height_m);
+    ADD(hash, object->top_diameter_m);
+    ADD(hash, object->front_height_m);
+    ADD(hash, object->nose_end);
+    ADD(hash, object->tail_end);
+    ADD(hash, object->nose_end_depth_m);
+    ADD(hash, object->tail_end_depth_m);
+    ADD(hash, object->cut_count);
+    for (uint32_t i = 0; i < object->cut_count; i++) {
+        ADD(hash, object->cuts[i].azimuth_rad);
+        ADD(hash, object->cuts[i].elevation_rad);
+        ADD(hash, object->cuts[i].distance_m);
+    }
     add_material(hash, &object->material);
 }
 

@@ -9,6 +9,8 @@
 #include "base/text.h"
 #include "io/scene_schema.h"
 
+#define KEYS_LISTED 24 /* of a section, in a message */
+
 void list_word(struct word_list *list, const char *word)
 {
     const size_t length = strlen(list->text);
@@ -230,9 +232,9 @@ static sonject_status read_field(struct reader *reader, const struct field *fiel
 static sonject_status refuse_unknown(struct reader *reader, const struct section *section,
                                      const struct tree_entry *entry)
 {
-    const char *keys[16];
+    const char *keys[KEYS_LISTED];
     struct word_list list = {{0}, 0};
-    for (size_t i = 0; i < section->count && i < 16; i++) {
+    for (size_t i = 0; i < section->count && i < KEYS_LISTED; i++) {
         keys[i] = section->fields[i].key;
         list_word(&list, keys[i]);
     }

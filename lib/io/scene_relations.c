@@ -28,36 +28,6 @@ sonject_status read_noise_floor(struct reader *reader, const struct tree_node *n
     return read_quantity(reader, node, QUANTITY_DECIBEL, &injection->noise_floor_db);
 }
 
-static sonject_status read_object(struct reader *reader, const struct tree_node *node)
-{
-    sonject_object_params object;
-    sonject_object_params_init(&object);
-    object.diameter_m = 0.0;
-    sonject_status status = read_section(reader, &object_section, node, &object);
-    if (status == SONJECT_OK)
-        status = scene_append_object(reader->scene, reader->report, &object);
-    return status;
-}
-
-sonject_status read_objects(struct reader *reader, const struct tree_node *node, void *structure)
-{
-    sonject_status status = SONJECT_OK;
-    (void)structure;
-    if (tree_is_null(node))
-        return SONJECT_OK;
-    if (node->kind != TREE_LIST)
-        return refuse_value(reader, node, "must be a list; start each object with '- '");
-    if (node->count > SCENE_OBJECTS_MAX)
-        return refuse_value(reader, node, "has %zu entries; at most %d are possible", node->count,
-                            SCENE_OBJECTS_MAX);
-    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
-        const size_t before = key_path_add_index(&reader->path, i);
-        status = read_object(reader, &node->entries[i].value);
-        key_path_shorten(&reader->path, before);
-    }
-    return status;
-}
-
 sonject_status finish_scene(struct reader *reader, const struct tree_node *node, void *structure)
 {
     const struct scene *scene = structure;
@@ -155,59 +125,5 @@ sonject_status finish_response(struct reader *reader, const struct tree_node *no
     (void)reader;
     (void)node;
     sonar->response_window = SONJECT_WINDOW_TAYLOR;
-    return SONJECT_OK;
-}
-
-sonject_status finish_position(struct reader *reader, const struct tree_node *node, void *structure)
-{
-    sonject_object_params *object = structure;
-    const int metres = is_given(node, "along_track") + is_given(node, "slant_range");
-    const int pixels = is_given(node, "row") + is_given(node, "column");
-    if (metres + pixels != 2 || metres == 1)
-        return refuse_value(reader, node,
-                            "needs along_track and slant_range, or row and column; give one pair");
-    object->position_kind = metres ? SONJECT_POSITION_METRES : SONJECT_POSITION_PIXELS;
-    return SONJECT_OK;
-}
-
-static sonject_status check_size_keys(struct reader *reader, const struct tree_node *node,
-                                      uint32_t shape)
-{
-    static const struct {
-        const char *key;
-        bool is_needed[4]; /* by shape */
-    } sizes[] = {
-        {"length",
-         {[SONJECT_SHAPE_PLANE] = true,
-          [SONJECT_SHAPE_CYLINDER] = true,
-          [SONJECT_SHAPE_CAPSULE] = true}},
-        {"width", {[SONJECT_SHAPE_PLANE] = true}},
-        {"diameter",
-         {[SONJECT_SHAPE_SPHERE] = true,
-          [SONJECT_SHAPE_CYLINDER] = true,
-          [SONJECT_SHAPE_CAPSULE] = true}},
-    };
-    for (int i = 0; i < 3; i++) {
-        const bool is_needed = sizes[i].is_needed[shape];
-        if (is_needed && !is_given(node, sizes[i].key))
-            return refuse_key(reader, node, sizes[i].key, "missing; a %s needs it",
-                              shape_name(shape));
-        if (!is_needed && is_given(node, sizes[i].key))
-            return refuse_key(reader, node, sizes[i].key, "a %s has none; remove it",
-                              shape_name(shape));
-    }
-    return SONJECT_OK;
-}
-
-sonject_status finish_object(struct reader *reader, const struct tree_node *node, void *structure)
-{
-    const sonject_object_params *object = structure;
-    struct report report = {{0}, NULL, NULL};
-    const char *key = "";
-    const sonject_status status = check_size_keys(reader, node, object->shape);
-    if (status != SONJECT_OK)
-        return status;
-    if (check_object(object, &report, &key) != SONJECT_OK)
-        return place_check(reader, node, key, &report);
     return SONJECT_OK;
 }

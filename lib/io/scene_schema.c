@@ -189,48 +189,6 @@ static const struct section injection_section = {injection_fields, COUNT(injecti
                                                  finish_injection};
 #undef STRUCTURE
 
-#define STRUCTURE sonject_object_params
-static const struct field position_fields[] = {
-    {"along_track", "track position", QUANTITY(STRUCTURE, position_along, QUANTITY_LENGTH)},
-    {"slant_range", "as the image shows it", QUANTITY(STRUCTURE, position_range, QUANTITY_LENGTH)},
-    {"row", "of the swath, may be a fraction",
-     QUANTITY(STRUCTURE, position_along, QUANTITY_NUMBER)},
-    {"column", "of the swath, may be a fraction",
-     QUANTITY(STRUCTURE, position_range, QUANTITY_NUMBER)},
-};
-static const struct section position_section = {position_fields, COUNT(position_fields),
-                                                finish_position};
-
-static const struct field object_fields[] = {
-    {"name", "of this object", LABEL(STRUCTURE, name)},
-    {"class", "label for training; by default the shape", LABEL(STRUCTURE, class_name)},
-    {"shape", "of the object",
-     WORD(STRUCTURE, shape) = {[SONJECT_SHAPE_PLANE] = "plane",
-                               [SONJECT_SHAPE_SPHERE] = "sphere",
-                               [SONJECT_SHAPE_CYLINDER] = "cylinder",
-                               [SONJECT_SHAPE_CAPSULE] = "capsule"},
-     REQUIRED},
-    {"length", "overall, of plane, cylinder and capsule",
-     QUANTITY(STRUCTURE, length_m, QUANTITY_LENGTH)},
-    {"width", "of a plane", QUANTITY(STRUCTURE, width_m, QUANTITY_LENGTH)},
-    {"diameter", "of sphere, cylinder and capsule",
-     QUANTITY(STRUCTURE, diameter_m, QUANTITY_LENGTH)},
-    {"position",
-     "ground point under the centre: centre, {along_track: , slant_range: } or {row: , column: }",
-     WORD(STRUCTURE, position_kind) = {[SONJECT_POSITION_PATCH_CENTRE] = "centre"},
-     .section = &position_section},
-    {"heading", "from along-track towards range", QUANTITY(STRUCTURE, heading_rad, QUANTITY_ANGLE)},
-    {"pitch", "raises the nose", QUANTITY(STRUCTURE, pitch_rad, QUANTITY_ANGLE)},
-    {"roll", "about the nose direction", QUANTITY(STRUCTURE, roll_rad, QUANTITY_ANGLE)},
-    {"burial", "depth of the lowest point below the seabed",
-     QUANTITY(STRUCTURE, burial_m, QUANTITY_LENGTH)},
-    {"material", "surface of the object: a material's name, or a section", .kind = FIELD_NAMED,
-     .offset = offsetof(STRUCTURE, material), .section = &material_section,
-     .read = read_material_name},
-};
-const struct section object_section = {object_fields, COUNT(object_fields), finish_object};
-#undef STRUCTURE
-
 /* Keys are read in this order, whatever the file's: the water needs the sonar's frequency and the
  * surface's depth. */
 #define STRUCTURE struct scene

@@ -11,7 +11,7 @@
 #include "io/yaml_tree.h"
 #include "scene/scene.h"
 
-#define FIELD_WORDS_MAX 6
+#define FIELD_WORDS_MAX 12
 
 enum field_kind {
     FIELD_QUANTITY, /* double */
@@ -131,7 +131,7 @@ sonject_status finish_object(struct reader *reader, const struct tree_node *node
 extern const struct section medium_section;
 sonject_status read_medium(struct reader *reader, const struct tree_node *node, void *structure);
 
-/* The objects' table, for read_objects. */
+/* The objects' table, for read_objects, in scene_object.c. */
 extern const struct section object_section;
 
 /* Materials, in scene_material.c. A sonject_material_params, and the same within a

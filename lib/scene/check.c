@@ -5,6 +5,7 @@
 
 #include "base/text.h"
 #include "scene/check_material.h"
+#include "scene/check_shape.h"
 #include "scene/scene.h"
 
 #define PI 3.14159265358979323846
@@ -220,23 +221,12 @@ static void check_label(struct check *check, const char *key, const char *text)
         check_failure(check, key, "must be UTF-8 text without control characters");
 }
 
-static void check_size(struct check *check, const sonject_object_params *object)
+static void check_burial(struct check *check, const sonject_object_params *object)
 {
-    if (object->shape != SONJECT_SHAPE_SPHERE)
-        check_positive_length(check, "length", object->length_m);
-    if (object->shape == SONJECT_SHAPE_PLANE)
-        check_positive_length(check, "width", object->width_m);
-    else
-        check_positive_length(check, "diameter", object->diameter_m);
-    if (object->shape == SONJECT_SHAPE_CAPSULE && object->length_m < object->diameter_m)
-        check_failure(
-            check, "length",
-            "of a capsule includes its round ends and must be at least its diameter, %g m, not "
-            "%g m",
-            object->diameter_m, object->length_m);
-    check_finite(check, "length", object->length_m);
-    check_finite(check, "width", object->width_m);
-    check_finite(check, "diameter", object->diameter_m);
+    check_choice(check, "burial", object->burial_kind, SONJECT_BURIAL_PROUD + 1);
+    check_coordinate(check, "burial", object->burial_m);
+    check_within(check, "burial.fraction", object->burial_fraction, 0.0, 1.0, "");
+    check_length(check, "burial.proud", object->proud_height_m);
 }
 
 static void check_position(struct check *check, const sonject_object_params *object)
@@ -261,13 +251,12 @@ sonject_status check_object(const sonject_object_params *object, struct report *
     struct check check = {report, key, SONJECT_OK};
     check_label(&check, "name", object->name);
     check_label(&check, "class", object->class_name);
-    check_choice(&check, "shape", object->shape, SONJECT_SHAPE_CAPSULE + 1);
-    check_size(&check, object);
+    check_shape(&check, object);
     check_position(&check, object);
     check_finite(&check, "heading", object->heading_rad);
     check_finite(&check, "pitch", object->pitch_rad);
     check_finite(&check, "roll", object->roll_rad);
-    check_coordinate(&check, "burial", object->burial_m);
+    check_burial(&check, object);
     check_material(&check, &material_keys, &object->material, NAN);
     return check.status;
 }

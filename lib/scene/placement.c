@@ -3,11 +3,12 @@
 #include <math.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
+#define PI         3.14159265358979323846
+#define THINNEST_M 1.0e-4 /* a plate without thickness lies on the seabed, not in it */
 
-static const double along[3] = {1.0, 0.0, 0.0};
 static const double outward[3] = {0.0, 1.0, 0.0};
 static const double upward[3] = {0.0, 0.0, 1.0};
+static const double downward[3] = {0.0, 0.0, -1.0};
 
 /* Heading turns +x towards +y, pitch raises the nose, roll turns about it. In a mirrored view the
  * image's along-track axis is -x, so heading and roll change sense. */
@@ -27,51 +28,62 @@ static void turn_axes(double axes[3][3], const sonject_object_params *object, bo
     }
 }
 
-static void take_size(struct placement *placement, const sonject_object_params *object)
-{
-    placement->radius_m = 0.5 * object->diameter_m;
-    placement->half_length_m = 0.5 * object->length_m;
-    placement->half_width_m = 0.0;
-    switch (object->shape) {
-    case SONJECT_SHAPE_PLANE:
-        placement->radius_m = 0.0;
-        placement->half_width_m = 0.5 * object->width_m;
-        placement->bounding_radius_m = hypot(placement->half_length_m, placement->half_width_m);
-        break;
-    case SONJECT_SHAPE_SPHERE:
-        placement->half_length_m = 0.0;
-        placement->bounding_radius_m = placement->radius_m;
-        break;
-    case SONJECT_SHAPE_CYLINDER:
-        placement->bounding_radius_m = hypot(placement->half_length_m, placement->radius_m);
-        break;
-    default:
-        placement->bounding_radius_m = placement->half_length_m;
-        placement->half_length_m -= placement->radius_m;
-        break;
-    }
-    placement->bounding_radius_m *= 1.0 + 1e-6; /* rounding to single precision must not cut */
-}
-
 static double dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+double placement_extent(const struct placement *placement, uint32_t shape,
+                        const double direction[3])
+{
+    double own[3];
+    for (int axis = 0; axis < 3; axis++)
+        own[axis] = dot(placement->axes[axis], direction);
+    return shape_extent(&placement->size, shape, own);
+}
+
 double placement_half_extent(const struct placement *placement, uint32_t shape,
                              const double direction[3])
 {
-    const double nose = fabs(dot(placement->axes[0], direction));
-    const double across = sqrt(fmax(0.0, 1.0 - nose * nose));
-    switch (shape) {
-    case SONJECT_SHAPE_PLANE:
-        return nose * placement->half_length_m +
-               fabs(dot(placement->axes[1], direction)) * placement->half_width_m;
-    case SONJECT_SHAPE_CYLINDER:
-        return nose * placement->half_length_m + across * placement->radius_m;
+    const double back[3] = {-direction[0], -direction[1], -direction[2]};
+    const double forward = placement_extent(placement, shape, direction);
+    return fmax(forward, placement_extent(placement, shape, back));
+}
+
+/* From one side to the other along an axis of the view. */
+static double overall_size(const struct placement *placement, uint32_t shape, int axis)
+{
+    double forward[3] = {0.0, 0.0, 0.0};
+    double back[3] = {0.0, 0.0, 0.0};
+    forward[axis] = 1.0;
+    back[axis] = -1.0;
+    return placement_extent(placement, shape, forward) + placement_extent(placement, shape, back);
+}
+
+static void pose(struct placement *placement, const sonject_object_params *object, bool is_mirrored)
+{
+    shape_size_init(&placement->size, object, is_mirrored);
+    placement->bounding_radius_m = placement->size.bounding_radius_m;
+    turn_axes(placement->axes, object, is_mirrored);
+}
+
+static double burial_in_pose(const struct placement *placement, const sonject_object_params *object)
+{
+    switch (object->burial_kind) {
+    case SONJECT_BURIAL_FRACTION:
+        return object->burial_fraction * overall_size(placement, object->shape, 2);
+    case SONJECT_BURIAL_PROUD:
+        return overall_size(placement, object->shape, 2) - object->proud_height_m;
     default:
-        return nose * placement->half_length_m + placement->radius_m;
+        return object->burial_m;
     }
+}
+
+double burial_of_object(const sonject_object_params *object)
+{
+    struct placement placement;
+    pose(&placement, object, false);
+    return burial_in_pose(&placement, object);
 }
 
 double placement_range(const struct placement *placement, const struct patch_view *view)
@@ -87,18 +99,18 @@ double placement_grazing(const struct placement *placement, const struct patch_v
 double placement_shadow_end(const struct placement *placement, uint32_t shape,
                             const struct patch_view *view)
 {
-    const double top = placement->centre[2] + placement_half_extent(placement, shape, upward);
-    const double end = placement->centre[1] + placement_half_extent(placement, shape, outward);
+    const double top = placement->centre[2] + placement_extent(placement, shape, upward);
+    const double end = placement->centre[1] + placement_extent(placement, shape, outward);
     return top > 0.0 ? end + top / tan(water_way_grazing(&view->water, end, top)) : end;
 }
 
 double object_top(const sonject_object_params *object)
 {
     struct placement placement;
-    memset(&placement, 0, sizeof placement);
-    take_size(&placement, object);
-    turn_axes(placement.axes, object, false); /* to which side the sonar looks does not matter */
-    return 2.0 * placement_half_extent(&placement, object->shape, upward) - object->burial_m;
+    pose(&placement, object, false); /* to which side the sonar looks does not matter */
+    return placement_extent(&placement, object->shape, upward) +
+           placement_extent(&placement, object->shape, downward) -
+           burial_in_pose(&placement, object);
 }
 
 /* Row and column of the view under the object's centre. */
@@ -133,21 +145,29 @@ sonject_status placement_init(struct placement *placement, struct report *report
             "and at %.1f m slant range; move it or the patch",
             object->name, view_x_of_row(view, row) * (view->is_mirrored ? -1 : 1),
             view_apparent_range(view, column));
-    take_size(placement, object);
-    turn_axes(placement->axes, object, view->is_mirrored);
-    const double half_height = placement_half_extent(placement, object->shape, upward);
+    const uint32_t shape = object->shape;
+    pose(placement, object, view->is_mirrored);
+    const double burial = burial_in_pose(placement, object);
+    if (object->burial_kind == SONJECT_BURIAL_PROUD && burial < 0.0)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "object '%s' cannot stand %.3f m proud of the seabed: in its pose it "
+                              "is %.3f m high; lower burial.proud",
+                              object->name, object->proud_height_m,
+                              overall_size(placement, shape, 2));
     placement->centre[0] = view_x_of_row(view, row);
     placement->centre[1] = view_ground_range(view, view_apparent_range(view, column));
-    placement->centre[2] = half_height - object->burial_m;
+    placement->centre[2] = placement_extent(placement, shape, downward) - burial;
+    if (placement->centre[2] == 0.0 && overall_size(placement, shape, 2) < THINNEST_M)
+        placement->centre[2] = THINNEST_M;
     const double patch_length = (double)view->rows * view->row_spacing_m;
     const double patch_width = (double)view->columns * view->column_spacing_m;
-    if (2.0 * placement_half_extent(placement, object->shape, along) > patch_length ||
-        2.0 * placement_half_extent(placement, object->shape, outward) > patch_width)
+    if (overall_size(placement, shape, 0) > patch_length ||
+        overall_size(placement, shape, 1) > patch_width)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "object '%s' is larger than the patch of %.2f m x %.2f m: use a "
                               "larger patch",
                               object->name, patch_length, patch_width);
-    if (placement->centre[2] + half_height >= view->altitude_m ||
+    if (placement->centre[2] + placement_extent(placement, shape, upward) >= view->altitude_m ||
         placement_range(placement, view) <= 2.0 * placement->bounding_radius_m)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "object '%s' reaches up to the sonar: lower it or raise the altitude",

@@ -4,25 +4,31 @@
 
 #include "scene/patch_view.h"
 #include "scene/scene.h"
+#include "scene/shape_size.h"
 
 struct placement {
-    double centre[3];     /* m: x of the view, horizontal range from the track, height */
-    double axes[3][3];    /* rows: nose, own y, own z, in view coordinates */
-    double half_length_m; /* straight part for a capsule */
-    double half_width_m;
-    double radius_m;
-    double bounding_radius_m;
+    double centre[3];  /* m: x of the view, horizontal range from the track, height */
+    double axes[3][3]; /* rows: nose, own y, own z, in view coordinates */
+    struct shape_size size;
+    double bounding_radius_m; /* size's */
 };
 
-/* Errors: INPUT (centre outside the patch, larger than the patch). first_row, first_column: of the
- * patch in the swath, for positions in swath pixels. */
+/* Errors: INPUT (centre outside the patch, larger than the patch, prouder than it is high).
+ * first_row, first_column: of the patch in the swath, for positions in swath pixels. */
 sonject_status placement_init(struct placement *placement, struct report *report,
                               const struct patch_view *view, double first_row, double first_column,
                               const sonject_object_params *object);
 
-/* Half of the object's size along a unit direction of the view. */
+/* How far the object reaches from its centre along a unit direction of the view. */
+double placement_extent(const struct placement *placement, uint32_t shape,
+                        const double direction[3]);
+
+/* The same both ways: the object lies within so much of its centre along a line. */
 double placement_half_extent(const struct placement *placement, uint32_t shape,
                              const double direction[3]);
+
+/* Depth of the object's lowest point below the seabed, however its burial is given. */
+double burial_of_object(const sonject_object_params *object);
 
 /* Slant range in m (straight: travel time times the sound speed there) from the track abreast of
  * the centre to the centre. */

@@ -64,6 +64,20 @@ const char *shape_name(uint32_t shape)
         return "cylinder";
     case SONJECT_SHAPE_CAPSULE:
         return "capsule";
+    case SONJECT_SHAPE_DISC:
+        return "disc";
+    case SONJECT_SHAPE_ELLIPSOID:
+        return "ellipsoid";
+    case SONJECT_SHAPE_BOX:
+        return "box";
+    case SONJECT_SHAPE_WEDGE:
+        return "wedge";
+    case SONJECT_SHAPE_CONE:
+        return "cone";
+    case SONJECT_SHAPE_TRUNCATED_CONE:
+        return "truncated_cone";
+    case SONJECT_SHAPE_TORUS:
+        return "torus";
     default:
         return NULL;
     }

@@ -8,14 +8,14 @@
 static void overall_size(const struct placement *placement, uint32_t shape, double *half_length,
                          double *radius)
 {
-    *half_length = placement->half_length_m;
-    *radius = placement->radius_m;
+    static const double nose[3] = {1.0, 0.0, 0.0};
+    static const double tail[3] = {-1.0, 0.0, 0.0};
+    struct shape_size uncut = placement->size;
+    uncut.cut_count = 0;
+    *half_length = fmax(shape_extent(&uncut, shape, nose), shape_extent(&uncut, shape, tail));
+    *radius = shape_radius_about_nose(&uncut, shape);
     if (shape == SONJECT_SHAPE_SPHERE)
         *half_length = 0.0;
-    else if (shape == SONJECT_SHAPE_CAPSULE)
-        *half_length += placement->radius_m;
-    else if (shape == SONJECT_SHAPE_PLANE)
-        *radius = placement->half_width_m;
 }
 
 static uint32_t spheres_for(double half_length, double radius, uint32_t objects)

@@ -7,12 +7,13 @@
 #include "base/memory.h"
 #include "cl/launch.h"
 #include "cl/program.h"
+#include "trace/object_shape.h"
 
 #define PI          3.14159265358979323846
 #define TALLY_BYTES ((size_t)64 << 20)
 
 /* Host and device must agree on every byte. */
-typedef char object_record_is_packed[sizeof(struct object_record) == 33 * 4 ? 1 : -1];
+typedef char object_record_is_packed[sizeof(struct object_record) == 55 * 4 ? 1 : -1];
 typedef char fan_record_is_packed[sizeof(struct fan_record) == 39 * 4 ? 1 : -1];
 typedef char chain_record_is_packed[sizeof(struct chain_record) == 22 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
@@ -106,27 +107,16 @@ void object_records_init(struct object_record *records, const struct tracer *tra
         const struct placement *placement = &tracer->placements[i];
         struct object_record *record = &records[i];
         memset(record, 0, sizeof *record);
-        record->shape = (int32_t)object->shape; /* both enumerations count alike, see below */
         record->centre_x = (float)(placement->centre[0] - origin[0]);
         record->centre_y = (float)(placement->centre[1] - origin[1]);
         record->centre_z = (float)(placement->centre[2] - origin[2]);
         for (int axis = 0; axis < 3; axis++)
             for (int k = 0; k < 3; k++)
                 record->axes[3 * axis + k] = (float)placement->axes[axis][k];
-        record->half_length = (float)placement->half_length_m;
-        record->half_width = (float)placement->half_width_m;
-        record->radius = (float)placement->radius_m;
-        record->bounding_radius = (float)placement->bounding_radius_m;
+        object_shape_init(record, &placement->size, object->shape);
         surface_record_init(&record->surface, &object->material, tracer->view.wavelength_m);
     }
 }
-
-typedef char shapes_count_alike[(int)SHAPE_PLANE == SONJECT_SHAPE_PLANE &&
-                                        (int)SHAPE_SPHERE == SONJECT_SHAPE_SPHERE &&
-                                        (int)SHAPE_CYLINDER == SONJECT_SHAPE_CYLINDER &&
-                                        (int)SHAPE_CAPSULE == SONJECT_SHAPE_CAPSULE
-                                    ? 1
-                                    : -1];
 
 /* Adds up the reports. A fault fails the run: a number that cannot be trusted must not be drawn. */
 static sonject_status add_outcomes(struct tracer *tracer, const struct outcome_record *outcomes,

@@ -27,6 +27,7 @@ enum scene_kind {
     SCENE_WIDE_SOURCE, /* the same, source rectangle: visibility tests */
     SCENE_WITH_MAP,    /* and a reflectivity map */
     SCENE_EMPTY,       /* seabed alone */
+    SCENE_MORE_SHAPES, /* shapes that are not plain, whole and cut; source rectangle */
     SCENE_KINDS
 };
 
@@ -44,20 +45,64 @@ static void place(sonject_object_params *object, double row, double column, doub
     object->material.roughness_m = 1e-3;
 }
 
+static void cut(sonject_object_params *object, double azimuth, double elevation, double distance)
+{
+    sonject_cut *added = &object->cuts[object->cut_count++];
+    added->azimuth_rad = azimuth;
+    added->elevation_rad = elevation;
+    added->distance_m = distance;
+}
+
+static void place_more_shapes(struct bench *bench)
+{
+    const struct {
+        sonject_shape shape;
+        double length, width, height, diameter, row, column;
+    } shapes[] = {
+        {SONJECT_SHAPE_DISC, 0.0, 0.0, 0.0, 0.4, 20.0, 25.0},
+        {SONJECT_SHAPE_ELLIPSOID, 0.6, 0.4, 0.3, 0.0, 20.0, 55.0},
+        {SONJECT_SHAPE_BOX, 0.5, 0.4, 0.3, 0.0, 20.0, 85.0},
+        {SONJECT_SHAPE_WEDGE, 0.6, 0.4, 0.3, 0.0, 45.0, 35.0},
+        {SONJECT_SHAPE_TRUNCATED_CONE, 0.0, 0.0, 0.3, 0.6, 45.0, 70.0},
+        {SONJECT_SHAPE_TORUS, 0.0, 0.0, 0.15, 0.6, 75.0, 25.0},
+        {SONJECT_SHAPE_CYLINDER, 0.8, 0.0, 0.0, 0.3, 75.0, 55.0},
+        {SONJECT_SHAPE_CYLINDER, 0.8, 0.0, 0.0, 0.3, 75.0, 90.0},
+    };
+    for (size_t i = 0; i < BENCH_OBJECTS; i++) {
+        sonject_object_params *object = bench_add(bench, shapes[i].shape, shapes[i].length,
+                                                  shapes[i].width, shapes[i].diameter);
+        object->height_m = shapes[i].height;
+        object->top_diameter_m = 0.3;
+        place(object, shapes[i].row, shapes[i].column, 0.3 + 0.7 * (double)i, 0.2, 0.1);
+    }
+    sonject_object_params *objects = bench->scene.objects;
+    cut(&objects[1], 0.4, 0.9, 0.05);
+    cut(&objects[1], 2.4, -0.2, 0.1);
+    cut(&objects[4], 1.0, 0.5, 0.1);
+    objects[5].pitch_rad = 1.0;
+    cut(&objects[5], -1.0, 0.1, 0.15);
+    objects[6].nose_end = SONJECT_END_SPHERICAL;
+    objects[6].nose_end_depth_m = 0.05;
+    objects[6].tail_end = SONJECT_END_SPHERICAL;
+    objects[7].nose_end = objects[7].tail_end = SONJECT_END_OPEN;
+}
+
 static void make_scene(struct bench *bench, enum scene_kind kind)
 {
     bench->scene.injection.seed = 0x123456789abcdefu;
     bench->scene.sonar.altitude_m = 7.3;
     bench->scene.medium.reference_sound_speed_mps = 1480.0;
     bench->scene.sonar.along_track_resolution_m = 0.03;
-    if (kind != SCENE_EMPTY) {
+    if (kind == SCENE_MORE_SHAPES) {
+        place_more_shapes(bench);
+    } else if (kind != SCENE_EMPTY) {
         place(bench_add(bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.4), 20.2, 40.7, 0.0, 0.0, 0.0);
         place(bench_add(bench, SONJECT_SHAPE_CYLINDER, 0.8, 0.0, 0.3), 50.0, 30.0, 0.7, 0.2, 0.0);
         place(bench_add(bench, SONJECT_SHAPE_CAPSULE, 1.0, 0.0, 0.3), 60.0, 70.0, -0.4, 0.1, 0.3);
         place(bench_add(bench, SONJECT_SHAPE_PLANE, 0.6, 0.4, 0.0), 40.0, 55.0, 0.3, -0.5, 0.4);
         bench->scene.objects[3].burial_m = 0.05;
     }
-    if (kind == SCENE_WIDE_SOURCE || kind == SCENE_WITH_MAP)
+    if (kind == SCENE_WIDE_SOURCE || kind == SCENE_WITH_MAP || kind == SCENE_MORE_SHAPES)
         bench->scene.sonar.transducer_side_m = 0.2;
     bench_ready(bench);
 }
@@ -338,7 +383,7 @@ static bool compare_pair(struct bench *bench, uint32_t object, const struct sour
 
 static void compare_smooth(struct bench *bench, enum scene_kind kind)
 {
-    if (kind != SCENE_ALL_SHAPES)
+    if (kind != SCENE_ALL_SHAPES && kind != SCENE_MORE_SHAPES)
         return; /* neither source nor map matter to glints */
     make_scene(bench, kind);
     for (uint32_t object = 0; object < bench->scene.object_count; object++)

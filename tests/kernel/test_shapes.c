@@ -12,50 +12,10 @@
 
 #include "fan.h"
 #include "intersection.h"
+#include "random_rays.h"
 
 #define PI   3.14159265358979323846
 #define RAYS 100000
-
-struct point {
-    double x, y, z;
-};
-
-static uint64_t state = 88172645463325252u;
-
-static double uniform(double low, double high)
-{
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return low + (high - low) * ((double)(state >> 11) + 0.5) / 9007199254740992.0;
-}
-
-static struct point add(struct point a, struct point b, double t)
-{
-    const struct point sum = {a.x + b.x * t, a.y + b.y * t, a.z + b.z * t};
-    return sum;
-}
-
-static double dot(struct point a, struct point b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-static struct point scaled(struct point a, double factor)
-{
-    const struct point result = {a.x * factor, a.y * factor, a.z * factor};
-    return result;
-}
-
-static struct point random_direction(void)
-{
-    for (;;) {
-        const struct point p = {uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-1.0, 1.0)};
-        const double square = dot(p, p);
-        if (square > 1e-4 && square < 1.0)
-            return scaled(p, 1.0 / sqrt(square));
-    }
-}
 
 /* An object as both sides know it: the record, read back into double. */
 static struct object_record make_object(int shape, double length, double width, double diameter,
@@ -100,24 +60,6 @@ static struct object_record random_object(int shape, struct point centre)
 static double size_of(const struct object_record *object)
 {
     return object->bounding_radius;
-}
-
-static struct point turned(const struct object_record *object, struct point v)
-{
-    const float *a = object->axes;
-    const struct point result = {v.x * a[0] + v.y * a[1] + v.z * a[2],
-                                 v.x * a[3] + v.y * a[4] + v.z * a[5],
-                                 v.x * a[6] + v.y * a[7] + v.z * a[8]};
-    return result;
-}
-
-static struct point turned_back(const struct object_record *object, struct point v)
-{
-    const float *a = object->axes;
-    const struct point result = {v.x * a[0] + v.y * a[3] + v.z * a[6],
-                                 v.x * a[1] + v.y * a[4] + v.z * a[7],
-                                 v.x * a[2] + v.y * a[5] + v.z * a[8]};
-    return result;
 }
 
 struct hit {
@@ -224,39 +166,6 @@ static struct hit reference_hit(const struct object_record *object, struct point
     }
     hit.normal = turned_back(object, hit.normal);
     return hit;
-}
-
-/* A ray as the kernel gets it, and the very same numbers in double. */
-struct ray {
-    struct vector3 p, d;
-    struct point origin, direction;
-};
-
-/* From a sonar `range` away from the frame's origin, at a random depression, towards a target,
- * counted from the point closest to the origin. */
-static struct ray ray_towards(struct point target, double range)
-{
-    const double depression = uniform(0.02, 1.5);
-    const double x = target.x + uniform(-0.2, 0.2);
-    const struct point sonar = {x, -range * cos(depression), range * sin(depression)};
-    struct point way = add(target, sonar, -1.0);
-    way = scaled(way, 1.0 / sqrt(dot(way, way)));
-    const struct point from_sonar = {sonar.x, sonar.y, sonar.z};
-    const struct point closest = add(sonar, way, -dot(from_sonar, way));
-    struct ray ray;
-    ray.p.x = (float)closest.x;
-    ray.p.y = (float)closest.y;
-    ray.p.z = (float)closest.z;
-    ray.d.x = (float)way.x;
-    ray.d.y = (float)way.y;
-    ray.d.z = (float)way.z;
-    ray.origin.x = ray.p.x;
-    ray.origin.y = ray.p.y;
-    ray.origin.z = ray.p.z;
-    ray.direction.x = ray.d.x;
-    ray.direction.y = ray.d.y;
-    ray.direction.z = ray.d.z;
-    return ray;
 }
 
 /* A point on or near the object's surface: half of the rays graze it. */

@@ -201,7 +201,7 @@ static void lay_reference(const struct bench *bench, struct reference_scene *sce
     struct reference_object *object = &scene->objects[0];
     object->shape = REFERENCE_CAPSULE;
     object->length = bench->scene.objects[0].length_m;
-    object->radius = capsule->radius_m;
+    object->radius = capsule->size.radius_m;
     object->lambert = bench->scene.objects[0].material.lambert;
     object->centre = reference_vector(capsule->centre[0], capsule->centre[1], capsule->centre[2]);
     for (int axis = 0; axis < 3; axis++)

@@ -97,8 +97,8 @@ static double half_path(const struct bench *bench, const struct image *one,
                         const struct image *other, double angle)
 {
     const struct placement *sphere = &bench->placements[0];
-    const double y = sphere->centre[1] - sphere->radius_m * cos(angle);
-    const double z = sphere->centre[2] + sphere->radius_m * sin(angle);
+    const double y = sphere->centre[1] - sphere->size.radius_m * cos(angle);
+    const double z = sphere->centre[2] + sphere->size.radius_m * sin(angle);
     return 0.5 * (hypot(y, z - one->height) + hypot(y, z - other->height));
 }
 
@@ -141,7 +141,7 @@ static struct family family_of(const struct bench *bench, const struct image *on
                                const struct image *other)
 {
     const struct placement *sphere = &bench->placements[0];
-    const double a = sphere->radius_m;
+    const double a = sphere->size.radius_m;
     const double angle = specular_angle(bench, one, other);
     const double y = sphere->centre[1] - a * cos(angle);
     const double z = sphere->centre[2] + a * sin(angle);
@@ -191,8 +191,8 @@ static void expect_echo(struct bench *bench, const struct echo_line *line, int o
     const double complex measured = measured_at(bench, line, range);
     print_message("images %d and %d, range %.3f m\n", one, other, range);
     expect_close("level re a/2, dB",
-                 decibels_of_amplitude(cabs(measured) / (0.5 * bench->placements[0].radius_m)),
-                 decibels_of_amplitude(cabs(expected) / (0.5 * bench->placements[0].radius_m)),
+                 decibels_of_amplitude(cabs(measured) / (0.5 * bench->placements[0].size.radius_m)),
+                 decibels_of_amplitude(cabs(expected) / (0.5 * bench->placements[0].size.radius_m)),
                  LEVEL_DB);
     expect_close("phase off the reference, rad", carg(measured / expected), 0.0, PHASE);
 }

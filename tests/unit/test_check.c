@@ -23,7 +23,7 @@ struct all {
     sonject_injection_params injection;
     sonject_synthetic_params synthetic;
     sonject_patch_params patch;
-    sonject_object_params sphere, capsule, plane;
+    sonject_object_params sphere, capsule, plane, cylinder, wedge, stump, torus;
 };
 
 static void make_good(struct all *all)
@@ -44,6 +44,22 @@ static void make_good(struct all *all)
     all->capsule.length_m = 2.0;
     all->plane.shape = SONJECT_SHAPE_PLANE;
     all->plane.length_m = all->plane.width_m = 1.0;
+    all->cylinder = all->capsule;
+    all->cylinder.shape = SONJECT_SHAPE_CYLINDER;
+    all->cylinder.nose_end = all->cylinder.tail_end = SONJECT_END_SPHERICAL;
+    all->cylinder.nose_end_depth_m = all->cylinder.tail_end_depth_m = 0.125;
+    all->wedge = all->plane;
+    all->wedge.shape = SONJECT_SHAPE_WEDGE;
+    all->wedge.height_m = 0.5;
+    all->stump = all->sphere;
+    all->stump.shape = SONJECT_SHAPE_TRUNCATED_CONE;
+    all->stump.height_m = 0.5;
+    all->torus = all->sphere;
+    all->torus.shape = SONJECT_SHAPE_TORUS;
+    all->torus.height_m = 0.125;
+    all->sphere.cut_count = 2;
+    all->sphere.cuts[0].distance_m = 0.2;
+    all->sphere.cuts[1].azimuth_rad = 3.0;
 }
 
 static sonject_status check_all(const struct all *all, struct report *report, const char **key)
@@ -69,6 +85,14 @@ static sonject_status check_all(const struct all *all, struct report *report, co
         status = check_object(&all->capsule, report, key);
     if (status == SONJECT_OK)
         status = check_object(&all->plane, report, key);
+    if (status == SONJECT_OK)
+        status = check_object(&all->cylinder, report, key);
+    if (status == SONJECT_OK)
+        status = check_object(&all->wedge, report, key);
+    if (status == SONJECT_OK)
+        status = check_object(&all->stump, report, key);
+    if (status == SONJECT_OK)
+        status = check_object(&all->torus, report, key);
     return status;
 }
 
@@ -134,6 +158,26 @@ static const struct number {
     {"length", offsetof(struct all, plane.length_m), 0.0, 1e-6, 1e6, 2e6},
     {"width", offsetof(struct all, plane.width_m), 0.0, 1e-6, 1e6, 2e6},
     {"width", offsetof(struct all, sphere.width_m), NONE, 0.0, 1.0, NONE},
+    {"length", offsetof(struct all, cylinder.length_m), 0.249, 0.25, 1e6, 2e6},
+    {"nose_end.depth", offsetof(struct all, cylinder.nose_end_depth_m), -0.01, 0.0, 0.25, 0.251},
+    {"tail_end.depth", offsetof(struct all, cylinder.tail_end_depth_m), -0.01, 0.0, 0.25, 0.251},
+    {"length", offsetof(struct all, wedge.length_m), 0.0, 1e-6, 1e6, 2e6},
+    {"width", offsetof(struct all, wedge.width_m), 0.0, 1e-6, 1e6, 2e6},
+    {"height", offsetof(struct all, wedge.height_m), 0.0, 1e-6, 1e6, 2e6},
+    {"front_height", offsetof(struct all, wedge.front_height_m), -0.01, 0.0, 0.5, 0.51},
+    {"diameter", offsetof(struct all, stump.diameter_m), 0.0, 1e-6, 1e6, 2e6},
+    {"top_diameter", offsetof(struct all, stump.top_diameter_m), -0.01, 0.0, 1e6, 2e6},
+    {"height", offsetof(struct all, stump.height_m), 0.0, 1e-6, 1e6, 2e6},
+    {"diameter", offsetof(struct all, torus.diameter_m), 0.25, 0.2501, 1e6, 2e6},
+    {"height", offsetof(struct all, torus.height_m), 0.0, 1e-6, 0.24, NONE},
+    {"height", offsetof(struct all, sphere.height_m), NONE, 0.0, 1.0, NONE},
+    {"cuts", offsetof(struct all, sphere.cuts[0].azimuth_rad), NONE, -2.0, 2.0, NONE},
+    {"cuts", offsetof(struct all, sphere.cuts[0].elevation_rad), NONE, -2.0, 2.0, NONE},
+    /* the sphere's radius is 0.25 m, and the other cut takes the side away */
+    {"cuts", offsetof(struct all, sphere.cuts[0].distance_m), -0.2501, 0.0, 1e6, 2e6},
+    {"cuts", offsetof(struct all, sphere.cuts[1].distance_m), -0.2501, 0.0, 1e6, 2e6},
+    {"burial.fraction", offsetof(struct all, sphere.burial_fraction), -0.01, 0.0, 1.0, 1.01},
+    {"burial.proud", offsetof(struct all, sphere.proud_height_m), -0.01, 0.0, 1e6, 2e6},
     {"position", offsetof(struct all, sphere.position_along), NONE, -1.0, 1.0, NONE},
     {"position", offsetof(struct all, sphere.position_range), NONE, -1.0, 1.0, NONE},
     {"heading", offsetof(struct all, sphere.heading_rad), NONE, -9.0, 9.0, NONE},
@@ -240,6 +284,10 @@ static void test_choices(void **state)
         {"complex", offsetof(struct all, synthetic.complex_pixels), 1},
         {"order_energies", offsetof(struct all, injection.order_energies), 1},
         {"position", offsetof(struct all, sphere.position_kind), SONJECT_POSITION_PIXELS},
+        {"burial", offsetof(struct all, sphere.burial_kind), SONJECT_BURIAL_PROUD},
+        {"nose_end", offsetof(struct all, cylinder.nose_end), SONJECT_END_SPHERICAL},
+        {"tail_end", offsetof(struct all, cylinder.tail_end), SONJECT_END_SPHERICAL},
+        {"cuts", offsetof(struct all, sphere.cut_count), SONJECT_CUTS_CAPACITY},
         {"material.reflection", offsetof(struct all, sphere.material.reflection_kind),
          SONJECT_REFLECTION_FLUID},
         {"forward.reflection", offsetof(struct all, seabed.forward.reflection_kind),
@@ -261,9 +309,9 @@ static void test_choices(void **state)
         }
     }
     make_good(&all);
-    all.sphere.shape = 4;
+    all.sphere.shape = SONJECT_SHAPE_TORUS + 1;
     expect_refused(&all, "shape", "an unknown choice");
-    assert_null(shape_name(4));
+    assert_null(shape_name(SONJECT_SHAPE_TORUS + 1));
     assert_string_equal(shape_name(SONJECT_SHAPE_CYLINDER), "cylinder");
 }
 

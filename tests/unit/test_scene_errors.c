@@ -52,7 +52,8 @@ static void test_unknown_keys(void **state)
          ":3:41: sonar.altitud: unknown key; did you mean 'altitude'?"},
         {OBJECT "sphere\n    \xC3\xA9tat: 1 m\n",
          ":6:5: objects[0].\xC3\xA9tat: unknown key; known here are name, class, shape, length, "
-         "width, diameter, position, heading, pitch, roll, burial, material"},
+         "width, diameter, height, top_diameter, front_height, nose_end, tail_end, cuts, position, "
+         "heading, pitch, roll, burial, material"},
     };
     expect_all(state, wrong, COUNT(wrong));
 }
@@ -86,6 +87,10 @@ static void test_missing_keys(void **state)
          ":5:5: objects[0].length: missing; a capsule needs it"},
         {OBJECT "plane\n    length: 1\n", ":5:5: objects[0].width: missing; a plane needs it"},
         {OBJECT "sphere\n", ":5:5: objects[0].diameter: missing; a sphere needs it"},
+        {OBJECT "ellipsoid\n    length: 1\n    width: 1\n",
+         ":5:5: objects[0].height: missing; an ellipsoid needs it"},
+        {OBJECT "truncated_cone\n    diameter: 1\n    height: 1\n",
+         ":5:5: objects[0].top_diameter: missing; a truncated_cone needs it"},
         {BASE "objects: [{}]\n", ":4:11: objects[0].shape: missing; add it (of the object)"},
     };
     expect_all(state, wrong, COUNT(wrong));
@@ -144,7 +149,36 @@ static void test_wrong_values(void **state)
         {BASE "objects: [sphere]\n",
          ":4:11: objects[0]: must be a section of 'key: value' lines, not a single value"},
         {OBJECT "cube\n",
-         ":5:12: objects[0].shape: 'cube' is not one of plane, sphere, cylinder, capsule"},
+         ":5:12: objects[0].shape: 'cube' is not one of plane, sphere, cylinder, capsule, disc, "
+         "ellipsoid, box, wedge, cone, truncated_cone, torus; did you mean 'cone'?"},
+        {OBJECT "cylinder\n    diameter: 1\n    length: 2\n    nose_end: round\n",
+         ":8:15: objects[0].nose_end: 'round' is not one of flat, open, spherical, {depth: ...}"},
+        {OBJECT "cylinder\n    diameter: 1\n    length: 2\n    tail_end: {depth: 0}\n",
+         ":8:23: objects[0].tail_end.depth: must be above 0; write 'spherical' for a half sphere, "
+         "'flat' for none"},
+        {OBJECT "cylinder\n    diameter: 1\n    length: 2\n    nose_end: {depth: 0.6}\n",
+         ":8:23: objects[0].nose_end.depth: must be 0...0.5 m (half the diameter), not 0.6"},
+        {OBJECT "cylinder\n    diameter: 1\n    length: 0.9\n    nose_end: spherical\n    "
+                "tail_end: spherical\n",
+         ":7:13: objects[0].length: of a cylinder includes its spherical ends and must be at "
+         "least their 1 m, not 0.9 m"},
+        {OBJECT "torus\n    diameter: 1\n    height: 0.5\n",
+         ":6:15: objects[0].diameter: of a torus is that of its outline and must be above twice "
+         "its height, 1 m, or there is no hole; it is 1 m"},
+        {OBJECT "sphere\n    diameter: 1\n    cuts: {distance: 0}\n",
+         ":7:11: objects[0].cuts: must be a list; start each cut with '- '"},
+        {OBJECT "sphere\n    diameter: 1\n    cuts: [{}]\n",
+         ":7:12: objects[0].cuts[0].distance: missing; add it (of the cut from the centre towards "
+         "that side)"},
+        {OBJECT "sphere\n    diameter: 1\n    cuts: [{distance: 0}, {distance: 0}, {distance: "
+                "0}]\n",
+         ":7:11: objects[0].cuts: has 3 entries; at most 2 are possible"},
+        {OBJECT "sphere\n    diameter: 1\n    cuts: [{distance: -0.5}]\n",
+         ":7:11: objects[0].cuts: leave nothing of the object; move one outwards"},
+        {OBJECT "sphere\n    diameter: 1\n    burial: {fraction: 0.5, proud: 0.5}\n",
+         ":7:13: objects[0].burial: needs fraction or proud; give one, or a depth by itself"},
+        {OBJECT "sphere\n    diameter: 1\n    burial: {fraction: 30}\n",
+         ":7:24: objects[0].burial.fraction: must be 0...1, not 30"},
         {OBJECT "sphere\n    diameter: 1 m\n    material: {lambert: 0.3}\n",
          ":7:25: objects[0].material.lambert: must be 0...0.2578 (reflection^2 / pi), or the "
          "surface returns more than it receives; it is 0.3"},
@@ -199,6 +233,10 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
          ":7:12: objects[0].width: a sphere has none; remove it"},
         {OBJECT "plane\n    diameter: 1\n    length: 1\n    width: 1\n",
          ":6:15: objects[0].diameter: a plane has none; remove it"},
+        {OBJECT "box\n    length: 1\n    width: 1\n    height: 1\n    front_height: 1\n",
+         ":9:19: objects[0].front_height: a box has none; remove it"},
+        {OBJECT "capsule\n    length: 1\n    diameter: 1\n    nose_end: flat\n",
+         ":8:15: objects[0].nose_end: a capsule has none; remove it"},
         {OBJECT "capsule\n    diameter: 1\n    length: 0.5\n",
          ":7:13: objects[0].length: of a capsule includes its round ends and must be at least its "
          "diameter, 1 m, not 0.5 m"},

@@ -238,6 +238,30 @@ static const struct key_case {
     {"objects[].width", small, "0.8 m", TYPE_DOUBLE, OBJECT(width_m), 0.8, NULL,
      "objects[0]={shape: plane, length: 1 m}"},
     {"objects[].diameter", small, "30 cm", TYPE_DOUBLE, OBJECT(diameter_m), 0.3, NULL, NULL},
+    {"objects[].height", small, "25 cm", TYPE_DOUBLE, OBJECT(height_m), 0.25, NULL,
+     "objects[0].shape=cone"},
+    {"objects[].top_diameter", small, "20 cm", TYPE_DOUBLE, OBJECT(top_diameter_m), 0.2, NULL,
+     "objects[0]={shape: truncated_cone, diameter: 1, height: 0.5}"},
+    {"objects[].front_height", small, "10 cm", TYPE_DOUBLE, OBJECT(front_height_m), 0.1, NULL,
+     "objects[0]={shape: wedge, length: 1, width: 1, height: 0.5}"},
+    {"objects[].nose_end", small, "open", TYPE_U32, OBJECT(nose_end), SONJECT_END_OPEN, NULL,
+     "objects[0]={shape: cylinder, length: 1, diameter: 0.5}"},
+    {"objects[].nose_end.depth", small, "10 cm", TYPE_DOUBLE, OBJECT(nose_end_depth_m), 0.1, NULL,
+     "objects[0]={shape: cylinder, length: 1, diameter: 0.5}"},
+    {"objects[].tail_end", small, "spherical", TYPE_U32, OBJECT(tail_end), SONJECT_END_SPHERICAL,
+     NULL, "objects[0]={shape: cylinder, length: 1, diameter: 0.5}"},
+    {"objects[].tail_end.depth", small, "10 cm", TYPE_DOUBLE, OBJECT(tail_end_depth_m), 0.1, NULL,
+     "objects[0]={shape: cylinder, length: 1, diameter: 0.5}"},
+    {"objects[].cuts[].azimuth", small, "90 deg", TYPE_DOUBLE, OBJECT(cuts[0].azimuth_rad),
+     PI / 2.0, NULL, "objects[0].cuts=[{distance: 0}]"},
+    {"objects[].cuts[].elevation", small, "-90 deg", TYPE_DOUBLE, OBJECT(cuts[0].elevation_rad),
+     -PI / 2.0, NULL, "objects[0].cuts=[{distance: 0}]"},
+    {"objects[].cuts[].distance", small, "-5 cm", TYPE_DOUBLE, OBJECT(cuts[0].distance_m), -0.05,
+     NULL, "objects[0].cuts=[{distance: 0}]"},
+    {"objects[].burial.fraction", small, "0.25", TYPE_DOUBLE, OBJECT(burial_fraction), 0.25, NULL,
+     NULL},
+    {"objects[].burial.proud", small, "20 cm", TYPE_DOUBLE, OBJECT(proud_height_m), 0.2, NULL,
+     NULL},
     {"objects[].position", small, "centre", TYPE_U32, OBJECT(position_kind),
      SONJECT_POSITION_PATCH_CENTRE, NULL, NULL},
     {"objects[].position.along_track", small, "-2 m", TYPE_DOUBLE, OBJECT(position_along), -2.0,
@@ -325,18 +349,26 @@ static const void *structure_of(const struct scene *scene, const char *path)
     return scene;
 }
 
-/* Lists are tried at their last entry: the only object, the second layer. */
+/* An entry of each list that a path goes through: the second layer, the first of all others. */
+static void write_override(char *override, size_t capacity, const struct key_case *key)
+{
+    size_t length = 0;
+    for (const char *c = key->path; *c && length + 2 < capacity; c++) {
+        if (*c == ']')
+            override[length++] = strncmp(key->path, "medium.layers", 13) == 0 ? '1' : '0';
+        override[length++] = *c;
+    }
+    snprintf(override + length, capacity - length, "=%s", key->value);
+}
+
 static void expect_case(struct scene_folder *folder, const struct key_case *key)
 {
     char override[1400];
     const char *overrides[2];
     size_t count = 0;
-    const char *behind = strchr(key->path, ']');
-    const char *list = !behind ? "" : key->path[0] == 'o' ? "objects[0]" : "medium.layers[1]";
     if (key->other)
         overrides[count++] = key->other;
-    snprintf(override, sizeof override, "%s%s=%s", list, behind ? behind + 1 : key->path,
-             key->value);
+    write_override(override, sizeof override, key);
     overrides[count++] = override;
     write_scene(folder, key->base, strlen(key->base));
     if (read_scene(folder, overrides, count) != SONJECT_OK)
@@ -353,7 +385,7 @@ static void test_every_key_arrives(void **state)
 /* So that a key cannot be added to the tables without a case above. */
 static void test_every_key_has_a_case(void **state)
 {
-    struct scene_file_key keys[120];
+    struct scene_file_key keys[170];
     const size_t count = scene_file_keys(keys, COUNT(keys));
     (void)state;
     assert_int_equal(count, COUNT(cases));

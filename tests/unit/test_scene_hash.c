@@ -26,6 +26,7 @@ static void make_scene(struct scene *scene)
     sonject_object_params object;
     scene_init(scene);
     sonject_object_params_init(&object);
+    object.cut_count = SONJECT_CUTS_CAPACITY;
     assert_int_equal(scene_append_object(scene, &report, &object), SONJECT_OK);
 }
 
@@ -93,10 +94,37 @@ static const struct member of_scene[] = {
 };
 
 static const struct member of_object[] = {
-    OBJECT(shape),         OBJECT(length_m),           OBJECT(width_m),        OBJECT(diameter_m),
-    OBJECT(position_kind), OBJECT(position_along),     OBJECT(position_range), OBJECT(heading_rad),
-    OBJECT(pitch_rad),     OBJECT(roll_rad),           OBJECT(burial_m),       OBJECT(name),
-    OBJECT(class_name),    MATERIAL(OBJECT, material),
+    OBJECT(shape),
+    OBJECT(length_m),
+    OBJECT(width_m),
+    OBJECT(diameter_m),
+    OBJECT(position_kind),
+    OBJECT(position_along),
+    OBJECT(position_range),
+    OBJECT(heading_rad),
+    OBJECT(pitch_rad),
+    OBJECT(roll_rad),
+    OBJECT(burial_m),
+    OBJECT(name),
+    OBJECT(class_name),
+    OBJECT(burial_kind),
+    OBJECT(burial_fraction),
+    OBJECT(proud_height_m),
+    OBJECT(height_m),
+    OBJECT(top_diameter_m),
+    OBJECT(front_height_m),
+    OBJECT(nose_end),
+    OBJECT(tail_end),
+    OBJECT(nose_end_depth_m),
+    OBJECT(tail_end_depth_m),
+    OBJECT(cut_count),
+    OBJECT(cuts[0].azimuth_rad),
+    OBJECT(cuts[0].elevation_rad),
+    OBJECT(cuts[0].distance_m),
+    OBJECT(cuts[1].azimuth_rad),
+    OBJECT(cuts[1].elevation_rad),
+    OBJECT(cuts[1].distance_m),
+    MATERIAL(OBJECT, material),
 };
 
 /* Turns one bit of a member, which a double's value follows unless it is NaN. */

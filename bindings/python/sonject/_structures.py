@@ -18,6 +18,7 @@ from ctypes import (
 )
 
 NAME_CAPACITY = 64
+CUTS_CAPACITY = 2
 
 sonject_log_function = CFUNCTYPE(None, c_void_p, c_char_p)
 sonject_progress_function = CFUNCTYPE(c_int, c_void_p, c_double, c_char_p)
@@ -131,6 +132,14 @@ class sonject_material_params(Structure):
     ]
 
 
+class sonject_cut(Structure):
+    _fields_ = [
+        ("azimuth_rad", c_double),
+        ("elevation_rad", c_double),
+        ("distance_m", c_double),
+    ]
+
+
 class sonject_object_params(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -141,7 +150,7 @@ class sonject_object_params(Structure):
         ("width_m", c_double),
         ("diameter_m", c_double),
         ("position_kind", c_uint32),
-        ("reserved", c_uint32),
+        ("burial_kind", c_uint32),
         ("position_along", c_double),
         ("position_range", c_double),
         ("heading_rad", c_double),
@@ -149,6 +158,18 @@ class sonject_object_params(Structure):
         ("roll_rad", c_double),
         ("burial_m", c_double),
         ("material", sonject_material_params),
+        ("height_m", c_double),
+        ("top_diameter_m", c_double),
+        ("front_height_m", c_double),
+        ("nose_end", c_uint32),
+        ("tail_end", c_uint32),
+        ("nose_end_depth_m", c_double),
+        ("tail_end_depth_m", c_double),
+        ("burial_fraction", c_double),
+        ("proud_height_m", c_double),
+        ("cut_count", c_uint32),
+        ("reserved", c_uint32),
+        ("cuts", sonject_cut * CUTS_CAPACITY),
     ]
 
 

@@ -70,6 +70,29 @@ class Shape(enum.IntEnum):
     SPHERE = 1
     CYLINDER = 2
     CAPSULE = 3
+    DISC = 4
+    ELLIPSOID = 5
+    BOX = 6
+    WEDGE = 7
+    CONE = 8
+    TRUNCATED_CONE = 9
+    TORUS = 10
+
+
+class End(enum.IntEnum):
+    """sonject_end: how a cylinder ends. With an open end it is a tube with a thin wall."""
+
+    FLAT = 0
+    OPEN = 1
+    SPHERICAL = 2
+
+
+class BurialKind(enum.IntEnum):
+    """sonject_burial_kind: which value says how deep an object lies."""
+
+    DEPTH = 0
+    FRACTION = 1
+    PROUD = 2
 
 
 class PositionKind(enum.IntEnum):

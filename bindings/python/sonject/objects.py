@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import Any, ClassVar, Union
+from typing import Any, ClassVar, Optional, Sequence, Union
 
 from . import _structures as s
-from ._values import fill, initialised
-from .enumerations import PositionKind, Shape
+from ._values import choice, fill, initialised
+from .enumerations import BurialKind, End, PositionKind, Shape
 from .material import Material
 
 
@@ -48,14 +48,34 @@ def _position_values(position: Position) -> dict[str, Any]:
     return {"position_kind": kind, "position_along": along, "position_range": slant}
 
 
+@dataclass(frozen=True, kw_only=True)
+class Cut:
+    """A plane that cuts off what lies more than distance_m from the centre towards a direction of
+    the object's own: azimuth_rad from the nose towards its y, elevation_rad towards its z (its top
+    when level). A solid shows a flat face there."""
+
+    azimuth_rad: float = 0.0
+    elevation_rad: float = 0.0
+    distance_m: float
+
+
+def _cut_structure(cut: Cut) -> s.sonject_cut:
+    if not isinstance(cut, Cut):
+        raise TypeError(f"cuts must be Cuts, not {cut!r}")
+    structure = s.sonject_cut()
+    fill(structure, {entry.name: getattr(cut, entry.name) for entry in fields(cut)})
+    return structure
+
+
 @dataclass(kw_only=True)
 class Object:
     """Pose, surface and name, which every shape has.
 
     position: of the ground point under the centre; heading_rad: of the nose, from along-track
     towards range; pitch_rad: raises the nose; roll_rad: about the nose direction; burial_m: depth
-    of the lowest point below the seabed, negative above it; name, class_name: for truth and
-    labels, "" for "object N" and the shape's name.
+    of the lowest point below the seabed, negative above it, or one of burial_fraction (of the
+    height in that pose, 0 to 1) and proud_height_m (of the highest point above the seabed); cuts:
+    at most two; name, class_name: for truth and labels, "" for "object N" and the shape's name.
     """
 
     _shape: ClassVar[Shape]
@@ -65,9 +85,23 @@ class Object:
     pitch_rad: float = 0.0
     roll_rad: float = 0.0
     burial_m: float = 0.0
+    burial_fraction: Optional[float] = None
+    proud_height_m: Optional[float] = None
+    cuts: Sequence[Cut] = ()
     material: Material = field(default_factory=Material)
     name: str = ""
     class_name: str = ""
+
+    def _burial_values(self) -> dict[str, Any]:
+        if self.burial_fraction is None and self.proud_height_m is None:
+            return {"burial_kind": BurialKind.DEPTH, "burial_m": self.burial_m}
+        if self.burial_fraction is not None and self.proud_height_m is not None:
+            raise ValueError("burial_fraction and proud_height_m exclude each other")
+        if self.burial_m != 0.0:
+            raise ValueError("burial_m excludes burial_fraction and proud_height_m")
+        if self.burial_fraction is not None:
+            return {"burial_kind": BurialKind.FRACTION, "burial_fraction": self.burial_fraction}
+        return {"burial_kind": BurialKind.PROUD, "proud_height_m": self.proud_height_m}
 
     def to_structure(self) -> s.sonject_object_params:
         """The C structure. Raises TypeError or ValueError where a value does not fit into it."""
@@ -75,10 +109,21 @@ class Object:
             raise TypeError(f"material must be a Material, not {self.material!r}")
         values = {entry.name: getattr(self, entry.name) for entry in fields(self)}
         values.update(_position_values(values.pop("position")))
+        for name in ("burial_m", "burial_fraction", "proud_height_m"):
+            del values[name]
+        values.update(self._burial_values())
+        cuts = [_cut_structure(cut) for cut in values.pop("cuts")]
+        if len(cuts) > s.CUTS_CAPACITY:
+            raise ValueError(f"cuts must be at most {s.CUTS_CAPACITY}, not {len(cuts)}")
+        values["cut_count"] = len(cuts)
+        for name in ("nose_end", "tail_end"):
+            if name in values:
+                values[name] = choice(name, End, values[name])
         values["material"] = self.material.to_structure()
         values["shape"] = self._shape
         structure = initialised(s.sonject_object_params)
         fill(structure, values)
+        structure.cuts[: len(cuts)] = cuts
         return structure
 
 
@@ -101,11 +146,20 @@ class Sphere(Object):
 
 @dataclass(kw_only=True)
 class Cylinder(Object):
-    """A cylinder with flat ends, its axis along the nose direction."""
+    """A cylinder, its axis along the nose direction.
+
+    nose_end, tail_end: with an open one it is a tube whose thin wall reflects on both sides;
+    nose_end_depth_m, tail_end_depth_m: of spherical ends, which the length includes; 0: half
+    spheres.
+    """
 
     _shape: ClassVar[Shape] = Shape.CYLINDER
     length_m: float
     diameter_m: float
+    nose_end: End = End.FLAT
+    tail_end: End = End.FLAT
+    nose_end_depth_m: float = 0.0
+    tail_end_depth_m: float = 0.0
 
 
 @dataclass(kw_only=True)
@@ -115,3 +169,70 @@ class Capsule(Object):
     _shape: ClassVar[Shape] = Shape.CAPSULE
     length_m: float
     diameter_m: float
+
+
+@dataclass(kw_only=True)
+class Disc(Object):
+    """A disc that faces up when its pose is level; both sides reflect."""
+
+    _shape: ClassVar[Shape] = Shape.DISC
+    diameter_m: float
+
+
+@dataclass(kw_only=True)
+class Ellipsoid(Object):
+    """An ellipsoid: length along the nose, width across it, height upwards when level."""
+
+    _shape: ClassVar[Shape] = Shape.ELLIPSOID
+    length_m: float
+    width_m: float
+    height_m: float
+
+
+@dataclass(kw_only=True)
+class Cuboid(Object):
+    """The shape "box": length along the nose, width across it, height upwards when level."""
+
+    _shape: ClassVar[Shape] = Shape.BOX
+    length_m: float
+    width_m: float
+    height_m: float
+
+
+@dataclass(kw_only=True)
+class Wedge(Object):
+    """A box whose top slants from height_m at the tail to front_height_m at the nose."""
+
+    _shape: ClassVar[Shape] = Shape.WEDGE
+    length_m: float
+    width_m: float
+    height_m: float
+    front_height_m: float = 0.0
+
+
+@dataclass(kw_only=True)
+class Cone(Object):
+    """A cone, its tip up when level."""
+
+    _shape: ClassVar[Shape] = Shape.CONE
+    diameter_m: float
+    height_m: float
+
+
+@dataclass(kw_only=True)
+class TruncatedCone(Object):
+    """A cone without its tip: diameter_m below, top_diameter_m above when level."""
+
+    _shape: ClassVar[Shape] = Shape.TRUNCATED_CONE
+    diameter_m: float
+    top_diameter_m: float
+    height_m: float
+
+
+@dataclass(kw_only=True)
+class Torus(Object):
+    """A ring, lying flat when level: diameter_m is its outline's, height_m its thickness."""
+
+    _shape: ClassVar[Shape] = Shape.TORUS
+    diameter_m: float
+    height_m: float

@@ -77,8 +77,8 @@ def structures():
         for declaration in body.split(";")[:-1]:
             kind, field, length = split(declaration)
             if length:
-                assert kind.strip() == "char"
-                found[name].append((field, ctypes.c_char * int(length)))
+                element = ctypes.c_char if kind.strip() == "char" else c_type(kind, names)
+                found[name].append((field, element * int(length)))
             else:
                 found[name].append((field, c_type(kind, names)))
     return found

@@ -22,6 +22,8 @@ ENUMERATIONS = {
     "sonject_forward_rule": (enumerations.ForwardRule, "SONJECT_FORWARD_"),
     "sonject_reflection_kind": (enumerations.ReflectionKind, "SONJECT_REFLECTION_"),
     "sonject_shape": (enumerations.Shape, "SONJECT_SHAPE_"),
+    "sonject_end": (enumerations.End, "SONJECT_END_"),
+    "sonject_burial_kind": (enumerations.BurialKind, "SONJECT_BURIAL_"),
     "sonject_position_kind": (enumerations.PositionKind, "SONJECT_POSITION_"),
     "sonject_pixel_kind": (enumerations.PixelKind, "SONJECT_PIXELS_"),
     "sonject_layer": (enumerations.Layer, "SONJECT_LAYER_"),
@@ -74,8 +76,9 @@ def test_every_enumeration_has_the_headers_values():
 
 def test_name_capacity_and_version_are_the_headers():
     text = headers.source()
-    numbers = dict(re.findall(r"#define SONJECT_(VERSION_\w+|NAME_CAPACITY) (\d+)", text))
+    numbers = dict(re.findall(r"#define SONJECT_(VERSION_\w+|\w+_CAPACITY) (\d+)", text))
     assert int(numbers["NAME_CAPACITY"]) == _structures.NAME_CAPACITY
+    assert int(numbers["CUTS_CAPACITY"]) == _structures.CUTS_CAPACITY
     version = tuple(int(numbers["VERSION_" + part]) for part in ("MAJOR", "MINOR", "PATCH"))
     assert version == _library.VERSION
 

@@ -43,6 +43,70 @@ def test_values_arrive_in_their_fields():
     assert thing.class_name == b"pipe"
 
 
+def test_sizes_arrive_in_their_fields():
+    def numbers(thing, *names):
+        structure = thing.to_structure()
+        return structure.shape, *(getattr(structure, name) for name in names)
+
+    box = {"length_m": 1.5, "width_m": 0.5, "height_m": 0.25}
+    assert numbers(sonject.Disc(diameter_m=2), "diameter_m") == (4, 2.0)
+    assert numbers(sonject.Ellipsoid(**box), *box) == (5, 1.5, 0.5, 0.25)
+    assert numbers(sonject.Cuboid(**box), *box) == (6, 1.5, 0.5, 0.25)
+    wedge = sonject.Wedge(front_height_m=0.1, **box)
+    assert numbers(wedge, *box, "front_height_m") == (7, 1.5, 0.5, 0.25, 0.1)
+    cone = sonject.Cone(diameter_m=1, height_m=0.5)
+    assert numbers(cone, "diameter_m", "height_m") == (8, 1.0, 0.5)
+    stump = sonject.TruncatedCone(diameter_m=1, top_diameter_m=0.5, height_m=0.4)
+    assert numbers(stump, "diameter_m", "top_diameter_m", "height_m") == (9, 1.0, 0.5, 0.4)
+    ring = sonject.Torus(diameter_m=0.7, height_m=0.2)
+    assert numbers(ring, "diameter_m", "height_m") == (10, 0.7, 0.2)
+    tank = sonject.Cylinder(
+        length_m=2,
+        diameter_m=1,
+        nose_end="spherical",
+        nose_end_depth_m=0.2,
+        tail_end=sonject.End.OPEN,
+    )
+    ends = ("nose_end", "nose_end_depth_m", "tail_end", "tail_end_depth_m")
+    assert numbers(tank, *ends) == (2, 2, 0.2, 1, 0.0)
+
+
+def test_cuts_and_burial():
+    cut = sonject.Cut(azimuth_rad=0.5, elevation_rad=-0.25, distance_m=0.1)
+    thing = sonject.Sphere(diameter_m=1, cuts=[cut], burial_fraction=0.3).to_structure()
+    assert (thing.cut_count, thing.burial_kind, thing.burial_fraction) == (1, 1, 0.3)
+    given = thing.cuts[0]
+    assert (given.azimuth_rad, given.elevation_rad, given.distance_m) == (0.5, -0.25, 0.1)
+    proud = sonject.Sphere(diameter_m=1, proud_height_m=0.75).to_structure()
+    assert (proud.burial_kind, proud.proud_height_m, proud.burial_m) == (2, 0.75, 0.0)
+    for bad in (
+        {"cuts": [cut, cut, cut]},
+        {"burial_fraction": 0.5, "proud_height_m": 0.1},
+        {"burial_m": 0.5, "proud_height_m": 0.1},
+    ):
+        with pytest.raises(ValueError, match="cuts|exclude"):
+            sonject.Sphere(diameter_m=1, **bad).to_structure()
+    with pytest.raises(TypeError, match="cuts must be Cuts"):
+        sonject.Sphere(diameter_m=1, cuts=[(0, 0, 1)]).to_structure()
+
+
+def test_every_shape_is_injected(make_scene, complex_patch):
+    shapes = [
+        sonject.Disc(diameter_m=0.5),
+        sonject.Ellipsoid(length_m=0.5, width_m=0.4, height_m=0.3),
+        sonject.Cuboid(length_m=0.5, width_m=0.4, height_m=0.3),
+        sonject.Wedge(length_m=0.5, width_m=0.4, height_m=0.3),
+        sonject.Cone(diameter_m=0.5, height_m=0.3),
+        sonject.TruncatedCone(diameter_m=0.5, top_diameter_m=0.3, height_m=0.3),
+        sonject.Torus(diameter_m=0.5, height_m=0.1),
+        sonject.Cylinder(length_m=0.5, diameter_m=0.2, nose_end="open", tail_end="spherical"),
+        sonject.Sphere(diameter_m=0.5, cuts=[sonject.Cut(elevation_rad=1.5, distance_m=0.0)]),
+    ]
+    for shape in shapes:
+        result = sonject.inject(complex_patch, make_scene(objects=[shape]))
+        assert result.objects[0].highlight_pixels > 0, shape
+
+
 def test_pixel_positions_are_row_then_column():
     thing = sonject.Sphere(diameter_m=1, position=sonject.Pixels(row=3, column=4)).to_structure()
     assert (thing.position_kind, thing.position_along, thing.position_range) == (2, 3.0, 4.0)

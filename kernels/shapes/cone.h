@@ -1,0 +1,65 @@
+/* Cone or truncated cone about the z axis of its own frame, flat ends. */
+#ifndef SONJECT_KERNELS_SHAPES_CONE_H
+#define SONJECT_KERNELS_SHAPES_CONE_H
+
+#include "interval.h"
+
+/* slant: unit normal (radial and z) and offset of the side, which is where
+ * slant_across * (distance from the axis) = slant_offset - slant_up * z. Both squared make a double
+ * cone; its other half lies beyond the ends. */
+FUNCTION struct interval cone_interval(struct vector3 point, struct vector3 direction,
+                                       float half_height, float radius, float slant_across,
+                                       float slant_up, float slant_offset)
+{
+    const struct interval slab = interval_of_slab(point.z, direction.z, half_height);
+    const float square_across = slant_across * slant_across;
+    const real widening = -slant_up * direction.z;
+    const real steepness = square_across * (direction.x * direction.x + direction.y * direction.y) -
+                           widening * widening;
+    const real a = CHOOSE(MASK_OF(magnitude(steepness) < 1.0e-14f), SPLAT(1.0e-14f), steepness);
+    const real from_here = square_across * (point.x * direction.x + point.y * direction.y) -
+                           widening * (slant_offset - slant_up * point.z);
+    /* counted from where the ray is deepest within the slab, where nothing cancels */
+    const real limit = SPLAT(2.0f * (radius + half_height));
+    const real deepest = smaller(larger(-from_here / a, slab.entry), slab.exit);
+    const real start = smaller(larger(deepest, -limit), limit);
+    const struct vector3 p = along3(point, direction, start);
+    const real outer = slant_across * SQUARE_ROOT(p.x * p.x + p.y * p.y);
+    const real side = slant_offset - slant_up * p.z;
+    const real b = square_across * (p.x * direction.x + p.y * direction.y) - widening * side;
+    const real c = (outer - side) * (outer + side);
+    const real square = b * b - a * c;
+    const real root = SQUARE_ROOT(larger(square, SPLAT(0.0f)));
+    const real sum = CHOOSE(MASK_OF(b < 0.0f), root - b, -(root + b));
+    const real safe = CHOOSE(MASK_OF(magnitude(sum) < 1.0e-20f), SPLAT(1.0e-20f), sum);
+    const real one = start + safe / a;
+    const real other = start + c / safe;
+    const real lower = smaller(one, other);
+    const real upper = larger(one, other);
+    /* a ray steeper than the side runs in one half up to its crossing, or from there on */
+    const mask is_steep = MASK_OF(a < 0.0f);
+    const mask widens = MASK_OF(widening > 0.0f);
+    const real entry = CHOOSE(is_steep, CHOOSE(widens, upper, SPLAT(-FAR_AWAY)), lower);
+    const real exit = CHOOSE(is_steep, CHOOSE(widens, SPLAT(FAR_AWAY), lower), upper);
+    return interval_overlap(interval_where(is_steep | MASK_OF(square > 0.0f), entry, exit), slab);
+}
+
+/* Of the end where the point is nearer to an end than to the side. */
+FUNCTION struct vector3 cone_normal(struct vector3 point, float half_height, float slant_across,
+                                    float slant_up, float slant_offset)
+{
+    const real from_axis = SQUARE_ROOT(point.x * point.x + point.y * point.y);
+    const real over_side = slant_across * from_axis + slant_up * point.z - slant_offset;
+    const mask on_end = MASK_OF(magnitude(point.z) - half_height > over_side);
+    const mask is_on_axis = MASK_OF(from_axis <= 0.0f);
+    const real safe = CHOOSE(is_on_axis, SPLAT(1.0f), from_axis);
+    struct vector3 end, side;
+    end.x = end.y = SPLAT(0.0f);
+    end.z = CHOOSE(MASK_OF(point.z < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
+    side.x = slant_across * CHOOSE(is_on_axis, SPLAT(1.0f), point.x / safe);
+    side.y = slant_across * (point.y / safe);
+    side.z = SPLAT(slant_up);
+    return choose3(on_end, end, side);
+}
+
+#endif

@@ -1,0 +1,16 @@
+/* Disc in the x-y plane of its own frame; both sides reflect, with the plane's normal. */
+#ifndef SONJECT_KERNELS_SHAPES_DISC_H
+#define SONJECT_KERNELS_SHAPES_DISC_H
+
+#include "interval.h"
+
+FUNCTION struct interval disc_interval(struct vector3 point, struct vector3 direction, float radius)
+{
+    const mask is_parallel = MASK_OF(magnitude(direction.z) < 1.0e-12f);
+    const real distance = -point.z / CHOOSE(is_parallel, SPLAT(1.0f), direction.z);
+    const struct vector3 hit = along3(point, direction, distance);
+    const mask is_hit = ~is_parallel & MASK_OF(hit.x * hit.x + hit.y * hit.y <= radius * radius);
+    return interval_where(is_hit, distance, distance);
+}
+
+#endif

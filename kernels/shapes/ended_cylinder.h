@@ -1,0 +1,111 @@
+/* Cylinder along the x axis of its own frame whose ends are each flat, open, or a part of a sphere.
+ * With an open end it is a thin wall, seen from both sides; else it is solid. */
+#ifndef SONJECT_KERNELS_SHAPES_ENDED_CYLINDER_H
+#define SONJECT_KERNELS_SHAPES_ENDED_CYLINDER_H
+
+#include "layout.h"
+#include "shapes/cylinder.h"
+
+/* Inside the end's sphere and beyond its joint. The sphere is written from its pole,
+ * curvature/2 |q|^2 + q_x <= 0, so that nearly flat ends lose no digits. outward: 1 nose, -1 tail.
+ */
+FUNCTION struct interval round_end_interval(struct vector3 point, struct vector3 direction,
+                                            GLOBAL const struct end_record *end, float outward)
+{
+    struct vector3 from_pole = point;
+    from_pole.x = point.x - outward * (end->joint + end->depth);
+    const real start = -dot3(from_pole, direction);
+    const struct vector3 q = along3(from_pole, direction, start);
+    const float a = 0.5f * end->curvature;
+    const real b = a * dot3(q, direction) + (0.5f * outward) * direction.x;
+    const real c = a * dot3(q, q) + outward * q.x;
+    const real square = b * b - a * c;
+    const real root = SQUARE_ROOT(larger(square, SPLAT(0.0f)));
+    const real sum = CHOOSE(MASK_OF(b < 0.0f), root - b, -(root + b));
+    const real safe = CHOOSE(MASK_OF(magnitude(sum) < 1.0e-20f), SPLAT(1.0e-20f), sum);
+    const real one = start + safe / a;
+    const real other = start + c / safe;
+    return interval_overlap(
+        interval_where(MASK_OF(square > 0.0f), smaller(one, other), larger(one, other)),
+        interval_of_half_space(outward * point.x - end->joint, -outward * direction.x));
+}
+
+FUNCTION struct interval straight_part_slab(struct vector3 point, struct vector3 direction,
+                                            GLOBAL const struct end_record *ends)
+{
+    const float middle = 0.5f * (ends[END_NOSE].joint - ends[END_TAIL].joint);
+    const float half_length = 0.5f * (ends[END_NOSE].joint + ends[END_TAIL].joint);
+    return interval_of_slab(point.x - middle, direction.x, half_length);
+}
+
+/* As if it were solid; open ends are flat. */
+FUNCTION struct interval ended_cylinder_interval(struct vector3 point, struct vector3 direction,
+                                                 GLOBAL const struct end_record *ends, float radius)
+{
+    struct interval inside = interval_overlap(tube_interval(point, direction, radius),
+                                              straight_part_slab(point, direction, ends));
+    for (int end = END_NOSE; end <= END_TAIL; end++)
+        if (ends[end].depth > 0.0f)
+            inside = interval_union(inside, round_end_interval(point, direction, &ends[end],
+                                                               end == END_NOSE ? 1.0f : -1.0f));
+    return inside;
+}
+
+/* Where the ray crosses the wall, on the way in and on the way out; each crossing is an interval of
+ * no length. Crossings of an open end do not count. */
+FUNCTION struct spans open_cylinder_spans(struct vector3 point, struct vector3 direction,
+                                          GLOBAL const struct end_record *ends, float radius)
+{
+    const struct interval slab = straight_part_slab(point, direction, ends);
+    const struct interval inside = ended_cylinder_interval(point, direction, ends, radius);
+    const mask never = MASK_OF(direction.x > FAR_AWAY);
+    const mask nose_is_open = ends[END_NOSE].is_open ? ~never : never;
+    const mask tail_is_open = ends[END_TAIL].is_open ? ~never : never;
+    const mask is_forward = MASK_OF(direction.x > 0.0f);
+    const mask is_met = MASK_OF(inside.entry <= inside.exit);
+    const mask enters_open = MASK_OF(inside.entry == slab.entry) &
+                             ((is_forward & tail_is_open) | (~is_forward & nose_is_open));
+    const mask leaves_open = MASK_OF(inside.exit == slab.exit) &
+                             ((is_forward & nose_is_open) | (~is_forward & tail_is_open));
+    struct spans spans;
+    spans.first = interval_where(is_met & ~enters_open, inside.entry, inside.entry);
+    spans.second = interval_where(is_met & ~leaves_open, inside.exit, inside.exit);
+    return spans;
+}
+
+/* Outward. Of a flat end where the point is nearer to that than to the side. */
+FUNCTION struct vector3 ended_cylinder_normal(struct vector3 point,
+                                              GLOBAL const struct end_record *ends, float radius)
+{
+    const real from_axis = SQUARE_ROOT(point.y * point.y + point.z * point.z);
+    const real safe = CHOOSE(MASK_OF(from_axis > 0.0f), from_axis, SPLAT(1.0f));
+    struct vector3 normal;
+    normal.x = SPLAT(0.0f);
+    normal.y = point.y / safe;
+    normal.z = point.z / safe;
+    for (int number = END_NOSE; number <= END_TAIL; number++) {
+        GLOBAL const struct end_record *end = &ends[number];
+        const float outward = number == END_NOSE ? 1.0f : -1.0f;
+        const real to_joint = end->joint - outward * point.x;
+        struct vector3 on_end;
+        on_end.x = 1.0f + end->curvature * (outward * point.x - (end->joint + end->depth));
+        on_end.x = outward * on_end.x;
+        on_end.y = end->curvature * point.y;
+        on_end.z = end->curvature * point.z;
+        const mask is_there =
+            end->depth > 0.0f ? MASK_OF(to_joint < 0.0f) : MASK_OF(to_joint < radius - from_axis);
+        if (!end->is_open)
+            normal = choose3(is_there, on_end, normal);
+    }
+    return normal;
+}
+
+/* On the side that the ray comes from. */
+FUNCTION struct vector3 open_cylinder_normal(struct vector3 point, struct vector3 direction,
+                                             GLOBAL const struct end_record *ends, float radius)
+{
+    const struct vector3 outward = ended_cylinder_normal(point, ends, radius);
+    return choose3(MASK_OF(dot3(outward, direction) > 0.0f), reversed3(outward), outward);
+}
+
+#endif

@@ -1,0 +1,369 @@
+/* Where rays meet the shapes with more than one size, whole and cut, against polynomials solved in
+ * double precision. Rays come from sonars at 50 m and 500 m, many of them grazing. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <string.h>
+
+#include "reference_solids.h"
+#include "sixteen_lanes.h"
+#include "trace/object_shape.h"
+
+#define PI   3.14159265358979323846
+#define RAYS 100000
+
+/* Positions carry single precision's 6e-8 of a few metres, some of which add up. Whoever passes an
+ * outline closer than this may err. */
+#define OUTLINE 3e-6
+
+enum solid_kind {
+    DISC,
+    ELLIPSOID,
+    BOX,
+    WEDGE,
+    CONE,
+    TRUNCATED_CONE,
+    TORUS,
+    ROUND_CYLINDER, /* ends flat or spherical */
+    TUBE,           /* at least one end open */
+    SOLID_KINDS
+};
+
+static const char *const names[SOLID_KINDS] = {
+    "disc", "ellipsoid", "box", "wedge", "cone", "truncated cone", "torus", "cylinder", "tube"};
+
+struct solid {
+    sonject_object_params params;
+    struct object_record record;
+};
+
+static uint32_t random_end(int with_open)
+{
+    const double choice = uniform(0.0, 1.0);
+    return choice < 0.3                ? SONJECT_END_FLAT
+           : with_open && choice < 0.6 ? SONJECT_END_OPEN
+                                       : SONJECT_END_SPHERICAL;
+}
+
+static void random_sizes(sonject_object_params *params, enum solid_kind kind)
+{
+    static const uint32_t shapes[SOLID_KINDS] = {
+        SONJECT_SHAPE_DISC,  SONJECT_SHAPE_ELLIPSOID, SONJECT_SHAPE_BOX,
+        SONJECT_SHAPE_WEDGE, SONJECT_SHAPE_CONE,      SONJECT_SHAPE_TRUNCATED_CONE,
+        SONJECT_SHAPE_TORUS, SONJECT_SHAPE_CYLINDER,  SONJECT_SHAPE_CYLINDER};
+    memset(params, 0, sizeof *params);
+    params->shape = shapes[kind];
+    params->length_m = uniform(0.1, 1.5);
+    params->width_m = uniform(0.1, 1.5);
+    params->height_m = uniform(0.1, 1.5);
+    params->diameter_m = uniform(0.1, 1.0);
+    params->top_diameter_m = uniform(0.0, 1.0);
+    params->front_height_m = uniform(0.0, 1.0) < 0.3 ? 0.0 : uniform(0.0, params->height_m);
+    if (kind == TORUS)
+        params->height_m = params->diameter_m * uniform(0.04, 0.48);
+    if (kind != ROUND_CYLINDER && kind != TUBE)
+        return;
+    params->length_m = params->diameter_m * uniform(1.1, 5.0);
+    params->nose_end = random_end(kind == TUBE);
+    params->tail_end = kind == TUBE && params->nose_end != SONJECT_END_OPEN
+                           ? (uint32_t)SONJECT_END_OPEN
+                           : random_end(kind == TUBE);
+    const double radius = 0.5 * params->diameter_m;
+    if (params->nose_end == SONJECT_END_SPHERICAL && uniform(0.0, 1.0) < 0.7)
+        params->nose_end_depth_m = radius * pow(10.0, uniform(-2.0, 0.0));
+    if (params->tail_end == SONJECT_END_SPHERICAL && uniform(0.0, 1.0) < 0.7)
+        params->tail_end_depth_m = radius * pow(10.0, uniform(-2.0, 0.0));
+}
+
+static void random_cuts(sonject_object_params *params, uint32_t cuts)
+{
+    struct shape_size size;
+    do {
+        params->cut_count = cuts;
+        for (uint32_t i = 0; i < cuts; i++) {
+            params->cuts[i].azimuth_rad = uniform(-PI, PI);
+            params->cuts[i].elevation_rad = asin(uniform(-1.0, 1.0));
+            params->cuts[i].distance_m = uniform(-0.3, 0.4) * params->diameter_m;
+        }
+        shape_size_init(&size, params, false);
+    } while (!shape_is_left(&size, params->shape));
+}
+
+static void turn_at_random(struct object_record *record)
+{
+    const double heading = uniform(-PI, PI), pitch = uniform(-1.5, 1.5), roll = uniform(-PI, PI);
+    const double cp = cos(pitch), sp = sin(pitch);
+    const double nose[3] = {cos(heading) * cp, sin(heading) * cp, sp};
+    const double side[3] = {-sin(heading), cos(heading), 0.0};
+    const double up[3] = {-cos(heading) * sp, -sin(heading) * sp, cp};
+    for (int i = 0; i < 3; i++) {
+        record->axes[i] = (float)nose[i];
+        record->axes[3 + i] = (float)(side[i] * cos(roll) + up[i] * sin(roll));
+        record->axes[6 + i] = (float)(up[i] * cos(roll) - side[i] * sin(roll));
+    }
+}
+
+static void make_record(struct solid *solid, double reach)
+{
+    struct shape_size size;
+    memset(&solid->record, 0, sizeof solid->record);
+    shape_size_init(&size, &solid->params, false);
+    object_shape_init(&solid->record, &size, solid->params.shape);
+    solid->record.centre_x = (float)uniform(-reach, reach);
+    solid->record.centre_y = (float)uniform(-reach, reach);
+    solid->record.centre_z = (float)uniform(-0.5, 0.5) * (float)fmin(reach, 2.0);
+    turn_at_random(&solid->record);
+}
+
+static struct solid random_solid(enum solid_kind kind, uint32_t cuts, double reach)
+{
+    struct solid solid;
+    random_sizes(&solid.params, kind);
+    random_cuts(&solid.params, cuts);
+    make_record(&solid, reach);
+    return solid;
+}
+
+static struct solid_hit reference_hit(const struct solid *solid, struct point origin,
+                                      struct point direction, double minimum, double more)
+{
+    const struct object_record *record = &solid->record;
+    const struct point centre = {record->centre_x, record->centre_y, record->centre_z};
+    struct solid_hit hit =
+        solid_first_hit(&solid->params, turned(record, add(origin, centre, -1.0)),
+                        turned(record, direction), minimum, more);
+    hit.normal = turned_back(record, hit.normal);
+    return hit;
+}
+
+/* A point on or near the surface: half of the rays graze it. */
+static struct point aim(const struct solid *solid)
+{
+    const struct point way = random_direction();
+    const struct point centre = {solid->record.centre_x, solid->record.centre_y,
+                                 solid->record.centre_z};
+    const double size = solid->record.bounding_radius;
+    const struct point outside = add(centre, way, 3.0 * size);
+    const struct point inwards = add(scaled(way, -1.0), random_direction(), 0.2);
+    const struct solid_hit hit = reference_hit(solid, outside, inwards, 0.0, 0.0);
+    if (uniform(0.0, 1.0) < 0.5 && isfinite(hit.distance))
+        return add(outside, inwards, hit.distance);
+    return add(centre, random_direction(), size * uniform(0.0, 1.3));
+}
+
+struct worst {
+    double of_size, normal;
+    int hits, misses, undecided;
+};
+
+static void compare(const struct solid *solid, enum solid_kind kind, const struct ray *ray,
+                    double range, struct worst *worst)
+{
+    const struct solid_hit expected =
+        reference_hit(solid, ray->origin, ray->direction, -range, 0.0);
+    const struct solid_hit less =
+        reference_hit(solid, ray->origin, ray->direction, -range, -OUTLINE);
+    const struct solid_hit more =
+        reference_hit(solid, ray->origin, ray->direction, -range, OUTLINE);
+    const float distance = object_distance(&solid->record, ray->p, ray->d, (float)-range);
+    const int is_hit = distance < 0.5f * FAR_AWAY;
+    const int surely = isfinite(less.distance);
+    const double spread = fabs(more.distance - less.distance);
+    const double cosine = surely ? fabs(dot(expected.normal, ray->direction)) : 1.0;
+    /* the same outline, and the same surface before and behind it */
+    if (surely != isfinite(more.distance) || surely != isfinite(expected.distance) ||
+        (surely &&
+         (spread > 30.0 * OUTLINE / cosine || expected.to_edge < 3.0 * OUTLINE / cosine))) {
+        worst->undecided++;
+        return;
+    }
+    if (is_hit != surely)
+        fail_msg("%s: a ray that %s is said to %s", names[kind], surely ? "hits" : "misses",
+                 is_hit ? "hit" : "miss");
+    worst->hits += is_hit;
+    worst->misses += !is_hit;
+    if (!is_hit)
+        return;
+    const double size = solid->record.bounding_radius;
+    worst->of_size = fmax(worst->of_size, fabs(distance - expected.distance) * cosine / size);
+    if (cosine > 0.05 && expected.to_edge > 2e-3 * size) {
+        const struct vector3 n = object_normal(&solid->record, ray->p, ray->d, distance);
+        const struct point off = {n.x - expected.normal.x, n.y - expected.normal.y,
+                                  n.z - expected.normal.z};
+        worst->normal = fmax(worst->normal, sqrt(dot(off, off)));
+    }
+}
+
+static void test_against_the_reference(void **unused)
+{
+    (void)unused;
+    static const double ranges[] = {50.0, 500.0};
+    for (int kind = 0; kind < SOLID_KINDS; kind++)
+        for (uint32_t cuts = 0; cuts <= SONJECT_CUTS_CAPACITY; cuts++) {
+            struct worst worst = {0.0, 0.0, 0, 0, 0};
+            struct solid solid;
+            for (int i = 0; i < RAYS; i++) {
+                if (i % 20 == 0)
+                    solid = random_solid((enum solid_kind)kind, cuts, 2.0);
+                const double range = ranges[i % 2];
+                const struct ray ray = ray_towards(aim(&solid), range);
+                compare(&solid, (enum solid_kind)kind, &ray, range, &worst);
+            }
+            print_message("%s, %u cuts: %d hits, %d misses, %d on an outline or edge; off by %.2g "
+                          "of size, normal %.2g rad\n",
+                          names[kind], (unsigned)cuts, worst.hits, worst.misses, worst.undecided,
+                          worst.of_size, worst.normal);
+            assert_true(worst.hits > RAYS / 8);
+            assert_true(worst.misses > RAYS / 50);
+            assert_true(worst.undecided < RAYS / 20);
+            assert_true(worst.of_size < 1e-5);
+            assert_true(worst.normal < 1e-3);
+        }
+}
+
+/* From a start as far off the surface as the tracer's (2e-5 m) no way outwards meets a convex solid
+ * again, whole or cut. */
+static void test_no_self_hit(void **unused)
+{
+    (void)unused;
+    static const double reaches[] = {2.0, 100.0};
+    for (int kind = 0; kind < SOLID_KINDS; kind++) {
+        if (kind == TORUS || kind == TUBE)
+            continue; /* not convex */
+        int self_hits = 0;
+        int tried = 0;
+        struct solid solid;
+        for (int i = 0; i < RAYS; i++) {
+            if (i % 20 == 0)
+                solid = random_solid((enum solid_kind)kind, (uint32_t)(i / 20 % 3),
+                                     reaches[i / 60 % 2]);
+            const struct ray ray = ray_towards(aim(&solid), 200.0);
+            const float distance = object_distance(&solid.record, ray.p, ray.d, -200.0f);
+            if (distance > 0.5f * FAR_AWAY)
+                continue;
+            const struct vector3 n = object_normal(&solid.record, ray.p, ray.d, distance);
+            const struct vector3 start = along3(along3(ray.p, ray.d, distance), n, 2.0e-5f);
+            const struct point back = i % 2 ? random_direction() : scaled(ray.direction, -1.0);
+            const struct vector3 way = {(float)back.x, (float)back.y, (float)back.z};
+            if (dot3(way, n) <= 0.0f)
+                continue;
+            tried++;
+            self_hits += object_distance(&solid.record, start, way, 0.0f) < 0.5f * FAR_AWAY;
+        }
+        print_message("%s: %d self-hits of %d\n", names[kind], self_hits, tried);
+        assert_true(tried > RAYS / 8);
+        assert_int_equal(self_hits, 0);
+    }
+}
+
+/* From inside, the way out; through a ring's hole, its other side. */
+static void test_beyond_the_first(void **unused)
+{
+    (void)unused;
+    for (int kind = 0; kind < SOLID_KINDS; kind++) {
+        int compared = 0;
+        struct solid solid;
+        for (int i = 0; i < RAYS / 4; i++) {
+            if (i % 20 == 0)
+                solid = random_solid((enum solid_kind)kind, (uint32_t)(i / 20 % 3), 1.0);
+            const struct ray ray = ray_towards(aim(&solid), 50.0);
+            double minimum = -50.0;
+            for (int crossing = 0; crossing < 4; crossing++) {
+                const struct solid_hit hit =
+                    reference_hit(&solid, ray.origin, ray.direction, minimum, 0.0);
+                const double cosine = fabs(dot(hit.normal, ray.direction));
+                if (!isfinite(hit.distance) || cosine < 0.05 || hit.to_edge < 1e-3 ||
+                    hit.distance < minimum + 1e-3)
+                    break;
+                const float met = object_distance(&solid.record, ray.p, ray.d, (float)minimum);
+                assert_true(fabs(met - hit.distance) < 4.0 * OUTLINE / cosine);
+                minimum = (float)(hit.distance + 1e-3);
+                compared += crossing > 0;
+            }
+        }
+        print_message("%s: %d later crossings\n", names[kind], compared);
+        assert_true(kind == DISC || compared > RAYS / 50);
+    }
+}
+
+/* 16 lanes of native C give the bits of one. */
+static void test_sixteen_lanes(void **unused)
+{
+    (void)unused;
+    for (int kind = 0; kind < SOLID_KINDS; kind++)
+        for (int i = 0; i < 3000; i++) {
+            const struct solid solid = random_solid((enum solid_kind)kind, (uint32_t)(i % 3), 2.0);
+            struct ray single[LANES];
+            float rays[6][LANES], distance[LANES], normal[3][LANES];
+            for (int lane = 0; lane < LANES; lane++) {
+                single[lane] = ray_towards(aim(&solid), 100.0);
+                rays[0][lane] = single[lane].p.x;
+                rays[1][lane] = single[lane].p.y;
+                rays[2][lane] = single[lane].p.z;
+                rays[3][lane] = single[lane].d.x;
+                rays[4][lane] = single[lane].d.y;
+                rays[5][lane] = single[lane].d.z;
+            }
+            sixteen_lanes_hit(&solid.record, rays, -100.0f, distance, normal);
+            for (int lane = 0; lane < LANES; lane++) {
+                const float alone =
+                    object_distance(&solid.record, single[lane].p, single[lane].d, -100.0f);
+                assert_memory_equal(&alone, &distance[lane], sizeof alone);
+                if (alone > 0.5f * FAR_AWAY)
+                    continue;
+                const struct vector3 n =
+                    object_normal(&solid.record, single[lane].p, single[lane].d, alone);
+                assert_memory_equal(&n.x, &normal[0][lane], sizeof n.x);
+                assert_memory_equal(&n.y, &normal[1][lane], sizeof n.y);
+                assert_memory_equal(&n.z, &normal[2][lane], sizeof n.z);
+            }
+        }
+}
+
+/* Rays along and across the axes, or so close that rounding decides. */
+static void test_along_the_axes(void **unused)
+{
+    (void)unused;
+    for (int kind = 0; kind < SOLID_KINDS; kind++) {
+        struct worst worst = {0.0, 0.0, 0, 0, 0};
+        for (int i = 0; i < RAYS / 4; i++) {
+            struct solid solid = random_solid((enum solid_kind)kind, 0, 0.0);
+            memset(solid.record.axes, 0, sizeof solid.record.axes);
+            solid.record.axes[0] = solid.record.axes[4] = solid.record.axes[8] = 1.0f;
+            const double tilt = i & 8 ? 0.0 : pow(10.0, uniform(-10.0, -4.0));
+            double d[3] = {tilt * uniform(-1.0, 1.0), tilt * uniform(-1.0, 1.0),
+                           tilt * uniform(-1.0, 1.0)};
+            d[i % 3] = i & 4 ? 1.0 : -1.0;
+            double p[3];
+            for (int k = 0; k < 3; k++)
+                p[k] = k == i % 3 || (i % 100 == 0 && kind != CONE) /* its tip has no normal */
+                           ? 0.0
+                           : uniform(-1.1, 1.1) * solid.record.bounding_radius;
+            struct ray ray;
+            ray.p = (struct vector3){(float)p[0], (float)p[1], (float)p[2]};
+            ray.d = (struct vector3){(float)d[0], (float)d[1], (float)d[2]};
+            ray.origin = (struct point){ray.p.x, ray.p.y, ray.p.z};
+            ray.direction = (struct point){ray.d.x, ray.d.y, ray.d.z};
+            compare(&solid, (enum solid_kind)kind, &ray, 10.0, &worst);
+        }
+        print_message("%s along axes: %d hits, %d misses, %d undecided, off by %.2g\n", names[kind],
+                      worst.hits, worst.misses, worst.undecided, worst.of_size);
+        assert_true(worst.hits > RAYS / 40);
+        assert_true(worst.of_size < 1e-5 && worst.normal < 1e-3);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_against_the_reference), cmocka_unit_test(test_no_self_hit),
+        cmocka_unit_test(test_beyond_the_first),      cmocka_unit_test(test_sixteen_lanes),
+        cmocka_unit_test(test_along_the_axes),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

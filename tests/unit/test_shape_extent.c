@@ -1,0 +1,354 @@
+/* How far shapes reach, whole and cut, against clouds of points that lie in them, and how they rest
+ * on the seabed. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdbool.h>
+#include <string.h>
+
+#include "scene/placement.h"
+
+#define PI     3.14159265358979323846
+#define POINTS 150000
+
+static uint64_t state = 88172645463325252u;
+
+static double uniform(double low, double high)
+{
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    return low + (high - low) * ((double)(state >> 11) + 0.5) / 9007199254740992.0;
+}
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void random_direction(double v[3])
+{
+    v[2] = uniform(-1.0, 1.0);
+    const double turn = uniform(-PI, PI);
+    v[0] = sqrt(1.0 - v[2] * v[2]) * cos(turn);
+    v[1] = sqrt(1.0 - v[2] * v[2]) * sin(turn);
+}
+
+/* A round end bulges beyond the joint, as high as a sphere through rim and tip. */
+static bool is_in_end(const sonject_object_params *object, double beyond, double square,
+                      uint32_t kind, double depth)
+{
+    const double radius = 0.5 * object->diameter_m;
+    if (kind != SONJECT_END_SPHERICAL)
+        return false;
+    const double h = depth > 0.0 ? depth : radius;
+    const double ball = (radius * radius + h * h) / (2.0 * h);
+    return beyond <= h && beyond - h + ball >= 0.0 &&
+           pow(beyond - h + ball, 2.0) + square <= ball * ball;
+}
+
+static double depth_of(const sonject_object_params *object, uint32_t kind, double depth)
+{
+    return kind != SONJECT_END_SPHERICAL ? 0.0 : depth > 0.0 ? depth : 0.5 * object->diameter_m;
+}
+
+static bool is_in_shape(const sonject_object_params *object, const double p[3])
+{
+    const double x = p[0], y = p[1], z = p[2];
+    const double a = 0.5 * object->length_m, b = 0.5 * object->width_m, c = 0.5 * object->height_m;
+    const double radius = 0.5 * object->diameter_m;
+    switch (object->shape) {
+    case SONJECT_SHAPE_PLANE:
+        return fabs(x) <= a && fabs(y) <= b;
+    case SONJECT_SHAPE_SPHERE:
+        return dot(p, p) <= radius * radius;
+    case SONJECT_SHAPE_CYLINDER: {
+        const double nose = a - depth_of(object, object->nose_end, object->nose_end_depth_m);
+        const double tail = a - depth_of(object, object->tail_end, object->tail_end_depth_m);
+        const double square = y * y + z * z;
+        if (x > nose)
+            return is_in_end(object, x - nose, square, object->nose_end, object->nose_end_depth_m);
+        if (-x > tail)
+            return is_in_end(object, -x - tail, square, object->tail_end, object->tail_end_depth_m);
+        return square <= radius * radius;
+    }
+    case SONJECT_SHAPE_CAPSULE:
+        return hypot(fmax(fabs(x) - (a - radius), 0.0), hypot(y, z)) <= radius;
+    case SONJECT_SHAPE_DISC:
+        return hypot(x, y) <= radius;
+    case SONJECT_SHAPE_ELLIPSOID:
+        return pow(x / a, 2.0) + pow(y / b, 2.0) + pow(z / c, 2.0) <= 1.0;
+    case SONJECT_SHAPE_BOX:
+        return fabs(x) <= a && fabs(y) <= b && fabs(z) <= c;
+    case SONJECT_SHAPE_WEDGE: {
+        const double from_tail = (x + a) / object->length_m;
+        const double top =
+            object->height_m * (1.0 - from_tail) + object->front_height_m * from_tail;
+        return fabs(x) <= a && fabs(y) <= b && z >= -c && z + c <= top;
+    }
+    case SONJECT_SHAPE_CONE:
+        return fabs(z) <= c && hypot(x, y) <= radius * (c - z) / object->height_m;
+    case SONJECT_SHAPE_TRUNCATED_CONE:
+        return fabs(z) <= c &&
+               hypot(x, y) <=
+                   (radius * (c - z) + 0.5 * object->top_diameter_m * (c + z)) / object->height_m;
+    default:
+        return hypot(hypot(x, y) - (radius - c), z) <= c;
+    }
+}
+
+static bool is_left(const sonject_object_params *object, const double p[3])
+{
+    for (uint32_t i = 0; i < object->cut_count; i++) {
+        const sonject_cut *cut = &object->cuts[i];
+        const double normal[3] = {cos(cut->azimuth_rad) * cos(cut->elevation_rad),
+                                  sin(cut->azimuth_rad) * cos(cut->elevation_rad),
+                                  sin(cut->elevation_rad)};
+        if (dot(normal, p) > cut->distance_m)
+            return false;
+    }
+    return is_in_shape(object, p);
+}
+
+static sonject_object_params random_object(uint32_t shape, uint32_t cuts)
+{
+    sonject_object_params object;
+    sonject_object_params_init(&object);
+    object.shape = shape;
+    object.diameter_m = uniform(0.5, 1.0);
+    object.length_m = shape == SONJECT_SHAPE_CYLINDER || shape == SONJECT_SHAPE_CAPSULE
+                          ? uniform(1.1, 2.0)
+                          : uniform(0.4, 1.0);
+    object.width_m = uniform(0.4, 1.0);
+    object.height_m = shape == SONJECT_SHAPE_TORUS ? 0.4 * object.diameter_m : uniform(0.4, 1.0);
+    object.top_diameter_m = uniform(0.0, 1.0);
+    object.front_height_m = uniform(0.0, object.height_m);
+    object.nose_end = (uint32_t)uniform(0.0, 3.0);
+    object.tail_end = (uint32_t)uniform(0.0, 3.0);
+    object.nose_end_depth_m = uniform(0.0, 1.0) < 0.5 ? 0.0 : uniform(0.05, 0.25);
+    object.heading_rad = uniform(-PI, PI);
+    object.pitch_rad = uniform(-PI, PI);
+    object.roll_rad = uniform(-PI, PI);
+    object.cut_count = cuts;
+    for (uint32_t i = 0; i < cuts; i++) {
+        double normal[3];
+        random_direction(normal);
+        object.cuts[i].azimuth_rad = atan2(normal[1], normal[0]);
+        object.cuts[i].elevation_rad = asin(normal[2]);
+        object.cuts[i].distance_m = uniform(0.0, 0.2);
+    }
+    return object;
+}
+
+static bool is_sheet(uint32_t shape)
+{
+    return shape == SONJECT_SHAPE_PLANE || shape == SONJECT_SHAPE_DISC;
+}
+
+/* A point of a box that holds the shape, of a sheet where that is. */
+static void random_point(const struct shape_size *size, uint32_t shape, double p[3])
+{
+    for (int k = 0; k < 3; k++)
+        p[k] = uniform(-1.0, 1.0) * size->bounding_radius_m;
+    if (is_sheet(shape))
+        p[2] = 0.0;
+}
+
+/* No point reaches further, and some reach nearly as far: corners are rarely drawn. */
+static void test_clouds_of_points(void **unused)
+{
+    (void)unused;
+    for (uint32_t shape = 0; shape <= SONJECT_SHAPE_TORUS; shape++)
+        for (uint32_t cuts = 0; cuts <= SONJECT_CUTS_CAPACITY; cuts++) {
+            const sonject_object_params object = random_object(shape, cuts);
+            struct shape_size size;
+            double directions[12][3], farthest[12], extents[12];
+            shape_size_init(&size, &object, false);
+            for (int i = 0; i < 12; i++) {
+                random_direction(directions[i]);
+                farthest[i] = -INFINITY;
+                extents[i] = shape_extent(&size, shape, directions[i]);
+            }
+            for (int n = 0; n < POINTS; n++) {
+                double p[3];
+                random_point(&size, shape, p);
+                if (!is_left(&object, p))
+                    continue;
+                for (int i = 0; i < 12; i++)
+                    farthest[i] = fmax(farthest[i], dot(directions[i], p));
+            }
+            double gap = 0.0;
+            for (int i = 0; i < 12; i++) {
+                if (farthest[i] > extents[i] + 1e-9)
+                    fail_msg("%s, %u cuts: reaches %.9g m, not %.9g m", shape_name(shape),
+                             (unsigned)cuts, farthest[i], extents[i]);
+                gap = fmax(gap, (extents[i] - farthest[i]) / size.bounding_radius_m);
+            }
+            print_message("%s, %u cuts: points come within %.3f of its size\n", shape_name(shape),
+                          (unsigned)cuts, gap);
+            assert_true(gap < 0.15);
+        }
+}
+
+static double extent_along(const sonject_object_params *object, double x, double y, double z)
+{
+    const double v[3] = {x, y, z};
+    struct shape_size size;
+    shape_size_init(&size, object, false);
+    return shape_extent(&size, object->shape, v);
+}
+
+static void expect_extent(const sonject_object_params *object, double x, double y, double z,
+                          double expected)
+{
+    const double extent = extent_along(object, x, y, z);
+    if (!(fabs(extent - expected) < 1e-9))
+        fail_msg("%s reaches %.12g m, not %.12g m", shape_name(object->shape), extent, expected);
+}
+
+/* Half a sphere, a quarter of one, a box without a corner, a ring without its upper half. */
+static void test_closed_forms(void **unused)
+{
+    (void)unused;
+    const double s = sqrt(0.5);
+    sonject_object_params object;
+    sonject_object_params_init(&object);
+    object.diameter_m = 2.0;
+    object.cut_count = 1;
+    object.cuts[0].elevation_rad = 0.5 * PI;
+    object.cuts[0].distance_m = 0.6;
+    expect_extent(&object, 0.0, 0.0, 1.0, 0.6);
+    expect_extent(&object, 0.0, 0.0, -1.0, 1.0);
+    expect_extent(&object, 1.0, 0.0, 0.0, 1.0);
+    expect_extent(&object, s, 0.0, s, s * (0.8 + 0.6));
+    object.cut_count = 2;
+    object.cuts[0].distance_m = 0.0;
+    expect_extent(&object, s, 0.0, s, 0.0);
+    object.cuts[1].distance_m = -0.6; /* and the whole nose side of x = -0.6 */
+    expect_extent(&object, 1.0, 0.0, 0.0, -0.6);
+    expect_extent(&object, s, 0.0, s, -0.6 * s);
+    expect_extent(&object, 0.0, 1.0, 0.0, 0.8);
+    expect_extent(&object, 0.0, 0.0, -1.0, 0.8);
+    object.shape = SONJECT_SHAPE_BOX;
+    object.length_m = object.width_m = object.height_m = 2.0;
+    object.cut_count = 1;
+    object.cuts[0].elevation_rad = 0.25 * PI;
+    object.cuts[0].distance_m = s;
+    expect_extent(&object, s, 0.0, s, s);
+    expect_extent(&object, 1.0, 0.0, 0.0, 1.0);
+    expect_extent(&object, 0.8, 0.0, 0.6, 0.8); /* the corner (1, 0) */
+    object.shape = SONJECT_SHAPE_TORUS;
+    object.height_m = 0.5;
+    object.cuts[0].elevation_rad = 0.5 * PI;
+    object.cuts[0].distance_m = 0.15;
+    expect_extent(&object, 0.0, 0.0, 1.0, 0.15);
+    expect_extent(&object, 1.0, 0.0, 0.0, 1.0);
+    expect_extent(&object, s, 0.0, s, s * (0.75 + 0.2 + 0.15));
+    object.cuts[0].elevation_rad = 0.0; /* and upright: the half behind x = 0.15 */
+    expect_extent(&object, 1.0, 0.0, 0.0, 0.15);
+    expect_extent(&object, 0.0, 1.0, 0.0, 1.0);
+}
+
+static void make_view(struct patch_view *view, struct scene *scene, sonject_side side)
+{
+    struct report report = {{0}, NULL, NULL};
+    static struct water_layer layer = {0.0, 1500.0, 1.0};
+    static const struct water water = {&layer, 1, 1500.0};
+    scene_init(scene);
+    scene->geometry.first_slant_range_m = 40.0;
+    scene->geometry.side = side;
+    assert_int_equal(patch_view_init(view, &report, scene, &water, 0.0, 0.0, 400, 400), SONJECT_OK);
+}
+
+static double lowest_point(const struct placement *placement, const sonject_object_params *object,
+                           bool is_mirrored, double *highest)
+{
+    double lowest = INFINITY;
+    *highest = -INFINITY;
+    for (int n = 0; n < POINTS; n++) {
+        double p[3];
+        random_point(&placement->size, object->shape, p);
+        if (!is_left(object, p))
+            continue;
+        const double own[3] = {p[0], is_mirrored ? -p[1] : p[1], p[2]};
+        double height = placement->centre[2];
+        for (int axis = 0; axis < 3; axis++)
+            height += own[axis] * placement->axes[axis][2];
+        lowest = fmin(lowest, height);
+        *highest = fmax(*highest, height);
+    }
+    return lowest;
+}
+
+/* Whatever the shape, pose and side of the sonar: its lowest point is as deep as asked for. */
+static void test_objects_rest_on_the_seabed(void **unused)
+{
+    (void)unused;
+    for (int side = 0; side < 2; side++)
+        for (uint32_t i = 0; i < 3 * (SONJECT_SHAPE_TORUS + 1); i++) {
+            struct report report = {{0}, NULL, NULL};
+            struct patch_view view;
+            struct scene scene;
+            struct placement placement;
+            double highest;
+            sonject_object_params object = random_object(i / 3, i % 3);
+            make_view(&view, &scene, side ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT);
+            if (placement_init(&placement, &report, &view, 0.0, 0.0, &object) != SONJECT_OK)
+                fail_msg("%s", report.message);
+            const double slack = 0.15 * placement.bounding_radius_m;
+            const double lowest = lowest_point(&placement, &object, view.is_mirrored, &highest);
+            assert_true(lowest > -1e-9 && lowest < slack);
+            const double height = highest - lowest;
+            object.burial_kind = SONJECT_BURIAL_FRACTION;
+            object.burial_fraction = 0.5;
+            assert_int_equal(placement_init(&placement, &report, &view, 0.0, 0.0, &object),
+                             SONJECT_OK);
+            lowest_point(&placement, &object, view.is_mirrored, &highest);
+            assert_true(fabs(highest - 0.5 * height) < slack);
+            assert_true(fabs(burial_of_object(&object) - 0.5 * height) < slack);
+            object.burial_kind = SONJECT_BURIAL_PROUD;
+            object.proud_height_m = 0.05;
+            assert_int_equal(placement_init(&placement, &report, &view, 0.0, 0.0, &object),
+                             SONJECT_OK);
+            lowest_point(&placement, &object, view.is_mirrored, &highest);
+            assert_true(highest < 0.05 + 1e-9 && highest > 0.05 - slack);
+            scene_clear(&scene);
+        }
+}
+
+static void test_nothing_stands_prouder_than_it_is_high(void **unused)
+{
+    (void)unused;
+    struct report report = {{0}, NULL, NULL};
+    struct patch_view view;
+    struct scene scene;
+    struct placement placement;
+    sonject_object_params object;
+    sonject_object_params_init(&object);
+    object.burial_kind = SONJECT_BURIAL_PROUD;
+    object.proud_height_m = 0.5;
+    make_view(&view, &scene, SONJECT_SIDE_PORT);
+    assert_int_equal(placement_init(&placement, &report, &view, 0.0, 0.0, &object), SONJECT_OK);
+    assert_true(fabs(placement.centre[2] - 0.25) < 1e-12);
+    object.proud_height_m = 0.501;
+    assert_int_equal(placement_init(&placement, &report, &view, 0.0, 0.0, &object),
+                     SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(report.message, "burial.proud"));
+    scene_clear(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_clouds_of_points),
+        cmocka_unit_test(test_closed_forms),
+        cmocka_unit_test(test_objects_rest_on_the_seabed),
+        cmocka_unit_test(test_nothing_stands_prouder_than_it_is_high),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
