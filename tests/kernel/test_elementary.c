@@ -167,6 +167,18 @@ static void test_logarithm(void **unused)
     assert_true(worst < 1.0);
 }
 
+static void test_cube_root(void **unused)
+{
+    (void)unused;
+    double worst = 0.0;
+    for (int i = 0; i < POINTS; i++) {
+        const float value = fabsf(random_over_octaves(-100.0, 99.0)); /* to 6e29 */
+        worst = fmax(worst, fabs(cube_root(value) / cbrt((double)value) - 1.0));
+    }
+    print_message("cube root, relative %.3g\n", worst);
+    assert_true(worst < 3e-7);
+}
+
 static void test_smaller_larger_magnitude(void **unused)
 {
     (void)unused;
@@ -188,6 +200,7 @@ int main(void)
         cmocka_unit_test(test_sinc),
         cmocka_unit_test(test_exponential),
         cmocka_unit_test(test_logarithm),
+        cmocka_unit_test(test_cube_root),
         cmocka_unit_test(test_smaller_larger_magnitude),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

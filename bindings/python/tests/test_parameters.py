@@ -92,7 +92,7 @@ def test_cuts_and_burial():
 
 def test_every_shape_is_injected(make_scene, complex_patch):
     shapes = [
-        sonject.Disc(diameter_m=0.5),
+        sonject.Disc(diameter_m=0.5, pitch_rad=-0.8),
         sonject.Ellipsoid(length_m=0.5, width_m=0.4, height_m=0.3),
         sonject.Cuboid(length_m=0.5, width_m=0.4, height_m=0.3),
         sonject.Wedge(length_m=0.5, width_m=0.4, height_m=0.3),
