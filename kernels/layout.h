@@ -27,11 +27,12 @@ enum random_stream {
     STREAM_NOISE = 3,
     STREAM_INPUT_PHASE = 4,
     STREAM_CHAIN_SPECKLE = 5,
-    STREAM_SMOOTH_RAYS = 256,          /* + object */
-    STREAM_OBJECT_SPECKLE = 512,       /* + object */
-    STREAM_CHAIN_RAYS = 769,           /* + first surface: object, -1 the seabed, -2 any */
-    STREAM_MIRRORED_RAYS = 1024,       /* + 256 * number of the pair of sources + object */
-    STREAM_MIRRORED_ROUGH_RAYS = 65536 /* likewise */
+    STREAM_OBJECT_SPECKLE = 256, /* + object */
+    STREAM_SMOOTH_RAYS = 1024,   /* + part */
+    STREAM_CHAIN_RAYS = 2050,    /* + first surface: part, -1 the seabed, -2 any */
+    STREAM_MIRRORED_RAYS = 4096, /* + STREAMS_OF_PAIR * number of the pair of sources + part */
+    STREAM_MIRRORED_ROUGH_RAYS = 1048576, /* likewise */
+    STREAMS_OF_PAIR = 1024
 };
 
 /* Bits that a work-item reports; any of them fails the run. */

@@ -25,8 +25,9 @@ typedef enum sonject_shape {
                                     to front_height at the nose */
     SONJECT_SHAPE_CONE = 8,      /* diameter x height, tip up when pose is level */
     SONJECT_SHAPE_TRUNCATED_CONE = 9, /* diameter (below) and top_diameter x height */
-    SONJECT_SHAPE_TORUS = 10 /* diameter x height, lying flat when pose is level; its height is the
-                                thickness of the ring */
+    SONJECT_SHAPE_TORUS = 10, /* diameter x height, lying flat when pose is level; its height is
+                                 the thickness of the ring */
+    SONJECT_SHAPE_PARTS = 11  /* the union of parts, see sonject_scene_add_part; no sizes */
 } sonject_shape;
 
 /* An end of a cylinder. With an open end the cylinder is a tube: its wall is thin and reflects on
@@ -55,7 +56,8 @@ typedef struct sonject_cut {
 #define SONJECT_CUTS_CAPACITY 2
 
 /* How a position is given. The ground point under the object's centre is meant: the middle of its
- * overall length, width and height, whatever is cut off. */
+ * overall length, width and height, whatever is cut off; of an object of parts, the origin that
+ * their places are counted from. */
 typedef enum sonject_position_kind {
     SONJECT_POSITION_PATCH_CENTRE = 0, /* along = range = 0 */
     SONJECT_POSITION_METRES = 1,       /* along: along-track m, range: apparent slant range m, both
@@ -96,6 +98,21 @@ typedef struct sonject_object_params {
     uint32_t reserved;
     sonject_cut cuts[SONJECT_CUTS_CAPACITY];
 } sonject_object_params;
+
+/* Where a part lies in its object. */
+typedef struct sonject_part_params {
+    uint32_t struct_size;
+    uint32_t reserved;
+    double along_m;     /* of the part's centre from the object's origin, along the object's nose */
+    double across_m;    /* along its own y */
+    double up_m;        /* along its own z */
+    double heading_rad; /* of the part's nose, from the object's nose towards its own y */
+    double pitch_rad;   /* raises the part's nose towards the object's own z */
+    double roll_rad;    /* about the part's nose */
+} sonject_part_params;
+
+/* In the middle of the object, turned as the object is. */
+SONJECT_API void sonject_part_params_init(sonject_part_params *part);
 
 /* A proud sphere of 0.5 m diameter in the middle of the patch, default material. */
 SONJECT_API void sonject_object_params_init(sonject_object_params *object);

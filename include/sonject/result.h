@@ -102,10 +102,11 @@ typedef struct sonject_object_truth {
                                   -infinity where nothing of it is in view */
     double highlight_contrast_db; /* mean energy of the highlight over the local seabed level */
     double shadow_contrast_db;    /* mean energy left in the shadow over the local seabed level */
-    double grazing_rad;           /* of the sound that comes straight to the centre */
-    double transmission_loss_db;  /* one way, from 1 m off the sonar to the centre: spreading
-                                     (through layers: of the ray tube, mean of there and back),
-                                     transmission and absorption */
+    double burial_m;    /* depth of its lowest point below the seabed; negative: above it */
+    double grazing_rad; /* of the sound that comes straight to the centre */
+    double transmission_loss_db; /* one way, from 1 m off the sonar to the centre: spreading
+                                    (through layers: of the ray tube, mean of there and back),
+                                    transmission and absorption */
 } sonject_object_truth;
 
 /* Truth of object number index. truth->struct_size must be set. Errors: ARGUMENT. */

@@ -106,6 +106,14 @@ SONJECT_API sonject_status sonject_scene_add_object(sonject_scene *scene,
                                                     const sonject_object_params *object,
                                                     uint32_t *index);
 
+/* Adds a part to an object of the shape SONJECT_SHAPE_PARTS. Of `shape`, the shape itself, its
+ * sizes, ends, cuts and material count; its name, class, position, pose and burial do not. Parts
+ * may overlap: they then are their union. Up to 1000 parts a scene. An object without parts is
+ * refused when the scene is used. Errors: ARGUMENT (no such object), INPUT, MEMORY. */
+SONJECT_API sonject_status sonject_scene_add_part(sonject_scene *scene, uint32_t object,
+                                                  const sonject_object_params *shape,
+                                                  const sonject_part_params *part);
+
 SONJECT_API sonject_status sonject_scene_object_count(const sonject_scene *scene, uint32_t *count);
 
 SONJECT_END_DECLARATIONS

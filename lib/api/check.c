@@ -91,33 +91,27 @@ static void describe_patch(struct text *text, const struct scene *scene, const s
              scene->injection.interactions == 1 ? "" : "s");
 }
 
-/* Length on the ground of the shadow of something as high as the object's top. */
-static double shadow_length(const struct patch_view *view, const struct placement *placement,
-                            double top)
+/* Length on the ground of the shadow of something high up at a ground range. */
+static double shadow_length(const struct patch_view *view, double ground_range, double top)
 {
-    return top > 0.0 ? top / tan(water_way_grazing(&view->water, placement->centre[1], top)) : 0.0;
-}
-
-static double top_of(const struct scene *scene, const struct placement *placement, uint32_t i)
-{
-    static const double upward[3] = {0.0, 0.0, 1.0};
-    return placement->centre[2] + placement_extent(placement, scene->objects[i].shape, upward);
+    return top > 0.0 ? top / tan(water_way_grazing(&view->water, ground_range, top)) : 0.0;
 }
 
 static void describe_objects(struct text *text, const struct scene *scene,
-                             const struct patch_view *view, const struct placement *placements)
+                             const struct patch_view *view, const struct placements *placements)
 {
     for (uint32_t i = 0; i < scene->object_count; i++) {
-        const struct placement *placement = &placements[i];
-        const double top = top_of(scene, placement, i);
-        const double range = placement_range(placement, view) * view->range_ratio;
+        const struct placed_object *object = &placements->objects[i];
+        const double *origin = object->origin;
+        const double range =
+            water_way_range(&view->water, origin[1], origin[2]) * view->range_ratio;
+        const double grazing = water_way_grazing(&view->water, origin[1], origin[2]);
         text_add(text,
                  "object %-3u %s (%s): row %.1f, slant range %.2f m, grazing angle %.1f deg, top "
                  "%.3f m, shadow %.2f m\n",
                  (unsigned)(i + 1), scene->objects[i].name, shape_name(scene->objects[i].shape),
-                 view_row_of_x(view, placement->centre[0]), range,
-                 placement_grazing(placement, view) * DEGREES_PER_RADIAN, top,
-                 shadow_length(view, placement, top));
+                 view_row_of_x(view, origin[0]), range, grazing * DEGREES_PER_RADIAN, object->top_m,
+                 shadow_length(view, origin[1], object->top_m));
     }
 }
 
@@ -140,25 +134,25 @@ static void mark(char plan[MAP_ROWS][MAP_COLUMNS + 1], const struct patch_view *
         }
 }
 
-static void draw_plan(struct text *text, const struct scene *scene, const struct patch_view *view,
-                      const struct placement *placements)
+static void draw_plan(struct text *text, const struct patch_view *view,
+                      const struct placements *placements)
 {
     static const double along[3] = {1.0, 0.0, 0.0};
     static const double outward[3] = {0.0, 1.0, 0.0};
+    static const double upward[3] = {0.0, 0.0, 1.0};
     char plan[MAP_ROWS][MAP_COLUMNS + 1];
     for (int row = 0; row < MAP_ROWS; row++) {
         memset(plan[row], '.', MAP_COLUMNS);
         plan[row][MAP_COLUMNS] = '\0';
     }
-    for (uint32_t i = 0; i < scene->object_count; i++) {
-        const struct placement *placement = &placements[i];
-        const uint32_t shape = scene->objects[i].shape;
-        const double x = placement_half_extent(placement, shape, along);
-        const double y = placement_half_extent(placement, shape, outward);
-        const double shadow = shadow_length(view, placement, top_of(scene, placement, i));
-        const double low[2] = {placement->centre[0] - x, placement->centre[1] - y};
-        const double high[2] = {placement->centre[0] + x, placement->centre[1] + y};
-        const double end[2] = {high[0], high[1] + shadow};
+    for (uint32_t i = 0; i < placements->part_count; i++) {
+        const struct placement *part = &placements->parts[i];
+        const double x = placement_half_extent(part, along);
+        const double y = placement_half_extent(part, outward);
+        const double top = part->centre[2] + placement_extent(part, upward);
+        const double low[2] = {part->centre[0] - x, part->centre[1] - y};
+        const double high[2] = {part->centre[0] + x, part->centre[1] + y};
+        const double end[2] = {high[0], high[1] + shadow_length(view, part->centre[1], top)};
         mark(plan, view, low, high, '#');
         mark(plan, view, low, end, ':');
     }
@@ -180,19 +174,17 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
     struct swath swath;
     struct water water = {NULL, 0, 0.0};
     struct patch_view view;
-    struct placement *placements = allocate_array(scene->object_count, sizeof *placements);
-    if (!placements)
-        return report_out_of_memory(report, "objects");
+    struct placements placements = {NULL, 0, NULL, 0};
     sonject_status status = swath_describe(report, scene, &swath);
     if (status == SONJECT_OK)
         status = injection_check(report, scene, (double)swath.patch.first_row,
                                  (double)swath.patch.first_column, (size_t)swath.patch.rows,
-                                 (size_t)swath.patch.columns, &water, &view, placements);
+                                 (size_t)swath.patch.columns, &water, &view, &placements);
     if (status == SONJECT_OK) {
         struct text text = {NULL, 0, 0, false};
         describe_patch(&text, scene, &swath, &view);
-        describe_objects(&text, scene, &view, placements);
-        draw_plan(&text, scene, &view, placements);
+        describe_objects(&text, scene, &view, &placements);
+        draw_plan(&text, &view, &placements);
         if (text.failed) {
             free(text.characters);
             status = report_out_of_memory(report, "the description");
@@ -200,7 +192,7 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
             *out = text.characters;
         }
     }
-    free(placements);
+    placements_clear(&placements);
     water_clear(&water);
     return status;
 }

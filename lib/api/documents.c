@@ -87,7 +87,7 @@ static json_t *object_document(const struct run_facts *facts, uint32_t index)
     add(document, "front_height_m", number(object->front_height_m));
     add(document, "cuts", count(object->cut_count));
     add(document, "pose", pose);
-    add(document, "burial_m", number(burial_of_object(object)));
+    add(document, "burial_m", number(truth->burial_m));
     add(document, "along_track_m", number(truth->along_track_m));
     add(document, "slant_range_m", number(truth->slant_range_m));
     add(document, "ground_range_m", number(truth->ground_range_m));

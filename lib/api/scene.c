@@ -1,4 +1,5 @@
 #include "api/handles.h"
+#include "scene/pose.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -233,6 +234,46 @@ sonject_status sonject_scene_add_object(sonject_scene *scene, const sonject_obje
     if (status == SONJECT_OK && index)
         *index = scene->scene.object_count - 1;
     return status;
+}
+
+sonject_status sonject_scene_add_part(sonject_scene *scene, uint32_t object,
+                                      const sonject_object_params *shape,
+                                      const sonject_part_params *part)
+{
+    if (!scene)
+        return SONJECT_ERROR_ARGUMENT;
+    if (object >= scene->scene.object_count)
+        return report_failure(scene->report, SONJECT_ERROR_ARGUMENT,
+                              "there is no object %lu to add a part to", (unsigned long)object);
+    if (scene->scene.objects[object].shape != SONJECT_SHAPE_PARTS)
+        return report_failure(scene->report, SONJECT_ERROR_INPUT,
+                              "object %lu has a shape of its own; only an object of parts takes "
+                              "parts",
+                              (unsigned long)object);
+    struct scene_part taken;
+    sonject_part_params place;
+    memset(&taken, 0, sizeof taken);
+    sonject_part_params_init(&place);
+    sonject_object_params_init(&taken.shape);
+    sonject_status status = params_take(scene->report, &taken.shape, sizeof taken.shape, shape,
+                                        sizeof taken.shape, "shape");
+    if (status == SONJECT_OK)
+        status = params_take(scene->report, &place, sizeof place, part, sizeof place, "part");
+    if (status == SONJECT_OK && taken.shape.shape == SONJECT_SHAPE_PARTS)
+        status = report_failure(scene->report, SONJECT_ERROR_INPUT,
+                                "shape of a part must be a single one");
+    if (status == SONJECT_OK)
+        status = check_object(&taken.shape, scene->report, NULL);
+    if (status == SONJECT_OK)
+        status = check_part(&place, scene->report, NULL);
+    if (status != SONJECT_OK)
+        return status;
+    taken.object = object;
+    taken.centre[0] = place.along_m;
+    taken.centre[1] = place.across_m;
+    taken.centre[2] = place.up_m;
+    turn_axes(taken.axes, place.heading_rad, place.pitch_rad, place.roll_rad);
+    return scene_append_part(&scene->scene, scene->report, &taken);
 }
 
 sonject_status sonject_scene_object_count(const sonject_scene *scene, uint32_t *count)

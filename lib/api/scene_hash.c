@@ -139,6 +139,13 @@ sonject_status scene_hash(struct report *report, const struct scene *scene,
     add_injection(hash, &scene->injection);
     for (uint32_t i = 0; i < scene->object_count; i++)
         add_object(hash, &scene->objects[i]);
+    for (uint32_t i = 0; i < scene->part_count; i++) {
+        const struct scene_part *part = &scene->parts[i];
+        ADD(hash, part->object);
+        ADD(hash, part->axes);
+        ADD(hash, part->centre);
+        add_object(hash, &part->shape);
+    }
     hash_add_text(hash, scene->input_path);
     hash_add_text(hash, input_identity);
     hash_end(hash, text);

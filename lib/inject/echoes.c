@@ -253,9 +253,14 @@ static sonject_status form_rough_object(struct echoes *echoes, struct tracer *tr
     return SONJECT_OK;
 }
 
-/* Adds a formed window to the target's field and, where `echo` is given, its energy to the echo. */
+/* The glints of an object's parts, which interfere, over the columns of its echo. */
+struct object_glint {
+    float *real_part, *imaginary_part;
+};
+
+/* Adds a formed window to the target's field and, where it is given, to an object's glint. */
 static sonject_status finish_field(struct echoes *echoes, struct form_lines *lines,
-                                   struct object_echo *echo)
+                                   const struct object_echo *echo, struct object_glint *glint)
 {
     const size_t pixels = echoes->rows * lines->columns;
     float *real_part = allocate_array(pixels, sizeof(float));
@@ -268,16 +273,30 @@ static sonject_status finish_field(struct echoes *echoes, struct form_lines *lin
                    lines->first_column, lines->columns);
         add_window(echoes->target_imaginary, echoes->columns, imaginary_part, echoes->rows,
                    lines->first_column, lines->columns);
-        for (size_t i = 0; echo && i < pixels; i++) {
+        for (size_t i = 0; glint && i < pixels; i++) {
             const size_t column = lines->first_column + i % lines->columns;
-            if (column >= echo->first_column && column < echo->first_column + echo->columns)
-                echo->energy[i / lines->columns * echo->columns + column - echo->first_column] +=
-                    real_part[i] * real_part[i] + imaginary_part[i] * imaginary_part[i];
+            if (column < echo->first_column || column >= echo->first_column + echo->columns)
+                continue;
+            const size_t at = i / lines->columns * echo->columns + column - echo->first_column;
+            glint->real_part[at] += real_part[i];
+            glint->imaginary_part[at] += imaginary_part[i];
         }
     }
     free(real_part);
     free(imaginary_part);
     return status;
+}
+
+static bool has_rough_part(const struct tracer *tracer, uint32_t number)
+{
+    const struct placed_object *object = &tracer->objects[number];
+    for (uint32_t i = 0; i < object->part_count; i++) {
+        const sonject_material_params *material =
+            tracer->placements[object->first_part + i].material;
+        if (material->lambert != 0.0 || material->glossy_albedo != 0.0)
+            return true;
+    }
+    return false;
 }
 
 /* The rough part's realisation. */
@@ -287,8 +306,7 @@ static sonject_status draw_rough_object(struct echoes *echoes, struct tracer *tr
 {
     const struct rough_tile *tile = &trace->tiles[number];
     struct form_lines lines;
-    const sonject_material_params *material = &tracer->scene->objects[number].material;
-    if (tile->grid.bins.count == 0 || (material->lambert == 0.0 && material->glossy_albedo == 0.0))
+    if (tile->grid.bins.count == 0 || !has_rough_part(tracer, number))
         return SONJECT_OK;
     sonject_status status = form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view,
                                              &tracer->response, FORM_SPECKLE, &tile->grid);
@@ -298,7 +316,7 @@ static sonject_status draw_rough_object(struct echoes *echoes, struct tracer *tr
                                     tiles + tile->offset, tracer->scene->injection.seed,
                                     STREAM_OBJECT_SPECKLE + number);
     if (status == SONJECT_OK)
-        status = finish_field(echoes, &lines, NULL);
+        status = finish_field(echoes, &lines, NULL, NULL);
     form_lines_end(&lines);
     return status;
 }
@@ -330,11 +348,13 @@ static sonject_status trace_glints(struct echoes *echoes, struct tracer *tracer,
     return status;
 }
 
-static sonject_status compute_glints(struct echoes *echoes, struct tracer *tracer, uint32_t number)
+static sonject_status compute_part_glints(struct echoes *echoes, struct tracer *tracer,
+                                          uint32_t part, struct object_glint *glint)
 {
+    const struct object_echo *echo = &echoes->objects[tracer->placements[part].object];
     struct glints glints;
     struct form_lines lines;
-    sonject_status status = glints_begin(&glints, tracer, number);
+    sonject_status status = glints_begin(&glints, tracer, part);
     if (status != SONJECT_OK)
         return status;
     if (glints.grid.strips.count > 0) {
@@ -343,11 +363,31 @@ static sonject_status compute_glints(struct echoes *echoes, struct tracer *trace
         if (status == SONJECT_OK) {
             status = trace_glints(echoes, tracer, &glints, &lines);
             if (status == SONJECT_OK)
-                status = finish_field(echoes, &lines, &echoes->objects[number]);
+                status = finish_field(echoes, &lines, echo, glint);
             form_lines_end(&lines);
         }
     }
     glints_end(&glints);
+    return status;
+}
+
+static sonject_status compute_glints(struct echoes *echoes, struct tracer *tracer, uint32_t number)
+{
+    const struct placed_object *object = &tracer->objects[number];
+    struct object_echo *echo = &echoes->objects[number];
+    const size_t pixels = echo->energy ? echoes->rows * echo->columns : 0;
+    struct object_glint glint = {allocate_array(pixels, sizeof(float)),
+                                 allocate_array(pixels, sizeof(float))};
+    sonject_status status = glint.real_part && glint.imaginary_part
+                                ? SONJECT_OK
+                                : report_out_of_memory(tracer->report, "an object's glints");
+    for (uint32_t i = 0; status == SONJECT_OK && i < object->part_count; i++)
+        status = compute_part_glints(echoes, tracer, object->first_part + i, &glint);
+    for (size_t i = 0; status == SONJECT_OK && i < pixels; i++)
+        echo->energy[i] += glint.real_part[i] * glint.real_part[i] +
+                           glint.imaginary_part[i] * glint.imaginary_part[i];
+    free(glint.real_part);
+    free(glint.imaginary_part);
     return status;
 }
 

@@ -15,15 +15,14 @@
 sonject_status injection_check(struct report *report, const struct scene *scene, double first_row,
                                double first_column, size_t rows, size_t columns,
                                struct water *water, struct patch_view *view,
-                               struct placement *placements)
+                               struct placements *placements)
 {
     sonject_status status = scene_lay_water(scene, report, water);
     if (status == SONJECT_OK)
         status =
             patch_view_init(view, report, scene, water, first_row, first_column, rows, columns);
-    for (uint32_t i = 0; status == SONJECT_OK && i < scene->object_count; i++)
-        status = placement_init(&placements[i], report, view, first_row, first_column,
-                                &scene->objects[i]);
+    if (status == SONJECT_OK)
+        status = placements_init(placements, report, scene, view, first_row, first_column);
     return status;
 }
 
@@ -258,20 +257,20 @@ sonject_status injection_run(struct report *report, struct device *device,
                              struct injection_result *result)
 {
     memset(result, 0, sizeof *result);
-    struct placement *placements = allocate_array(scene->object_count, sizeof *placements);
-    if (!placements)
-        return report_out_of_memory(report, "objects");
+    struct placements placements = {NULL, 0, NULL, 0};
     struct water water = {NULL, 0, 0.0};
     struct tracer tracer;
     memset(&tracer, 0, sizeof tracer);
     tracer.report = report;
     tracer.device = device;
     tracer.scene = scene;
-    tracer.placements = placements;
     sonject_status status = check_combination(report, scene, input->is_complex);
     if (status == SONJECT_OK)
         status = injection_check(report, scene, input->first_row, input->first_column, input->rows,
-                                 input->columns, &water, &tracer.view, placements);
+                                 input->columns, &water, &tracer.view, &placements);
+    tracer.placements = placements.parts;
+    tracer.part_count = placements.part_count;
+    tracer.objects = placements.objects;
     if (status == SONJECT_OK && scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
         !tracer.view.water.is_straight)
         status = report_failure(report, SONJECT_ERROR_INPUT,
@@ -304,7 +303,7 @@ sonject_status injection_run(struct report *report, struct device *device,
         free(scratch);
         free(pixels);
     }
-    free(placements);
+    placements_clear(&placements);
     water_clear(&water);
     if (status != SONJECT_OK)
         injection_result_clear(result);

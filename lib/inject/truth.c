@@ -130,27 +130,28 @@ static void find_object(const struct patch_level *level, const struct echoes *ec
     truth->shadow_contrast_db = decibels_over(&shadow);
 }
 
-static double transmission_loss(const struct tracer *tracer, const struct placement *placement,
-                                double grazing)
+static double transmission_loss(const struct tracer *tracer, const double origin[3], double grazing)
 {
-    const struct water_ray ray = water_way_ray(&tracer->view.water, grazing, placement->centre[2]);
+    const struct water_ray ray = water_way_ray(&tracer->view.water, grazing, origin[2]);
     return 10.0 * log10(ray.ground_range_m * ray.wavefront_m / ray.spreading) +
            tracer->scene->medium.absorption_db_per_m * ray.length_m;
 }
 
 static void locate(const struct tracer *tracer, uint32_t number, sonject_object_truth *truth)
 {
-    const struct placement *placement = &tracer->placements[number];
+    const struct placed_object *object = &tracer->objects[number];
+    const double *origin = object->origin;
     const struct patch_view *view = &tracer->view;
     truth->struct_size = sizeof *truth;
-    truth->along_track_m = placement->centre[0];
-    truth->ground_range_m = placement->centre[1];
-    truth->height_m = placement->centre[2];
-    truth->slant_range_m = placement_range(placement, view) * view->range_ratio;
-    truth->row = view_row_of_x(view, placement->centre[0]);
+    truth->along_track_m = origin[0];
+    truth->ground_range_m = origin[1];
+    truth->height_m = origin[2];
+    truth->burial_m = -object->bottom_m;
+    truth->slant_range_m = water_way_range(&view->water, origin[1], origin[2]) * view->range_ratio;
+    truth->row = view_row_of_x(view, origin[0]);
     truth->column = view_column_of_range(view, truth->slant_range_m);
-    truth->grazing_rad = placement_grazing(placement, view);
-    truth->transmission_loss_db = transmission_loss(tracer, placement, truth->grazing_rad);
+    truth->grazing_rad = water_way_grazing(&view->water, origin[1], origin[2]);
+    truth->transmission_loss_db = transmission_loss(tracer, origin, truth->grazing_rad);
 }
 
 void find_truth(const struct tracer *tracer, const struct patch_level *level,

@@ -244,6 +244,18 @@ static void check_position(struct check *check, const sonject_object_params *obj
     check_finite(check, "position", object->position_range);
 }
 
+sonject_status check_part(const sonject_part_params *part, struct report *report, const char **key)
+{
+    struct check check = {report, key, SONJECT_OK};
+    check_coordinate(&check, "at.along", part->along_m);
+    check_coordinate(&check, "at.across", part->across_m);
+    check_coordinate(&check, "at.up", part->up_m);
+    check_finite(&check, "heading", part->heading_rad);
+    check_finite(&check, "pitch", part->pitch_rad);
+    check_finite(&check, "roll", part->roll_rad);
+    return check.status;
+}
+
 sonject_status check_object(const sonject_object_params *object, struct report *report,
                             const char **key)
 {

@@ -104,7 +104,14 @@ static void check_needed(struct check *check, const sonject_object_params *objec
 
 void check_shape(struct check *check, const sonject_object_params *object)
 {
-    check_choice(check, "shape", object->shape, SONJECT_SHAPE_TORUS + 1);
+    check_choice(check, "shape", object->shape, SONJECT_SHAPE_PARTS + 1);
+    if (check->status != SONJECT_OK)
+        return;
+    if (object->shape == SONJECT_SHAPE_PARTS) {
+        if (object->cut_count > 0)
+            check_failure(check, "cuts", "belong to the parts; an object of parts has none");
+        return;
+    }
     check_needed(check, object);
     if (object->shape == SONJECT_SHAPE_CYLINDER)
         check_cylinder(check, object);

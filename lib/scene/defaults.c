@@ -117,6 +117,12 @@ void sonject_material_params_init(sonject_material_params *material)
     material->speed_ratio = 1.0;
 }
 
+void sonject_part_params_init(sonject_part_params *part)
+{
+    memset(part, 0, sizeof *part);
+    part->struct_size = sizeof *part;
+}
+
 void sonject_object_params_init(sonject_object_params *object)
 {
     memset(object, 0, sizeof *object);

@@ -10,8 +10,13 @@ sonject_status scene_lay_water(const struct scene *scene, struct report *report,
                                struct water *water)
 {
     double highest = 0.0;
-    for (uint32_t i = 0; i < scene->object_count; i++)
-        highest = fmax(highest, object_top(&scene->objects[i]));
+    for (uint32_t i = 0; i < scene->object_count; i++) {
+        double top;
+        const sonject_status status = object_top(scene, report, i, &top);
+        if (status != SONJECT_OK)
+            return status;
+        highest = fmax(highest, top);
+    }
     return water_init(water, report, scene->water_layers, scene->water_layer_count,
                       scene->medium.sound_speed_mps, highest);
 }

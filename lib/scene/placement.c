@@ -1,7 +1,11 @@
 #include "scene/placement.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
+#include "scene/pose.h"
 
 #define PI         3.14159265358979323846
 #define THINNEST_M 1.0e-4 /* a plate without thickness lies on the seabed, not in it */
@@ -10,80 +14,23 @@ static const double outward[3] = {0.0, 1.0, 0.0};
 static const double upward[3] = {0.0, 0.0, 1.0};
 static const double downward[3] = {0.0, 0.0, -1.0};
 
-/* Heading turns +x towards +y, pitch raises the nose, roll turns about it. In a mirrored view the
- * image's along-track axis is -x, so heading and roll change sense. */
-static void turn_axes(double axes[3][3], const sonject_object_params *object, bool is_mirrored)
-{
-    const double heading = is_mirrored ? PI - object->heading_rad : object->heading_rad;
-    const double roll = is_mirrored ? -object->roll_rad : object->roll_rad;
-    const double cp = cos(object->pitch_rad);
-    const double sp = sin(object->pitch_rad);
-    const double nose[3] = {cos(heading) * cp, sin(heading) * cp, sp};
-    const double side[3] = {-sin(heading), cos(heading), 0.0};
-    const double up[3] = {-cos(heading) * sp, -sin(heading) * sp, cp};
-    for (int i = 0; i < 3; i++) {
-        axes[0][i] = nose[i];
-        axes[1][i] = side[i] * cos(roll) + up[i] * sin(roll);
-        axes[2][i] = up[i] * cos(roll) - side[i] * sin(roll);
-    }
-}
-
 static double dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-double placement_extent(const struct placement *placement, uint32_t shape,
-                        const double direction[3])
+double placement_extent(const struct placement *placement, const double direction[3])
 {
     double own[3];
     for (int axis = 0; axis < 3; axis++)
         own[axis] = dot(placement->axes[axis], direction);
-    return shape_extent(&placement->size, shape, own);
+    return shape_extent(&placement->size, placement->shape, own);
 }
 
-double placement_half_extent(const struct placement *placement, uint32_t shape,
-                             const double direction[3])
+double placement_half_extent(const struct placement *placement, const double direction[3])
 {
     const double back[3] = {-direction[0], -direction[1], -direction[2]};
-    const double forward = placement_extent(placement, shape, direction);
-    return fmax(forward, placement_extent(placement, shape, back));
-}
-
-/* From one side to the other along an axis of the view. */
-static double overall_size(const struct placement *placement, uint32_t shape, int axis)
-{
-    double forward[3] = {0.0, 0.0, 0.0};
-    double back[3] = {0.0, 0.0, 0.0};
-    forward[axis] = 1.0;
-    back[axis] = -1.0;
-    return placement_extent(placement, shape, forward) + placement_extent(placement, shape, back);
-}
-
-static void pose(struct placement *placement, const sonject_object_params *object, bool is_mirrored)
-{
-    shape_size_init(&placement->size, object, is_mirrored);
-    placement->bounding_radius_m = placement->size.bounding_radius_m;
-    turn_axes(placement->axes, object, is_mirrored);
-}
-
-static double burial_in_pose(const struct placement *placement, const sonject_object_params *object)
-{
-    switch (object->burial_kind) {
-    case SONJECT_BURIAL_FRACTION:
-        return object->burial_fraction * overall_size(placement, object->shape, 2);
-    case SONJECT_BURIAL_PROUD:
-        return overall_size(placement, object->shape, 2) - object->proud_height_m;
-    default:
-        return object->burial_m;
-    }
-}
-
-double burial_of_object(const sonject_object_params *object)
-{
-    struct placement placement;
-    pose(&placement, object, false);
-    return burial_in_pose(&placement, object);
+    return fmax(placement_extent(placement, direction), placement_extent(placement, back));
 }
 
 double placement_range(const struct placement *placement, const struct patch_view *view)
@@ -96,24 +43,121 @@ double placement_grazing(const struct placement *placement, const struct patch_v
     return water_way_grazing(&view->water, placement->centre[1], placement->centre[2]);
 }
 
-double placement_shadow_end(const struct placement *placement, uint32_t shape,
-                            const struct patch_view *view)
+double placement_shadow_end(const struct placement *placement, const struct patch_view *view)
 {
-    const double top = placement->centre[2] + placement_extent(placement, shape, upward);
-    const double end = placement->centre[1] + placement_extent(placement, shape, outward);
+    const double top = placement->centre[2] + placement_extent(placement, upward);
+    const double end = placement->centre[1] + placement_extent(placement, outward);
     return top > 0.0 ? end + top / tan(water_way_grazing(&view->water, end, top)) : end;
 }
 
-double object_top(const sonject_object_params *object)
+/* How far some parts reach along a direction, from the origin that their centres are counted from;
+ * 0 if there is none. */
+static double parts_extent(const struct placement *parts, uint32_t count, const double direction[3])
 {
-    struct placement placement;
-    pose(&placement, object, false); /* to which side the sonar looks does not matter */
-    return placement_extent(&placement, object->shape, upward) +
-           placement_extent(&placement, object->shape, downward) -
-           burial_in_pose(&placement, object);
+    double extent = count > 0 ? -INFINITY : 0.0;
+    for (uint32_t i = 0; i < count; i++)
+        extent =
+            fmax(extent, dot(parts[i].centre, direction) + placement_extent(&parts[i], direction));
+    return extent;
 }
 
-/* Row and column of the view under the object's centre. */
+/* From one side to the other along an axis of the view. */
+static double overall_size(const struct placement *parts, uint32_t count, int axis)
+{
+    double forward[3] = {0.0, 0.0, 0.0};
+    double back[3] = {0.0, 0.0, 0.0};
+    forward[axis] = 1.0;
+    back[axis] = -1.0;
+    return parts_extent(parts, count, forward) + parts_extent(parts, count, back);
+}
+
+static void take_shape(struct placement *part, uint32_t object, const sonject_object_params *shape,
+                       bool is_mirrored)
+{
+    memset(part, 0, sizeof *part);
+    part->shape = shape->shape;
+    part->object = object;
+    part->material = &shape->material;
+    shape_size_init(&part->size, shape, is_mirrored);
+    part->bounding_radius_m = part->size.bounding_radius_m;
+}
+
+/* Turns a part that lies in its object's own frame, and its centre, as the object's axes say. In a
+ * mirrored view that frame is mirrored too: its y axis points to the other side. */
+static void turn_part(struct placement *part, const struct scene_part *in_object, double axes[3][3],
+                      bool is_mirrored)
+{
+    const double sign[3] = {1.0, is_mirrored ? -1.0 : 1.0, 1.0};
+    for (int i = 0; i < 3; i++) {
+        part->centre[i] = 0.0;
+        for (int k = 0; k < 3; k++) {
+            part->centre[i] += sign[k] * in_object->centre[k] * axes[k][i];
+            part->axes[i][k] = 0.0;
+            for (int m = 0; m < 3; m++)
+                part->axes[i][k] += sign[i] * sign[m] * in_object->axes[i][m] * axes[m][k];
+        }
+    }
+}
+
+/* The parts of an object, their centres counted from its origin in axes of the view. Returns their
+ * number. parts: room for them, or NULL to count. */
+static uint32_t pose_parts(struct placement *parts, const struct scene *scene, uint32_t object,
+                           bool is_mirrored)
+{
+    const sonject_object_params *whole = &scene->objects[object];
+    double axes[3][3];
+    uint32_t count = 0;
+    /* the image's along-track axis is -x in a mirrored view: heading and roll change sense */
+    turn_axes(axes, is_mirrored ? PI - whole->heading_rad : whole->heading_rad, whole->pitch_rad,
+              is_mirrored ? -whole->roll_rad : whole->roll_rad);
+    if (whole->shape != SONJECT_SHAPE_PARTS) {
+        if (parts) {
+            take_shape(parts, object, whole, is_mirrored);
+            memcpy(parts->axes, axes, sizeof axes);
+        }
+        return 1;
+    }
+    for (uint32_t i = 0; i < scene->part_count; i++) {
+        if (scene->parts[i].object != object)
+            continue;
+        if (parts) {
+            take_shape(&parts[count], object, &scene->parts[i].shape, is_mirrored);
+            turn_part(&parts[count], &scene->parts[i], axes, is_mirrored);
+        }
+        count++;
+    }
+    return count;
+}
+
+/* Depth of the lowest point below the seabed. */
+static double burial_in_pose(const struct placement *parts, uint32_t count,
+                             const sonject_object_params *object)
+{
+    switch (object->burial_kind) {
+    case SONJECT_BURIAL_FRACTION:
+        return object->burial_fraction * overall_size(parts, count, 2);
+    case SONJECT_BURIAL_PROUD:
+        return overall_size(parts, count, 2) - object->proud_height_m;
+    default:
+        return object->burial_m;
+    }
+}
+
+sonject_status object_top(const struct scene *scene, struct report *report, uint32_t object,
+                          double *top_m)
+{
+    /* to which side the sonar looks does not matter */
+    const uint32_t count = pose_parts(NULL, scene, object, false);
+    struct placement *parts = allocate_array(count, sizeof *parts);
+    if (!parts)
+        return report_out_of_memory(report, "an object's parts");
+    pose_parts(parts, scene, object, false);
+    *top_m = overall_size(parts, count, 2) - burial_in_pose(parts, count, &scene->objects[object]);
+    free(parts);
+    return SONJECT_OK;
+}
+
+/* Row and column of the view under the object's origin. */
 static void find_pixel(const struct patch_view *view, double first_row, double first_column,
                        const sonject_object_params *object, double *row, double *column)
 {
@@ -130,11 +174,12 @@ static void find_pixel(const struct patch_view *view, double first_row, double f
     }
 }
 
-sonject_status placement_init(struct placement *placement, struct report *report,
-                              const struct patch_view *view, double first_row, double first_column,
-                              const sonject_object_params *object)
+/* Where an object's origin comes to lie, its parts being posed. */
+static sonject_status find_origin(double origin[3], struct report *report,
+                                  const struct patch_view *view, double first_row,
+                                  double first_column, const sonject_object_params *object,
+                                  const struct placement *parts, uint32_t count)
 {
-    memset(placement, 0, sizeof *placement);
     double row, column;
     find_pixel(view, first_row, first_column, object, &row, &column);
     if (!(row >= -0.5 && row < (double)view->rows - 0.5 && column >= -0.5 &&
@@ -145,32 +190,89 @@ sonject_status placement_init(struct placement *placement, struct report *report
             "and at %.1f m slant range; move it or the patch",
             object->name, view_x_of_row(view, row) * (view->is_mirrored ? -1 : 1),
             view_apparent_range(view, column));
-    const uint32_t shape = object->shape;
-    pose(placement, object, view->is_mirrored);
-    const double burial = burial_in_pose(placement, object);
+    const double height = overall_size(parts, count, 2);
+    const double burial = burial_in_pose(parts, count, object);
     if (object->burial_kind == SONJECT_BURIAL_PROUD && burial < 0.0)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "object '%s' cannot stand %.3f m proud of the seabed: in its pose it "
                               "is %.3f m high; lower burial.proud",
-                              object->name, object->proud_height_m,
-                              overall_size(placement, shape, 2));
-    placement->centre[0] = view_x_of_row(view, row);
-    placement->centre[1] = view_ground_range(view, view_apparent_range(view, column));
-    placement->centre[2] = placement_extent(placement, shape, downward) - burial;
-    if (placement->centre[2] == 0.0 && overall_size(placement, shape, 2) < THINNEST_M)
-        placement->centre[2] = THINNEST_M;
+                              object->name, object->proud_height_m, height);
+    origin[0] = view_x_of_row(view, row);
+    origin[1] = view_ground_range(view, view_apparent_range(view, column));
+    origin[2] = parts_extent(parts, count, downward) - burial;
+    if (height < THINNEST_M && burial == 0.0)
+        origin[2] += THINNEST_M;
+    return SONJECT_OK;
+}
+
+static sonject_status check_room(struct report *report, const struct patch_view *view,
+                                 const sonject_object_params *object, const struct placement *parts,
+                                 uint32_t count)
+{
     const double patch_length = (double)view->rows * view->row_spacing_m;
     const double patch_width = (double)view->columns * view->column_spacing_m;
-    if (overall_size(placement, shape, 0) > patch_length ||
-        overall_size(placement, shape, 1) > patch_width)
+    if (overall_size(parts, count, 0) > patch_length || overall_size(parts, count, 1) > patch_width)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "object '%s' is larger than the patch of %.2f m x %.2f m: use a "
                               "larger patch",
                               object->name, patch_length, patch_width);
-    if (placement->centre[2] + placement_extent(placement, shape, upward) >= view->altitude_m ||
-        placement_range(placement, view) <= 2.0 * placement->bounding_radius_m)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "object '%s' reaches up to the sonar: lower it or raise the altitude",
-                              object->name);
+    for (uint32_t i = 0; i < count; i++)
+        if (parts[i].centre[2] + placement_extent(&parts[i], upward) >= view->altitude_m ||
+            placement_range(&parts[i], view) <= 2.0 * parts[i].bounding_radius_m)
+            return report_failure(
+                report, SONJECT_ERROR_INPUT,
+                "object '%s' reaches up to the sonar: lower it or raise the altitude",
+                object->name);
     return SONJECT_OK;
+}
+
+static sonject_status place(struct placements *placements, struct report *report,
+                            const struct scene *scene, const struct patch_view *view,
+                            double first_row, double first_column, uint32_t number)
+{
+    const sonject_object_params *object = &scene->objects[number];
+    struct placed_object *placed = &placements->objects[number];
+    struct placement *parts = &placements->parts[placements->part_count];
+    placed->first_part = placements->part_count;
+    placed->part_count = pose_parts(parts, scene, number, view->is_mirrored);
+    placements->part_count += placed->part_count;
+    if (placed->part_count == 0)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "object '%s' has no parts: give it some or a shape", object->name);
+    const sonject_status status = find_origin(placed->origin, report, view, first_row, first_column,
+                                              object, parts, placed->part_count);
+    if (status != SONJECT_OK)
+        return status;
+    for (uint32_t i = 0; i < placed->part_count; i++)
+        for (int k = 0; k < 3; k++)
+            parts[i].centre[k] += placed->origin[k];
+    placed->bottom_m = -parts_extent(parts, placed->part_count, downward);
+    placed->top_m = parts_extent(parts, placed->part_count, upward);
+    return check_room(report, view, object, parts, placed->part_count);
+}
+
+sonject_status placements_init(struct placements *placements, struct report *report,
+                               const struct scene *scene, const struct patch_view *view,
+                               double first_row, double first_column)
+{
+    memset(placements, 0, sizeof *placements);
+    placements->object_count = scene->object_count;
+    placements->parts =
+        allocate_array((size_t)scene->object_count + scene->part_count, sizeof *placements->parts);
+    placements->objects = allocate_array(scene->object_count, sizeof *placements->objects);
+    sonject_status status = placements->parts && placements->objects
+                                ? SONJECT_OK
+                                : report_out_of_memory(report, "objects");
+    for (uint32_t i = 0; status == SONJECT_OK && i < scene->object_count; i++)
+        status = place(placements, report, scene, view, first_row, first_column, i);
+    if (status != SONJECT_OK)
+        placements_clear(placements);
+    return status;
+}
+
+void placements_clear(struct placements *placements)
+{
+    free(placements->parts);
+    free(placements->objects);
+    memset(placements, 0, sizeof *placements);
 }

@@ -1,4 +1,5 @@
-/* Objects placed on the seabed under a patch: centre, axes and extents. */
+/* Objects placed on the seabed under a patch: centre, axes and extents of each of their parts. An
+ * object of one shape is its own only part. */
 #ifndef SONJECT_SCENE_PLACEMENT_H
 #define SONJECT_SCENE_PLACEMENT_H
 
@@ -6,29 +7,45 @@
 #include "scene/scene.h"
 #include "scene/shape_size.h"
 
+/* One part. */
 struct placement {
+    uint32_t shape;                          /* sonject_shape */
+    uint32_t object;                         /* number of the object that it belongs to */
+    const sonject_material_params *material; /* the scene's */
     double centre[3];  /* m: x of the view, horizontal range from the track, height */
     double axes[3][3]; /* rows: nose, own y, own z, in view coordinates */
     struct shape_size size;
     double bounding_radius_m; /* size's */
 };
 
-/* Errors: INPUT (centre outside the patch, larger than the patch, prouder than it is high).
- * first_row, first_column: of the patch in the swath, for positions in swath pixels. */
-sonject_status placement_init(struct placement *placement, struct report *report,
-                              const struct patch_view *view, double first_row, double first_column,
-                              const sonject_object_params *object);
+/* Its parts lie one after the other. */
+struct placed_object {
+    uint32_t first_part, part_count;
+    double origin[3];       /* of its own frame; the centre of an object of one shape */
+    double bottom_m, top_m; /* heights of its lowest and highest point over the mean seabed */
+};
 
-/* How far the object reaches from its centre along a unit direction of the view. */
-double placement_extent(const struct placement *placement, uint32_t shape,
-                        const double direction[3]);
+struct placements {
+    struct placement *parts; /* owned */
+    uint32_t part_count;
+    struct placed_object *objects; /* owned; the scene's, in their order */
+    uint32_t object_count;
+};
 
-/* The same both ways: the object lies within so much of its centre along a line. */
-double placement_half_extent(const struct placement *placement, uint32_t shape,
-                             const double direction[3]);
+/* Places all objects. first_row, first_column: of the patch in the swath, for positions in swath
+ * pixels. The materials are borrowed from the scene. On success to be given to placements_clear; on
+ * failure nothing is held. Errors: INPUT (an object without parts, outside the patch, larger than
+ * it, prouder than it is high, up to the sonar), MEMORY. */
+sonject_status placements_init(struct placements *placements, struct report *report,
+                               const struct scene *scene, const struct patch_view *view,
+                               double first_row, double first_column);
+void placements_clear(struct placements *placements);
 
-/* Depth of the object's lowest point below the seabed, however its burial is given. */
-double burial_of_object(const sonject_object_params *object);
+/* How far a part reaches from its centre along a unit direction of the view. */
+double placement_extent(const struct placement *placement, const double direction[3]);
+
+/* The same both ways: the part lies within so much of its centre along a line. */
+double placement_half_extent(const struct placement *placement, const double direction[3]);
 
 /* Slant range in m (straight: travel time times the sound speed there) from the track abreast of
  * the centre to the centre. */
@@ -37,12 +54,13 @@ double placement_range(const struct placement *placement, const struct patch_vie
 /* Grazing angle, rad, of the sound that comes to the centre. */
 double placement_grazing(const struct placement *placement, const struct patch_view *view);
 
-/* Ground range at which the shadow of the object's top ends; that of its far end where nothing of
+/* Ground range at which the shadow of the part's top ends; that of its far end where nothing of
  * it stands over the seabed. */
-double placement_shadow_end(const struct placement *placement, uint32_t shape,
-                            const struct patch_view *view);
+double placement_shadow_end(const struct placement *placement, const struct patch_view *view);
 
-/* Height of the object's highest point over the mean seabed, wherever it lies. */
-double object_top(const sonject_object_params *object);
+/* The highest point of an object of the scene, wherever it lies; 0 if it has no part. Errors:
+ * MEMORY. */
+sonject_status object_top(const struct scene *scene, struct report *report, uint32_t object,
+                          double *top_m);
 
 #endif

@@ -24,14 +24,18 @@ void scene_clear(struct scene *scene)
 {
     free(scene->input_path);
     free(scene->objects);
+    free(scene->parts);
     free(scene->water_layers);
     scene_init(scene);
 }
 
-/* Room for a power of two of objects, grown when that is full. */
-static bool is_full(const struct scene *scene)
+/* Room for one more of `count` elements: capacities are powers of two, grown when that is full.
+ * Returns the elements, or NULL where there is no memory (the old ones then stay). */
+static void *make_room(void *elements, uint32_t count, size_t size)
 {
-    return (scene->object_count & (scene->object_count - 1)) == 0;
+    if ((count & (count - 1)) != 0)
+        return elements;
+    return realloc(elements, (count == 0 ? 1 : 2 * (size_t)count) * size);
 }
 
 sonject_status scene_append_object(struct scene *scene, struct report *report,
@@ -42,14 +46,26 @@ sonject_status scene_append_object(struct scene *scene, struct report *report,
                               "objects must be at most %d, for label images have 8 bits; split "
                               "the scene",
                               SCENE_OBJECTS_MAX);
-    if (is_full(scene)) {
-        const size_t capacity = scene->object_count == 0 ? 1 : 2 * (size_t)scene->object_count;
-        sonject_object_params *objects = realloc(scene->objects, capacity * sizeof *scene->objects);
-        if (!objects)
-            return report_out_of_memory(report, "objects");
-        scene->objects = objects;
-    }
+    sonject_object_params *objects =
+        make_room(scene->objects, scene->object_count, sizeof *objects);
+    if (!objects)
+        return report_out_of_memory(report, "objects");
+    scene->objects = objects;
     scene->objects[scene->object_count++] = *object;
+    return SONJECT_OK;
+}
+
+sonject_status scene_append_part(struct scene *scene, struct report *report,
+                                 const struct scene_part *part)
+{
+    if (scene->part_count >= SCENE_PARTS_MAX)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "parts must be at most %d in a scene; split it", SCENE_PARTS_MAX);
+    struct scene_part *parts = make_room(scene->parts, scene->part_count, sizeof *parts);
+    if (!parts)
+        return report_out_of_memory(report, "parts");
+    scene->parts = parts;
+    scene->parts[scene->part_count++] = *part;
     return SONJECT_OK;
 }
 
@@ -78,6 +94,8 @@ const char *shape_name(uint32_t shape)
         return "truncated_cone";
     case SONJECT_SHAPE_TORUS:
         return "torus";
+    case SONJECT_SHAPE_PARTS:
+        return "parts";
     default:
         return NULL;
     }

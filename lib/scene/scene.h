@@ -12,7 +12,16 @@
 #include "medium/water_layer.h"
 
 #define SCENE_OBJECTS_MAX      250 /* ids must fit the 8-bit label image */
+#define SCENE_PARTS_MAX        1000
 #define SCENE_INTERACTIONS_MAX 8
+
+/* A part of an object of parts. */
+struct scene_part {
+    uint32_t object;
+    sonject_object_params shape; /* its sizes and material */
+    double axes[3][3];           /* rows: nose, own y, own z, in the object's own axes */
+    double centre[3];            /* m, in the object's own frame */
+};
 
 struct scene {
     sonject_sonar_params sonar;
@@ -32,6 +41,8 @@ struct scene {
     sonject_synthetic_params synthetic;
     sonject_object_params *objects; /* owned */
     uint32_t object_count;
+    struct scene_part *parts; /* owned; in no order */
+    uint32_t part_count;
 };
 
 /* All defaults; geometry.first_slant_range_m has none and is NaN, which check_geometry refuses. */
@@ -43,6 +54,10 @@ void scene_clear(struct scene *scene);
 /* Appends a copy. Errors: INPUT (too many), MEMORY. */
 sonject_status scene_append_object(struct scene *scene, struct report *report,
                                    const sonject_object_params *object);
+
+/* Appends a copy. Errors: INPUT (too many), MEMORY. */
+sonject_status scene_append_part(struct scene *scene, struct report *report,
+                                 const struct scene_part *part);
 
 /* Checks of one structure each, ranges and relations as the public headers state them. The message
  * starts with the name of the value as the scene file writes it ("bandwidth must be ..."); key, if
@@ -68,6 +83,7 @@ sonject_status check_uniform(uint32_t rows, uint32_t columns, struct report *rep
                              const char **key);
 sonject_status check_synthetic(const sonject_synthetic_params *synthetic, struct report *report,
                                const char **key);
+sonject_status check_part(const sonject_part_params *part, struct report *report, const char **key);
 sonject_status check_object(const sonject_object_params *object, struct report *report,
                             const char **key);
 

@@ -37,7 +37,7 @@ struct surroundings {
 static struct surroundings surroundings_of_objects(const struct tracer *tracer)
 {
     struct surroundings around = {INFINITY, -INFINITY, INFINITY, -INFINITY};
-    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
         const struct placement *placement = &tracer->placements[i];
         const double reach = (1.0 + REACH) * placement->bounding_radius_m;
         const double ground = placement->centre[1];
@@ -74,12 +74,11 @@ static sonject_status lay_object_fan(struct chain_fan *fan, struct tracer *trace
 {
     static const double along[3] = {1.0, 0.0, 0.0};
     const struct placement *placement = &tracer->placements[object];
-    const uint32_t shape = tracer->scene->objects[object].shape;
     const double grazing = placement_grazing(placement, &tracer->view);
     const struct elevations edges = elevations_of_object(tracer, object, &tracer->view.water);
-    const double half_length = placement_half_extent(placement, shape, along);
+    const double half_length = placement_half_extent(placement, along);
     const double middle = central - grazing;
-    const sonject_material_params *material = &tracer->scene->objects[object].material;
+    const sonject_material_params *material = tracer->placements[object].material;
     const bool is_mirror =
         material->reflection_kind == SONJECT_REFLECTION_FLUID || material->reflection != 0.0;
     const bool is_stood_for = tracer->scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED &&
@@ -97,7 +96,7 @@ uint32_t chain_fan_count(const struct tracer *tracer)
 {
     return tracer->scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE
                ? 1
-               : 1 + tracer->scene->object_count;
+               : 1 + tracer->part_count;
 }
 
 sonject_status chain_fan_init(struct chain_fan *fan, struct tracer *tracer,

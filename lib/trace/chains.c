@@ -64,7 +64,7 @@ static sonject_status make_buffers(struct chain_trace *trace, struct tracer *tra
 {
     struct report *report = tracer->report;
     struct device *device = tracer->device;
-    const uint32_t objects = tracer->scene->object_count;
+    const uint32_t objects = tracer->part_count;
     struct object_record *records = allocate_array(objects, sizeof *records);
     struct sphere_record *spheres = allocate_array(TARGET_SPHERES_MAX, sizeof *spheres);
     struct chain_record chains;
@@ -114,7 +114,7 @@ sonject_status chain_trace_begin(struct chain_trace *trace, struct tracer *trace
     const sonject_injection_params *injection = &tracer->scene->injection;
     const bool is_brute_force = injection->estimator == SONJECT_ESTIMATOR_BRUTE_FORCE;
     memset(trace, 0, sizeof *trace);
-    if (!is_brute_force && (injection->interactions < 2 || tracer->scene->object_count == 0))
+    if (!is_brute_force && (injection->interactions < 2 || tracer->part_count == 0))
         return SONJECT_OK;
     trace->first_order = is_brute_force ? 1 : 2;
     trace->orders = injection->interactions - trace->first_order + 1;

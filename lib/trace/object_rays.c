@@ -11,8 +11,7 @@ struct elevations elevations_of_object(const struct tracer *tracer, uint32_t obj
     const double *centre = placement->centre;
     const double grazing = water_way_grazing(way, centre[1], centre[2]);
     const double upward[3] = {0.0, sin(grazing), cos(grazing)};
-    const double across =
-        MARGIN * placement_half_extent(placement, tracer->scene->objects[object].shape, upward);
+    const double across = MARGIN * placement_half_extent(placement, upward);
     const double along = placement->bounding_radius_m;
     double corners[4][2];
     for (int i = 0; i < 4; i++) {

@@ -37,15 +37,13 @@ static struct region region_of_patch(const struct tracer *tracer, const struct l
     region.far = view_ground_range(
         view, range_of_bin(tracer, grid, grid->bins.first + grid->bins.count - 0.5));
     region.top = 0.0;
-    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
         const struct placement *placement = &tracer->placements[i];
         const double reach = SURROUNDINGS * placement->bounding_radius_m;
         region.near = fmin(region.near, placement->centre[1] - reach);
         region.far = fmax(region.far, placement->centre[1] + reach);
         region.top =
-            fmax(region.top,
-                 placement->centre[2] +
-                     placement_half_extent(placement, tracer->scene->objects[i].shape, upward));
+            fmax(region.top, placement->centre[2] + placement_half_extent(placement, upward));
     }
     return region;
 }
@@ -73,7 +71,7 @@ static double highest_elevation(const struct tracer *tracer, double central_graz
 {
     const struct patch_view *view = &tracer->view;
     double highest = lowest;
-    for (uint32_t i = 0; i < tracer->scene->object_count; i++)
+    for (uint32_t i = 0; i < tracer->part_count; i++)
         highest = fmax(highest, central_grazing - placement_grazing(&tracer->placements[i], view) +
                                     elevations_of_object(tracer, i, &view->water).highest);
     return highest;

@@ -17,14 +17,13 @@ static double bin_of_apparent_range(const struct rough_trace *trace, const struc
     return view_column_of_range(&tracer->view, range) * trace->grid.bins_per_pixel;
 }
 
-/* Bins where an object's echoes and shadow can lie: from its nearest point to where the ray over
- * its top meets the seabed, or to its last echo by way of mirrors. */
-static struct span tile_bins(const struct rough_trace *trace, const struct tracer *tracer,
+/* Bins where a part's echoes and shadow can lie: from its nearest point to where the ray over its
+ * top meets the seabed, or to its last echo by way of mirrors. */
+static struct span part_bins(const struct rough_trace *trace, const struct tracer *tracer,
                              uint32_t number)
 {
     const struct placement *placement = &tracer->placements[number];
-    const uint32_t shape = tracer->scene->objects[number].shape;
-    const double shadow_end = placement_shadow_end(placement, shape, &tracer->view);
+    const double shadow_end = placement_shadow_end(placement, &tracer->view);
     const double first_range =
         placement_range(placement, &tracer->view) - placement->bounding_radius_m;
     const double last_range =
@@ -46,14 +45,13 @@ static struct span tile_bins(const struct rough_trace *trace, const struct trace
     return bins;
 }
 
-static struct span tile_strips(const struct rough_trace *trace, const struct tracer *tracer,
+static struct span part_strips(const struct rough_trace *trace, const struct tracer *tracer,
                                uint32_t number)
 {
     static const double along[3] = {1.0, 0.0, 0.0};
     const struct placement *placement = &tracer->placements[number];
     const double extent =
-        placement_half_extent(placement, tracer->scene->objects[number].shape, along) +
-        tracer->scene->sonar.transducer_side_m;
+        placement_half_extent(placement, along) + tracer->scene->sonar.transducer_side_m;
     const double per_row = trace->grid.strips_per_row;
     const double limit = trace->grid.strips.first + trace->grid.strips.count;
     const double first =
@@ -82,12 +80,19 @@ static sonject_status lay_tiles(struct rough_trace *trace, struct tracer *tracer
 {
     size_t elements = 0;
     for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
+        const struct placed_object *object = &tracer->objects[i];
         struct rough_tile *tile = &trace->tiles[i];
         tile->grid = trace->grid;
-        tile->grid.strips = tile_strips(trace, tracer, i);
-        tile->grid.bins = tile_bins(trace, tracer, i);
+        tile->grid.strips.count = 0;
+        tile->grid.bins.count = 0;
         tile->offset = elements;
-        rough_tile_describe(trace, i, &records[i]);
+        for (uint32_t k = 0; k < object->part_count; k++) {
+            const uint32_t part = object->first_part + k;
+            tile->grid.strips = span_join(tile->grid.strips, part_strips(trace, tracer, part));
+            tile->grid.bins = span_join(tile->grid.bins, part_bins(trace, tracer, part));
+        }
+        for (uint32_t k = 0; k < object->part_count; k++)
+            rough_tile_describe(trace, i, &records[object->first_part + k]);
         elements += line_grid_cells(&tile->grid) * TILE_PLANES;
         if (elements > (size_t)1 << 31)
             return report_failure(tracer->report, SONJECT_ERROR_INPUT,
@@ -135,7 +140,7 @@ sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *trace
     line_grid_for_patch(&trace->grid, view, &tracer->response);
     double origin[3];
     patch_fan_origin(origin, view);
-    struct object_record *records = allocate_array(tracer->scene->object_count, sizeof *records);
+    struct object_record *records = allocate_array(tracer->part_count, sizeof *records);
     if (!records)
         return report_out_of_memory(tracer->report, "objects");
     object_records_init(records, tracer, origin);

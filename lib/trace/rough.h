@@ -27,7 +27,7 @@ sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *trace
                                  const float *map);
 void rough_trace_end(struct rough_trace *trace);
 
-/* Tells an object's record where its tile is. */
+/* Tells the record of a part of an object where the object's tile is. */
 void rough_tile_describe(const struct rough_trace *trace, uint32_t object,
                          struct object_record *record);
 

@@ -18,10 +18,10 @@ static bool is_rough(const sonject_material_params *material)
 
 /* As dense as the fan that goes straight to the objects. */
 static void lay_fan(struct fan_record *fan, const struct rough_trace *trace,
-                    const struct tracer *tracer, uint32_t object, const struct water_way *way)
+                    const struct tracer *tracer, uint32_t part, const struct water_way *way)
 {
-    const struct placement *placement = &tracer->placements[object];
-    const struct elevations edges = elevations_of_object(tracer, object, way);
+    const struct placement *placement = &tracer->placements[part];
+    const struct elevations edges = elevations_of_object(tracer, part, way);
     const double radius =
         water_way_ray(way, water_way_grazing(way, placement->centre[1], placement->centre[2]),
                       placement->centre[2])
@@ -33,22 +33,21 @@ static void lay_fan(struct fan_record *fan, const struct rough_trace *trace,
     fan->rays = (uint32_t)rays;
     fan->first_elevation = (float)edges.lowest;
     fan->elevation_step = (float)((edges.highest - edges.lowest) / rays);
-    fan->only_object = (int32_t)object;
+    fan->only_object = (int32_t)part;
 }
 
 static sonject_status trace_pair(struct rough_trace *trace, struct tracer *tracer,
-                                 const struct trace_device *on_device, uint32_t object,
+                                 const struct trace_device *on_device, uint32_t part,
                                  const struct source_pair *pair)
 {
-    const struct rough_tile *tile = &trace->tiles[object];
+    const struct rough_tile *tile = &trace->tiles[tracer->placements[part].object];
     struct source_pair_record record;
     struct fan_record fan;
     cl_mem sources = NULL;
     struct ray_table rays = {NULL, 0};
-    sonject_status status =
-        source_pair_aim(&fan, &record, &rays, tracer, object, pair, &trace->grid);
-    lay_fan(&fan, trace, tracer, object, &pair->outgoing->way);
-    fan.stream = STREAM_MIRRORED_ROUGH_RAYS + 256 * pair->number + object;
+    sonject_status status = source_pair_aim(&fan, &record, &rays, tracer, part, pair, &trace->grid);
+    lay_fan(&fan, trace, tracer, part, &pair->outgoing->way);
+    fan.stream = STREAM_MIRRORED_ROUGH_RAYS + STREAMS_OF_PAIR * pair->number + part;
     fan.quanta = trace->fan.quanta;
     fan.first_strip = tile->grid.strips.first;
     fan.strips = tile->grid.strips.count;
@@ -63,33 +62,32 @@ static sonject_status trace_pair(struct rough_trace *trace, struct tracer *trace
 }
 
 static sonject_status trace_pairs(struct rough_trace *trace, struct tracer *tracer,
-                                  const struct trace_device *on_device, uint32_t object)
+                                  const struct trace_device *on_device, uint32_t part)
 {
     struct source_pairs pairs;
     struct source_pair pair;
     sonject_status status = SONJECT_OK;
-    source_pairs_begin(&pairs, tracer, object);
+    source_pairs_begin(&pairs, tracer, part);
     while (status == SONJECT_OK && source_pairs_next(&pairs, &pair))
-        if (source_pair_bins_in_patch(tracer, object, &pair, &trace->grid).count > 0)
-            status = trace_pair(trace, tracer, on_device, object, &pair);
+        if (source_pair_bins_in_patch(tracer, part, &pair, &trace->grid).count > 0)
+            status = trace_pair(trace, tracer, on_device, part, &pair);
     return status;
 }
 
-static sonject_status trace_object(struct rough_trace *trace, struct tracer *tracer,
-                                   uint32_t object)
+static sonject_status trace_part(struct rough_trace *trace, struct tracer *tracer, uint32_t part)
 {
     struct trace_device on_device;
-    struct object_record *records = allocate_array(tracer->scene->object_count, sizeof *records);
+    struct object_record *records = allocate_array(tracer->part_count, sizeof *records);
     if (!records)
         return report_out_of_memory(tracer->report, "objects");
-    object_records_init(records, tracer, tracer->placements[object].centre);
-    rough_tile_describe(trace, object, &records[object]);
+    object_records_init(records, tracer, tracer->placements[part].centre);
+    rough_tile_describe(trace, tracer->placements[part].object, &records[part]);
     sonject_status status = trace_device_init(&on_device, tracer, PROGRAM_TRACE_ROUGH,
                                               "trace_rough_mirrored", records, 1, 1);
     free(records);
     if (status != SONJECT_OK)
         return status;
-    status = trace_pairs(trace, tracer, &on_device, object);
+    status = trace_pairs(trace, tracer, &on_device, part);
     trace_device_clear(&on_device);
     return status;
 }
@@ -97,10 +95,10 @@ static sonject_status trace_object(struct rough_trace *trace, struct tracer *tra
 sonject_status rough_trace_mirrored(struct rough_trace *trace, struct tracer *tracer)
 {
     sonject_status status = SONJECT_OK;
-    for (uint32_t i = 0; status == SONJECT_OK && i < tracer->scene->object_count; i++)
-        if (is_rough(&tracer->scene->objects[i].material) &&
-            line_grid_cells(&trace->tiles[i].grid) > 0 &&
+    for (uint32_t i = 0; status == SONJECT_OK && i < tracer->part_count; i++)
+        if (is_rough(tracer->placements[i].material) &&
+            line_grid_cells(&trace->tiles[tracer->placements[i].object].grid) > 0 &&
             mirrored_bins(tracer, i, &trace->grid).count > 0)
-            status = trace_object(trace, tracer, i);
+            status = trace_part(trace, tracer, i);
     return status;
 }

@@ -19,12 +19,11 @@ static void lay_strips(struct line_grid *grid, const struct tracer *tracer, uint
     static const double along[3] = {1.0, 0.0, 0.0};
     const struct patch_view *view = &tracer->view;
     const struct placement *placement = &tracer->placements[number];
-    const uint32_t shape = tracer->scene->objects[number].shape;
     grid->strips_per_row =
         (uint32_t)ceil(view->row_spacing_m / (STRIP_WAVELENGTHS * view->wavelength_m) - 1e-9);
     grid->bins_per_pixel = (uint32_t)ceil(
         BINS_PER_DEVIATION * view->column_spacing_m / tracer->response.range_deviation_m - 1e-9);
-    const double extent = placement_half_extent(placement, shape, along);
+    const double extent = placement_half_extent(placement, along);
     const double per_row = grid->strips_per_row;
     grid->strips.first =
         (int32_t)floor((view_row_of_x(view, placement->centre[0] - extent) + 0.5) * per_row) - 1;
@@ -66,7 +65,7 @@ static sonject_status begin_on_device(struct smooth_trace *trace, struct tracer 
                                       const char *kernel_name, const double origin[3],
                                       int32_t strips)
 {
-    struct object_record *records = allocate_array(tracer->scene->object_count, sizeof *records);
+    struct object_record *records = allocate_array(tracer->part_count, sizeof *records);
     if (!records)
         return report_out_of_memory(tracer->report, "objects");
     object_records_init(records, tracer, origin);
@@ -83,7 +82,7 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
     const struct sound_source sonar = {tracer->view.water, 0, MIRROR_SEABED};
     const struct source_pair straight = {&sonar, &sonar, 0};
     memset(trace, 0, sizeof *trace);
-    if (!material_is_smooth(&tracer->scene->objects[number].material))
+    if (!material_is_smooth(tracer->placements[number].material))
         return SONJECT_OK;
     /* the frame is centred on the object: phases then keep their digits */
     const double *origin = tracer->placements[number].centre;
@@ -114,7 +113,7 @@ sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tr
         return SONJECT_OK;
     sonject_status status =
         source_pair_aim(&trace->fan, &sources, &trace->rays, tracer, number, pair, &trace->grid);
-    trace->fan.stream = STREAM_MIRRORED_RAYS + 256 * pair->number + number;
+    trace->fan.stream = STREAM_MIRRORED_RAYS + STREAMS_OF_PAIR * pair->number + number;
     lay_fan(trace, tracer, number, &pair->outgoing->way);
     choose_quanta(trace, tracer);
     const int32_t strips =

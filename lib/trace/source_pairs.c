@@ -30,14 +30,13 @@ static double half_path(const struct source_pair *pair, const struct placement *
 
 /* How far the object's points lie before or behind its centre, seen from a source: its extent along
  * the line of sight, and what a wavefront's curvature adds at the bounding sphere's edge. */
-static double reach_from(const struct sound_source *source, const struct placement *placement,
-                         uint32_t shape)
+static double reach_from(const struct sound_source *source, const struct placement *placement)
 {
     const double grazing = source_grazing(source, placement);
     const double radius = water_way_ray(&source->way, grazing, placement->centre[2]).wavefront_m;
     const double sight[3] = {0.0, cos(grazing), -sin(grazing)};
     const double bound = placement->bounding_radius_m;
-    return 1.01 * placement_half_extent(placement, shape, sight) + bound * bound / (radius - bound);
+    return 1.01 * placement_half_extent(placement, sight) + bound * bound / (radius - bound);
 }
 
 struct span source_pair_bins(const struct tracer *tracer, uint32_t object,
@@ -45,10 +44,9 @@ struct span source_pair_bins(const struct tracer *tracer, uint32_t object,
 {
     const struct patch_view *view = &tracer->view;
     const struct placement *placement = &tracer->placements[object];
-    const uint32_t shape = tracer->scene->objects[object].shape;
     const double range = half_path(pair, placement);
-    const double reach = 0.5 * (reach_from(pair->outgoing, placement, shape) +
-                                reach_from(pair->returning, placement, shape));
+    const double reach =
+        0.5 * (reach_from(pair->outgoing, placement) + reach_from(pair->returning, placement));
     const double per_metre = grid->bins_per_pixel / view->column_spacing_m;
     const double first = ((range - reach) * view->range_ratio - view->first_range_m) * per_metre;
     const double last = ((range + reach) * view->range_ratio - view->first_range_m) * per_metre;

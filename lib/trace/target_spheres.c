@@ -5,16 +5,16 @@
 #define SPHERES_WANTED 32 /* more cost more than they save */
 
 /* Size of the object along its nose, and of the circle around its section across it. */
-static void overall_size(const struct placement *placement, uint32_t shape, double *half_length,
-                         double *radius)
+static void overall_size(const struct placement *placement, double *half_length, double *radius)
 {
     static const double nose[3] = {1.0, 0.0, 0.0};
     static const double tail[3] = {-1.0, 0.0, 0.0};
     struct shape_size uncut = placement->size;
     uncut.cut_count = 0;
-    *half_length = fmax(shape_extent(&uncut, shape, nose), shape_extent(&uncut, shape, tail));
-    *radius = shape_radius_about_nose(&uncut, shape);
-    if (shape == SONJECT_SHAPE_SPHERE)
+    *half_length = fmax(shape_extent(&uncut, placement->shape, nose),
+                        shape_extent(&uncut, placement->shape, tail));
+    *radius = shape_radius_about_nose(&uncut, placement->shape);
+    if (placement->shape == SONJECT_SHAPE_SPHERE)
         *half_length = 0.0;
 }
 
@@ -29,11 +29,11 @@ uint32_t target_spheres_init(struct sphere_record *records, const struct tracer 
                              const double origin[3])
 {
     uint32_t count = 0;
-    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
         const struct placement *placement = &tracer->placements[i];
         double half_length, radius;
-        overall_size(placement, tracer->scene->objects[i].shape, &half_length, &radius);
-        const uint32_t parts = spheres_for(half_length, radius, tracer->scene->object_count);
+        overall_size(placement, &half_length, &radius);
+        const uint32_t parts = spheres_for(half_length, radius, tracer->part_count);
         const double half_part = half_length / parts;
         const double sphere_radius = hypot(radius, half_part) * (1.0 + 1e-5);
         for (uint32_t part = 0; part < parts && count < TARGET_SPHERES_MAX; part++) {

@@ -61,7 +61,7 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
     fan->inverse_wavelength = (float)(1.0 / view->wavelength_m);
     fan->seed_low = (uint32_t)(tracer->scene->injection.seed & 0xffffffffu);
     fan->seed_high = (uint32_t)(tracer->scene->injection.seed >> 32);
-    fan->objects = (int32_t)tracer->scene->object_count;
+    fan->objects = (int32_t)tracer->part_count;
     fan->segments = 1;
 }
 
@@ -89,8 +89,8 @@ void surface_record_init(struct surface_record *record, const sonject_material_p
 double brightest_scattering(const struct tracer *tracer)
 {
     double brightest = 1.0 / PI;
-    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
-        const sonject_material_params *material = &tracer->scene->objects[i].material;
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
+        const sonject_material_params *material = tracer->placements[i].material;
         const double cone =
             material->glossy_albedo / (4.0 * PI * material->glossy_slope * material->glossy_slope);
         brightest =
@@ -102,8 +102,7 @@ double brightest_scattering(const struct tracer *tracer)
 void object_records_init(struct object_record *records, const struct tracer *tracer,
                          const double origin[3])
 {
-    for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
-        const sonject_object_params *object = &tracer->scene->objects[i];
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
         const struct placement *placement = &tracer->placements[i];
         struct object_record *record = &records[i];
         memset(record, 0, sizeof *record);
@@ -113,8 +112,8 @@ void object_records_init(struct object_record *records, const struct tracer *tra
         for (int axis = 0; axis < 3; axis++)
             for (int k = 0; k < 3; k++)
                 record->axes[3 * axis + k] = (float)placement->axes[axis][k];
-        object_shape_init(record, &placement->size, object->shape);
-        surface_record_init(&record->surface, &object->material, tracer->view.wavelength_m);
+        object_shape_init(record, &placement->size, placement->shape);
+        surface_record_init(&record->surface, placement->material, tracer->view.wavelength_m);
     }
 }
 
@@ -202,9 +201,8 @@ sonject_status trace_device_init(struct trace_device *device, struct tracer *tra
     sonject_status status =
         kernel_create(report, tracer->device, program, kernel_name, &device->kernel);
     if (status == SONJECT_OK)
-        status =
-            buffer_create(report, tracer->device, tracer->scene->object_count * sizeof *records,
-                          records, &device->objects);
+        status = buffer_create(report, tracer->device, tracer->part_count * sizeof *records,
+                               records, &device->objects);
     if (status == SONJECT_OK)
         status = buffer_create(report, tracer->device, device->tally_strips * line_bytes, NULL,
                                &device->tallies);

@@ -25,7 +25,9 @@ struct tracer {
     const struct scene *scene;
     struct patch_view view;
     struct point_response response;
-    const struct placement *placements; /* of scene->objects */
+    const struct placement *placements; /* of all parts of objects: what rays meet */
+    uint32_t part_count;
+    const struct placed_object *objects; /* of scene->objects: where their parts are */
     struct trace_counts counts;
 };
 
@@ -34,7 +36,7 @@ struct tracer {
 void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const double origin[3],
                      const struct line_grid *grid);
 
-/* Object records in a frame; tiles left 0. count = scene->object_count. */
+/* Object records in a frame; tiles left 0. count = part_count. */
 void object_records_init(struct object_record *records, const struct tracer *tracer,
                          const double origin[3]);
 

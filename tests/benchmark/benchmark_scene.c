@@ -28,21 +28,24 @@ void benchmark_set_up(struct benchmark_scene *set, size_t pixels)
     sonject_context_params_init(&params);
     set->tracer.report = &set->report;
     set->tracer.scene = &set->scene;
-    set->tracer.placements = &set->placement;
     if (scene_append_object(&set->scene, &set->report, &capsule) != SONJECT_OK ||
         device_open(&set->report, &params, &set->tracer.device) != SONJECT_OK ||
         scene_lay_water(&set->scene, &set->report, &set->water) != SONJECT_OK ||
         patch_view_init(&set->tracer.view, &set->report, &set->scene, &set->water, 0.0, 0.0, pixels,
                         pixels) != SONJECT_OK ||
-        placement_init(&set->placement, &set->report, &set->tracer.view, 0.0, 0.0,
-                       &set->scene.objects[0]) != SONJECT_OK)
+        placements_init(&set->placed, &set->report, &set->scene, &set->tracer.view, 0.0, 0.0) !=
+            SONJECT_OK)
         benchmark_fail(&set->report, "set-up");
+    set->tracer.placements = set->placed.parts;
+    set->tracer.part_count = set->placed.part_count;
+    set->tracer.objects = set->placed.objects;
     point_response_init(&set->tracer.response, &set->scene.sonar, 1500.0, 0.025);
 }
 
 void benchmark_clear(struct benchmark_scene *set)
 {
     device_close(&set->tracer.device);
+    placements_clear(&set->placed);
     water_clear(&set->water);
     scene_clear(&set->scene);
 }

@@ -11,7 +11,7 @@ struct benchmark_scene {
     struct report report;
     struct scene scene;
     struct tracer tracer;
-    struct placement placement;
+    struct placements placed;
     struct water water;
 };
 

@@ -32,7 +32,6 @@ void bench_open(struct bench *bench, const char *device, size_t rows, size_t col
     bench->columns = columns;
     bench->tracer.report = &bench->report;
     bench->tracer.scene = &bench->scene;
-    bench->tracer.placements = bench->placements;
     bench_move(bench, middle_range_m);
     expect_ok(bench, device_open(&bench->report, &context, &bench->tracer.device));
 }
@@ -40,6 +39,7 @@ void bench_open(struct bench *bench, const char *device, size_t rows, size_t col
 void bench_close(struct bench *bench)
 {
     device_close(&bench->tracer.device);
+    placements_clear(&bench->placed);
     water_clear(&bench->water);
     scene_clear(&bench->scene);
 }
@@ -49,6 +49,17 @@ void bench_move(struct bench *bench, double middle_range_m)
     sonject_geometry_params *geometry = &bench->scene.geometry;
     geometry->first_slant_range_m =
         middle_range_m - 0.5 * (double)(bench->columns - 1) * geometry->column_spacing_m;
+}
+
+void bench_set_layers(struct bench *bench, const struct water_layer *layers, size_t count)
+{
+    struct scene *scene = &bench->scene;
+    free(scene->water_layers);
+    scene->water_layers = count > 0 ? malloc(count * sizeof *layers) : NULL;
+    scene->water_layer_count = count;
+    assert_true(count == 0 || scene->water_layers);
+    if (count > 0)
+        memcpy(scene->water_layers, layers, count * sizeof *layers);
 }
 
 sonject_object_params *bench_add(struct bench *bench, sonject_shape shape, double length_m,
@@ -75,9 +86,13 @@ void bench_ready(struct bench *bench)
     expect_ok(bench, scene_lay_water(&bench->scene, &bench->report, &bench->water));
     expect_ok(bench, patch_view_init(&tracer->view, &bench->report, &bench->scene, &bench->water,
                                      0.0, 0.0, bench->rows, bench->columns));
-    for (uint32_t i = 0; i < bench->scene.object_count; i++)
-        expect_ok(bench, placement_init(&bench->placements[i], &bench->report, &tracer->view, 0.0,
-                                        0.0, &bench->scene.objects[i]));
+    placements_clear(&bench->placed);
+    expect_ok(bench, placements_init(&bench->placed, &bench->report, &bench->scene, &tracer->view,
+                                     0.0, 0.0));
+    bench->placements = bench->placed.parts;
+    tracer->placements = bench->placed.parts;
+    tracer->part_count = bench->placed.part_count;
+    tracer->objects = bench->placed.objects;
     point_response_init(&tracer->response, &bench->scene.sonar,
                         tracer->view.range_ratio * bench->water.straight_speed_mps,
                         tracer->view.row_spacing_m);

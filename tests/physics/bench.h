@@ -18,7 +18,8 @@
 struct bench {
     struct report report;
     struct scene scene;
-    struct placement placements[BENCH_OBJECTS];
+    struct placements placed;
+    struct placement *placements; /* of placed */
     struct water water;
     struct tracer tracer;
     size_t rows, columns;
@@ -33,6 +34,9 @@ void bench_close(struct bench *bench);
 
 /* Puts the middle column somewhere else (apparent range), after spacing or size changed. */
 void bench_move(struct bench *bench, double middle_range_m);
+
+/* Layers of water, copied; before bench_ready. */
+void bench_set_layers(struct bench *bench, const struct water_layer *layers, size_t count);
 
 /* An object in the middle of the patch, rigid and without a rough part, to be changed at will.
  * All lengths are those of the shape's own words. */

@@ -213,6 +213,7 @@ class sonject_object_truth(Structure):
         ("target_strength_db", c_double),
         ("highlight_contrast_db", c_double),
         ("shadow_contrast_db", c_double),
+        ("burial_m", c_double),
         ("grazing_rad", c_double),
         ("transmission_loss_db", c_double),
     ]

@@ -55,8 +55,9 @@ class ObjectTruth:
     is_visible: some pixel is its own, or it casts a shadow; *_is_cut: touches the patch's edge;
     row, column: of its centre, in patch pixels; slant_range_m: apparent; height_m: of the centre
     over the seabed; target_strength_db: of its brightest pixel, re 1 m^2, -inf where nothing of it
-    is in view; contrasts: mean energy over the local seabed level; grazing_rad: of the sound that
-    comes straight to the centre; transmission_loss_db: one way, from 1 m off the sonar.
+    is in view; contrasts: mean energy over the local seabed level; burial_m: depth of the lowest
+    point; grazing_rad: of the sound that comes straight to the centre; transmission_loss_db: one
+    way, from 1 m off the sonar.
     """
 
     is_visible: bool
@@ -76,6 +77,7 @@ class ObjectTruth:
     target_strength_db: float
     highlight_contrast_db: float
     shadow_contrast_db: float
+    burial_m: float
     grazing_rad: float
     transmission_loss_db: float
 

@@ -1,0 +1,734 @@
+/* Sound through level layers against Snell's law summed up in long double, against Fermat's
+ * principle, the arcs of a linear profile and the power that a ray tube carries. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "medium/profile.h"
+#include "medium/water.h"
+#include "physics/reference_layers.h"
+
+#define PI          3.14159265358979323846
+#define COUNT(list) (sizeof(list) / sizeof(list)[0])
+#define BOUNCES_MAX 3
+
+static struct report report;
+
+static void expect_within(const char *what, double measured, double expected, double tolerance)
+{
+    if (!(fabs(measured - expected) <= tolerance))
+        fail_msg("%s: %.17g is not %.17g within %.3g", what, measured, expected, tolerance);
+}
+
+static void expect_relative(const char *what, double measured, double expected, double tolerance)
+{
+    expect_within(what, measured, expected, tolerance * fabs(expected));
+}
+
+static void lay(struct water *water, const struct water_layer *layers, size_t count,
+                double highest_m)
+{
+    if (water_init(water, &report, layers, count, 1500.0, highest_m) != SONJECT_OK)
+        fail_msg("%s", report.message);
+}
+
+static struct water_way way_of(const struct water *water, const struct reference_way *folded)
+{
+    return folded->bounces == 0 ? water_way_direct(water, folded->sonar_height)
+                                : water_way_mirrored(water, folded->sonar_height, folded->depth,
+                                                     folded->bounces, folded->comes_from_seabed);
+}
+
+/* ---- waters to try ---- */
+
+static const struct water_layer two_layers[] = {{0.0, 1490.0, 1.0}, {8.0, 1520.0, 1.0}};
+static const struct water_layer three_layers[] = {
+    {0.0, 1500.0, 1.0}, {6.0, 1450.0, 1.0}, {14.0, 1530.0, 1.0}};
+static const struct water_layer ten_layers[] = {
+    {0.0, 1503.0, 1.0},  {2.5, 1497.0, 1.0},  {4.0, 1511.0, 1.0},  {5.5, 1460.0, 1.0},
+    {7.25, 1472.0, 1.0}, {9.0, 1490.0, 1.0},  {12.0, 1535.0, 1.0}, {13.0, 1519.0, 1.0},
+    {16.5, 1501.0, 1.0}, {18.0, 1526.0, 1.0},
+};
+
+static const struct {
+    const struct water_layer *layers;
+    size_t count;
+    double sonar_height;
+} waters[] = {
+    {two_layers, COUNT(two_layers), 20.0},     {two_layers, COUNT(two_layers), 5.0},
+    {three_layers, COUNT(three_layers), 20.0}, {three_layers, COUNT(three_layers), 10.0},
+    {ten_layers, COUNT(ten_layers), 21.0},     {ten_layers, COUNT(ten_layers), 12.5},
+};
+
+#define DEPTH 25.0 /* of the sea surface */
+
+typedef void each_way(const struct water *water, const struct reference_way *folded, double height);
+
+/* Every water, every way of up to three mirrors, points high and low. */
+static void on_every_way(each_way *run)
+{
+    static const double heights[] = {0.0, 0.3, 1.7};
+    for (size_t w = 0; w < COUNT(waters); w++) {
+        struct water water;
+        lay(&water, waters[w].layers, waters[w].count, 2.0);
+        assert_int_equal(water.count, waters[w].count);
+        assert_true(water.straight_speed_mps == waters[w].layers[0].speed_mps);
+        for (uint32_t bounces = 0; bounces <= BOUNCES_MAX; bounces++)
+            for (int last = 0; last < (bounces ? 2 : 1); last++)
+                for (size_t h = 0; h < COUNT(heights); h++) {
+                    const struct reference_way folded = {
+                        water.layers, water.count, waters[w].sonar_height,
+                        DEPTH,        bounces,     last == 1};
+                    if (last == 1 && heights[h] == 0.0)
+                        continue; /* the mirror itself */
+                    run(&water, &folded, heights[h]);
+                }
+        water_clear(&water);
+    }
+}
+
+static double signed_angle(const struct reference_way *folded, double angle)
+{
+    return folded->bounces > 0 && folded->comes_from_seabed ? -angle : angle;
+}
+
+/* Grazing angles in the straight water for which there is a ray: cos < c/c_max. */
+#define ANGLES 9
+static void find_angles(const struct reference_way *folded, double height, double angles[ANGLES])
+{
+    static const double shares[ANGLES] = {1e-6, 1e-4, 1e-2, 0.05, 0.2, 0.4, 0.7, 0.95, 0.9999};
+    const double most = reference_fastest(folded, height);
+    const double least = acos(fmin(1.0, folded->layers[0].speed_mps / most));
+    for (size_t i = 0; i < ANGLES; i++)
+        angles[i] = least + shares[i] * (0.5 * PI - least);
+}
+
+/* ---- Snell ---- */
+
+static double largest_error; /* relative, of ranges and times */
+
+static void note_error(double measured, long double expected)
+{
+    largest_error = fmax(largest_error, (double)fabsl((measured - expected) / expected));
+}
+
+static void compare_ray(const struct water *water, const struct reference_way *folded,
+                        double height)
+{
+    const struct water_way way = way_of(water, folded);
+    const double c = water->straight_speed_mps;
+    const double c0 = reference_speed_at(folded, folded->sonar_height);
+    double angles[ANGLES];
+    find_angles(folded, height, angles);
+    for (size_t i = 2; i < ANGLES; i++) { /* closer to total reflection the angle itself rounds */
+        const double angle = signed_angle(folded, angles[i]);
+        const struct water_ray ray = water_way_ray(&way, angle, height);
+        const long double p = cosl((long double)angle) / c;
+        const struct reference_ray sum = reference_sum(folded, height, p);
+        const long double sine = sinl((long double)angles[i]);
+        const long double sine0 = sqrtl(1.0L - p * c0 * p * c0);
+        note_error(ray.ground_range_m, sum.range);
+        note_error(ray.straight_range_m, sum.time * c);
+        /* the angle's own rounding over its distance from total reflection: 1e-16 of 1e-2 */
+        expect_relative("ground range", ray.ground_range_m, (double)sum.range, 1e-12);
+        expect_relative("straight range", ray.straight_range_m, (double)(sum.time * c), 1e-12);
+        expect_relative("length", ray.length_m, (double)sum.length, 1e-12);
+        expect_relative("wavefront", ray.wavefront_m, (double)(sine * sine / c * sum.growth),
+                        1e-11);
+        expect_relative("spreading", ray.spreading,
+                        (double)(c0 / c * cosl((long double)angle) * sine / sine0), 1e-12);
+    }
+}
+
+static void test_snell(void **unused)
+{
+    (void)unused;
+    largest_error = 0.0;
+    on_every_way(compare_ray);
+    print_message("largest relative error of range and time: %.2g\n", largest_error);
+}
+
+/* The ray found for two points comes to the point, and its time is that of the point. */
+static void compare_two_points(const struct water *water, const struct reference_way *folded,
+                               double height)
+{
+    static const double ranges[] = {1e-3, 0.5, 4.0, 12.0, 40.0, 120.0, 700.0, 5000.0};
+    const struct water_way way = way_of(water, folded);
+    const double c = water->straight_speed_mps;
+    for (size_t i = 0; i < COUNT(ranges); i++) {
+        const double angle = water_way_grazing(&way, ranges[i], height);
+        assert_true(isfinite(angle));
+        assert_true(folded->bounces > 0 && folded->comes_from_seabed ? angle < 0.0 : angle > 0.0);
+        const double fastest_speed = reference_fastest(folded, height);
+        const long double p = cosl((long double)angle) / c;
+        const struct reference_ray sum = reference_sum(folded, height, p);
+        /* what the angle's last digits are worth in range: it is an arc cosine near 1 */
+        const double digit = 2e-15 * (double)(sinl(fabsl((long double)angle)) / c * sum.growth);
+        if (p * fastest_speed < 1.0L - 1e-13L)
+            expect_within("range of the ray found", (double)sum.range, ranges[i],
+                          1e-10 * ranges[i] + digit);
+        /* the time errs by p times that, which the point's own range leaves out */
+        const double measured = water_way_range(&way, ranges[i], height);
+        const long double expected = sum.time * c + p * c * (ranges[i] - sum.range);
+        if (digit < 1e-3 * ranges[i]) {
+            note_error(measured, expected);
+            expect_relative("time", measured, (double)expected, 1e-12);
+        }
+    }
+}
+
+static void test_two_points(void **unused)
+{
+    (void)unused;
+    largest_error = 0.0;
+    on_every_way(compare_two_points);
+    print_message("largest relative error of the time between two points: %.2g\n", largest_error);
+}
+
+/* Fermat: of all ways over a plane between two waters sound takes the quickest. Nothing of Snell's
+ * law is in here. */
+static void test_fermat(void **unused)
+{
+    (void)unused;
+    static const double ranges[] = {1.0, 10.0, 35.0, 120.0, 1000.0};
+    struct water water;
+    lay(&water, two_layers, 2, 2.0);
+    const struct water_way way = water_way_direct(&water, 20.0);
+    for (size_t i = 0; i < COUNT(ranges); i++) {
+        const long double height = 0.7L;
+        long double low = 0.0L, high = ranges[i];
+        long double time = 0.0L;
+        for (int k = 0; k < 400; k++) {
+            long double times[2];
+            for (int side = 0; side < 2; side++) {
+                const long double x = low + (high - low) * (side ? 2.0L : 1.0L) / 3.0L;
+                times[side] =
+                    hypotl(x, 12.0L) / 1520.0L + hypotl(ranges[i] - x, 8.0L - height) / 1490.0L;
+            }
+            if (times[0] < times[1])
+                high -= (high - low) / 3.0L;
+            else
+                low += (high - low) / 3.0L;
+            time = fminl(times[0], times[1]);
+        }
+        expect_relative("quickest way", water_way_range(&way, ranges[i], (double)height),
+                        (double)(time * 1490.0L), 1e-13);
+    }
+    water_clear(&water);
+}
+
+/* ---- a linear profile ---- */
+
+#define PROFILE_TOP 25.0
+
+/* Layers of the same height with the speed at their middle. */
+static struct water_layer *linear_layers(double bottom_speed, double growth, size_t count)
+{
+    struct water_layer *layers = calloc(count, sizeof *layers);
+    assert_non_null(layers);
+    for (size_t i = 0; i < count; i++) {
+        layers[i].bottom_m = PROFILE_TOP * (double)i / (double)count;
+        layers[i].speed_mps =
+            bottom_speed + growth * PROFILE_TOP * ((double)i + 0.5) / (double)count;
+        layers[i].density = 1.0;
+    }
+    return layers;
+}
+
+/* Time along the arc between two points, exactly. */
+static double arc_time(double bottom_speed, double growth, double range, double high, double low)
+{
+    const double one = bottom_speed + growth * high;
+    const double other = bottom_speed + growth * low;
+    const double step = high - low;
+    const double q = growth * growth * (range * range + step * step) / (2.0 * one * other);
+    /* acosh(1 + q) without cancelling */
+    return log1p(q + sqrt(q * (q + 2.0))) / fabs(growth);
+}
+
+/* The ray of p = cos/c goes round the height where sound would stand still, in an arc of radius
+ * 1/(p g) = c0/(g cos). */
+static void test_linear_profile(void **unused)
+{
+    (void)unused;
+    static const size_t counts[] = {200, 2000};
+    static const double growths[] = {2.0, -2.0, 0.1}; /* m/s per m */
+    static const double ranges[] = {10.0, 40.0, 120.0};
+    for (size_t n = 0; n < COUNT(counts); n++)
+        for (size_t k = 0; k < COUNT(growths); k++) {
+            const double growth = growths[k];
+            const double bottom = growth > 0.0 ? 1480.0 : 1530.0;
+            struct water_layer *layers = linear_layers(bottom, growth, counts[n]);
+            struct water water;
+            lay(&water, layers, counts[n], 0.0);
+            double time_error = 0.0, radius_error = 0.0;
+            const struct water_way way = water_way_direct(&water, 20.0);
+            for (size_t i = 0; i < COUNT(ranges); i++) {
+                const double time =
+                    water_way_range(&way, ranges[i], 0.0) / water.straight_speed_mps;
+                const double arc = arc_time(bottom, growth, ranges[i], 20.0, 0.0);
+                time_error = fmax(time_error, fabs(time / arc - 1.0));
+                /* one ray, known by its angle, from sonars at many heights */
+                const double angle = water_way_grazing(&way, ranges[i], 0.0);
+                const double p = cos(angle) / water.straight_speed_mps;
+                const double radius = 1.0 / (p * growth);
+                const double sine = sqrt(1.0 - p * bottom * p * bottom);
+                for (double height = 5.0; height <= 20.0; height += 5.0) {
+                    const struct water_way other = water_way_direct(&water, height);
+                    const double range = water_way_ray(&other, angle, 0.0).ground_range_m;
+                    const double measured = hypot(radius * sine - range, height + bottom / growth);
+                    radius_error = fmax(radius_error, fabs(measured / fabs(radius) - 1.0));
+                }
+            }
+            print_message("%zu layers, %+.1f m/s per m: time off by %.2g, radius by %.2g\n",
+                          counts[n], growth, time_error, radius_error);
+            assert_true(time_error < 1e-6);
+            /* a step's height squared over the arc's: (25 m/count)^2 g^2/c^2 and less */
+            assert_true(radius_error < 1e-6);
+            assert_true(time_error > 0.0);
+            water_clear(&water);
+            free(layers);
+        }
+}
+
+/* As scene files write it, and with targets that reach through many of its layers. */
+static void test_profile_with_targets(void **unused)
+{
+    (void)unused;
+    static const double heights[] = {0.0, 25.0};
+    static const double speeds[] = {1480.0, 1530.0};
+    struct water_layer *layers = NULL;
+    size_t count = 0;
+    assert_int_equal(layers_of_profile(heights, speeds, 2, &report, &layers, &count), SONJECT_OK);
+    struct water water;
+    lay(&water, layers, count, 1.0);
+    assert_true(water.count > 200 && water.count < count);
+    const struct water_way way = water_way_direct(&water, 20.0);
+    for (double range = 10.0; range < 150.0; range += 10.0) {
+        const double time = water_way_range(&way, range, 0.0) / water.straight_speed_mps;
+        const double arc = arc_time(1480.0, 2.0, range, 20.0, 0.0);
+        expect_relative("time", time, arc, 1e-6);
+    }
+    water_clear(&water);
+    free(layers);
+}
+
+/* ---- equal layers ---- */
+
+static void test_split_layer(void **unused)
+{
+    (void)unused;
+    struct water_layer split[21];
+    size_t count = 0;
+    for (size_t i = 0; i < COUNT(two_layers); i++)
+        for (int k = 0; k < 10; k++) {
+            split[count] = two_layers[i];
+            split[count++].bottom_m += 0.77 * k;
+        }
+    struct water one, other;
+    lay(&one, two_layers, COUNT(two_layers), 2.0);
+    lay(&other, split, count, 2.0);
+    assert_int_equal(one.count, other.count);
+    assert_memory_equal(one.layers, other.layers, one.count * sizeof *one.layers);
+    assert_true(one.straight_speed_mps == other.straight_speed_mps);
+    const struct water_way way = water_way_direct(&one, 20.0);
+    const struct water_way same = water_way_direct(&other, 20.0);
+    for (double angle = 0.21; angle < 1.57; angle += 0.01) {
+        const struct water_ray a = water_way_ray(&way, angle, 0.3);
+        const struct water_ray b = water_way_ray(&same, angle, 0.3);
+        assert_memory_equal(&a, &b, sizeof a);
+    }
+    water_clear(&one);
+    water_clear(&other);
+}
+
+/* Layers of one speed are isovelocity water, also where the layers above the sonar differ. */
+static void test_straight_water(void **unused)
+{
+    (void)unused;
+    static const struct water_layer equal[] = {
+        {0.0, 1490.0, 1.0}, {3.0, 1490.0, 1.0}, {9.0, 1490.0, 1.0}};
+    static const struct water_layer above[] = {{0.0, 1490.0, 1.0}, {30.0, 1520.0, 1.2}};
+    struct water water;
+    lay(&water, equal, 3, 2.0);
+    assert_int_equal(water.count, 1);
+    assert_true(water.straight_speed_mps == 1490.0);
+    assert_true(water_way_direct(&water, 20.0).is_straight);
+    water_clear(&water);
+    lay(&water, above, 2, 2.0);
+    assert_true(water_way_direct(&water, 20.0).is_straight);
+    assert_true(water_way_mirrored(&water, 20.0, 40.0, 1, true).is_straight);
+    assert_false(water_way_mirrored(&water, 20.0, 40.0, 1, false).is_straight);
+    assert_false(water_way_direct(&water, 31.0).is_straight);
+    water_clear(&water);
+    lay(&water, NULL, 0, 2.0);
+    assert_true(water.straight_speed_mps == 1500.0);
+    const struct water_way way = water_way_direct(&water, 20.0);
+    assert_true(way.is_straight);
+    for (double range = 1.0; range < 1000.0; range *= 2.0) {
+        const double angle = water_way_grazing(&way, range, 0.5);
+        const struct water_ray ray = water_way_ray(&way, angle, 0.5);
+        expect_relative("angle", angle, atan2(19.5, range), 1e-14);
+        expect_relative("straight range", ray.straight_range_m, hypot(19.5, range), 1e-13);
+        expect_relative("wavefront", ray.wavefront_m, hypot(19.5, range), 1e-12);
+        expect_relative("spreading", ray.spreading, cos(angle), 1e-13);
+    }
+    water_clear(&water);
+}
+
+/* ---- the ray tube ---- */
+
+/* Width of the wavefront: rays half a step apart in angle, their points at one height seen across
+ * the ray. Power: what is sent into an angle, here and from the point back. */
+static void compare_tube(const struct water *water, const struct reference_way *folded,
+                         double height)
+{
+    const struct water_way way = way_of(water, folded);
+    const double c = water->straight_speed_mps;
+    const double c0 = reference_speed_at(folded, folded->sonar_height);
+    const double step = 1e-5;
+    double angles[ANGLES];
+    find_angles(folded, height, angles);
+    for (size_t i = 2; i < ANGLES - 1; i++) {
+        double launch[2], landing[2], range[2];
+        for (int side = 0; side < 2; side++) {
+            landing[side] = angles[i] + (side - 0.5) * step;
+            launch[side] = acos(cos(landing[side]) * c0 / c);
+            range[side] =
+                water_way_ray(&way, signed_angle(folded, landing[side]), height).ground_range_m;
+        }
+        const struct water_ray ray = water_way_ray(&way, signed_angle(folded, angles[i]), height);
+        const double apart = fabs(range[1] - range[0]);
+        expect_relative("wavefront", ray.wavefront_m, apart * sin(angles[i]) / step, 1e-5);
+        /* per rad of azimuth; solid angle is the difference of sines */
+        const double there =
+            fabs(sin(launch[1]) - sin(launch[0])) / (ray.ground_range_m * apart * sin(angles[i]));
+        const double launch_sine = sqrt(1.0 - pow(cos(angles[i]) * c0 / c, 2.0));
+        const double back =
+            fabs(sin(landing[1]) - sin(landing[0])) / (ray.ground_range_m * apart * launch_sine);
+        expect_relative("intensity of the way home over that of the way out", back / there,
+                        c * c / (c0 * c0), 1e-5);
+        const double amplitude = ray.spreading / (ray.ground_range_m * ray.wavefront_m);
+        expect_relative("intensity there and back", amplitude * amplitude, there * back, 2e-5);
+        /* wavefronts run on: 1 m per m */
+        if (height >= 0.3) {
+            const struct water_ray lower =
+                water_way_ray(&way, signed_angle(folded, angles[i]), height - 0.2);
+            const double sign = folded->bounces > 0 && folded->comes_from_seabed ? -1.0 : 1.0;
+            expect_within("growth of the wavefront", lower.wavefront_m - ray.wavefront_m,
+                          sign * 0.2 / sin(angles[i]), 1e-9 * ray.wavefront_m);
+        }
+    }
+}
+
+static void test_ray_tube(void **unused)
+{
+    (void)unused;
+    on_every_way(compare_tube);
+}
+
+/* As the layers' contrast goes, so does what they do. */
+static void test_small_contrast(void **unused)
+{
+    (void)unused;
+    static const struct water_layer layers[] = {{0.0, 1500.0, 1.0}, {8.0, 1500.0 + 1.5e-6, 1.0}};
+    struct water water;
+    lay(&water, layers, 2, 2.0);
+    const struct water_way way = water_way_direct(&water, 20.0);
+    assert_false(way.is_straight);
+    for (double angle = 0.1; angle < 1.5; angle += 0.1) {
+        const struct water_ray ray = water_way_ray(&way, angle, 0.0);
+        /* 1e-9 over the square of the angle */
+        expect_relative("spreading", ray.spreading, cos(angle), 3e-7);
+        expect_relative("wavefront", ray.wavefront_m, 20.0 / sin(angle), 3e-7);
+        expect_relative("range", ray.straight_range_m, 20.0 / sin(angle), 3e-7);
+    }
+    water_clear(&water);
+}
+
+/* ---- planes where density differs ---- */
+
+/* 1 - R^2 of a plane between two fluids for sound of p = cos/c. */
+static double plane_passes(const struct water_layer *one, const struct water_layer *other, double p)
+{
+    const double z1 = one->density * one->speed_mps / sqrt(1.0 - pow(p * one->speed_mps, 2.0));
+    const double z2 =
+        other->density * other->speed_mps / sqrt(1.0 - pow(p * other->speed_mps, 2.0));
+    return 1.0 - pow((z1 - z2) / (z1 + z2), 2.0);
+}
+
+static void test_transmission(void **unused)
+{
+    (void)unused;
+    static const struct water_layer light[] = {{0.0, 1490.0, 1030.0},
+                                               {6.0, 1510.0, 1030.0}, /* all passes this plane */
+                                               {9.0, 1510.0, 400.0},  /* density alone */
+                                               {12.0, 1470.0, 700.0}};
+    struct water_layer same[4];
+    memcpy(same, light, sizeof same);
+    for (size_t i = 0; i < 4; i++)
+        same[i].density = 1.0;
+    struct water water, plain;
+    lay(&water, light, 4, 2.0);
+    lay(&plain, same, 4, 2.0);
+    assert_int_equal(plain.count, 3);
+    static const struct reference_way ways[] = {
+        {light, 4, 20.0, 0.0, 0, false},  {light, 4, 10.0, 0.0, 0, false},
+        {light, 4, 20.0, DEPTH, 1, true}, {light, 4, 20.0, DEPTH, 1, false},
+        {light, 4, 20.0, DEPTH, 2, true}, {light, 4, 10.0, DEPTH, 2, false},
+        {light, 4, 20.0, DEPTH, 3, true}, {light, 4, 20.0, DEPTH, 3, false},
+    };
+    /* how often each way crosses the planes at 9 m and at 12 m */
+    static const int crossings[][2] = {{1, 1}, {1, 0}, {1, 1}, {1, 1},
+                                       {1, 1}, {3, 2}, {3, 3}, {3, 3}};
+    for (size_t i = 0; i < COUNT(ways); i++)
+        for (double angle = 0.2; angle < 1.5; angle += 0.1) {
+            const struct water_way way = way_of(&water, &ways[i]);
+            const struct water_way other = way_of(&plain, &ways[i]);
+            const double signed_one = signed_angle(&ways[i], angle);
+            const double measured = water_way_ray(&way, signed_one, 0.4).spreading /
+                                    water_way_ray(&other, signed_one, 0.4).spreading;
+            const double p = cos(angle) / 1490.0;
+            expect_relative("what planes transmit", measured,
+                            pow(plane_passes(&light[1], &light[2], p), crossings[i][0]) *
+                                pow(plane_passes(&light[2], &light[3], p), crossings[i][1]),
+                            1e-12);
+        }
+    water_clear(&water);
+    water_clear(&plain);
+}
+
+/* Straight rays, but not all of their sound. */
+static void test_density_alone(void **unused)
+{
+    (void)unused;
+    static const struct water_layer layers[] = {{0.0, 1500.0, 3.0}, {8.0, 1500.0, 1.0}};
+    struct water water;
+    lay(&water, layers, 2, 2.0);
+    assert_int_equal(water.count, 2);
+    const struct water_way way = water_way_direct(&water, 20.0);
+    assert_false(way.is_straight);
+    for (double angle = 0.1; angle < 1.5; angle += 0.1) {
+        const struct water_ray ray = water_way_ray(&way, angle, 0.0);
+        expect_relative("range", ray.straight_range_m, 20.0 / sin(angle), 1e-12);
+        expect_relative("spreading", ray.spreading, 0.75 * cos(angle), 1e-12);
+    }
+    water_clear(&water);
+}
+
+/* ---- total reflection ---- */
+
+static bool is_infinite(const struct water_ray *ray)
+{
+    return isinf(ray->ground_range_m) && isinf(ray->straight_range_m) && isinf(ray->length_m) &&
+           isinf(ray->wavefront_m) && isinf(ray->spreading);
+}
+
+static void test_total_reflection(void **unused)
+{
+    (void)unused;
+    static const struct water_layer layers[] = {
+        {0.0, 1490.0, 1.0}, {10.0, 1540.0, 1.0}, {15.0, 1490.0, 1.0}};
+    struct water water;
+    lay(&water, layers, 3, 2.0);
+    const struct water_way way = water_way_direct(&water, 20.0);
+    const double least = acos(1490.0 / 1540.0);
+    for (double share = 0.0; share < 0.9999; share += 0.1) {
+        const struct water_ray ray = water_way_ray(&way, share * least, 0.0);
+        assert_true(is_infinite(&ray));
+    }
+    const struct water_ray last = water_way_ray(&way, least * (1.0 - 1e-12), 0.0);
+    assert_true(is_infinite(&last));
+    const struct water_ray first = water_way_ray(&way, least * (1.0 + 1e-12), 0.0);
+    assert_true(first.ground_range_m > 1e4 && isfinite(first.ground_range_m));
+    /* far ranges run level through the fast layer: all of the growth of time is at its speed */
+    double before = 0.0;
+    for (double range = 200.0; range < 3e5; range *= 1.5) {
+        const double angle = water_way_grazing(&way, range, 0.2);
+        assert_true(angle >= least && angle < 0.5 * PI);
+        const double time = water_way_range(&way, range, 0.2);
+        const struct water_ray ray = water_way_ray(&way, angle * (1.0 + 1e-15), 0.2);
+        assert_false(isnan(ray.spreading) || isnan(ray.wavefront_m) || isnan(ray.ground_range_m));
+        if (before > 0.0) {
+            const double slope = (time - before) / (range - range / 1.5);
+            assert_true(slope > 0.99 * 1490.0 / 1540.0 && slope < 1490.0 / 1540.0 * (1.0 + 1e-9));
+        }
+        before = time;
+        /* at best level through the fast layer, at worst with both slow layers on top of that */
+        const double level = range * 1490.0 / 1540.0;
+        const double steep = 14.8 * sin(least);
+        assert_true(time > level + steep && time < level + steep + 5.0 * 1490.0 / 1540.0);
+    }
+    const double angle = water_way_grazing(&way, 2000.0, 0.0);
+    const struct water_ray ray = water_way_ray(&way, angle, 0.0);
+    print_message("2000 m over 5 m: %.3g rad above total reflection, ray's range %.6f m\n",
+                  angle - least, ray.ground_range_m);
+    expect_relative("range", ray.ground_range_m, 2000.0, 1e-8);
+    water_clear(&water);
+}
+
+/* ---- the seabed by travel time ---- */
+
+static void test_ground_range(void **unused)
+{
+    (void)unused;
+    for (size_t w = 0; w < COUNT(waters); w++)
+        for (uint32_t bounces = 0; bounces <= 2; bounces++) {
+            struct water water;
+            lay(&water, waters[w].layers, waters[w].count, 2.0);
+            const struct reference_way folded = {water.layers, water.count, waters[w].sonar_height,
+                                                 DEPTH,        bounces,     false};
+            const struct water_way way = way_of(&water, &folded);
+            const long double down =
+                reference_sum(&folded, 0.0, 0.0L).time * water.straight_speed_mps;
+            assert_true(water_way_ground_range(&way, 0.0) == 0.0);
+            assert_true(water_way_ground_range(&way, (double)down * (1.0 - 1e-9)) == 0.0);
+            for (double range = 0.01; range < 3000.0; range *= 1.7) {
+                const double straight = water_way_range(&way, range, 0.0);
+                /* dt/dr = cos/c: near the foot the ground range is a square root of the time */
+                const double cosine = cos(water_way_grazing(&way, range, 0.0));
+                expect_within("ground range", water_way_ground_range(&way, straight), range,
+                              1e-12 * straight / cosine + 1e-12 * range);
+            }
+            /* straight down */
+            expect_relative("depth", water_way_range(&way, 1e-6, 0.0), (double)down, 1e-13);
+            const double steep = water_way_grazing(&way, 1e-6, 0.0);
+            assert_true(steep > 1.57 && steep <= 0.5 * PI);
+            /* straight down the spreading is that of heights weighted by their speed */
+            const struct water_ray ray = water_way_ray(&way, 0.5 * PI - 1e-6, 0.0);
+            long double weighted = 0.0L;
+            for (size_t i = 0; i < water.count; i++)
+                weighted += reference_crossed(&folded, i, 0.0) * water.layers[i].speed_mps /
+                            water.straight_speed_mps;
+            expect_relative("wavefront", ray.wavefront_m, (double)weighted, 1e-9);
+            expect_relative("ground range", ray.ground_range_m, (double)weighted * 1e-6, 1e-9);
+            water_clear(&water);
+        }
+}
+
+/* dt/dr = p: what the patch's pixels rest on. */
+static void compare_slope(const struct water *water, const struct reference_way *folded,
+                          double height)
+{
+    const struct water_way way = way_of(water, folded);
+    for (double range = 3.0; range < 500.0; range *= 3.0) {
+        const double step = 1e-4 * range;
+        const double slope = (water_way_range(&way, range + step, height) -
+                              water_way_range(&way, range - step, height)) /
+                             (2.0 * step);
+        expect_relative("slope", slope, cos(water_way_grazing(&way, range, height)), 1e-7);
+    }
+}
+
+static void test_slope_of_time(void **unused)
+{
+    (void)unused;
+    on_every_way(compare_slope);
+}
+
+/* ---- laying the water ---- */
+
+/* Time straight up to a height. */
+static double time_up(const struct water_layer *layers, size_t count, double height)
+{
+    const struct reference_way up = {layers, count, height, 0.0, 0, false};
+    return (double)reference_sum(&up, 0.0, 0.0L).time;
+}
+
+static void test_joined_layers(void **unused)
+{
+    (void)unused;
+    static const struct water_layer layers[] = {{0.0, 1490.0, 1.0},
+                                                {0.4, 1491.0, 1.0},
+                                                {0.9, 1492.0, 1.0},
+                                                {1.3, 1492.5, 1.0},
+                                                {3.0, 1510.0, 1.0}};
+    /* highest target, and layers that are left: what lies over it keeps its own speed */
+    static const struct {
+        double highest;
+        size_t count;
+    } cases[] = {{0.0, 5}, {0.3, 5}, {0.6, 5}, {1.0, 4}, {1.5, 3}};
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        struct water water;
+        lay(&water, layers, COUNT(layers), cases[i].highest);
+        assert_int_equal(water.count, cases[i].count);
+        assert_true(water.straight_speed_mps == water.layers[0].speed_mps);
+        assert_true(water.layers[0].bottom_m == 0.0);
+        assert_true(water.count == 1 || water.layers[1].bottom_m >= cases[i].highest);
+        expect_relative("time straight up", time_up(water.layers, water.count, 20.0),
+                        time_up(layers, COUNT(layers), 20.0), 1e-14);
+        for (double height = 0.1; height < 21.0; height += 0.7) {
+            size_t number = water.count - 1;
+            while (water.layers[number].bottom_m > height)
+                number--;
+            assert_true(water_layer_at(&water, height) == &water.layers[number]);
+        }
+        water_clear(&water);
+    }
+}
+
+static void expect_refused(const struct water_layer *layers, size_t count)
+{
+    struct water water;
+    memset(&water, 0, sizeof water);
+    assert_int_equal(water_init(&water, &report, layers, count, 1500.0, 1.0), SONJECT_ERROR_INPUT);
+    print_message("%s\n", report.message);
+    assert_null(water.layers);
+    /* nothing stands that high */
+    lay(&water, layers, count, 0.4);
+    assert_int_equal(water.count, count);
+    water_clear(&water);
+}
+
+/* Up to 1 m both halves count alike: each is half the difference away from what joins them. */
+static void test_refused_layers(void **unused)
+{
+    (void)unused;
+    struct water_layer layers[] = {{0.0, 1500.0, 1.0}, {0.5, 1500.0, 1.0}, {2.0, 1530.0, 1.2}};
+    struct water water;
+    layers[1].speed_mps = 1500.0 * (1.0 + 1.0 / 260.0);
+    layers[1].density = 1.0 + 1.0 / 260.0;
+    lay(&water, layers, COUNT(layers), 1.0);
+    assert_int_equal(water.count, 3);
+    assert_true(water.layers[1].bottom_m == 1.0);
+    assert_true(water.layers[1].speed_mps == layers[1].speed_mps);
+    water_clear(&water);
+    for (int sign = -1; sign <= 1; sign += 2) {
+        layers[1].speed_mps = 1500.0 * (1.0 + sign / 240.0);
+        layers[1].density = 1.0;
+        expect_refused(layers, COUNT(layers));
+        layers[1].speed_mps = 1500.0;
+        layers[1].density = 1.0 + sign / 240.0;
+        expect_refused(layers, COUNT(layers));
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_snell),
+        cmocka_unit_test(test_two_points),
+        cmocka_unit_test(test_fermat),
+        cmocka_unit_test(test_linear_profile),
+        cmocka_unit_test(test_profile_with_targets),
+        cmocka_unit_test(test_split_layer),
+        cmocka_unit_test(test_straight_water),
+        cmocka_unit_test(test_ray_tube),
+        cmocka_unit_test(test_small_contrast),
+        cmocka_unit_test(test_transmission),
+        cmocka_unit_test(test_density_alone),
+        cmocka_unit_test(test_total_reflection),
+        cmocka_unit_test(test_ground_range),
+        cmocka_unit_test(test_slope_of_time),
+        cmocka_unit_test(test_joined_layers),
+        cmocka_unit_test(test_refused_layers),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
