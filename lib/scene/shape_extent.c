@@ -147,7 +147,8 @@ static double chord_extent(const struct shape_size *size, double lines[][3], con
 }
 
 /* A torus is no convex shape, but each section of its ring is: a disc within lines. The extreme
- * point is the disc's own, or on a line's chord, or where two lines cross. */
+ * point is the disc's own or an end of a line's chord; where two lines cross in one section, the
+ * edge of both cuts goes on to the ring's surface in another, which is as extreme. */
 static double section_extent(const struct shape_size *size, const double v[3], double angle)
 {
     const double cosine = cos(angle);
@@ -166,13 +167,6 @@ static double section_extent(const struct shape_size *size, const double v[3], d
                                   b * along[1] / length);
     for (uint32_t i = 0; i < size->cut_count; i++)
         extent = fmax(extent, chord_extent(size, lines, along, lines[i]));
-    if (size->cut_count == 2) {
-        const double turn = lines[0][0] * lines[1][1] - lines[0][1] * lines[1][0];
-        const double r = (lines[0][2] * lines[1][1] - lines[0][1] * lines[1][2]) / turn;
-        const double z = (lines[0][0] * lines[1][2] - lines[0][2] * lines[1][0]) / turn;
-        if (turn != 0.0 && hypot(r - size->radius_m, z) <= b)
-            extent = fmax(extent, section_point(size, lines, along, r, z));
-    }
     return extent;
 }
 

@@ -33,10 +33,9 @@ static double bounding_radius(const struct shape_size *size, uint32_t shape)
     switch (shape) {
     case SONJECT_SHAPE_PLANE:
         return hypot(size->half_length_m, size->half_width_m);
-    case SONJECT_SHAPE_CYLINDER: /* its ends' tips and rims */
-        return fmax(
-            fmax(size->nose.joint_m + size->nose.depth_m, size->tail.joint_m + size->tail.depth_m),
-            hypot(fmax(size->nose.joint_m, size->tail.joint_m), size->radius_m));
+    case SONJECT_SHAPE_CYLINDER: /* tips and rims */
+        return fmax(size->half_length_m,
+                    hypot(fmax(size->nose.joint_m, size->tail.joint_m), size->radius_m));
     case SONJECT_SHAPE_CAPSULE:
         return size->half_length_m + size->radius_m;
     case SONJECT_SHAPE_ELLIPSOID:

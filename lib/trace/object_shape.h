@@ -2,7 +2,7 @@
 #ifndef SONJECT_TRACE_OBJECT_SHAPE_H
 #define SONJECT_TRACE_OBJECT_SHAPE_H
 
-#include "layout.h"
+#include "kernels/layout.h"
 #include "scene/shape_size.h"
 
 /* Fills in the record's shape, sizes, ends and cuts. shape: sonject_shape. */

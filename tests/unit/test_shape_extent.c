@@ -150,11 +150,11 @@ static bool is_sheet(uint32_t shape)
     return shape == SONJECT_SHAPE_PLANE || shape == SONJECT_SHAPE_DISC;
 }
 
-/* A point of a box that holds the shape, of a sheet where that is. */
+/* A point of a box that is a little larger than the shape, of a sheet where that is one. */
 static void random_point(const struct shape_size *size, uint32_t shape, double p[3])
 {
     for (int k = 0; k < 3; k++)
-        p[k] = uniform(-1.0, 1.0) * size->bounding_radius_m;
+        p[k] = uniform(-1.05, 1.05) * size->bounding_radius_m;
     if (is_sheet(shape))
         p[2] = 0.0;
 }
@@ -163,31 +163,34 @@ static void random_point(const struct shape_size *size, uint32_t shape, double p
 static void test_clouds_of_points(void **unused)
 {
     (void)unused;
-    for (uint32_t shape = 0; shape <= SONJECT_SHAPE_TORUS; shape++)
+    for (uint32_t i = 0; i < 3 * (SONJECT_SHAPE_TORUS + 1); i++)
         for (uint32_t cuts = 0; cuts <= SONJECT_CUTS_CAPACITY; cuts++) {
+            const uint32_t shape = i / 3;
             const sonject_object_params object = random_object(shape, cuts);
             struct shape_size size;
             double directions[12][3], farthest[12], extents[12];
             shape_size_init(&size, &object, false);
-            for (int i = 0; i < 12; i++) {
-                random_direction(directions[i]);
-                farthest[i] = -INFINITY;
-                extents[i] = shape_extent(&size, shape, directions[i]);
+            for (int k = 0; k < 12; k++) {
+                random_direction(directions[k]);
+                farthest[k] = -INFINITY;
+                extents[k] = shape_extent(&size, shape, directions[k]);
             }
             for (int n = 0; n < POINTS; n++) {
                 double p[3];
                 random_point(&size, shape, p);
                 if (!is_left(&object, p))
                     continue;
-                for (int i = 0; i < 12; i++)
-                    farthest[i] = fmax(farthest[i], dot(directions[i], p));
+                assert_true(dot(p, p) <= size.bounding_radius_m * size.bounding_radius_m);
+                assert_true(hypot(p[1], p[2]) <= shape_radius_about_nose(&size, shape) + 1e-9);
+                for (int k = 0; k < 12; k++)
+                    farthest[k] = fmax(farthest[k], dot(directions[k], p));
             }
             double gap = 0.0;
-            for (int i = 0; i < 12; i++) {
-                if (farthest[i] > extents[i] + 1e-9)
+            for (int k = 0; k < 12; k++) {
+                if (farthest[k] > extents[k] + 1e-9)
                     fail_msg("%s, %u cuts: reaches %.9g m, not %.9g m", shape_name(shape),
-                             (unsigned)cuts, farthest[i], extents[i]);
-                gap = fmax(gap, (extents[i] - farthest[i]) / size.bounding_radius_m);
+                             (unsigned)cuts, farthest[k], extents[k]);
+                gap = fmax(gap, (extents[k] - farthest[k]) / size.bounding_radius_m);
             }
             print_message("%s, %u cuts: points come within %.3f of its size\n", shape_name(shape),
                           (unsigned)cuts, gap);
@@ -249,9 +252,32 @@ static void test_closed_forms(void **unused)
     expect_extent(&object, 0.0, 0.0, 1.0, 0.15);
     expect_extent(&object, 1.0, 0.0, 0.0, 1.0);
     expect_extent(&object, s, 0.0, s, s * (0.75 + 0.2 + 0.15));
-    object.cuts[0].elevation_rad = 0.0; /* and upright: the half behind x = 0.15 */
-    expect_extent(&object, 1.0, 0.0, 0.0, 0.15);
-    expect_extent(&object, 0.0, 1.0, 0.0, 1.0);
+    object.cut_count = 2;
+    object.cuts[0].distance_m = 0.1;
+    object.cuts[1].distance_m = 0.8; /* and behind x = 0.8: their edge lies in the ring */
+    expect_extent(&object, s, 0.0, s, s * (0.8 + 0.1));
+    object.cuts[0].elevation_rad = 0.0;
+    object.cuts[0].azimuth_rad = 0.5 * PI;
+    object.cuts[0].distance_m = object.cuts[1].distance_m = 0.0; /* a quarter: no edge there */
+    expect_extent(&object, s, s, 0.0, -s * 0.5);
+    expect_extent(&object, -1.0, 0.0, 0.0, 1.0);
+}
+
+/* A cylinder with round ends lies within the sphere through its tips. */
+static void test_bounding_radius(void **unused)
+{
+    (void)unused;
+    struct shape_size size;
+    sonject_object_params object;
+    sonject_object_params_init(&object);
+    object.shape = SONJECT_SHAPE_CYLINDER;
+    object.length_m = 2.0;
+    object.nose_end = object.tail_end = SONJECT_END_SPHERICAL;
+    shape_size_init(&size, &object, false);
+    assert_true(fabs(size.bounding_radius_m - 1.0) < 2e-6);
+    object.tail_end = SONJECT_END_OPEN;
+    shape_size_init(&size, &object, false);
+    assert_true(fabs(size.bounding_radius_m - hypot(1.0, 0.25)) < 2e-6);
 }
 
 static void make_view(struct patch_view *view, struct scene *scene, sonject_side side)
@@ -365,6 +391,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_clouds_of_points),
         cmocka_unit_test(test_closed_forms),
+        cmocka_unit_test(test_bounding_radius),
         cmocka_unit_test(test_objects_rest_on_the_seabed),
         cmocka_unit_test(test_nothing_stands_prouder_than_it_is_high),
     };
