@@ -32,6 +32,7 @@ typedef int mask;
 #define STORE_REAL(value, array)  ((array)[0] = (value))
 #define STORE_WHOLE(value, array) ((array)[0] = (value))
 #define LOAD_REAL(array)          ((array)[0])
+#define LOAD_WHOLE(array)         ((array)[0])
 #define LANE_NUMBERS              0u
 #else
 typedef JOIN(float, WIDTH) real;
@@ -47,6 +48,7 @@ typedef JOIN(int, WIDTH) mask;
 #define STORE_REAL(value, array)  JOIN(vstore, WIDTH)(value, 0, array)
 #define STORE_WHOLE(value, array) JOIN(vstore, WIDTH)(value, 0, array)
 #define LOAD_REAL(array)          JOIN(vload, WIDTH)(0, array)
+#define LOAD_WHOLE(array)         JOIN(vload, WIDTH)(0, array)
 #if WIDTH == 4
 #define LANE_NUMBERS ((word)(0, 1, 2, 3))
 #elif WIDTH == 8
@@ -55,8 +57,10 @@ typedef JOIN(int, WIDTH) mask;
 #define LANE_NUMBERS ((word)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
 #endif
 #endif
+#define LOWEST_BIT(bits)   (31 - (int)clz((bits) & (0u - (bits))))
 #define SPLAT(value)       ((real)(value))
 #define SPLAT_WORD(value)  ((word)(value))
+#define SPLAT_WHOLE(value) ((whole)(value))
 #define SQUARE_ROOT(value) sqrt(value)
 #define CHOOSE(m, yes, no) select(no, yes, m)
 #define ANY(m)             any(m)
@@ -69,6 +73,7 @@ typedef JOIN(int, WIDTH) mask;
 
 #define FUNCTION static inline
 #define GLOBAL
+#define LOWEST_BIT(bits) __builtin_ctz(bits)
 #if WIDTH == 1
 typedef float real;
 typedef int32_t whole;
@@ -92,12 +97,14 @@ FUNCTION float AS_REAL(int32_t bits)
 #define WHOLE_OF(value)           ((int32_t)(value))
 #define SPLAT(value)              ((real)(value))
 #define SPLAT_WORD(value)         ((word)(value))
+#define SPLAT_WHOLE(value)        ((whole)(value))
 #define SQUARE_ROOT(value)        sqrtf(value)
 #define CHOOSE(m, yes, no)        ((m) ? (yes) : (no))
 #define ANY(m)                    ((m) != 0)
 #define STORE_REAL(value, array)  ((array)[0] = (value))
 #define STORE_WHOLE(value, array) ((array)[0] = (value))
 #define LOAD_REAL(array)          ((array)[0])
+#define LOAD_WHOLE(array)         ((array)[0])
 #define LANE_NUMBERS              0u
 #else
 typedef float real __attribute__((vector_size(4 * WIDTH)));
@@ -112,6 +119,7 @@ typedef int32_t mask __attribute__((vector_size(4 * WIDTH)));
 #define WHOLE_OF(value)           __builtin_convertvector(value, whole)
 #define SPLAT(value)              ((real){0} + (float)(value))
 #define SPLAT_WORD(value)         ((word){0} + (uint32_t)(value))
+#define SPLAT_WHOLE(value)        ((whole){0} + (int32_t)(value))
 FUNCTION real SQUARE_ROOT(real value)
 {
     real root;
@@ -123,6 +131,12 @@ FUNCTION real SQUARE_ROOT(real value)
 FUNCTION real LOAD_REAL(const float *array)
 {
     real value;
+    memcpy(&value, array, sizeof value);
+    return value;
+}
+FUNCTION whole LOAD_WHOLE(const int32_t *array)
+{
+    whole value;
     memcpy(&value, array, sizeof value);
     return value;
 }
@@ -167,6 +181,24 @@ FUNCTION RECORD_WORD count_lanes(mask m)
     for (int lane = 0; lane < WIDTH; lane++)
         count += lanes[lane] != 0;
     return count;
+}
+
+/* Bit i is lane i of the mask. */
+FUNCTION RECORD_WORD lane_bits(mask m)
+{
+    RECORD_WORD lanes[WIDTH];
+    const word bits = AS_WORD(m) & (SPLAT_WORD(1) << LANE_NUMBERS);
+    STORE_WHOLE(bits, lanes);
+    RECORD_WORD all = 0;
+    for (int lane = 0; lane < WIDTH; lane++)
+        all |= lanes[lane];
+    return all;
+}
+
+/* Number of the lowest bit that is set; bits: not 0. */
+FUNCTION int lowest_bit(RECORD_WORD bits)
+{
+    return LOWEST_BIT(bits);
 }
 
 #endif
