@@ -5,7 +5,7 @@
 #ifndef SONJECT_KERNELS_MESH_H
 #define SONJECT_KERNELS_MESH_H
 
-#include "mesh_alone.h"
+#include "mesh_beam.h"
 
 /* So many rays or fewer walk alone. A packet of one is alone from the start. */
 #define MESH_ALONE (WIDTH * 3 / 8)
@@ -33,32 +33,6 @@ struct mesh_stack {
     real entry[MESH_STACK]; /* distance to its box, FAR_AWAY for rays that miss it */
     int count;
 };
-
-/* Which way the rays of a packet run. */
-struct mesh_heading {
-    int downward[3]; /* the first one's: down x, y, z. Members are then visited from the upper end,
-                        which is only a matter of speed */
-    int is_common;   /* all rays run as the first does */
-};
-
-/* 0 or 1: the first ray runs down the axis. Clears *is_common unless all do as it. */
-FUNCTION int runs_downward(real inverse, int *is_common)
-{
-    const RECORD_WORD all = ((1u << (WIDTH - 1)) - 1u) * 2u + 1u;
-    const RECORD_WORD downward = lane_bits(MASK_OF(inverse < 0.0f));
-    *is_common &= downward == 0u || downward == all;
-    return (int)(downward & 1u);
-}
-
-FUNCTION struct mesh_heading mesh_heading_of(const struct mesh_ray *ray)
-{
-    struct mesh_heading heading;
-    heading.is_common = 1;
-    heading.downward[0] = runs_downward(ray->inverse.x, &heading.is_common);
-    heading.downward[1] = runs_downward(ray->inverse.y, &heading.is_common);
-    heading.downward[2] = runs_downward(ray->inverse.z, &heading.is_common);
-    return heading;
-}
 
 FUNCTION struct vector3 splat_point(float x, float y, float z)
 {
@@ -109,18 +83,17 @@ FUNCTION real child_entry(const struct mesh_ray *ray, const struct mesh_heading 
     return packet_entry(ray, heading, &box, maximum);
 }
 
-/* Puts the group's children that some ray may meet on the stack, the farthest first. */
+/* Puts those of the group's children on the stack that some ray may meet, the farthest first. set:
+ * bits of the slots to be tested. */
 FUNCTION void open_group(const struct mesh_ray *ray, const struct mesh_heading *heading,
-                         GLOBAL const struct mesh_branch *branch, int group, real maximum,
-                         struct mesh_stack *stack)
+                         GLOBAL const struct mesh_branch *branch, int group, RECORD_WORD set,
+                         real maximum, struct mesh_stack *stack)
 {
-    const int children = branch->children[group];
-    if (children > 1 &&
-        !ANY(MASK_OF(group_entry(ray, heading, &branch->groups, group, maximum) < FAR_AWAY)))
-        return;
     const int step = heading->downward[branch->axes >> 2 * group & 3] ? 1 : -1;
-    int slot = group * MESH_GROUP + (step > 0 ? 0 : children - 1);
-    for (int k = 0; k < children; k++, slot += step) {
+    int slot = group * MESH_GROUP + (step > 0 ? 0 : MESH_GROUP - 1);
+    for (int k = 0; k < MESH_GROUP; k++, slot += step) {
+        if ((set >> slot & 1u) == 0)
+            continue;
         const real entry = child_entry(ray, heading, branch, slot, maximum);
         if (ANY(MASK_OF(entry < FAR_AWAY))) {
             stack->child[stack->count] = branch->child[slot];
@@ -129,15 +102,32 @@ FUNCTION void open_group(const struct mesh_ray *ray, const struct mesh_heading *
     }
 }
 
-FUNCTION void open_branch(const struct mesh_ray *ray, const struct mesh_heading *heading,
-                          GLOBAL const struct mesh_branch *branch, real maximum,
-                          struct mesh_stack *stack)
+/* The slots of a group that are to be tested: all that are filled, if some ray may meet its box. */
+FUNCTION RECORD_WORD group_slots(const struct mesh_ray *ray, const struct mesh_heading *heading,
+                                 GLOBAL const struct mesh_branch *branch, int group, real maximum)
 {
+    const int children = branch->children[group];
+    if (children > 1 &&
+        !ANY(MASK_OF(group_entry(ray, heading, &branch->groups, group, maximum) < FAR_AWAY)))
+        return 0;
+    return ((1u << children) - 1u) << group * MESH_GROUP;
+}
+
+FUNCTION void open_branch(const struct mesh_ray *ray, const struct mesh_heading *heading,
+                          const struct mesh_beam *beam, GLOBAL const struct mesh_branch *branch,
+                          real maximum, struct mesh_stack *stack)
+{
+    const int is_beam = WIDTH > 1 && heading->is_common;
+    const RECORD_WORD met = is_beam ? beam_meets(beam, heading, branch) : 0;
     const int step = heading->downward[branch->axes >> 2 * MESH_GROUPS & 3] ? 1 : -1;
     int group = step > 0 ? 0 : MESH_GROUPS - 1;
-    for (int k = 0; k < MESH_GROUPS; k++, group += step)
-        if (branch->children[group] > 0)
-            open_group(ray, heading, branch, group, maximum, stack);
+    for (int k = 0; k < MESH_GROUPS; k++, group += step) {
+        const RECORD_WORD slots = (1u << MESH_GROUP) - 1u;
+        const RECORD_WORD set = is_beam ? met & slots << group * MESH_GROUP
+                                        : group_slots(ray, heading, branch, group, maximum);
+        if (set != 0)
+            open_group(ray, heading, branch, group, set, maximum, stack);
+    }
 }
 
 /* Tests one triangle. `is_any`: a ray that met something is done, and needs no distance. */
@@ -209,6 +199,9 @@ FUNCTION struct mesh_hit walk_mesh(struct mesh_view mesh, struct vector3 point,
 {
     const struct mesh_ray ray = mesh_ray_of(point, direction, minimum);
     const struct mesh_heading heading = mesh_heading_of(&ray);
+    struct mesh_beam beam;
+    if (WIDTH > 1 && heading.is_common)
+        beam = mesh_beam_of(&ray, &heading);
     struct mesh_hit hit;
     hit.distance = maximum;
     hit.triangle = SPLAT_WHOLE(-1);
@@ -216,7 +209,7 @@ FUNCTION struct mesh_hit walk_mesh(struct mesh_view mesh, struct vector3 point,
     int has_lanes = 0;
     struct mesh_stack stack;
     stack.count = 0;
-    open_branch(&ray, &heading, mesh.branches, maximum, &stack);
+    open_branch(&ray, &heading, &beam, mesh.branches, maximum, &stack);
     while (stack.count > 0) {
         stack.count--;
         const int child = stack.child[stack.count];
@@ -229,7 +222,7 @@ FUNCTION struct mesh_hit walk_mesh(struct mesh_view mesh, struct vector3 point,
             has_lanes = 1;
             walk_each_alone(mesh, &lanes, child, set, is_any, &hit);
         } else if (child >= 0) {
-            open_branch(&ray, &heading, &mesh.branches[child], hit.distance, &stack);
+            open_branch(&ray, &heading, &beam, &mesh.branches[child], hit.distance, &stack);
         } else {
             test_leaf(&ray, &heading, &mesh.leaves[~child], ~child * MESH_SLOTS, is_any, &hit);
         }

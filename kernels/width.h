@@ -34,6 +34,7 @@ typedef int mask;
 #define LOAD_REAL(array)          ((array)[0])
 #define LOAD_WHOLE(array)         ((array)[0])
 #define LANE_NUMBERS              0u
+#define LANE_FLAGS                1
 #else
 typedef JOIN(float, WIDTH) real;
 typedef JOIN(int, WIDTH) whole;
@@ -51,10 +52,14 @@ typedef JOIN(int, WIDTH) mask;
 #define LOAD_WHOLE(array)         JOIN(vload, WIDTH)(0, array)
 #if WIDTH == 4
 #define LANE_NUMBERS ((word)(0, 1, 2, 3))
+#define LANE_FLAGS   ((mask)(1, 2, 4, 8))
 #elif WIDTH == 8
 #define LANE_NUMBERS ((word)(0, 1, 2, 3, 4, 5, 6, 7))
+#define LANE_FLAGS   ((mask)(1, 2, 4, 8, 16, 32, 64, 128))
 #else
 #define LANE_NUMBERS ((word)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#define LANE_FLAGS                                                                                 \
+    ((mask)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768))
 #endif
 #endif
 #define LOWEST_BIT(bits)   (31 - (int)clz((bits) & (0u - (bits))))
@@ -63,7 +68,26 @@ typedef JOIN(int, WIDTH) mask;
 #define SPLAT_WHOLE(value) ((whole)(value))
 #define SQUARE_ROOT(value) sqrt(value)
 #define CHOOSE(m, yes, no) select(no, yes, m)
-#define ANY(m)             any(m)
+#if WIDTH == 1
+#define ANY(m)   any(m)
+#define UNION(m) ((RECORD_WORD)(m))
+#else
+/* What all lanes hold together; by halves, since PoCL's any() and loops over lanes take longer. */
+FUNCTION RECORD_WORD UNION(mask m)
+{
+#if WIDTH == 16
+    const int8 eight = m.lo | m.hi;
+    const int4 four = eight.lo | eight.hi;
+#elif WIDTH == 8
+    const int4 four = m.lo | m.hi;
+#else
+    const int4 four = m;
+#endif
+    const int2 two = four.lo | four.hi;
+    return as_uint(two.x | two.y);
+}
+#define ANY(m) (UNION(m) != 0u)
+#endif
 
 #else /* plain C */
 
@@ -101,11 +125,13 @@ FUNCTION float AS_REAL(int32_t bits)
 #define SQUARE_ROOT(value)        sqrtf(value)
 #define CHOOSE(m, yes, no)        ((m) ? (yes) : (no))
 #define ANY(m)                    ((m) != 0)
+#define UNION(m)                  ((RECORD_WORD)(m))
 #define STORE_REAL(value, array)  ((array)[0] = (value))
 #define STORE_WHOLE(value, array) ((array)[0] = (value))
 #define LOAD_REAL(array)          ((array)[0])
 #define LOAD_WHOLE(array)         ((array)[0])
 #define LANE_NUMBERS              0u
+#define LANE_FLAGS                1
 #else
 typedef float real __attribute__((vector_size(4 * WIDTH)));
 typedef int32_t whole __attribute__((vector_size(4 * WIDTH)));
@@ -140,16 +166,19 @@ FUNCTION whole LOAD_WHOLE(const int32_t *array)
     memcpy(&value, array, sizeof value);
     return value;
 }
-FUNCTION int ANY(mask m)
+FUNCTION uint32_t UNION(mask m)
 {
-    int32_t some = 0;
+    int32_t all = 0;
     for (int lane = 0; lane < WIDTH; lane++)
-        some |= m[lane];
-    return some != 0;
+        all |= m[lane];
+    return (uint32_t)all;
 }
+#define ANY(m)                    (UNION(m) != 0)
 #define STORE_REAL(value, array)  memcpy(array, &(value), sizeof(real))
 #define STORE_WHOLE(value, array) memcpy(array, &(value), sizeof(whole))
 #define LANE_NUMBERS              ((word){0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15})
+#define LANE_FLAGS                                                                                 \
+    ((mask){1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768})
 #endif
 
 #endif
@@ -186,13 +215,7 @@ FUNCTION RECORD_WORD count_lanes(mask m)
 /* Bit i is lane i of the mask. */
 FUNCTION RECORD_WORD lane_bits(mask m)
 {
-    RECORD_WORD lanes[WIDTH];
-    const word bits = AS_WORD(m) & (SPLAT_WORD(1) << LANE_NUMBERS);
-    STORE_WHOLE(bits, lanes);
-    RECORD_WORD all = 0;
-    for (int lane = 0; lane < WIDTH; lane++)
-        all |= lanes[lane];
-    return all;
+    return UNION(m & LANE_FLAGS);
 }
 
 /* Number of the lowest bit that is set; bits: not 0. */
