@@ -282,26 +282,47 @@ static void test_strewn_triangles(void **state)
     clear_flight(&flight);
 }
 
-/* From inside a closed mesh every ray meets it, also one aimed exactly at a corner or an edge. */
-static void look_out(const struct mesh *mesh, const double inside[3], struct flight *flight)
+/* A point on a triangle's edge, or its corner; which one goes by the ray's number. */
+static void choose_target(const struct mesh *mesh, uint32_t ray, double target[3])
 {
-    for (uint32_t ray = 0; ray < flight->rays; ray++) {
-        const size_t triangle = ray % mesh->triangle_count;
-        const float *a = &mesh->vertices[3 * (size_t)mesh->corners[3 * triangle + ray % 3]];
-        const float *b = &mesh->vertices[3 * (size_t)mesh->corners[3 * triangle + (ray + 1) % 3]];
-        const double share = ray % 7 < 3 ? 0.0 : sample_uniform(0.0, 1.0);
-        double to[3];
-        for (int axis = 0; axis < 3; axis++)
-            to[axis] = (1.0 - share) * (double)a[axis] + share * (double)b[axis];
-        set_ray_to(flight, ray, inside, to, 1e6);
-    }
+    const size_t first = 3 * (ray % mesh->triangle_count);
+    const float *a = &mesh->vertices[3 * (size_t)mesh->corners[first + ray % 3]];
+    const float *b = &mesh->vertices[3 * (size_t)mesh->corners[first + (ray + 1) % 3]];
+    const double share = ray % 7 < 3 ? 0.0 : sample_uniform(0.0, 1.0);
+    for (int axis = 0; axis < 3; axis++)
+        target[axis] = (1.0 - share) * (double)a[axis] + share * (double)b[axis];
+}
+
+static void expect_all_met(const struct mesh *mesh, struct flight *flight, const char *way)
+{
     ask(mesh, flight);
     for (uint32_t ray = 0; ray < flight->rays; ray++) {
-        if (triangle_of(flight, ray) < 0)
-            fail_msg("ray %u slips through triangle %u", (unsigned)ray,
+        if (triangle_of(flight, ray) < 0 || !is_blocked(flight, ray))
+            fail_msg("%s: ray %u slips through triangle %u", way, (unsigned)ray,
                      (unsigned)(ray % mesh->triangle_count));
-        assert_true(is_blocked(flight, ray));
     }
+}
+
+/* Between a point inside a closed mesh and one outside every ray meets it, also one that is aimed
+ * exactly at a corner or an edge. */
+static void cross_surface(const struct mesh *mesh, const double inside[3], struct flight *flight)
+{
+    double target[3], outside[3];
+    for (uint32_t ray = 0; ray < flight->rays; ray++) {
+        choose_target(mesh, ray, target);
+        set_ray_to(flight, ray, inside, target, 1e6);
+    }
+    expect_all_met(mesh, flight, "out");
+    for (uint32_t ray = 0; ray < flight->rays; ray++) {
+        double square = 0.0;
+        choose_target(mesh, ray, target);
+        for (int axis = 0; axis < 3; axis++)
+            square += (target[axis] - inside[axis]) * (target[axis] - inside[axis]);
+        for (int axis = 0; axis < 3; axis++)
+            outside[axis] = inside[axis] + 4.0 * (target[axis] - inside[axis]) / sqrt(square);
+        set_ray_to(flight, ray, outside, target, 4.0);
+    }
+    expect_all_met(mesh, flight, "in");
 }
 
 static void test_no_leaks(void **state)
@@ -315,12 +336,12 @@ static void test_no_leaks(void **state)
     for (size_t i = 0; i < 4; i++) {
         sample_sphere(&sample, 4);
         prepare(&sample, 0.0, &mesh);
-        look_out(&mesh, middles[i], &flight);
+        cross_surface(&mesh, middles[i], &flight);
         mesh_clear(&mesh);
         sample_clear(&sample);
         sample_box(&sample);
         prepare(&sample, 0.0, &mesh);
-        look_out(&mesh, middles[i], &flight);
+        cross_surface(&mesh, middles[i], &flight);
         mesh_clear(&mesh);
         sample_clear(&sample);
     }
@@ -329,7 +350,7 @@ static void test_no_leaks(void **state)
     for (int i = 0; i < 8; i++) {
         const double angle = sample_uniform(-PI, PI);
         const double inside[3] = {0.65 * cos(angle), 0.65 * sin(angle), 0.0};
-        look_out(&mesh, inside, &flight);
+        cross_surface(&mesh, inside, &flight);
     }
     mesh_clear(&mesh);
     sample_clear(&sample);
@@ -446,6 +467,90 @@ static void test_terminator(void **state)
     sample_clear(&sample);
 }
 
+/* Sets rays from what the flight met (lifted, or on the facets) along directions that the smooth
+ * normal faces and the facet does not; those of rays without such a direction go nowhere. Returns
+ * how many are set. */
+static uint32_t lay_shadow_rays(const struct flight *flight, enum probe_output start,
+                                const struct flight *shadows)
+{
+    uint32_t count = 0;
+    for (uint32_t ray = 0; ray < flight->rays; ray++) {
+        double n[3], f[3], from[3], way[3], along = 0.0, length = 0.0, facing = 0.0;
+        const float *met = flight->output + ray;
+        static const double nowhere[3] = {50.0, 0.0, 0.0}, up[3] = {0.0, 0.0, 1.0};
+        set_ray(shadows, ray, nowhere, up, 1.0);
+        for (uint32_t axis = 0; axis < 3; axis++) {
+            n[axis] = (double)met[(PROBE_SMOOTH + axis) * flight->rays];
+            f[axis] = (double)met[(PROBE_FACET + axis) * flight->rays];
+            from[axis] = (double)met[((uint32_t)start + axis) * flight->rays] + 2e-5 * f[axis];
+            along += n[axis] * f[axis];
+        }
+        /* nearly across the smooth normal, on the side where the facet turns away */
+        for (int axis = 0; axis < 3; axis++) {
+            way[axis] = n[axis] * along - f[axis];
+            length += way[axis] * way[axis];
+        }
+        if (triangle_of(flight, ray) < 0 || length < 1e-6)
+            continue;
+        for (int axis = 0; axis < 3; axis++) {
+            way[axis] = way[axis] / sqrt(length) + 0.05 * n[axis];
+            facing += way[axis] * f[axis];
+        }
+        if (facing > -0.01)
+            continue;
+        for (int axis = 0; axis < 3; axis++)
+            way[axis] /= sqrt(1.0 + 0.05 * 0.05);
+        set_ray(shadows, ray, from, way, 1e6);
+        count++;
+    }
+    return count;
+}
+
+/* A sphere of facets lets sound past wherever the smooth surface does, if it starts lifted. */
+static void test_shadows_of_facets(void **state)
+{
+    (void)state;
+    struct mesh_sample sample;
+    struct mesh mesh;
+    struct flight flight = make_flight(RAYS);
+    struct flight shadows = make_flight(RAYS);
+    uint32_t blocked[2] = {0, 0};
+    uint32_t count = 0;
+    sample_sphere(&sample, 3);
+    prepare(&sample, 1.5, &mesh);
+    lay_chords(&flight);
+    ask(&mesh, &flight);
+    for (int is_lifted = 0; is_lifted < 2; is_lifted++) {
+        count = lay_shadow_rays(&flight, is_lifted ? PROBE_LIFTED : PROBE_HIT, &shadows);
+        ask(&mesh, &shadows);
+        for (uint32_t ray = 0; ray < RAYS; ray++)
+            blocked[is_lifted] += (uint32_t)is_blocked(&shadows, ray);
+    }
+    print_message("%u shadow rays, blocked %u from facets, %u lifted\n", (unsigned)count,
+                  (unsigned)blocked[0], (unsigned)blocked[1]);
+    assert_true(count > RAYS / 4);
+    assert_true(blocked[0] > count / 10 * 9); /* all but those that start at an edge */
+    assert_true(blocked[1] < count / 100);
+    clear_flight(&flight);
+    clear_flight(&shadows);
+    mesh_clear(&mesh);
+    sample_clear(&sample);
+}
+
+/* Half of the rays lie side by side, as in a fan; half are strewn. Some are aimed at corners, where
+ * several triangles are equally near. */
+static void lay_mixed(const struct mesh *mesh, const struct flight *flight)
+{
+    lay_chords(flight);
+    for (uint32_t ray = 0; ray < flight->rays / 2; ray++) {
+        const double from[3] = {20.0, -1.0 + 2.0 * (ray / 200) / 256.0, 5.0};
+        const double to[3] = {0.0, from[1], -1.1 + 2.2 * (ray % 200) / 200.0};
+        const float *corner = &mesh->vertices[3 * (size_t)(ray % mesh->vertex_count)];
+        const double exactly[3] = {(double)corner[0], (double)corner[1], (double)corner[2]};
+        set_ray_to(flight, ray, from, ray % 5 == 0 ? exactly : to, ray % 3 == 0 ? 20.0 : 1e6);
+    }
+}
+
 /* Rays with a reach: what lies beyond is not met, at it is. */
 static void test_reach(void **state)
 {
@@ -455,14 +560,15 @@ static void test_reach(void **state)
     struct flight flight = make_flight(RAYS);
     sample_ring(&sample, 100, 50);
     prepare(&sample, 0.0, &mesh);
-    lay_chords(&flight);
+    lay_mixed(&mesh, &flight);
     ask(&mesh, &flight);
     float *nearest = calloc(flight.rays, sizeof *nearest);
     assert_non_null(nearest);
     memcpy(nearest, flight.output, flight.rays * sizeof *nearest);
     float *maximum = flight.input + PROBE_MAXIMUM * flight.rays;
     for (uint32_t ray = 0; ray < flight.rays; ray++)
-        maximum[ray] = ray & 1 ? nearest[ray] : nextafterf(nearest[ray], -1e9f);
+        if (nearest[ray] < FAR_AWAY)
+            maximum[ray] = ray & 1 ? nearest[ray] : nextafterf(nearest[ray], -1e9f);
     ask(&mesh, &flight);
     for (uint32_t ray = 0; ray < flight.rays; ray++) {
         const int is_met = (ray & 1) != 0 && nearest[ray] < FAR_AWAY;
@@ -480,20 +586,6 @@ static void test_reach(void **state)
     clear_flight(&flight);
     mesh_clear(&mesh);
     sample_clear(&sample);
-}
-
-/* Half of the rays lie side by side, as in a fan; half are strewn. Some are aimed at corners, where
- * several triangles are equally near. */
-static void lay_mixed(const struct mesh *mesh, const struct flight *flight)
-{
-    lay_chords(flight);
-    for (uint32_t ray = 0; ray < flight->rays / 2; ray++) {
-        const double from[3] = {20.0, -1.0 + 2.0 * (ray / 200) / 256.0, 5.0};
-        const double to[3] = {0.0, from[1], -1.1 + 2.2 * (ray % 200) / 200.0};
-        const float *corner = &mesh->vertices[3 * (size_t)(ray % mesh->vertex_count)];
-        const double exactly[3] = {(double)corner[0], (double)corner[1], (double)corner[2]};
-        set_ray_to(flight, ray, from, ray % 5 == 0 ? exactly : to, ray % 3 == 0 ? 20.0 : 1e6);
-    }
 }
 
 static void expect_same(const char *what, const struct flight *flight, const float *expected)
@@ -588,8 +680,9 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_closed_meshes), cmocka_unit_test(test_strewn_triangles),
         cmocka_unit_test(test_no_leaks),      cmocka_unit_test(test_sphere),
-        cmocka_unit_test(test_terminator),    cmocka_unit_test(test_reach),
-        cmocka_unit_test(test_bits),          cmocka_unit_test(test_company),
+        cmocka_unit_test(test_terminator),    cmocka_unit_test(test_shadows_of_facets),
+        cmocka_unit_test(test_reach),         cmocka_unit_test(test_bits),
+        cmocka_unit_test(test_company),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
