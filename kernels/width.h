@@ -33,7 +33,9 @@ typedef int mask;
 #define STORE_REAL(value, array)  ((array)[0] = (value))
 #define STORE_WHOLE(value, array) ((array)[0] = (value))
 #define LOAD_REAL(array)          ((array)[0])
+#define LOAD_WHOLE(array)         ((array)[0])
 #define LANE_NUMBERS              0u
+#define LANE_FLAGS                1
 #else
 typedef JOIN(float, WIDTH) real;
 typedef JOIN(int, WIDTH) whole;
@@ -48,19 +50,45 @@ typedef JOIN(int, WIDTH) mask;
 #define STORE_REAL(value, array)  JOIN(vstore, WIDTH)(value, 0, array)
 #define STORE_WHOLE(value, array) JOIN(vstore, WIDTH)(value, 0, array)
 #define LOAD_REAL(array)          JOIN(vload, WIDTH)(0, array)
+#define LOAD_WHOLE(array)         JOIN(vload, WIDTH)(0, array)
 #if WIDTH == 4
 #define LANE_NUMBERS ((word)(0, 1, 2, 3))
+#define LANE_FLAGS   ((mask)(1, 2, 4, 8))
 #elif WIDTH == 8
 #define LANE_NUMBERS ((word)(0, 1, 2, 3, 4, 5, 6, 7))
+#define LANE_FLAGS   ((mask)(1, 2, 4, 8, 16, 32, 64, 128))
 #else
 #define LANE_NUMBERS ((word)(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15))
+#define LANE_FLAGS                                                                                 \
+    ((mask)(1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768))
 #endif
 #endif
+#define LOWEST_BIT(bits)   (31 - (int)clz((bits) & (0u - (bits))))
 #define SPLAT(value)       ((real)(value))
 #define SPLAT_WORD(value)  ((word)(value))
+#define SPLAT_WHOLE(value) ((whole)(value))
 #define SQUARE_ROOT(value) sqrt(value)
 #define CHOOSE(m, yes, no) select(no, yes, m)
-#define ANY(m)             any(m)
+#if WIDTH == 1
+#define ANY(m)   any(m)
+#define UNION(m) ((RECORD_WORD)(m))
+#else
+/* What all lanes hold together; by halves, since PoCL's any() and loops over lanes take longer. */
+FUNCTION RECORD_WORD UNION(mask m)
+{
+#if WIDTH == 16
+    const int8 eight = m.lo | m.hi;
+    const int4 four = eight.lo | eight.hi;
+#elif WIDTH == 8
+    const int4 four = m.lo | m.hi;
+#else
+    const int4 four = m;
+#endif
+    const int2 two = four.lo | four.hi;
+    return as_uint(two.x | two.y);
+}
+#define ANY(m) (UNION(m) != 0u)
+#endif
 
 #else /* plain C */
 
@@ -75,6 +103,7 @@ typedef JOIN(int, WIDTH) mask;
 #define APART static inline
 #endif
 #define GLOBAL
+#define LOWEST_BIT(bits) __builtin_ctz(bits)
 #if WIDTH == 1
 typedef float real;
 typedef int32_t whole;
@@ -98,13 +127,17 @@ FUNCTION float AS_REAL(int32_t bits)
 #define WHOLE_OF(value)           ((int32_t)(value))
 #define SPLAT(value)              ((real)(value))
 #define SPLAT_WORD(value)         ((word)(value))
+#define SPLAT_WHOLE(value)        ((whole)(value))
 #define SQUARE_ROOT(value)        sqrtf(value)
 #define CHOOSE(m, yes, no)        ((m) ? (yes) : (no))
 #define ANY(m)                    ((m) != 0)
+#define UNION(m)                  ((RECORD_WORD)(m))
 #define STORE_REAL(value, array)  ((array)[0] = (value))
 #define STORE_WHOLE(value, array) ((array)[0] = (value))
 #define LOAD_REAL(array)          ((array)[0])
+#define LOAD_WHOLE(array)         ((array)[0])
 #define LANE_NUMBERS              0u
+#define LANE_FLAGS                1
 #else
 typedef float real __attribute__((vector_size(4 * WIDTH)));
 typedef int32_t whole __attribute__((vector_size(4 * WIDTH)));
@@ -118,6 +151,7 @@ typedef int32_t mask __attribute__((vector_size(4 * WIDTH)));
 #define WHOLE_OF(value)           __builtin_convertvector(value, whole)
 #define SPLAT(value)              ((real){0} + (float)(value))
 #define SPLAT_WORD(value)         ((word){0} + (uint32_t)(value))
+#define SPLAT_WHOLE(value)        ((whole){0} + (int32_t)(value))
 FUNCTION real SQUARE_ROOT(real value)
 {
     real root;
@@ -132,16 +166,25 @@ FUNCTION real LOAD_REAL(const float *array)
     memcpy(&value, array, sizeof value);
     return value;
 }
-FUNCTION int ANY(mask m)
+FUNCTION whole LOAD_WHOLE(const int32_t *array)
 {
-    int32_t some = 0;
-    for (int lane = 0; lane < WIDTH; lane++)
-        some |= m[lane];
-    return some != 0;
+    whole value;
+    memcpy(&value, array, sizeof value);
+    return value;
 }
+FUNCTION uint32_t UNION(mask m)
+{
+    int32_t all = 0;
+    for (int lane = 0; lane < WIDTH; lane++)
+        all |= m[lane];
+    return (uint32_t)all;
+}
+#define ANY(m)                    (UNION(m) != 0)
 #define STORE_REAL(value, array)  memcpy(array, &(value), sizeof(real))
 #define STORE_WHOLE(value, array) memcpy(array, &(value), sizeof(whole))
 #define LANE_NUMBERS              ((word){0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15})
+#define LANE_FLAGS                                                                                 \
+    ((mask){1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768})
 #endif
 
 #endif
@@ -173,6 +216,18 @@ FUNCTION RECORD_WORD count_lanes(mask m)
     for (int lane = 0; lane < WIDTH; lane++)
         count += lanes[lane] != 0;
     return count;
+}
+
+/* Bit i is lane i of the mask. */
+FUNCTION RECORD_WORD lane_bits(mask m)
+{
+    return UNION(m & LANE_FLAGS);
+}
+
+/* Number of the lowest bit that is set; bits: not 0. */
+FUNCTION int lowest_bit(RECORD_WORD bits)
+{
+    return LOWEST_BIT(bits);
 }
 
 #endif

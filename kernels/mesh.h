@@ -1,0 +1,251 @@
+/* Where rays meet a triangle mesh. A packet of WIDTH rays walks the hierarchy together; a part that
+ * only few of them reach is walked by each alone. What is found is the nearest triangle, of equally
+ * near ones that of the lowest number, so the order of the walk and the company of a ray change
+ * nothing. */
+#ifndef SONJECT_KERNELS_MESH_H
+#define SONJECT_KERNELS_MESH_H
+
+#include "mesh_beam.h"
+
+/* So many rays or fewer walk alone. A packet of one is alone from the start. */
+#define MESH_ALONE (WIDTH * 3 / 8)
+
+FUNCTION struct mesh_view mesh_view_of(GLOBAL const struct mesh_record *mesh,
+                                       GLOBAL const struct mesh_branch *branches,
+                                       GLOBAL const struct mesh_leaf *leaves,
+                                       GLOBAL const struct mesh_corner_normals *normals)
+{
+    struct mesh_view view;
+    view.branches = branches + mesh->first_branch;
+    view.leaves = leaves + mesh->first_leaf;
+    view.normals = mesh->is_smooth ? normals + mesh->first_normals : 0;
+    return view;
+}
+
+struct mesh_hit {
+    real distance;  /* FAR_AWAY: none */
+    whole triangle; /* number, -1: none */
+};
+
+/* What is still to be visited. */
+struct mesh_stack {
+    int child[MESH_STACK];
+    real entry[MESH_STACK]; /* distance to its box, FAR_AWAY for rays that miss it */
+    int count;
+};
+
+FUNCTION struct vector3 splat_point(float x, float y, float z)
+{
+    struct vector3 point;
+    point.x = SPLAT(x);
+    point.y = SPLAT(y);
+    point.z = SPLAT(z);
+    return point;
+}
+
+/* Corners of a box; one value for all rays. */
+struct mesh_box {
+    float lower[3], upper[3];
+};
+
+FUNCTION real packet_entry(const struct mesh_ray *ray, const struct mesh_heading *heading,
+                           const struct mesh_box *box, real maximum)
+{
+    const struct vector3 lower = splat_point(box->lower[0], box->lower[1], box->lower[2]);
+    const struct vector3 upper = splat_point(box->upper[0], box->upper[1], box->upper[2]);
+    if (!heading->is_common)
+        return box_entry(ray, lower, upper, maximum);
+    const int *downward = heading->downward;
+    const struct vector3 first = splat_point(downward[0] ? box->upper[0] : box->lower[0],
+                                             downward[1] ? box->upper[1] : box->lower[1],
+                                             downward[2] ? box->upper[2] : box->lower[2]);
+    const struct vector3 last = splat_point(downward[0] ? box->lower[0] : box->upper[0],
+                                            downward[1] ? box->lower[1] : box->upper[1],
+                                            downward[2] ? box->lower[2] : box->upper[2]);
+    return entry_by_faces(ray, first, last, maximum);
+}
+
+FUNCTION real group_entry(const struct mesh_ray *ray, const struct mesh_heading *heading,
+                          GLOBAL const struct mesh_group_boxes *groups, int group, real maximum)
+{
+    const struct mesh_box box = {
+        {groups->lower_x[group], groups->lower_y[group], groups->lower_z[group]},
+        {groups->upper_x[group], groups->upper_y[group], groups->upper_z[group]}};
+    return packet_entry(ray, heading, &box, maximum);
+}
+
+FUNCTION real child_entry(const struct mesh_ray *ray, const struct mesh_heading *heading,
+                          GLOBAL const struct mesh_branch *branch, int slot, real maximum)
+{
+    const struct mesh_box box = {
+        {branch->lower_x[slot], branch->lower_y[slot], branch->lower_z[slot]},
+        {branch->upper_x[slot], branch->upper_y[slot], branch->upper_z[slot]}};
+    return packet_entry(ray, heading, &box, maximum);
+}
+
+/* Puts those of the group's children on the stack that some ray may meet, the farthest first. set:
+ * bits of the slots to be tested. */
+FUNCTION void open_group(const struct mesh_ray *ray, const struct mesh_heading *heading,
+                         GLOBAL const struct mesh_branch *branch, int group, RECORD_WORD set,
+                         real maximum, struct mesh_stack *stack)
+{
+    const int step = heading->downward[branch->axes >> 2 * group & 3] ? 1 : -1;
+    int slot = group * MESH_GROUP + (step > 0 ? 0 : MESH_GROUP - 1);
+    for (int k = 0; k < MESH_GROUP; k++, slot += step) {
+        if ((set >> slot & 1u) == 0)
+            continue;
+        const real entry = child_entry(ray, heading, branch, slot, maximum);
+        if (ANY(MASK_OF(entry < FAR_AWAY))) {
+            stack->child[stack->count] = branch->child[slot];
+            stack->entry[stack->count++] = entry;
+        }
+    }
+}
+
+/* The slots of a group that are to be tested: all that are filled, if some ray may meet its box. */
+FUNCTION RECORD_WORD group_slots(const struct mesh_ray *ray, const struct mesh_heading *heading,
+                                 GLOBAL const struct mesh_branch *branch, int group, real maximum)
+{
+    const int children = branch->children[group];
+    if (children > 1 &&
+        !ANY(MASK_OF(group_entry(ray, heading, &branch->groups, group, maximum) < FAR_AWAY)))
+        return 0;
+    return ((1u << children) - 1u) << group * MESH_GROUP;
+}
+
+FUNCTION void open_branch(const struct mesh_ray *ray, const struct mesh_heading *heading,
+                          const struct mesh_beam *beam, GLOBAL const struct mesh_branch *branch,
+                          real maximum, struct mesh_stack *stack)
+{
+    const int is_beam = WIDTH > 1 && heading->is_common;
+    const RECORD_WORD met = is_beam ? beam_meets(beam, heading, branch) : 0;
+    const int step = heading->downward[branch->axes >> 2 * MESH_GROUPS & 3] ? 1 : -1;
+    int group = step > 0 ? 0 : MESH_GROUPS - 1;
+    for (int k = 0; k < MESH_GROUPS; k++, group += step) {
+        const RECORD_WORD slots = (1u << MESH_GROUP) - 1u;
+        const RECORD_WORD set = is_beam ? met & slots << group * MESH_GROUP
+                                        : group_slots(ray, heading, branch, group, maximum);
+        if (set != 0)
+            open_group(ray, heading, branch, group, set, maximum, stack);
+    }
+}
+
+/* Tests one triangle. `is_any`: a ray that met something is done, and needs no distance. */
+FUNCTION void test_slot(const struct mesh_ray *ray, GLOBAL const struct mesh_leaf *leaf, int slot,
+                        int number, int is_any, struct mesh_hit *hit)
+{
+    struct mesh_corners corners;
+    real distance;
+    corners.a = splat_point(leaf->a_x[slot], leaf->a_y[slot], leaf->a_z[slot]);
+    corners.b = splat_point(leaf->b_x[slot], leaf->b_y[slot], leaf->b_z[slot]);
+    corners.c = splat_point(leaf->c_x[slot], leaf->c_y[slot], leaf->c_z[slot]);
+    mask is_nearest = meets_triangle(ray, &corners, &distance);
+    if (!ANY(is_nearest))
+        return;
+    is_nearest = is_nearest & MASK_OF(distance > ray->minimum) &
+                 (MASK_OF(distance < hit->distance) |
+                  (MASK_OF(distance == hit->distance) &
+                   (MASK_OF(hit->triangle < 0) | MASK_OF(hit->triangle > number))));
+    hit->distance = CHOOSE(is_nearest, is_any ? SPLAT(-FAR_AWAY) : distance, hit->distance);
+    hit->triangle = CHOOSE(is_nearest, SPLAT_WHOLE(number), hit->triangle);
+}
+
+FUNCTION void test_leaf(const struct mesh_ray *ray, const struct mesh_heading *heading,
+                        GLOBAL const struct mesh_leaf *leaf, int first_number, int is_any,
+                        struct mesh_hit *hit)
+{
+    for (int first = 0, group = 0; first < leaf->triangles; first += MESH_GROUP, group++) {
+        if (!ANY(
+                MASK_OF(group_entry(ray, heading, &leaf->groups, group, hit->distance) < FAR_AWAY)))
+            continue;
+        const int left = leaf->triangles - first;
+        const int last = first + (left < MESH_GROUP ? left : MESH_GROUP);
+        for (int slot = first; slot < last; slot++)
+            test_slot(ray, leaf, slot, first_number + slot, is_any, hit);
+    }
+}
+
+FUNCTION int has_at_most(RECORD_WORD set, int count)
+{
+    for (int i = 0; i < count; i++)
+        set &= set - 1; /* 0 stays 0 */
+    return set == 0;
+}
+
+/* Visits a child with each ray of the set by itself. */
+FUNCTION void walk_each_alone(struct mesh_view mesh, const struct mesh_ray_lanes *lanes, int child,
+                              RECORD_WORD set, int is_any, struct mesh_hit *hit)
+{
+    float distances[WIDTH];
+    int triangles[WIDTH];
+    STORE_REAL(hit->distance, distances);
+    STORE_WHOLE(hit->triangle, triangles);
+    for (; set != 0; set &= set - 1) {
+        const int lane = lowest_bit(set);
+        struct lone_hit alone;
+        alone.distance = distances[lane];
+        alone.triangle = triangles[lane];
+        walk_alone(mesh, lanes, lane, child, is_any, &alone);
+        distances[lane] = is_any && alone.triangle >= 0 ? -FAR_AWAY : alone.distance;
+        triangles[lane] = alone.triangle;
+    }
+    hit->distance = LOAD_REAL(distances);
+    hit->triangle = LOAD_WHOLE(triangles);
+}
+
+/* Walks the hierarchy from the root. */
+FUNCTION struct mesh_hit walk_mesh(struct mesh_view mesh, struct vector3 point,
+                                   struct vector3 direction, real minimum, real maximum, int is_any)
+{
+    const struct mesh_ray ray = mesh_ray_of(point, direction, minimum);
+    const struct mesh_heading heading = mesh_heading_of(&ray);
+    struct mesh_beam beam;
+    if (WIDTH > 1 && heading.is_common)
+        beam = mesh_beam_of(&ray, &heading);
+    struct mesh_hit hit;
+    hit.distance = maximum;
+    hit.triangle = SPLAT_WHOLE(-1);
+    struct mesh_ray_lanes lanes;
+    int has_lanes = 0;
+    struct mesh_stack stack;
+    stack.count = 0;
+    open_branch(&ray, &heading, &beam, mesh.branches, maximum, &stack);
+    while (stack.count > 0) {
+        stack.count--;
+        const int child = stack.child[stack.count];
+        const RECORD_WORD set = lane_bits(MASK_OF(stack.entry[stack.count] <= hit.distance));
+        if (set == 0)
+            continue;
+        if (MESH_ALONE > 0 && has_at_most(set, MESH_ALONE)) {
+            if (!has_lanes)
+                store_mesh_ray(&ray, &lanes);
+            has_lanes = 1;
+            walk_each_alone(mesh, &lanes, child, set, is_any, &hit);
+        } else if (child >= 0) {
+            open_branch(&ray, &heading, &beam, &mesh.branches[child], hit.distance, &stack);
+        } else {
+            test_leaf(&ray, &heading, &mesh.leaves[~child], ~child * MESH_SLOTS, is_any, &hit);
+        }
+    }
+    return hit;
+}
+
+/* The nearest triangle beyond `minimum` and not beyond `maximum`, both counted from `point`, which
+ * is the rays' closest approach to the frame's origin. direction: unit. */
+FUNCTION struct mesh_hit mesh_nearest_hit(struct mesh_view mesh, struct vector3 point,
+                                          struct vector3 direction, real minimum, real maximum)
+{
+    struct mesh_hit hit = walk_mesh(mesh, point, direction, minimum, maximum, 0);
+    hit.distance = CHOOSE(MASK_OF(hit.triangle >= 0), hit.distance, SPLAT(FAR_AWAY));
+    return hit;
+}
+
+/* Whether anything is met beyond `minimum` and not beyond `maximum`. A ray whose maximum is below
+ * its minimum is not followed. */
+FUNCTION mask mesh_is_in_the_way(struct mesh_view mesh, struct vector3 point,
+                                 struct vector3 direction, real minimum, real maximum)
+{
+    return MASK_OF(walk_mesh(mesh, point, direction, minimum, maximum, 1).triangle >= 0);
+}
+
+#endif

@@ -1,0 +1,169 @@
+/* One ray's walk through part of a mesh's hierarchy, with a child or a triangle in each lane. */
+#ifndef SONJECT_KERNELS_MESH_ALONE_H
+#define SONJECT_KERNELS_MESH_ALONE_H
+
+#include "mesh_ray.h"
+
+#define MESH_STACK (MESH_LEVELS * (MESH_SLOTS - 1) + 1)
+
+/* The arrays of one mesh. */
+struct mesh_view {
+    GLOBAL const struct mesh_branch *branches;
+    GLOBAL const struct mesh_leaf *leaves;
+    GLOBAL const struct mesh_corner_normals *normals; /* 0: flat facets */
+};
+
+/* The values of all lanes of a packet, to be taken one by one. */
+struct mesh_ray_lanes {
+    float point[3][WIDTH], direction[3][WIDTH], inverse[3][WIDTH];
+    float across[3][WIDTH], upward[3][WIDTH], seen[3][WIDTH];
+    float minimum[WIDTH];
+};
+
+FUNCTION void store_vector3(struct vector3 v, float lanes[3][WIDTH])
+{
+    STORE_REAL(v.x, lanes[0]);
+    STORE_REAL(v.y, lanes[1]);
+    STORE_REAL(v.z, lanes[2]);
+}
+
+FUNCTION struct vector3 splat_vector3(const float lanes[3][WIDTH], int lane)
+{
+    struct vector3 v;
+    v.x = SPLAT(lanes[0][lane]);
+    v.y = SPLAT(lanes[1][lane]);
+    v.z = SPLAT(lanes[2][lane]);
+    return v;
+}
+
+FUNCTION struct vector3 load_lanes3(float lanes[3][WIDTH])
+{
+    struct vector3 v;
+    v.x = LOAD_REAL(lanes[0]);
+    v.y = LOAD_REAL(lanes[1]);
+    v.z = LOAD_REAL(lanes[2]);
+    return v;
+}
+
+FUNCTION void store_mesh_ray(const struct mesh_ray *ray, struct mesh_ray_lanes *lanes)
+{
+    store_vector3(ray->point, lanes->point);
+    store_vector3(ray->direction, lanes->direction);
+    store_vector3(ray->inverse, lanes->inverse);
+    store_vector3(ray->across, lanes->across);
+    store_vector3(ray->upward, lanes->upward);
+    store_vector3(ray->seen, lanes->seen);
+    STORE_REAL(ray->minimum, lanes->minimum);
+}
+
+/* The same ray in every lane. */
+FUNCTION struct mesh_ray one_mesh_ray(const struct mesh_ray_lanes *lanes, int lane)
+{
+    struct mesh_ray ray;
+    ray.point = splat_vector3(lanes->point, lane);
+    ray.direction = splat_vector3(lanes->direction, lane);
+    ray.inverse = splat_vector3(lanes->inverse, lane);
+    ray.across = splat_vector3(lanes->across, lane);
+    ray.upward = splat_vector3(lanes->upward, lane);
+    ray.seen = splat_vector3(lanes->seen, lane);
+    ray.minimum = SPLAT(lanes->minimum[lane]);
+    return ray;
+}
+
+FUNCTION struct vector3 load_vector3(GLOBAL const float *x, GLOBAL const float *y,
+                                     GLOBAL const float *z, int slot)
+{
+    struct vector3 v;
+    v.x = LOAD_REAL(x + slot);
+    v.y = LOAD_REAL(y + slot);
+    v.z = LOAD_REAL(z + slot);
+    return v;
+}
+
+struct lone_hit {
+    float distance;
+    int triangle; /* -1: none */
+};
+
+/* Children to be visited, with the distances to their boxes. */
+struct lone_stack {
+    int child[MESH_STACK];
+    float entry[MESH_STACK];
+    int count;
+};
+
+FUNCTION void open_branch_alone(const struct mesh_ray *ray, GLOBAL const struct mesh_branch *branch,
+                                float maximum, struct lone_stack *stack)
+{
+    for (int first = 0; first < MESH_SLOTS; first += WIDTH) {
+        const real entry = box_entry(
+            ray, load_vector3(branch->lower_x, branch->lower_y, branch->lower_z, first),
+            load_vector3(branch->upper_x, branch->upper_y, branch->upper_z, first), SPLAT(maximum));
+        RECORD_WORD met = lane_bits(MASK_OF(entry < FAR_AWAY));
+        if (met == 0)
+            continue;
+        float entries[WIDTH];
+        STORE_REAL(entry, entries);
+        for (; met != 0; met &= met - 1) {
+            const int lane = lowest_bit(met);
+            stack->child[stack->count] = branch->child[first + lane];
+            stack->entry[stack->count++] = entries[lane];
+        }
+    }
+}
+
+FUNCTION void test_leaf_alone(const struct mesh_ray *ray, GLOBAL const struct mesh_leaf *leaf,
+                              int first_number, float minimum, struct lone_hit *hit)
+{
+    for (int first = 0; first < leaf->triangles; first += WIDTH) {
+        struct mesh_corners corners;
+        corners.a = load_vector3(leaf->a_x, leaf->a_y, leaf->a_z, first);
+        corners.b = load_vector3(leaf->b_x, leaf->b_y, leaf->b_z, first);
+        corners.c = load_vector3(leaf->c_x, leaf->c_y, leaf->c_z, first);
+        real distance;
+        RECORD_WORD met = lane_bits(meets_triangle(ray, &corners, &distance));
+        if (met == 0)
+            continue;
+        float distances[WIDTH];
+        STORE_REAL(distance, distances);
+        for (; met != 0; met &= met - 1) {
+            const int lane = lowest_bit(met);
+            const int number = first_number + first + lane;
+            const float at = distances[lane];
+            if (at > minimum &&
+                (at < hit->distance ||
+                 (at == hit->distance && (hit->triangle < 0 || number < hit->triangle)))) {
+                hit->distance = at;
+                hit->triangle = number;
+            }
+        }
+    }
+}
+
+/* Visits a child and all below it with the ray of one lane. `is_any`: the first hit found will do.
+ */
+FUNCTION void walk_alone(struct mesh_view mesh, const struct mesh_ray_lanes *lanes, int lane,
+                         int child, int is_any, struct lone_hit *hit)
+{
+    const struct mesh_ray ray = one_mesh_ray(lanes, lane);
+    struct lone_stack stack;
+    stack.count = 1;
+    stack.child[0] = child;
+    stack.entry[0] = -FAR_AWAY;
+    while (stack.count > 0) {
+        stack.count--;
+        if (stack.entry[stack.count] > hit->distance)
+            continue;
+        const int number = stack.child[stack.count];
+        if (number >= 0) {
+            open_branch_alone(&ray, &mesh.branches[number], hit->distance, &stack);
+            continue;
+        }
+        test_leaf_alone(&ray, &mesh.leaves[~number], ~number * MESH_SLOTS, lanes->minimum[lane],
+                        hit);
+        if (is_any && hit->triangle >= 0)
+            return;
+    }
+}
+
+#endif

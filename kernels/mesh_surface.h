@@ -1,0 +1,161 @@
+/* The surface of a mesh where rays meet it. */
+#ifndef SONJECT_KERNELS_MESH_SURFACE_H
+#define SONJECT_KERNELS_MESH_SURFACE_H
+
+#include "mesh.h"
+
+/* Smallest cosine between the smooth normal and the way back along a ray, unless the facet's own is
+ * smaller. */
+#define MESH_LEAST_COSINE 0.01f
+
+struct mesh_surface {
+    struct vector3 point;  /* on the facet, in the mesh's frame */
+    struct vector3 facet;  /* unit normal of the facet, outward */
+    struct vector3 smooth; /* unit normal of the smooth surface, outward; of a mesh without one, the
+                              facet's */
+    struct vector3 lifted; /* the point brought out of the facet onto the smooth surface, on the
+                              side that the ray came from: where rays that test visibility start, so
+                              that a facet's neighbours throw no shadows that the smooth surface
+                              would not */
+};
+
+/* Corners of each lane's triangle; of number -1 those of 0. */
+FUNCTION struct mesh_corners gather_corners(struct mesh_view mesh, const int *triangles)
+{
+    float a[3][WIDTH], b[3][WIDTH], c[3][WIDTH];
+    for (int lane = 0; lane < WIDTH; lane++) {
+        const int number = triangles[lane] < 0 ? 0 : triangles[lane];
+        GLOBAL const struct mesh_leaf *leaf = &mesh.leaves[number / MESH_SLOTS];
+        const int slot = number % MESH_SLOTS;
+        a[0][lane] = leaf->a_x[slot];
+        a[1][lane] = leaf->a_y[slot];
+        a[2][lane] = leaf->a_z[slot];
+        b[0][lane] = leaf->b_x[slot];
+        b[1][lane] = leaf->b_y[slot];
+        b[2][lane] = leaf->b_z[slot];
+        c[0][lane] = leaf->c_x[slot];
+        c[1][lane] = leaf->c_y[slot];
+        c[2][lane] = leaf->c_z[slot];
+    }
+    struct mesh_corners corners;
+    corners.a = load_lanes3(a);
+    corners.b = load_lanes3(b);
+    corners.c = load_lanes3(c);
+    return corners;
+}
+
+/* The smooth surface's normals there. */
+FUNCTION struct mesh_corners gather_normals(struct mesh_view mesh, const int *triangles)
+{
+    float a[3][WIDTH], b[3][WIDTH], c[3][WIDTH];
+    for (int lane = 0; lane < WIDTH; lane++) {
+        GLOBAL const struct mesh_corner_normals *normals =
+            &mesh.normals[triangles[lane] < 0 ? 0 : triangles[lane]];
+        for (int axis = 0; axis < 3; axis++) {
+            a[axis][lane] = normals->a[axis];
+            b[axis][lane] = normals->b[axis];
+            c[axis][lane] = normals->c[axis];
+        }
+    }
+    struct mesh_corners corners;
+    corners.a = load_lanes3(a);
+    corners.b = load_lanes3(b);
+    corners.c = load_lanes3(c);
+    return corners;
+}
+
+FUNCTION struct vector3 minus3(struct vector3 a, struct vector3 b)
+{
+    return along3(a, b, SPLAT(-1.0f));
+}
+
+/* Unit vector along v, `otherwise` where v is 0. Divided by its largest component first, so that
+ * squares neither vanish nor overflow. */
+FUNCTION struct vector3 unit3(struct vector3 v, struct vector3 otherwise)
+{
+    const real largest = larger(larger(magnitude(v.x), magnitude(v.y)), magnitude(v.z));
+    const mask is_some = MASK_OF(largest > 0.0f);
+    const real safe = CHOOSE(is_some, largest, SPLAT(1.0f));
+    v.x = v.x / safe;
+    v.y = v.y / safe;
+    v.z = v.z / safe;
+    const real length = SQUARE_ROOT(CHOOSE(is_some, dot3(v, v), SPLAT(1.0f)));
+    v.x = v.x / length;
+    v.y = v.y / length;
+    v.z = v.z / length;
+    return choose3(is_some, v, otherwise);
+}
+
+FUNCTION struct vector3 cross3(struct vector3 a, struct vector3 b)
+{
+    struct vector3 product;
+    product.x = a.y * b.z - a.z * b.y;
+    product.y = a.z * b.x - a.x * b.z;
+    product.z = a.x * b.y - a.y * b.x;
+    return product;
+}
+
+/* How far a point lies below the plane through a corner, square to its normal times side; >= 0. */
+FUNCTION real depth_below(struct vector3 point, struct vector3 corner, struct vector3 normal,
+                          real side)
+{
+    return larger(-side * dot3(minus3(point, corner), normal), SPLAT(0.0f));
+}
+
+/* Bends the normal towards the way back along the ray where it would show a side that the ray did
+ * not meet. */
+FUNCTION struct vector3 bend_to_ray(struct vector3 normal, struct vector3 facet,
+                                    struct vector3 direction, real side)
+{
+    const real facet_cosine = -side * dot3(facet, direction);
+    const real least = smaller(SPLAT(MESH_LEAST_COSINE), facet_cosine);
+    const real lack = larger(least + side * dot3(normal, direction), SPLAT(0.0f));
+    return unit3(along3(normal, direction, -side * lack), facet);
+}
+
+/* Where rays with that closest approach to the frame's origin meet the triangles numbered by `hit`;
+ * lanes without a hit hold something finite. direction: unit. */
+FUNCTION struct mesh_surface mesh_surface_at(struct mesh_view mesh, struct vector3 point,
+                                             struct vector3 direction, whole triangle)
+{
+    int triangles[WIDTH];
+    STORE_WHOLE(triangle, triangles);
+    const struct mesh_ray ray = mesh_ray_of(point, direction, SPLAT(0.0f));
+    const struct mesh_corners corners = gather_corners(mesh, triangles);
+    struct mesh_corners seen;
+    seen.a = seen_along(&ray, corners.a);
+    seen.b = seen_along(&ray, corners.b);
+    seen.c = seen_along(&ray, corners.c);
+    const struct vector3 edges = edge_functions(&seen);
+    const real sum = edges.x + edges.y + edges.z;
+    const mask is_met = MASK_OF(sum != 0.0f) & MASK_OF(triangle >= 0);
+    const real safe = CHOOSE(is_met, sum, SPLAT(1.0f));
+    const real a = CHOOSE(is_met, edges.x / safe, SPLAT(1.0f));
+    const real b = CHOOSE(is_met, edges.y / safe, SPLAT(0.0f));
+    const real c = CHOOSE(is_met, edges.z / safe, SPLAT(0.0f));
+    struct mesh_surface surface;
+    surface.point = combine3(corners.a, a, corners.b, b, corners.c, c);
+    surface.facet = unit3(cross3(minus3(corners.b, corners.a), minus3(corners.c, corners.a)),
+                          reversed3(direction));
+    surface.smooth = surface.facet;
+    surface.lifted = surface.point;
+    if (!mesh.normals)
+        return surface;
+    const struct mesh_corners normals = gather_normals(mesh, triangles);
+    const real side =
+        CHOOSE(MASK_OF(dot3(surface.facet, direction) > 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
+    const struct vector3 mixed =
+        unit3(combine3(normals.a, a, normals.b, b, normals.c, c), surface.facet);
+    const mask is_outward = MASK_OF(dot3(mixed, surface.facet) > 0.0f);
+    surface.smooth =
+        bend_to_ray(choose3(is_outward, mixed, surface.facet), surface.facet, direction, side);
+    /* onto the planes that touch the smooth surface at the corners, mixed as the normals are */
+    const struct vector3 lift =
+        combine3(normals.a, a * depth_below(surface.point, corners.a, normals.a, side), normals.b,
+                 b * depth_below(surface.point, corners.b, normals.b, side), normals.c,
+                 c * depth_below(surface.point, corners.c, normals.c, side));
+    surface.lifted = along3(surface.point, lift, side);
+    return surface;
+}
+
+#endif

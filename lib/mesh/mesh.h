@@ -1,0 +1,66 @@
+/* A triangle mesh, ready to be traced. */
+#ifndef SONJECT_MESH_MESH_H
+#define SONJECT_MESH_MESH_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "mesh/hierarchy.h"
+#include "mesh/topology.h"
+
+/* How a file's numbers are meant. */
+struct mesh_options {
+    double unit_m; /* m a unit of the file, > 0; default 1 */
+    /* Which axis of the file the object's x (nose), y and z axis is: 1, 2, 3, negative: the reverse
+     * of it. Together a rotation, not a mirror. Default 1, 2, 3; a file whose y axis is up and
+     * whose nose is x: 1, -3, 2. */
+    int axes[3];
+    double smooth_angle_rad; /* facets that meet at less stand for one smooth surface; 0 (default):
+                                all facets are flat */
+};
+
+struct mesh {
+    /* In the object's axes, m, about `centre`: the mesh's frame. */
+    float *vertices; /* vertex_count x 3; owned */
+    uint32_t
+        *corners; /* triangle_count x 3: numbers of vertices, anticlockwise from outside; owned */
+    size_t vertex_count, triangle_count;
+
+    double centre_m[3]; /* middle of the bounding box, in the file's origin and the object's axes */
+    float lower_m[3], upper_m[3]; /* the bounding box in the mesh's frame */
+    float radius_m;               /* of the bounding sphere about the frame's origin */
+    struct mesh_topology topology;
+    double volume_m3;  /* of a closed mesh; else 0 */
+    size_t degenerate; /* triangles of the file with two equal corners, which were left out */
+
+    struct mesh_hierarchy hierarchy;
+    struct mesh_corner_normals *normals; /* hierarchy.leaf_count * MESH_SLOTS; NULL: flat; owned */
+};
+
+void mesh_options_init(struct mesh_options *options);
+
+/* Reads a mesh file: STL, OBJ, PLY, with Assimp others too. Equal vertices become one (after
+ * rounding to single precision in the mesh's frame), triangles with two equal corners are left out,
+ * orientation is made consistent (mesh/topology.h). A mesh that is not closed is no failure here:
+ * topology says what is open. Errors: STORAGE (cannot be read), INPUT (what and where), UNSUPPORTED
+ * (format), ARGUMENT (options), MEMORY. On failure *mesh is empty. */
+sonject_status mesh_load(struct report *report, const char *path,
+                         const struct mesh_options *options, struct mesh *mesh);
+
+/* The same from arrays: vertex_count x 3 positions, triangle_count x 3 numbers of vertices. name:
+ * for messages. */
+sonject_status mesh_from_arrays(struct report *report, const char *name, const double *positions,
+                                size_t vertex_count, const uint32_t *corners, size_t triangle_count,
+                                const struct mesh_options *options, struct mesh *mesh);
+void mesh_clear(struct mesh *mesh);
+
+/* SONJECT_OK if the mesh is closed; else INPUT with a message that says what is open and where. */
+sonject_status mesh_require_closed(struct report *report, const char *name,
+                                   const struct mesh *mesh);
+
+/* The record of a mesh whose elements begin at these places of the arrays of all meshes. */
+struct mesh_record mesh_record_of(const struct mesh *mesh, uint32_t first_branch,
+                                  uint32_t first_leaf, uint32_t first_normals);
+
+#endif

@@ -1,0 +1,87 @@
+/* What one packet of rays finds on a mesh, for the tests: the same source natively and as OpenCL C.
+ * Arrays are one plane a quantity, `rays` elements each (a multiple of WIDTH). */
+#ifndef SONJECT_TESTS_MESH_PROBE_H
+#define SONJECT_TESTS_MESH_PROBE_H
+
+#include "mesh_surface.h"
+
+enum probe_input {
+    PROBE_POINT = 0, /* x, y, z: closest to the mesh's origin */
+    PROBE_DIRECTION = 3,
+    PROBE_MINIMUM = 6,
+    PROBE_MAXIMUM = 7,
+    PROBE_INPUTS = 8
+};
+
+enum probe_output {
+    PROBE_DISTANCE = 0,
+    PROBE_TRIANGLE = 1, /* bits of a whole number */
+    PROBE_BLOCKED = 2,  /* likewise, 0 or -1 */
+    PROBE_FACET = 3,    /* x, y, z; 0 without a hit, as what follows */
+    PROBE_SMOOTH = 6,
+    PROBE_LIFTED = 9,
+    PROBE_HIT = 12,
+    PROBE_OUTPUTS = 15
+};
+
+FUNCTION struct vector3 probe_load(GLOBAL const float *planes, RECORD_WORD rays, RECORD_WORD first)
+{
+    struct vector3 v;
+    v.x = LOAD_REAL(planes + first);
+    v.y = LOAD_REAL(planes + rays + first);
+    v.z = LOAD_REAL(planes + 2 * rays + first);
+    return v;
+}
+
+FUNCTION void probe_store(struct vector3 v, mask is_kept, GLOBAL float *planes, RECORD_WORD rays,
+                          RECORD_WORD first)
+{
+    const real x = CHOOSE(is_kept, v.x, SPLAT(0.0f));
+    const real y = CHOOSE(is_kept, v.y, SPLAT(0.0f));
+    const real z = CHOOSE(is_kept, v.z, SPLAT(0.0f));
+    STORE_REAL(x, planes + first);
+    STORE_REAL(y, planes + rays + first);
+    STORE_REAL(z, planes + 2 * rays + first);
+}
+
+FUNCTION void probe_nearest(struct mesh_view mesh, GLOBAL const float *input, GLOBAL float *output,
+                            RECORD_WORD rays, RECORD_WORD first)
+{
+    const struct mesh_hit hit =
+        mesh_nearest_hit(mesh, probe_load(input + PROBE_POINT * rays, rays, first),
+                         probe_load(input + PROBE_DIRECTION * rays, rays, first),
+                         LOAD_REAL(input + PROBE_MINIMUM * rays + first),
+                         LOAD_REAL(input + PROBE_MAXIMUM * rays + first));
+    const real triangle = AS_REAL(hit.triangle);
+    STORE_REAL(hit.distance, output + PROBE_DISTANCE * rays + first);
+    STORE_REAL(triangle, output + PROBE_TRIANGLE * rays + first);
+}
+
+FUNCTION void probe_blocked(struct mesh_view mesh, GLOBAL const float *input, GLOBAL float *output,
+                            RECORD_WORD rays, RECORD_WORD first)
+{
+    const mask is_blocked =
+        mesh_is_in_the_way(mesh, probe_load(input + PROBE_POINT * rays, rays, first),
+                           probe_load(input + PROBE_DIRECTION * rays, rays, first),
+                           LOAD_REAL(input + PROBE_MINIMUM * rays + first),
+                           LOAD_REAL(input + PROBE_MAXIMUM * rays + first));
+    const real blocked = AS_REAL(is_blocked);
+    STORE_REAL(blocked, output + PROBE_BLOCKED * rays + first);
+}
+
+/* Of the triangles that probe_nearest found. */
+FUNCTION void probe_surface(struct mesh_view mesh, GLOBAL const float *input, GLOBAL float *output,
+                            RECORD_WORD rays, RECORD_WORD first)
+{
+    const whole triangle = AS_WHOLE(LOAD_REAL(output + PROBE_TRIANGLE * rays + first));
+    const mask is_hit = MASK_OF(triangle >= 0);
+    const struct mesh_surface surface =
+        mesh_surface_at(mesh, probe_load(input + PROBE_POINT * rays, rays, first),
+                        probe_load(input + PROBE_DIRECTION * rays, rays, first), triangle);
+    probe_store(surface.facet, is_hit, output + PROBE_FACET * rays, rays, first);
+    probe_store(surface.smooth, is_hit, output + PROBE_SMOOTH * rays, rays, first);
+    probe_store(surface.lifted, is_hit, output + PROBE_LIFTED * rays, rays, first);
+    probe_store(surface.point, is_hit, output + PROBE_HIT * rays, rays, first);
+}
+
+#endif

@@ -1,0 +1,255 @@
+/* The hierarchy of meshes: every triangle in one slot, boxes that hold what is below them, and a
+ * bounded depth whatever the mesh. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "kernel/mesh_samples.h"
+#include "mesh/hierarchy.h"
+
+static struct report report;
+
+struct box {
+    float lower[3], upper[3];
+};
+
+static void widen(struct box *box, const float *x, const float *y, const float *z, int slot)
+{
+    const float point[3] = {x[slot], y[slot], z[slot]};
+    for (int axis = 0; axis < 3; axis++) {
+        box->lower[axis] = fminf(box->lower[axis], point[axis]);
+        box->upper[axis] = fmaxf(box->upper[axis], point[axis]);
+    }
+}
+
+static const struct box empty_box = {{1e30f, 1e30f, 1e30f}, {-1e30f, -1e30f, -1e30f}};
+
+static void unite(struct box *box, const struct box *other)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        box->lower[axis] = fminf(box->lower[axis], other->lower[axis]);
+        box->upper[axis] = fmaxf(box->upper[axis], other->upper[axis]);
+    }
+}
+
+/* Inside with room to spare, as the padding gives it. */
+static void expect_inside(const struct box *inner, const struct box *outer, float padding)
+{
+    for (int axis = 0; axis < 3; axis++) {
+        /* padding is rounded when it is added: half of it is left at the least */
+        assert_true(inner->lower[axis] - 0.5f * padding >= outer->lower[axis]);
+        assert_true(inner->upper[axis] + 0.5f * padding <= outer->upper[axis]);
+    }
+}
+
+static struct box group_box(const struct mesh_group_boxes *groups, int group)
+{
+    const struct box box = {
+        {groups->lower_x[group], groups->lower_y[group], groups->lower_z[group]},
+        {groups->upper_x[group], groups->upper_y[group], groups->upper_z[group]}};
+    return box;
+}
+
+static struct box child_box(const struct mesh_branch *branch, int slot)
+{
+    const struct box box = {{branch->lower_x[slot], branch->lower_y[slot], branch->lower_z[slot]},
+                            {branch->upper_x[slot], branch->upper_y[slot], branch->upper_z[slot]}};
+    return box;
+}
+
+struct check {
+    const struct mesh_hierarchy *hierarchy;
+    const float *vertices;
+    const uint32_t *corners;
+    unsigned char *is_seen; /* of each triangle */
+    size_t seen, leaves, branches;
+    float padding;
+};
+
+static struct box check_leaf(struct check *check, int number)
+{
+    const struct mesh_leaf *leaf = &check->hierarchy->leaves[number];
+    struct box all = empty_box;
+    assert_in_range(leaf->triangles, 1, MESH_SLOTS);
+    check->leaves++;
+    for (int slot = 0; slot < MESH_SLOTS; slot++) {
+        const uint32_t triangle = check->hierarchy->triangles[number * MESH_SLOTS + slot];
+        if (slot >= leaf->triangles) {
+            assert_int_equal(triangle, MESH_NO_TRIANGLE);
+            continue;
+        }
+        const float *a = &check->vertices[3 * (size_t)check->corners[3 * (size_t)triangle]];
+        const float *c = &check->vertices[3 * (size_t)check->corners[3 * (size_t)triangle + 2]];
+        struct box box = empty_box;
+        widen(&box, leaf->a_x, leaf->a_y, leaf->a_z, slot);
+        widen(&box, leaf->b_x, leaf->b_y, leaf->b_z, slot);
+        widen(&box, leaf->c_x, leaf->c_y, leaf->c_z, slot);
+        const struct box group = group_box(&leaf->groups, slot / MESH_GROUP);
+        expect_inside(&box, &group, check->padding);
+        assert_true(leaf->a_x[slot] == a[0] && leaf->c_z[slot] == c[2]);
+        assert_false(check->is_seen[triangle]);
+        check->is_seen[triangle] = 1;
+        check->seen++;
+        unite(&all, &box);
+    }
+    return all;
+}
+
+/* Recursion is bounded by MESH_LEVELS, which is what is tested. */
+static struct box check_branch(struct check *check, int number, unsigned level)
+{
+    const struct mesh_branch *branch = &check->hierarchy->branches[number];
+    struct box all = empty_box;
+    assert_in_range(level, 1, check->hierarchy->levels);
+    check->branches++;
+    for (int slot = 0; slot < MESH_SLOTS; slot++) {
+        const struct box box = child_box(branch, slot);
+        const int child = branch->child[slot];
+        if (slot % MESH_GROUP >= branch->children[slot / MESH_GROUP]) {
+            assert_true(box.lower[0] == MESH_NOWHERE && box.upper[0] == MESH_NOWHERE);
+            continue;
+        }
+        const struct box inside =
+            child < 0 ? check_leaf(check, ~child) : check_branch(check, child, level + 1);
+        const struct box group = group_box(&branch->groups, slot / MESH_GROUP);
+        expect_inside(&inside, &box, check->padding);
+        expect_inside(&inside, &group, check->padding);
+        unite(&all, &inside);
+    }
+    return all;
+}
+
+static void check_hierarchy(const char *what, const float *vertices, const uint32_t *corners,
+                            size_t triangles, float radius)
+{
+    struct mesh_hierarchy hierarchy;
+    assert_int_equal(
+        mesh_hierarchy_build(&report, vertices, corners, triangles, radius, &hierarchy),
+        SONJECT_OK);
+    struct check check = {&hierarchy, vertices, corners, calloc(triangles, 1),
+                          0,          0,        0,       MESH_PADDING * radius};
+    assert_non_null(check.is_seen);
+    assert_in_range(hierarchy.levels, 1, MESH_LEVELS);
+    check_branch(&check, 0, 1);
+    assert_int_equal(check.seen, triangles);
+    assert_int_equal(check.leaves, hierarchy.leaf_count);
+    assert_int_equal(check.branches, hierarchy.branch_count);
+    print_message("%s: %zu triangles, %zu branches, %zu leaves, %u levels\n", what, triangles,
+                  hierarchy.branch_count, hierarchy.leaf_count, (unsigned)hierarchy.levels);
+    free(check.is_seen);
+    mesh_hierarchy_clear(&hierarchy);
+}
+
+static void check_sample(const char *what, struct mesh_sample *sample)
+{
+    float *vertices = calloc(sample->vertices, 3 * sizeof *vertices);
+    assert_non_null(vertices);
+    for (size_t i = 0; i < 3 * sample->vertices; i++)
+        vertices[i] = (float)sample->positions[i];
+    check_hierarchy(what, vertices, sample->corners, sample->triangles, 1.2f);
+    free(vertices);
+    sample_clear(sample);
+}
+
+static void test_samples(void **state)
+{
+    (void)state;
+    struct mesh_sample sample;
+    sample_box(&sample);
+    check_sample("box", &sample);
+    sample_sphere(&sample, 5);
+    check_sample("sphere", &sample);
+    sample_ring(&sample, 300, 200);
+    check_sample("ring", &sample);
+    sample_litter(&sample, 5000);
+    check_sample("litter", &sample);
+    for (size_t count = 1; count < 70; count++) {
+        sample_litter(&sample, count);
+        check_sample("few", &sample);
+    }
+}
+
+#define MANY 20000
+
+/* All triangles about one middle: nothing to choose by. */
+static void test_same_middle(void **state)
+{
+    (void)state;
+    static float vertices[9 * MANY];
+    static uint32_t corners[3 * MANY];
+    for (uint32_t i = 0; i < 3 * MANY; i++)
+        corners[i] = i;
+    for (size_t i = 0; i < MANY; i++) {
+        const float size = (float)(i + 1) / MANY; /* boxes about 0 */
+        const float triangle[9] = {-size, -size, -size, size, size, size, size, -size, size};
+        memcpy(&vertices[9 * i], triangle, sizeof triangle);
+    }
+    check_hierarchy("same middle", vertices, corners, MANY, 2.0f);
+    for (size_t i = 0; i < MANY; i++)
+        memcpy(&vertices[9 * i], vertices, 9 * sizeof *vertices);
+    check_hierarchy("the same triangle", vertices, corners, MANY, 2.0f);
+}
+
+/* Each triangle is far smaller and nearer to 0 than the one before, so that the best cut always
+ * splits off a few: unbounded, that would take as many levels as there are sizes. */
+static void test_ever_smaller(void **state)
+{
+    (void)state;
+    static float vertices[9 * MANY];
+    static uint32_t corners[3 * MANY];
+    for (uint32_t i = 0; i < 3 * MANY; i++)
+        corners[i] = i;
+    for (size_t i = 0; i < MANY; i++) {
+        const float size = ldexpf(1.0f + (float)(i % 100) * 1e-3f, -(int)(i / 160));
+        const float triangle[9] = {size, 0.0f, 0.0f, size,       0.1f * size,
+                                   0.0f, size, 0.0f, 0.1f * size};
+        memcpy(&vertices[9 * i], triangle, sizeof triangle);
+    }
+    check_hierarchy("ever smaller", vertices, corners, MANY, 2.0f);
+}
+
+/* The same triangles give the same hierarchy. */
+static void test_repeats(void **state)
+{
+    (void)state;
+    struct mesh_sample sample;
+    struct mesh_hierarchy first, second;
+    sample_ring(&sample, 60, 40);
+    float *vertices = calloc(sample.vertices, 3 * sizeof *vertices);
+    assert_non_null(vertices);
+    for (size_t i = 0; i < 3 * sample.vertices; i++)
+        vertices[i] = (float)sample.positions[i];
+    assert_int_equal(
+        mesh_hierarchy_build(&report, vertices, sample.corners, sample.triangles, 1.1f, &first),
+        SONJECT_OK);
+    assert_int_equal(
+        mesh_hierarchy_build(&report, vertices, sample.corners, sample.triangles, 1.1f, &second),
+        SONJECT_OK);
+    assert_int_equal(first.branch_count, second.branch_count);
+    assert_int_equal(first.leaf_count, second.leaf_count);
+    assert_memory_equal(first.branches, second.branches,
+                        first.branch_count * sizeof *first.branches);
+    assert_memory_equal(first.leaves, second.leaves, first.leaf_count * sizeof *first.leaves);
+    mesh_hierarchy_clear(&first);
+    mesh_hierarchy_clear(&second);
+    free(vertices);
+    sample_clear(&sample);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_samples),
+        cmocka_unit_test(test_same_middle),
+        cmocka_unit_test(test_ever_smaller),
+        cmocka_unit_test(test_repeats),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

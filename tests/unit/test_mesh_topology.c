@@ -1,0 +1,287 @@
+/* Whether meshes close, which side is outside, and smooth normals. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "kernel/mesh_samples.h"
+#include "mesh/mesh.h"
+#include "mesh/normals.h"
+
+static struct report report;
+
+static struct mesh prepare(const struct mesh_sample *sample)
+{
+    struct mesh mesh;
+    struct mesh_options options;
+    mesh_options_init(&options);
+    report.message[0] = '\0';
+    if (mesh_from_arrays(&report, "sample", sample->positions, sample->vertices, sample->corners,
+                         sample->triangles, &options, &mesh) != SONJECT_OK)
+        fail_msg("%s", report.message);
+    return mesh;
+}
+
+static void reverse(struct mesh_sample *sample, size_t triangle)
+{
+    const uint32_t second = sample->corners[3 * triangle + 1];
+    sample->corners[3 * triangle + 1] = sample->corners[3 * triangle + 2];
+    sample->corners[3 * triangle + 2] = second;
+}
+
+static void expect_box(const struct mesh *mesh, size_t turned)
+{
+    assert_true(mesh->topology.is_closed);
+    assert_int_equal(mesh->topology.turned, turned);
+    assert_int_equal(mesh->topology.pieces, 1);
+    /* coordinates are rounded to 6e-8 of themselves */
+    assert_true(fabs(mesh->volume_m3 - 1.44) < 1e-6);
+    assert_int_equal(mesh_require_closed(&report, "box", mesh), SONJECT_OK);
+}
+
+static void test_orientation(void **state)
+{
+    (void)state;
+    struct mesh_sample sample;
+    sample_box(&sample);
+    struct mesh mesh = prepare(&sample);
+    expect_box(&mesh, 0);
+    mesh_clear(&mesh);
+    for (size_t i = 0; i < 12; i++)
+        reverse(&sample, i); /* inside out */
+    mesh = prepare(&sample);
+    expect_box(&mesh, 12);
+    mesh_clear(&mesh);
+    for (size_t i = 0; i < 12; i += 5)
+        reverse(&sample, i); /* and three of them not */
+    mesh = prepare(&sample);
+    expect_box(&mesh, 9);
+    mesh_clear(&mesh);
+    sample_clear(&sample);
+}
+
+/* A small box inside a large one, oriented inward, is a cavity. */
+static void test_cavity(void **state)
+{
+    (void)state;
+    struct mesh_sample outer, inner;
+    double positions[48];
+    uint32_t corners[72];
+    sample_box(&outer);
+    sample_box(&inner);
+    for (size_t i = 0; i < 12; i++)
+        reverse(&inner, i);
+    for (size_t i = 0; i < 24; i++) {
+        positions[i] = outer.positions[i];
+        positions[24 + i] = 0.5 * inner.positions[i];
+    }
+    for (size_t i = 0; i < 36; i++) {
+        corners[i] = outer.corners[i];
+        corners[36 + i] = 8 + inner.corners[i];
+    }
+    const struct mesh_sample both = {positions, corners, 16, 24};
+    struct mesh mesh = prepare(&both);
+    assert_true(mesh.topology.is_closed);
+    assert_int_equal(mesh.topology.pieces, 2);
+    assert_int_equal(mesh.topology.turned, 0);
+    assert_true(fabs(mesh.volume_m3 - 1.44 * 0.875) < 1e-6);
+    mesh_clear(&mesh);
+    sample_clear(&outer);
+    sample_clear(&inner);
+}
+
+static void test_open(void **state)
+{
+    (void)state;
+    struct mesh_sample sample;
+    sample_box(&sample);
+    sample.triangles = 11;
+    struct mesh mesh = prepare(&sample);
+    assert_false(mesh.topology.is_closed);
+    assert_int_equal(mesh.topology.open_edges, 3);
+    assert_int_equal(mesh.topology.crowded_edges, 0);
+    assert_true(mesh.volume_m3 == 0.0);
+    assert_int_equal(mesh_require_closed(&report, "box.stl", &mesh), SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(report.message, "box.stl: the mesh does not enclose a volume: 3 edges"));
+    mesh_clear(&mesh);
+    sample_clear(&sample);
+}
+
+/* A fin on an edge of the box: three triangles there. */
+static void test_crowded(void **state)
+{
+    (void)state;
+    struct mesh_sample sample;
+    double positions[27] = {0.0};
+    uint32_t corners[39];
+    sample_box(&sample);
+    memcpy(positions, sample.positions, 24 * sizeof *positions);
+    positions[24] = 5.0;
+    memcpy(corners, sample.corners, 36 * sizeof *corners);
+    corners[36] = 0;
+    corners[37] = 1;
+    corners[38] = 8;
+    const struct mesh_sample finned = {positions, corners, 9, 13};
+    struct mesh mesh = prepare(&finned);
+    assert_int_equal(mesh.topology.crowded_edges, 1);
+    assert_int_equal(mesh.topology.open_edges, 2);
+    mesh_clear(&mesh);
+    sample_clear(&sample);
+}
+
+/* A band with half a turn cannot be oriented. */
+static void test_twisted(void **state)
+{
+    (void)state;
+    enum {
+        STEPS = 12
+    };
+    double positions[6 * STEPS];
+    uint32_t corners[6 * STEPS];
+    for (uint32_t i = 0; i < STEPS; i++) {
+        const double u = 2.0 * 3.14159265358979 * i / STEPS;
+        for (uint32_t side = 0; side < 2; side++) {
+            const double across = side ? 0.3 : -0.3;
+            double *at = &positions[6 * i + 3 * side];
+            at[0] = (1.0 + across * cos(0.5 * u)) * cos(u);
+            at[1] = (1.0 + across * cos(0.5 * u)) * sin(u);
+            at[2] = across * sin(0.5 * u);
+        }
+        const uint32_t swap = i == STEPS - 1;
+        const uint32_t next = (i + 1) % STEPS;
+        const uint32_t both[6] = {
+            2 * i, 2 * i + 1, 2 * next + (1 ^ swap), 2 * i, 2 * next + (1 ^ swap), 2 * next + swap};
+        memcpy(&corners[6 * i], both, sizeof both);
+    }
+    const struct mesh_sample band = {positions, corners, 2 * STEPS, 2 * STEPS};
+    struct mesh mesh = prepare(&band);
+    assert_int_equal(mesh.topology.twisted_edges, 1);
+    assert_int_equal(mesh.topology.open_edges, 2 * STEPS);
+    assert_false(mesh.topology.is_closed);
+    mesh_clear(&mesh);
+}
+
+/* Triangles with two equal corners go, and take no closedness with them; one whose corners lie on a
+ * line stays, for its neighbours' sake. */
+static void test_degenerate(void **state)
+{
+    (void)state;
+    struct mesh_sample sample;
+    double positions[33];
+    uint32_t corners[48];
+    sample_box(&sample);
+    memcpy(positions, sample.positions, 24 * sizeof *positions);
+    memcpy(&positions[24], sample.positions, 3 * sizeof *positions); /* vertex 8 is 0 again */
+    for (size_t axis = 0; axis < 3; axis++)                          /* 9: on the edge of 0 and 3 */
+        positions[27 + axis] = 0.5 * (sample.positions[axis] + sample.positions[9 + axis]);
+    positions[30] = positions[31] = positions[32] = 1e5; /* 10: unused, and counts for nothing */
+    memcpy(corners, sample.corners, 36 * sizeof *corners);
+    /* the diagonal 0-3 of face 0 2 3 1 is cut at 9 on one side only, with a sliver to fill */
+    const uint32_t more[12] = {0, 2, 9, 9, 2, 3, 0, 9, 3, 0, 8, 5};
+    memcpy(corners, more, 3 * sizeof *corners);
+    memcpy(&corners[36], &more[3], 9 * sizeof *corners);
+    const struct mesh_sample mended = {positions, corners, 11, 15};
+    struct mesh mesh = prepare(&mended);
+    assert_int_equal(mesh.degenerate, 1);
+    assert_int_equal(mesh.triangle_count, 14);
+    assert_int_equal(mesh.vertex_count, 9);
+    assert_true(mesh.topology.is_closed);
+    assert_true(fabs(mesh.volume_m3 - 1.44) < 1e-6);
+    assert_true((double)mesh.radius_m < 1.3);
+    mesh_clear(&mesh);
+    sample_clear(&sample);
+}
+
+/* One vertex of 200,000 triangles: no work grows with the square of that. */
+static void test_crowded_vertex(void **state)
+{
+    (void)state;
+    enum {
+        RIM = 100000
+    };
+    struct mesh_sample cone = {calloc(RIM + 2, 3 * sizeof(double)),
+                               calloc(2 * RIM, 3 * sizeof(uint32_t)), RIM + 2, 2 * RIM};
+    assert_non_null(cone.positions);
+    assert_non_null(cone.corners);
+    cone.positions[2] = 1.0;
+    for (uint32_t i = 0; i < RIM; i++) {
+        const double angle = 2.0 * 3.14159265358979 * i / RIM;
+        cone.positions[6 + 3 * i] = cos(angle);
+        cone.positions[7 + 3 * i] = sin(angle);
+        const uint32_t a = 2 + i;
+        const uint32_t b = 2 + (i + 1) % RIM;
+        const uint32_t both[6] = {0, a, b, 1, b, a};
+        memcpy(&cone.corners[6 * i], both, sizeof both);
+    }
+    struct mesh mesh;
+    struct mesh_options options;
+    mesh_options_init(&options);
+    options.smooth_angle_rad = 0.5;
+    assert_int_equal(mesh_from_arrays(&report, "cone", cone.positions, cone.vertices, cone.corners,
+                                      cone.triangles, &options, &mesh),
+                     SONJECT_OK);
+    assert_true(mesh.topology.is_closed);
+    mesh_clear(&mesh);
+    sample_clear(&cone);
+}
+
+/* On a sphere normals point away from the middle; on a box of 90 degrees they are the facets' below
+ * that angle, and mixed above it. */
+static void test_normals(void **state)
+{
+    (void)state;
+    struct mesh_sample sample;
+    float *normals;
+    sample_sphere(&sample, 5);
+    struct mesh mesh = prepare(&sample);
+    assert_int_equal(mesh_smooth_normals(&report, mesh.vertices, mesh.vertex_count, mesh.corners,
+                                         mesh.triangle_count, 0.3, &normals),
+                     SONJECT_OK);
+    double worst = 0.0;
+    for (size_t i = 0; i < 3 * mesh.triangle_count; i++) {
+        const float *vertex = &mesh.vertices[3 * (size_t)mesh.corners[i]];
+        for (size_t axis = 0; axis < 3; axis++)
+            worst = fmax(worst, fabs((double)normals[3 * i + axis] - (double)vertex[axis]));
+    }
+    /* uneven facets: a few percent of the 0.08 rad that an edge spans */
+    assert_true(worst < 0.005);
+    free(normals);
+    mesh_clear(&mesh);
+    sample_clear(&sample);
+
+    sample_box(&sample);
+    mesh = prepare(&sample);
+    for (int is_mixed = 0; is_mixed < 2; is_mixed++) {
+        assert_int_equal(mesh_smooth_normals(&report, mesh.vertices, mesh.vertex_count,
+                                             mesh.corners, mesh.triangle_count,
+                                             is_mixed ? 1.6 : 1.5, &normals),
+                         SONJECT_OK);
+        for (size_t i = 0; i < 36; i++) {
+            float most = 0.0f;
+            for (size_t axis = 0; axis < 3; axis++)
+                most = fmaxf(most, fabsf(normals[3 * i + axis]));
+            /* three faces of 90 degrees each: (1, 1, 1) / sqrt(3) */
+            assert_true(fabsf(most - (is_mixed ? 0.57735027f : 1.0f)) < 1e-6f);
+        }
+        free(normals);
+    }
+    mesh_clear(&mesh);
+    sample_clear(&sample);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_orientation),    cmocka_unit_test(test_cavity),
+        cmocka_unit_test(test_open),           cmocka_unit_test(test_crowded),
+        cmocka_unit_test(test_twisted),        cmocka_unit_test(test_degenerate),
+        cmocka_unit_test(test_crowded_vertex), cmocka_unit_test(test_normals),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
