@@ -65,6 +65,14 @@ FUNCTION real refraction_gain(const struct fan_record *fan, const struct fan_ray
     return ray->spreading * range * range / (ground * (ray->wavefront + distance));
 }
 
+/* The strip of a work-item. Devices hand work-items out in runs, and strips near targets take
+ * longest: neighbours in a run are strides apart, so that all runs take about as long. The stride
+ * has no factor in common with the number of strips, so every strip gets its turn. */
+FUNCTION int strip_of_item(const struct fan_record *fan, int item)
+{
+    return (int)((long)(item / fan->segments) * fan->strip_stride % fan->strips);
+}
+
 /* Along-track position of the middle of a strip of this launch. */
 FUNCTION float strip_position(const struct fan_record *fan, int strip)
 {

@@ -17,7 +17,8 @@ enum shape_kind {
     SHAPE_CONE = 8,
     SHAPE_TORUS = 9,
     SHAPE_ENDED_CYLINDER = 10, /* solid: each end is flat or a part of a sphere */
-    SHAPE_OPEN_CYLINDER = 11   /* thin wall: at least one end is open */
+    SHAPE_OPEN_CYLINDER = 11,  /* thin wall: at least one end is open */
+    SHAPE_MESH = 12
 };
 
 /* What a random number is for; part of its key. */
@@ -104,6 +105,7 @@ struct object_record {
     float slant_offset;    /* m: of that face from the centre */
     float bounding_radius; /* m, about the centre */
     struct end_record ends[ENDS];
+    RECORD_WORD mesh_words; /* mesh: where its mesh_record is, in 4-byte words from this record */
     RECORD_INT cuts;
     struct cut_record cut[OBJECT_CUTS];
     struct surface_record surface;
@@ -172,9 +174,10 @@ struct fan_record {
     float inverse_wavelength; /* 1/m */
     RECORD_WORD seed_low, seed_high, stream;
     RECORD_INT objects;
-    RECORD_INT only_object; /* smooth part: the object whose glints are wanted; chains: the first
-                               surface, -1 the seabed, -2 any */
-    RECORD_INT segments;    /* work-items that share a strip */
+    RECORD_INT only_object;  /* smooth part: the object whose glints are wanted; chains: the first
+                                surface, -1 the seabed, -2 any */
+    RECORD_INT segments;     /* work-items that share a strip */
+    RECORD_INT strip_stride; /* from a work-item's strip to the next one's, see strip_of_item */
     struct ray_table_record table;
 };
 

@@ -10,7 +10,8 @@
 SONJECT_BEGIN_DECLARATIONS
 
 /* Lengths are overall. Length runs along the object's nose direction (own x), width across it (own
- * y), height upwards when the pose is level (own z). */
+ * y, to the left of the nose as seen from above), height upwards when the pose is level (own z). An
+ * object is the same thing to port and to starboard. */
 typedef enum sonject_shape {
     SONJECT_SHAPE_PLANE = 0,  /* rectangle length x width, facing up when pose is level; both sides
                                  reflect */
@@ -27,7 +28,8 @@ typedef enum sonject_shape {
     SONJECT_SHAPE_TRUNCATED_CONE = 9, /* diameter (below) and top_diameter x height */
     SONJECT_SHAPE_TORUS = 10, /* diameter x height, lying flat when pose is level; its height is
                                  the thickness of the ring */
-    SONJECT_SHAPE_PARTS = 11  /* the union of parts, see sonject_scene_add_part; no sizes */
+    SONJECT_SHAPE_PARTS = 11, /* the union of parts, see sonject_scene_add_part; no sizes */
+    SONJECT_SHAPE_MESH = 12   /* triangles, see sonject_scene_add_mesh; no sizes, no cuts */
 } sonject_shape;
 
 /* An end of a cylinder. With an open end the cylinder is a tube: its wall is thin and reflects on
@@ -95,9 +97,24 @@ typedef struct sonject_object_params {
     double burial_fraction;  /* 0...1 of the height that the object has in its pose */
     double proud_height_m;   /* of the highest point above the seabed, 0...that height */
     uint32_t cut_count;      /* of cuts that count */
-    uint32_t reserved;
+    uint32_t mesh;           /* number of a mesh of the scene */
     sonject_cut cuts[SONJECT_CUTS_CAPACITY];
 } sonject_object_params;
+
+/* How the numbers of a mesh file are meant. */
+typedef struct sonject_mesh_params {
+    uint32_t struct_size;
+    uint32_t allows_open; /* 1: a mesh with edges that do not join two triangles is taken as thin
+                             sheets, which reflect on both sides; else it is refused */
+    double unit_m;        /* m a unit of the file, above 0; 0.001 for mm */
+    int32_t axes[3];      /* which axis of the file the object's x (nose), y and z axis is: 1, 2, 3,
+                             negative: the reverse of it. Together a rotation, not a mirror. A file
+                             whose y axis is up and whose nose is x: 1, -3, 2 */
+    int32_t reserved;
+} sonject_mesh_params;
+
+/* Metres, the file's axes, closed meshes only. */
+SONJECT_API void sonject_mesh_params_init(sonject_mesh_params *mesh);
 
 /* Where a part lies in its object. */
 typedef struct sonject_part_params {

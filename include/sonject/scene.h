@@ -106,6 +106,14 @@ SONJECT_API sonject_status sonject_scene_add_object(sonject_scene *scene,
                                                     const sonject_object_params *object,
                                                     uint32_t *index);
 
+/* Reads a mesh file (STL, OBJ, PLY, with Assimp others) for objects of the shape
+ * SONJECT_SHAPE_MESH, any number of which may show it. *mesh gets its number, counted from 0. An
+ * object's centre is then the middle of the mesh's bounding box. Up to 64 meshes a scene. Errors:
+ * ARGUMENT, STORAGE, INPUT (what is wrong and where), UNSUPPORTED (format), MEMORY. */
+SONJECT_API sonject_status sonject_scene_add_mesh(sonject_scene *scene, const char *path,
+                                                  const sonject_mesh_params *params,
+                                                  uint32_t *mesh);
+
 /* Adds a part to an object of the shape SONJECT_SHAPE_PARTS. Of `shape`, the shape itself, its
  * sizes, ends, cuts and material count; its name, class, position, pose and burial do not. Parts
  * may overlap: they then are their union. Up to 1000 parts a scene. An object without parts is

@@ -218,6 +218,39 @@ sonject_status sonject_scene_set_input_synthetic(sonject_scene *scene,
     return status;
 }
 
+sonject_status sonject_scene_add_mesh(sonject_scene *scene, const char *path,
+                                      const sonject_mesh_params *params, uint32_t *mesh)
+{
+    if (!scene)
+        return SONJECT_ERROR_ARGUMENT;
+    if (!path)
+        return null_argument(scene->report, "path");
+    sonject_mesh_params taken;
+    struct mesh_options options;
+    sonject_mesh_params_init(&taken);
+    mesh_options_init(&options);
+    sonject_status status =
+        params_take(scene->report, &taken, sizeof taken, params, sizeof taken, "mesh");
+    options.unit_m = taken.unit_m;
+    for (int axis = 0; axis < 3; axis++)
+        options.axes[axis] = taken.axes[axis];
+    if (status == SONJECT_OK)
+        status =
+            scene_append_mesh(&scene->scene, scene->report, path, &options, taken.allows_open != 0);
+    if (status == SONJECT_OK && mesh)
+        *mesh = scene->scene.mesh_count - 1;
+    return status;
+}
+
+/* Whether a shape's mesh is one of the scene. */
+static sonject_status check_mesh(const sonject_scene *scene, const sonject_object_params *shape)
+{
+    if (shape->shape == SONJECT_SHAPE_MESH && shape->mesh >= scene->scene.mesh_count)
+        return report_failure(scene->report, SONJECT_ERROR_ARGUMENT,
+                              "there is no mesh %lu in the scene", (unsigned long)shape->mesh);
+    return SONJECT_OK;
+}
+
 sonject_status sonject_scene_add_object(sonject_scene *scene, const sonject_object_params *object,
                                         uint32_t *index)
 {
@@ -229,6 +262,8 @@ sonject_status sonject_scene_add_object(sonject_scene *scene, const sonject_obje
         params_take(scene->report, &taken, sizeof taken, object, sizeof taken, "object");
     if (status == SONJECT_OK)
         status = check_object(&taken, scene->report, NULL);
+    if (status == SONJECT_OK)
+        status = check_mesh(scene, &taken);
     if (status == SONJECT_OK)
         status = scene_append_object(&scene->scene, scene->report, &taken);
     if (status == SONJECT_OK && index)
@@ -264,6 +299,8 @@ sonject_status sonject_scene_add_part(sonject_scene *scene, uint32_t object,
                                 "shape of a part must be a single one");
     if (status == SONJECT_OK)
         status = check_object(&taken.shape, scene->report, NULL);
+    if (status == SONJECT_OK)
+        status = check_mesh(scene, &taken.shape);
     if (status == SONJECT_OK)
         status = check_part(&place, scene->report, NULL);
     if (status != SONJECT_OK)

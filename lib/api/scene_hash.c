@@ -103,6 +103,7 @@ static void add_object(struct hash *hash, const sonject_object_params *object)
     ADD(hash, object->tail_end);
     ADD(hash, object->nose_end_depth_m);
     ADD(hash, object->tail_end_depth_m);
+    ADD(hash, object->mesh);
     ADD(hash, object->cut_count);
     for (uint32_t i = 0; i < object->cut_count; i++) {
         ADD(hash, object->cuts[i].azimuth_rad);
@@ -110,6 +111,15 @@ static void add_object(struct hash *hash, const sonject_object_params *object)
         ADD(hash, object->cuts[i].distance_m);
     }
     add_material(hash, &object->material);
+}
+
+static void add_meshes(struct hash *hash, const struct scene *scene)
+{
+    for (uint32_t i = 0; i < scene->mesh_count; i++) {
+        const struct mesh *mesh = &scene->meshes[i];
+        hash_add(hash, mesh->vertices, 3 * mesh->vertex_count * sizeof *mesh->vertices);
+        hash_add(hash, mesh->corners, 3 * mesh->triangle_count * sizeof *mesh->corners);
+    }
 }
 
 static void add_injection(struct hash *hash, const sonject_injection_params *injection)
@@ -139,6 +149,7 @@ sonject_status scene_hash(struct report *report, const struct scene *scene,
     add_injection(hash, &scene->injection);
     for (uint32_t i = 0; i < scene->object_count; i++)
         add_object(hash, &scene->objects[i]);
+    add_meshes(hash, scene);
     for (uint32_t i = 0; i < scene->part_count; i++) {
         const struct scene_part *part = &scene->parts[i];
         ADD(hash, part->object);

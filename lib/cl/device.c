@@ -231,9 +231,9 @@ void device_close(struct device **device)
 {
     if (!device || !*device)
         return;
-    for (int i = 0; i < PROGRAM_COUNT; i++)
-        if ((*device)->programs[i])
-            clReleaseProgram((*device)->programs[i]);
+    for (int i = 0; i < 2 * PROGRAM_COUNT; i++)
+        if ((*device)->programs[i / 2][i % 2])
+            clReleaseProgram((*device)->programs[i / 2][i % 2]);
     if ((*device)->queue)
         clReleaseCommandQueue((*device)->queue);
     if ((*device)->context)

@@ -25,7 +25,7 @@ struct device {
     cl_device_id id;
     cl_context context;
     cl_command_queue queue;
-    cl_program programs[PROGRAM_COUNT]; /* NULL until first used */
+    cl_program programs[PROGRAM_COUNT][2]; /* without, with meshes; NULL until first used */
     bool is_cpu;
     uint32_t width; /* lanes that the kernels are compiled for */
     uint32_t compute_units;

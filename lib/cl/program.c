@@ -21,10 +21,11 @@ static bool divides_correctly(const struct device *device)
 
 /* No fast-math of any kind; correctly rounded division where the compiler has to be told. A CPU's
  * work-items own their tallies; a GPU's share them. */
-static void write_options(const struct device *device, char *options, size_t capacity)
+static void write_options(const struct device *device, bool has_meshes, char *options,
+                          size_t capacity)
 {
-    snprintf(options, capacity, "-cl-std=CL1.2 -DWIDTH=%u%s%s", (unsigned)device->width,
-             device->is_cpu ? "" : " -DTALLY_IS_SHARED",
+    snprintf(options, capacity, "-cl-std=CL1.2 -DWIDTH=%u%s%s%s", (unsigned)device->width,
+             has_meshes ? " -DWITH_MESHES" : "", device->is_cpu ? "" : " -DTALLY_IS_SHARED",
              divides_correctly(device) ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
 }
 
@@ -123,14 +124,14 @@ static sonject_status build(struct report *report, struct device *device,
 }
 
 sonject_status program_get(struct report *report, struct device *device, enum device_program number,
-                           cl_program *out)
+                           bool has_meshes, cl_program *out)
 {
-    cl_program *program = &device->programs[number];
+    cl_program *program = &device->programs[number][has_meshes];
     if (!*program) {
         const struct embedded_source *source = &embedded_sources[number];
         char options[128];
         char key[HASH_TEXT_CAPACITY];
-        write_options(device, options, sizeof options);
+        write_options(device, has_meshes, options, sizeof options);
         if (!key_of(device, source, options, key))
             return report_out_of_memory(report, "the program cache");
         *program = from_cache(device, key, options);
@@ -150,11 +151,12 @@ sonject_status program_get(struct report *report, struct device *device, enum de
 }
 
 sonject_status kernel_create(struct report *report, struct device *device,
-                             enum device_program number, const char *name, cl_kernel *kernel)
+                             enum device_program number, bool has_meshes, const char *name,
+                             cl_kernel *kernel)
 {
     cl_program program;
     *kernel = NULL;
-    const sonject_status status = program_get(report, device, number, &program);
+    const sonject_status status = program_get(report, device, number, has_meshes, &program);
     if (status != SONJECT_OK)
         return status;
     cl_int error = CL_SUCCESS;

@@ -58,7 +58,7 @@ static void list_field(struct listing *listing, const char *path, const struct f
     listing->count++;
 }
 
-/* Sections are at most four deep. */
+/* Tables do not come back to themselves: parts within parts are listed as one key. */
 static void list_section(struct listing *listing, const char *prefix, const struct section *section)
 {
     for (size_t i = 0; i < section->count; i++) {

@@ -1,8 +1,9 @@
-/* The objects of a scene: their table, the keys that each shape has, and what is read in a way of
- * its own. */
+/* The objects of a scene: their table, and what is read in a way of its own. */
 #include <string.h>
 
-#include "io/scene_fields.h"
+#include "io/scene_parts.h"
+#include "io/scene_shape.h"
+#include "io/scene_target.h"
 
 #define STRUCTURE sonject_object_params
 
@@ -34,42 +35,6 @@ sonject_status finish_position(struct reader *reader, const struct tree_node *no
     return SONJECT_OK;
 }
 
-/* {depth: } stands for a spherical end. */
-static sonject_status finish_nose_end(struct reader *reader, const struct tree_node *node,
-                                      void *structure)
-{
-    sonject_object_params *object = structure;
-    object->nose_end = SONJECT_END_SPHERICAL;
-    if (!(object->nose_end_depth_m > 0.0))
-        return refuse_key(reader, node, "depth",
-                          "must be above 0; write 'spherical' for a half sphere, 'flat' for none");
-    return SONJECT_OK;
-}
-
-static sonject_status finish_tail_end(struct reader *reader, const struct tree_node *node,
-                                      void *structure)
-{
-    sonject_object_params *object = structure;
-    object->tail_end = SONJECT_END_SPHERICAL;
-    if (!(object->tail_end_depth_m > 0.0))
-        return refuse_key(reader, node, "depth",
-                          "must be above 0; write 'spherical' for a half sphere, 'flat' for none");
-    return SONJECT_OK;
-}
-
-static const struct field nose_end_fields[] = {
-    {"depth", "of a spherical end, at most half the diameter",
-     QUANTITY(STRUCTURE, nose_end_depth_m, QUANTITY_LENGTH), REQUIRED},
-};
-static const struct section nose_end_section = {nose_end_fields, COUNT(nose_end_fields),
-                                                finish_nose_end};
-static const struct field tail_end_fields[] = {
-    {"depth", "of a spherical end, at most half the diameter",
-     QUANTITY(STRUCTURE, tail_end_depth_m, QUANTITY_LENGTH), REQUIRED},
-};
-static const struct section tail_end_section = {tail_end_fields, COUNT(tail_end_fields),
-                                                finish_tail_end};
-
 /* A depth by itself. structure: the object. */
 static sonject_status read_burial(struct reader *reader, const struct tree_node *node,
                                   void *structure)
@@ -98,100 +63,55 @@ static const struct field burial_fields[] = {
 };
 static const struct section burial_section = {burial_fields, COUNT(burial_fields), finish_burial};
 
-static const struct field cut_fields[] = {
-    {"azimuth", "of the side that is cut off, from the nose towards the object's own y",
-     QUANTITY(sonject_cut, azimuth_rad, QUANTITY_ANGLE)},
-    {"elevation", "of that side; 90 deg: the top",
-     QUANTITY(sonject_cut, elevation_rad, QUANTITY_ANGLE)},
-    {"distance", "of the cut from the centre towards that side",
-     QUANTITY(sonject_cut, distance_m, QUANTITY_LENGTH), REQUIRED},
-};
-static const struct section cut_section = {cut_fields, COUNT(cut_fields), NULL};
-
-static sonject_status read_cuts(struct reader *reader, const struct tree_node *node,
-                                void *structure)
+/* Objects on their way into the scene begin as the target that their file describes, which their
+ * own keys then change. */
+static sonject_status read_object_target(struct reader *reader, const struct tree_node *node,
+                                         void *structure)
 {
-    sonject_object_params *object = structure;
-    sonject_status status = SONJECT_OK;
-    if (tree_is_null(node))
-        return SONJECT_OK;
-    if (node->kind != TREE_LIST)
-        return refuse_value(reader, node, "must be a list; start each cut with '- '");
-    if (node->count > SONJECT_CUTS_CAPACITY)
-        return refuse_value(reader, node, "has %zu entries; at most %d are possible", node->count,
-                            SONJECT_CUTS_CAPACITY);
-    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
-        const size_t before = key_path_add_index(&reader->path, i);
-        status = read_section(reader, &cut_section, &node->entries[i].value, &object->cuts[i]);
-        key_path_shorten(&reader->path, before);
-    }
-    object->cut_count = (uint32_t)node->count;
-    return status;
+    return read_target(reader, node, structure);
 }
 
+static sonject_status read_object_parts(struct reader *reader, const struct tree_node *node,
+                                        void *structure)
+{
+    sonject_object_params *object = structure;
+    object->shape = SONJECT_SHAPE_PARTS;
+    return read_parts(reader, node, &object->material);
+}
+
+/* Keys are read in this order, whatever the file's: a target's file comes first, so that all other
+ * keys change what it says; parts come last, when their surface is known. */
 static const struct field object_fields[] = {
+    {"target", "file that describes the object instead of shape or parts", .kind = FIELD_SPECIAL,
+     .unit = "file name", .read = read_object_target},
     {"name", "of this object", LABEL(STRUCTURE, name)},
     {"class", "label for training; by default the shape", LABEL(STRUCTURE, class_name)},
-    {"shape", "of the object",
-     WORD(STRUCTURE, shape) = {[SONJECT_SHAPE_PLANE] = "plane",
-                               [SONJECT_SHAPE_SPHERE] = "sphere",
-                               [SONJECT_SHAPE_CYLINDER] = "cylinder",
-                               [SONJECT_SHAPE_CAPSULE] = "capsule",
-                               [SONJECT_SHAPE_DISC] = "disc",
-                               [SONJECT_SHAPE_ELLIPSOID] = "ellipsoid",
-                               [SONJECT_SHAPE_BOX] = "box",
-                               [SONJECT_SHAPE_WEDGE] = "wedge",
-                               [SONJECT_SHAPE_CONE] = "cone",
-                               [SONJECT_SHAPE_TRUNCATED_CONE] = "truncated_cone",
-                               [SONJECT_SHAPE_TORUS] = "torus"},
-     REQUIRED},
-    {"length", "overall along the nose, of plane, cylinder, capsule, ellipsoid, box and wedge",
-     QUANTITY(STRUCTURE, length_m, QUANTITY_LENGTH)},
-    {"width", "overall across the nose, of plane, ellipsoid, box and wedge",
-     QUANTITY(STRUCTURE, width_m, QUANTITY_LENGTH)},
-    {"diameter", "overall, of sphere, cylinder, capsule, disc, cones (below) and torus",
-     QUANTITY(STRUCTURE, diameter_m, QUANTITY_LENGTH)},
-    {"height", "overall when level, of ellipsoid, box, wedge (at the tail), cones and torus",
-     QUANTITY(STRUCTURE, height_m, QUANTITY_LENGTH)},
-    {"top_diameter", "of a truncated cone", QUANTITY(STRUCTURE, top_diameter_m, QUANTITY_LENGTH)},
-    {"front_height", "of a wedge at its nose, by default 0",
-     QUANTITY(STRUCTURE, front_height_m, QUANTITY_LENGTH)},
-    {"nose_end", "of a cylinder: flat, open, spherical or {depth: }",
-     WORD(STRUCTURE, nose_end) = {[SONJECT_END_FLAT] = "flat",
-                                  [SONJECT_END_OPEN] = "open",
-                                  [SONJECT_END_SPHERICAL] = "spherical"},
-     .section = &nose_end_section},
-    {"tail_end", "of a cylinder: flat, open, spherical or {depth: }",
-     WORD(STRUCTURE, tail_end) = {[SONJECT_END_FLAT] = "flat",
-                                  [SONJECT_END_OPEN] = "open",
-                                  [SONJECT_END_SPHERICAL] = "spherical"},
-     .section = &tail_end_section},
-    {"cuts", "planes that cut parts off, at most 2", .kind = FIELD_SPECIAL, .unit = "list",
-     .section = &cut_section, .is_list = true, .read = read_cuts},
+    SHAPE_FIELDS,
     {"position",
      "ground point under the centre: centre, {along_track: , slant_range: } or {row: , column: }",
      WORD(STRUCTURE, position_kind) = {[SONJECT_POSITION_PATCH_CENTRE] = "centre"},
      .section = &position_section},
-    {"heading", "from along-track towards range", QUANTITY(STRUCTURE, heading_rad, QUANTITY_ANGLE)},
-    {"pitch", "raises the nose", QUANTITY(STRUCTURE, pitch_rad, QUANTITY_ANGLE)},
-    {"roll", "about the nose direction", QUANTITY(STRUCTURE, roll_rad, QUANTITY_ANGLE)},
+    TURN_FIELDS("from along-track towards range"),
     {"burial", "depth of the lowest point below the seabed, or {fraction: } or {proud: }",
      .kind = FIELD_NAMED, .offset = 0, .unit = "m, km, cm, mm", .section = &burial_section,
      .read = read_burial},
-    {"material", "surface of the object: a material's name, or a section", .kind = FIELD_NAMED,
-     .offset = offsetof(STRUCTURE, material), .section = &material_section,
-     .read = read_material_name},
+    SURFACE_FIELD("surface of the object: a material's name, or a section"),
+    {"parts", "instead of one shape: the object is their union", .kind = FIELD_SPECIAL,
+     .unit = "list", .section = &part_section, .is_list = true, .read = read_object_parts},
 };
 const struct section object_section = {object_fields, COUNT(object_fields), finish_object};
 
 static sonject_status read_object(struct reader *reader, const struct tree_node *node)
 {
-    sonject_object_params object;
-    sonject_object_params_init(&object);
-    object.diameter_m = 0.0;
-    sonject_status status = read_section(reader, &object_section, node, &object);
+    struct target_text text;
+    memset(&text, 0, sizeof text);
+    start_shape(&text.object, NULL);
+    sonject_status status = read_section(reader, &object_section, node, &text);
     if (status == SONJECT_OK)
-        status = scene_append_object(reader->scene, reader->report, &object);
+        status = read_target_parts(reader, &text);
+    if (status == SONJECT_OK)
+        status = scene_append_object(reader->scene, reader->report, &text.object);
+    target_text_clear(&text);
     return status;
 }
 
@@ -214,78 +134,19 @@ sonject_status read_objects(struct reader *reader, const struct tree_node *node,
     return status;
 }
 
-enum presence {
-    ABSENT = 0,
-    NEEDED,
-    POSSIBLE
-};
-
-static const char *article_of(const char *name)
-{
-    return strchr("aeiou", *name) ? "an" : "a";
-}
-
-static sonject_status check_size_keys(struct reader *reader, const struct tree_node *node,
-                                      uint32_t shape)
-{
-    static const struct {
-        const char *key;
-        unsigned char presence[SONJECT_SHAPE_TORUS + 1]; /* enum presence, by shape */
-    } sizes[] = {
-        {"length",
-         {[SONJECT_SHAPE_PLANE] = NEEDED,
-          [SONJECT_SHAPE_CYLINDER] = NEEDED,
-          [SONJECT_SHAPE_CAPSULE] = NEEDED,
-          [SONJECT_SHAPE_ELLIPSOID] = NEEDED,
-          [SONJECT_SHAPE_BOX] = NEEDED,
-          [SONJECT_SHAPE_WEDGE] = NEEDED}},
-        {"width",
-         {[SONJECT_SHAPE_PLANE] = NEEDED,
-          [SONJECT_SHAPE_ELLIPSOID] = NEEDED,
-          [SONJECT_SHAPE_BOX] = NEEDED,
-          [SONJECT_SHAPE_WEDGE] = NEEDED}},
-        {"diameter",
-         {[SONJECT_SHAPE_SPHERE] = NEEDED,
-          [SONJECT_SHAPE_CYLINDER] = NEEDED,
-          [SONJECT_SHAPE_CAPSULE] = NEEDED,
-          [SONJECT_SHAPE_DISC] = NEEDED,
-          [SONJECT_SHAPE_CONE] = NEEDED,
-          [SONJECT_SHAPE_TRUNCATED_CONE] = NEEDED,
-          [SONJECT_SHAPE_TORUS] = NEEDED}},
-        {"height",
-         {[SONJECT_SHAPE_ELLIPSOID] = NEEDED,
-          [SONJECT_SHAPE_BOX] = NEEDED,
-          [SONJECT_SHAPE_WEDGE] = NEEDED,
-          [SONJECT_SHAPE_CONE] = NEEDED,
-          [SONJECT_SHAPE_TRUNCATED_CONE] = NEEDED,
-          [SONJECT_SHAPE_TORUS] = NEEDED}},
-        {"top_diameter", {[SONJECT_SHAPE_TRUNCATED_CONE] = NEEDED}},
-        {"front_height", {[SONJECT_SHAPE_WEDGE] = POSSIBLE}},
-        {"nose_end", {[SONJECT_SHAPE_CYLINDER] = POSSIBLE}},
-        {"tail_end", {[SONJECT_SHAPE_CYLINDER] = POSSIBLE}},
-    };
-    const char *name = shape_name(shape);
-    for (size_t i = 0; i < COUNT(sizes); i++) {
-        const unsigned char presence = sizes[i].presence[shape];
-        if (presence == NEEDED && !is_given(node, sizes[i].key))
-            return refuse_key(reader, node, sizes[i].key, "missing; %s %s needs it",
-                              article_of(name), name);
-        if (presence == ABSENT && is_given(node, sizes[i].key))
-            return refuse_key(reader, node, sizes[i].key, "%s %s has none; remove it",
-                              article_of(name), name);
-    }
-    return SONJECT_OK;
-}
-
 sonject_status finish_object(struct reader *reader, const struct tree_node *node, void *structure)
 {
-    const sonject_object_params *object = structure;
-    struct report report = {{0}, NULL, NULL};
-    const char *key = "";
-    const sonject_status status = check_size_keys(reader, node, object->shape);
-    if (status != SONJECT_OK)
-        return status;
-    if (check_object(object, &report, &key) != SONJECT_OK)
-        return place_check(reader, node, key, &report);
-    return SONJECT_OK;
+    static const char *const keys[] = {"shape", "parts", "target"};
+    const struct target_text *text = structure;
+    sonject_status status =
+        check_one_given(reader, node, keys, COUNT(keys), "shape, parts and target");
+    if (status == SONJECT_OK && text->file)
+        status = refuse_shape_keys(reader, node, "the target's file tells the shape");
+    else if (status == SONJECT_OK && text->object.shape == SONJECT_SHAPE_PARTS)
+        status = refuse_shape_keys(reader, node, "the parts have shapes of their own");
+    else if (status == SONJECT_OK)
+        status = check_shape_keys(reader, node, text->object.shape);
+    if (status == SONJECT_OK)
+        status = check_shape_values(reader, node, &text->object);
+    return status;
 }

@@ -166,8 +166,7 @@ static sonject_status read_label(struct reader *reader, const struct tree_node *
     return SONJECT_OK;
 }
 
-/* A path in the file is meant from the file's folder, one of an override from where the user is. */
-static sonject_status read_path(struct reader *reader, const struct tree_node *node, char **path)
+sonject_status read_path(struct reader *reader, const struct tree_node *node, char **path)
 {
     const char *text = read_text(reader, node);
     if (!text)

@@ -73,6 +73,10 @@ sonject_status read_quantity(struct reader *reader, const struct tree_node *node
 /* The text of a single value; NULL after a message, whose status is INPUT. */
 const char *read_text(struct reader *reader, const struct tree_node *node);
 
+/* Reads a text as the name of a file: one in the file is meant from the file's folder, one of an
+ * override from where the user is. On success *path is the caller's, for free(). */
+sonject_status read_path(struct reader *reader, const struct tree_node *node, char **path);
+
 /* Words in a message, "a, b, c". */
 struct word_list {
     char text[300];

@@ -10,7 +10,7 @@
 #define HOW_TO_WRITE "not a key path; write it as 'objects[0].heading'"
 
 /* Deeper than any key of a scene, with room for the value below it. */
-#define PATH_STEPS_MAX 12
+#define PATH_STEPS_MAX 24
 
 struct walk {
     struct tree *tree;

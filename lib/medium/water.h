@@ -19,7 +19,8 @@ struct water {
 /* Lays the water: neighbours that do not differ are joined, and so are those that targets reach
  * into, up to highest_m over the seabed, at the speed that keeps the travel time straight up. count
  * 0: isovelocity water. On success *water is the caller's for water_clear; on failure nothing is
- * held. Errors: INPUT (layers that targets reach into differ by more than 1/500), MEMORY. */
+ * held. Errors: INPUT (a layer that targets reach into differs from all of them joined by more than
+ * 1/500), MEMORY. */
 sonject_status water_init(struct water *water, struct report *report,
                           const struct water_layer *layers, size_t count,
                           double isovelocity_speed_mps, double highest_m);

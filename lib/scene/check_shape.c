@@ -21,7 +21,7 @@ static void check_cylinder(struct check *check, const sonject_object_params *obj
     if (check->status != SONJECT_OK)
         return;
     struct shape_size size;
-    shape_size_init(&size, object, false);
+    shape_size_init(&size, object);
     const double ends = size.nose.depth_m + size.tail.depth_m;
     if (object->length_m < ends)
         check_failure(check, "length",
@@ -70,7 +70,7 @@ static void check_cuts(struct check *check, const sonject_object_params *object)
     if (check->status != SONJECT_OK)
         return;
     struct shape_size size;
-    shape_size_init(&size, object, false);
+    shape_size_init(&size, object);
     if (!shape_is_left(&size, object->shape))
         check_failure(check, "cuts", "leave nothing of the object; move one outwards");
 }
@@ -104,12 +104,14 @@ static void check_needed(struct check *check, const sonject_object_params *objec
 
 void check_shape(struct check *check, const sonject_object_params *object)
 {
-    check_choice(check, "shape", object->shape, SONJECT_SHAPE_PARTS + 1);
+    check_choice(check, "shape", object->shape, SONJECT_SHAPE_MESH + 1);
     if (check->status != SONJECT_OK)
         return;
-    if (object->shape == SONJECT_SHAPE_PARTS) {
+    if (object->shape == SONJECT_SHAPE_PARTS || object->shape == SONJECT_SHAPE_MESH) {
         if (object->cut_count > 0)
-            check_failure(check, "cuts", "belong to the parts; an object of parts has none");
+            check_failure(check, "cuts", "are not made in %s",
+                          object->shape == SONJECT_SHAPE_MESH ? "meshes; cut the file's"
+                                                              : "objects of parts; cut the parts");
         return;
     }
     check_needed(check, object);

@@ -117,6 +117,15 @@ void sonject_material_params_init(sonject_material_params *material)
     material->speed_ratio = 1.0;
 }
 
+void sonject_mesh_params_init(sonject_mesh_params *mesh)
+{
+    memset(mesh, 0, sizeof *mesh);
+    mesh->struct_size = sizeof *mesh;
+    mesh->unit_m = 1.0;
+    for (int axis = 0; axis < 3; axis++)
+        mesh->axes[axis] = axis + 1;
+}
+
 void sonject_part_params_init(sonject_part_params *part)
 {
     memset(part, 0, sizeof *part);

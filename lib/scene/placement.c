@@ -71,32 +71,28 @@ static double overall_size(const struct placement *parts, uint32_t count, int ax
     return parts_extent(parts, count, forward) + parts_extent(parts, count, back);
 }
 
-static void take_shape(struct placement *part, uint32_t object, const sonject_object_params *shape,
-                       bool is_mirrored)
+static void take_shape(struct placement *part, const struct scene *scene, uint32_t object,
+                       const sonject_object_params *shape)
 {
     memset(part, 0, sizeof *part);
     part->shape = shape->shape;
     part->object = object;
     part->material = &shape->material;
-    shape_size_init(&part->size, shape, is_mirrored);
+    shape_size_init(&part->size, shape);
+    if (shape->shape == SONJECT_SHAPE_MESH)
+        shape_size_of_mesh(&part->size, &scene->meshes[shape->mesh]);
     part->bounding_radius_m = part->size.bounding_radius_m;
 }
 
-/* Turns a part that lies in its object's own frame, and its centre, as the object's axes say. In a
- * mirrored view that frame is mirrored too: its y axis points to the other side. */
-static void turn_part(struct placement *part, const struct scene_part *in_object, double axes[3][3],
-                      bool is_mirrored)
+/* Turns a part that lies in its object's own frame, and its centre, as the object's axes say. */
+static void turn_part(struct placement *part, const struct scene_part *in_object, double axes[3][3])
 {
-    const double sign[3] = {1.0, is_mirrored ? -1.0 : 1.0, 1.0};
-    for (int i = 0; i < 3; i++) {
-        part->centre[i] = 0.0;
-        for (int k = 0; k < 3; k++) {
-            part->centre[i] += sign[k] * in_object->centre[k] * axes[k][i];
-            part->axes[i][k] = 0.0;
-            for (int m = 0; m < 3; m++)
-                part->axes[i][k] += sign[i] * sign[m] * in_object->axes[i][m] * axes[m][k];
-        }
-    }
+    double own[3][3];
+    memcpy(own, in_object->axes, sizeof own);
+    compose_axes(part->axes, own, axes);
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            part->centre[i] += in_object->centre[k] * axes[k][i];
 }
 
 /* The parts of an object, their centres counted from its origin in axes of the view. Returns their
@@ -107,12 +103,13 @@ static uint32_t pose_parts(struct placement *parts, const struct scene *scene, u
     const sonject_object_params *whole = &scene->objects[object];
     double axes[3][3];
     uint32_t count = 0;
-    /* the image's along-track axis is -x in a mirrored view: heading and roll change sense */
+    /* the image's along-track axis is -x in a mirrored view: heading and roll change sense; what is
+     * turned stays as it is, a left hand does not become a right one */
     turn_axes(axes, is_mirrored ? PI - whole->heading_rad : whole->heading_rad, whole->pitch_rad,
               is_mirrored ? -whole->roll_rad : whole->roll_rad);
     if (whole->shape != SONJECT_SHAPE_PARTS) {
         if (parts) {
-            take_shape(parts, object, whole, is_mirrored);
+            take_shape(parts, scene, object, whole);
             memcpy(parts->axes, axes, sizeof axes);
         }
         return 1;
@@ -121,8 +118,8 @@ static uint32_t pose_parts(struct placement *parts, const struct scene *scene, u
         if (scene->parts[i].object != object)
             continue;
         if (parts) {
-            take_shape(&parts[count], object, &scene->parts[i].shape, is_mirrored);
-            turn_part(&parts[count], &scene->parts[i], axes, is_mirrored);
+            take_shape(&parts[count], scene, object, &scene->parts[i].shape);
+            turn_part(&parts[count], &scene->parts[i], axes);
         }
         count++;
     }

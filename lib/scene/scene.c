@@ -25,6 +25,9 @@ void scene_clear(struct scene *scene)
     free(scene->input_path);
     free(scene->objects);
     free(scene->parts);
+    for (uint32_t i = 0; i < scene->mesh_count; i++)
+        mesh_clear(&scene->meshes[i]);
+    free(scene->meshes);
     free(scene->water_layers);
     scene_init(scene);
 }
@@ -69,6 +72,30 @@ sonject_status scene_append_part(struct scene *scene, struct report *report,
     return SONJECT_OK;
 }
 
+sonject_status scene_append_mesh(struct scene *scene, struct report *report, const char *path,
+                                 const struct mesh_options *options, bool allows_open)
+{
+    if (scene->mesh_count >= SCENE_MESHES_MAX)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "meshes must be at most %d in a scene; split it", SCENE_MESHES_MAX);
+    struct mesh *meshes = make_room(scene->meshes, scene->mesh_count, sizeof *meshes);
+    if (!meshes)
+        return report_out_of_memory(report, "meshes");
+    scene->meshes = meshes;
+    struct mesh *mesh = &scene->meshes[scene->mesh_count];
+    sonject_status status = mesh_load(report, path, options, mesh);
+    if (status != SONJECT_OK)
+        return status;
+    if (!allows_open)
+        status = mesh_require_closed(report, path, mesh);
+    if (status != SONJECT_OK) {
+        mesh_clear(mesh);
+        return status;
+    }
+    scene->mesh_count++;
+    return SONJECT_OK;
+}
+
 const char *shape_name(uint32_t shape)
 {
     switch (shape) {
@@ -96,6 +123,8 @@ const char *shape_name(uint32_t shape)
         return "torus";
     case SONJECT_SHAPE_PARTS:
         return "parts";
+    case SONJECT_SHAPE_MESH:
+        return "mesh";
     default:
         return NULL;
     }

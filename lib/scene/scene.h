@@ -10,9 +10,11 @@
 
 #include "base/report.h"
 #include "medium/water_layer.h"
+#include "mesh/mesh.h"
 
 #define SCENE_OBJECTS_MAX      250 /* ids must fit the 8-bit label image */
 #define SCENE_PARTS_MAX        1000
+#define SCENE_MESHES_MAX       64
 #define SCENE_INTERACTIONS_MAX 8
 
 /* A part of an object of parts. */
@@ -41,6 +43,8 @@ struct scene {
     sonject_synthetic_params synthetic;
     sonject_object_params *objects; /* owned */
     uint32_t object_count;
+    struct mesh *meshes; /* owned */
+    uint32_t mesh_count;
     struct scene_part *parts; /* owned; in no order */
     uint32_t part_count;
 };
@@ -58,6 +62,11 @@ sonject_status scene_append_object(struct scene *scene, struct report *report,
 /* Appends a copy. Errors: INPUT (too many), MEMORY. */
 sonject_status scene_append_part(struct scene *scene, struct report *report,
                                  const struct scene_part *part);
+
+/* Reads and appends a mesh. Errors: as mesh_load, INPUT also where it is open or there are too
+ * many. */
+sonject_status scene_append_mesh(struct scene *scene, struct report *report, const char *path,
+                                 const struct mesh_options *options, bool allows_open);
 
 /* Checks of one structure each, ranges and relations as the public headers state them. The message
  * starts with the name of the value as the scene file writes it ("bandwidth must be ..."); key, if

@@ -34,6 +34,16 @@ static double wedge_extent(const struct shape_size *size, const double v[3])
     return extent + size->half_width_m * fabs(v[1]);
 }
 
+static double mesh_extent(const struct mesh *mesh, const double v[3])
+{
+    double extent = -INFINITY;
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        const float *p = &mesh->vertices[3 * i];
+        extent = fmax(extent, p[0] * v[0] + p[1] * v[1] + p[2] * v[2]);
+    }
+    return extent;
+}
+
 static double uncut_extent(const struct shape_size *size, uint32_t shape, const double v[3])
 {
     const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -226,6 +236,8 @@ bool shape_is_left(const struct shape_size *size, uint32_t shape)
 
 double shape_extent(const struct shape_size *size, uint32_t shape, const double v[3])
 {
+    if (shape == SONJECT_SHAPE_MESH)
+        return mesh_extent(size->mesh, v);
     if (size->cut_count == 0)
         return uncut_extent(size, shape, v);
     if (shape == SONJECT_SHAPE_TORUS)

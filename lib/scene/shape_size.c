@@ -13,16 +13,14 @@ static void take_end(struct end_size *end, const sonject_object_params *object, 
     end->joint_m = 0.5 * object->length_m - end->depth_m;
 }
 
-static void take_cuts(struct shape_size *size, const sonject_object_params *object,
-                      bool is_mirrored)
+static void take_cuts(struct shape_size *size, const sonject_object_params *object)
 {
     size->cut_count = object->cut_count;
     for (uint32_t i = 0; i < object->cut_count; i++) {
         const sonject_cut *cut = &object->cuts[i];
         struct cut_plane *plane = &size->cuts[i];
-        const double side = sin(cut->azimuth_rad) * cos(cut->elevation_rad);
         plane->normal[0] = cos(cut->azimuth_rad) * cos(cut->elevation_rad);
-        plane->normal[1] = is_mirrored ? -side : side;
+        plane->normal[1] = sin(cut->azimuth_rad) * cos(cut->elevation_rad);
         plane->normal[2] = sin(cut->elevation_rad);
         plane->offset_m = cut->distance_m;
     }
@@ -53,7 +51,16 @@ static double bounding_radius(const struct shape_size *size, uint32_t shape)
     }
 }
 
-void shape_size_init(struct shape_size *size, const sonject_object_params *object, bool is_mirrored)
+void shape_size_of_mesh(struct shape_size *size, const struct mesh *mesh)
+{
+    size->mesh = mesh;
+    size->half_length_m = mesh->upper_m[0];
+    size->half_width_m = mesh->upper_m[1];
+    size->half_height_m = mesh->upper_m[2];
+    size->bounding_radius_m = (1.0 + 1e-6) * mesh->radius_m;
+}
+
+void shape_size_init(struct shape_size *size, const sonject_object_params *object)
 {
     memset(size, 0, sizeof *size);
     size->half_length_m = 0.5 * object->length_m;
@@ -87,7 +94,7 @@ void shape_size_init(struct shape_size *size, const sonject_object_params *objec
     default:
         break;
     }
-    take_cuts(size, object, is_mirrored);
+    take_cuts(size, object);
     /* rounding to single precision must not cut */
     size->bounding_radius_m = (1.0 + 1e-6) * bounding_radius(size, object->shape);
 }
@@ -101,6 +108,7 @@ double shape_radius_about_nose(const struct shape_size *size, uint32_t shape)
         return fmax(size->half_width_m, size->half_height_m);
     case SONJECT_SHAPE_BOX:
     case SONJECT_SHAPE_WEDGE:
+    case SONJECT_SHAPE_MESH:
         return hypot(size->half_width_m, size->half_height_m);
     case SONJECT_SHAPE_CONE:
     case SONJECT_SHAPE_TRUNCATED_CONE:

@@ -8,6 +8,8 @@
 
 #include <sonject/object.h>
 
+#include "mesh/mesh.h"
+
 /* Counted outwards along the axis. */
 struct end_size {
     double joint_m; /* where the straight part ends */
@@ -31,12 +33,15 @@ struct shape_size {
     struct end_size nose, tail;
     struct cut_plane cuts[SONJECT_CUTS_CAPACITY];
     uint32_t cut_count;
+    const struct mesh *mesh;  /* of a mesh; borrowed from the scene */
     double bounding_radius_m; /* about the origin, of the uncut shape */
 };
 
-/* In a view that mirrors the image's along-track axis the own y axis points to the other side. */
-void shape_size_init(struct shape_size *size, const sonject_object_params *object,
-                     bool is_mirrored);
+/* A mesh's sizes come from shape_size_of_mesh. */
+void shape_size_init(struct shape_size *size, const sonject_object_params *object);
+
+/* mesh is borrowed. */
+void shape_size_of_mesh(struct shape_size *size, const struct mesh *mesh);
 
 /* The largest p . v over the points p of what the cuts leave of a shape (its support function), v
  * of any length; -INFINITY where they leave nothing. Exact but for cut tubes, which it takes as

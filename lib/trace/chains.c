@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "cl/launch.h"
 #include "cl/program.h"
+#include "trace/object_buffer.h"
 #include "trace/patch_fan.h"
 #include "trace/target_spheres.h"
 
@@ -78,7 +79,7 @@ static sonject_status make_buffers(struct chain_trace *trace, struct tracer *tra
         status = buffer_create(report, device, sizeof chains, &chains, &trace->chains);
     }
     if (status == SONJECT_OK)
-        status = buffer_create(report, device, objects * sizeof *records, records, &trace->objects);
+        status = object_buffer_create(tracer, records, &trace->objects);
     if (status == SONJECT_OK)
         status = buffer_create(report, device, TARGET_SPHERES_MAX * sizeof *spheres, spheres,
                                &trace->spheres);
@@ -129,8 +130,8 @@ sonject_status chain_trace_begin(struct chain_trace *trace, struct tracer *trace
     if (status == SONJECT_OK)
         status = make_tallies(trace, tracer);
     if (status == SONJECT_OK)
-        status = kernel_create(tracer->report, tracer->device, PROGRAM_TRACE_CHAINS, "trace_chains",
-                               &trace->kernel);
+        status = kernel_create(tracer->report, tracer->device, PROGRAM_TRACE_CHAINS,
+                               tracer->scene->mesh_count > 0, "trace_chains", &trace->kernel);
     if (status != SONJECT_OK)
         chain_trace_end(trace);
     return status;

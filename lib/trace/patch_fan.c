@@ -53,11 +53,11 @@ sonject_status patch_rays_init(struct ray_table *rays, struct ray_table_record *
 {
     const struct water_way *way = &tracer->view.water;
     const struct region region = region_of_patch(tracer, grid);
-    /* twice as far: rays over the highest object, and what is sought beside the region */
+    /* a little farther: what is sought beside the region; much farther there may be no ray */
     const double points[4][2] = {{region.near, 0.0},
                                  {region.near, region.top},
                                  {region.far, 0.0},
-                                 {2.0 * region.far, region.top}};
+                                 {1.05 * region.far, region.top}};
     double origin[3];
     patch_fan_origin(origin, &tracer->view);
     memset(rays, 0, sizeof *rays);

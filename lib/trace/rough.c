@@ -119,7 +119,7 @@ static void choose_quanta(struct rough_trace *trace, const struct tracer *tracer
 }
 
 static sonject_status make_buffers(struct rough_trace *trace, struct tracer *tracer,
-                                   const struct object_record *records, const float *map)
+                                   struct object_record *records, const float *map)
 {
     const size_t map_bytes = map ? tracer->view.rows * tracer->view.columns * sizeof *map : 0;
     sonject_status status =

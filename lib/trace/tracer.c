@@ -7,14 +7,15 @@
 #include "base/memory.h"
 #include "cl/launch.h"
 #include "cl/program.h"
+#include "trace/object_buffer.h"
 #include "trace/object_shape.h"
 
 #define PI          3.14159265358979323846
 #define TALLY_BYTES ((size_t)64 << 20)
 
 /* Host and device must agree on every byte. */
-typedef char object_record_is_packed[sizeof(struct object_record) == 55 * 4 ? 1 : -1];
-typedef char fan_record_is_packed[sizeof(struct fan_record) == 39 * 4 ? 1 : -1];
+typedef char object_record_is_packed[sizeof(struct object_record) == 56 * 4 ? 1 : -1];
+typedef char fan_record_is_packed[sizeof(struct fan_record) == 40 * 4 ? 1 : -1];
 typedef char chain_record_is_packed[sizeof(struct chain_record) == 22 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
 typedef char source_pair_record_is_packed[sizeof(struct source_pair_record) == 49 * 4 ? 1 : -1];
@@ -147,6 +148,22 @@ static int32_t segments_for(const struct tracer *tracer, const struct fan_record
     return wanted < 1 ? 1 : wanted > limit ? limit : wanted;
 }
 
+/* The golden section of the strips, or the next number that has no factor in common with theirs. */
+static int32_t stride_of(int32_t strips)
+{
+    int32_t stride = (int32_t)(0.618 * strips) + 1;
+    for (;; stride++) {
+        int32_t a = strips, b = stride;
+        while (b != 0) {
+            const int32_t rest = a % b;
+            a = b;
+            b = rest;
+        }
+        if (a == 1)
+            return stride;
+    }
+}
+
 sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_record *fan,
                             const struct ray_table *rays, const cl_mem *buffers,
                             size_t buffer_count)
@@ -154,6 +171,7 @@ sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_
     struct report *report = tracer->report;
     struct device *device = tracer->device;
     fan->segments = segments_for(tracer, fan);
+    fan->strip_stride = stride_of(fan->strips);
     const size_t items = (size_t)fan->strips * (size_t)fan->segments;
     cl_mem fan_buffer = NULL;
     cl_mem piece_buffer = NULL;
@@ -190,8 +208,7 @@ sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_
 
 sonject_status trace_device_init(struct trace_device *device, struct tracer *tracer,
                                  enum device_program program, const char *kernel_name,
-                                 const struct object_record *records, size_t strips,
-                                 size_t elements)
+                                 struct object_record *records, size_t strips, size_t elements)
 {
     struct report *report = tracer->report;
     const size_t line_bytes = elements * sizeof(int64_t);
@@ -199,10 +216,10 @@ sonject_status trace_device_init(struct trace_device *device, struct tracer *tra
     memset(device, 0, sizeof *device);
     device->tally_strips = fitting < 1 ? 1 : fitting < strips ? fitting : strips;
     sonject_status status =
-        kernel_create(report, tracer->device, program, kernel_name, &device->kernel);
+        kernel_create(report, tracer->device, program, tracer->scene->mesh_count > 0, kernel_name,
+                      &device->kernel);
     if (status == SONJECT_OK)
-        status = buffer_create(report, tracer->device, tracer->part_count * sizeof *records,
-                               records, &device->objects);
+        status = object_buffer_create(tracer, records, &device->objects);
     if (status == SONJECT_OK)
         status = buffer_create(report, tracer->device, device->tally_strips * line_bytes, NULL,
                                &device->tallies);

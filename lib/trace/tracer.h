@@ -67,8 +67,7 @@ struct trace_device {
  * MEMORY. */
 sonject_status trace_device_init(struct trace_device *device, struct tracer *tracer,
                                  enum device_program program, const char *kernel_name,
-                                 const struct object_record *records, size_t strips,
-                                 size_t elements);
+                                 struct object_record *records, size_t strips, size_t elements);
 void trace_device_clear(struct trace_device *device);
 
 /* The largest power of two not above value; value > 0. */

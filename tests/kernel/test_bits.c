@@ -28,6 +28,7 @@ enum scene_kind {
     SCENE_WITH_MAP,    /* and a reflectivity map */
     SCENE_EMPTY,       /* seabed alone */
     SCENE_MORE_SHAPES, /* shapes that are not plain, whole and cut; source rectangle */
+    SCENE_LAYERS,      /* the first one's objects, under a layer of faster water */
     SCENE_KINDS
 };
 
@@ -89,10 +90,13 @@ static void place_more_shapes(struct bench *bench)
 
 static void make_scene(struct bench *bench, enum scene_kind kind)
 {
+    static const struct water_layer layers[] = {{0.0, 1490.0, 1.02}, {3.0, 1530.0, 1.0}};
     bench->scene.injection.seed = 0x123456789abcdefu;
     bench->scene.sonar.altitude_m = 7.3;
     bench->scene.medium.reference_sound_speed_mps = 1480.0;
     bench->scene.sonar.along_track_resolution_m = 0.03;
+    if (kind == SCENE_LAYERS)
+        bench_set_layers(bench, layers, 2);
     if (kind == SCENE_MORE_SHAPES) {
         place_more_shapes(bench);
     } else if (kind != SCENE_EMPTY) {
@@ -383,7 +387,7 @@ static bool compare_pair(struct bench *bench, uint32_t object, const struct sour
 
 static void compare_smooth(struct bench *bench, enum scene_kind kind)
 {
-    if (kind != SCENE_ALL_SHAPES && kind != SCENE_MORE_SHAPES)
+    if (kind != SCENE_ALL_SHAPES && kind != SCENE_MORE_SHAPES && kind != SCENE_LAYERS)
         return; /* neither source nor map matter to glints */
     make_scene(bench, kind);
     for (uint32_t object = 0; object < bench->scene.object_count; object++)
@@ -401,7 +405,7 @@ static void compare_mirrored(struct bench *bench, enum scene_kind kind)
 {
     static const size_t numbers[][2] = {{0, 1}, {1, 1}, {0, 2}, {1, 4}, {2, 4}};
     struct sound_source sources[SOURCES_MAX];
-    if (kind != SCENE_ALL_SHAPES)
+    if (kind != SCENE_ALL_SHAPES && kind != SCENE_LAYERS)
         return;
     make_scene(bench, kind);
     bench->scene.seabed.forward.reflection_kind = SONJECT_REFLECTION_FLUID;
@@ -447,10 +451,11 @@ static int64_t *mirrored_tiles(struct bench *bench, size_t *elements)
 
 static void compare_rough_mirrored(struct bench *bench, enum scene_kind kind)
 {
-    static int64_t *first; /* of the first width */
-    static size_t first_elements;
+    static int64_t *all_first[SCENE_KINDS]; /* of the first width */
+    static size_t all_elements[SCENE_KINDS];
+    int64_t *first = all_first[kind];
     size_t elements;
-    if (kind != SCENE_ALL_SHAPES)
+    if (kind != SCENE_ALL_SHAPES && kind != SCENE_LAYERS)
         return;
     bench->scene.seabed.forward.reflection = 0.9;
     bench->scene.surface.water_depth_m = 7.5;
@@ -462,11 +467,11 @@ static void compare_rough_mirrored(struct bench *bench, enum scene_kind kind)
         for (size_t i = 0; i < elements; i++)
             filled += tiles[i] != 0;
         assert_true(filled > 1000);
-        first = tiles;
-        first_elements = elements;
+        all_first[kind] = tiles;
+        all_elements[kind] = elements;
         return;
     }
-    assert_int_equal(elements, first_elements);
+    assert_int_equal(elements, all_elements[kind]);
     assert_memory_equal(tiles, first, elements * sizeof *tiles);
     free(tiles);
 }

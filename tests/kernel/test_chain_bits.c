@@ -23,22 +23,27 @@
 struct variant {
     const char *name;
     uint32_t interactions, estimator, column_rule, forward_rule;
-    int has_map, has_wide_source, seabed_is_smooth;
+    int has_map, has_wide_source, seabed_is_smooth, has_layers;
 };
 
 static const struct variant variants[] = {
     {"focused", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_FOCUSED, SONJECT_FORWARD_MODEL, 0, 0,
-     0},
+     0, 0},
     {"paper columns and map", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_PAPER,
-     SONJECT_FORWARD_MAP, 1, 0, 0},
+     SONJECT_FORWARD_MAP, 1, 0, 0, 0},
     {"wide source, smooth seabed", 4, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_FOCUSED,
-     SONJECT_FORWARD_MODEL, 0, 1, 1},
+     SONJECT_FORWARD_MODEL, 0, 1, 1, 0},
     {"brute force", 3, SONJECT_ESTIMATOR_BRUTE_FORCE, SONJECT_COLUMNS_PAPER, SONJECT_FORWARD_MODEL,
-     0, 1, 0},
+     0, 1, 0, 0},
+    {"focused through layers", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_FOCUSED,
+     SONJECT_FORWARD_MODEL, 0, 0, 1, 1},
+    {"wide source and map through layers", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_PAPER,
+     SONJECT_FORWARD_MAP, 1, 1, 0, 1},
 };
 
 static void make_scene(struct bench *bench, const struct variant *variant)
 {
+    static const struct water_layer layers[] = {{0.0, 1490.0, 1.02}, {3.0, 1530.0, 1.0}};
     struct scene *scene = &bench->scene;
     sonject_object_params *sphere = bench_add(bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.5);
     sphere->material.lambert = 0.2;
@@ -54,6 +59,8 @@ static void make_scene(struct bench *bench, const struct variant *variant)
     capsule->position_kind = SONJECT_POSITION_PIXELS;
     capsule->position_along = 40.0;
     capsule->position_range = 40.0;
+    if (variant->has_layers)
+        bench_set_layers(bench, layers, 2);
     scene->seabed.lambert = 0.2;
     scene->seabed.forward_rule = variant->forward_rule;
     if (variant->seabed_is_smooth) {

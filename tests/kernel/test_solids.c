@@ -90,7 +90,7 @@ static void random_cuts(sonject_object_params *params, uint32_t cuts)
             params->cuts[i].elevation_rad = asin(uniform(-1.0, 1.0));
             params->cuts[i].distance_m = uniform(-0.3, 0.4) * params->diameter_m;
         }
-        shape_size_init(&size, params, false);
+        shape_size_init(&size, params);
     } while (!shape_is_left(&size, params->shape));
 }
 
@@ -112,7 +112,7 @@ static void make_record(struct solid *solid, double reach)
 {
     struct shape_size size;
     memset(&solid->record, 0, sizeof solid->record);
-    shape_size_init(&size, &solid->params, false);
+    shape_size_init(&size, &solid->params);
     object_shape_init(&solid->record, &size, solid->params.shape);
     solid->record.centre_x = (float)uniform(-reach, reach);
     solid->record.centre_y = (float)uniform(-reach, reach);

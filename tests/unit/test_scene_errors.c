@@ -51,9 +51,9 @@ static void test_unknown_keys(void **state)
         {START INPUT "sonar: {frequency: 1e5, bandwidth: 3e4, altitud: 10}\n",
          ":3:41: sonar.altitud: unknown key; did you mean 'altitude'?"},
         {OBJECT "sphere\n    \xC3\xA9tat: 1 m\n",
-         ":6:5: objects[0].\xC3\xA9tat: unknown key; known here are name, class, shape, length, "
-         "width, diameter, height, top_diameter, front_height, nose_end, tail_end, cuts, position, "
-         "heading, pitch, roll, burial, material"},
+         ":6:5: objects[0].\xC3\xA9tat: unknown key; known here are target, name, class, shape, "
+         "length, width, diameter, height, top_diameter, front_height, nose_end, tail_end, cuts, "
+         "position, heading, pitch, roll, burial, material, parts"},
     };
     expect_all(state, wrong, COUNT(wrong));
 }
@@ -91,7 +91,8 @@ static void test_missing_keys(void **state)
          ":5:5: objects[0].height: missing; an ellipsoid needs it"},
         {OBJECT "truncated_cone\n    diameter: 1\n    height: 1\n",
          ":5:5: objects[0].top_diameter: missing; a truncated_cone needs it"},
-        {BASE "objects: [{}]\n", ":4:11: objects[0].shape: missing; add it (of the object)"},
+        {BASE "objects: [{}]\n",
+         ":4:11: objects[0]: none of shape, parts and target is there; give one"},
     };
     expect_all(state, wrong, COUNT(wrong));
 }
@@ -424,8 +425,9 @@ static void test_overrides_that_are_wrong(void **state)
                        "of it"},
         {"sonar.altitude.x=3", "--set sonar.altitude.x: sonar.altitude is a value in the file, not "
                                "a section; give the whole of it"},
-        {"a.b.c.d.e.f.g.h.i.j.k.l.m.n.o=1", "--set a.b.c.d.e.f.g.h.i.j.k.l.m.n.o: nested too "
-                                            "deeply; no key of a scene is"},
+        {"a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q.r.s.t.u.v.w.x.y=1",
+         "--set a.b.c.d.e.f.g.h.i.j.k.l.m.n.o.p.q.r.s.t.u.v.w.x.y: nested too deeply; no key of a "
+         "scene is"},
         {"sonar.altitud=3", "--set sonar.altitud: unknown key; did you mean 'altitude'?"},
         {"sonar.altitude=3 kg", "--set sonar.altitude: unit 'kg' is not one of m, km, cm, mm"},
         {"sonar.altitude=-1 m", "--set sonar.altitude: must be 1e-06...1e+06 m, not -1"},

@@ -71,7 +71,8 @@ static const struct key_case {
     const char *value;
     enum type type;
     size_t offset; /* in struct scene; in the first object if the path starts with objects, in the
-                      layers if it starts with medium.layers or .profile */
+                      first part if it goes on with parts, in the layers if it starts with
+                      medium.layers or .profile */
     double number;
     const char *text;
     const char *other;
@@ -299,6 +300,81 @@ static const struct key_case {
      NULL, "objects[0].material={fluid: {density: 8}}"},
     {"objects[].material.fluid.loss", small, "0.0625", TYPE_DOUBLE, OBJECT(material.loss), 0.0625,
      NULL, "objects[0].material={fluid: {density: 8, speed: 4}}"},
+#define PART(member)  offsetof(struct scene_part, member)
+#define SIZED(member) PART(shape.member)
+#define A_PART(keys)  "objects[0]={parts: [{" keys "}]}"
+#define A_SPHERE      "shape: sphere, diameter: 1"
+#define A_CYLINDER    "shape: cylinder, length: 1, diameter: 0.5"
+    {"objects[].target", small, SOURCE_ROOT "/tools/targets/oil_drum.yaml", TYPE_U32, OBJECT(shape),
+     SONJECT_SHAPE_PARTS, NULL, "objects[0]={}"},
+    {"objects[].parts[].name", small, "left ear", TYPE_TEXT, SIZED(name), 0.0, "left ear",
+     A_PART(A_SPHERE)},
+    {"objects[].parts[].shape", small, "disc", TYPE_U32, SIZED(shape), SONJECT_SHAPE_DISC, NULL,
+     A_PART("diameter: 1")},
+    {"objects[].parts[].length", small, "1.2 m", TYPE_DOUBLE, SIZED(length_m), 1.2, NULL,
+     A_PART("shape: capsule, diameter: 0.5")},
+    {"objects[].parts[].width", small, "0.8 m", TYPE_DOUBLE, SIZED(width_m), 0.8, NULL,
+     A_PART("shape: plane, length: 1")},
+    {"objects[].parts[].diameter", small, "30 cm", TYPE_DOUBLE, SIZED(diameter_m), 0.3, NULL,
+     A_PART("shape: sphere")},
+    {"objects[].parts[].height", small, "25 cm", TYPE_DOUBLE, SIZED(height_m), 0.25, NULL,
+     A_PART("shape: cone, diameter: 1")},
+    {"objects[].parts[].top_diameter", small, "20 cm", TYPE_DOUBLE, SIZED(top_diameter_m), 0.2,
+     NULL, A_PART("shape: truncated_cone, diameter: 1, height: 0.5")},
+    {"objects[].parts[].front_height", small, "10 cm", TYPE_DOUBLE, SIZED(front_height_m), 0.1,
+     NULL, A_PART("shape: wedge, length: 1, width: 1, height: 0.5")},
+    {"objects[].parts[].nose_end", small, "open", TYPE_U32, SIZED(nose_end), SONJECT_END_OPEN, NULL,
+     A_PART(A_CYLINDER)},
+    {"objects[].parts[].nose_end.depth", small, "10 cm", TYPE_DOUBLE, SIZED(nose_end_depth_m), 0.1,
+     NULL, A_PART(A_CYLINDER)},
+    {"objects[].parts[].tail_end", small, "spherical", TYPE_U32, SIZED(tail_end),
+     SONJECT_END_SPHERICAL, NULL, A_PART(A_CYLINDER)},
+    {"objects[].parts[].tail_end.depth", small, "10 cm", TYPE_DOUBLE, SIZED(tail_end_depth_m), 0.1,
+     NULL, A_PART(A_CYLINDER)},
+    {"objects[].parts[].cuts[].azimuth", small, "90 deg", TYPE_DOUBLE, SIZED(cuts[0].azimuth_rad),
+     PI / 2.0, NULL, A_PART(A_SPHERE ", cuts: [{distance: 0}]")},
+    {"objects[].parts[].cuts[].elevation", small, "-90 deg", TYPE_DOUBLE,
+     SIZED(cuts[0].elevation_rad), -PI / 2.0, NULL, A_PART(A_SPHERE ", cuts: [{distance: 0}]")},
+    {"objects[].parts[].cuts[].distance", small, "-5 cm", TYPE_DOUBLE, SIZED(cuts[0].distance_m),
+     -0.05, NULL, A_PART(A_SPHERE ", cuts: [{distance: 0}]")},
+    {"objects[].parts[].at.along", small, "20 cm", TYPE_DOUBLE, PART(centre[0]), 0.2, NULL,
+     A_PART(A_SPHERE)},
+    {"objects[].parts[].at.across", small, "-3 m", TYPE_DOUBLE, PART(centre[1]), -3.0, NULL,
+     A_PART(A_SPHERE)},
+    {"objects[].parts[].at.up", small, "1.5 m", TYPE_DOUBLE, PART(centre[2]), 1.5, NULL,
+     A_PART(A_SPHERE)},
+    /* right angles: the sine is 1 */
+    {"objects[].parts[].heading", small, "90 deg", TYPE_DOUBLE, PART(axes[0][1]), 1.0, NULL,
+     A_PART(A_SPHERE)},
+    {"objects[].parts[].pitch", small, "90 deg", TYPE_DOUBLE, PART(axes[0][2]), 1.0, NULL,
+     A_PART(A_SPHERE)},
+    {"objects[].parts[].roll", small, "90 deg", TYPE_DOUBLE, PART(axes[1][2]), 1.0, NULL,
+     A_PART(A_SPHERE)},
+    {"objects[].parts[].parts", small, "[{shape: sphere, diameter: 0.75}]", TYPE_DOUBLE,
+     SIZED(diameter_m), 0.75, NULL, A_PART("name: group")},
+    {"objects[].parts[].material.reflection", small, "-0.75", TYPE_DOUBLE,
+     SIZED(material.reflection), -0.75, NULL, A_PART(A_SPHERE)},
+    {"objects[].parts[].material.roughness", small, "2 mm", TYPE_DOUBLE,
+     SIZED(material.roughness_m), 0.002, NULL, A_PART(A_SPHERE)},
+    {"objects[].parts[].material", small, "gravel", TYPE_U32, SIZED(material.reflection_kind),
+     SONJECT_REFLECTION_FLUID, NULL, A_PART(A_SPHERE)},
+    {"objects[].parts[].material.name", small, "fine-sand", TYPE_U32,
+     SIZED(material.reflection_kind), SONJECT_REFLECTION_FLUID, NULL, A_PART(A_SPHERE)},
+    {"objects[].parts[].material.glossy.albedo", small, "0.25", TYPE_DOUBLE,
+     SIZED(material.glossy_albedo), 0.25, NULL, A_PART(A_SPHERE)},
+    {"objects[].parts[].material.glossy.slope", small, "0.5", TYPE_DOUBLE,
+     SIZED(material.glossy_slope), 0.5, NULL,
+     A_PART(A_SPHERE ", material: {glossy: {albedo: 0.25}}")},
+    {"objects[].parts[].material.lambert", small, "0.125", TYPE_DOUBLE, SIZED(material.lambert),
+     0.125, NULL, A_PART(A_SPHERE)},
+    {"objects[].parts[].material.exponent", small, "4", TYPE_DOUBLE,
+     SIZED(material.lambert_exponent), 4.0, NULL, A_PART(A_SPHERE)},
+    {"objects[].parts[].material.fluid.speed", small, "4", TYPE_DOUBLE, SIZED(material.speed_ratio),
+     4.0, NULL, A_PART(A_SPHERE ", material: {fluid: {density: 8}}")},
+    {"objects[].parts[].material.fluid.loss", small, "0.0625", TYPE_DOUBLE, SIZED(material.loss),
+     0.0625, NULL, A_PART(A_SPHERE ", material: {fluid: {density: 8, speed: 4}}")},
+    {"objects[].parts[].material.fluid.density", small, "8", TYPE_DOUBLE,
+     SIZED(material.density_ratio), 8.0, NULL, A_PART(A_SPHERE ", material: {fluid: {speed: 4}}")},
 };
 
 static double number_at(const void *structure, const struct key_case *key)
@@ -342,6 +418,8 @@ static void expect_arrived(const struct key_case *key, const void *structure)
 
 static const void *structure_of(const struct scene *scene, const char *path)
 {
+    if (strncmp(path, "objects[].parts", 15) == 0)
+        return scene->parts;
     if (strncmp(path, "objects", 7) == 0)
         return scene->objects;
     if (strncmp(path, "medium.layers", 13) == 0 || strncmp(path, "medium.profile", 14) == 0)
@@ -385,7 +463,7 @@ static void test_every_key_arrives(void **state)
 /* So that a key cannot be added to the tables without a case above. */
 static void test_every_key_has_a_case(void **state)
 {
-    struct scene_file_key keys[170];
+    struct scene_file_key keys[200];
     const size_t count = scene_file_keys(keys, COUNT(keys));
     (void)state;
     assert_int_equal(count, COUNT(cases));

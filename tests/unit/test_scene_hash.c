@@ -185,6 +185,37 @@ static void test_layers_of_water_count(void **state)
     scene_clear(&scene);
 }
 
+static void test_parts_count(void **state)
+{
+    static const struct member of_part[] = {
+        {"object", offsetof(struct scene_part, object), sizeof(uint32_t)},
+        {"axes", offsetof(struct scene_part, axes), sizeof(double)},
+        {"last of the axes", offsetof(struct scene_part, axes[2][2]), sizeof(double)},
+        {"centre", offsetof(struct scene_part, centre), sizeof(double)},
+        {"last of the centre", offsetof(struct scene_part, centre[2]), sizeof(double)},
+    };
+    struct report report = {{0}, NULL, NULL};
+    struct scene scene;
+    struct scene_part part;
+    char one[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];
+    (void)state;
+    make_scene(&scene);
+    hash_of(&scene, NULL, one);
+    memset(&part, 0, sizeof part);
+    part.shape = scene.objects[0];
+    for (int i = 0; i < 2; i++) {
+        assert_int_equal(scene_append_part(&scene, &report, &part), SONJECT_OK);
+        hash_of(&scene, NULL, other);
+        assert_string_not_equal(one, other);
+        memcpy(one, other, sizeof one);
+    }
+    for (size_t i = 0; i < COUNT(of_part); i++)
+        expect_counted(&scene, &scene.parts[1], &of_part[i]);
+    for (size_t i = 0; i < COUNT(of_object); i++)
+        expect_counted(&scene, &scene.parts[1].shape, &of_object[i]);
+    scene_clear(&scene);
+}
+
 static void test_input_and_number_of_objects_count(void **state)
 {
     struct scene scene;
@@ -229,6 +260,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_member_counts),
         cmocka_unit_test(test_layers_of_water_count),
+        cmocka_unit_test(test_parts_count),
         cmocka_unit_test(test_input_and_number_of_objects_count),
         cmocka_unit_test(test_nan_is_one_value_and_padding_none),
     };

@@ -270,6 +270,66 @@ static void test_mutated_examples(void **state)
     }
 }
 
+/* A target is a scene, or a message that leads to a line of its file. */
+static sonject_status expect_target_taken_or_explained(struct scene_folder *folder,
+                                                       const char *path, const char *text,
+                                                       size_t bytes)
+{
+    const char *place = folder->report.message + strlen(path);
+    unsigned long line, column;
+    int length = 0;
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, bytes, file), bytes);
+    assert_int_equal(fclose(file), 0);
+    const sonject_status status = read_scene(folder, NULL, 0);
+    if (status == SONJECT_OK)
+        return status;
+    if (status != SONJECT_ERROR_INPUT)
+        fail_msg("status %d: %s", (int)status, folder->report.message);
+    assert_memory_equal(folder->report.message, path, strlen(path));
+    if (sscanf(place, ":%lu:%lu: %n", &line, &column, &length) != 2 || length == 0 ||
+        place[length] == 0)
+        fail_msg("no place or no text: %s", folder->report.message);
+    assert_int_equal(folder->scene.object_count + folder->scene.part_count, 0);
+    return status;
+}
+
+static void test_mutated_targets(void **state)
+{
+    static const char scene[] =
+        "sonject: 1\ninput: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, "
+        "column_spacing: 1, first_slant_range: 40}}\n"
+        "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
+        "objects: [{target: target.yaml}]\n";
+    static const char *const targets[] = {"anchor", "boulder", "crab_pot_frame"};
+    struct scene_folder *folder = *state;
+    struct dice dice = {UINT64_C(0xD1B54A32D192ED03)};
+    char path[SCENE_FOLDER_CAPACITY + 16];
+    snprintf(path, sizeof path, "%s/target.yaml", folder->folder);
+    write_scene(folder, scene, strlen(scene));
+    for (size_t i = 0; i < COUNT(targets); i++) {
+        char name[64];
+        size_t bytes;
+        size_t refused = 0;
+        snprintf(name, sizeof name, "../targets/%s", targets[i]);
+        char *text = example_scene(name, &bytes);
+        assert_true(bytes > 100 && bytes < TEXT_CAPACITY);
+        for (int j = 0; j < MUTATIONS / 10; j++) {
+            char mutated[TEXT_CAPACITY];
+            size_t length = bytes;
+            memcpy(mutated, text, bytes);
+            for (size_t changes = 1 + throw(&dice, 4); changes > 0 && length > 0; changes--)
+                length = mutate(&dice, mutated, length);
+            refused +=
+                expect_target_taken_or_explained(folder, path, mutated, length) != SONJECT_OK;
+        }
+        assert_true(refused > MUTATIONS / 40 && refused < MUTATIONS / 10);
+        free(text);
+    }
+    (void)unlink(path);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -284,6 +344,7 @@ int main(void)
         cmocka_unit_test(test_other_encodings),
         cmocka_unit_test(test_an_example_cut_at_every_length),
         cmocka_unit_test(test_mutated_examples),
+        cmocka_unit_test(test_mutated_targets),
     };
     return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
 }

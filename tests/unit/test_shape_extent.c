@@ -169,7 +169,7 @@ static void test_clouds_of_points(void **unused)
             const sonject_object_params object = random_object(shape, cuts);
             struct shape_size size;
             double directions[12][3], farthest[12], extents[12];
-            shape_size_init(&size, &object, false);
+            shape_size_init(&size, &object);
             for (int k = 0; k < 12; k++) {
                 random_direction(directions[k]);
                 farthest[k] = -INFINITY;
@@ -202,7 +202,7 @@ static double extent_along(const sonject_object_params *object, double x, double
 {
     const double v[3] = {x, y, z};
     struct shape_size size;
-    shape_size_init(&size, object, false);
+    shape_size_init(&size, object);
     return shape_extent(&size, object->shape, v);
 }
 
@@ -273,10 +273,10 @@ static void test_bounding_radius(void **unused)
     object.shape = SONJECT_SHAPE_CYLINDER;
     object.length_m = 2.0;
     object.nose_end = object.tail_end = SONJECT_END_SPHERICAL;
-    shape_size_init(&size, &object, false);
+    shape_size_init(&size, &object);
     assert_true(fabs(size.bounding_radius_m - 1.0) < 2e-6);
     object.tail_end = SONJECT_END_OPEN;
-    shape_size_init(&size, &object, false);
+    shape_size_init(&size, &object);
     assert_true(fabs(size.bounding_radius_m - hypot(1.0, 0.25)) < 2e-6);
 }
 
@@ -292,7 +292,7 @@ static void make_view(struct patch_view *view, struct scene *scene, sonject_side
 }
 
 static double lowest_point(const struct placement *placement, const sonject_object_params *object,
-                           bool is_mirrored, double *highest)
+                           double *highest)
 {
     double lowest = INFINITY;
     *highest = -INFINITY;
@@ -301,7 +301,7 @@ static double lowest_point(const struct placement *placement, const sonject_obje
         random_point(&placement->size, object->shape, p);
         if (!is_left(object, p))
             continue;
-        const double own[3] = {p[0], is_mirrored ? -p[1] : p[1], p[2]};
+        const double *own = p;
         double height = placement->centre[2];
         for (int axis = 0; axis < 3; axis++)
             height += own[axis] * placement->axes[axis][2];
@@ -347,19 +347,19 @@ static void test_objects_rest_on_the_seabed(void **unused)
             if (place(&placement, &burial, &report, &view, &object) != SONJECT_OK)
                 fail_msg("%s", report.message);
             const double slack = 0.15 * placement.bounding_radius_m;
-            const double lowest = lowest_point(&placement, &object, view.is_mirrored, &highest);
+            const double lowest = lowest_point(&placement, &object, &highest);
             assert_true(lowest > -1e-9 && lowest < slack);
             const double height = highest - lowest;
             object.burial_kind = SONJECT_BURIAL_FRACTION;
             object.burial_fraction = 0.5;
             assert_int_equal(place(&placement, &burial, &report, &view, &object), SONJECT_OK);
-            lowest_point(&placement, &object, view.is_mirrored, &highest);
+            lowest_point(&placement, &object, &highest);
             assert_true(fabs(highest - 0.5 * height) < slack);
             assert_true(fabs(burial - 0.5 * height) < slack);
             object.burial_kind = SONJECT_BURIAL_PROUD;
             object.proud_height_m = 0.05;
             assert_int_equal(place(&placement, &burial, &report, &view, &object), SONJECT_OK);
-            lowest_point(&placement, &object, view.is_mirrored, &highest);
+            lowest_point(&placement, &object, &highest);
             assert_true(highest < 0.05 + 1e-9 && highest > 0.05 - slack);
             scene_clear(&scene);
         }

@@ -33,6 +33,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sonject_material_named": (_status, [c_char_p, POINTER(s.sonject_material_params)]),
     "sonject_material_name": (c_char_p, [c_uint32]),
     "sonject_object_params_init": (None, [POINTER(s.sonject_object_params)]),
+    "sonject_mesh_params_init": (None, [POINTER(s.sonject_mesh_params)]),
+    "sonject_part_params_init": (None, [POINTER(s.sonject_part_params)]),
     "sonject_sonar_params_init": (None, [POINTER(s.sonject_sonar_params)]),
     "sonject_medium_params_init": (None, [POINTER(s.sonject_medium_params)]),
     "sonject_absorption": (c_double, [c_double, c_double, c_double, c_double, c_double]),
@@ -66,6 +68,14 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sonject_scene_add_object": (
         _status,
         [_scene, POINTER(s.sonject_object_params), POINTER(c_uint32)],
+    ),
+    "sonject_scene_add_mesh": (
+        _status,
+        [_scene, c_char_p, POINTER(s.sonject_mesh_params), POINTER(c_uint32)],
+    ),
+    "sonject_scene_add_part": (
+        _status,
+        [_scene, c_uint32, POINTER(s.sonject_object_params), POINTER(s.sonject_part_params)],
     ),
     "sonject_scene_object_count": (_status, [_scene, POINTER(c_uint32)]),
     "sonject_inject": (

@@ -11,7 +11,9 @@ from ctypes import (
     c_char,
     c_char_p,
     c_double,
+    c_int32,
     c_int,
+    c_int32,
     c_uint32,
     c_uint64,
     c_void_p,
@@ -168,8 +170,31 @@ class sonject_object_params(Structure):
         ("burial_fraction", c_double),
         ("proud_height_m", c_double),
         ("cut_count", c_uint32),
-        ("reserved", c_uint32),
+        ("mesh", c_uint32),
         ("cuts", sonject_cut * CUTS_CAPACITY),
+    ]
+
+
+class sonject_mesh_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("allows_open", c_uint32),
+        ("unit_m", c_double),
+        ("axes", c_int32 * 3),
+        ("reserved", c_int32),
+    ]
+
+
+class sonject_part_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("along_m", c_double),
+        ("across_m", c_double),
+        ("up_m", c_double),
+        ("heading_rad", c_double),
+        ("pitch_rad", c_double),
+        ("roll_rad", c_double),
     ]
 
 

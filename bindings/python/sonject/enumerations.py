@@ -77,6 +77,8 @@ class Shape(enum.IntEnum):
     CONE = 8
     TRUNCATED_CONE = 9
     TORUS = 10
+    PARTS = 11
+    MESH = 12
 
 
 class End(enum.IntEnum):

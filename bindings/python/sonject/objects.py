@@ -121,6 +121,7 @@ class Object:
                 values[name] = choice(name, End, values[name])
         values["material"] = self.material.to_structure()
         values["shape"] = self._shape
+        values.pop("parts", None)
         structure = initialised(s.sonject_object_params)
         fill(structure, values)
         structure.cuts[: len(cuts)] = cuts
@@ -236,3 +237,63 @@ class Torus(Object):
     _shape: ClassVar[Shape] = Shape.TORUS
     diameter_m: float
     height_m: float
+
+
+@dataclass(frozen=True)
+class Part:
+    """A shape and where it lies in an object of Parts.
+
+    shape: any one but Parts; its sizes, ends, cuts and material count, its name, class, position,
+    pose and burial do not; along_m, across_m, up_m: of its centre from the object's origin, along
+    the object's nose, its own y and its own z; heading_rad: of its nose from the object's towards
+    that y; pitch_rad: raises its nose towards that z; roll_rad: about its nose.
+    """
+
+    shape: Object
+    along_m: float = field(default=0.0, kw_only=True)
+    across_m: float = field(default=0.0, kw_only=True)
+    up_m: float = field(default=0.0, kw_only=True)
+    heading_rad: float = field(default=0.0, kw_only=True)
+    pitch_rad: float = field(default=0.0, kw_only=True)
+    roll_rad: float = field(default=0.0, kw_only=True)
+
+    def to_structures(self) -> tuple[s.sonject_object_params, s.sonject_part_params]:
+        """The C structures of shape and place. Raises TypeError or ValueError as the shape's does."""
+        if not isinstance(self.shape, Object) or isinstance(self.shape, Parts):
+            raise TypeError(f"shape of a Part must be an Object of one shape, not {self.shape!r}")
+        place = initialised(s.sonject_part_params)
+        names = [entry.name for entry in fields(self) if entry.name != "shape"]
+        fill(place, {name: getattr(self, name) for name in names})
+        return self.shape.to_structure(), place
+
+
+@dataclass(kw_only=True)
+class Mesh(Object):
+    """Triangles of a file that ``Scene.add_mesh`` has read; mesh: its number there.
+
+    The object's centre is the middle of the mesh's bounding box.
+    """
+
+    _shape: ClassVar[Shape] = Shape.MESH
+    mesh: int
+
+
+@dataclass
+class Parts(Object):
+    """The union of its parts, which may overlap: ``Parts([Part(Sphere(diameter_m=1)), ...])``.
+
+    Each part has the material of its own shape, not the whole's, and cuts of its own; the whole can
+    have none.
+    """
+
+    _shape: ClassVar[Shape] = Shape.PARTS
+    parts: Sequence[Part]
+
+    def to_structure(self) -> s.sonject_object_params:
+        """As of every object; the parts are structures of their own."""
+        if len(self.parts) == 0:
+            raise ValueError("parts must be at least one")
+        for part in self.parts:
+            if not isinstance(part, Part):
+                raise TypeError(f"each of parts must be a Part, not {part!r}")
+        return super().to_structure()

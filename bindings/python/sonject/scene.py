@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any, Iterable, Mapping, Optional, Type, Union
+from typing import Any, Iterable, Mapping, Optional, Sequence, Type, Union
 
 from . import _structures as s
 from ._handle import Handle
-from ._values import PathLike, file_name, real_numbers, whole_number
+from ._values import PathLike, file_name, fill, initialised, real_numbers, whole_number
 from .context import Context, default_context
-from .objects import Object
+from .objects import Object, Parts
 from .parameters import (
     Geometry,
     Injection,
@@ -189,18 +189,57 @@ class Scene(Handle):
             path = file_name("input", source)
             self._context.call("sonject_scene_set_input_file", self, path)
 
+    def add_mesh(
+        self,
+        path: PathLike,
+        *,
+        unit_m: float = 1.0,
+        axes: Sequence[int] = (1, 2, 3),
+        allows_open: bool = False,
+    ) -> int:
+        """Reads a mesh file (STL, OBJ, PLY) for ``Mesh`` objects; gives its number.
+
+        unit_m: metres a unit of the file; axes: which axis of the file the object's nose, y and z
+        axis is, 1, 2, 3, negative for the reverse of it; allows_open: a mesh that is not closed is
+        taken as thin sheets.
+        """
+        params = initialised(s.sonject_mesh_params)
+        fill(params, {"allows_open": int(allows_open), "unit_m": unit_m})
+        params.axes[:] = [int(axis) for axis in axes]
+        index = ctypes.c_uint32()
+        self._context.call(
+            "sonject_scene_add_mesh",
+            self,
+            file_name("mesh", path),
+            ctypes.byref(params),
+            ctypes.byref(index),
+        )
+        return index.value
+
     def add(self, thing: Object) -> int:
-        """Adds an object; gives its number, counted from 0."""
+        """Adds an object; gives its number, counted from 0.
+
+        Where the library refuses one of an object's parts, the object stays with those before it.
+        """
         if not isinstance(thing, Object):
             raise TypeError(f"an Object is wanted, not {thing!r}")
         index = ctypes.c_uint32()
         structure = thing.to_structure()
+        parts = [part.to_structures() for part in thing.parts] if isinstance(thing, Parts) else []
         self._context.call(
             "sonject_scene_add_object",
             self,
             ctypes.byref(structure),
             ctypes.byref(index),
         )
+        for shape, place in parts:
+            self._context.call(
+                "sonject_scene_add_part",
+                self,
+                index.value,
+                ctypes.byref(shape),
+                ctypes.byref(place),
+            )
         return index.value
 
     @property

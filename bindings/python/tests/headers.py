@@ -12,6 +12,7 @@ SCALARS = {
     "double": ctypes.c_double,
     "int": ctypes.c_int,
     "size_t": ctypes.c_size_t,
+    "int32_t": ctypes.c_int32,
     "uint32_t": ctypes.c_uint32,
     "uint64_t": ctypes.c_uint64,
 }

@@ -90,6 +90,51 @@ def test_cuts_and_burial():
         sonject.Sphere(diameter_m=1, cuts=[(0, 0, 1)]).to_structure()
 
 
+def test_parts_and_their_places():
+    shape = sonject.Sphere(diameter_m=0.4, material=sonject.Material.named("rock"))
+    part = sonject.Part(
+        shape, along_m=1, across_m=2, up_m=3, heading_rad=0.1, pitch_rad=0.2, roll_rad=0.3
+    )
+    taken, place = part.to_structures()
+    assert (taken.diameter_m, taken.material.density_ratio) == (0.4, 2.5)
+    assert (place.along_m, place.across_m, place.up_m) == (1.0, 2.0, 3.0)
+    assert (place.heading_rad, place.pitch_rad, place.roll_rad) == (0.1, 0.2, 0.3)
+    whole = sonject.Parts([part], heading_rad=0.5, name="pair").to_structure()
+    assert (whole.shape, whole.heading_rad, whole.name) == (sonject.objects.Shape.PARTS, 0.5, b"pair")
+
+
+def test_wrong_parts_are_refused(make_scene):
+    ball = sonject.Part(sonject.Sphere(diameter_m=1))
+    with pytest.raises(ValueError, match="at least one"):
+        sonject.Parts([]).to_structure()
+    with pytest.raises(TypeError, match="must be a Part"):
+        sonject.Parts([sonject.Sphere(diameter_m=1)]).to_structure()
+    with pytest.raises(TypeError, match="one shape"):
+        sonject.Part(sonject.Parts([ball])).to_structures()
+    with pytest.raises(TypeError, match="one shape"):
+        sonject.Part("sphere").to_structures()
+    cut = sonject.Parts([ball], cuts=[sonject.Cut(distance_m=0.0)])
+    small = sonject.Parts([sonject.Part(sonject.Sphere(diameter_m=-1))])
+    for wrong in (cut, small):
+        with pytest.raises(sonject.SonjectError) as caught:
+            make_scene(objects=[wrong])
+        assert caught.value.status is sonject.Status.ERROR_INPUT
+
+
+def test_parts_are_one_object(make_scene, complex_patch):
+    """What two parts hold alike counts once: the picture of twins in one place is that of one."""
+    ball = sonject.Part(sonject.Sphere(diameter_m=0.5))
+    results = [
+        sonject.inject(complex_patch, make_scene(objects=[sonject.Parts(parts)]))
+        for parts in ([ball], [ball, ball], [ball, sonject.Part(ball.shape, along_m=0.4)])
+    ]
+    one, twins, pair = (result.objects for result in results)
+    assert len(one) == len(twins) == len(pair) == 1
+    assert pair[0].highlight.rows > one[0].highlight.rows + 10  # 16 rows of 2.5 cm more
+    assert twins[0].target_strength_db == one[0].target_strength_db
+    assert results[1].image.tobytes() == results[0].image.tobytes()
+
+
 def test_every_shape_is_injected(make_scene, complex_patch):
     shapes = [
         sonject.Disc(diameter_m=0.5, pitch_rad=-0.8),
@@ -105,6 +150,35 @@ def test_every_shape_is_injected(make_scene, complex_patch):
     for shape in shapes:
         result = sonject.inject(complex_patch, make_scene(objects=[shape]))
         assert result.objects[0].highlight_pixels > 0, shape
+
+
+TETRAHEDRON = """
+v 0 0 0
+v 600 0 0
+v 0 600 0
+v 0 0 400
+f 1 3 2
+f 1 2 4
+f 2 3 4
+f 1 4 3
+"""
+
+
+def test_meshes_are_read_and_injected(make_scene, complex_patch, tmp_path):
+    path = tmp_path / "tetrahedron.obj"
+    path.write_text(TETRAHEDRON)
+    scene = make_scene(objects=[])
+    number = scene.add_mesh(path, unit_m=1e-3, axes=(2, -1, 3))
+    scene.add(sonject.Mesh(mesh=number))
+    result = sonject.inject(complex_patch, scene)
+    assert result.objects[0].highlight_pixels > 0
+    assert abs(result.objects[0].height_m - 0.2) < 1e-6  # it rests on the seabed
+    path.write_text(TETRAHEDRON.replace("f 1 4 3\n", ""))
+    with pytest.raises(sonject.SonjectError, match="tetrahedron.obj"):
+        scene.add_mesh(path)
+    assert scene.add_mesh(path, allows_open=True) == 1
+    with pytest.raises(sonject.SonjectError, match="there is no mesh 2"):
+        scene.add(sonject.Mesh(mesh=2))
 
 
 def test_pixel_positions_are_row_then_column():

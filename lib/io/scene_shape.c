@@ -1,0 +1,177 @@
+/* Shapes: their sizes, ends and cuts. */
+#include "io/scene_shape.h"
+
+#include <string.h>
+
+#define STRUCTURE sonject_object_params
+
+static bool is_given(const struct tree_node *node, const char *key)
+{
+    return tree_find(node, key) != NULL;
+}
+
+void start_shape(sonject_object_params *shape, const sonject_material_params *material)
+{
+    sonject_object_params_init(shape);
+    shape->diameter_m = 0.0;
+    if (material)
+        shape->material = *material;
+}
+
+/* {depth: } stands for a spherical end. */
+static sonject_status finish_nose_end(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    sonject_object_params *object = structure;
+    object->nose_end = SONJECT_END_SPHERICAL;
+    if (!(object->nose_end_depth_m > 0.0))
+        return refuse_key(reader, node, "depth",
+                          "must be above 0; write 'spherical' for a half sphere, 'flat' for none");
+    return SONJECT_OK;
+}
+
+static sonject_status finish_tail_end(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    sonject_object_params *object = structure;
+    object->tail_end = SONJECT_END_SPHERICAL;
+    if (!(object->tail_end_depth_m > 0.0))
+        return refuse_key(reader, node, "depth",
+                          "must be above 0; write 'spherical' for a half sphere, 'flat' for none");
+    return SONJECT_OK;
+}
+
+static const struct field nose_end_fields[] = {
+    {"depth", "of a spherical end, at most half the diameter",
+     QUANTITY(STRUCTURE, nose_end_depth_m, QUANTITY_LENGTH), REQUIRED},
+};
+const struct section nose_end_section = {nose_end_fields, COUNT(nose_end_fields), finish_nose_end};
+static const struct field tail_end_fields[] = {
+    {"depth", "of a spherical end, at most half the diameter",
+     QUANTITY(STRUCTURE, tail_end_depth_m, QUANTITY_LENGTH), REQUIRED},
+};
+const struct section tail_end_section = {tail_end_fields, COUNT(tail_end_fields), finish_tail_end};
+
+static const struct field cut_fields[] = {
+    {"azimuth", "of the side that is cut off, from the nose towards the object's own y",
+     QUANTITY(sonject_cut, azimuth_rad, QUANTITY_ANGLE)},
+    {"elevation", "of that side; 90 deg: the top",
+     QUANTITY(sonject_cut, elevation_rad, QUANTITY_ANGLE)},
+    {"distance", "of the cut from the centre towards that side",
+     QUANTITY(sonject_cut, distance_m, QUANTITY_LENGTH), REQUIRED},
+};
+const struct section cut_section = {cut_fields, COUNT(cut_fields), NULL};
+
+sonject_status read_cuts(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    sonject_object_params *object = structure;
+    sonject_status status = SONJECT_OK;
+    if (tree_is_null(node))
+        return SONJECT_OK;
+    if (node->kind != TREE_LIST)
+        return refuse_value(reader, node, "must be a list; start each cut with '- '");
+    if (node->count > SONJECT_CUTS_CAPACITY)
+        return refuse_value(reader, node, "has %zu entries; at most %d are possible", node->count,
+                            SONJECT_CUTS_CAPACITY);
+    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
+        const size_t before = key_path_add_index(&reader->path, i);
+        status = read_section(reader, &cut_section, &node->entries[i].value, &object->cuts[i]);
+        key_path_shorten(&reader->path, before);
+    }
+    object->cut_count = (uint32_t)node->count;
+    return status;
+}
+
+enum presence {
+    ABSENT = 0,
+    NEEDED,
+    POSSIBLE
+};
+
+static const char *article_of(const char *name)
+{
+    return strchr("aeiou", *name) ? "an" : "a";
+}
+
+sonject_status check_shape_keys(struct reader *reader, const struct tree_node *node, uint32_t shape)
+{
+    static const struct {
+        const char *key;
+        unsigned char presence[SONJECT_SHAPE_TORUS + 1]; /* enum presence, by shape */
+    } sizes[] = {
+        {"length",
+         {[SONJECT_SHAPE_PLANE] = NEEDED,
+          [SONJECT_SHAPE_CYLINDER] = NEEDED,
+          [SONJECT_SHAPE_CAPSULE] = NEEDED,
+          [SONJECT_SHAPE_ELLIPSOID] = NEEDED,
+          [SONJECT_SHAPE_BOX] = NEEDED,
+          [SONJECT_SHAPE_WEDGE] = NEEDED}},
+        {"width",
+         {[SONJECT_SHAPE_PLANE] = NEEDED,
+          [SONJECT_SHAPE_ELLIPSOID] = NEEDED,
+          [SONJECT_SHAPE_BOX] = NEEDED,
+          [SONJECT_SHAPE_WEDGE] = NEEDED}},
+        {"diameter",
+         {[SONJECT_SHAPE_SPHERE] = NEEDED,
+          [SONJECT_SHAPE_CYLINDER] = NEEDED,
+          [SONJECT_SHAPE_CAPSULE] = NEEDED,
+          [SONJECT_SHAPE_DISC] = NEEDED,
+          [SONJECT_SHAPE_CONE] = NEEDED,
+          [SONJECT_SHAPE_TRUNCATED_CONE] = NEEDED,
+          [SONJECT_SHAPE_TORUS] = NEEDED}},
+        {"height",
+         {[SONJECT_SHAPE_ELLIPSOID] = NEEDED,
+          [SONJECT_SHAPE_BOX] = NEEDED,
+          [SONJECT_SHAPE_WEDGE] = NEEDED,
+          [SONJECT_SHAPE_CONE] = NEEDED,
+          [SONJECT_SHAPE_TRUNCATED_CONE] = NEEDED,
+          [SONJECT_SHAPE_TORUS] = NEEDED}},
+        {"top_diameter", {[SONJECT_SHAPE_TRUNCATED_CONE] = NEEDED}},
+        {"front_height", {[SONJECT_SHAPE_WEDGE] = POSSIBLE}},
+        {"nose_end", {[SONJECT_SHAPE_CYLINDER] = POSSIBLE}},
+        {"tail_end", {[SONJECT_SHAPE_CYLINDER] = POSSIBLE}},
+    };
+    const char *name = shape_name(shape);
+    for (size_t i = 0; i < COUNT(sizes); i++) {
+        const unsigned char presence = sizes[i].presence[shape];
+        if (presence == NEEDED && !is_given(node, sizes[i].key))
+            return refuse_key(reader, node, sizes[i].key, "missing; %s %s needs it",
+                              article_of(name), name);
+        if (presence == ABSENT && is_given(node, sizes[i].key))
+            return refuse_key(reader, node, sizes[i].key, "%s %s has none; remove it",
+                              article_of(name), name);
+    }
+    return SONJECT_OK;
+}
+
+sonject_status refuse_shape_keys(struct reader *reader, const struct tree_node *node,
+                                 const char *reason)
+{
+    static const struct field fields[] = {SHAPE_FIELDS};
+    for (size_t i = 0; i < COUNT(fields); i++)
+        if (is_given(node, fields[i].key))
+            return refuse_key(reader, node, fields[i].key, "%s; remove it", reason);
+    return SONJECT_OK;
+}
+
+sonject_status check_one_given(struct reader *reader, const struct tree_node *node,
+                               const char *const *keys, size_t count, const char *choice)
+{
+    size_t given = 0;
+    for (size_t i = 0; i < count; i++)
+        given += is_given(node, keys[i]);
+    if (given == 1)
+        return SONJECT_OK;
+    return refuse_value(reader, node, "%s of %s is there; give one",
+                        given == 0 ? "none" : "more than one", choice);
+}
+
+sonject_status check_shape_values(struct reader *reader, const struct tree_node *node,
+                                  const sonject_object_params *shape)
+{
+    struct report report = {{0}, NULL, NULL};
+    const char *key = "";
+    if (check_object(shape, &report, &key) != SONJECT_OK)
+        return place_check(reader, node, key, &report);
+    return SONJECT_OK;
+}

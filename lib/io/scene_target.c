@@ -1,0 +1,97 @@
+#include "io/scene_target.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "io/scene_parts.h"
+#include "io/scene_shape.h"
+
+/* Only noted: read_target_parts reads them. */
+static sonject_status note_parts(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    struct target_text *target = structure;
+    (void)reader;
+    target->object.shape = SONJECT_SHAPE_PARTS;
+    target->parts = node;
+    return SONJECT_OK;
+}
+
+static sonject_status finish_target(struct reader *reader, const struct tree_node *node,
+                                    void *structure)
+{
+    static const char *const keys[] = {"shape", "parts"};
+    const struct target_text *target = structure;
+    sonject_status status = check_one_given(reader, node, keys, COUNT(keys), "shape and parts");
+    if (status == SONJECT_OK && target->parts)
+        status = refuse_shape_keys(reader, node, "the parts have shapes of their own");
+    else if (status == SONJECT_OK)
+        status = check_shape_keys(reader, node, target->object.shape);
+    if (status == SONJECT_OK)
+        status = check_shape_values(reader, node, &target->object);
+    return status;
+}
+
+/* There is no key for another file: targets are described in one. */
+static const struct field target_fields[] = {
+    {"sonject_target", "version of the format, 1", .kind = FIELD_SPECIAL, .read = read_version,
+     REQUIRED},
+    {"name", "of the target", LABEL(sonject_object_params, name)},
+    {"class", "label for training", LABEL(sonject_object_params, class_name)},
+    SHAPE_FIELDS,
+    SURFACE_FIELD("surface of the target: a material's name, or a section"),
+    {"parts", "instead of one shape: the target is their union", .kind = FIELD_SPECIAL,
+     .unit = "list", .read = note_parts},
+};
+static const struct section target_section = {target_fields, COUNT(target_fields), finish_target};
+
+static struct reader reader_of_target(const struct reader *reader, const struct target_text *target)
+{
+    return (struct reader){.report = reader->report, .tree = &target->tree, .scene = reader->scene};
+}
+
+sonject_status read_target(struct reader *reader, const struct tree_node *node,
+                           struct target_text *target)
+{
+    char excerpt[400];
+    char *text = NULL;
+    size_t bytes;
+    sonject_status status = read_path(reader, node, &target->file);
+    if (status != SONJECT_OK)
+        return status;
+    if (!file_exists(target->file))
+        return refuse_value(reader, node, "there is no file %s; check its name",
+                            text_excerpt(excerpt, sizeof excerpt, target->file));
+    status = file_read_whole(reader->report, target->file, TREE_BYTES_MAX, &text, &bytes);
+    if (status != SONJECT_OK)
+        return status;
+    tree_init(&target->tree, reader->report, target->file);
+    status = tree_parse(&target->tree, text, bytes);
+    free(text);
+    struct reader inner = reader_of_target(reader, target);
+    if (status == SONJECT_OK && tree_is_null(&target->tree.root))
+        status = refuse_value(&inner, &target->tree.root,
+                              "there is nothing in it; start with 'sonject_target: 1'");
+    if (status == SONJECT_OK)
+        status = read_section(&inner, &target_section, &target->tree.root, target);
+    return status;
+}
+
+sonject_status read_target_parts(struct reader *reader, const struct target_text *target)
+{
+    if (!target->parts)
+        return SONJECT_OK;
+    struct reader inner = reader_of_target(reader, target);
+    key_path_add(&inner.path, "parts");
+    return read_parts(&inner, target->parts, &target->object.material);
+}
+
+void target_text_clear(struct target_text *target)
+{
+    if (target->file)
+        tree_clear(&target->tree);
+    free(target->file);
+    target->file = NULL;
+}

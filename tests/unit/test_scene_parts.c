@@ -1,0 +1,403 @@
+/* Objects of parts in scene files: groups, surfaces that are inherited, files of targets, and what
+ * is refused. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "scene_folder.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+#define BASE                                                                                       \
+    "sonject: 1\n"                                                                                 \
+    "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
+    "first_slant_range: 40}}\n"                                                                    \
+    "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
+#define OBJECT BASE "objects:\n  - " /* five lines, its keys begin in column 5 */
+
+static const struct scene_part *part_at(const struct scene_folder *folder, uint32_t index)
+{
+    assert_true(index < folder->scene.part_count);
+    return &folder->scene.parts[index];
+}
+
+static void expect_vector(const double vector[3], double x, double y, double z)
+{
+    const double expected[3] = {x, y, z};
+    for (int i = 0; i < 3; i++)
+        if (!(fabs(vector[i] - expected[i]) < 1e-15)) /* sines and cosines of right angles */
+            fail_msg("(%g, %g, %g) is not (%g, %g, %g)", vector[0], vector[1], vector[2], x, y, z);
+}
+
+static void test_parts_belong_to_their_objects(void **state)
+{
+    struct scene_folder *folder = *state;
+    expect_scene_taken(folder, BASE
+                       "objects:\n"
+                       "  - parts: [{shape: sphere, diameter: 1}, {shape: disc, diameter: 2}]\n"
+                       "  - {shape: sphere, diameter: 3}\n"
+                       "  - parts: [{shape: sphere, diameter: 4, name: last}]\n");
+    static const uint32_t objects[] = {0, 0, 2};
+    static const double diameters[] = {1.0, 2.0, 4.0};
+    assert_int_equal(folder->scene.object_count, 3);
+    assert_int_equal(folder->scene.part_count, 3);
+    for (uint32_t i = 0; i < 3; i++) {
+        assert_int_equal(part_at(folder, i)->object, objects[i]);
+        assert_true(part_at(folder, i)->shape.diameter_m == diameters[i]);
+        expect_vector(part_at(folder, i)->centre, 0.0, 0.0, 0.0);
+    }
+    assert_string_equal(part_at(folder, 2)->shape.name, "last");
+    assert_int_equal(folder->scene.objects[0].shape, SONJECT_SHAPE_PARTS);
+    assert_int_equal(folder->scene.objects[1].shape, SONJECT_SHAPE_SPHERE);
+}
+
+/* A group turned to its own y: what lies ahead of its origin comes to lie across the object; what
+ * is raised there, ahead of that, still points up. */
+static void test_groups_place_and_turn(void **state)
+{
+    struct scene_folder *folder = *state;
+    expect_scene_taken(folder, OBJECT "parts:\n"
+                                      "    - at: {along: 10, up: 1}\n"
+                                      "      heading: 90 deg\n"
+                                      "      parts:\n"
+                                      "      - at: {along: 2}\n"
+                                      "        pitch: 90 deg\n"
+                                      "        parts:\n"
+                                      "        - {shape: cylinder, length: 1, diameter: 1,\n"
+                                      "           at: {along: 0.5}, heading: 90 deg}\n"
+                                      "    - {shape: sphere, diameter: 1}\n");
+    const struct scene_part *cylinder = part_at(folder, 0);
+    expect_vector(cylinder->centre, 10.0, 2.0, 1.5);
+    expect_vector(cylinder->axes[0], -1.0, 0.0, 0.0);
+    expect_vector(cylinder->axes[1], 0.0, 0.0, -1.0);
+    expect_vector(cylinder->axes[2], 0.0, -1.0, 0.0);
+    expect_vector(part_at(folder, 1)->centre, 0.0, 0.0, 0.0);
+    expect_vector(part_at(folder, 1)->axes[0], 1.0, 0.0, 0.0);
+}
+
+/* Of the object, the group, and what a part changes of it, wherever the keys stand. */
+static void test_surfaces_are_inherited(void **state)
+{
+    struct scene_folder *folder = *state;
+    expect_scene_taken(folder, OBJECT "parts:\n"
+                                      "    - {shape: sphere, diameter: 1}\n"
+                                      "    - parts: [{shape: sphere, diameter: 1},\n"
+                                      "        {shape: sphere, diameter: 1, material: concrete}]\n"
+                                      "      material: rubber\n"
+                                      "    - {shape: sphere, diameter: 1, material: {roughness: "
+                                      "7 mm}}\n"
+                                      "    material: {reflection: 0.75, roughness: 2 mm}\n");
+    sonject_material_params named;
+    assert_true(part_at(folder, 0)->shape.material.reflection == 0.75);
+    assert_true(part_at(folder, 0)->shape.material.roughness_m == 0.002);
+    assert_int_equal(sonject_material_named("rubber", &named), SONJECT_OK);
+    assert_true(part_at(folder, 1)->shape.material.density_ratio == named.density_ratio);
+    assert_int_equal(sonject_material_named("concrete", &named), SONJECT_OK);
+    assert_true(part_at(folder, 2)->shape.material.density_ratio == named.density_ratio);
+    assert_true(part_at(folder, 3)->shape.material.reflection == 0.75);
+    assert_true(part_at(folder, 3)->shape.material.roughness_m == 0.007);
+}
+
+/* The text of `levels` lists of parts within each other. */
+static void nested_object(char *text, size_t capacity, int levels)
+{
+    size_t length = (size_t)snprintf(text, capacity, "%sobjects: [{", BASE);
+    for (int i = 0; i < levels; i++)
+        length += (size_t)snprintf(text + length, capacity - length, "parts: [{at: {up: 1}, ");
+    length += (size_t)snprintf(text + length, capacity - length, "shape: sphere, diameter: 1");
+    for (int i = 0; i < levels; i++)
+        length += (size_t)snprintf(text + length, capacity - length, "}]");
+    snprintf(text + length, capacity - length, "}]\n");
+}
+
+static void test_nesting_is_bounded(void **state)
+{
+    struct scene_folder *folder = *state;
+    char text[2000];
+    nested_object(text, sizeof text, 8);
+    expect_scene_taken(folder, text);
+    expect_vector(part_at(folder, 0)->centre, 0.0, 0.0, 8.0);
+    nested_object(text, sizeof text, 9);
+    expect_scene_refused(folder, text,
+                         ":4:195: objects[0].parts[0].parts[0].parts[0].parts[0].parts[0].parts[0]."
+                         "parts[0].parts[0].parts: nested too deeply; parts may be 8 levels deep");
+}
+
+static void test_overrides_reach_parts(void **state)
+{
+    struct scene_folder *folder = *state;
+    const char *overrides[] = {"objects[0].parts[1].parts[0].diameter=70 cm",
+                               "objects[0].parts[2]={shape: disc, diameter: 1}"};
+    const char text[] = OBJECT "parts: [{shape: sphere, diameter: 1},\n"
+                               "      {parts: [{shape: sphere, diameter: 1}]}]\n";
+    write_scene(folder, text, strlen(text));
+    if (read_scene(folder, overrides, COUNT(overrides)) != SONJECT_OK)
+        fail_msg("%s", folder->report.message);
+    assert_int_equal(folder->scene.part_count, 3);
+    assert_true(part_at(folder, 1)->shape.diameter_m == 0.7);
+    assert_int_equal(part_at(folder, 2)->shape.shape, SONJECT_SHAPE_DISC);
+}
+
+static void test_what_is_refused(void **state)
+{
+    static const struct {
+        const char *text;
+        const char *message;
+    } wrong[] = {
+        {OBJECT "parts:\n", ":5:11: objects[0].parts: must be a list; start each part with '- '"},
+        {OBJECT "parts: []\n", ":5:12: objects[0].parts: is empty; give at least one part"},
+        {OBJECT "parts: {shape: sphere}\n",
+         ":5:12: objects[0].parts: must be a list; start each part with '- '"},
+        {OBJECT "parts: [sphere]\n",
+         ":5:13: objects[0].parts[0]: must be a section of 'key: value' lines, not a single value"},
+        {OBJECT "parts: [{name: nothing}]\n",
+         ":5:13: objects[0].parts[0]: none of shape and parts is there; give one"},
+        {OBJECT "parts: [{shape: sphere, diameter: 1, parts: [{shape: sphere, diameter: 1}]}]\n",
+         ":5:13: objects[0].parts[0]: more than one of shape and parts is there; give one"},
+        {OBJECT "parts: [{shape: sphere, diameter: 1}]\n    shape: sphere\n    diameter: 1\n",
+         ":5:5: objects[0]: more than one of shape, parts and target is there; give one"},
+        {OBJECT "parts: [{shape: sphere, diameter: 1}]\n    length: 1\n",
+         ":6:13: objects[0].length: the parts have shapes of their own; remove it"},
+        {OBJECT "parts: [{shape: sphere, diameter: 1}]\n    cuts: [{distance: 0}]\n",
+         ":6:11: objects[0].cuts: the parts have shapes of their own; remove it"},
+        {OBJECT "parts: [{diameter: 1, parts: [{shape: sphere, diameter: 1}]}]\n",
+         ":5:24: objects[0].parts[0].diameter: the parts have shapes of their own; remove it"},
+        {OBJECT "parts: [{shape: sphere, diameter: 1}, {shape: sphere, diameter: -1}]\n",
+         ":5:69: objects[0].parts[1].diameter: must be 1e-06...1e+06 m, not -1"},
+        {OBJECT "parts: [{shape: sphere}]\n",
+         ":5:13: objects[0].parts[0].diameter: missing; a sphere needs it"},
+        {OBJECT "parts: [{shape: sphere, diameter: 1, length: 1}]\n",
+         ":5:50: objects[0].parts[0].length: a sphere has none; remove it"},
+        {OBJECT "parts: [{shape: parts}]\n",
+         ":5:21: objects[0].parts[0].shape: 'parts' is not one of plane, sphere, cylinder, "
+         "capsule, disc, ellipsoid, box, wedge, cone, truncated_cone, torus"},
+        {OBJECT "parts: [{shape: sphere, diameter: 1, at: {up: 2e6}}]\n",
+         ":5:51: objects[0].parts[0].at.up: must be -1e+06...1e+06 m, not 2e+06"},
+        {OBJECT "parts: [{shape: sphere, diameter: 1, heading: inf}]\n",
+         ":5:51: objects[0].parts[0].heading: must be a finite number, not inf"},
+        {OBJECT "parts: [{shape: sphere, diameter: 1}]\n    material: {lambert: 1}\n",
+         ":6:25: objects[0].material.lambert: must be 0...0.2578 (reflection^2 / pi), or the "
+         "surface "
+         "returns more than it receives; it is 1"},
+        {OBJECT "parts: [{shape: sphere, diameter: 1, material: {lambert: 1}}]\n",
+         ":5:62: objects[0].parts[0].material.lambert: must be 0...0.2578 (reflection^2 / pi), or "
+         "the surface returns more than it receives; it is 1"},
+        {OBJECT "parts: [{shape: sphere, diameter: 1, at: {left: 1}}]\n",
+         ":5:47: objects[0].parts[0].at.left: unknown key; known here are along, across, up"},
+        {OBJECT "parts: [{shape: sphere, diameter: 1, burial: 1}]\n",
+         ":5:42: objects[0].parts[0].burial: unknown key; known here are name, shape, length, "
+         "width, diameter, height, top_diameter, front_height, nose_end, tail_end, cuts, at, "
+         "heading, pitch, roll, material, parts"},
+    };
+    for (size_t i = 0; i < COUNT(wrong); i++)
+        expect_scene_refused(*state, wrong[i].text, wrong[i].message);
+}
+
+static void test_too_many_parts(void **state)
+{
+    static const char part[] = "  - {shape: sphere, diameter: 1}\n";
+    char *text = malloc(2000 + 1001 * sizeof part);
+    assert_non_null(text);
+    char *end = text + sprintf(text, "%sobjects:\n- parts:\n", BASE);
+    for (int i = 0; i < 1000; i++)
+        end += sprintf(end, "%s", part);
+    expect_scene_taken(*state, text);
+    sprintf(end, "%s", part);
+    expect_scene_refused(*state, text,
+                         ":1006:5: objects[0].parts[1000]: is one part too many: a scene may have "
+                         "1000; split it");
+    free(text);
+}
+
+struct target_file {
+    char path[SCENE_FOLDER_CAPACITY + 32];
+};
+
+/* folder/target.yaml */
+static struct target_file write_target(const struct scene_folder *folder, const char *text)
+{
+    struct target_file target;
+    snprintf(target.path, sizeof target.path, "%s/target.yaml", folder->folder);
+    FILE *file = fopen(target.path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
+    assert_int_equal(fclose(file), 0);
+    return target;
+}
+
+static void test_targets_are_files(void **state)
+{
+    struct scene_folder *folder = *state;
+    const struct target_file target =
+        write_target(folder, "sonject_target: 1\nname: twin\nclass: clutter\n"
+                             "material: {reflection: 0.75, roughness: 2 mm}\n"
+                             "parts: [{shape: sphere, diameter: 1, at: {along: 1}},\n"
+                             "  {shape: disc, diameter: 2, material: {reflection: 0.875}}]\n");
+    expect_scene_taken(folder, BASE "objects:\n"
+                                    "  - target: target.yaml\n"
+                                    "  - {name: other, class: mine, target: target.yaml, heading: "
+                                    "90 deg, material: {roughness: 7 mm}, burial: 10 cm}\n");
+    unlink(target.path);
+    const sonject_object_params *objects = folder->scene.objects;
+    assert_int_equal(folder->scene.part_count, 4);
+    for (uint32_t i = 0; i < 4; i++) {
+        const struct scene_part *part = part_at(folder, i);
+        assert_int_equal(part->object, i / 2);
+        assert_true(part->shape.diameter_m == (i % 2 ? 2.0 : 1.0));
+        assert_true(part->shape.material.reflection == (i % 2 ? 0.875 : 0.75));
+        assert_true(part->shape.material.roughness_m == (i / 2 ? 0.007 : 0.002));
+    }
+    assert_string_equal(objects[0].name, "twin");
+    assert_string_equal(objects[0].class_name, "clutter");
+    assert_string_equal(objects[1].name, "other");
+    assert_string_equal(objects[1].class_name, "mine");
+    assert_true(objects[1].heading_rad > 1.5 && objects[1].burial_m == 0.1);
+    assert_true(objects[0].shape == SONJECT_SHAPE_PARTS && objects[1].shape == SONJECT_SHAPE_PARTS);
+}
+
+static void test_targets_may_have_one_shape(void **state)
+{
+    struct scene_folder *folder = *state;
+    const struct target_file target =
+        write_target(folder, "sonject_target: 1\nshape: torus\ndiameter: 1\nheight: 0.2\n");
+    expect_scene_taken(folder, OBJECT "target: target.yaml\n");
+    unlink(target.path);
+    assert_int_equal(folder->scene.objects[0].shape, SONJECT_SHAPE_TORUS);
+    assert_true(folder->scene.objects[0].height_m == 0.2);
+    assert_int_equal(folder->scene.part_count, 0);
+}
+
+/* Messages about the target name its file. */
+static void test_targets_that_are_wrong(void **state)
+{
+    static const struct {
+        const char *text;
+        const char *message;
+    } wrong[] = {
+        {"", ":1:1: there is nothing in it"},
+        {"~\n", ":1:1: there is nothing in it; start with 'sonject_target: 1'"},
+        {"shape: sphere\ndiameter: 1\n",
+         ":1:1: sonject_target: missing; add it (version of the format, 1)"},
+        {"sonject_target: 2\nshape: sphere\ndiameter: 1\n",
+         ":1:17: sonject_target: must be 1, the version of the format that is read here"},
+        {"sonject_target: 1\n", ":1:1: none of shape and parts is there; give one"},
+        {"sonject_target: 1\nshape: sphere\n", ":1:1: diameter: missing; a sphere needs it"},
+        {"sonject_target: 1\nparts: [{shape: sphere, diameter: -1}]\n",
+         ":2:35: parts[0].diameter: must be 1e-06...1e+06 m, not -1"},
+        {"sonject_target: 1\nwidth: 1\nparts: [{shape: sphere, diameter: 1}]\n",
+         ":2:8: width: the parts have shapes of their own; remove it"},
+        {"sonject_target: 1\ntarget: target.yaml\n",
+         ":2:1: target: unknown key; known here are sonject_target, name, class, shape, length, "
+         "width, diameter, height, top_diameter, front_height, nose_end, tail_end, cuts, material, "
+         "parts"},
+        {"sonject_target: 1\nparts: &p [*p]\n",
+         ":2:8: parts: anchors and tags (&name, !name) are not supported; remove it"},
+    };
+    struct scene_folder *folder = *state;
+    static const char scene[] = OBJECT "target: target.yaml\n";
+    write_scene(folder, scene, strlen(scene));
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        const struct target_file target = write_target(folder, wrong[i].text);
+        assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+        unlink(target.path);
+        const size_t length = strlen(target.path);
+        if (strncmp(folder->report.message, target.path, length) != 0 ||
+            strcmp(folder->report.message + length, wrong[i].message) != 0)
+            fail_msg("the message is\n%s\nand not\n%s%s", folder->report.message, target.path,
+                     wrong[i].message);
+        assert_int_equal(folder->scene.object_count, 0);
+        assert_int_equal(folder->scene.part_count, 0);
+    }
+}
+
+static void test_scenes_that_name_targets_wrongly(void **state)
+{
+    struct scene_folder *folder = *state;
+    char message[SCENE_FOLDER_CAPACITY + 100];
+    snprintf(message, sizeof message,
+             ":5:13: objects[0].target: there is no file %s/absent.yaml; check its name",
+             folder->folder);
+    expect_scene_refused(folder, OBJECT "target: absent.yaml\n", message);
+    expect_scene_refused(folder, OBJECT "target:\n",
+                         ":5:12: objects[0].target: has no value; write one or remove the key");
+    const struct target_file target =
+        write_target(folder, "sonject_target: 1\nparts: [{shape: sphere, diameter: 1}]\n");
+    expect_scene_refused(folder, OBJECT "target: target.yaml\n    diameter: 1\n",
+                         ":6:15: objects[0].diameter: the target's file tells the shape; remove "
+                         "it");
+    expect_scene_refused(folder, OBJECT "target: target.yaml\n    shape: sphere\n",
+                         ":5:5: objects[0]: more than one of shape, parts and target is there; "
+                         "give one");
+    expect_scene_refused(folder,
+                         OBJECT "target: target.yaml\n    parts: [{shape: disc, diameter: 1}]\n",
+                         ":5:5: objects[0]: more than one of shape, parts and target is there; "
+                         "give one");
+    unlink(target.path);
+}
+
+/* A file that is as long as no target is. */
+static void test_large_targets_are_refused(void **state)
+{
+    struct scene_folder *folder = *state;
+    const size_t bytes = 1024 * 1024 + 2;
+    char *text = malloc(bytes + 1);
+    assert_non_null(text);
+    memset(text, '#', bytes);
+    text[bytes] = 0;
+    const struct target_file target = write_target(folder, text);
+    free(text);
+    static const char scene[] = OBJECT "target: target.yaml\n";
+    write_scene(folder, scene, strlen(scene));
+    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    assert_memory_equal(folder->report.message, target.path, strlen(target.path));
+    assert_non_null(strstr(folder->report.message, "larger than"));
+    unlink(target.path);
+}
+
+static void test_the_library_of_targets(void **state)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct scene scene;
+    (void)state;
+    scene_init(&scene);
+    if (scene_file_read(&report, SOURCE_ROOT "/tools/scenes/targets.yaml", NULL, 0, &scene) !=
+        SONJECT_OK)
+        fail_msg("%s", report.message);
+    assert_int_equal(scene.object_count, 9);
+    for (uint32_t i = 0; i < scene.object_count; i++) {
+        assert_true(scene.objects[i].name[0] != 0);
+        assert_true(strcmp(scene.objects[i].class_name, "mine") == 0 ||
+                    strcmp(scene.objects[i].class_name, "clutter") == 0);
+    }
+    scene_clear(&scene);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_parts_belong_to_their_objects),
+        cmocka_unit_test(test_groups_place_and_turn),
+        cmocka_unit_test(test_surfaces_are_inherited),
+        cmocka_unit_test(test_nesting_is_bounded),
+        cmocka_unit_test(test_overrides_reach_parts),
+        cmocka_unit_test(test_what_is_refused),
+        cmocka_unit_test(test_too_many_parts),
+        cmocka_unit_test(test_targets_are_files),
+        cmocka_unit_test(test_targets_may_have_one_shape),
+        cmocka_unit_test(test_targets_that_are_wrong),
+        cmocka_unit_test(test_scenes_that_name_targets_wrongly),
+        cmocka_unit_test(test_large_targets_are_refused),
+        cmocka_unit_test(test_the_library_of_targets),
+    };
+    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
+}
