@@ -220,7 +220,7 @@ FUNCTION void connect_chain(const struct fan_record *fan,
     mask is_open = chain->is_alive & MASK_OF(scattering > 0.0f);
     if (ANY(is_open)) {
         outcome->queries += count_lanes(is_open);
-        is_open = is_open & is_open_way(fan, objects, start_from(hit), way.direction, way.path);
+        is_open = is_open_way(fan, objects, hit, way.direction, way.path, is_open);
     }
     const real energy =
         CHOOSE(is_open, chain->energy * scattering * cosine * way.spreading, SPLAT(0.0f));

@@ -83,8 +83,8 @@ FUNCTION void begin_chain(const struct fan_record *fan,
     const struct fan_ray ray =
         fan_ray_at(fan, pieces, x,
                    fan->first_elevation + (REAL_OF(chain->number) + across) * fan->elevation_step);
-    chain->hit =
-        find_chain_hit(fan, objects, ray.closest, ray.direction, -fan->reference_range, is_ray);
+    chain->hit = find_chain_hit(fan, objects, ray.closest, ray.direction, -fan->reference_range,
+                                WHOLE_OF(SPLAT(-1.0f)), is_ray);
     chain->range = ray.range_at_closest + chain->hit.distance;
     chain->length = SPLAT(0.0f);
     chain->first_x = x;
@@ -133,7 +133,8 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
         const mask goes_on = chain.is_alive & MASK_OF(step.weight > 0.0f);
         outcome->queries += count_lanes(goes_on);
         const struct chain_hit next =
-            find_chain_hit(fan, objects, start_from(&chain.hit), step.direction, 0.0f, goes_on);
+            find_chain_hit(fan, objects, start_from(&chain.hit), step.direction, 0.0f,
+                           chain.hit.left_behind, goes_on);
         if (!is_connected) {
             const real clear =
                 CHOOSE(next.is_hit, next.distance, CHOOSE(goes_on, SPLAT(FAR_AWAY), SPLAT(-1.0f)));
