@@ -93,7 +93,8 @@ FUNCTION struct source_way way_through_layers(const struct fan_record *fan,
 
 /* Energies of one group of rays, lane by lane, ready to be tallied. */
 struct chain_echo {
-    float energy[WIDTH]; /* quanta; 0: none */
+    float energy[WIDTH]; /* quanta */
+    int is_heard[WIDTH]; /* -1: there is some, in a bin that exists; else 0 */
     int bin[WIDTH];
     int strip[WIDTH], reverse_strip[WIDTH]; /* of the whole track; reverse -2^30: no such echo */
 };
@@ -113,22 +114,26 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
                                struct outcome_record *outcome)
 {
     const int plane = chains->planes > 1 ? order - chains->first_order : 0;
+    /* few lanes are heard, at random: they are listed first, without a branch to be guessed */
+    int heard[WIDTH];
+    int count = 0;
     for (int lane = 0; lane < WIDTH; lane++) {
+        heard[count] = lane;
+        count -= echo->is_heard[lane];
+    }
+    for (int i = 0; i < count; i++) {
+        const int lane = heard[i];
         const float energy = echo->energy[lane];
-        const int bin = echo->bin[lane];
-        if (!(energy > 0.0f) && energy == energy)
-            continue;
-        if (bin < 0 || bin >= fan->bins)
-            continue;
         const int strip = echo->strip[lane] - chains->tally_first_strip;
         const int reverse = echo->reverse_strip[lane] - chains->tally_first_strip;
-        GLOBAL TALLY *line = tallies + (long)plane * chains->tally_strips * fan->bins + bin;
+        GLOBAL TALLY *line =
+            tallies + (long)plane * chains->tally_strips * fan->bins + echo->bin[lane];
         if (strip >= 0 && strip < chains->tally_strips)
             tally_add(line + (long)strip * fan->bins, energy, &outcome->faults);
         if (reverse >= 0 && reverse < chains->tally_strips)
             tally_add(line + (long)reverse * fan->bins, energy, &outcome->faults);
-        outcome->impulses++;
     }
+    outcome->impulses += (RECORD_WORD)count;
 }
 
 /* A path that was found one way may also stand for its reverse. What began with a mirror bounce
@@ -182,7 +187,10 @@ FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_
     }
     kept = CHOOSE(ways.is_counted & chain->is_alive, kept, SPLAT(0.0f));
     const whole bin = nearest_bin(range * fan->bins_per_metre + fan->first_bin);
+    /* what is not a number is heard too, and then reported */
+    const mask is_heard = ~MASK_OF(kept <= 0.0f) & MASK_OF(bin >= 0) & MASK_OF(bin < fan->bins);
     STORE_REAL(kept, echo->energy);
+    STORE_WHOLE(is_heard, echo->is_heard);
     STORE_WHOLE(bin, echo->bin);
     STORE_WHOLE(strip, echo->strip);
     STORE_WHOLE(reverse, echo->reverse_strip);
@@ -220,7 +228,7 @@ FUNCTION void connect_chain(const struct fan_record *fan,
     mask is_open = chain->is_alive & MASK_OF(scattering > 0.0f);
     if (ANY(is_open)) {
         outcome->queries += count_lanes(is_open);
-        is_open = is_open & is_open_way(fan, objects, start_from(hit), way.direction, way.path);
+        is_open = is_open_way(fan, objects, hit, way.direction, way.path, is_open);
     }
     const real energy =
         CHOOSE(is_open, chain->energy * scattering * cosine * way.spreading, SPLAT(0.0f));

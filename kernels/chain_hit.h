@@ -11,19 +11,42 @@ struct chain_hit {
     struct vector3 point, normal; /* the normal is on the side that the ray came from */
     struct vector3 back;          /* the way that it came, unit, away from the surface */
     real distance;
-    whole surface; /* object's number, -1: the seabed */
+    whole surface;     /* object's number, -1: the seabed */
+    whole left_behind; /* convex object that no way from here meets again, -1: none */
     mask is_hit;
 };
 
-/* The first surface on a ray. */
+/* The nearest object on each way, but for the one that it leaves behind: where that holds for all
+ * ways, as on a lone target, the search costs nothing. */
+FUNCTION struct nearest_hit find_nearest_ahead(const struct fan_record *fan,
+                                               GLOBAL const struct object_record *objects,
+                                               struct vector3 start, struct vector3 direction,
+                                               float minimum, whole left_behind, mask is_ray)
+{
+    struct nearest_hit nearest;
+    nearest.distance = SPLAT(FAR_AWAY);
+    nearest.object = WHOLE_OF(SPLAT(-1.0f));
+    for (int i = 0; i < fan->objects; i++) {
+        const mask is_ahead = is_ray & MASK_OF(left_behind != i);
+        if (!ANY(is_ahead))
+            continue;
+        const real distance = object_distance(&objects[i], start, direction, SPLAT(minimum));
+        const mask is_nearer = is_ahead & MASK_OF(distance < nearest.distance);
+        nearest.distance = CHOOSE(is_nearer, distance, nearest.distance);
+        nearest.object = CHOOSE(is_nearer, WHOLE_OF(SPLAT((float)i)), nearest.object);
+    }
+    return nearest;
+}
+
+/* The first surface on a ray; left_behind: of where it starts. */
 FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
                                          GLOBAL const struct object_record *objects,
                                          struct vector3 start, struct vector3 direction,
-                                         float minimum, mask is_ray)
+                                         float minimum, whole left_behind, mask is_ray)
 {
     const real to_seabed = seabed_distance(fan, start, direction);
     const struct nearest_hit nearest =
-        find_nearest_hit(objects, fan->objects, start, direction, minimum);
+        find_nearest_ahead(fan, objects, start, direction, minimum, left_behind, is_ray);
     const mask on_object = MASK_OF(nearest.distance < to_seabed);
     struct chain_hit hit;
     hit.distance = smaller(nearest.distance, to_seabed);
@@ -35,6 +58,7 @@ FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
     hit.normal.x = SPLAT(0.0f);
     hit.normal.y = SPLAT(0.0f);
     hit.normal.z = SPLAT(1.0f);
+    hit.left_behind = WHOLE_OF(SPLAT(-1.0f));
     for (int i = 0; i < fan->objects; i++) {
         const mask here = hit.is_hit & MASK_OF(hit.surface == i);
         if (!ANY(here))
@@ -42,10 +66,13 @@ FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
         const struct vector3 outward =
             object_normal(&objects[i], start, direction, CHOOSE(here, hit.distance, SPLAT(0.0f)));
         hit.normal = choose3(here, outward, hit.normal);
+        if (is_convex(&objects[i]))
+            hit.left_behind = CHOOSE(here, hit.surface, hit.left_behind);
     }
-    /* inner sides scatter as outer ones do */
+    /* inner sides scatter as outer ones do, but what they scatter meets the object again */
     const mask is_outer = MASK_OF(dot3(hit.normal, hit.back) >= 0.0f);
     hit.normal = choose3(is_outer, hit.normal, reversed3(hit.normal));
+    hit.left_behind = CHOOSE(is_outer, hit.left_behind, WHOLE_OF(SPLAT(-1.0f)));
     return hit;
 }
 
@@ -73,20 +100,22 @@ FUNCTION real scattering_at(const struct fan_record *fan, GLOBAL const struct ch
     return scattering;
 }
 
-/* Whether anything is between a point on a surface and another one `path` away. */
-FUNCTION mask is_open_way(const struct fan_record *fan, GLOBAL const struct object_record *objects,
-                          struct vector3 start, struct vector3 direction, real path)
-{
-    const struct nearest_hit blocking =
-        find_nearest_hit(objects, fan->objects, start, direction, 0.0f);
-    return MASK_OF(blocking.distance > path) &
-           MASK_OF(seabed_distance(fan, start, direction) > path);
-}
-
 /* A point off the surface by more than its rounding, less than anything that throws a shadow. */
 FUNCTION struct vector3 start_from(const struct chain_hit *hit)
 {
     return along3(hit->point, hit->normal, SPLAT(2.0e-5f));
+}
+
+/* Whether nothing is between a hit and a point that lies `path` away. */
+FUNCTION mask is_open_way(const struct fan_record *fan, GLOBAL const struct object_record *objects,
+                          const struct chain_hit *hit, struct vector3 direction, real path,
+                          mask is_way)
+{
+    const struct vector3 start = start_from(hit);
+    const struct nearest_hit blocking =
+        find_nearest_ahead(fan, objects, start, direction, 0.0f, hit->left_behind, is_way);
+    return is_way & MASK_OF(blocking.distance > path) &
+           MASK_OF(seabed_distance(fan, start, direction) > path);
 }
 
 /* One group of chains under way. */

@@ -111,6 +111,13 @@ FUNCTION int is_solid(GLOBAL const struct object_record *object)
            object->shape != SHAPE_OPEN_CYLINDER;
 }
 
+/* Whether a straight way that leaves the outer side never meets the object again: flat or convex;
+ * cuts leave it so. */
+FUNCTION int is_convex(GLOBAL const struct object_record *object)
+{
+    return object->shape != SHAPE_TORUS && object->shape != SHAPE_OPEN_CYLINDER;
+}
+
 /* Plain shapes, in the object's own frame, outward, unit. */
 FUNCTION struct vector3 plain_normal(GLOBAL const struct object_record *object,
                                      struct vector3 point, struct vector3 direction)

@@ -36,8 +36,12 @@ FUNCTION void view_targets(GLOBAL const struct sphere_record *spheres, int count
         const real square_distance = dot3(way, way);
         const float square_radius = spheres[i].radius * spheres[i].radius;
         const mask is_outside = MASK_OF(square_distance > square_radius * 1.0001f);
-        const real square_sine = CHOOSE(is_outside, square_radius / square_distance, SPLAT(0.0f));
-        cones->openings[i] = square_sine / (1.0f + SQUARE_ROOT(1.0f - square_sine));
+        /* 1 - sqrt(1 - r^2/d^2) without a difference of nearly equal numbers, and one division */
+        const real square_tangent_length = square_distance - square_radius;
+        const real divisor =
+            square_distance +
+            SQUARE_ROOT(square_distance * CHOOSE(is_outside, square_tangent_length, SPLAT(0.0f)));
+        cones->openings[i] = CHOOSE(is_outside, square_radius / divisor, SPLAT(0.0f));
         cones->sum += cones->openings[i];
         cones->is_inside = cones->is_inside | ~is_outside;
     }

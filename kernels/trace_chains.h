@@ -40,19 +40,51 @@ FUNCTION void count_arrival(const struct fan_record *fan, GLOBAL const struct ch
 
 #define THIN_BLOCK 64u /* rays that are followed, or not, together; whatever the width */
 
-/* Seabed far from the targets exchanges little sound with them, so of its rays only some blocks are
- * followed and stand for the others. Returns what a ray of each of WIDTH blocks stands for, 0: not
- * followed. */
+/* The ray in the middle of each of WIDTH blocks. */
+FUNCTION struct fan_ray middle_ray(const struct fan_record *fan,
+                                   GLOBAL const struct ray_piece_record *pieces, int strip,
+                                   word block)
+{
+    const real rays = (REAL_OF(block) + 0.5f) * (float)THIN_BLOCK;
+    return fan_ray_at(fan, pieces, SPLAT(strip_position(fan, strip)),
+                      fan->first_elevation + rays * fan->elevation_step);
+}
+
+/* Whether rays of a block may meet a target: its middle ray passes a sphere of one at no more than
+ * the radius and what the block's corners lie off that ray (a tenth more, for rays fan out). */
+FUNCTION mask may_meet_target(const struct fan_record *fan,
+                              GLOBAL const struct chain_record *chains,
+                              GLOBAL const struct sphere_record *spheres,
+                              const struct fan_ray *middle)
+{
+    const real up = 0.5f * (float)THIN_BLOCK * fan->elevation_step * middle->wavefront;
+    const real margin = 1.1f * (0.5f * fan->strip_width + magnitude(up));
+    mask may_meet = MASK_OF(margin < 0.0f);
+    for (int i = 0; i < chains->spheres; i++) {
+        const struct vector3 way = to_sphere(&spheres[i], middle->closest);
+        const real along = dot3(way, middle->direction);
+        const struct vector3 miss = along3(way, middle->direction, -along);
+        const real reach = spheres[i].radius * 1.001f + margin;
+        may_meet = may_meet | MASK_OF(dot3(miss, miss) < reach * reach);
+    }
+    return may_meet;
+}
+
+/* What a ray of each of WIDTH blocks stands for, 0: not followed. Seabed far from the targets
+ * exchanges little sound with them, so of its rays only some blocks are followed and stand for the
+ * others. Of an object's own rays those blocks are left out that cannot meet it. */
 FUNCTION real thin_out(const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
                        GLOBAL const struct chain_record *chains,
                        GLOBAL const struct sphere_record *spheres, struct random_key key, int strip,
                        word block)
 {
-    if (chains->seabed_share == 0.0f || fan->only_object != -1)
+    const int begins_on_seabed = fan->only_object == -1;
+    if (fan->only_object < -1 || (begins_on_seabed && chains->seabed_share == 0.0f) ||
+        (!begins_on_seabed && chains->spheres == 0))
         return SPLAT(1.0f);
-    const real rays = (REAL_OF(block) + 0.5f) * (float)THIN_BLOCK;
-    const struct fan_ray middle = fan_ray_at(fan, pieces, SPLAT(strip_position(fan, strip)),
-                                             fan->first_elevation + rays * fan->elevation_step);
+    const struct fan_ray middle = middle_ray(fan, pieces, strip, block);
+    if (!begins_on_seabed)
+        return CHOOSE(may_meet_target(fan, chains, spheres, &middle), SPLAT(1.0f), SPLAT(0.0f));
     const real to_seabed = seabed_distance(fan, middle.closest, middle.direction);
     const mask is_seabed = MASK_OF(to_seabed < 0.5f * FAR_AWAY);
     const struct vector3 point =
@@ -83,8 +115,8 @@ FUNCTION void begin_chain(const struct fan_record *fan,
     const struct fan_ray ray =
         fan_ray_at(fan, pieces, x,
                    fan->first_elevation + (REAL_OF(chain->number) + across) * fan->elevation_step);
-    chain->hit =
-        find_chain_hit(fan, objects, ray.closest, ray.direction, -fan->reference_range, is_ray);
+    chain->hit = find_chain_hit(fan, objects, ray.closest, ray.direction, -fan->reference_range,
+                                WHOLE_OF(SPLAT(-1.0f)), is_ray);
     chain->range = ray.range_at_closest + chain->hit.distance;
     chain->length = SPLAT(0.0f);
     chain->first_x = x;
@@ -133,7 +165,8 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
         const mask goes_on = chain.is_alive & MASK_OF(step.weight > 0.0f);
         outcome->queries += count_lanes(goes_on);
         const struct chain_hit next =
-            find_chain_hit(fan, objects, start_from(&chain.hit), step.direction, 0.0f, goes_on);
+            find_chain_hit(fan, objects, start_from(&chain.hit), step.direction, 0.0f,
+                           chain.hit.left_behind, goes_on);
         if (!is_connected) {
             const real clear =
                 CHOOSE(next.is_hit, next.distance, CHOOSE(goes_on, SPLAT(FAR_AWAY), SPLAT(-1.0f)));
@@ -149,6 +182,12 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
     }
 }
 
+FUNCTION RECORD_WORD rays_of_block(const struct fan_record *fan, RECORD_WORD first_ray)
+{
+    const RECORD_WORD left = fan->rays - first_ray;
+    return left < THIN_BLOCK ? left : THIN_BLOCK;
+}
+
 /* Follows the block of rays that begins with first_ray. */
 FUNCTION void trace_chain_block(const struct fan_record *fan,
                                 GLOBAL const struct ray_piece_record *pieces,
@@ -159,10 +198,7 @@ FUNCTION void trace_chain_block(const struct fan_record *fan,
                                 RECORD_WORD first_ray, float stands_for,
                                 struct outcome_record *outcome)
 {
-    const RECORD_WORD left = fan->rays - first_ray;
-    const RECORD_WORD count = left < THIN_BLOCK ? left : THIN_BLOCK;
-    outcome->rays += count;
-    outcome->queries += count;
+    const RECORD_WORD count = rays_of_block(fan, first_ray);
     for (RECORD_WORD ray = 0; ray < count; ray += WIDTH)
         trace_chain_group(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
                           first_ray + ray, stands_for, outcome);
@@ -187,10 +223,17 @@ FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
             thin_out(fan, pieces, chains, spheres, key, strip, SPLAT_WORD(some) + LANE_NUMBERS);
         float lanes[WIDTH];
         STORE_REAL(stands_for, lanes);
-        for (RECORD_WORD lane = 0; lane < WIDTH && some + lane < blocks; lane++)
+        for (RECORD_WORD lane = 0; lane < WIDTH && some + lane < blocks; lane++) {
+            const RECORD_WORD first_ray = (some + lane) * THIN_BLOCK;
+            /* rays that are known to miss their object are traced by that */
+            if (lanes[lane] > 0.0f || fan->only_object >= 0) {
+                outcome.rays += rays_of_block(fan, first_ray);
+                outcome.queries += rays_of_block(fan, first_ray);
+            }
             if (lanes[lane] > 0.0f)
                 trace_chain_block(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
-                                  (some + lane) * THIN_BLOCK, lanes[lane], &outcome);
+                                  first_ray, lanes[lane], &outcome);
+        }
     }
     return outcome;
 }
