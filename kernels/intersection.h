@@ -13,8 +13,9 @@
 #include "shapes/plane.h"
 #include "shapes/sphere.h"
 #include "shapes/torus.h"
-/* A device builds without meshes where a scene has none: it takes half the time. */
-#if defined(WITH_MESHES) || !defined(__OPENCL_C_VERSION__)
+/* A device builds without meshes where a scene has none: it takes half the time. Plain C has them
+ * unless it is told otherwise. */
+#if defined(WITH_MESHES) || !(defined(__OPENCL_C_VERSION__) || defined(WITHOUT_MESHES))
 #define HAS_MESHES 1
 #include "mesh_object.h"
 #else

@@ -1,4 +1,5 @@
 #define WIDTH 16
+#define WITHOUT_MESHES /* as the device builds them for these scenes */
 #include "kernels/trace_chains.h"
 #include "kernels/trace_rough.h"
 #include "kernels/trace_smooth.h"
