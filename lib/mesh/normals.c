@@ -79,10 +79,10 @@ sonject_status mesh_smooth_normals(struct report *report, const float *vertices,
     uint32_t *starts = NULL;
     uint32_t *list = NULL;
     *normals = allocate_array(3 * triangle_count, 3 * sizeof **normals);
-    const sonject_status status =
-        facets && *normals ? mesh_corners_by_vertex(report, corners, 3 * triangle_count,
-                                                    vertex_count, &starts, &list)
-                           : report_out_of_memory(report, "the normals of a mesh");
+    const sonject_status status = facets && *normals
+                                      ? mesh_corners_by_vertex(report, corners, 3 * triangle_count,
+                                                               vertex_count, &starts, &list)
+                                      : report_out_of_memory(report, "the normals of a mesh");
     if (status == SONJECT_OK) {
         for (size_t i = 0; i < triangle_count; i++)
             measure_facet(&vertices[3 * (size_t)corners[3 * i]],
