@@ -19,6 +19,7 @@ FUNCTION struct mesh_view mesh_view_of(GLOBAL const struct mesh_record *mesh,
     view.branches = branches + mesh->first_branch;
     view.leaves = leaves + mesh->first_leaf;
     view.normals = mesh->is_smooth ? normals + mesh->first_normals : 0;
+    view.padding = 0.5f * MESH_PADDING * mesh->radius;
     return view;
 }
 
@@ -197,7 +198,7 @@ FUNCTION void walk_each_alone(struct mesh_view mesh, const struct mesh_ray_lanes
 FUNCTION struct mesh_hit walk_mesh(struct mesh_view mesh, struct vector3 point,
                                    struct vector3 direction, real minimum, real maximum, int is_any)
 {
-    const struct mesh_ray ray = mesh_ray_of(point, direction, minimum);
+    const struct mesh_ray ray = mesh_ray_of(point, direction, minimum, mesh.padding);
     const struct mesh_heading heading = mesh_heading_of(&ray);
     struct mesh_beam beam;
     if (WIDTH > 1 && heading.is_common)

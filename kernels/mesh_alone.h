@@ -11,6 +11,7 @@ struct mesh_view {
     GLOBAL const struct mesh_branch *branches;
     GLOBAL const struct mesh_leaf *leaves;
     GLOBAL const struct mesh_corner_normals *normals; /* 0: flat facets */
+    float padding;                                    /* of a triangle's own box, m */
 };
 
 /* The values of all lanes of a packet, to be taken one by one. */
@@ -18,6 +19,7 @@ struct mesh_ray_lanes {
     float point[3][WIDTH], direction[3][WIDTH], inverse[3][WIDTH];
     float across[3][WIDTH], upward[3][WIDTH], seen[3][WIDTH];
     float minimum[WIDTH];
+    float padding;
 };
 
 FUNCTION void store_vector3(struct vector3 v, float lanes[3][WIDTH])
@@ -54,6 +56,7 @@ FUNCTION void store_mesh_ray(const struct mesh_ray *ray, struct mesh_ray_lanes *
     store_vector3(ray->upward, lanes->upward);
     store_vector3(ray->seen, lanes->seen);
     STORE_REAL(ray->minimum, lanes->minimum);
+    lanes->padding = ray->padding;
 }
 
 /* The same ray in every lane. */
@@ -67,6 +70,7 @@ FUNCTION struct mesh_ray one_mesh_ray(const struct mesh_ray_lanes *lanes, int la
     ray.upward = splat_vector3(lanes->upward, lane);
     ray.seen = splat_vector3(lanes->seen, lane);
     ray.minimum = SPLAT(lanes->minimum[lane]);
+    ray.padding = lanes->padding;
     return ray;
 }
 

@@ -12,6 +12,7 @@ struct mesh_ray {
     struct vector3 across, upward;     /* unit, square to direction */
     struct vector3 seen;               /* the point in the axes across, upward, direction */
     real minimum;                      /* distance from the point beyond which hits count */
+    float padding;                     /* of a triangle's own box, half of that of others, m */
 };
 
 FUNCTION real one_over_component(real component)
@@ -20,7 +21,8 @@ FUNCTION real one_over_component(real component)
     return 1.0f / CHOOSE(MASK_OF(magnitude(component) < 1.0e-20f), SPLAT(1.0e-20f), component);
 }
 
-FUNCTION struct mesh_ray mesh_ray_of(struct vector3 point, struct vector3 direction, real minimum)
+FUNCTION struct mesh_ray mesh_ray_of(struct vector3 point, struct vector3 direction, real minimum,
+                                     float padding)
 {
     struct mesh_ray ray;
     ray.point = point;
@@ -33,6 +35,7 @@ FUNCTION struct mesh_ray mesh_ray_of(struct vector3 point, struct vector3 direct
     ray.seen.y = dot3(point, ray.upward);
     ray.seen.z = dot3(point, direction);
     ray.minimum = minimum;
+    ray.padding = padding;
     return ray;
 }
 
@@ -52,9 +55,9 @@ FUNCTION real entry_by_faces(const struct mesh_ray *ray, struct vector3 first, s
     return CHOOSE(MASK_OF(entry <= exit), entry, SPLAT(FAR_AWAY));
 }
 
-/* The same, to the bit, whichever faces are met first. */
-FUNCTION real box_entry(const struct mesh_ray *ray, struct vector3 lower, struct vector3 upper,
-                        real maximum)
+/* Where the ray's line is inside a box, whichever faces are met first. */
+FUNCTION struct interval box_interval(const struct mesh_ray *ray, struct vector3 lower,
+                                      struct vector3 upper)
 {
     const real x_lower = (lower.x - ray->point.x) * ray->inverse.x;
     const real y_lower = (lower.y - ray->point.y) * ray->inverse.y;
@@ -62,11 +65,21 @@ FUNCTION real box_entry(const struct mesh_ray *ray, struct vector3 lower, struct
     const real x_upper = (upper.x - ray->point.x) * ray->inverse.x;
     const real y_upper = (upper.y - ray->point.y) * ray->inverse.y;
     const real z_upper = (upper.z - ray->point.z) * ray->inverse.z;
-    const real entry = larger(larger(smaller(x_lower, x_upper), smaller(y_lower, y_upper)),
-                              larger(smaller(z_lower, z_upper), ray->minimum));
-    const real exit = smaller(smaller(larger(x_lower, x_upper), larger(y_lower, y_upper)),
-                              smaller(larger(z_lower, z_upper), maximum));
-    return CHOOSE(MASK_OF(entry <= exit), entry, SPLAT(FAR_AWAY));
+    struct interval inside;
+    inside.entry = larger(larger(smaller(x_lower, x_upper), smaller(y_lower, y_upper)),
+                          smaller(z_lower, z_upper));
+    inside.exit = smaller(smaller(larger(x_lower, x_upper), larger(y_lower, y_upper)),
+                          larger(z_lower, z_upper));
+    return inside;
+}
+
+/* As entry_by_faces, to the bit. */
+FUNCTION real box_entry(const struct mesh_ray *ray, struct vector3 lower, struct vector3 upper,
+                        real maximum)
+{
+    const struct interval inside = box_interval(ray, lower, upper);
+    const real entry = larger(inside.entry, ray->minimum);
+    return CHOOSE(MASK_OF(entry <= smaller(inside.exit, maximum)), entry, SPLAT(FAR_AWAY));
 }
 
 struct mesh_corners {
@@ -94,6 +107,21 @@ FUNCTION struct vector3 edge_functions(const struct mesh_corners *seen)
     return edges;
 }
 
+/* Where the ray's line is inside the triangle's own box, padded. */
+FUNCTION struct interval corners_interval(const struct mesh_ray *ray,
+                                          const struct mesh_corners *corners)
+{
+    const struct vector3 a = corners->a, b = corners->b, c = corners->c;
+    struct vector3 lower, upper;
+    lower.x = smaller(smaller(a.x, b.x), c.x) - ray->padding;
+    lower.y = smaller(smaller(a.y, b.y), c.y) - ray->padding;
+    lower.z = smaller(smaller(a.z, b.z), c.z) - ray->padding;
+    upper.x = larger(larger(a.x, b.x), c.x) + ray->padding;
+    upper.y = larger(larger(a.y, b.y), c.y) + ray->padding;
+    upper.z = larger(larger(a.z, b.z), c.z) + ray->padding;
+    return box_interval(ray, lower, upper);
+}
+
 /* Distance from the ray's point to the triangle, in *distance where the mask is set. Both sides are
  * met.
  *
@@ -101,7 +129,11 @@ FUNCTION struct vector3 edge_functions(const struct mesh_corners *seen)
  * two alone, so neighbours agree on it to the bit. The sign of an edge's function is that of the
  * difference of two rounded products: as rounding is monotonic it is right, or the function is 0,
  * and that counts as inside (Woop, Benthin and Wald 2013, without their second look in double). A
- * triangle whose three functions are 0 is seen edge-on: its neighbours are met. */
+ * triangle whose three functions are 0 is seen edge-on: its neighbours are met.
+ *
+ * The hit lies inside the triangle's own box. Seen nearly edge-on, functions that consist of
+ * rounding alone could put it elsewhere, and whether a walk found it would depend on what it found
+ * before. */
 FUNCTION mask meets_triangle(const struct mesh_ray *ray, const struct mesh_corners *corners,
                              real *distance)
 {
@@ -115,10 +147,13 @@ FUNCTION mask meets_triangle(const struct mesh_ray *ray, const struct mesh_corne
     const real sum = edges.x + edges.y + edges.z;
     const mask is_met = (MASK_OF(least >= 0.0f) | MASK_OF(most <= 0.0f)) & MASK_OF(sum != 0.0f);
     *distance = SPLAT(FAR_AWAY);
-    if (ANY(is_met))
-        *distance = (edges.x * seen.a.z + edges.y * seen.b.z + edges.z * seen.c.z) /
-                    CHOOSE(is_met, sum, SPLAT(1.0f));
-    return is_met;
+    if (!ANY(is_met))
+        return is_met;
+    const real middle = (edges.x * seen.a.z + edges.y * seen.b.z + edges.z * seen.c.z) /
+                        CHOOSE(is_met, sum, SPLAT(1.0f));
+    const struct interval inside = corners_interval(ray, corners);
+    *distance = smaller(larger(middle, inside.entry), inside.exit);
+    return is_met & MASK_OF(inside.entry <= inside.exit);
 }
 
 #endif

@@ -120,7 +120,7 @@ FUNCTION struct mesh_surface mesh_surface_at(struct mesh_view mesh, struct vecto
 {
     int triangles[WIDTH];
     STORE_WHOLE(triangle, triangles);
-    const struct mesh_ray ray = mesh_ray_of(point, direction, SPLAT(0.0f));
+    const struct mesh_ray ray = mesh_ray_of(point, direction, SPLAT(0.0f), 0.0f);
     const struct mesh_corners corners = gather_corners(mesh, triangles);
     struct mesh_corners seen;
     seen.a = seen_along(&ray, corners.a);

@@ -20,7 +20,7 @@ static sonject_status add_mesh(struct report *report, const char *path, const st
                                   "%s: a coordinate is not a finite number; export the mesh again",
                                   path);
         if (!mesh_soup_add_vertex(soup, position))
-            return report_out_of_memory(report, path);
+            return mesh_soup_failure(report, path, soup);
     }
     for (unsigned i = 0; i < mesh->mNumFaces; i++) {
         const struct aiFace *face = &mesh->mFaces[i];
@@ -31,7 +31,7 @@ static sonject_status add_mesh(struct report *report, const char *path, const st
                                       "%s: a face has vertex number %u of %u", path,
                                       face->mIndices[k], mesh->mNumVertices);
             if (!mesh_soup_add_polygon_corner(soup, k, (uint32_t)(first + face->mIndices[k]), fan))
-                return report_out_of_memory(report, path);
+                return mesh_soup_failure(report, path, soup);
         }
     }
     return SONJECT_OK;

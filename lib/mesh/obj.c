@@ -10,8 +10,9 @@ static sonject_status read_vertex(struct words *words, struct mesh_soup *soup)
             return status;
     }
     /* a weight or a colour may follow */
-    return mesh_soup_add_vertex(soup, position) ? SONJECT_OK
-                                                : report_out_of_memory(words->report, words->path);
+    return mesh_soup_add_vertex(soup, position)
+               ? SONJECT_OK
+               : mesh_soup_failure(words->report, words->path, soup);
 }
 
 /* "7", "7/1", "7//3" or "7/1/3", of which the vertex counts; negative numbers count back from the
@@ -48,7 +49,7 @@ static sonject_status read_face(struct words *words, struct mesh_soup *soup)
         if (status != SONJECT_OK)
             return status;
         if (!mesh_soup_add_polygon_corner(soup, corners++, corner, fan))
-            return report_out_of_memory(words->report, words->path);
+            return mesh_soup_failure(words->report, words->path, soup);
     }
     return corners >= 3 ? SONJECT_OK : words_failure(words, "three vertices or more of a face");
 }

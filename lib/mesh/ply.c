@@ -78,7 +78,7 @@ static sonject_status read_list(struct words *words, const struct ply_header *he
             return report_failure(words->report, SONJECT_ERROR_INPUT,
                                   "%s: a face has vertex number %g", words->path, number);
         if (!mesh_soup_add_polygon_corner(soup, i, (uint32_t)number, fan))
-            return report_out_of_memory(words->report, words->path);
+            return mesh_soup_failure(words->report, words->path, soup);
     }
     if (property->role == PLY_CORNERS && length < 3.0)
         return report_failure(words->report, SONJECT_ERROR_INPUT, "%s: a face has %g vertices",
@@ -109,8 +109,9 @@ static sonject_status read_one(struct words *words, const struct ply_header *hea
                                   "%s, vertex %zu: a coordinate is not a finite number; export the "
                                   "mesh again",
                                   words->path, soup->vertices + 1);
-    return mesh_soup_add_vertex(soup, position) ? SONJECT_OK
-                                                : report_out_of_memory(words->report, words->path);
+    return mesh_soup_add_vertex(soup, position)
+               ? SONJECT_OK
+               : mesh_soup_failure(words->report, words->path, soup);
 }
 
 static sonject_status check_corners(struct report *report, const char *path,

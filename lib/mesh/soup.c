@@ -5,9 +5,6 @@
 
 #include "base/memory.h"
 
-/* Numbers fit into 32 bits, and three times as many too. */
-#define ELEMENTS_MAX ((size_t)1 << 30)
-
 void mesh_soup_clear(struct mesh_soup *soup)
 {
     free(soup->positions);
@@ -16,13 +13,13 @@ void mesh_soup_clear(struct mesh_soup *soup)
 }
 
 /* Makes room for one triple more. */
-static bool reserve(void **array, size_t count, size_t *capacity, size_t size)
+static bool reserve(void **array, size_t count, size_t most, size_t *capacity, size_t size)
 {
     size_t bytes;
-    if (count < *capacity)
+    if (count < *capacity && count < most)
         return true;
     const size_t larger = *capacity + *capacity / 2 + 64;
-    if (count >= ELEMENTS_MAX || !size_multiply(larger, 3 * size, &bytes))
+    if (count >= most || !size_multiply(larger, 3 * size, &bytes))
         return false;
     void *moved = realloc(*array, bytes);
     if (!moved)
@@ -34,8 +31,8 @@ static bool reserve(void **array, size_t count, size_t *capacity, size_t size)
 
 bool mesh_soup_add_vertex(struct mesh_soup *soup, const double position[3])
 {
-    if (!reserve((void **)&soup->positions, soup->vertices, &soup->vertex_capacity,
-                 sizeof *soup->positions))
+    if (!reserve((void **)&soup->positions, soup->vertices, SOUP_VERTICES_MAX,
+                 &soup->vertex_capacity, sizeof *soup->positions))
         return false;
     memcpy(&soup->positions[3 * soup->vertices], position, 3 * sizeof *position);
     soup->vertices++;
@@ -45,8 +42,8 @@ bool mesh_soup_add_vertex(struct mesh_soup *soup, const double position[3])
 bool mesh_soup_add_triangle(struct mesh_soup *soup, uint32_t a, uint32_t b, uint32_t c)
 {
     const uint32_t triangle[3] = {a, b, c};
-    if (!reserve((void **)&soup->corners, soup->triangles, &soup->triangle_capacity,
-                 sizeof *soup->corners))
+    if (!reserve((void **)&soup->corners, soup->triangles, SOUP_TRIANGLES_MAX,
+                 &soup->triangle_capacity, sizeof *soup->corners))
         return false;
     memcpy(&soup->corners[3 * soup->triangles], triangle, sizeof triangle);
     soup->triangles++;
@@ -60,6 +57,18 @@ bool mesh_soup_add_polygon_corner(struct mesh_soup *soup, size_t place, uint32_t
         return false;
     fan[place == 0 ? 0 : 1] = corner;
     return true;
+}
+
+sonject_status mesh_soup_failure(struct report *report, const char *path,
+                                 const struct mesh_soup *soup)
+{
+    if (soup->triangles < SOUP_TRIANGLES_MAX && soup->vertices < SOUP_VERTICES_MAX)
+        return report_out_of_memory(report, path);
+    return report_failure(
+        report, SONJECT_ERROR_INPUT,
+        "%s: a mesh may have %zu triangles and %zu vertices, and this one has more: "
+        "simplify it",
+        path, SOUP_TRIANGLES_MAX, SOUP_VERTICES_MAX);
 }
 
 static uint64_t mix(uint64_t value)

@@ -15,9 +15,13 @@ struct mesh_soup {
     size_t vertex_capacity, triangle_capacity;
 };
 
+/* Most of them: what a mesh may have, and as many vertices as files without shared ones need. */
+#define SOUP_TRIANGLES_MAX ((size_t)1 << 26)
+#define SOUP_VERTICES_MAX  ((size_t)1 << 28)
+
 void mesh_soup_clear(struct mesh_soup *soup);
 
-/* Adds one. False when memory is out or the numbers of vertices or triangles no longer fit. */
+/* Adds one. False when memory is out or there are too many: mesh_soup_failure says which. */
 bool mesh_soup_add_vertex(struct mesh_soup *soup, const double position[3]);
 bool mesh_soup_add_triangle(struct mesh_soup *soup, uint32_t a, uint32_t b, uint32_t c);
 
@@ -25,6 +29,10 @@ bool mesh_soup_add_triangle(struct mesh_soup *soup, uint32_t a, uint32_t b, uint
  * closes: a fan from the first corner, right for convex polygons. fan: scratch of the polygon. */
 bool mesh_soup_add_polygon_corner(struct mesh_soup *soup, size_t place, uint32_t corner,
                                   uint32_t fan[2]);
+
+/* The message for what could not be added. Returns INPUT (too many) or MEMORY. */
+sonject_status mesh_soup_failure(struct report *report, const char *path,
+                                 const struct mesh_soup *soup);
 
 /* Vertices by position, so that equal ones are found. */
 struct weld {

@@ -32,11 +32,11 @@ static sonject_status read_binary_triangle(struct report *report, const char *pa
                                       path, number + 1);
         }
         if (!weld_vertex(weld, soup, position, &corners[corner]))
-            return report_out_of_memory(report, path);
+            return mesh_soup_failure(report, path, soup);
     }
     return mesh_soup_add_triangle(soup, corners[0], corners[1], corners[2])
                ? SONJECT_OK
-               : report_out_of_memory(report, path);
+               : mesh_soup_failure(report, path, soup);
 }
 
 static sonject_status read_binary(struct report *report, const char *path, const char *bytes,
@@ -82,7 +82,7 @@ static sonject_status read_vertex(struct words *words, struct weld *weld, struct
     for (int axis = 0; axis < 3 && status == SONJECT_OK; axis++)
         status = words_number(words, "a finite coordinate", &position[axis]);
     if (status == SONJECT_OK && !weld_vertex(weld, soup, position, corner))
-        status = report_out_of_memory(words->report, words->path);
+        status = mesh_soup_failure(words->report, words->path, soup);
     return status;
 }
 
@@ -99,7 +99,7 @@ static sonject_status read_facet(struct words *words, struct weld *weld, struct 
     if (status == SONJECT_OK)
         status = take_all(words, end);
     if (status == SONJECT_OK && !mesh_soup_add_triangle(soup, corners[0], corners[1], corners[2]))
-        status = report_out_of_memory(words->report, words->path);
+        status = mesh_soup_failure(words->report, words->path, soup);
     return status;
 }
 

@@ -646,6 +646,40 @@ static void test_bits(void **state)
     sample_clear(&sample);
 }
 
+/* Every ray along an edge of a triangle, which it sees edge-on. */
+static void lay_along_edges(const struct mesh *mesh, const struct flight *flight)
+{
+    for (uint32_t ray = 0; ray < flight->rays; ray++) {
+        const size_t first = 3 * (ray / 3 % mesh->triangle_count);
+        const float *a = &mesh->vertices[3 * (size_t)mesh->corners[first + ray % 3]];
+        const float *b = &mesh->vertices[3 * (size_t)mesh->corners[first + (ray + 1) % 3]];
+        double from[3], to[3];
+        for (int axis = 0; axis < 3; axis++) {
+            to[axis] = (double)b[axis];
+            from[axis] = (double)a[axis] + 1e3 * ((double)a[axis] - (double)b[axis]);
+        }
+        set_ray_to(flight, ray, from, to, 1e6);
+    }
+}
+
+/* The same rays in other places. */
+static void expect_same_in_any_company(const struct mesh *mesh, struct flight *flight,
+                                       struct flight *strewn)
+{
+    ask(mesh, flight);
+    /* 7919 is prime and no factor of RAYS: each ray gets another place */
+    for (uint32_t ray = 0; ray < RAYS; ray++)
+        for (uint32_t plane = 0; plane < PROBE_INPUTS; plane++)
+            strewn->input[plane * RAYS + (uint32_t)((uint64_t)ray * 7919 % RAYS)] =
+                flight->input[plane * RAYS + ray];
+    ask(mesh, strewn);
+    for (uint32_t ray = 0; ray < RAYS; ray++)
+        for (uint32_t plane = 0; plane < PROBE_OUTPUTS; plane++)
+            assert_memory_equal(
+                &strewn->output[plane * RAYS + (uint32_t)((uint64_t)ray * 7919 % RAYS)],
+                &flight->output[plane * RAYS + ray], sizeof(float));
+}
+
 /* What a ray finds does not depend on the rays beside it. */
 static void test_company(void **state)
 {
@@ -657,18 +691,15 @@ static void test_company(void **state)
     sample_ring(&sample, 150, 80);
     prepare(&sample, 0.4, &mesh);
     lay_mixed(&mesh, &flight);
-    ask(&mesh, &flight);
-    /* 7919 is prime and no factor of RAYS: each ray gets another place */
-    for (uint32_t ray = 0; ray < RAYS; ray++)
-        for (uint32_t plane = 0; plane < PROBE_INPUTS; plane++)
-            strewn.input[plane * RAYS + (uint32_t)((uint64_t)ray * 7919 % RAYS)] =
-                flight.input[plane * RAYS + ray];
-    ask(&mesh, &strewn);
-    for (uint32_t ray = 0; ray < RAYS; ray++)
-        for (uint32_t plane = 0; plane < PROBE_OUTPUTS; plane++)
-            assert_memory_equal(
-                &strewn.output[plane * RAYS + (uint32_t)((uint64_t)ray * 7919 % RAYS)],
-                &flight.output[plane * RAYS + ray], sizeof(float));
+    expect_same_in_any_company(&mesh, &flight, &strewn);
+    lay_along_edges(&mesh, &flight);
+    expect_same_in_any_company(&mesh, &flight, &strewn);
+    mesh_clear(&mesh);
+    sample_clear(&sample);
+    sample_litter(&sample, 30000);
+    prepare(&sample, 0.0, &mesh);
+    lay_along_edges(&mesh, &flight);
+    expect_same_in_any_company(&mesh, &flight, &strewn);
     clear_flight(&flight);
     clear_flight(&strewn);
     mesh_clear(&mesh);
