@@ -16,11 +16,10 @@ FUNCTION struct mesh_view mesh_of_object(GLOBAL const struct object_record *obje
 {
     GLOBAL const RECORD_WORD *words = (GLOBAL const RECORD_WORD *)object + object->mesh_words;
     GLOBAL const struct mesh_record *mesh = (GLOBAL const struct mesh_record *)words;
-    struct mesh_view view;
-    view.branches = (GLOBAL const struct mesh_branch *)(mesh + 1);
-    view.leaves = (GLOBAL const struct mesh_leaf *)(view.branches + mesh->branches);
-    view.normals = 0; /* facets are flat */
-    return view;
+    GLOBAL const struct mesh_branch *branches = (GLOBAL const struct mesh_branch *)(mesh + 1);
+    GLOBAL const struct mesh_leaf *leaves =
+        (GLOBAL const struct mesh_leaf *)(branches + mesh->branches);
+    return mesh_view_of(mesh, branches, leaves, 0); /* facets are flat */
 }
 
 /* Distance from the ray's closest approach `start`, in the object's own frame, to the first facet

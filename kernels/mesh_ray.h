@@ -56,8 +56,8 @@ FUNCTION real entry_by_faces(const struct mesh_ray *ray, struct vector3 first, s
 }
 
 /* Where the ray's line is inside a box, whichever faces are met first. */
-FUNCTION struct interval box_interval(const struct mesh_ray *ray, struct vector3 lower,
-                                      struct vector3 upper)
+FUNCTION struct interval interval_in_box(const struct mesh_ray *ray, struct vector3 lower,
+                                         struct vector3 upper)
 {
     const real x_lower = (lower.x - ray->point.x) * ray->inverse.x;
     const real y_lower = (lower.y - ray->point.y) * ray->inverse.y;
@@ -77,7 +77,7 @@ FUNCTION struct interval box_interval(const struct mesh_ray *ray, struct vector3
 FUNCTION real box_entry(const struct mesh_ray *ray, struct vector3 lower, struct vector3 upper,
                         real maximum)
 {
-    const struct interval inside = box_interval(ray, lower, upper);
+    const struct interval inside = interval_in_box(ray, lower, upper);
     const real entry = larger(inside.entry, ray->minimum);
     return CHOOSE(MASK_OF(entry <= smaller(inside.exit, maximum)), entry, SPLAT(FAR_AWAY));
 }
@@ -119,7 +119,7 @@ FUNCTION struct interval corners_interval(const struct mesh_ray *ray,
     upper.x = larger(larger(a.x, b.x), c.x) + ray->padding;
     upper.y = larger(larger(a.y, b.y), c.y) + ray->padding;
     upper.z = larger(larger(a.z, b.z), c.z) + ray->padding;
-    return box_interval(ray, lower, upper);
+    return interval_in_box(ray, lower, upper);
 }
 
 /* Distance from the ray's point to the triangle, in *distance where the mask is set. Both sides are

@@ -129,7 +129,7 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     real bed_range = seabed_range;
     real bed_cosine = seabed_cosine;
     mask bed_open = is_ray & MASK_OF(to_seabed < 0.5f * FAR_AWAY);
-    real source_along, source_across;
+    real source_along = SPLAT(0.5f), source_across = SPLAT(0.5f);
     if (fan->source_side > 0.0f)
         two_uniforms(key, number, 1, &source_along, &source_across);
     if (fan->source_side > 0.0f && ANY(bed_open)) {
