@@ -81,9 +81,10 @@ typedef struct sonject_object_params {
     uint32_t burial_kind;   /* sonject_burial_kind */
     double position_along;  /* see sonject_position_kind */
     double position_range;
-    double heading_rad; /* from along-track (+x) towards range (+y) */
+    double heading_rad; /* from along-track (+x) towards range (+y), whichever side that is */
     double pitch_rad;   /* raises the nose */
-    double roll_rad;    /* about the nose direction */
+    double roll_rad;    /* about the nose direction; as the heading, counted in the image: it raises
+                           the left side to port, the right side to starboard */
     double burial_m;    /* depth of the lowest point below the seabed; negative: above it */
     sonject_material_params material;
     double height_m;         /* ellipsoid, box, wedge, cones, torus */

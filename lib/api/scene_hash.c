@@ -105,7 +105,7 @@ static void add_object(struct hash *hash, const sonject_object_params *object)
     ADD(hash, object->tail_end_depth_m);
     ADD(hash, object->mesh);
     ADD(hash, object->cut_count);
-    for (uint32_t i = 0; i < object->cut_count; i++) {
+    for (uint32_t i = 0; i < object->cut_count && i < SONJECT_CUTS_CAPACITY; i++) {
         ADD(hash, object->cuts[i].azimuth_rad);
         ADD(hash, object->cuts[i].elevation_rad);
         ADD(hash, object->cuts[i].distance_m);

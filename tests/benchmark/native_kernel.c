@@ -1,4 +1,4 @@
-#define WIDTH 16
+#define WIDTH          16
 #define WITHOUT_MESHES /* as the device builds them for these scenes */
 #include "kernels/trace_chains.h"
 #include "kernels/trace_rough.h"

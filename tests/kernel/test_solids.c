@@ -20,6 +20,9 @@
 /* Positions carry single precision's 6e-8 of a few metres, some of which add up. Whoever passes an
  * outline closer than this may err. */
 #define OUTLINE 3e-6
+/* Of the size: what moving the outline shifts a grazing hit by is sqrt(8 radius OUTLINE), and a
+ * larger jump goes to another surface. */
+#define GRAZING 0.02
 
 enum solid_kind {
     DISC,
@@ -178,7 +181,8 @@ static void compare(const struct solid *solid, enum solid_kind kind, const struc
     /* the same outline, and the same surface before and behind it */
     if (surely != isfinite(more.distance) || surely != isfinite(expected.distance) ||
         (surely &&
-         (spread > 30.0 * OUTLINE / cosine || expected.to_edge < 3.0 * OUTLINE / cosine))) {
+         (spread > 30.0 * OUTLINE / cosine || spread > GRAZING * solid->record.bounding_radius ||
+          expected.to_edge < 3.0 * OUTLINE / cosine))) {
         worst->undecided++;
         return;
     }
