@@ -155,6 +155,14 @@ static void test_snell(void **unused)
     print_message("largest relative error of range and time: %.2g\n", largest_error);
 }
 
+/* Whether long double is wider than double: valgrind's is not. */
+static bool has_wide_reference(void)
+{
+    const volatile long double small = 1e-18L;
+    const volatile long double sum = 1.0L + small;
+    return sum != 1.0L;
+}
+
 /* The ray found for two points comes to the point, and its time is that of the point. */
 static void compare_two_points(const struct water *water, const struct reference_way *folded,
                                double height)
@@ -171,7 +179,8 @@ static void compare_two_points(const struct water *water, const struct reference
         const struct reference_ray sum = reference_sum(folded, height, p);
         /* what the angle's last digits are worth in range: it is an arc cosine near 1 */
         const double digit = 2e-15 * (double)(sinl(fabsl((long double)angle)) / c * sum.growth);
-        if (p * fastest_speed < 1.0L - 1e-13L)
+        /* and the sum itself loses digits towards total reflection */
+        if (p * fastest_speed < 1.0L - (has_wide_reference() ? 1e-13L : 1e-5L))
             expect_within("range of the ray found", (double)sum.range, ranges[i],
                           1e-10 * ranges[i] + digit);
         /* the time errs by p times that, which the point's own range leaves out */
