@@ -323,29 +323,24 @@ static struct tallies trace_smooth_as_c(struct bench *bench, uint32_t object,
 
 typedef void body(struct bench *bench, enum scene_kind kind);
 
-/* Runs a body on every device, at every width from the least on. */
-static void on_every_device(body *run, uint32_t least_width)
+/* Runs a body at every width from the least on. */
+static void at_every_width(body *run, uint32_t least_width)
 {
     static const uint32_t widths[] = {1, 4, 8, 16};
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    for (size_t d = 0; d < devices; d++)
-        for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
-            struct bench bench;
-            bench_open(&bench, names[d], ROWS, COLUMNS, 18.0);
-            if (bench.tracer.device->is_cpu && widths[w] < least_width) {
-                bench_close(&bench);
-                continue;
-            }
+    for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
+        struct bench bench;
+        bench_open(&bench, ROWS, COLUMNS, 18.0);
+        if (!bench.tracer.device->is_cpu || widths[w] >= least_width) {
             bench.tracer.device->width = widths[w];
-            print_message("%s, width %u\n", names[d], (unsigned)widths[w]);
+            print_message("width %u\n", (unsigned)widths[w]);
             for (int kind = 0; kind < SCENE_KINDS; kind++) {
                 scene_clear(&bench.scene);
                 bench_move(&bench, 18.0);
                 run(&bench, (enum scene_kind)kind);
             }
-            bench_close(&bench);
         }
+        bench_close(&bench);
+    }
 }
 
 static void compare_rough(struct bench *bench, enum scene_kind kind)
@@ -367,7 +362,7 @@ static void compare_rough(struct bench *bench, enum scene_kind kind)
 static void test_rough_tallies(void **unused)
 {
     (void)unused;
-    on_every_device(compare_rough, 1);
+    at_every_width(compare_rough, 1);
 }
 
 /* Whether there was anything to compare. */
@@ -397,7 +392,7 @@ static void compare_smooth(struct bench *bench, enum scene_kind kind)
 static void test_smooth_tallies(void **unused)
 {
     (void)unused;
-    on_every_device(compare_smooth, 1);
+    at_every_width(compare_smooth, 1);
 }
 
 /* A fluid seabed, a rough surface, and pairs of the sonar and its images in both. */
@@ -429,7 +424,7 @@ static void compare_mirrored(struct bench *bench, enum scene_kind kind)
 static void test_mirrored_tallies(void **unused)
 {
     (void)unused;
-    on_every_device(compare_mirrored, 1);
+    at_every_width(compare_mirrored, 1);
 }
 
 /* Tiles of the rough part by way of mirrors, on a fresh trace. */
@@ -479,7 +474,7 @@ static void compare_rough_mirrored(struct bench *bench, enum scene_kind kind)
 static void test_rough_mirrored_tallies(void **unused)
 {
     (void)unused;
-    on_every_device(compare_rough_mirrored, 1);
+    at_every_width(compare_rough_mirrored, 1);
 }
 
 /* Planes of lines or pixels, real part first. */
@@ -655,54 +650,50 @@ static void test_image_formation(void **unused)
     (void)unused;
     /* Intel's compiler spreads a scalar sum over lanes, which changes its order. No CPU is given
      * one lane: every one that OpenCL runs on has at least four. */
-    on_every_device(compare_formation, 4);
+    at_every_width(compare_formation, 4);
 }
 
 /* One core of a device instead of all. */
 static void test_one_core(void **unused)
 {
     (void)unused;
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    for (size_t d = 0; d < devices; d++) {
-        struct bench bench;
-        bench_open(&bench, names[d], ROWS, COLUMNS, 18.0);
-        const cl_device_partition_property one_core[] = {CL_DEVICE_PARTITION_BY_COUNTS, 1,
-                                                         CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
-        /* never released: a thread of PoCL may still be busy with its last event, which does not
-         * hold a sub-device */
-        static cl_device_id core;
-        cl_uint cores = 0;
-        if (clCreateSubDevices(bench.tracer.device->id, one_core, 1, &core, &cores) != CL_SUCCESS ||
-            cores != 1) {
-            print_message("%s cannot be divided\n", names[d]);
-            bench_close(&bench);
-            continue;
-        }
-        make_scene(&bench, SCENE_WITH_MAP);
-        float *map = make_map(SCENE_WITH_MAP);
-        struct tallies expected = trace_rough_on_device(&bench, map, 1 << 20);
-        cl_int error = CL_SUCCESS;
-        cl_context context = clCreateContext(NULL, 1, &core, NULL, NULL, &error);
-        assert_int_equal(error, CL_SUCCESS);
-        sonject_context_params params;
-        memset(&params, 0, sizeof params);
-        params.struct_size = sizeof params;
-        params.cache_folder = "";
-        params.opencl_context = context;
-        params.opencl_device = core;
-        device_close(&bench.tracer.device);
-        if (device_open(&bench.report, &params, &bench.tracer.device) != SONJECT_OK)
-            fail_msg("%s", bench.report.message);
-        assert_int_equal(bench.tracer.device->compute_units, 1);
-        struct tallies measured = trace_rough_on_device(&bench, map, 1 << 20);
-        expect_same("one core", &measured, &expected);
-        tallies_clear(&measured);
-        tallies_clear(&expected);
-        free(map);
+    struct bench bench;
+    bench_open(&bench, ROWS, COLUMNS, 18.0);
+    const cl_device_partition_property one_core[] = {CL_DEVICE_PARTITION_BY_COUNTS, 1,
+                                                     CL_DEVICE_PARTITION_BY_COUNTS_LIST_END, 0};
+    /* never released: a thread of PoCL may still be busy with its last event, which does not hold a
+     * sub-device */
+    static cl_device_id core;
+    cl_uint cores = 0;
+    if (clCreateSubDevices(bench.tracer.device->id, one_core, 1, &core, &cores) != CL_SUCCESS ||
+        cores != 1) {
+        print_message("%s cannot be divided\n", bench_device);
         bench_close(&bench);
-        clReleaseContext(context);
+        return;
     }
+    make_scene(&bench, SCENE_WITH_MAP);
+    float *map = make_map(SCENE_WITH_MAP);
+    struct tallies expected = trace_rough_on_device(&bench, map, 1 << 20);
+    cl_int error = CL_SUCCESS;
+    cl_context context = clCreateContext(NULL, 1, &core, NULL, NULL, &error);
+    assert_int_equal(error, CL_SUCCESS);
+    sonject_context_params params;
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    params.cache_folder = "";
+    params.opencl_context = context;
+    params.opencl_device = core;
+    device_close(&bench.tracer.device);
+    if (device_open(&bench.report, &params, &bench.tracer.device) != SONJECT_OK)
+        fail_msg("%s", bench.report.message);
+    assert_int_equal(bench.tracer.device->compute_units, 1);
+    struct tallies measured = trace_rough_on_device(&bench, map, 1 << 20);
+    expect_same("one core", &measured, &expected);
+    tallies_clear(&measured);
+    tallies_clear(&expected);
+    free(map);
+    bench_close(&bench);
+    clReleaseContext(context);
 }
 
 int main(void)
@@ -712,5 +703,5 @@ int main(void)
         cmocka_unit_test(test_mirrored_tallies), cmocka_unit_test(test_rough_mirrored_tallies),
         cmocka_unit_test(test_image_formation),  cmocka_unit_test(test_one_core),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

@@ -168,10 +168,10 @@ static int64_t *trace_as_c(struct bench *bench, const float *map, struct trace_c
     return tallies;
 }
 
-static void compare(const char *device, const struct variant *variant)
+static void compare(const struct variant *variant)
 {
     struct bench bench;
-    bench_open(&bench, device, ROWS, COLUMNS, 18.0);
+    bench_open(&bench, ROWS, COLUMNS, 18.0);
     make_scene(&bench, variant);
     float *map = make_map(variant);
     struct trace_counts expected_counts, counts;
@@ -184,8 +184,8 @@ static void compare(const char *device, const struct variant *variant)
         for (size_t k = 0; k < count; k++) {
             filled += expected[k] != 0;
             if (measured[k] != expected[k])
-                fail_msg("%s, %s: element %zu of %zu is %lld, not %lld", device, variant->name, k,
-                         count, (long long)measured[k], (long long)expected[k]);
+                fail_msg("%s, %s: element %zu of %zu is %lld, not %lld", bench_device,
+                         variant->name, k, count, (long long)measured[k], (long long)expected[k]);
         }
         assert_true(filled > 300); /* a dead trace would agree too */
         assert_int_equal(counts.rays, expected_counts.rays);
@@ -201,12 +201,8 @@ static void compare(const char *device, const struct variant *variant)
 static void test_chains(void **unused)
 {
     (void)unused;
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    assert_true(devices > 0);
-    for (size_t d = 0; d < devices; d++)
-        for (size_t v = 0; v < sizeof variants / sizeof *variants; v++)
-            compare(names[d], &variants[v]);
+    for (size_t v = 0; v < sizeof variants / sizeof *variants; v++)
+        compare(&variants[v]);
 }
 
 int main(void)
@@ -214,5 +210,5 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_chains),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

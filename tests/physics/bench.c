@@ -18,14 +18,15 @@ static void expect_ok(struct bench *bench, sonject_status status)
         fail_msg("%s", bench->report.message);
 }
 
-void bench_open(struct bench *bench, const char *device, size_t rows, size_t columns,
-                double middle_range_m)
+const char *bench_device;
+
+void bench_open(struct bench *bench, size_t rows, size_t columns, double middle_range_m)
 {
     sonject_context_params context;
     memset(bench, 0, sizeof *bench);
     memset(&context, 0, sizeof context);
     context.struct_size = sizeof context;
-    context.device_name = device;
+    context.device_name = bench_device;
     context.cache_folder = "";
     scene_init(&bench->scene);
     bench->rows = rows;
@@ -115,6 +116,20 @@ size_t bench_devices(char names[BENCH_DEVICES][128])
     for (size_t i = 0; i < count; i++)
         memcpy(names[i], devices[i].name, sizeof devices[i].name);
     return count;
+}
+
+int bench_run_on_devices(const struct CMUnitTest *tests, size_t count)
+{
+    char names[BENCH_DEVICES][128];
+    const size_t devices = bench_devices(names);
+    int failures = 0;
+    for (size_t i = 0; i < devices; i++) {
+        bench_device = names[i];
+        print_message("device: %s\n", bench_device);
+        failures += _cmocka_run_group_tests(bench_device, tests, count, NULL, NULL);
+    }
+    bench_device = NULL;
+    return failures;
 }
 
 struct echo_line bench_glint_line(struct bench *bench, uint32_t object)

@@ -25,11 +25,10 @@ struct bench {
     size_t rows, columns;
 };
 
-/* Opens the device whose name contains `device` (NULL: the default one; no cache of programs), and
- * lays a patch of pixels with default parameters: 100 kHz, 30 kHz, 10 m altitude, 2.5 cm. Its
- * middle column is at middle_range_m. Fails the test where a call fails. */
-void bench_open(struct bench *bench, const char *device, size_t rows, size_t columns,
-                double middle_range_m);
+/* Opens bench_device (no cache of programs), and lays a patch of pixels with default parameters:
+ * 100 kHz, 30 kHz, 10 m altitude, 2.5 cm. Its middle column is at middle_range_m. Fails the test
+ * where a call fails. */
+void bench_open(struct bench *bench, size_t rows, size_t columns, double middle_range_m);
 void bench_close(struct bench *bench);
 
 /* Puts the middle column somewhere else (apparent range), after spacing or size changed. */
@@ -48,6 +47,13 @@ void bench_ready(struct bench *bench);
 
 /* Wavenumber, 1/m. */
 double bench_wavenumber(const struct bench *bench);
+
+/* The device that bench_open opens: one whose name contains this; NULL: the default one. */
+extern const char *bench_device;
+
+/* Runs the tests on every device; the number of those that failed, which a program returns. */
+struct CMUnitTest;
+int bench_run_on_devices(const struct CMUnitTest *tests, size_t count);
 
 /* The names of all devices; the number of them. */
 #define BENCH_DEVICES 16

@@ -19,8 +19,6 @@
 #define PIXELS  ((size_t)ROWS * COLUMNS)
 #define RANGE   40.0
 
-static const char *device;
-
 /* A measured patch: a speckle field with the sonar's point response, unit mean square. */
 static float *measured_field(struct bench *bench, uint64_t seed)
 {
@@ -89,7 +87,7 @@ static void test_untouched_pixels_keep_every_bit(void **unused)
     for (int is_complex = 0; is_complex < 2; is_complex++) {
         struct bench bench;
         struct injection_result result;
-        bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+        bench_open(&bench, ROWS, COLUMNS, RANGE);
         float *field = measured_field(&bench, 5);
         float *pixels = is_complex ? field : magnitudes(field);
         const size_t bytes = (is_complex ? 2 : 1) * sizeof(float);
@@ -152,7 +150,7 @@ static void test_shadow_and_highlight_energy(void **unused)
             struct bench bench;
             struct injection_result result;
             struct patch_level level;
-            bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+            bench_open(&bench, ROWS, COLUMNS, RANGE);
             bench.scene.injection.seed = (uint64_t)seed + 1;
             bench.scene.injection.estimate_noise = 0;
             bench.scene.injection.noise_floor_db = -20.0;
@@ -216,7 +214,7 @@ static void test_partial_shadow(void **unused)
     (void)unused;
     struct bench bench;
     struct injection_result result;
-    bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+    bench_open(&bench, ROWS, COLUMNS, RANGE);
     bench.scene.injection.estimate_noise = 0;
     bench.scene.injection.noise_floor_db = -60.0;
     float *field = measured_field(&bench, 5);
@@ -307,7 +305,7 @@ static void check_anew(const char *what, enum patch_kind kind, sonject_seabed_ma
     for (int seed = 0; seed < 4; seed++) {
         struct bench bench;
         struct injection_result result;
-        bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+        bench_open(&bench, ROWS, COLUMNS, RANGE);
         bench.scene.injection.mode = SONJECT_MODE_RESYNTHESISE;
         bench.scene.injection.seed = (uint64_t)seed + 1;
         bench.scene.seabed.map = map;
@@ -362,7 +360,7 @@ static void test_coherent_map(void **unused)
     for (size_t i = 0; i < sizeof grids / sizeof *grids; i++) {
         struct bench bench;
         struct injection_result result;
-        bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+        bench_open(&bench, ROWS, COLUMNS, RANGE);
         bench.scene.geometry.row_spacing_m = grids[i].row;
         bench.scene.geometry.column_spacing_m = grids[i].column;
         bench.scene.sonar.along_track_resolution_m = grids[i].resolution;
@@ -398,12 +396,5 @@ int main(void)
         cmocka_unit_test(test_resynthesis),
         cmocka_unit_test(test_coherent_map),
     };
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    int failures = 0;
-    for (size_t i = 0; i < devices; i++) {
-        device = names[i];
-        failures += cmocka_run_group_tests(tests, NULL, NULL);
-    }
-    return failures;
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

@@ -18,11 +18,9 @@
 #define LEVEL_DB   0.2
 #define WAVELENGTH 0.015
 
-static const char *device;
-
 static void open_at(struct bench *bench, double range_m)
 {
-    bench_open(bench, device, ROWS, COLUMNS, range_m);
+    bench_open(bench, ROWS, COLUMNS, range_m);
 }
 
 static double slant_range(const struct bench *bench)
@@ -549,12 +547,5 @@ int main(void)
         cmocka_unit_test(test_ray_count),
         cmocka_unit_test(test_residual),
     };
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    int failures = 0;
-    for (size_t i = 0; i < devices; i++) {
-        device = names[i];
-        failures += cmocka_run_group_tests(tests, NULL, NULL);
-    }
-    return failures;
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

@@ -41,7 +41,7 @@ static double error_of(const struct energies *energies, int order, int range)
 /* Figure 7's geometry. Its surfaces are made brighter, so that the third order is heard. */
 static void make_scene(struct bench *bench)
 {
-    bench_open(bench, NULL, 240, 240, MIDDLE_M);
+    bench_open(bench, 240, 240, MIDDLE_M);
     sonject_object_params *capsule = bench_add(bench, SONJECT_SHAPE_CAPSULE, 2.3, 0.0, 0.3);
     capsule->heading_rad = 35.0 * PI / 180.0;
     capsule->burial_m = 0.1;
@@ -280,7 +280,7 @@ static void test_narrowest_cone_is_in_scale(void **unused)
     for (size_t i = 0; i < sizeof slopes / sizeof *slopes; i++) {
         struct bench bench;
         struct echoes echoes;
-        bench_open(&bench, NULL, 120, 160, MIDDLE_M);
+        bench_open(&bench, 120, 160, MIDDLE_M);
         bench_add(&bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.5);
         bench_add(&bench, SONJECT_SHAPE_PLANE, 1.0, 0.6, 0.0)->roll_rad = 68.0 * PI / 180.0;
         for (uint32_t k = 0; k < bench.scene.object_count; k++) {
@@ -307,5 +307,5 @@ int main(void)
         cmocka_unit_test(test_mirrored_object_is_left_to_pairs),
         cmocka_unit_test(test_narrowest_cone_is_in_scale),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

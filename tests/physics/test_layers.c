@@ -12,16 +12,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench.h"
-#include "reference_layers.h"
+#include "layered_sea.h"
+#include "shadow_edge.h"
 
-#define ALTITUDE  20.0
-#define REFERENCE 1500.0 /* sound speed of the image processor */
-#define LEVEL_DB  0.2
-#define PHASE     0.05 /* rad; stationary phase errs by 1/(2ka), 1/250 for a = 0.3 m */
-#define GRADIENT  200  /* layers */
-
-static const char *device;
+#define LEVEL_DB 0.2
+#define PHASE    0.05 /* rad; stationary phase errs by 1/(2ka), 1/250 for a = 0.3 m */
+#define GRADIENT 200  /* layers */
 
 /* Warm water over a thermocline, 8 m over the seabed. */
 static const struct water_layer thermocline[] = {{0.0, 1490.0, 1.0}, {8.0, 1520.0, 1.0}};
@@ -37,25 +33,9 @@ static const double middles[] = {40.0, 120.0};
 
 static void open_sea(struct bench *bench, int number, size_t rows, size_t columns)
 {
-    bench_open(bench, device, rows, columns, middles[number % 2]);
-    bench->scene.sonar.altitude_m = ALTITUDE;
-    bench->scene.medium.reference_sound_speed_mps = REFERENCE;
-    bench_set_layers(bench, seas[number / 2].layers, seas[number / 2].count);
+    layered_sea_open(bench, rows, columns, middles[number % 2], seas[number / 2].layers,
+                     seas[number / 2].count);
     print_message("%s, %.0f m\n", seas[number / 2].name, middles[number % 2]);
-}
-
-/* The water as it was laid: layers that targets reach into are one (tests/unit/test_water.c). */
-static struct reference_way way_of(const struct bench *bench)
-{
-    const struct reference_way way = {
-        bench->water.layers, bench->water.count, bench->scene.sonar.altitude_m, 0.0, 0, false};
-    return way;
-}
-
-static struct reference_sound sound_at(const struct bench *bench, double range, double height)
-{
-    const struct reference_way way = way_of(bench);
-    return reference_sound_at(&way, range, height);
 }
 
 /* Amplitude of a target of unit cross-section there. */
@@ -94,10 +74,10 @@ static void expect_sphere(struct bench *bench, double a)
 {
     bench_ready(bench);
     const double *centre = bench->placements[0].centre;
-    const struct reference_sound to_centre = sound_at(bench, centre[1], centre[2]);
+    const struct reference_sound to_centre = sound_in_bench(bench, centre[1], centre[2]);
     const double y = centre[1] - a * cos(to_centre.grazing);
     const double z = centre[2] + a * sin(to_centre.grazing);
-    const struct reference_sound sound = sound_at(bench, y, z);
+    const struct reference_sound sound = sound_in_bench(bench, y, z);
     const double nearest = REFERENCE * sound.time;
     struct echo_line line = bench_glint_line(bench, 0);
     double range;
@@ -164,7 +144,7 @@ static void test_apparent_range(void **unused)
         open_sea(&bench, number, 120, 200);
         bench_add(&bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.1)->burial_m = 0.05;
         bench_ready(&bench);
-        const struct reference_way way = way_of(&bench);
+        const struct reference_way way = way_through_bench(&bench);
         for (double column = 0.0; column < 200.0; column += 33.0) {
             const double apparent = view_apparent_range(&bench.tracer.view, column);
             const long double p = reference_parameter_of_time(&way, apparent / REFERENCE);
@@ -172,9 +152,9 @@ static void test_apparent_range(void **unused)
             expect_close("ground range, m", view_ground_range(&bench.tracer.view, apparent), ground,
                          1e-9);
             expect_close("grazing angle, rad", view_grazing(&bench.tracer.view, apparent),
-                         sound_at(&bench, ground, 0.0).grazing, 1e-9);
+                         sound_in_bench(&bench, ground, 0.0).grazing, 1e-9);
         }
-        const double time = sound_at(&bench, bench.placements[0].centre[1], 0.0).time;
+        const double time = sound_in_bench(&bench, bench.placements[0].centre[1], 0.0).time;
         expect_close("object in the middle, m", REFERENCE * time, middles[number % 2], 1e-9);
         float *map = malloc((size_t)120 * 200 * sizeof *map);
         assert_non_null(map);
@@ -208,19 +188,12 @@ static void test_apparent_range(void **unused)
 #define COLUMNS 200
 #define EDGE    24 /* resolution cells of |W|^2 and pulses that pixels near the edge lack */
 
-/* mu sin^2(grazing) dA times both intensities. Grazing and time are of the true water, dt/dy =
- * cos/c. */
+/* mu sin^2(grazing) times the resolution cell's area and both intensities. */
 static double seabed_level(const struct bench *bench, double apparent)
 {
-    const struct reference_way way = way_of(bench);
-    const long double p = reference_parameter_of_time(&way, apparent / REFERENCE);
-    const double ground = (double)reference_sum(&way, 0.0, p).range;
-    const struct reference_sound sound = sound_at(bench, ground, 0.0);
-    const double length =
-        sqrt(PI / (4.0 * log(2.0))) * REFERENCE / (2.0 * bench->scene.sonar.bandwidth_hz);
-    const double area = bench->scene.geometry.row_spacing_m * length / REFERENCE / (double)p;
-    return bench->scene.seabed.lambert * pow(sin(sound.grazing), 2.0) * area *
-           pow(gain_of(sound), 2.0);
+    double area;
+    const struct reference_sound sound = sound_on_seabed(bench, apparent, &area);
+    return bench->scene.seabed.lambert * area * pow(sin(sound.grazing) * gain_of(sound), 2.0);
 }
 
 /* Mean of pixels over their closed form, and its standard error from columns, of which three lie
@@ -288,7 +261,8 @@ static void test_rough_plate(void **unused)
         struct reference_sound sound = {0};
         for (int i = 0; i < 20; i++) { /* turning moves it */
             bench_ready(&bench);
-            sound = sound_at(&bench, bench.placements[0].centre[1], bench.placements[0].centre[2]);
+            sound = sound_in_bench(&bench, bench.placements[0].centre[1],
+                                   bench.placements[0].centre[2]);
             object->pitch_rad = sound.grazing + TILT - 0.5 * PI;
         }
         bench_ready(&bench);
@@ -312,36 +286,12 @@ static void test_rough_plate(void **unused)
 
 /* ---- shadows ---- */
 
-/* The argument at which a normal distribution reaches a probability, by bisection. */
-static double normal_argument(double probability)
-{
-    double low = -6.0, high = 6.0;
-    for (int i = 0; i < 50; i++) {
-        const double middle = 0.5 * (low + high);
-        *(0.5 * erfc(-middle / sqrt(2.0)) < probability ? &low : &high) = middle;
-    }
-    return low;
-}
-
-/* Where visibility passes 1/2: G^2 makes an error function of the edge of a shadow. */
-static double crossing(const double *values, size_t first, size_t last)
-{
-    const bool starts_above = values[first] > 0.5;
-    for (size_t i = first; i < last; i++)
-        if ((values[i + 1] > 0.5) != starts_above) {
-            const double a = normal_argument(values[i]);
-            const double b = normal_argument(values[i + 1]);
-            return (double)i - a / (b - a);
-        }
-    fail_msg("no crossing of 0.5 between %zu and %zu", first, last);
-    return 0.0;
-}
-
 /* Column at which the seabed is hidden by an edge: its ray goes straight on to the seabed. */
 static double column_behind(const struct bench *bench, double range, double height)
 {
-    const double on = range + height / tan(sound_at(bench, range, height).grazing);
-    return view_column_of_range(&bench->tracer.view, REFERENCE * sound_at(bench, on, 0.0).time);
+    const double on = range + height / tan(sound_in_bench(bench, range, height).grazing);
+    return view_column_of_range(&bench->tracer.view,
+                                REFERENCE * sound_in_bench(bench, on, 0.0).time);
 }
 
 static void test_flat_top(void **unused)
@@ -365,12 +315,12 @@ static void test_flat_top(void **unused)
         const double far = column_behind(&bench, centre + 0.6, height);
         const size_t middle = (size_t)(0.5 * (near + far));
         const double straight = height * (centre + 0.6) / (ALTITUDE - height);
-        const double bent = height / tan(sound_at(&bench, centre + 0.6, height).grazing);
+        const double bent = height / tan(sound_in_bench(&bench, centre + 0.6, height).grazing);
         print_message("shadow of %.3f m, without layers %.3f m\n", bent, straight);
         /* layers matter, more than the test can overlook */
         assert_true(fabs(bent - straight) > 0.25 * 0.025);
-        expect_close("shadow begins, column", crossing(visibility, 0, middle), near, 0.08);
-        expect_close("shadow ends, column", crossing(visibility, middle, 400), far, 0.08);
+        expect_close("shadow begins, column", shadow_edge(visibility, 0, middle), near, 0.08);
+        expect_close("shadow ends, column", shadow_edge(visibility, middle, 400), far, 0.08);
         expect_below("visibility in the middle", visibility[middle], 0.02);
         echoes_clear(&echoes);
         bench_close(&bench);
@@ -400,7 +350,7 @@ static void all_echoes(const struct water_layer *layers, size_t count, double sp
                        struct echoes *echoes)
 {
     struct bench bench;
-    bench_open(&bench, device, 80, 121, 40.0);
+    bench_open(&bench, 80, 121, 40.0);
     bench.scene.sonar.altitude_m = ALTITUDE;
     bench.scene.medium.sound_speed_mps = speed;
     bench.scene.medium.reference_sound_speed_mps = REFERENCE;
@@ -476,12 +426,5 @@ int main(void)
         gradient[i].speed_mps = 1490.0 + 15.0 * ((double)i + 0.5) / GRADIENT;
         gradient[i].density = 1.0;
     }
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    int failures = 0;
-    for (size_t i = 0; i < devices; i++) {
-        device = names[i];
-        failures += cmocka_run_group_tests(tests, NULL, NULL);
-    }
-    return failures;
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

@@ -13,16 +13,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench.h"
-#include "reference_layers.h"
+#include "layered_sea.h"
 
-#define ALTITUDE  20.0
-#define DEPTH     25.0
-#define REFERENCE 1500.0 /* sound speed of the image processor */
-#define LEVEL_DB  0.2
-#define PHASE     0.05 /* rad; stationary phase errs by 1/(2ka), 1/126 for a = 0.15 m */
-
-static const char *device;
+#define DEPTH    25.0
+#define LEVEL_DB 0.2
+#define PHASE    0.05 /* rad; stationary phase errs by 1/(2ka), 1/126 for a = 0.15 m */
 
 /* Warm water over a thermocline, 8 m over the seabed. */
 static const struct water_layer thermocline[] = {{0.0, 1490.0, 1.0}, {8.0, 1520.0, 1.0}};
@@ -30,10 +25,7 @@ static const double middles[] = {40.0, 120.0};
 
 static void open_sea(struct bench *bench, double middle, size_t rows, size_t columns)
 {
-    bench_open(bench, device, rows, columns, middle);
-    bench->scene.sonar.altitude_m = ALTITUDE;
-    bench->scene.medium.reference_sound_speed_mps = REFERENCE;
-    bench_set_layers(bench, thermocline, 2);
+    layered_sea_open(bench, rows, columns, middle, thermocline, 2);
 }
 
 /* ---- mirrors ---- */
@@ -359,12 +351,5 @@ int main(void)
         cmocka_unit_test(test_chains_of_small_contrast),
         cmocka_unit_test(test_chains_scale_with_the_ray_tube),
     };
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    int failures = 0;
-    for (size_t i = 0; i < devices; i++) {
-        device = names[i];
-        failures += cmocka_run_group_tests(tests, NULL, NULL);
-    }
-    return failures;
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

@@ -31,7 +31,7 @@ struct energies {
 
 static void make_scene(struct bench *bench, uint32_t column_rule)
 {
-    bench_open(bench, NULL, 480, 200, 50.0);
+    bench_open(bench, 480, 200, 50.0);
     sonject_object_params *sphere =
         bench_add(bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 2.0 * RADIUS_M);
     sphere->burial_m = RADIUS_M - HEIGHT_M;
@@ -198,5 +198,5 @@ int main(void)
         cmocka_unit_test(test_paper_columns),
         cmocka_unit_test(test_focused_columns),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

@@ -98,7 +98,7 @@ static struct mesh *add_mesh(struct bench *bench)
 /* The glint of a sphere of `rings` rings, or of the shape itself. */
 static struct echo_line sphere_line(struct bench *bench, uint32_t rings)
 {
-    bench_open(bench, NULL, ROWS, COLUMNS, RANGE);
+    bench_open(bench, ROWS, COLUMNS, RANGE);
     sonject_object_params *object = bench_add(
         bench, rings > 0 ? SONJECT_SHAPE_MESH : SONJECT_SHAPE_SPHERE, 0.0, 0.0, 2.0 * RADIUS);
     object->burial_m = -1.0;
@@ -192,7 +192,7 @@ static void test_rough_sphere(void **state)
     (void)state;
     for (int is_mesh = 0; is_mesh < 2; is_mesh++) {
         struct bench bench;
-        bench_open(&bench, NULL, ROWS, COLUMNS, RANGE);
+        bench_open(&bench, ROWS, COLUMNS, RANGE);
         make_rough(bench_add(&bench, is_mesh ? SONJECT_SHAPE_MESH : SONJECT_SHAPE_SPHERE, 0.0, 0.0,
                              2.0 * RADIUS));
         if (is_mesh)
@@ -214,7 +214,7 @@ static void test_both_sides(void **state)
     (void)state;
     for (int i = 0; i < 2; i++) {
         struct bench bench;
-        bench_open(&bench, NULL, ROWS, COLUMNS, RANGE);
+        bench_open(&bench, ROWS, COLUMNS, RANGE);
         bench.scene.geometry.side = i == 1 ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
         sonject_object_params *object = bench_add(&bench, SONJECT_SHAPE_MESH, 0.0, 0.0, 0.0);
         make_rough(object);
@@ -233,7 +233,7 @@ static void test_same_bits(void **state)
     struct bench bench;
     struct rough_trace trace;
     (void)state;
-    bench_open(&bench, NULL, ROWS, COLUMNS, RANGE);
+    bench_open(&bench, ROWS, COLUMNS, RANGE);
     make_rough(bench_add(&bench, SONJECT_SHAPE_MESH, 0.0, 0.0, 0.0));
     make_sphere(add_mesh(&bench), &bench.report, 24);
     bench_ready(&bench);
@@ -281,5 +281,5 @@ int main(void)
         cmocka_unit_test(test_both_sides),
         cmocka_unit_test(test_same_bits),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

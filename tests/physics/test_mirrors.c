@@ -21,11 +21,9 @@
 #define PHASE      0.05 /* rad; stationary phase errs by 1/(2ka), 1/126 for a = 0.15 m */
 #define WAVELENGTH 0.015
 
-static const char *device;
-
 static void open_at(struct bench *bench, double range_m, size_t columns, uint32_t interactions)
 {
-    bench_open(bench, device, ROWS, columns, range_m);
+    bench_open(bench, ROWS, columns, range_m);
     bench->scene.injection.interactions = interactions;
 }
 
@@ -718,12 +716,5 @@ int main(void)
         cmocka_unit_test(test_rough_sphere),
         cmocka_unit_test(test_rough_sphere_hidden),
     };
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    int failures = 0;
-    for (size_t i = 0; i < devices; i++) {
-        device = names[i];
-        failures += cmocka_run_group_tests(tests, NULL, NULL);
-    }
-    return failures;
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

@@ -25,8 +25,6 @@
 #define WAVELENGTH 0.015
 #define CELL       (WAVELENGTH / 8.0)
 
-static const char *device;
-
 /* An object of one shape, or of parts: then width and height are those of its boxes. */
 static sonject_object_params *add(struct bench *bench, sonject_shape shape, double length,
                                   double width, double height, double diameter)
@@ -190,7 +188,7 @@ struct picture {
 static void compute(struct echoes *echoes, const struct picture *picture)
 {
     struct bench bench;
-    bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+    bench_open(&bench, ROWS, COLUMNS, RANGE);
     picture->build(&bench, picture->other, picture->pose);
     if (picture->is_rough)
         make_rough(&bench);
@@ -391,7 +389,7 @@ static void test_parts_rest_on_the_seabed(void **unused)
         const double lowest = -0.5 * sin(pitch) - 0.1;
         const double height = sin(pitch) + 0.2 - lowest;
         const double bottom = i / 2 == 0 ? -0.05 : i / 2 == 1 ? -0.25 * height : 0.3 - height;
-        bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+        bench_open(&bench, ROWS, COLUMNS, RANGE);
         bench.scene.geometry.side = sides[i % 2];
         sonject_object_params *object = add(&bench, SONJECT_SHAPE_PARTS, 0.0, 0.4, 0.2, 0.0);
         object->heading_rad = 0.7;
@@ -421,12 +419,5 @@ int main(void)
         cmocka_unit_test(test_box_of_two),   cmocka_unit_test(test_mirrored_view),
         cmocka_unit_test(test_hidden_parts), cmocka_unit_test(test_parts_rest_on_the_seabed),
     };
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    int failures = 0;
-    for (size_t i = 0; i < devices; i++) {
-        device = names[i];
-        failures += cmocka_run_group_tests(tests, NULL, NULL);
-    }
-    return failures;
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

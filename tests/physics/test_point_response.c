@@ -14,8 +14,6 @@
 
 #define RANGE 50.0
 
-static const char *device;
-
 static const struct {
     sonject_response_window window;
     double sidelobe_db;
@@ -187,7 +185,7 @@ static void test_range_response(void **unused)
 
 static void open_fine(struct bench *bench, size_t window)
 {
-    bench_open(bench, device, ROWS, COLUMNS, RANGE);
+    bench_open(bench, ROWS, COLUMNS, RANGE);
     bench->scene.geometry.row_spacing_m = 0.005;
     bench->scene.geometry.column_spacing_m = 0.002;
     bench->scene.sonar.along_track_resolution_m = 0.04;
@@ -270,7 +268,7 @@ static void test_between_pixels(void **unused)
         struct bench bench;
         struct echoes echoes;
         double row, column;
-        bench_open(&bench, device, 101, 101, RANGE);
+        bench_open(&bench, 101, 101, RANGE);
         choose_window(&bench.scene.sonar, 3); /* low side lobes: the patch cuts nothing off */
         /* a centroid needs |W|^2 and G^2 sampled finely enough: twice an image's usual pixels */
         bench.scene.sonar.along_track_resolution_m = 0.05;
@@ -306,12 +304,5 @@ int main(void)
         cmocka_unit_test(test_range_response),       cmocka_unit_test(test_image_of_a_point),
         cmocka_unit_test(test_between_pixels),
     };
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    int failures = 0;
-    for (size_t i = 0; i < devices; i++) {
-        device = names[i];
-        failures += cmocka_run_group_tests(tests, NULL, NULL);
-    }
-    return failures;
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

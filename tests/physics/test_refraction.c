@@ -12,15 +12,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "bench.h"
-#include "reference_layers.h"
+#include "layered_sea.h"
 
-#define ALTITUDE  20.0
-#define REFERENCE 1500.0 /* sound speed of the image processor */
-#define LEVEL_DB  0.2
-#define PHASE     0.05 /* rad; stationary phase errs by 1/(2ka), 1/250 for a = 0.3 m */
-
-static const char *device;
+#define LEVEL_DB 0.2
+#define PHASE    0.05 /* rad; stationary phase errs by 1/(2ka), 1/250 for a = 0.3 m */
 
 /* The sonar in the slower water: sound that has gone 60 m there runs level in the water below. */
 static const struct water_layer slow_above[] = {{0.0, 1520.0, 1.0}, {8.0, 1490.0, 1.0}};
@@ -50,24 +45,9 @@ static const struct {
 
 static void open_sea(struct bench *bench, size_t number, size_t rows, size_t columns)
 {
-    bench_open(bench, device, rows, columns, seas[number].middle);
-    bench->scene.sonar.altitude_m = ALTITUDE;
-    bench->scene.medium.reference_sound_speed_mps = REFERENCE;
-    bench_set_layers(bench, seas[number].layers, seas[number].count);
+    layered_sea_open(bench, rows, columns, seas[number].middle, seas[number].layers,
+                     seas[number].count);
     print_message("%s, %.0f m\n", seas[number].name, seas[number].middle);
-}
-
-static struct reference_way way_of(const struct bench *bench)
-{
-    const struct reference_way way = {
-        bench->water.layers, bench->water.count, ALTITUDE, 0.0, 0, false};
-    return way;
-}
-
-static struct reference_sound sound_at(const struct bench *bench, double range, double height)
-{
-    const struct reference_way way = way_of(bench);
-    return reference_sound_at(&way, range, height);
 }
 
 /* Share of the energy that all planes under the sonar pass on, one way, for sound of p = cos/c:
@@ -103,8 +83,9 @@ static double gain_of(const struct bench *bench, struct reference_sound sound)
 static struct reference_sound sound_at_front(const struct bench *bench)
 {
     const double *centre = bench->placements[0].centre;
-    const double grazing = sound_at(bench, centre[1], centre[2]).grazing;
-    return sound_at(bench, centre[1] - RADIUS * cos(grazing), centre[2] + RADIUS * sin(grazing));
+    const double grazing = sound_in_bench(bench, centre[1], centre[2]).grazing;
+    return sound_in_bench(bench, centre[1] - RADIUS * cos(grazing),
+                          centre[2] + RADIUS * sin(grazing));
 }
 
 static void test_sphere(void **unused)
@@ -156,7 +137,7 @@ static double time_of_pair(const struct bench *bench, double radius, double angl
     const double *centre = bench->placements[0].centre;
     const double y = centre[1] - radius * cos(angle);
     const double z = centre[2] + radius * sin(angle);
-    return 0.5 * (sound_at(bench, y, z).time + sound_by_surface(bench, y, z).time);
+    return 0.5 * (sound_in_bench(bench, y, z).time + sound_by_surface(bench, y, z).time);
 }
 
 /* The surface is rough to sound of the wavelength that it has there, at the angle that it has
@@ -196,7 +177,7 @@ static void test_glint_by_the_surface(void **unused)
         const double *centre = bench.placements[0].centre;
         const double y = centre[1] - radius * cos(low);
         const double z = centre[2] + radius * sin(low);
-        const struct reference_sound out = sound_at(&bench, y, z);
+        const struct reference_sound out = sound_in_bench(&bench, y, z);
         const struct reference_sound home = sound_by_surface(&bench, y, z);
         const double straight = REFERENCE * out.time;
         /* both directions are one echo; planes under the sonar are crossed once each way */
@@ -224,16 +205,11 @@ static void test_glint_by_the_surface(void **unused)
 #define COLUMNS 160
 #define EDGE    24 /* resolution cells of |W|^2 and pulses that pixels near the edge lack */
 
-/* mu sin^2(grazing) times the resolution cell's area, dt/dy = p, and both intensities. */
+/* mu sin^2(grazing) times the resolution cell's area and both intensities. */
 static double seabed_level(const struct bench *bench, double apparent)
 {
-    const struct reference_way way = way_of(bench);
-    const long double p = reference_parameter_of_time(&way, apparent / REFERENCE);
-    const struct reference_sound sound =
-        sound_at(bench, (double)reference_sum(&way, 0.0, p).range, 0.0);
-    const double length =
-        sqrt(PI / (4.0 * log(2.0))) * REFERENCE / (2.0 * bench->scene.sonar.bandwidth_hz);
-    const double area = bench->scene.geometry.row_spacing_m * length / (REFERENCE * (double)p);
+    double area;
+    const struct reference_sound sound = sound_on_seabed(bench, apparent, &area);
     return bench->scene.seabed.lambert * area *
            pow(sin(sound.grazing) * gain_of(bench, sound), 2.0);
 }
@@ -286,7 +262,7 @@ static struct energies energies_of(bool is_light_above, double source_side, uint
     struct bench bench;
     struct echoes echoes;
     struct energies sums = {0.0, 0.0, 0.0, 0.0, 0.0};
-    bench_open(&bench, device, 121, 161, 40.0);
+    bench_open(&bench, 121, 161, 40.0);
     bench.scene.sonar.altitude_m = ALTITUDE;
     bench.scene.sonar.transducer_side_m = source_side;
     bench.scene.medium.sound_speed_mps = 1490.0;
@@ -370,12 +346,5 @@ int main(void)
         cmocka_unit_test(test_seabed_level),
         cmocka_unit_test(test_density_alone),
     };
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    int failures = 0;
-    for (size_t i = 0; i < devices; i++) {
-        device = names[i];
-        failures += cmocka_run_group_tests(tests, NULL, NULL);
-    }
-    return failures;
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

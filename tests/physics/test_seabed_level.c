@@ -16,8 +16,6 @@
 #define COLUMNS 200
 #define EDGE    24 /* resolution cells of |W|^2 and pulses that pixels near the edge lack */
 
-static const char *device;
-
 /* From the formulas, not from seabed_cell_energy: mu sin^2(g) dA, dA = width of |W|^2 times the
  * ground length of G^2, 1.0645 c/2B / cos(g) on the water's own range scale. */
 static double closed_form(const struct bench *bench, double apparent_range)
@@ -95,7 +93,7 @@ static void test_ranges(void **unused)
     static const double ranges[] = {14.0, 50.0, 180.0};
     for (size_t i = 0; i < 3; i++) {
         struct bench bench;
-        bench_open(&bench, device, ROWS, COLUMNS, ranges[i]);
+        bench_open(&bench, ROWS, COLUMNS, ranges[i]);
         print_message("range %.0f m\n", ranges[i]);
         check_level(&bench, "1 times the rays");
         bench_close(&bench);
@@ -108,7 +106,7 @@ static void test_ray_count(void **unused)
     static const double scales[] = {1.0, 4.0, 16.0};
     for (size_t i = 0; i < 3; i++) {
         struct bench bench;
-        bench_open(&bench, device, ROWS, COLUMNS, 30.0);
+        bench_open(&bench, ROWS, COLUMNS, 30.0);
         bench.scene.injection.ray_scale = scales[i];
         print_message("%.0f times the rays\n", scales[i]);
         check_level(&bench, "range 30 m");
@@ -121,7 +119,7 @@ static void test_wrong_sound_speed(void **unused)
 {
     (void)unused;
     struct bench bench;
-    bench_open(&bench, device, ROWS, COLUMNS, 30.0);
+    bench_open(&bench, ROWS, COLUMNS, 30.0);
     bench.scene.medium.reference_sound_speed_mps = 1400.0;
     check_level(&bench, "c_ref 1400 m/s");
     bench_close(&bench);
@@ -132,7 +130,7 @@ static void test_wide_source(void **unused)
 {
     (void)unused;
     struct bench bench;
-    bench_open(&bench, device, ROWS, COLUMNS, 30.0);
+    bench_open(&bench, ROWS, COLUMNS, 30.0);
     bench.scene.sonar.transducer_side_m = 0.1;
     check_level(&bench, "source of 0.1 m");
     bench_close(&bench);
@@ -143,7 +141,7 @@ static void test_other_pixels(void **unused)
 {
     (void)unused;
     struct bench bench;
-    bench_open(&bench, device, ROWS, COLUMNS, 30.0);
+    bench_open(&bench, ROWS, COLUMNS, 30.0);
     bench.scene.geometry.row_spacing_m = 0.03;
     bench.scene.geometry.column_spacing_m = 0.01;
     bench.scene.sonar.along_track_resolution_m = 0.02;
@@ -164,7 +162,7 @@ static void test_map(void **unused)
     for (size_t i = 0; i < ROWS * COLUMNS; i++)
         map[i] = (float)((i / COLUMNS < ROWS / 2 ? 1.0 : 3.0) *
                          (i % COLUMNS < COLUMNS / 2 ? 1.0 : 10.0));
-    bench_open(&bench, device, ROWS, COLUMNS, 30.0);
+    bench_open(&bench, ROWS, COLUMNS, 30.0);
     bench_ready(&bench);
     bench_echoes(&bench, map, SEABED_FIELD_NONE, &echoes);
     static const size_t at[4][2] = {{60, 50}, {180, 50}, {60, 150}, {180, 150}};
@@ -214,12 +212,5 @@ int main(void)
         cmocka_unit_test(test_other_pixels),
         cmocka_unit_test(test_map),
     };
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    int failures = 0;
-    for (size_t i = 0; i < devices; i++) {
-        device = names[i];
-        failures += cmocka_run_group_tests(tests, NULL, NULL);
-    }
-    return failures;
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

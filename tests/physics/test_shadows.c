@@ -11,13 +11,12 @@
 #include <string.h>
 
 #include "bench.h"
+#include "shadow_edge.h"
 #include "inject/injection.h"
 
 #define ROWS    201
 #define COLUMNS 401
 #define RANGE   40.0
-
-static const char *device;
 
 /* Visibility 1 - lost / without, row by row. */
 static double *visibility_of(struct bench *bench)
@@ -35,36 +34,6 @@ static double *visibility_of(struct bench *bench)
     }
     echoes_clear(&echoes);
     return visibility;
-}
-
-/* The argument at which a normal distribution reaches a probability, by bisection. */
-static double normal_argument(double probability)
-{
-    double low = -6.0;
-    double high = 6.0;
-    for (int i = 0; i < 50; i++) {
-        const double middle = 0.5 * (low + high);
-        if (0.5 * erfc(-middle / sqrt(2.0)) < probability)
-            low = middle;
-        else
-            high = middle;
-    }
-    return low;
-}
-
-/* Index, as a fraction, at which a line of values passes 0.5 between first and last. The edge of a
- * shadow is a step smoothed by G^2, hence an error function, which is what is interpolated. */
-static double crossing(const double *values, size_t first, size_t last)
-{
-    const int starts_above = values[first] > 0.5;
-    for (size_t i = first; i < last; i++)
-        if ((values[i + 1] > 0.5) != starts_above) {
-            const double a = normal_argument(values[i]);
-            const double b = normal_argument(values[i + 1]);
-            return (double)i - a / (b - a);
-        }
-    fail_msg("no crossing of 0.5 between %zu and %zu", first, last);
-    return 0.0;
 }
 
 /* Visibility along the track, mean over some columns: where an edge runs along the rays, each ray
@@ -94,7 +63,7 @@ static void test_flat_top(void **unused)
     for (size_t i = 0; i < 3; i++) {
         const double height = heights[i];
         struct bench bench;
-        bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+        bench_open(&bench, ROWS, COLUMNS, RANGE);
         bench_add(&bench, SONJECT_SHAPE_PLANE, 2.0, 1.2, 0.0)->burial_m = -height;
         double *visibility = visibility_of(&bench);
         const double *row = visibility + 100 * COLUMNS;
@@ -104,20 +73,20 @@ static void test_flat_top(void **unused)
         const double far = (centre + 0.6) * h / (h - height);
         const double middle = column_of_ground(&bench, 0.5 * (near + far));
         print_message("height %.1f m\n", height);
-        expect_close("shadow begins, column", crossing(row, 0, (size_t)middle),
+        expect_close("shadow begins, column", shadow_edge(row, 0, (size_t)middle),
                      column_of_ground(&bench, near), 0.05);
-        expect_close("shadow ends, column", crossing(row, (size_t)middle, COLUMNS - 1),
+        expect_close("shadow ends, column", shadow_edge(row, (size_t)middle, COLUMNS - 1),
                      column_of_ground(&bench, far), 0.05);
         const double range =
-            view_apparent_range(&bench.tracer.view, crossing(row, (size_t)middle, COLUMNS - 1));
+            view_apparent_range(&bench.tracer.view, shadow_edge(row, (size_t)middle, COLUMNS - 1));
         expect_close("length behind the far edge, m", sqrt(range * range - h * h) - (centre + 0.6),
                      height * (centre + 0.6) / (h - height), 0.05 * 0.025 / (centre / RANGE));
         /* the plate's middle is on row 100, its ends 1 m = 40 rows away */
         double line[ROWS];
         along_track(visibility, (size_t)middle - 10, 21, line);
         /* 20 columns of some 130 rays each: 0.5/sqrt(2600) is 0.01, 0.02 rows */
-        expect_close("shadow's side, row", crossing(line, 0, 100), 60.0, 0.08);
-        expect_close("shadow's other side, row", crossing(line, 100, ROWS - 1), 140.0, 0.08);
+        expect_close("shadow's side, row", shadow_edge(line, 0, 100), 60.0, 0.08);
+        expect_close("shadow's other side, row", shadow_edge(line, 100, ROWS - 1), 140.0, 0.08);
         expect_below("visibility in the middle", row[(size_t)(middle + 0.5)], 0.02);
         free(visibility);
         bench_close(&bench);
@@ -133,7 +102,7 @@ static void test_sphere(void **unused)
     for (size_t i = 0; i < 4; i++) {
         const double a = radii[i % 2];
         struct bench bench;
-        bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+        bench_open(&bench, ROWS, COLUMNS, RANGE);
         bench_add(&bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 2.0 * a)->burial_m = burials[i / 2];
         double *visibility = visibility_of(&bench);
         const double *row = visibility + 100 * COLUMNS;
@@ -146,13 +115,13 @@ static void test_sphere(void **unused)
         const size_t middle = (size_t)(0.5 * (near + far));
         print_message("radius %.2f m, %.1f m over the seabed\n", a, -burials[i / 2]);
         /* the rows beside, which |W|^2 brings in, have a shorter shadow */
-        expect_close("shadow begins, column", crossing(row, 0, middle), near, 0.06);
-        expect_close("shadow ends, column", crossing(row, middle, COLUMNS - 1), far, 0.06);
+        expect_close("shadow begins, column", shadow_edge(row, 0, middle), near, 0.06);
+        expect_close("shadow ends, column", shadow_edge(row, middle, COLUMNS - 1), far, 0.06);
         /* in the middle of the shadow its width is that of the sphere */
         double line[ROWS];
         along_track(visibility, (size_t)(column_of_ground(&bench, h / tan(depression)) + 0.5), 1,
                     line);
-        expect_close("width, rows", crossing(line, 100, ROWS - 1) - crossing(line, 0, 100),
+        expect_close("width, rows", shadow_edge(line, 100, ROWS - 1) - shadow_edge(line, 0, 100),
                      2.0 * a / 0.025, 0.15);
         free(visibility);
         bench_close(&bench);
@@ -203,7 +172,7 @@ static void test_starboard_is_mirrored(void **unused)
     float *pixels = flat_pixels();
     struct injection_result port, starboard;
     struct bench bench;
-    bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+    bench_open(&bench, ROWS, COLUMNS, RANGE);
     bench.scene.geometry.first_along_track_m = -200.0 * 0.025;
     add_plate(&bench, 200.0 - 80.0, PI - 0.5, -0.25);
     inject(&bench, pixels, &port);
@@ -241,7 +210,7 @@ static void test_sides_look_alike(void **unused)
     float *pixels = flat_pixels();
     struct injection_result port, starboard;
     struct bench bench;
-    bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+    bench_open(&bench, ROWS, COLUMNS, RANGE);
     bench.scene.injection.ray_scale = 4.0;
     add_plate(&bench, 80.0, 0.5, 0.25);
     inject(&bench, pixels, &port);
@@ -270,12 +239,5 @@ int main(void)
         cmocka_unit_test(test_starboard_is_mirrored),
         cmocka_unit_test(test_sides_look_alike),
     };
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    int failures = 0;
-    for (size_t i = 0; i < devices; i++) {
-        device = names[i];
-        failures += cmocka_run_group_tests(tests, NULL, NULL);
-    }
-    return failures;
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

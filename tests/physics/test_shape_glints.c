@@ -19,12 +19,10 @@
 #define LEVEL_DB   0.2
 #define WAVELENGTH 0.015
 
-static const char *device;
-
 static sonject_object_params *open_with(struct bench *bench, sonject_shape shape, double length,
                                         double width, double height, double diameter)
 {
-    bench_open(bench, device, ROWS, COLUMNS, RANGE);
+    bench_open(bench, ROWS, COLUMNS, RANGE);
     sonject_object_params *object = bench_add(bench, shape, length, width, diameter);
     object->height_m = height;
     object->burial_m = -1.0;
@@ -322,13 +320,5 @@ int main(void)
         cmocka_unit_test(test_capsule_is_a_cylinder_with_round_ends),
         cmocka_unit_test(test_open_tube),
     };
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    int failed = 0;
-    for (size_t i = 0; i < devices; i++) {
-        device = names[i];
-        print_message("device: %s\n", device);
-        failed += cmocka_run_group_tests(tests, NULL, NULL);
-    }
-    return failed;
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

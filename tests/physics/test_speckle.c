@@ -16,8 +16,6 @@
 #define EDGE    40 /* pixels next to an edge lack a part of their response */
 #define BLOCKS  20 /* of rows, for standard errors from the scatter between them */
 
-static const char *device;
-
 /* A field of unit mean square. */
 struct field {
     double *real_part, *imaginary_part;
@@ -39,7 +37,7 @@ static void field_clear(struct field *field)
 
 static void open_bench(struct bench *bench, double ray_scale, uint64_t seed)
 {
-    bench_open(bench, device, ROWS, COLUMNS, 40.0);
+    bench_open(bench, ROWS, COLUMNS, 40.0);
     bench->scene.injection.ray_scale = ray_scale;
     bench->scene.injection.seed = seed;
     bench->scene.sonar.along_track_resolution_m = 0.05; /* two rows, so that rows correlate */
@@ -243,12 +241,5 @@ int main(void)
         cmocka_unit_test(test_noise),
         cmocka_unit_test(test_fields_are_independent),
     };
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    int failures = 0;
-    for (size_t i = 0; i < devices; i++) {
-        device = names[i];
-        failures += cmocka_run_group_tests(tests, NULL, NULL);
-    }
-    return failures;
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }
