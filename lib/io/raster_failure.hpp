@@ -1,4 +1,4 @@
-/* How failures pass through raster_file.cpp: as exceptions within, as a status to the outside. */
+/* How failures pass through raster_*.cpp: as exceptions within, as a status to the outside. */
 #ifndef SONJECT_IO_RASTER_FAILURE_HPP
 #define SONJECT_IO_RASTER_FAILURE_HPP
 

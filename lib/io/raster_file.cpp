@@ -1,91 +1,13 @@
-#include "io/raster_file.h"
+#include "io/raster_source.hpp"
 
-#include <cstdlib>
 #include <cstring>
 #include <limits>
-#include <memory>
-#include <new>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
-
-#include "io/image_kind.h"
-#include "io/jpeg_segments.h"
-#include "io/png_chunks.h"
-#include "io/raster_failure.hpp"
 #include "io/raster_streams.hpp"
 #include "io/raster_writer.hpp"
-#include "io/tiff_patch.h"
 
 using namespace raster;
-
-namespace
-{
-
-constexpr uint64_t png_side_max = 1000000; /* of libpng */
-constexpr uint64_t jpeg_side_max = 65500;  /* of libjpeg */
-constexpr uint64_t pixels_max = uint64_t(1) << 40;
-
-/* Puts the part of the patch that lies in rows first...end over these rows. */
-void overlay(const struct raster_layout &layout, const struct region &region, const void *patch,
-             uint64_t first, uint64_t end, unsigned char *rows)
-{
-    const uint64_t pixel = layout.channels * pixel_bytes(layout.type);
-    const uint64_t from = first > region.first_row ? first : region.first_row;
-    const uint64_t region_end = region.first_row + region.rows;
-    const uint64_t to = end < region_end ? end : region_end;
-    for (uint64_t row = from; row < to; row++)
-        std::memcpy(rows + (row - first) * row_bytes(layout) + region.first_column * pixel,
-                    static_cast<const unsigned char *>(patch) +
-                        (row - region.first_row) * region.columns * pixel,
-                    region.columns * pixel);
-}
-
-} // namespace
-
-struct raster_file {
-    std::string path;
-    enum image_kind kind;
-    struct raster_layout layout;
-    struct byte_ranges parts = {};
-    std::unique_ptr<OIIO::Filesystem::IOProxy>
-        view;                          /* if the decoder does not see the whole file */
-    std::vector<unsigned char> copied; /* what it sees, where it must lie in memory */
-    std::unique_ptr<OIIO::ImageInput> input;
-    OIIO::ImageSpec spec;
-
-    raster_file() = default;
-    ~raster_file()
-    {
-        input.reset();
-        std::free(parts.list);
-    }
-    raster_file(const raster_file &) = delete;
-    raster_file &operator=(const raster_file &) = delete;
-
-    /* Reads whole rows (from a tiled image: those columns) into pixels. */
-    void read(struct report *report, const struct region &region, void *pixels)
-    {
-        const int x = spec.x + int(region.first_column);
-        const int y = spec.y + int(region.first_row);
-        const int x_end = x + int(region.columns);
-        const int y_end = y + int(region.rows);
-        const bool is_read =
-            spec.tile_width > 0
-                ? input->read_tiles(0, 0, x, x_end, y, y_end, 0, 1, 0, spec.nchannels, spec.format,
-                                    pixels)
-                : input->read_scanlines(0, 0, y, y_end, 0, 0, spec.nchannels, spec.format, pixels);
-        const std::string reason = input->geterror();
-        if (!is_read || !reason.empty())
-            throw failure{report_failure(
-                report, SONJECT_ERROR_INPUT, "%s: cut short or damaged at rows %llu...%llu: %s",
-                path.c_str(), (unsigned long long)region.first_row,
-                (unsigned long long)(region.first_row + region.rows - 1), reason.c_str())};
-    }
-};
 
 namespace
 {
@@ -225,6 +147,11 @@ void read_by_tiles(struct report *report, struct raster_file &file, const struct
         }
 }
 
+} // namespace
+
+namespace raster
+{
+
 void read_region(struct report *report, struct raster_file &file, const struct region &region,
                  void *pixels)
 {
@@ -248,7 +175,7 @@ std::unique_ptr<struct raster_file> open_file(struct report *report, const char 
     return file;
 }
 
-} // namespace
+} // namespace raster
 
 sonject_status raster_file_open(struct report *report, const char *path, struct raster_file **file)
 {
@@ -307,220 +234,4 @@ sonject_status raster_file_read(struct report *report, struct raster_file *file,
 {
     return guarded(report, file->path.c_str(),
                    [&] { read_region(report, *file, *region, pixels); });
-}
-
-namespace
-{
-
-struct copy_order {
-    struct report *report;
-    const char *source, *path;
-    const struct region *region;
-    const void *pixels;
-    sonject_progress_function progress;
-    void *user;
-
-    void tell(double fraction) const
-    {
-        if (progress && progress(user, fraction, "write") != 0)
-            throw failure{report_failure(report, SONJECT_CANCELLED, "cancelled")};
-    }
-};
-
-/* Decodes and encodes the image, a strip of rows at a time. */
-void encode_copy(const copy_order &order, struct raster_file &source, const char *encoded)
-{
-    const struct raster_layout &layout = source.layout;
-    const uint64_t at_once = rows_at_once(layout);
-    std::unique_ptr<image_writer> output;
-    std::vector<unsigned char> strip(
-        size_t((at_once < layout.rows ? at_once : layout.rows) * row_bytes(layout)));
-    for (uint64_t row = 0; row < layout.rows; row += at_once) {
-        const uint64_t end = layout.rows - row < at_once ? layout.rows : row + at_once;
-        source.read(order.report, {row, 0, end - row, layout.columns}, strip.data());
-        overlay(layout, *order.region, order.pixels, row, end, strip.data());
-        if (!output)
-            output = std::make_unique<image_writer>(order.report, encoded, order.path, source.kind,
-                                                    layout, "");
-        output->write_rows(row, end, strip.data());
-        order.tell(double(end) / double(layout.rows));
-    }
-    output->finish();
-}
-
-void copy_encoded(const copy_order &order, struct raster_file &source, const char *result)
-{
-    const part_file encoded(result);
-    encode_copy(order, source, encoded.name);
-    if (source.kind == IMAGE_PNG)
-        require(png_join(order.report, order.source, encoded.name, result, order.path));
-    else
-        require(jpeg_join(order.report, order.source, encoded.name, result, order.path));
-}
-
-struct region_reader {
-    struct report *report;
-    struct raster_file *file;
-};
-
-sonject_status read_for_tiff(void *user, const struct region *region, void *pixels)
-{
-    const region_reader *reader = static_cast<const region_reader *>(user);
-    return raster_file_read(reader->report, reader->file, region, pixels);
-}
-
-void copy_tiff(const copy_order &order, struct raster_file &source, const char *result)
-{
-    region_reader reader = {order.report, &source};
-    const struct tiff_patch patch = {order.source,  result,         order.path,
-                                     *order.region, order.pixels,   read_for_tiff,
-                                     &reader,       order.progress, order.user};
-    require(tiff_copy_with_patch(order.report, &patch));
-}
-
-bool holds_patch(const copy_order &order, const char *path)
-{
-    size_t bytes = 0;
-    const std::unique_ptr<struct raster_file> copy = open_file(order.report, path);
-    if (!region_bytes(&copy->layout, order.region, &bytes))
-        throw std::bad_alloc();
-    std::vector<unsigned char> pixels(bytes);
-    read_region(order.report, *copy, *order.region, pixels.data());
-    return !raster_file_is_lossless(copy.get()) ||
-           std::memcmp(pixels.data(), order.pixels, bytes) == 0;
-}
-
-/* Whatever went into the copy must come out of it: a file that says contradictory things of itself
- * may fool the writer, but not the reader as well. */
-void check_copy(const copy_order &order, const char *path)
-{
-    bool is_good = false;
-    try {
-        is_good = holds_patch(order, path);
-    } catch (const failure &known) {
-        if (known.status != SONJECT_ERROR_INPUT)
-            throw;
-    }
-    if (!is_good)
-        throw failure{report_failure(order.report, SONJECT_ERROR_INPUT,
-                                     "%s: damaged: its pixels cannot be replaced", order.source)};
-}
-
-} // namespace
-
-sonject_status raster_file_copy_with_patch(struct report *report, const char *source,
-                                           const char *path, const struct region *region,
-                                           const void *pixels, sonject_progress_function progress,
-                                           void *user)
-{
-    return guarded(report, path, [&] {
-        const copy_order order = {report, source, path, region, pixels, progress, user};
-        const std::unique_ptr<struct raster_file> file = open_file(report, source);
-        if (!region_is_inside(&file->layout, region))
-            throw failure{report_failure(report, SONJECT_ERROR_INPUT,
-                                         "%s: the region is not inside the image", source)};
-        const part_file part(path);
-        if (file->kind == IMAGE_TIFF)
-            copy_tiff(order, *file, part.name);
-        else
-            copy_encoded(order, *file, part.name);
-        check_copy(order, part.name);
-        require(file_publish(report, part.name, path));
-    });
-}
-
-namespace
-{
-
-enum image_kind kind_to_write(struct report *report, const char *path,
-                              const struct raster_layout &layout)
-{
-    enum image_kind kind;
-    if (!image_kind_of_name(path, &kind))
-        throw failure{report_failure(report, SONJECT_ERROR_UNSUPPORTED,
-                                     "%s: images are written as .tif, .png or .jpg: choose one of "
-                                     "these extensions",
-                                     path)};
-    if ((kind == IMAGE_PNG && layout.type == PIXEL_FLOAT32) ||
-        (kind == IMAGE_JPEG && layout.type != PIXEL_UINT8))
-        throw failure{report_failure(report, SONJECT_ERROR_UNSUPPORTED,
-                                     "%s: this format does not hold %s pixels: write .tif", path,
-                                     layout.type == PIXEL_FLOAT32 ? "floating-point" : "16-bit")};
-    const bool is_grey_or_colour = layout.channels == 1 || layout.channels == 3;
-    if (!is_grey_or_colour && (kind != IMAGE_TIFF || layout.channels != 2))
-        throw failure{report_failure(report, SONJECT_ERROR_UNSUPPORTED,
-                                     "%s: this format does not hold %u channels: write .tif with 1 "
-                                     "to 3",
-                                     path, layout.channels)};
-    const uint64_t side_max = kind == IMAGE_PNG    ? png_side_max
-                              : kind == IMAGE_JPEG ? jpeg_side_max
-                                                   : uint64_t(std::numeric_limits<int>::max());
-    if (layout.rows == 0 || layout.columns == 0 || layout.rows > side_max ||
-        layout.columns > side_max || layout.rows > pixels_max / layout.columns)
-        throw failure{report_failure(
-            report, SONJECT_ERROR_UNSUPPORTED, "%s: %llu x %llu pixels cannot be written", path,
-            (unsigned long long)layout.rows, (unsigned long long)layout.columns)};
-    return kind;
-}
-
-/* Lines of "name=value". */
-std::string describe(const struct raster_layout &layout, const char *const *channel_names,
-                     const struct raster_attribute *attributes, size_t attribute_count)
-{
-    std::string description;
-    for (uint32_t i = 0; channel_names && i < layout.channels; i++)
-        description += (i == 0 ? "channels=" : ",") + std::string(channel_names[i]);
-    for (size_t i = 0; i < attribute_count; i++)
-        description += (description.empty() ? "" : "\n") + std::string(attributes[i].name) + "=" +
-                       attributes[i].value;
-    return description;
-}
-
-} // namespace
-
-sonject_status raster_file_write(struct report *report, const char *path,
-                                 const struct raster_layout *layout,
-                                 const char *const *channel_names,
-                                 const struct raster_attribute *attributes, size_t attribute_count,
-                                 const void *pixels)
-{
-    return guarded(report, path, [&] {
-        const enum image_kind kind = kind_to_write(report, path, *layout);
-        const part_file part(path);
-        image_writer output(report, part.name, path, kind, *layout,
-                            describe(*layout, channel_names, attributes, attribute_count));
-        const uint64_t at_once = rows_at_once(*layout);
-        const unsigned char *rows = static_cast<const unsigned char *>(pixels);
-        for (uint64_t row = 0; row < layout->rows; row += at_once) {
-            const uint64_t end = layout->rows - row < at_once ? layout->rows : row + at_once;
-            output.write_rows(row, end, rows + row * row_bytes(*layout));
-        }
-        output.finish();
-        require(file_publish(report, part.name, path));
-    });
-}
-
-sonject_status raster_file_write_placed(struct report *report, const char *path,
-                                        const struct raster_layout *layout,
-                                        const struct region *region, const void *pixels)
-{
-    return guarded(report, path, [&] {
-        const enum image_kind kind = kind_to_write(report, path, *layout);
-        if (!region_is_inside(layout, region))
-            throw failure{report_failure(report, SONJECT_ERROR_STORAGE,
-                                         "%s: the region is not inside the image", path)};
-        const part_file part(path);
-        image_writer output(report, part.name, path, kind, *layout, "", true);
-        const uint64_t at_once = rows_at_once(*layout);
-        std::vector<unsigned char> strip(
-            size_t((at_once < layout->rows ? at_once : layout->rows) * row_bytes(*layout)));
-        for (uint64_t row = 0; row < layout->rows; row += at_once) {
-            const uint64_t end = layout->rows - row < at_once ? layout->rows : row + at_once;
-            std::memset(strip.data(), 0, strip.size());
-            overlay(*layout, *region, pixels, row, end, strip.data());
-            output.write_rows(row, end, strip.data());
-        }
-        output.finish();
-        require(file_publish(report, part.name, path));
-    });
 }

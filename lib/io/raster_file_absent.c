@@ -1,4 +1,4 @@
-/* Stands in for raster_file.cpp in builds without OpenImageIO: everything answers UNSUPPORTED. */
+/* Stands in for raster_*.cpp in builds without OpenImageIO: everything answers UNSUPPORTED. */
 #include "io/raster_file.h"
 
 #include <stddef.h>

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <new>
 #include <string>
@@ -22,7 +23,8 @@ namespace raster
 {
 
 constexpr uint64_t strip_bytes = 64u << 20; /* of rows that are in memory at a time */
-constexpr int png_filter_none = 8;          /* of libpng */
+constexpr uint64_t pixels_max = uint64_t(1) << 40;
+constexpr int png_filter_none = 8; /* of libpng */
 
 /* Coarser coding would show in the noise of every pixel of the swath, not only near the target. */
 constexpr const char *jpeg_quality = "jpeg:98";
@@ -65,6 +67,21 @@ inline uint64_t rows_at_once(const struct raster_layout &layout)
 {
     const uint64_t rows = strip_bytes / row_bytes(layout);
     return rows > 0 ? rows : 1;
+}
+
+/* Puts the part of the patch that lies in rows first...end over these rows. */
+inline void overlay(const struct raster_layout &layout, const struct region &region,
+                    const void *patch, uint64_t first, uint64_t end, unsigned char *rows)
+{
+    const uint64_t pixel = layout.channels * pixel_bytes(layout.type);
+    const uint64_t from = first > region.first_row ? first : region.first_row;
+    const uint64_t region_end = region.first_row + region.rows;
+    const uint64_t to = end < region_end ? end : region_end;
+    for (uint64_t row = from; row < to; row++)
+        std::memcpy(rows + (row - first) * row_bytes(layout) + region.first_column * pixel,
+                    static_cast<const unsigned char *>(patch) +
+                        (row - region.first_row) * region.columns * pixel,
+                    region.columns * pixel);
 }
 
 /* An image as it is written, row by row. To be made when the first rows are there: libpng prints a

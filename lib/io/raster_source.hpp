@@ -1,0 +1,71 @@
+/* An image file that is open for reading; raster_file.h is what others see of it. Failures are
+ * thrown (raster_failure.hpp). */
+#ifndef SONJECT_IO_RASTER_SOURCE_HPP
+#define SONJECT_IO_RASTER_SOURCE_HPP
+
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+
+#include "io/image_kind.h"
+#include "io/raster_failure.hpp"
+#include "io/raster_file.h"
+
+struct raster_file {
+    std::string path;
+    enum image_kind kind;
+    struct raster_layout layout;
+    struct byte_ranges parts = {};
+    std::unique_ptr<OIIO::Filesystem::IOProxy>
+        view;                          /* if the decoder does not see the whole file */
+    std::vector<unsigned char> copied; /* what it sees, where it must lie in memory */
+    std::unique_ptr<OIIO::ImageInput> input;
+    OIIO::ImageSpec spec;
+
+    raster_file() = default;
+    ~raster_file()
+    {
+        input.reset();
+        std::free(parts.list);
+    }
+    raster_file(const raster_file &) = delete;
+    raster_file &operator=(const raster_file &) = delete;
+
+    /* Reads whole rows (from a tiled image: those columns) into pixels. */
+    void read(struct report *report, const struct region &region, void *pixels)
+    {
+        const int x = spec.x + int(region.first_column);
+        const int y = spec.y + int(region.first_row);
+        const int x_end = x + int(region.columns);
+        const int y_end = y + int(region.rows);
+        const bool is_read =
+            spec.tile_width > 0
+                ? input->read_tiles(0, 0, x, x_end, y, y_end, 0, 1, 0, spec.nchannels, spec.format,
+                                    pixels)
+                : input->read_scanlines(0, 0, y, y_end, 0, 0, spec.nchannels, spec.format, pixels);
+        const std::string reason = input->geterror();
+        if (!is_read || !reason.empty())
+            throw raster::failure{report_failure(
+                report, SONJECT_ERROR_INPUT, "%s: cut short or damaged at rows %llu...%llu: %s",
+                path.c_str(), (unsigned long long)region.first_row,
+                (unsigned long long)(region.first_row + region.rows - 1), reason.c_str())};
+    }
+};
+
+namespace raster
+{
+
+/* Checks the file as image_kind_check does and reads its head. */
+std::unique_ptr<struct raster_file> open_file(struct report *report, const char *path);
+
+/* Pixels of a region, row by row. */
+void read_region(struct report *report, struct raster_file &file, const struct region &region,
+                 void *pixels);
+
+} // namespace raster
+
+#endif
