@@ -97,7 +97,7 @@ sonject_status check_shape_keys(struct reader *reader, const struct tree_node *n
 {
     static const struct {
         const char *key;
-        unsigned char presence[SONJECT_SHAPE_TORUS + 1]; /* enum presence, by shape */
+        unsigned char presence[SONJECT_SHAPE_USER + 1]; /* enum presence, by shape */
     } sizes[] = {
         {"length",
          {[SONJECT_SHAPE_PLANE] = NEEDED,
@@ -126,6 +126,7 @@ sonject_status check_shape_keys(struct reader *reader, const struct tree_node *n
           [SONJECT_SHAPE_CONE] = NEEDED,
           [SONJECT_SHAPE_TRUNCATED_CONE] = NEEDED,
           [SONJECT_SHAPE_TORUS] = NEEDED}},
+        {"user", {[SONJECT_SHAPE_USER] = NEEDED}},
         {"top_diameter", {[SONJECT_SHAPE_TRUNCATED_CONE] = NEEDED}},
         {"front_height", {[SONJECT_SHAPE_WEDGE] = POSSIBLE}},
         {"nose_end", {[SONJECT_SHAPE_CYLINDER] = POSSIBLE}},
