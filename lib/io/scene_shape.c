@@ -88,9 +88,10 @@ enum presence {
     POSSIBLE
 };
 
+/* By the sound: no shape's name begins with a u as in "under". */
 static const char *article_of(const char *name)
 {
-    return strchr("aeiou", *name) ? "an" : "a";
+    return strchr("aeio", *name) ? "an" : "a";
 }
 
 sonject_status check_shape_keys(struct reader *reader, const struct tree_node *node, uint32_t shape)

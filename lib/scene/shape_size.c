@@ -118,8 +118,9 @@ double shape_radius_about_nose(const struct shape_size *size, uint32_t shape)
     case SONJECT_SHAPE_BOX:
     case SONJECT_SHAPE_WEDGE:
     case SONJECT_SHAPE_MESH:
-    case SONJECT_SHAPE_USER:
         return hypot(size->half_width_m, size->half_height_m);
+    case SONJECT_SHAPE_USER:
+        return fmin(hypot(size->half_width_m, size->half_height_m), size->bounding_radius_m);
     case SONJECT_SHAPE_CONE:
     case SONJECT_SHAPE_TRUNCATED_CONE:
     case SONJECT_SHAPE_TORUS:

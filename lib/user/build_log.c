@@ -3,7 +3,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#define LINE_CAPACITY 1024
+#include "base/text.h"
+
+#define LINE_CAPACITY    1024
+#define EXCERPT_CAPACITY 400
 
 static void copy_line(char *line, const char *text)
 {
@@ -49,57 +52,79 @@ static void rename_back(char *text)
     }
 }
 
-/* Behind "name:" the number of a line, perhaps a column, then what is wrong. */
-static bool read_place(const char *line, const char *name, unsigned long *number, const char **what)
+/* A place that a line of a log tells. */
+struct place {
+    const char *start; /* in that line; NULL: none */
+    const char *what;  /* is wrong there */
+    const char *name;
+    unsigned long line;
+};
+
+/* Where the line tells "name:" with the number of a line, perhaps a column, then what is wrong. */
+static struct place find_place(const char *line, const char *name)
 {
-    char start[SNIPPET_NAME_MAX + 2];
-    snprintf(start, sizeof start, "%s:", name);
-    for (const char *at = line; (at = strstr(at, start)) != NULL; at++) {
-        const char *digits = at + strlen(start);
-        const size_t count = strspn(digits, "0123456789");
-        if (count == 0 || count > 9 || digits[count] != ':')
+    struct place place = {NULL, NULL, name, 0};
+    const size_t length = strlen(name);
+    for (const char *at = line; (at = strstr(at, name)) != NULL; at++) {
+        const char *digits = at + length + 1;
+        if (at[length] != ':')
             continue;
-        sscanf(digits, "%lu", number);
-        const char *rest = digits + count + 1;
-        const size_t column = strspn(rest, "0123456789");
-        rest += column > 0 && rest[column] == ':' ? column + 1 : 0;
-        rest += strspn(rest, " ");
-        rest += strncmp(rest, "fatal ", 6) == 0 ? 6 : 0;
-        rest += strncmp(rest, "error:", 6) == 0 ? 6 : 0;
-        *what = rest + strspn(rest, " ");
-        return true;
+        const size_t count = strspn(digits, "0123456789");
+        if (count == 0 || count > 9)
+            continue;
+        for (size_t i = 0; i < count; i++)
+            place.line = 10 * place.line + (unsigned long)(digits[i] - '0');
+        place.start = at;
+        place.what = digits + count;
+        return place;
     }
-    return false;
+    return place;
+}
+
+/* What is told behind a place: column, where macros were spelt, and the word error are left out. */
+static const char *skip_to_words(const char *what)
+{
+    if (what[0] == ':' && what[1] >= '0' && what[1] <= '9')
+        what += 1 + strspn(what + 1, "0123456789");
+    what += strspn(what, " ");
+    if (what[0] == '<' && strstr(what, ">: "))
+        what = strstr(what, ">: ") + 1;
+    what += strspn(what, ": ");
+    what += strncmp(what, "fatal ", 6) == 0 ? 6 : 0;
+    what += strncmp(what, "error:", 6) == 0 ? 6 : 0;
+    return what + strspn(what, " ");
+}
+
+/* The first place in any of the snippets. */
+static struct place first_place(const struct user_shapes *shapes, const char *line)
+{
+    struct place first = {NULL, NULL, NULL, 0};
+    for (uint32_t i = 0; i < shapes->snippet_count; i++) {
+        const struct place place = find_place(line, shapes->snippets[i].name);
+        if (place.start && (!first.start || place.start < first.start))
+            first = place;
+    }
+    return first;
 }
 
 sonject_status explain_build_log(struct report *report, const struct user_shapes *shapes,
                                  const char *device_name, const char *log)
 {
+    static const char behind[] = "end of ";
     char line[LINE_CAPACITY];
-    const char *what;
-    unsigned long number;
     tell_log(report, log);
-    const bool has_error = find_error(log, line);
-    for (uint32_t i = 0; has_error && i < shapes->snippet_count; i++) {
-        const char *name = shapes->snippets[i].name;
-        char behind[SNIPPET_NAME_MAX + 8];
-        snprintf(behind, sizeof behind, "end of %s", name);
-        if (read_place(line, behind, &number, &what)) {
-            char copy[LINE_CAPACITY];
-            copy_line(copy, what);
-            rename_back(copy);
-            return report_failure(report, SONJECT_ERROR_INPUT, "%s: at its end: %s", name, copy);
-        }
-        if (read_place(line, name, &number, &what)) {
-            char copy[LINE_CAPACITY];
-            copy_line(copy, what);
-            rename_back(copy);
-            return report_failure(report, SONJECT_ERROR_INPUT, "%s:%lu: %s", name, number, copy);
-        }
-    }
-    if (!has_error)
-        copy_line(line, log);
+    if (!find_error(log, line)) /* linkers say it in their own words */
+        text_excerpt(line, EXCERPT_CAPACITY, log);
     rename_back(line);
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "device '%s' cannot build the user shapes' code: %s", device_name, line);
+    const struct place place = first_place(shapes, line);
+    if (!place.start)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "device '%s' cannot build the user shapes' code: %s", device_name,
+                              line);
+    const char *what = skip_to_words(place.what);
+    const size_t before = (size_t)(place.start - line);
+    if (before >= sizeof behind - 1 &&
+        strncmp(place.start - (sizeof behind - 1), behind, sizeof behind - 1) == 0)
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: at its end: %s", place.name, what);
+    return report_failure(report, SONJECT_ERROR_INPUT, "%s:%lu: %s", place.name, place.line, what);
 }
