@@ -115,6 +115,8 @@ sonject_status explain_build_log(struct report *report, const struct user_shapes
     tell_log(report, log);
     if (!find_error(log, line)) /* linkers say it in their own words */
         text_excerpt(line, EXCERPT_CAPACITY, log);
+    for (size_t end = strlen(line); end > 0 && strchr(" \n", line[end - 1]); end--)
+        line[end - 1] = '\0';
     rename_back(line);
     const struct place place = first_place(shapes, line);
     if (!place.start)
