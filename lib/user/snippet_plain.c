@@ -30,15 +30,21 @@ static size_t splice_at(const char *code)
     return code[1 + blanks] == '\n' ? blanks + 2 : 0;
 }
 
-/* Characters that a compiler may read as others, or that are no text. */
+/* Characters that are no text, or that a compiler may read as others even in comments. */
 static const char *strange_at(const char *code)
 {
-    static const char *const digraphs[] = {"<%", "%>", "<:", ":>", "%:"};
     const unsigned char c = (unsigned char)code[0];
     if ((c < ' ' && c != '\n' && c != '\t' && c != '\r') || c == 127)
         return "control character; remove it";
     if (c == '?' && code[1] == '?' && code[2] != '\0' && strchr("=/'()!<>-", code[2]))
         return "trigraph; write the character that is meant, or a space between the signs";
+    return NULL;
+}
+
+/* Brackets and # in disguise, outside of comments and quotes. */
+static const char *digraph_at(const char *code)
+{
+    static const char *const digraphs[] = {"<%", "%>", "<:", ":>", "%:"};
     for (size_t i = 0; i < sizeof digraphs / sizeof *digraphs; i++)
         if (strncmp(code, digraphs[i], 2) == 0)
             return "digraph; write the bracket that is meant, or a space between the signs";
@@ -115,14 +121,16 @@ static sonject_status step(struct scan *scan)
     return SONJECT_OK;
 }
 
-static sonject_status find_strange(const struct scan *scan)
+/* first_line: of the text. */
+static sonject_status find_strange(const struct scan *scan, unsigned long first_line,
+                                   const char *text, const char *(*strange)(const char *))
 {
-    unsigned long line = scan->line;
-    for (size_t i = 0; scan->code[i] != '\0'; i++) {
-        const char *what = strange_at(scan->code + i);
+    unsigned long line = first_line;
+    for (size_t i = 0; text[i] != '\0'; i++) {
+        const char *what = strange(text + i);
         if (what)
             return refuse(scan, line, what);
-        line += scan->code[i] == '\n';
+        line += text[i] == '\n' || text[i] == SPLICED_LINE;
     }
     return SONJECT_OK;
 }
@@ -134,9 +142,11 @@ sonject_status snippet_plain(struct report *report, const char *name, uint32_t f
     *plain = NULL;
     if (!scan.plain)
         return report_out_of_memory(report, "a shape's code");
-    sonject_status status = find_strange(&scan);
+    sonject_status status = find_strange(&scan, first_line, code, strange_at);
     while (status == SONJECT_OK && code[scan.at] != '\0')
         status = step(&scan);
+    if (status == SONJECT_OK)
+        status = find_strange(&scan, first_line, scan.plain, digraph_at);
     if (status == SONJECT_OK)
         *plain = scan.plain;
     else

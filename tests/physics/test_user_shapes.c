@@ -431,6 +431,32 @@ static void test_errors_are_in_the_users_lines(void **state)
     }
 }
 
+/* A normal that is none must not be drawn. */
+static void test_a_missing_normal_fails_the_run(void **state)
+{
+    struct bench bench;
+    struct rough_trace trace;
+    (void)state;
+    bench_open(&bench, NULL, ROWS, COLUMNS, RANGE);
+    sonject_object_params *object = bench_add(&bench, SONJECT_SHAPE_USER, 0.0, 0.0, 0.0);
+    make_rough(object);
+    object->user_shape = add_code(
+        &bench.scene.user_shapes, &bench.report, "my.cl",
+        SPHERE_DISTANCE "float3 shape_normal(float3 p, const float *a) { return 0.0f * p; }\n",
+        RADIUS, RADIUS, 0.0);
+    bench_ready(&bench);
+    if (rough_trace_begin(&trace, &bench.tracer, NULL) != SONJECT_OK)
+        fail_msg("%s", bench.report.message);
+    float *seabed = calloc(line_grid_cells(&trace.grid), sizeof *seabed);
+    assert_non_null(seabed);
+    assert_int_equal(rough_trace_strips(&trace, &bench.tracer, trace.grid.strips, seabed),
+                     SONJECT_ERROR_DEVICE);
+    assert_non_null(strstr(bench.report.message, "not a number"));
+    free(seabed);
+    rough_trace_end(&trace);
+    bench_close(&bench);
+}
+
 static sonject_status try_code(struct bench *bench, const char *code, double radius, bool is_open,
                                struct shape_check *check)
 {
@@ -558,6 +584,7 @@ int main(void)
         cmocka_unit_test(test_dome_against_double),
         cmocka_unit_test(test_several_codes_and_a_mesh),
         cmocka_unit_test(test_errors_are_in_the_users_lines),
+        cmocka_unit_test(test_a_missing_normal_fails_the_run),
         cmocka_unit_test(test_sound_shapes_pass_the_check),
         cmocka_unit_test(test_the_check_catches),
     };

@@ -100,6 +100,7 @@ static void test_sound_code_is_taken(void **state)
     expect_code_taken("#define LONG(x) \\\n  ((x) * {\\\n)\n#if defined(LONG) && 1\n" GOOD
                       "#else\n#error none\n#endif");
     expect_code_taken("// a } in a comment \\\n and its second line }\n/* { */ " GOOD "// no end");
+    expect_code_taken("// by 50%: half <% of it\n" GOOD);
     expect_code_taken("constant char c = '}', d = '\\'';\r\n" GOOD);
 }
 
@@ -176,15 +177,27 @@ static void append(struct user_shapes *shapes, const char *name, const char *cod
         fail_msg("%s", report.message);
 }
 
+static void count_line(void *count, const char *line)
+{
+    assert_null(strchr(line, '\n'));
+    ++*(int *)count;
+}
+
+/* The message, and the whole log line by line. */
 static void expect_explained(const char *log, const char *message)
 {
-    struct report report = {{0}, NULL, NULL};
+    int lines = 0;
+    int expected = 0;
+    struct report report = {{0}, count_line, &lines};
     struct user_shapes shapes;
     memset(&shapes, 0, sizeof shapes);
     append(&shapes, "a.cl", GOOD);
     append(&shapes, "path to/b.cl", GOOD " ");
     assert_int_equal(explain_build_log(&report, &shapes, "some device", log), SONJECT_ERROR_INPUT);
     assert_string_equal(report.message, message);
+    for (const char *c = log; *c != '\0'; c++)
+        expected += *c == '\n';
+    assert_int_equal(lines, expected);
     user_shapes_clear(&shapes);
 }
 
