@@ -7,8 +7,8 @@
 #define SPHERE_DISTANCE                                                                            \
     "#define WIDTH 3\n"                                                                            \
     "struct vector3 { float one; };\n"                                                             \
-    "constant float real = 1.0f, SPLAT = 1.0f;\n"                                                  \
-    "float helper(float x) { return x * real * SPLAT; }\n"                                         \
+    "constant float real = 1.0f, FAR_AWAY = 1.0f;\n"                                               \
+    "float helper(float x) { return x * real * FAR_AWAY; }\n"                                      \
     "float shape_distance(float3 p, float3 d, float nearest, const float *a)\n"                    \
     "{\n"                                                                                          \
     "    struct vector3 middle;\n"                                                                 \
@@ -56,6 +56,38 @@
     "    if (p.z + a[1] < fabs(dome) / (2.0f * a[0]))\n"                                           \
     "        return (float3)(0.0f, 0.0f, -1.0f);\n"                                                \
     "    return (float3)(2.0f * p.x, 2.0f * p.y, k);\n"                                            \
+    "}\n"
+
+/* Thin, with a normal that points down. parameters: radius */
+#define DISC_CODE                                                                                  \
+    "float shape_distance(float3 p, float3 d, float nearest, const float *a)\n"                    \
+    "{\n"                                                                                          \
+    "    const float t = -p.z / d.z;\n"                                                            \
+    "    const float3 q = p + t * d;\n"                                                            \
+    "    return t > nearest && dot(q, q) <= a[0] * a[0] ? t : INFINITY;\n"                         \
+    "}\n"                                                                                          \
+    "float3 shape_normal(float3 p, const float *a) { return (float3)(0.0f, 0.0f, -3.0f); }\n"
+
+/* Two spheres side by side along the nose. parameters: radius, half their distance */
+#define PAIR_CODE                                                                                  \
+    "float one(float3 p, float3 d, float nearest, float radius)\n"                                 \
+    "{\n"                                                                                          \
+    "    const float middle = -dot(p, d);\n"                                                       \
+    "    const float3 q = p + d * middle;\n"                                                       \
+    "    const float square = radius * radius - dot(q, q);\n"                                      \
+    "    const float half_chord = sqrt(fmax(square, 0.0f));\n"                                     \
+    "    if (square < 0.0f) return INFINITY;\n"                                                    \
+    "    return middle - half_chord > nearest ? middle - half_chord :\n"                           \
+    "           middle + half_chord > nearest ? middle + half_chord : INFINITY;\n"                 \
+    "}\n"                                                                                          \
+    "float shape_distance(float3 p, float3 d, float nearest, const float *a)\n"                    \
+    "{\n"                                                                                          \
+    "    const float3 across = (float3)(a[1], 0.0f, 0.0f);\n"                                      \
+    "    return fmin(one(p - across, d, nearest, a[0]), one(p + across, d, nearest, a[0]));\n"     \
+    "}\n"                                                                                          \
+    "float3 shape_normal(float3 p, const float *a)\n"                                              \
+    "{\n"                                                                                          \
+    "    return p - (float3)(copysign(a[1], p.x), 0.0f, 0.0f);\n"                                  \
     "}\n"
 
 #endif
