@@ -21,6 +21,9 @@
 #else
 #define HAS_MESHES 0
 #endif
+#ifdef WITH_USER_SHAPES /* only where a scene has some, in OpenCL C */
+#include "user_object.h"
+#endif
 
 /* Turns a vector of the launch's frame into the object's own. */
 FUNCTION struct vector3 into_object(GLOBAL const struct object_record *object, struct vector3 v)
@@ -116,6 +119,10 @@ FUNCTION int is_solid(GLOBAL const struct object_record *object)
  * cuts leave it so. */
 FUNCTION int is_convex(GLOBAL const struct object_record *object)
 {
+#ifdef WITH_USER_SHAPES
+    if (object->shape == SHAPE_USER)
+        return 0;
+#endif
     return object->shape != SHAPE_TORUS && object->shape != SHAPE_OPEN_CYLINDER;
 }
 
@@ -221,6 +228,10 @@ FUNCTION real object_distance(GLOBAL const struct object_record *object, struct 
     if (object->shape == SHAPE_MESH)
         return approach + mesh_object_distance(object, start, step, minimum - approach, is_near);
 #endif
+#ifdef WITH_USER_SHAPES
+    if (object->shape == SHAPE_USER)
+        return approach + user_object_distance(object, start, step, minimum - approach, is_near);
+#endif
     const struct spans inside = object_spans(object, start, step);
     return smaller(first_end_beyond(inside.first, approach, minimum),
                    first_end_beyond(inside.second, approach, minimum));
@@ -267,6 +278,20 @@ FUNCTION struct vector3 normal_of_mesh(GLOBAL const struct object_record *object
 }
 #endif
 
+#ifdef WITH_USER_SHAPES
+/* In the object's own frame. */
+FUNCTION struct vector3 normal_of_user_shape(GLOBAL const struct object_record *object,
+                                             struct vector3 point, struct vector3 direction,
+                                             real distance)
+{
+    const struct vector3 relative = from_centre(object, point);
+    const real approach = -dot3(relative, direction);
+    const struct vector3 start = into_object(object, along3(relative, direction, approach));
+    const struct vector3 step = into_object(object, direction);
+    return user_object_normal(object, along3(start, step, distance - approach), step);
+}
+#endif
+
 /* Outward unit normal where the ray meets the object at that distance, which object_distance gave
  * for the same ray. */
 FUNCTION struct vector3 object_normal(GLOBAL const struct object_record *object,
@@ -275,6 +300,10 @@ FUNCTION struct vector3 object_normal(GLOBAL const struct object_record *object,
 #if HAS_MESHES
     if (object->shape == SHAPE_MESH)
         return out_of_object(object, normal_of_mesh(object, point, direction, distance));
+#endif
+#ifdef WITH_USER_SHAPES
+    if (object->shape == SHAPE_USER)
+        return out_of_object(object, normal_of_user_shape(object, point, direction, distance));
 #endif
     if (!is_plain(object))
         return out_of_object(object, normal_with_cuts(object, point, direction, distance));

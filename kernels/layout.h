@@ -18,7 +18,8 @@ enum shape_kind {
     SHAPE_TORUS = 9,
     SHAPE_ENDED_CYLINDER = 10, /* solid: each end is flat or a part of a sphere */
     SHAPE_OPEN_CYLINDER = 11,  /* thin wall: at least one end is open */
-    SHAPE_MESH = 12
+    SHAPE_MESH = 12,
+    SHAPE_USER = 13 /* code of a user's, in programs built for it */
 };
 
 /* What a random number is for; part of its key. */
@@ -105,7 +106,8 @@ struct object_record {
     float slant_offset;    /* m: of that face from the centre */
     float bounding_radius; /* m, about the centre */
     struct end_record ends[ENDS];
-    RECORD_WORD mesh_words; /* mesh: where its mesh_record is, in 4-byte words from this record */
+    RECORD_WORD mesh_words; /* mesh: where its mesh_record is, in 4-byte words from this record;
+                               user's shape: likewise, its user_record */
     RECORD_INT cuts;
     struct cut_record cut[OBJECT_CUTS];
     struct surface_record surface;

@@ -9,19 +9,26 @@
 struct check_options {
     const char *scene;
     struct text_list overrides;
+    bool allows_user_shapes;
 };
 
 static const struct argument arguments[] = {
     {"--set", NULL, "KEY.PATH=VALUE", "replaces or adds a key of the scene; may be repeated",
      ARGUMENT_TEXTS, false, offsetof(struct check_options, overrides)},
+    {"--allow-user-shapes", NULL, NULL, "tries code of shapes in the scene; only if you trust it",
+     ARGUMENT_FLAG, false, offsetof(struct check_options, allows_user_shapes)},
 };
 
 static sonject_status describe(sonject_context *context, const struct check_options *options,
                                char **text)
 {
     sonject_scene *scene = NULL;
-    sonject_status status = sonject_scene_read(context, options->scene, options->overrides.texts,
-                                               options->overrides.count, &scene);
+    sonject_scene_read_params params;
+    sonject_scene_read_params_init(&params);
+    params.allows_user_shapes = options->allows_user_shapes;
+    sonject_status status =
+        sonject_scene_read_with(context, options->scene, options->overrides.texts,
+                                options->overrides.count, &params, &scene);
     if (status == SONJECT_OK)
         status = sonject_check(context, scene, text);
     sonject_scene_release(&scene);

@@ -17,6 +17,7 @@ struct run_options {
     const char *device;
     struct whole_argument seed;
     struct text_list overrides;
+    bool allows_user_shapes;
     bool is_verbose;
     bool is_quiet;
 };
@@ -30,6 +31,8 @@ static const struct argument arguments[] = {
      ARGUMENT_TEXT, false, offsetof(struct run_options, device)},
     {"--set", NULL, "KEY.PATH=VALUE", "replaces or adds a key of the scene; may be repeated",
      ARGUMENT_TEXTS, false, offsetof(struct run_options, overrides)},
+    {"--allow-user-shapes", NULL, NULL, "runs code of shapes in the scene; only if you trust it",
+     ARGUMENT_FLAG, false, offsetof(struct run_options, allows_user_shapes)},
     {"--verbose", NULL, NULL, "also tells the device, what was built for it, the noise floor, ...",
      ARGUMENT_FLAG, false, offsetof(struct run_options, is_verbose)},
     {"--quiet", NULL, NULL, "no progress bar, no news; only what is wrong", ARGUMENT_FLAG, false,
@@ -45,7 +48,10 @@ static sonject_status read_scene(sonject_context *context, const struct run_opti
         memcpy(overrides, options->overrides.texts, count * sizeof(*overrides));
     if (options->seed.is_given)
         overrides[count++] = seed;
-    return sonject_scene_read(context, options->scene, overrides, count, scene);
+    sonject_scene_read_params params;
+    sonject_scene_read_params_init(&params);
+    params.allows_user_shapes = options->allows_user_shapes;
+    return sonject_scene_read_with(context, options->scene, overrides, count, &params, scene);
 }
 
 static sonject_status inject(sonject_context *context, const struct run_options *options,

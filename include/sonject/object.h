@@ -29,7 +29,8 @@ typedef enum sonject_shape {
     SONJECT_SHAPE_TORUS = 10, /* diameter x height, lying flat when pose is level; its height is
                                  the thickness of the ring */
     SONJECT_SHAPE_PARTS = 11, /* the union of parts, see sonject_scene_add_part; no sizes */
-    SONJECT_SHAPE_MESH = 12   /* triangles, see sonject_scene_add_mesh; no sizes, no cuts */
+    SONJECT_SHAPE_MESH = 12,  /* triangles, see sonject_scene_add_mesh; no sizes, no cuts */
+    SONJECT_SHAPE_USER = 13   /* code, see sonject_scene_add_user_shape; no sizes, no cuts */
 } sonject_shape;
 
 /* An end of a cylinder. With an open end the cylinder is a tube: its wall is thin and reflects on
@@ -100,6 +101,8 @@ typedef struct sonject_object_params {
     uint32_t cut_count;      /* of cuts that count */
     uint32_t mesh;           /* number of a mesh of the scene */
     sonject_cut cuts[SONJECT_CUTS_CAPACITY];
+    uint32_t user_shape; /* number of a user's shape of the scene */
+    uint32_t reserved;
 } sonject_object_params;
 
 /* How the numbers of a mesh file are meant. */

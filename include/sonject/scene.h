@@ -14,6 +14,7 @@
 #include <sonject/seabed.h>
 #include <sonject/sonar.h>
 #include <sonject/surface.h>
+#include <sonject/user_shape.h>
 
 SONJECT_BEGIN_DECLARATIONS
 
@@ -49,6 +50,22 @@ SONJECT_API sonject_status sonject_scene_create(sonject_context *context, sonjec
 SONJECT_API sonject_status sonject_scene_read(sonject_context *context, const char *path,
                                               const char *const *overrides, size_t count,
                                               sonject_scene **scene);
+
+/* What a scene file may do. */
+typedef struct sonject_scene_read_params {
+    uint32_t struct_size;
+    uint32_t allows_user_shapes; /* 1: take shapes that the file, or a target's file that it names,
+                                    describes by code; see sonject_user_shape_params. 0: refuse
+                                    them, for such a file is a program */
+} sonject_scene_read_params;
+
+SONJECT_API void sonject_scene_read_params_init(sonject_scene_read_params *params);
+
+/* sonject_scene_read with choices; that one refuses code. Errors: as there. */
+SONJECT_API sonject_status sonject_scene_read_with(sonject_context *context, const char *path,
+                                                   const char *const *overrides, size_t count,
+                                                   const sonject_scene_read_params *params,
+                                                   sonject_scene **scene);
 
 /* Releases the scene and sets *scene to NULL; NULL allowed. */
 SONJECT_API void sonject_scene_release(sonject_scene **scene);
@@ -113,6 +130,16 @@ SONJECT_API sonject_status sonject_scene_add_object(sonject_scene *scene,
 SONJECT_API sonject_status sonject_scene_add_mesh(sonject_scene *scene, const char *path,
                                                   const sonject_mesh_params *params,
                                                   uint32_t *mesh);
+
+/* Takes a shape that the caller wrote in OpenCL C, for objects of the shape SONJECT_SHAPE_USER, any
+ * number of which may show it. Code and name are copied; the call itself is the consent to run the
+ * code. *user_shape gets its number, counted from 0. Several shapes may share one code with
+ * different parameters: it is compiled once. Up to 1250 shapes and 64 different codes a scene. What
+ * the compiler finds wrong is told ("name:line: what") when the scene is used, INPUT then. Errors:
+ * ARGUMENT, INPUT (what is wrong and where), MEMORY. */
+SONJECT_API sonject_status sonject_scene_add_user_shape(sonject_scene *scene,
+                                                        const sonject_user_shape_params *shape,
+                                                        uint32_t *user_shape);
 
 /* Adds a part to an object of the shape SONJECT_SHAPE_PARTS. Of `shape`, the shape itself, its
  * sizes, ends, cuts and material count; its name, class, position, pose and burial do not. Parts

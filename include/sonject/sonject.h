@@ -15,6 +15,7 @@
 #include <sonject/sonar.h>
 #include <sonject/status.h>
 #include <sonject/surface.h>
+#include <sonject/user_shape.h>
 #include <sonject/version.h>
 
 #endif

@@ -11,6 +11,7 @@
 #include "api/swath.h"
 #include "base/memory.h"
 #include "scene/placement.h"
+#include "user/shape_check.h"
 
 #define DEGREES_PER_RADIAN 57.29577951308232
 #define MAP_ROWS           20
@@ -161,6 +162,29 @@ static void draw_plan(struct text *text, const struct patch_view *view,
         text_add(text, "  |%s|\n", plan[view->is_mirrored ? MAP_ROWS - 1 - row : row]);
 }
 
+/* Only scenes with users' shapes need a device to be checked. */
+static sonject_status try_user_shapes(struct text *text, sonject_context *context,
+                                      const struct user_shapes *shapes)
+{
+    struct device *device = NULL;
+    sonject_status status = SONJECT_OK;
+    if (shapes->count > 0)
+        status = context_device(context, &device);
+    for (uint32_t i = 0; status == SONJECT_OK && i < shapes->count; i++) {
+        struct shape_check check;
+        status = shape_check_run(&context->report, device, shapes, i, &check);
+        if (status == SONJECT_OK)
+            text_add(text,
+                     "user shape %u (%s): %zu of %d rays meet it, %zu of %zu that leave it meet it "
+                     "again at once; normals at %zu hits are off by %.2g deg in the median, %.2g "
+                     "deg at most\n",
+                     (unsigned)(i + 1), shapes->snippets[shapes->shapes[i].snippet].name,
+                     check.hits, SHAPE_CHECK_RAYS, check.acne, check.restarts, check.compared,
+                     check.median_deg, check.largest_deg);
+    }
+    return status;
+}
+
 sonject_status sonject_check(sonject_context *context, const sonject_scene *handle, char **out)
 {
     if (!context || !out)
@@ -184,13 +208,14 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
         struct text text = {NULL, 0, 0, false};
         describe_patch(&text, scene, &swath, &view);
         describe_objects(&text, scene, &view, &placements);
+        status = try_user_shapes(&text, context, &scene->user_shapes);
         draw_plan(&text, &view, &placements);
-        if (text.failed) {
-            free(text.characters);
+        if (text.failed && status == SONJECT_OK)
             status = report_out_of_memory(report, "the description");
-        } else {
+        if (status == SONJECT_OK)
             *out = text.characters;
-        }
+        else
+            free(text.characters);
     }
     placements_clear(&placements);
     water_clear(&water);

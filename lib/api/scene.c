@@ -45,23 +45,46 @@ void sonject_scene_release(sonject_scene **scene)
     *scene = NULL;
 }
 
+void sonject_scene_read_params_init(sonject_scene_read_params *params)
+{
+    memset(params, 0, sizeof *params);
+    params->struct_size = sizeof *params;
+}
+
 sonject_status sonject_scene_read(sonject_context *context, const char *path,
                                   const char *const *overrides, size_t count, sonject_scene **scene)
+{
+    sonject_scene_read_params params;
+    sonject_scene_read_params_init(&params);
+    return sonject_scene_read_with(context, path, overrides, count, &params, scene);
+}
+
+sonject_status sonject_scene_read_with(sonject_context *context, const char *path,
+                                       const char *const *overrides, size_t count,
+                                       const sonject_scene_read_params *params,
+                                       sonject_scene **scene)
 {
     if (!context || !scene)
         return SONJECT_ERROR_ARGUMENT;
     *scene = NULL;
     context_begin_call(context);
+    sonject_scene_read_params taken;
+    sonject_scene_read_params_init(&taken);
+    sonject_status status = params_take(&context->report, &taken, sizeof taken, params,
+                                        sizeof taken, "scene read parameters");
+    if (status != SONJECT_OK)
+        return status;
     if (!path || (count > 0 && !overrides))
         return null_argument(&context->report, "path and overrides");
     for (size_t i = 0; i < count; i++)
         if (!overrides[i])
             return null_argument(&context->report, "an override");
     sonject_scene *made;
-    sonject_status status = sonject_scene_create(context, &made);
+    status = sonject_scene_create(context, &made);
     if (status != SONJECT_OK)
         return status;
-    status = scene_file_read(&context->report, path, overrides, count, &made->scene);
+    status = scene_file_read_with(&context->report, path, overrides, count,
+                                  taken.allows_user_shapes != 0, &made->scene);
     if (status == SONJECT_OK)
         *scene = made;
     else
@@ -242,9 +265,34 @@ sonject_status sonject_scene_add_mesh(sonject_scene *scene, const char *path,
     return status;
 }
 
-/* Whether a shape's mesh is one of the scene. */
-static sonject_status check_mesh(const sonject_scene *scene, const sonject_object_params *shape)
+sonject_status sonject_scene_add_user_shape(sonject_scene *scene,
+                                            const sonject_user_shape_params *shape,
+                                            uint32_t *user_shape)
 {
+    if (!scene)
+        return SONJECT_ERROR_ARGUMENT;
+    sonject_user_shape_params taken;
+    sonject_user_shape_params_init(&taken);
+    sonject_status status =
+        params_take(scene->report, &taken, sizeof taken, shape, sizeof taken, "user shape");
+    if (status == SONJECT_OK && (!taken.name || !taken.code))
+        status = null_argument(scene->report, "name and code of a user shape");
+    if (status == SONJECT_OK)
+        status = check_user_shape(&taken, scene->report, NULL);
+    if (status == SONJECT_OK)
+        status = user_shapes_append(&scene->scene.user_shapes, scene->report, &taken);
+    if (status == SONJECT_OK && user_shape)
+        *user_shape = scene->scene.user_shapes.count - 1;
+    return status;
+}
+
+/* Whether a shape's mesh, or its code, is one of the scene. */
+static sonject_status check_number(const sonject_scene *scene, const sonject_object_params *shape)
+{
+    if (shape->shape == SONJECT_SHAPE_USER && shape->user_shape >= scene->scene.user_shapes.count)
+        return report_failure(scene->report, SONJECT_ERROR_ARGUMENT,
+                              "there is no user shape %lu in the scene",
+                              (unsigned long)shape->user_shape);
     if (shape->shape == SONJECT_SHAPE_MESH && shape->mesh >= scene->scene.mesh_count)
         return report_failure(scene->report, SONJECT_ERROR_ARGUMENT,
                               "there is no mesh %lu in the scene", (unsigned long)shape->mesh);
@@ -263,7 +311,7 @@ sonject_status sonject_scene_add_object(sonject_scene *scene, const sonject_obje
     if (status == SONJECT_OK)
         status = check_object(&taken, scene->report, NULL);
     if (status == SONJECT_OK)
-        status = check_mesh(scene, &taken);
+        status = check_number(scene, &taken);
     if (status == SONJECT_OK)
         status = scene_append_object(&scene->scene, scene->report, &taken);
     if (status == SONJECT_OK && index)
@@ -300,7 +348,7 @@ sonject_status sonject_scene_add_part(sonject_scene *scene, uint32_t object,
     if (status == SONJECT_OK)
         status = check_object(&taken.shape, scene->report, NULL);
     if (status == SONJECT_OK)
-        status = check_mesh(scene, &taken.shape);
+        status = check_number(scene, &taken.shape);
     if (status == SONJECT_OK)
         status = check_part(&place, scene->report, NULL);
     if (status != SONJECT_OK)

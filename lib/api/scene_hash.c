@@ -104,6 +104,7 @@ static void add_object(struct hash *hash, const sonject_object_params *object)
     ADD(hash, object->nose_end_depth_m);
     ADD(hash, object->tail_end_depth_m);
     ADD(hash, object->mesh);
+    ADD(hash, object->user_shape);
     ADD(hash, object->cut_count);
     for (uint32_t i = 0; i < object->cut_count && i < SONJECT_CUTS_CAPACITY; i++) {
         ADD(hash, object->cuts[i].azimuth_rad);
@@ -119,6 +120,20 @@ static void add_meshes(struct hash *hash, const struct scene *scene)
         const struct mesh *mesh = &scene->meshes[i];
         hash_add(hash, mesh->vertices, 3 * mesh->vertex_count * sizeof *mesh->vertices);
         hash_add(hash, mesh->corners, 3 * mesh->triangle_count * sizeof *mesh->corners);
+    }
+}
+
+static void add_user_shapes(struct hash *hash, const struct user_shapes *shapes)
+{
+    for (uint32_t i = 0; i < shapes->count; i++) {
+        const struct user_shape *shape = &shapes->shapes[i];
+        hash_add_text(hash, shapes->snippets[shape->snippet].code);
+        ADD(hash, shape->is_open);
+        ADD(hash, shape->bounding_radius_m);
+        ADD(hash, shape->half_length_m);
+        ADD(hash, shape->half_width_m);
+        ADD(hash, shape->half_height_m);
+        ADD(hash, shape->parameters);
     }
 }
 
@@ -150,6 +165,7 @@ sonject_status scene_hash(struct report *report, const struct scene *scene,
     for (uint32_t i = 0; i < scene->object_count; i++)
         add_object(hash, &scene->objects[i]);
     add_meshes(hash, scene);
+    add_user_shapes(hash, &scene->user_shapes);
     for (uint32_t i = 0; i < scene->part_count; i++) {
         const struct scene_part *part = &scene->parts[i];
         ADD(hash, part->object);

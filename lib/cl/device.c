@@ -234,6 +234,9 @@ void device_close(struct device **device)
     for (int i = 0; i < 2 * PROGRAM_COUNT; i++)
         if ((*device)->programs[i / 2][i % 2])
             clReleaseProgram((*device)->programs[i / 2][i % 2]);
+    for (size_t i = 0; i < USER_PROGRAMS_KEPT; i++)
+        if ((*device)->user_programs[i].program)
+            clReleaseProgram((*device)->user_programs[i].program);
     if ((*device)->queue)
         clReleaseCommandQueue((*device)->queue);
     if ((*device)->context)

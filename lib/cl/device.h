@@ -11,6 +11,7 @@
 
 #include <sonject/context.h>
 
+#include "base/hash.h"
 #include "base/report.h"
 
 enum device_program {
@@ -18,7 +19,15 @@ enum device_program {
     PROGRAM_TRACE_SMOOTH,
     PROGRAM_TRACE_CHAINS,
     PROGRAM_IMAGE_FORMATION,
+    PROGRAM_PROBE_USER_SHAPE, /* only with code of users */
     PROGRAM_COUNT
+};
+
+/* Programs that hold code of users: the latest ones are kept. */
+#define USER_PROGRAMS_KEPT 16
+struct user_program {
+    cl_program program; /* NULL: none */
+    char key[HASH_TEXT_CAPACITY];
 };
 
 struct device {
@@ -26,6 +35,8 @@ struct device {
     cl_context context;
     cl_command_queue queue;
     cl_program programs[PROGRAM_COUNT][2]; /* without, with meshes; NULL until first used */
+    struct user_program user_programs[USER_PROGRAMS_KEPT];
+    size_t user_program_next; /* the one that gives way */
     bool is_cpu;
     uint32_t width; /* lanes that the kernels are compiled for */
     uint32_t compute_units;

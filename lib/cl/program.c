@@ -7,7 +7,6 @@
 #include <sonject/version.h>
 
 #include "base/clock.h"
-#include "base/hash.h"
 #include "base/memory.h"
 #include "cl/cache.h"
 #include "cl/sources.h"
@@ -21,48 +20,61 @@ static bool divides_correctly(const struct device *device)
 
 /* No fast-math of any kind; correctly rounded division where the compiler has to be told. A CPU's
  * work-items own their tallies; a GPU's share them. */
-static void write_options(const struct device *device, bool has_meshes, char *options,
-                          size_t capacity)
+void program_options(const struct device *device, bool has_meshes, const char *more,
+                     char options[PROGRAM_OPTIONS_CAPACITY])
 {
-    snprintf(options, capacity, "-cl-std=CL1.2 -DWIDTH=%u%s%s%s", (unsigned)device->width,
-             has_meshes ? " -DWITH_MESHES" : "", device->is_cpu ? "" : " -DTALLY_IS_SHARED",
-             divides_correctly(device) ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
+    snprintf(options, PROGRAM_OPTIONS_CAPACITY, "-cl-std=CL1.2 -DWIDTH=%u%s%s%s%s",
+             (unsigned)device->width, has_meshes ? " -DWITH_MESHES" : "",
+             device->is_cpu ? "" : " -DTALLY_IS_SHARED",
+             divides_correctly(device) ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", more);
 }
 
-static bool key_of(const struct device *device, const struct embedded_source *source,
-                   const char *options, char key[HASH_TEXT_CAPACITY])
+sonject_status program_key(struct report *report, const struct device *device,
+                           const struct program_text *text, char key[HASH_TEXT_CAPACITY])
 {
     struct hash *hash = hash_begin();
     if (!hash)
-        return false;
+        return report_out_of_memory(report, "the program cache");
     hash_add_text(hash, sonject_version());
-    hash_add_text(hash, source->text);
-    hash_add_text(hash, options);
+    for (size_t i = 0; i < text->count; i++)
+        hash_add_text(hash, text->pieces[i]);
+    hash_add_text(hash, text->options);
     hash_add_text(hash, device->name);
     hash_add_text(hash, device->platform);
     hash_add_text(hash, device->driver);
     hash_end(hash, key);
-    return true;
+    return SONJECT_OK;
 }
 
-static sonject_status build_failure(struct report *report, struct device *device,
-                                    const struct embedded_source *source, cl_program program,
+static sonject_status explain(struct report *report, const struct device *device,
+                              const struct program_text *text, const char *whole, cl_int error)
+{
+    char log[512];
+    /* the first error says what is wrong, warnings before it do not */
+    const char *first = strstr(whole, "error:");
+    snprintf(log, sizeof log, "%s", first ? first : whole);
+    log[strcspn(log, "\n")] = '\0';
+    return report_failure(report, SONJECT_ERROR_DEVICE, "device '%s' cannot build %s: %s: %s",
+                          device->name, text->name, cl_error_name(error), log);
+}
+
+static sonject_status build_failure(struct report *report, const struct device *device,
+                                    const struct program_text *text, cl_program program,
                                     cl_int error)
 {
-    char log[512] = "";
     size_t bytes = 0;
     clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, 0, NULL, &bytes);
-    char *whole = allocate_array(bytes + 1, 1);
-    if (whole && clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, bytes, whole,
-                                       NULL) == CL_SUCCESS) {
-        /* the first error says what is wrong, warnings before it do not */
-        const char *first = strstr(whole, "error:");
-        snprintf(log, sizeof log, "%s", first ? first : whole);
-        log[strcspn(log, "\n")] = '\0';
-    }
-    free(whole);
-    return report_failure(report, SONJECT_ERROR_DEVICE, "device '%s' cannot build %s: %s: %s",
-                          device->name, source->name, cl_error_name(error), log);
+    char *log = allocate_array(bytes + 1, 1);
+    if (!log)
+        return report_out_of_memory(report, "the build log");
+    if (clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, bytes, log, NULL) !=
+        CL_SUCCESS)
+        log[0] = '\0';
+    const sonject_status status = text->explain && error == CL_BUILD_PROGRAM_FAILURE
+                                      ? text->explain(report, device, log, text->user)
+                                      : explain(report, device, text, log, error);
+    free(log);
+    return status;
 }
 
 /* The program from the cache, NULL if there is none that the device accepts. */
@@ -104,22 +116,37 @@ static void into_cache(struct device *device, const char *key, cl_program progra
 }
 
 static sonject_status build(struct report *report, struct device *device,
-                            const struct embedded_source *source, const char *options,
-                            cl_program *out)
+                            const struct program_text *text, cl_program *out)
 {
     cl_int error = CL_SUCCESS;
-    cl_program program =
-        clCreateProgramWithSource(device->context, 1, (const char *[]){source->text},
-                                  (const size_t[]){source->bytes}, &error);
+    cl_program program = clCreateProgramWithSource(device->context, (cl_uint)text->count,
+                                                   (const char **)text->pieces, NULL, &error);
     if (error != CL_SUCCESS)
         return device_failure(report, device, "clCreateProgramWithSource", error);
-    error = clBuildProgram(program, 1, &device->id, options, NULL, NULL);
+    error = clBuildProgram(program, 1, &device->id, text->options, NULL, NULL);
     if (error != CL_SUCCESS) {
-        const sonject_status status = build_failure(report, device, source, program, error);
+        const sonject_status status = build_failure(report, device, text, program, error);
         clReleaseProgram(program);
         return status;
     }
     *out = program;
+    return SONJECT_OK;
+}
+
+sonject_status program_make(struct report *report, struct device *device,
+                            const struct program_text *text, const char *key, cl_program *out)
+{
+    *out = from_cache(device, key, text->options);
+    if (*out) {
+        report_news(report, "%s taken from the cache", text->name);
+        return SONJECT_OK;
+    }
+    const double start = clock_seconds();
+    const sonject_status status = build(report, device, text, out);
+    if (status != SONJECT_OK)
+        return status;
+    report_news(report, "%s built in %.1f s", text->name, clock_seconds() - start);
+    into_cache(device, key, *out);
     return SONJECT_OK;
 }
 
@@ -128,26 +155,31 @@ sonject_status program_get(struct report *report, struct device *device, enum de
 {
     cl_program *program = &device->programs[number][has_meshes];
     if (!*program) {
-        const struct embedded_source *source = &embedded_sources[number];
-        char options[128];
+        const char *const pieces[] = {embedded_sources[number].text};
+        char options[PROGRAM_OPTIONS_CAPACITY];
         char key[HASH_TEXT_CAPACITY];
-        write_options(device, has_meshes, options, sizeof options);
-        if (!key_of(device, source, options, key))
-            return report_out_of_memory(report, "the program cache");
-        *program = from_cache(device, key, options);
-        if (*program) {
-            report_news(report, "%s taken from the cache", source->name);
-        } else {
-            const double start = clock_seconds();
-            const sonject_status status = build(report, device, source, options, program);
-            if (status != SONJECT_OK)
-                return status;
-            report_news(report, "%s built in %.1f s", source->name, clock_seconds() - start);
-            into_cache(device, key, *program);
-        }
+        program_options(device, has_meshes, "", options);
+        const struct program_text text = {
+            embedded_sources[number].name, pieces, 1, options, NULL, NULL};
+        sonject_status status = program_key(report, device, &text, key);
+        if (status == SONJECT_OK)
+            status = program_make(report, device, &text, key, program);
+        if (status != SONJECT_OK)
+            return status;
     }
     *out = *program;
     return SONJECT_OK;
+}
+
+sonject_status program_kernel(struct report *report, const struct device *device,
+                              cl_program program, const char *name, cl_kernel *kernel)
+{
+    cl_int error = CL_SUCCESS;
+    *kernel = clCreateKernel(program, name, &error);
+    if (error == CL_SUCCESS)
+        return SONJECT_OK;
+    *kernel = NULL;
+    return device_failure(report, device, "clCreateKernel", error);
 }
 
 sonject_status kernel_create(struct report *report, struct device *device,
@@ -157,13 +189,5 @@ sonject_status kernel_create(struct report *report, struct device *device,
     cl_program program;
     *kernel = NULL;
     const sonject_status status = program_get(report, device, number, has_meshes, &program);
-    if (status != SONJECT_OK)
-        return status;
-    cl_int error = CL_SUCCESS;
-    *kernel = clCreateKernel(program, name, &error);
-    if (error != CL_SUCCESS) {
-        *kernel = NULL;
-        return device_failure(report, device, "clCreateKernel", error);
-    }
-    return SONJECT_OK;
+    return status == SONJECT_OK ? program_kernel(report, device, program, name, kernel) : status;
 }

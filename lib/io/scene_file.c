@@ -8,9 +8,12 @@
 #include "io/scene_schema.h"
 
 static sonject_status fill_scene(struct tree *tree, const char *const *overrides, size_t count,
-                                 struct scene *scene)
+                                 bool allows_user_shapes, struct scene *scene)
 {
-    struct reader reader = {.report = tree->report, .tree = tree, .scene = scene};
+    struct reader reader = {.report = tree->report,
+                            .tree = tree,
+                            .scene = scene,
+                            .allows_user_shapes = allows_user_shapes};
     for (size_t i = 0; i < count; i++) {
         const sonject_status status = tree_override(tree, overrides[i]);
         if (status != SONJECT_OK)
@@ -24,6 +27,13 @@ static sonject_status fill_scene(struct tree *tree, const char *const *overrides
 
 sonject_status scene_file_read(struct report *report, const char *path,
                                const char *const *overrides, size_t count, struct scene *scene)
+{
+    return scene_file_read_with(report, path, overrides, count, false, scene);
+}
+
+sonject_status scene_file_read_with(struct report *report, const char *path,
+                                    const char *const *overrides, size_t count,
+                                    bool allows_user_shapes, struct scene *scene)
 {
     char excerpt[400];
     char *text;
@@ -40,7 +50,7 @@ sonject_status scene_file_read(struct report *report, const char *path,
     status = tree_parse(&tree, text, bytes);
     free(text);
     if (status == SONJECT_OK)
-        status = fill_scene(&tree, overrides, count, scene);
+        status = fill_scene(&tree, overrides, count, allows_user_shapes, scene);
     tree_clear(&tree);
     if (status != SONJECT_OK)
         scene_clear(scene);

@@ -13,6 +13,11 @@
 sonject_status scene_file_read(struct report *report, const char *path,
                                const char *const *overrides, size_t count, struct scene *scene);
 
+/* The same for a file that may describe shapes by code: scene_file_read refuses them. */
+sonject_status scene_file_read_with(struct report *report, const char *path,
+                                    const char *const *overrides, size_t count,
+                                    bool allows_user_shapes, struct scene *scene);
+
 struct scene_file_key {
     char path[64];       /* "objects[].heading" */
     const char *unit;    /* "deg, rad", "whole number", "word", ...; static */

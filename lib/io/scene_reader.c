@@ -137,14 +137,18 @@ static sonject_status read_word(struct reader *reader, const struct field *field
     const char *text = read_text(reader, node);
     if (!text)
         return SONJECT_ERROR_INPUT;
-    for (uint32_t i = 0; i < FIELD_WORDS_MAX && field->words[i]; i++) {
+    const char *words[FIELD_WORDS_MAX];
+    for (uint32_t i = 0; i < FIELD_WORDS_MAX; i++) {
+        if (!field->words[i])
+            continue;
         if (strcmp(field->words[i], text) == 0) {
             *value = i;
             return SONJECT_OK;
         }
+        words[list.count] = field->words[i];
         list_word(&list, field->words[i]);
     }
-    const char *near = nearest_word(text, field->words, list.count);
+    const char *near = nearest_word(text, words, list.count);
     for (size_t i = 0; field->section && i < field->section->count; i++) {
         char key[32];
         snprintf(key, sizeof key, "{%s: ...}", field->section->fields[i].key);

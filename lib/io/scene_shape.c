@@ -88,16 +88,17 @@ enum presence {
     POSSIBLE
 };
 
+/* By the sound: no shape's name begins with a u as in "under". */
 static const char *article_of(const char *name)
 {
-    return strchr("aeiou", *name) ? "an" : "a";
+    return strchr("aeio", *name) ? "an" : "a";
 }
 
 sonject_status check_shape_keys(struct reader *reader, const struct tree_node *node, uint32_t shape)
 {
     static const struct {
         const char *key;
-        unsigned char presence[SONJECT_SHAPE_TORUS + 1]; /* enum presence, by shape */
+        unsigned char presence[SONJECT_SHAPE_USER + 1]; /* enum presence, by shape */
     } sizes[] = {
         {"length",
          {[SONJECT_SHAPE_PLANE] = NEEDED,
@@ -126,6 +127,7 @@ sonject_status check_shape_keys(struct reader *reader, const struct tree_node *n
           [SONJECT_SHAPE_CONE] = NEEDED,
           [SONJECT_SHAPE_TRUNCATED_CONE] = NEEDED,
           [SONJECT_SHAPE_TORUS] = NEEDED}},
+        {"user", {[SONJECT_SHAPE_USER] = NEEDED}},
         {"top_diameter", {[SONJECT_SHAPE_TRUNCATED_CONE] = NEEDED}},
         {"front_height", {[SONJECT_SHAPE_WEDGE] = POSSIBLE}},
         {"nose_end", {[SONJECT_SHAPE_CYLINDER] = POSSIBLE}},

@@ -5,6 +5,7 @@
 #define SONJECT_IO_SCENE_SHAPE_H
 
 #include "io/scene_fields.h"
+#include "io/scene_user.h"
 
 extern const struct section nose_end_section;
 extern const struct section tail_end_section;
@@ -24,7 +25,10 @@ sonject_status read_cuts(struct reader *reader, const struct tree_node *node, vo
                                            [SONJECT_SHAPE_WEDGE] = "wedge",                        \
                                            [SONJECT_SHAPE_CONE] = "cone",                          \
                                            [SONJECT_SHAPE_TRUNCATED_CONE] = "truncated_cone",      \
-                                           [SONJECT_SHAPE_TORUS] = "torus"}},                      \
+                                           [SONJECT_SHAPE_TORUS] = "torus",                        \
+                                           [SONJECT_SHAPE_USER] = "user"}},                        \
+        {"user", "code that is the shape, where that is user", .kind = FIELD_SPECIAL,              \
+         .section = &user_section, .read = read_user_shape},                                       \
         {"length",                                                                                 \
          "overall along the nose, of plane, cylinder, capsule, ellipsoid, box and wedge",          \
          QUANTITY(sonject_object_params, length_m, QUANTITY_LENGTH)},                              \

@@ -49,7 +49,10 @@ static const struct section target_section = {target_fields, COUNT(target_fields
 
 static struct reader reader_of_target(const struct reader *reader, const struct target_text *target)
 {
-    return (struct reader){.report = reader->report, .tree = &target->tree, .scene = reader->scene};
+    return (struct reader){.report = reader->report,
+                           .tree = &target->tree,
+                           .scene = reader->scene,
+                           .allows_user_shapes = reader->allows_user_shapes};
 }
 
 sonject_status read_target(struct reader *reader, const struct tree_node *node,

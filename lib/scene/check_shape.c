@@ -104,9 +104,14 @@ static void check_needed(struct check *check, const sonject_object_params *objec
 
 void check_shape(struct check *check, const sonject_object_params *object)
 {
-    check_choice(check, "shape", object->shape, SONJECT_SHAPE_MESH + 1);
+    check_choice(check, "shape", object->shape, SONJECT_SHAPE_USER + 1);
     if (check->status != SONJECT_OK)
         return;
+    if (object->shape == SONJECT_SHAPE_USER) {
+        if (object->cut_count > 0)
+            check_failure(check, "cuts", "are not made in user shapes; let the code cut");
+        return;
+    }
     if (object->shape == SONJECT_SHAPE_PARTS || object->shape == SONJECT_SHAPE_MESH) {
         if (object->cut_count > 0)
             check_failure(check, "cuts", "are not made in %s",

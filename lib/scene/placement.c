@@ -81,6 +81,8 @@ static void take_shape(struct placement *part, const struct scene *scene, uint32
     shape_size_init(&part->size, shape);
     if (shape->shape == SONJECT_SHAPE_MESH)
         shape_size_of_mesh(&part->size, &scene->meshes[shape->mesh]);
+    if (shape->shape == SONJECT_SHAPE_USER)
+        shape_size_of_user_shape(&part->size, &scene->user_shapes.shapes[shape->user_shape]);
     part->bounding_radius_m = part->size.bounding_radius_m;
 }
 

@@ -28,6 +28,7 @@ void scene_clear(struct scene *scene)
     for (uint32_t i = 0; i < scene->mesh_count; i++)
         mesh_clear(&scene->meshes[i]);
     free(scene->meshes);
+    user_shapes_clear(&scene->user_shapes);
     free(scene->water_layers);
     scene_init(scene);
 }
@@ -125,6 +126,8 @@ const char *shape_name(uint32_t shape)
         return "parts";
     case SONJECT_SHAPE_MESH:
         return "mesh";
+    case SONJECT_SHAPE_USER:
+        return "user";
     default:
         return NULL;
     }

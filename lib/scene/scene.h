@@ -11,6 +11,7 @@
 #include "base/report.h"
 #include "medium/water_layer.h"
 #include "mesh/mesh.h"
+#include "scene/user_shapes.h"
 
 #define SCENE_OBJECTS_MAX      250 /* ids must fit the 8-bit label image */
 #define SCENE_PARTS_MAX        1000
@@ -45,6 +46,7 @@ struct scene {
     uint32_t object_count;
     struct mesh *meshes; /* owned */
     uint32_t mesh_count;
+    struct user_shapes user_shapes;
     struct scene_part *parts; /* owned; in no order */
     uint32_t part_count;
 };

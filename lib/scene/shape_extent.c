@@ -44,6 +44,13 @@ static double mesh_extent(const struct mesh *mesh, const double v[3])
     return extent;
 }
 
+static double user_shape_extent(const struct user_shape *shape, const double v[3])
+{
+    const double box = shape->half_length_m * fabs(v[0]) + shape->half_width_m * fabs(v[1]) +
+                       shape->half_height_m * fabs(v[2]);
+    return fmin(box, shape->bounding_radius_m * sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]));
+}
+
 static double uncut_extent(const struct shape_size *size, uint32_t shape, const double v[3])
 {
     const double length = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -238,6 +245,8 @@ double shape_extent(const struct shape_size *size, uint32_t shape, const double 
 {
     if (shape == SONJECT_SHAPE_MESH)
         return mesh_extent(size->mesh, v);
+    if (shape == SONJECT_SHAPE_USER)
+        return user_shape_extent(size->user_shape, v);
     if (size->cut_count == 0)
         return uncut_extent(size, shape, v);
     if (shape == SONJECT_SHAPE_TORUS)

@@ -60,6 +60,15 @@ void shape_size_of_mesh(struct shape_size *size, const struct mesh *mesh)
     size->bounding_radius_m = (1.0 + 1e-6) * mesh->radius_m;
 }
 
+void shape_size_of_user_shape(struct shape_size *size, const struct user_shape *shape)
+{
+    size->user_shape = shape;
+    size->half_length_m = shape->half_length_m;
+    size->half_width_m = shape->half_width_m;
+    size->half_height_m = shape->half_height_m;
+    size->bounding_radius_m = (1.0 + 1e-6) * shape->bounding_radius_m;
+}
+
 void shape_size_init(struct shape_size *size, const sonject_object_params *object)
 {
     memset(size, 0, sizeof *size);
@@ -110,6 +119,8 @@ double shape_radius_about_nose(const struct shape_size *size, uint32_t shape)
     case SONJECT_SHAPE_WEDGE:
     case SONJECT_SHAPE_MESH:
         return hypot(size->half_width_m, size->half_height_m);
+    case SONJECT_SHAPE_USER:
+        return fmin(hypot(size->half_width_m, size->half_height_m), size->bounding_radius_m);
     case SONJECT_SHAPE_CONE:
     case SONJECT_SHAPE_TRUNCATED_CONE:
     case SONJECT_SHAPE_TORUS:

@@ -9,6 +9,7 @@
 #include <sonject/object.h>
 
 #include "mesh/mesh.h"
+#include "scene/user_shapes.h"
 
 /* Counted outwards along the axis. */
 struct end_size {
@@ -33,8 +34,9 @@ struct shape_size {
     struct end_size nose, tail;
     struct cut_plane cuts[SONJECT_CUTS_CAPACITY];
     uint32_t cut_count;
-    const struct mesh *mesh;  /* of a mesh; borrowed from the scene */
-    double bounding_radius_m; /* about the origin, of the uncut shape */
+    const struct mesh *mesh;             /* of a mesh; borrowed from the scene */
+    const struct user_shape *user_shape; /* likewise */
+    double bounding_radius_m;            /* about the origin, of the uncut shape */
 };
 
 /* A mesh's sizes come from shape_size_of_mesh. */
@@ -43,9 +45,13 @@ void shape_size_init(struct shape_size *size, const sonject_object_params *objec
 /* mesh is borrowed. */
 void shape_size_of_mesh(struct shape_size *size, const struct mesh *mesh);
 
+/* shape is borrowed. */
+void shape_size_of_user_shape(struct shape_size *size, const struct user_shape *shape);
+
 /* The largest p . v over the points p of what the cuts leave of a shape (its support function), v
  * of any length; -INFINITY where they leave nothing. Exact but for cut tubes, which it takes as
- * filled. */
+ * filled, and for user shapes, of which only a box and a sphere about them are known: the lesser of
+ * what these reach. */
 double shape_extent(const struct shape_size *size, uint32_t shape, const double v[3]);
 
 /* Whether the cuts leave something. */

@@ -6,10 +6,10 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
-#include "cl/program.h"
 #include "trace/object_buffer.h"
 #include "trace/patch_fan.h"
 #include "trace/target_spheres.h"
+#include "user/user_program.h"
 
 #define SEABED_SHARE    8.0f /* then all within about four widths of a target are followed */
 #define TALLY_BYTES_MAX ((size_t)1 << 30)
@@ -130,8 +130,8 @@ sonject_status chain_trace_begin(struct chain_trace *trace, struct tracer *trace
     if (status == SONJECT_OK)
         status = make_tallies(trace, tracer);
     if (status == SONJECT_OK)
-        status = kernel_create(tracer->report, tracer->device, PROGRAM_TRACE_CHAINS,
-                               tracer->scene->mesh_count > 0, "trace_chains", &trace->kernel);
+        status = scene_kernel_create(tracer->report, tracer->device, tracer->scene,
+                                     PROGRAM_TRACE_CHAINS, "trace_chains", &trace->kernel);
     if (status != SONJECT_OK)
         chain_trace_end(trace);
     return status;

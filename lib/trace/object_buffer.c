@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "user/user_program.h"
 
 #define WORD        4
 #define ALIGNED(n)  (((n) + 15) & ~(size_t)15) /* words: as wide as vectors are */
@@ -36,6 +37,30 @@ static void write_mesh(uint32_t *words, const struct mesh *mesh)
                 hierarchy->leaf_count * WORDS_OF(*hierarchy->leaves));
 }
 
+/* The records of users' shapes follow, one for each part that shows one. */
+static size_t user_words(const struct tracer *tracer)
+{
+    size_t words = 0;
+    for (uint32_t i = 0; i < tracer->part_count; i++)
+        if (tracer->placements[i].size.user_shape)
+            words += ALIGNED(WORDS_OF(struct user_record));
+    return words;
+}
+
+static void write_users(struct tracer *tracer, struct object_record *records, uint32_t *words,
+                        size_t at)
+{
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
+        const struct user_shape *shape = tracer->placements[i].size.user_shape;
+        if (!shape)
+            continue;
+        const struct user_record record = user_record_of(shape);
+        records[i].mesh_words = (uint32_t)(at - i * WORDS_OF(struct object_record));
+        memcpy(words + at, &record, sizeof record);
+        at += ALIGNED(WORDS_OF(record));
+    }
+}
+
 /* Where each mesh that some part shows begins, in words; 0: nobody shows it. Returns the words of
  * the whole buffer. */
 static size_t lay_out(const struct tracer *tracer, size_t begin[SCENE_MESHES_MAX])
@@ -56,7 +81,8 @@ sonject_status object_buffer_create(struct tracer *tracer, struct object_record 
                                     cl_mem *buffer)
 {
     size_t begin[SCENE_MESHES_MAX];
-    const size_t count = lay_out(tracer, begin);
+    const size_t meshes_end = lay_out(tracer, begin);
+    const size_t count = meshes_end + user_words(tracer);
     if (count > WORDS_MOST || count * WORD > tracer->device->allocation_limit)
         return report_failure(tracer->report, SONJECT_ERROR_INPUT,
                               "the meshes are too large for the device: use fewer triangles");
@@ -69,6 +95,7 @@ sonject_status object_buffer_create(struct tracer *tracer, struct object_record 
             records[i].mesh_words = (uint32_t)(begin[mesh - tracer->scene->meshes] -
                                                i * WORDS_OF(struct object_record));
     }
+    write_users(tracer, records, words, meshes_end);
     memcpy(words, records, tracer->part_count * sizeof *records);
     for (uint32_t i = 0; i < tracer->scene->mesh_count; i++)
         if (begin[i] != 0)

@@ -1,4 +1,5 @@
-/* The buffer that kernels find objects in: a record of each part, and behind them the meshes. */
+/* The buffer that kernels find objects in: a record of each part, behind them the meshes, and
+ * behind these what users' shapes are told. */
 #ifndef SONJECT_TRACE_OBJECT_BUFFER_H
 #define SONJECT_TRACE_OBJECT_BUFFER_H
 

@@ -11,6 +11,7 @@ static int32_t kind_of(const struct shape_size *size, uint32_t shape)
         [SONJECT_SHAPE_BOX] = SHAPE_BOX,           [SONJECT_SHAPE_WEDGE] = SHAPE_WEDGE,
         [SONJECT_SHAPE_CONE] = SHAPE_CONE,         [SONJECT_SHAPE_TRUNCATED_CONE] = SHAPE_CONE,
         [SONJECT_SHAPE_TORUS] = SHAPE_TORUS,       [SONJECT_SHAPE_MESH] = SHAPE_MESH,
+        [SONJECT_SHAPE_USER] = SHAPE_USER,
     };
     if (shape != SONJECT_SHAPE_CYLINDER)
         return kinds[shape];

@@ -16,6 +16,11 @@ static void overall_size(const struct placement *placement, double *half_length,
     *radius = shape_radius_about_nose(&uncut, placement->shape);
     if (placement->shape == SONJECT_SHAPE_SPHERE)
         *half_length = 0.0;
+    /* unless it is slender, a user's shape has its own sphere */
+    if (placement->shape == SONJECT_SHAPE_USER && *half_length <= 2.0 * *radius) {
+        *half_length = 0.0;
+        *radius = placement->bounding_radius_m;
+    }
 }
 
 static uint32_t spheres_for(double half_length, double radius, uint32_t objects)

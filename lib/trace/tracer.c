@@ -6,9 +6,9 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
-#include "cl/program.h"
 #include "trace/object_buffer.h"
 #include "trace/object_shape.h"
+#include "user/user_program.h"
 
 #define PI          3.14159265358979323846
 #define TALLY_BYTES ((size_t)64 << 20)
@@ -215,9 +215,8 @@ sonject_status trace_device_init(struct trace_device *device, struct tracer *tra
     const size_t fitting = TALLY_BYTES / line_bytes;
     memset(device, 0, sizeof *device);
     device->tally_strips = fitting < 1 ? 1 : fitting < strips ? fitting : strips;
-    sonject_status status =
-        kernel_create(report, tracer->device, program, tracer->scene->mesh_count > 0, kernel_name,
-                      &device->kernel);
+    sonject_status status = scene_kernel_create(report, tracer->device, tracer->scene, program,
+                                                kernel_name, &device->kernel);
     if (status == SONJECT_OK)
         status = object_buffer_create(tracer, records, &device->objects);
     if (status == SONJECT_OK)

@@ -309,9 +309,9 @@ static void test_choices(void **state)
         }
     }
     make_good(&all);
-    all.sphere.shape = SONJECT_SHAPE_MESH + 1;
+    all.sphere.shape = SONJECT_SHAPE_USER + 1;
     expect_refused(&all, "shape", "an unknown choice");
-    assert_null(shape_name(SONJECT_SHAPE_MESH + 1));
+    assert_null(shape_name(SONJECT_SHAPE_USER + 1));
     assert_string_equal(shape_name(SONJECT_SHAPE_CYLINDER), "cylinder");
 }
 

@@ -71,8 +71,8 @@ static const struct key_case {
     const char *value;
     enum type type;
     size_t offset; /* in struct scene; in the first object if the path starts with objects, in the
-                      first part if it goes on with parts, in the layers if it starts with
-                      medium.layers or .profile */
+                      first part if it goes on with parts, in the first user shape if it goes
+                      through user, in the layers if it starts with medium.layers or .profile */
     double number;
     const char *text;
     const char *other;
@@ -375,6 +375,45 @@ static const struct key_case {
      0.0625, NULL, A_PART(A_SPHERE ", material: {fluid: {density: 8, speed: 4}}")},
     {"objects[].parts[].material.fluid.density", small, "8", TYPE_DOUBLE,
      SIZED(material.density_ratio), 8.0, NULL, A_PART(A_SPHERE ", material: {fluid: {speed: 4}}")},
+#define BOULDER SOURCE_ROOT "/tools/targets/boulder_relief.cl"
+#define A_USER  "shape: user, user: {bounding_radius: 1"
+    {"objects[].user.bounding_radius", small, "90 cm", TYPE_DOUBLE,
+     offsetof(struct user_shape, bounding_radius_m), 0.9, NULL,
+     "objects[0]={" A_USER ", file: " BOULDER "}}"},
+    {"objects[].user.half_length", small, "30 cm", TYPE_DOUBLE,
+     offsetof(struct user_shape, half_length_m), 0.3, NULL,
+     "objects[0]={" A_USER ", file: " BOULDER "}}"},
+    {"objects[].user.half_width", small, "20 cm", TYPE_DOUBLE,
+     offsetof(struct user_shape, half_width_m), 0.2, NULL,
+     "objects[0]={" A_USER ", file: " BOULDER "}}"},
+    {"objects[].user.half_height", small, "10 cm", TYPE_DOUBLE,
+     offsetof(struct user_shape, half_height_m), 0.1, NULL,
+     "objects[0]={" A_USER ", file: " BOULDER "}}"},
+    {"objects[].user.open", small, "true", TYPE_BOOL, offsetof(struct user_shape, is_open), 1.0,
+     NULL, "objects[0]={" A_USER ", file: " BOULDER "}}"},
+    /* how code and numbers arrive: test_user_shapes.c */
+    {"objects[].user.parameters", small, "[1, 2]", TYPE_NOTHING, 0, 0.0, NULL,
+     "objects[0]={" A_USER ", file: " BOULDER "}}"},
+    {"objects[].user.file", small, BOULDER, TYPE_NOTHING, 0, 0.0, NULL, "objects[0]={" A_USER "}}"},
+    {"objects[].user.code", small, "float shape_distance(); float3 shape_normal();", TYPE_NOTHING,
+     0, 0.0, NULL, "objects[0]={" A_USER "}}"},
+    {"objects[].parts[].user.bounding_radius", small, "90 cm", TYPE_DOUBLE,
+     offsetof(struct user_shape, bounding_radius_m), 0.9, NULL,
+     A_PART(A_USER ", file: " BOULDER "}")},
+    {"objects[].parts[].user.half_length", small, "30 cm", TYPE_DOUBLE,
+     offsetof(struct user_shape, half_length_m), 0.3, NULL, A_PART(A_USER ", file: " BOULDER "}")},
+    {"objects[].parts[].user.half_width", small, "20 cm", TYPE_DOUBLE,
+     offsetof(struct user_shape, half_width_m), 0.2, NULL, A_PART(A_USER ", file: " BOULDER "}")},
+    {"objects[].parts[].user.half_height", small, "10 cm", TYPE_DOUBLE,
+     offsetof(struct user_shape, half_height_m), 0.1, NULL, A_PART(A_USER ", file: " BOULDER "}")},
+    {"objects[].parts[].user.open", small, "true", TYPE_BOOL, offsetof(struct user_shape, is_open),
+     1.0, NULL, A_PART(A_USER ", file: " BOULDER "}")},
+    /* how code and numbers arrive: test_user_shapes.c */
+    {"objects[].parts[].user.parameters", small, "[1, 2]", TYPE_NOTHING, 0, 0.0, NULL,
+     A_PART(A_USER ", file: " BOULDER "}")},
+    {"objects[].parts[].user.file", small, BOULDER, TYPE_NOTHING, 0, 0.0, NULL, A_PART(A_USER "}")},
+    {"objects[].parts[].user.code", small, "float shape_distance(); float3 shape_normal();",
+     TYPE_NOTHING, 0, 0.0, NULL, A_PART(A_USER "}")},
 };
 
 static double number_at(const void *structure, const struct key_case *key)
@@ -418,6 +457,8 @@ static void expect_arrived(const struct key_case *key, const void *structure)
 
 static const void *structure_of(const struct scene *scene, const char *path)
 {
+    if (strstr(path, ".user."))
+        return scene->user_shapes.shapes;
     if (strncmp(path, "objects[].parts", 15) == 0)
         return scene->parts;
     if (strncmp(path, "objects", 7) == 0)
@@ -449,7 +490,9 @@ static void expect_case(struct scene_folder *folder, const struct key_case *key)
     write_override(override, sizeof override, key);
     overrides[count++] = override;
     write_scene(folder, key->base, strlen(key->base));
-    if (read_scene(folder, overrides, count) != SONJECT_OK)
+    scene_clear(&folder->scene);
+    if (scene_file_read_with(&folder->report, folder->file, overrides, count, true,
+                             &folder->scene) != SONJECT_OK)
         fail_msg("%s: %s", override, folder->report.message);
     expect_arrived(key, structure_of(&folder->scene, key->path));
 }

@@ -117,6 +117,7 @@ static const struct member of_object[] = {
     OBJECT(tail_end),
     OBJECT(nose_end_depth_m),
     OBJECT(tail_end_depth_m),
+    OBJECT(user_shape),
     OBJECT(cut_count),
     OBJECT(cuts[0].azimuth_rad),
     OBJECT(cuts[0].elevation_rad),

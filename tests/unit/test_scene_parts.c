@@ -180,7 +180,7 @@ static void test_what_is_refused(void **state)
          ":5:50: objects[0].parts[0].length: a sphere has none; remove it"},
         {OBJECT "parts: [{shape: parts}]\n",
          ":5:21: objects[0].parts[0].shape: 'parts' is not one of plane, sphere, cylinder, "
-         "capsule, disc, ellipsoid, box, wedge, cone, truncated_cone, torus"},
+         "capsule, disc, ellipsoid, box, wedge, cone, truncated_cone, torus, user"},
         {OBJECT "parts: [{shape: sphere, diameter: 1, at: {up: 2e6}}]\n",
          ":5:51: objects[0].parts[0].at.up: must be -1e+06...1e+06 m, not 2e+06"},
         {OBJECT "parts: [{shape: sphere, diameter: 1, heading: inf}]\n",
@@ -195,7 +195,8 @@ static void test_what_is_refused(void **state)
         {OBJECT "parts: [{shape: sphere, diameter: 1, at: {left: 1}}]\n",
          ":5:47: objects[0].parts[0].at.left: unknown key; known here are along, across, up"},
         {OBJECT "parts: [{shape: sphere, diameter: 1, burial: 1}]\n",
-         ":5:42: objects[0].parts[0].burial: unknown key; known here are name, shape, length, "
+         ":5:42: objects[0].parts[0].burial: unknown key; known here are name, shape, user, "
+         "length, "
          "width, diameter, height, top_diameter, front_height, nose_end, tail_end, cuts, at, "
          "heading, pitch, roll, material, parts"},
     };
@@ -297,7 +298,8 @@ static void test_targets_that_are_wrong(void **state)
         {"sonject_target: 1\nwidth: 1\nparts: [{shape: sphere, diameter: 1}]\n",
          ":2:8: width: the parts have shapes of their own; remove it"},
         {"sonject_target: 1\ntarget: target.yaml\n",
-         ":2:1: target: unknown key; known here are sonject_target, name, class, shape, length, "
+         ":2:1: target: unknown key; known here are sonject_target, name, class, shape, user, "
+         "length, "
          "width, diameter, height, top_diameter, front_height, nose_end, tail_end, cuts, material, "
          "parts"},
         {"sonject_target: 1\nparts: &p [*p]\n",

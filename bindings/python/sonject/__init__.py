@@ -51,6 +51,7 @@ from .objects import (
     Sphere,
     Torus,
     TruncatedCone,
+    UserShape,
     Wedge,
 )
 from .parameters import (
@@ -128,6 +129,7 @@ __all__ = [
     "TransferKind",
     "TruncatedCone",
     "Uniform",
+    "UserShape",
     "Wedge",
     "absorption",
     "check",

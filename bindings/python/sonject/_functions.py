@@ -34,6 +34,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sonject_material_name": (c_char_p, [c_uint32]),
     "sonject_object_params_init": (None, [POINTER(s.sonject_object_params)]),
     "sonject_mesh_params_init": (None, [POINTER(s.sonject_mesh_params)]),
+    "sonject_user_shape_params_init": (None, [POINTER(s.sonject_user_shape_params)]),
+    "sonject_scene_read_params_init": (None, [POINTER(s.sonject_scene_read_params)]),
     "sonject_part_params_init": (None, [POINTER(s.sonject_part_params)]),
     "sonject_sonar_params_init": (None, [POINTER(s.sonject_sonar_params)]),
     "sonject_medium_params_init": (None, [POINTER(s.sonject_medium_params)]),
@@ -43,6 +45,17 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sonject_scene_read": (
         _status,
         [_context, c_char_p, POINTER(c_char_p), c_size_t, POINTER(_scene)],
+    ),
+    "sonject_scene_read_with": (
+        _status,
+        [
+            _context,
+            c_char_p,
+            POINTER(c_char_p),
+            c_size_t,
+            POINTER(s.sonject_scene_read_params),
+            POINTER(_scene),
+        ],
     ),
     "sonject_scene_release": (None, [POINTER(_scene)]),
     "sonject_scene_set_sonar": (_status, [_scene, POINTER(s.sonject_sonar_params)]),
@@ -72,6 +85,10 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sonject_scene_add_mesh": (
         _status,
         [_scene, c_char_p, POINTER(s.sonject_mesh_params), POINTER(c_uint32)],
+    ),
+    "sonject_scene_add_user_shape": (
+        _status,
+        [_scene, POINTER(s.sonject_user_shape_params), POINTER(c_uint32)],
     ),
     "sonject_scene_add_part": (
         _status,

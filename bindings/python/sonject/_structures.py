@@ -21,6 +21,7 @@ from ctypes import (
 
 NAME_CAPACITY = 64
 CUTS_CAPACITY = 2
+USER_PARAMETERS_CAPACITY = 16
 
 sonject_log_function = CFUNCTYPE(None, c_void_p, c_char_p)
 sonject_progress_function = CFUNCTYPE(c_int, c_void_p, c_double, c_char_p)
@@ -172,6 +173,8 @@ class sonject_object_params(Structure):
         ("cut_count", c_uint32),
         ("mesh", c_uint32),
         ("cuts", sonject_cut * CUTS_CAPACITY),
+        ("user_shape", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -182,6 +185,29 @@ class sonject_mesh_params(Structure):
         ("unit_m", c_double),
         ("axes", c_int32 * 3),
         ("reserved", c_int32),
+    ]
+
+
+class sonject_user_shape_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("is_open", c_uint32),
+        ("name", c_char_p),
+        ("code", c_char_p),
+        ("bounding_radius_m", c_double),
+        ("half_length_m", c_double),
+        ("half_width_m", c_double),
+        ("half_height_m", c_double),
+        ("first_line", c_uint32),
+        ("parameter_count", c_uint32),
+        ("parameters", c_double * USER_PARAMETERS_CAPACITY),
+    ]
+
+
+class sonject_scene_read_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("allows_user_shapes", c_uint32),
     ]
 
 

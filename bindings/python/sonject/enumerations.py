@@ -79,6 +79,7 @@ class Shape(enum.IntEnum):
     TORUS = 10
     PARTS = 11
     MESH = 12
+    USER = 13
 
 
 class End(enum.IntEnum):

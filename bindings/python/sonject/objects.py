@@ -278,6 +278,14 @@ class Mesh(Object):
     mesh: int
 
 
+@dataclass(kw_only=True)
+class UserShape(Object):
+    """Code that ``Scene.add_user_shape`` has taken; user_shape: its number there."""
+
+    _shape: ClassVar[Shape] = Shape.USER
+    user_shape: int
+
+
 @dataclass
 class Parts(Object):
     """The union of its parts, which may overlap: ``Parts([Part(Sphere(diameter_m=1)), ...])``.

@@ -78,11 +78,15 @@ class Scene(Handle):
         path: PathLike,
         overrides: Union[Iterable[str], Mapping[str, Any]] = (),
         context: Optional[Context] = None,
+        *,
+        allows_user_shapes: bool = False,
     ) -> "Scene":
         """Reads a scene file.
 
         overrides: "key.path=value" texts, or a mapping of key paths to values, which replace or
-        add keys: ``{"input.path": "swath.tif", "objects[0].heading": "30 deg"}``.
+        add keys: ``{"input.path": "swath.tif", "objects[0].heading": "30 deg"}``;
+        allows_user_shapes: shapes may be code in the file or beside it, which then can do what the
+        process can: only for files that you trust.
         """
         if isinstance(overrides, str):
             raise TypeError("overrides must be a list of texts or a mapping, not one text")
@@ -90,13 +94,16 @@ class Scene(Handle):
             overrides = [f"{key}={value}" for key, value in overrides.items()]
         texts = [file_name("override", text) for text in overrides]
         context = default_context() if context is None else context
+        params = initialised(s.sonject_scene_read_params)
+        params.allows_user_shapes = int(bool(allows_user_shapes))
         pointer = context.make(
             s.sonject_scene,
-            "sonject_scene_read",
+            "sonject_scene_read_with",
             context,
             file_name("path", path),
             (ctypes.c_char_p * len(texts))(*texts),
             len(texts),
+            ctypes.byref(params),
         )
         scene = cls.__new__(cls)
         Handle.__init__(scene, context, pointer)
@@ -213,6 +220,55 @@ class Scene(Handle):
             file_name("mesh", path),
             ctypes.byref(params),
             ctypes.byref(index),
+        )
+        return index.value
+
+    def add_user_shape(
+        self,
+        code: str,
+        *,
+        bounding_radius_m: float,
+        name: str = "code",
+        half_length_m: float = 0.0,
+        half_width_m: float = 0.0,
+        half_height_m: float = 0.0,
+        parameters: Sequence[float] = (),
+        is_open: bool = False,
+        first_line: int = 1,
+    ) -> int:
+        """Takes a shape in OpenCL C for ``UserShape`` objects; gives its number.
+
+        code: functions shape_distance and shape_normal, see include/sonject/user_shape.h; it can do
+        what the process can, and what does not end cannot be stopped. name, first_line: how messages
+        name its lines; bounding_radius_m: of a sphere about the origin that holds the shape, as do
+        the half sizes of a box (0: the radius), by which it rests on the seabed; parameters: up to
+        16 numbers for the functions; is_open: a surface without inside, which reflects on both sides.
+        """
+        params = initialised(s.sonject_user_shape_params)
+        count = len(parameters)
+        if count > s.USER_PARAMETERS_CAPACITY:
+            raise ValueError(f"parameters must be at most {s.USER_PARAMETERS_CAPACITY}, not {count}")
+        for label, text in (("name", name), ("code", code)):
+            if not isinstance(text, str) or "\0" in text:
+                raise TypeError(f"{label} must be a text without zeros")
+        params.name = name.encode()
+        params.code = code.encode()
+        fill(
+            params,
+            {
+                "is_open": int(bool(is_open)),
+                "bounding_radius_m": bounding_radius_m,
+                "half_length_m": half_length_m,
+                "half_width_m": half_width_m,
+                "half_height_m": half_height_m,
+                "first_line": first_line,
+                "parameter_count": count,
+            },
+        )
+        params.parameters[:count] = [float(value) for value in parameters]
+        index = ctypes.c_uint32()
+        self._context.call(
+            "sonject_scene_add_user_shape", self, ctypes.byref(params), ctypes.byref(index)
         )
         return index.value
 

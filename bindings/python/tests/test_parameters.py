@@ -181,6 +181,61 @@ def test_meshes_are_read_and_injected(make_scene, complex_patch, tmp_path):
         scene.add(sonject.Mesh(mesh=2))
 
 
+SPHERE = """
+float shape_distance(float3 p, float3 d, float nearest, const float *a)
+{
+    const float square = a[0] * a[0] - dot(p, p);
+    if (square < 0.0f)
+        return INFINITY;
+    return -sqrt(square) > nearest ? -sqrt(square) : sqrt(square) > nearest ? sqrt(square) : INFINITY;
+}
+float3 shape_normal(float3 p, const float *a)
+{
+    return p;
+}
+"""
+
+
+def test_user_shapes_are_taken_and_injected(make_scene, complex_patch):
+    scene = make_scene(objects=[])
+    number = scene.add_user_shape(SPHERE, bounding_radius_m=0.25, parameters=[0.25])
+    scene.add(sonject.UserShape(user_shape=number))
+    ours = sonject.inject(complex_patch, scene)
+    theirs = sonject.inject(complex_patch, make_scene())
+    # the same rays meet the same sphere, but for roundings along its outline
+    difference = ours.objects[0].target_strength_db - theirs.objects[0].target_strength_db
+    assert abs(difference) < 0.01
+    assert ours.objects[0].highlight_pixels == theirs.objects[0].highlight_pixels
+    with pytest.raises(sonject.SonjectError, match="there is no user shape 1"):
+        scene.add(sonject.UserShape(user_shape=1))
+    with pytest.raises(sonject.SonjectError, match="bounding_radius must be"):
+        scene.add_user_shape(SPHERE, bounding_radius_m=0.0)
+    with pytest.raises(sonject.SonjectError, match="ball.cl:105: this } closes no {"):
+        scene.add_user_shape(
+            SPHERE.replace("p;\n", "p; }\n"), bounding_radius_m=1, name="ball.cl", first_line=94
+        )
+    with pytest.raises(ValueError, match="at most 16, not 17"):
+        scene.add_user_shape(SPHERE, bounding_radius_m=1, parameters=range(17))
+    with pytest.raises(TypeError, match="code must be a text"):
+        scene.add_user_shape("\0", bounding_radius_m=1)
+
+
+def test_scene_files_with_code_need_consent(tmp_path, context):
+    (tmp_path / "ball.cl").write_text(SPHERE)
+    path = tmp_path / "scene.yaml"
+    path.write_text(
+        "sonject: 1\n"
+        "input: {uniform: {rows: 96, columns: 128}, geometry: {row_spacing: 2.5 cm,"
+        " column_spacing: 2.5 cm, first_slant_range: 25}}\n"
+        "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
+        "objects: [{shape: user, user: {file: ball.cl, bounding_radius: 0.25, parameters: [0.25]}}]\n"
+    )
+    with pytest.raises(sonject.SonjectError, match="code that would run with your rights"):
+        sonject.Scene.read(path, context=context)
+    scene = sonject.Scene.read(path, context=context, allows_user_shapes=True)
+    assert "user shape 1 (" in sonject.check(scene)
+
+
 def test_pixel_positions_are_row_then_column():
     thing = sonject.Sphere(diameter_m=1, position=sonject.Pixels(row=3, column=4)).to_structure()
     assert (thing.position_kind, thing.position_along, thing.position_range) == (2, 3.0, 4.0)

@@ -1,0 +1,57 @@
+/* Shapes that are written by users, in OpenCL C. */
+#ifndef SONJECT_USER_SHAPE_H
+#define SONJECT_USER_SHAPE_H
+
+#include <stdint.h>
+
+#include <sonject/export.h>
+
+SONJECT_BEGIN_DECLARATIONS
+
+#define SONJECT_USER_PARAMETERS_CAPACITY 16
+
+/* A shape given by two functions in OpenCL C 1.2, which become part of the program that traces:
+ *
+ *   float shape_distance(float3 point, float3 direction, float nearest, const float *parameters)
+ *     {distance in m of the first surface beyond `nearest` on the ray point + distance * direction,
+ *      or INFINITY}
+ *   float3 shape_normal(float3 point, const float *parameters)
+ *     {outward normal at a point of the surface, of any length but 0}
+ *
+ * in the object's own frame (x nose, y to its left, z up when level) and in metres. direction is a
+ * unit vector; point is where the ray comes closest to the origin, so that single precision holds
+ * the shape and not the range; nearest, of any sign, is at least minus the bounding radius, and
+ * surfaces are looked for within the bounding sphere only. Distances must be good to a few um, for
+ * rays go on from 20 um off a surface; one that is not a number counts as no surface, a normal that
+ * is not one fails the run. Every ray must get the same answer each time it is asked.
+ *
+ * The code may hold further functions, types, `constant` tables and macros; their names meet
+ * neither those of the program nor of other shapes (but enumerators do). Functions must not be
+ * `static`. #include, #pragma, #undef and #line are refused. sonject_check tries a shape with some
+ * thousand rays.
+ *
+ * The code is a program: it runs with the rights of the process (on a CPU it can do what the
+ * process can), and one that does not come to an end cannot be stopped, it holds the device until
+ * the process ends. Take it from nobody whose programs you would not run. */
+typedef struct sonject_user_shape_params {
+    uint32_t struct_size;
+    uint32_t is_open;         /* 1: a surface without inside: the normal turns to the side that the
+                                 ray comes from; 0: the closed surface of a solid */
+    const char *name;         /* of the code, for messages ("name:line: what"): 1 to 255 bytes */
+    const char *code;         /* at most 64 KiB */
+    double bounding_radius_m; /* of a sphere about the origin that holds the shape, above 0 */
+    double half_length_m;     /* half sizes of a box about the origin that holds it too, along x, */
+    double half_width_m;      /* y and z; 0: the bounding radius. An object rests on the seabed */
+    double half_height_m;     /* with what box and sphere have in common */
+    uint32_t first_line;      /* number of the code's first line in messages; 0: 1 */
+    uint32_t parameter_count; /* of parameters that count */
+    double parameters[SONJECT_USER_PARAMETERS_CAPACITY]; /* handed to the code as float, the others
+                                                            as 0 */
+} sonject_user_shape_params;
+
+/* A closed solid without code, name and radius, which have no defaults. */
+SONJECT_API void sonject_user_shape_params_init(sonject_user_shape_params *shape);
+
+SONJECT_END_DECLARATIONS
+
+#endif

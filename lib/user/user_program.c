@@ -1,0 +1,157 @@
+#include "user/user_program.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "cl/sources.h"
+#include "user/build_log.h"
+
+typedef char parameters_are_as_many[USER_PARAMETERS == SONJECT_USER_PARAMETERS_CAPACITY ? 1 : -1];
+typedef char user_record_is_packed[sizeof(struct user_record) == 18 * 4 ? 1 : -1];
+
+struct user_record user_record_of(const struct user_shape *shape)
+{
+    struct user_record record;
+    memset(&record, 0, sizeof record);
+    record.snippet = (int32_t)shape->snippet;
+    record.is_open = shape->is_open;
+    memcpy(record.parameters, shape->parameters, sizeof record.parameters);
+    return record;
+}
+
+/* Takes the macros of our own source away, that the users' code has none but the language's. */
+static char *text_without_macros(const char *source)
+{
+    static const char define[] = "#define ";
+    static const char given[] =
+        "#undef WIDTH\n#undef WITH_MESHES\n#undef WITH_USER_SHAPES\n#undef TALLY_IS_SHARED\n";
+    char *text = allocate_array(strlen(source) + sizeof given, 1);
+    if (!text)
+        return NULL;
+    char *end = text + sprintf(text, "%s", given);
+    for (const char *line = source; *line != '\0';) {
+        const size_t length = strcspn(line, "\n");
+        if (strncmp(line, define, sizeof define - 1) == 0) {
+            const char *name = line + sizeof define - 1;
+            end += sprintf(end, "#undef %.*s\n", (int)strcspn(name, " (\n"), name);
+        }
+        line += length + (line[length] == '\n');
+    }
+    return text;
+}
+
+#define CALLS_HEAD 400
+#define CALLS_EACH 400
+
+/* What the kernels call, which call the snippets by their numbers. */
+static char *text_of_calls(uint32_t count)
+{
+    char *text = allocate_array(CALLS_HEAD + (size_t)count * CALLS_EACH, 1);
+    if (!text)
+        return NULL;
+    char *end = text + sprintf(text, "#line 1 \"calls of user shapes\"\n");
+    for (uint32_t i = 0; i < count; i++)
+        end += sprintf(end,
+                       "float user_%lu_shape_distance(float3, float3, float, const float *);\n"
+                       "float3 user_%lu_shape_normal(float3, const float *);\n",
+                       (unsigned long)i, (unsigned long)i);
+    end += sprintf(end, "float user_distance(int n, float3 p, float3 d, float t, const float *a)\n"
+                        "{\n");
+    for (uint32_t i = 0; i < count; i++)
+        end += sprintf(end, "if (n == %lu) return user_%lu_shape_distance(p, d, t, a);\n",
+                       (unsigned long)i, (unsigned long)i);
+    end += sprintf(end, "return INFINITY;\n}\n"
+                        "float3 user_normal(int n, float3 p, const float *a)\n{\n");
+    for (uint32_t i = 0; i < count; i++)
+        end += sprintf(end, "if (n == %lu) return user_%lu_shape_normal(p, a);\n", (unsigned long)i,
+                       (unsigned long)i);
+    sprintf(end, "return (float3)(0.0f);\n}\n");
+    return text;
+}
+
+static sonject_status explain(struct report *report, const struct device *device, const char *log,
+                              const void *user)
+{
+    return explain_build_log(report, user, device->name, log);
+}
+
+/* The program of a key if the device still has it. */
+static cl_program find_program(const struct device *device, const char *key)
+{
+    for (size_t i = 0; i < USER_PROGRAMS_KEPT; i++)
+        if (device->user_programs[i].program && strcmp(device->user_programs[i].key, key) == 0)
+            return device->user_programs[i].program;
+    return NULL;
+}
+
+/* Takes the program over. */
+static void keep_program(struct device *device, const char *key, cl_program program)
+{
+    struct user_program *place = &device->user_programs[device->user_program_next];
+    device->user_program_next = (device->user_program_next + 1) % USER_PROGRAMS_KEPT;
+    if (place->program)
+        clReleaseProgram(place->program);
+    place->program = program;
+    memcpy(place->key, key, sizeof place->key);
+}
+
+static sonject_status get_program(struct report *report, struct device *device,
+                                  const struct program_text *text, cl_program *program)
+{
+    char key[HASH_TEXT_CAPACITY];
+    sonject_status status = program_key(report, device, text, key);
+    if (status != SONJECT_OK)
+        return status;
+    *program = find_program(device, key);
+    if (*program)
+        return SONJECT_OK;
+    status = program_make(report, device, text, key, program);
+    if (status == SONJECT_OK)
+        keep_program(device, key, *program);
+    return status;
+}
+
+sonject_status user_kernel_create(struct report *report, struct device *device,
+                                  const struct user_shapes *shapes, bool has_meshes,
+                                  enum device_program number, const char *name, cl_kernel *kernel)
+{
+    const char *pieces[3 + 3 * USER_SNIPPETS_MAX];
+    char options[PROGRAM_OPTIONS_CAPACITY];
+    size_t count = 0;
+    cl_program program;
+    char *without_macros = text_without_macros(embedded_sources[number].text);
+    char *calls = text_of_calls(shapes->snippet_count);
+    *kernel = NULL;
+    pieces[count++] = embedded_sources[number].text;
+    pieces[count++] = without_macros;
+    pieces[count++] = calls;
+    for (uint32_t i = 0; i < shapes->snippet_count; i++) {
+        pieces[count++] = shapes->snippets[i].before;
+        pieces[count++] = shapes->snippets[i].code;
+        pieces[count++] = shapes->snippets[i].behind;
+    }
+    program_options(device, has_meshes, " -DWITH_USER_SHAPES", options);
+    const struct program_text text = {
+        embedded_sources[number].name, pieces, count, options, explain, shapes};
+    sonject_status status = without_macros && calls
+                                ? get_program(report, device, &text, &program)
+                                : report_out_of_memory(report, "the user shapes' program");
+    if (status == SONJECT_OK)
+        status = program_kernel(report, device, program, name, kernel);
+    free(without_macros);
+    free(calls);
+    return status;
+}
+
+sonject_status scene_kernel_create(struct report *report, struct device *device,
+                                   const struct scene *scene, enum device_program program,
+                                   const char *name, cl_kernel *kernel)
+{
+    const bool has_meshes = scene->mesh_count > 0;
+    if (scene->user_shapes.count == 0)
+        return kernel_create(report, device, program, has_meshes, name, kernel);
+    return user_kernel_create(report, device, &scene->user_shapes, has_meshes, program, name,
+                              kernel);
+}

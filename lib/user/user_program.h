@@ -1,0 +1,25 @@
+/* Kernels for scenes: the library's own programs where no shape is a user's, else with the code of
+ * all its users' shapes behind them. */
+#ifndef SONJECT_USER_USER_PROGRAM_H
+#define SONJECT_USER_USER_PROGRAM_H
+
+#include "cl/program.h"
+#include "kernels/user_records.h"
+#include "scene/scene.h"
+
+/* What the kernels know of a shape. */
+struct user_record user_record_of(const struct user_shape *shape);
+
+/* A kernel of a program for the scene, to be given to clReleaseKernel. The first error of a user's
+ * code becomes the message "file:line: what"; the compiler's whole log goes to the report's log.
+ * Errors: INPUT (code that does not compile), DEVICE, MEMORY. */
+sonject_status scene_kernel_create(struct report *report, struct device *device,
+                                   const struct scene *scene, enum device_program program,
+                                   const char *name, cl_kernel *kernel);
+
+/* The same with users' code whether the scene has meshes or not. */
+sonject_status user_kernel_create(struct report *report, struct device *device,
+                                  const struct user_shapes *shapes, bool has_meshes,
+                                  enum device_program program, const char *name, cl_kernel *kernel);
+
+#endif

@@ -1,0 +1,126 @@
+"""Scenes whose shapes are code: consent, errors with the user's lines, the check, and a run."""
+
+import json
+
+import numpy
+import pytest
+
+from conftest import assert_refused, files_below
+import images
+
+SPHERE = """\
+/* A sphere about the origin. */
+float shape_distance(float3 p, float3 d, float nearest, const float *a)
+{
+    const float square = a[0] * a[0] - dot(p, p);
+    if (square < 0.0f)
+        return INFINITY;
+    const float half_chord = sqrt(square);
+    return -half_chord > nearest ? -half_chord : half_chord > nearest ? half_chord : INFINITY;
+}
+
+float3 shape_normal(float3 p, const float *a)
+{
+    return p;
+}
+"""
+ALLOW = "--allow-user-shapes"
+
+
+@pytest.fixture
+def user_scene(scene):
+    """The scene with its sphere by code."""
+    (scene.parent / "ball.cl").write_text(SPHERE)
+    text = scene.read_text().replace(
+        "    shape: sphere\n    diameter: 0.5 m\n",
+        "    shape: user\n    user: {file: ball.cl, bounding_radius: 25 cm, parameters: [0.25]}\n",
+    )
+    assert "shape: user" in text
+    path = scene.parent / "user.yaml"
+    path.write_text(text)
+    return path
+
+
+def assert_our_line(answer, code, *words):
+    """Our one line; the compiler of a driver may tell how many errors it found besides."""
+    assert answer.returncode == code, answer.stderr
+    lines = [line for line in answer.stderr.splitlines() if line.startswith("sonject: ")]
+    assert len(lines) == 1, answer.stderr
+    for word in words:
+        assert word in lines[0], (word, lines[0])
+    assert not answer.stdout
+
+
+def test_code_needs_consent(sonject, user_scene):
+    before = files_below(user_scene.parent)
+    for arguments in (["check", user_scene], ["run", user_scene, "-o", "result"]):
+        assert_refused(sonject(*arguments), 3, "user.yaml:15:11: objects[0].user: ", ALLOW)
+    assert files_below(user_scene.parent) == before
+
+
+def test_code_within_the_scene_needs_consent_too(sonject, user_scene):
+    user_scene.write_text(user_scene.read_text().replace("file: ball.cl", "code: whatever"))
+    assert_refused(sonject("check", user_scene), 3, "objects[0].user: ", ALLOW)
+    assert_refused(sonject("check", ALLOW, user_scene), 3, "user.yaml:15: ", "shape_distance")
+
+
+def test_a_sphere_by_code_is_the_sphere(sonject, scene, user_scene, tmp_path):
+    assert sonject("run", scene, "-o", "sphere").returncode == 0
+    answer = sonject("run", user_scene, ALLOW, "-o", "user")
+    assert answer.returncode == 0, answer.stderr
+    truths = [
+        json.loads((tmp_path / folder / "truth.json").read_text())["objects"][0]
+        for folder in ("sphere", "user")
+    ]
+    assert truths[1]["shape"] == "user"
+    # the same rays; single precision's roundings decide those along the outline
+    energies = [images.read_tiff(tmp_path / folder / "energy.tif") for folder in ("sphere", "user")]
+    assert numpy.allclose(energies[0], energies[1], rtol=1e-3, atol=1e-6 * energies[0].max())
+    again = sonject("run", user_scene, ALLOW, "-o", "user")
+    assert "already holds" in again.stderr
+    code = user_scene.parent / "ball.cl"
+    code.write_text(SPHERE + "// more\n")
+    again = sonject("run", user_scene, ALLOW, "-o", "user")
+    assert again.returncode == 0 and "already holds" not in again.stderr
+
+
+def test_check_tells_what_it_tried(sonject, user_scene):
+    answer = sonject("check", ALLOW, user_scene)
+    assert answer.returncode == 0, answer.stderr
+    assert "ball.cl): 2416 of 4096 rays meet it, 0 of 2409 that leave it" in answer.stdout
+
+
+def test_compilers_errors_have_the_users_line(sonject, user_scene):
+    code = user_scene.parent / "ball.cl"
+    code.write_text(SPHERE.replace("sqrt(square)", "root(square)"))
+    before = files_below(user_scene.parent)
+    for arguments in (["check", user_scene], ["run", user_scene, "-o", "result"]):
+        assert_our_line(sonject(*arguments, ALLOW), 3, "ball.cl:7: ", "root")
+    assert files_below(user_scene.parent) == before
+
+
+@pytest.mark.parametrize(
+    "old, new, words",
+    [
+        ("return p;", "return p + (float3)(0.02f, 0.0f, 0.0f);", "shape_normal is not the normal"),
+        ("return p;", "return -p;", "point away from the ray"),
+        ("a[0] * a[0] -", "2.0f * a[0] * a[0] -", "beyond the bounding_radius"),
+    ],
+)
+def test_check_refuses_wrong_shapes(sonject, user_scene, old, new, words):
+    code = user_scene.parent / "ball.cl"
+    assert code.read_text().count(old) == 1
+    code.write_text(code.read_text().replace(old, new))
+    assert_our_line(sonject("check", user_scene, ALLOW), 3, "ball.cl: ", words)
+
+
+def test_hostile_code_is_refused_before_any_compiler(sonject, user_scene):
+    code = user_scene.parent / "ball.cl"
+    for text, words in (
+        ('#include "/etc/passwd"\n' + SPHERE, "ball.cl:1: #include"),
+        (SPHERE + "}\n", "ball.cl:15: this } closes no {"),
+        (SPHERE + " " * 65536, "ball.cl"),
+        (SPHERE + "\0", "ball.cl"),
+    ):
+        code.write_text(text)
+        assert_refused(sonject("check", ALLOW, user_scene), 3, words)

@@ -1,0 +1,392 @@
+/* Code of users' shapes before it meets a compiler: what is refused and where, how names are kept
+ * apart, what build logs say; scene files that hold code, and that they need consent. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "api/scene_hash.h"
+#include "scene_folder.h"
+#include "user/build_log.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+#define DISTANCE "float shape_distance(float3 p, float3 d, float t, const float *a) { return t; }\n"
+#define NORMAL   "float3 shape_normal(float3 p, const float *a) { return p; }\n"
+#define GOOD     DISTANCE NORMAL
+
+static void expect_code_refused(const char *code, const char *message)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct user_snippet snippet;
+    if (snippet_make(&report, "my.cl", 1, code, 0, &snippet) != SONJECT_ERROR_INPUT)
+        fail_msg("not refused: %s", code);
+    assert_string_equal(report.message, message);
+    assert_null(snippet.code);
+}
+
+static void expect_code_taken(const char *code)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct user_snippet snippet;
+    if (snippet_make(&report, "my.cl", 1, code, 0, &snippet) != SONJECT_OK)
+        fail_msg("%s\nrefused: %s", code, report.message);
+    snippet_clear(&snippet);
+}
+
+/* Each would end our own text, hide something, or change what stands around it. */
+static void test_hostile_code_is_refused_with_its_line(void **state)
+{
+    (void)state;
+    expect_code_refused(GOOD "}\n", "my.cl:3: this } closes no {");
+    expect_code_refused(GOOD "}\n}\nfloat g(void) {{\n", "my.cl:3: this } closes no {");
+    expect_code_refused(GOOD "float g(float x) {\n if (x > 0) {\n}\n",
+                        "my.cl:3: this { is never closed");
+    expect_code_refused(GOOD "float g(float x] { return x; }\n", "my.cl:3: this ] closes no [");
+    expect_code_refused(GOOD "#undef FUNCTION\n",
+                        "my.cl:3: #undef is not possible here; known are #define, #if, #ifdef, "
+                        "#ifndef, #elif, #else, #endif and #error");
+    expect_code_refused("#  include \"/etc/passwd\"\n" GOOD,
+                        "my.cl:1: #include is not possible here; known are #define, #if, #ifdef, "
+                        "#ifndef, #elif, #else, #endif and #error");
+    expect_code_refused("/* hidden */ #pragma OPENCL FP_CONTRACT ON\n" GOOD,
+                        "my.cl:1: #pragma is not possible here; known are #define, #if, #ifdef, "
+                        "#ifndef, #elif, #else, #endif and #error");
+    expect_code_refused("#line 7 \"other.cl\"\n" GOOD,
+                        "my.cl:1: #line is not possible here; known are #define, #if, #ifdef, "
+                        "#ifndef, #elif, #else, #endif and #error");
+    expect_code_refused("\n#de\\\nfine X\n" GOOD,
+                        "my.cl:2: #de is not possible here; known are #define, #if, #ifdef, "
+                        "#ifndef, #elif, #else, #endif and #error");
+    expect_code_refused("#define __OPENCL_C_VERSION__ 0\n" GOOD,
+                        "my.cl:1: macros must not start with __, which are the compiler's; rename "
+                        "it");
+    expect_code_refused("\?\?=undef WIDTH\n" GOOD,
+                        "my.cl:1: trigraph; write the character that is meant, or a space between "
+                        "the signs");
+    expect_code_refused(GOOD "%:undef WIDTH\n",
+                        "my.cl:3: digraph; write the bracket that is meant, or a space between the "
+                        "signs");
+    expect_code_refused(GOOD "/* to the end\n",
+                        "my.cl:3: this comment has no end; close it with */");
+    expect_code_refused(GOOD "#if 0\n\n", "my.cl:3: this #if has no #endif");
+    expect_code_refused(GOOD "#endif\n", "my.cl:3: this #endif ends no #if");
+    expect_code_refused("#else\n" GOOD, "my.cl:1: this #else belongs to no #if");
+    expect_code_refused(GOOD "_Pragma(\"x\")\n",
+                        "my.cl:3: _Pragma is not possible here; remove it");
+    expect_code_refused(GOOD "\x01", "my.cl:3: control character; remove it");
+    expect_code_refused("constant char c[] = \"open;\n" GOOD,
+                        "my.cl:1: this quote has no end on its line");
+    expect_code_refused("", "my.cl:1: there is no function shape_distance in it; write one");
+    expect_code_refused(DISTANCE, "my.cl:1: there is no function shape_normal in it; write one");
+    expect_code_refused("/*" DISTANCE "*/" NORMAL,
+                        "my.cl:1: there is no function shape_distance in it; write one");
+    expect_code_refused("#define shape_normal other\n" GOOD,
+                        "my.cl:1: shape_normal must be a function, not a macro");
+}
+
+static void test_sound_code_is_taken(void **state)
+{
+    (void)state;
+    expect_code_taken(GOOD);
+    expect_code_taken("#define LONG(x) \\\n  ((x) * {\\\n)\n#if defined(LONG) && 1\n" GOOD
+                      "#else\n#error none\n#endif");
+    expect_code_taken("// a } in a comment \\\n and its second line }\n/* { */ " GOOD "// no end");
+    expect_code_taken("// by 50%: half <% of it\n" GOOD);
+    expect_code_taken("constant char c = '}', d = '\\'';\r\n" GOOD);
+}
+
+static void test_size_and_names_are_limited(void **state)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct user_snippet snippet;
+    char name[SNIPPET_NAME_MAX + 2];
+    char *code = calloc(SNIPPET_BYTES_MAX + 2, 1);
+    (void)state;
+    assert_non_null(code);
+    memset(code, ' ', SNIPPET_BYTES_MAX + 1);
+    memcpy(code, GOOD, strlen(GOOD));
+    expect_code_refused(code, "my.cl: the code of a shape must be at most 64 KiB");
+    code[SNIPPET_BYTES_MAX] = '\0';
+    expect_code_taken(code);
+    free(code);
+    memset(name, 'n', sizeof name);
+    name[sizeof name - 1] = '\0';
+    assert_int_equal(snippet_make(&report, name, 1, GOOD, 0, &snippet), SONJECT_ERROR_INPUT);
+    assert_int_equal(snippet_make(&report, "a\nb", 1, GOOD, 0, &snippet), SONJECT_ERROR_INPUT);
+    assert_int_equal(snippet_make(&report, "", 1, GOOD, 0, &snippet), SONJECT_ERROR_INPUT);
+    assert_int_equal(snippet_make(&report, "a\"b\\.cl", 9, GOOD, 0, &snippet), SONJECT_OK);
+    assert_non_null(strstr(snippet.before, "#line 9 \"a_b_.cl\"\n"));
+    snippet_clear(&snippet);
+}
+
+/* What is declared outside of functions gets a name of its own; what is used there does not. */
+static void test_names_are_kept_apart(void **state)
+{
+    static const char code[] =
+        "#define STEPS 8\n"
+        "struct pair { float one, other; };\n"
+        "typedef float3 place;\n"
+        "constant float table[2] = {1.0f, M_PI_F}, half_turn = M_PI_F, more;\n"
+        "static inline __attribute__((always_inline)) float square(float x) { float y = x; return "
+        "y; }\n"
+        "constant float four = 2.0f * sqrt(4.0f);\n" GOOD;
+    static const char *const renamed[] = {"pair",      "place",          "table",
+                                          "half_turn", "more",           "square",
+                                          "four",      "shape_distance", "shape_normal"};
+    static const char *const kept[] = {"M_PI_F", "sqrt", "STEPS", "one", "x", "y", "float3", "t"};
+    struct report report = {{0}, NULL, NULL};
+    struct user_snippet snippet;
+    char line[80];
+    (void)state;
+    assert_int_equal(snippet_make(&report, "my.cl", 1, code, 5, &snippet), SONJECT_OK);
+    for (size_t i = 0; i < COUNT(renamed); i++) {
+        snprintf(line, sizeof line, "#define %s user_5_%s\n", renamed[i], renamed[i]);
+        if (!strstr(snippet.before, line))
+            fail_msg("%s keeps its name", renamed[i]);
+        snprintf(line, sizeof line, "#undef %s\n", renamed[i]);
+        assert_non_null(strstr(snippet.behind, line));
+    }
+    for (size_t i = 0; i < COUNT(kept); i++) {
+        snprintf(line, sizeof line, "#define %s ", kept[i]);
+        if (strstr(snippet.before, line))
+            fail_msg("%s is renamed", kept[i]);
+    }
+    assert_non_null(strstr(snippet.behind, "#undef STEPS\n"));
+    assert_non_null(strstr(snippet.before, "#line 1 \"my.cl\"\n"));
+    snippet_clear(&snippet);
+}
+
+static void append(struct user_shapes *shapes, const char *name, const char *code)
+{
+    struct report report = {{0}, NULL, NULL};
+    sonject_user_shape_params params;
+    sonject_user_shape_params_init(&params);
+    params.name = name;
+    params.code = code;
+    params.bounding_radius_m = 1.0;
+    if (user_shapes_append(shapes, &report, &params) != SONJECT_OK)
+        fail_msg("%s", report.message);
+}
+
+static void count_line(void *count, const char *line)
+{
+    assert_null(strchr(line, '\n'));
+    ++*(int *)count;
+}
+
+/* The message, and the whole log line by line. */
+static void expect_explained(const char *log, const char *message)
+{
+    int lines = 0;
+    int expected = 0;
+    struct report report = {{0}, count_line, &lines};
+    struct user_shapes shapes;
+    memset(&shapes, 0, sizeof shapes);
+    append(&shapes, "a.cl", GOOD);
+    append(&shapes, "path to/b.cl", GOOD " ");
+    assert_int_equal(explain_build_log(&report, &shapes, "some device", log), SONJECT_ERROR_INPUT);
+    assert_string_equal(report.message, message);
+    for (const char *c = log; *c != '\0'; c++)
+        expected += *c == '\n';
+    assert_int_equal(lines, expected);
+    user_shapes_clear(&shapes);
+}
+
+static void test_build_logs_become_lines(void **state)
+{
+    (void)state;
+    expect_explained("warning: a.cl:2:1: unused\nerror: a.cl:12:10: use of undeclared 'y'\n"
+                     "error: a.cl:13:1: more\n",
+                     "a.cl:12: use of undeclared 'y'");
+    expect_explained("path to/b.cl:7:3: error: conflicting types for 'user_1_shape_normal'\n  ^\n",
+                     "path to/b.cl:7: conflicting types for 'shape_normal'");
+    expect_explained("error: a.cl:2:7 <Spelling=end of path to/b.cl:9:9>: conflicting types\n",
+                     "a.cl:2: conflicting types");
+    expect_explained("<kernel>:3:1: note: x\na.cl:7: error: gone\n", "a.cl:7: gone");
+    expect_explained("error: end of a.cl:1:1: expected '}'\n", "a.cl: at its end: expected '}'");
+    expect_explained("error: trace_rough.cl:1:1: what\n",
+                     "device 'some device' cannot build the user shapes' code: error: "
+                     "trace_rough.cl:1:1: what");
+    expect_explained("Cannot find symbol user_0_shape_normal in kernel library\n",
+                     "device 'some device' cannot build the user shapes' code: Cannot find symbol "
+                     "shape_normal in kernel library");
+}
+
+static void test_equal_codes_are_one(void **state)
+{
+    struct user_shapes shapes;
+    (void)state;
+    memset(&shapes, 0, sizeof shapes);
+    append(&shapes, "a.cl", GOOD);
+    append(&shapes, "b.cl", GOOD);
+    append(&shapes, "c.cl", GOOD "\n");
+    assert_int_equal(shapes.count, 3);
+    assert_int_equal(shapes.snippet_count, 2);
+    assert_int_equal(shapes.shapes[1].snippet, 0);
+    assert_int_equal(shapes.shapes[2].snippet, 1);
+    user_shapes_clear(&shapes);
+}
+
+#define BASE                                                                                       \
+    "sonject: 1\n"                                                                                 \
+    "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
+    "first_slant_range: 40}}\n"                                                                    \
+    "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"                                   \
+    "objects:\n"
+#define CODE                                                                                       \
+    "    user:\n"                                                                                  \
+    "      bounding_radius: 50 cm\n"                                                               \
+    "      parameters: [0.5, -2]\n"                                                                \
+    "      code: |\n"                                                                              \
+    "        " DISTANCE "        " NORMAL
+
+static sonject_status read_with_consent(struct scene_folder *folder, const char *text)
+{
+    write_scene(folder, text, strlen(text));
+    scene_clear(&folder->scene);
+    memset(&folder->report, 0, sizeof folder->report);
+    return scene_file_read_with(&folder->report, folder->file, NULL, 0, true, &folder->scene);
+}
+
+static void expect_refused_with_consent(struct scene_folder *folder, const char *text,
+                                        const char *message)
+{
+    assert_int_equal(read_with_consent(folder, text), SONJECT_ERROR_INPUT);
+    const size_t length = strlen(folder->report.message);
+    assert_true(length >= strlen(message));
+    assert_string_equal(folder->report.message + length - strlen(message), message);
+}
+
+#define NO_CONSENT                                                                                 \
+    "user: is code that would run with your rights; if you trust who wrote it, use "               \
+    "--allow-user-shapes"
+
+static void test_code_in_files_needs_consent(void **state)
+{
+    struct scene_folder *folder = *state;
+    expect_scene_refused(folder, BASE "  - shape: user\n" CODE, ":7:7: objects[0]." NO_CONSENT);
+    expect_scene_refused(folder, BASE "  - parts:\n    - {shape: user, user: {}}\n",
+                         ":6:27: objects[0].parts[0]." NO_CONSENT);
+    /* a target's file, in an object's or in that of parts */
+    write_scene(folder, BASE "  - target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml\n",
+                strlen(BASE "  - target: " SOURCE_ROOT "/tools/targets/boulder_relief.yaml\n"));
+    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(folder->report.message, "boulder_relief.yaml:9:3: " NO_CONSENT));
+}
+
+static void test_code_arrives_with_its_lines(void **state)
+{
+    struct scene_folder *folder = *state;
+    assert_int_equal(read_with_consent(folder, BASE "  - shape: user\n" CODE "  - parts:\n"
+                                                    "    - shape: sphere\n"
+                                                    "      diameter: 1\n"
+                                                    "    - shape: user\n"
+                                                    "      user: {file: " SOURCE_ROOT
+                                                    "/tools/targets/boulder_relief.cl,\n"
+                                                    "        bounding_radius: 1, half_height: 0.25,"
+                                                    " open: true}\n"),
+                     SONJECT_OK);
+    const struct user_shapes *shapes = &folder->scene.user_shapes;
+    assert_int_equal(shapes->count, 2);
+    assert_int_equal(folder->scene.objects[0].user_shape, 0);
+    assert_int_equal(folder->scene.parts[1].shape.user_shape, 1);
+    assert_string_equal(shapes->snippets[0].code, GOOD);
+    assert_int_equal(shapes->snippets[0].first_line, 10);
+    assert_string_equal(shapes->snippets[0].name, folder->file);
+    assert_true(shapes->shapes[0].parameters[0] == 0.5f);
+    assert_true(shapes->shapes[0].parameters[1] == -2.0f);
+    assert_true(shapes->shapes[0].half_height_m == 0.5 && !shapes->shapes[0].is_open);
+    assert_true(shapes->shapes[1].half_height_m == 0.25 && shapes->shapes[1].is_open);
+    assert_true(shapes->shapes[1].half_width_m == 1.0);
+    /* the line of an error in a block is that of the file */
+    expect_refused_with_consent(folder, BASE "  - shape: user\n" CODE "        }\n",
+                                "scene.yaml:12: this } closes no {");
+}
+
+static void test_wrong_sections_are_refused(void **state)
+{
+    struct scene_folder *folder = *state;
+    expect_refused_with_consent(folder, BASE "  - shape: user\n",
+                                "objects[0].user: missing; a user needs it");
+    expect_refused_with_consent(folder, BASE "  - diameter: 1\n    shape: sphere\n" CODE,
+                                "objects[0].user: a sphere has none; remove it");
+    expect_refused_with_consent(folder, BASE "  - shape: user\n    diameter: 1\n" CODE,
+                                "objects[0].diameter: a user has none; remove it");
+    expect_refused_with_consent(folder, BASE "  - shape: user\n    cuts: [{distance: 0}]\n" CODE,
+                                "objects[0].cuts: are not made in user shapes; let the code cut");
+    expect_refused_with_consent(folder, BASE "  - {shape: user, user: {bounding_radius: 1}}\n",
+                                "objects[0].user: none of file and code is there; give one");
+    expect_refused_with_consent(
+        folder, BASE "  - {shape: user, user: {bounding_radius: 0, code: x}}\n",
+        ": objects[0].user.bounding_radius: must be 1e-06...1e+06 m, not 0");
+    expect_refused_with_consent(
+        folder, BASE "  - {shape: user, user: {bounding_radius: 1, code: x, parameters: [nan]}}\n",
+        "parameters[0]: 'nan' is not a number");
+    expect_refused_with_consent(
+        folder,
+        BASE "  - {shape: user, user: {bounding_radius: 1, code: x, parameters: [1, 2, 3, 4, 5, 6, "
+             "7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17]}}\n",
+        "parameters: has 17 entries; at most 16 are possible");
+    expect_refused_with_consent(
+        folder, BASE "  - {shape: user, user: {bounding_radius: 1, file: absent.cl}}\n",
+        "absent.cl; check its name");
+    expect_refused_with_consent(
+        folder, BASE "  - {shape: user, user: {bounding_radius: 1, code: x}}\n",
+        "scene.yaml:5: there is no function shape_distance in it; write one");
+}
+
+/* A run is another one for other code, parameters or bounds. */
+static void test_shapes_count_as_inputs(void **state)
+{
+    static const char *const others[] = {
+        BASE "  - shape: user\n" CODE "        \n        // longer\n",
+        BASE "  - shape: user\n" CODE "      open: true\n",
+        BASE "  - shape: user\n" CODE "      half_length: 0.25\n",
+        BASE "  - shape: user\n" CODE "      half_width: 0.25\n",
+        BASE "  - shape: user\n" CODE "      half_height: 0.25\n",
+    };
+    struct scene_folder *folder = *state;
+    char one[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];
+    assert_int_equal(read_with_consent(folder, BASE "  - shape: user\n" CODE), SONJECT_OK);
+    assert_int_equal(scene_hash(&folder->report, &folder->scene, "", one), SONJECT_OK);
+    for (size_t i = 0; i < COUNT(others); i++) {
+        if (read_with_consent(folder, others[i]) != SONJECT_OK)
+            fail_msg("%s", folder->report.message);
+        assert_int_equal(scene_hash(&folder->report, &folder->scene, "", other), SONJECT_OK);
+        assert_string_not_equal(one, other);
+    }
+    assert_int_equal(read_with_consent(folder, BASE "  - shape: user\n" CODE), SONJECT_OK);
+    folder->scene.user_shapes.shapes[0].parameters[15] = 1e-30f;
+    assert_int_equal(scene_hash(&folder->report, &folder->scene, "", other), SONJECT_OK);
+    assert_string_not_equal(one, other);
+    folder->scene.user_shapes.shapes[0].parameters[15] = 0.0f;
+    folder->scene.user_shapes.shapes[0].bounding_radius_m *= 1.0 + 1e-15;
+    assert_int_equal(scene_hash(&folder->report, &folder->scene, "", other), SONJECT_OK);
+    assert_string_not_equal(one, other);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_hostile_code_is_refused_with_its_line),
+        cmocka_unit_test(test_sound_code_is_taken),
+        cmocka_unit_test(test_size_and_names_are_limited),
+        cmocka_unit_test(test_names_are_kept_apart),
+        cmocka_unit_test(test_build_logs_become_lines),
+        cmocka_unit_test(test_equal_codes_are_one),
+        cmocka_unit_test(test_code_in_files_needs_consent),
+        cmocka_unit_test(test_code_arrives_with_its_lines),
+        cmocka_unit_test(test_wrong_sections_are_refused),
+        cmocka_unit_test(test_shapes_count_as_inputs),
+    };
+    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
+}
