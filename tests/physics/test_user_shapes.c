@@ -110,7 +110,7 @@ static void compare_rough(sonject_object_params *(*add)(struct bench *bench, boo
     double sums[2][TILE_PLANES];
     for (int is_user = 0; is_user < 2; is_user++) {
         struct bench bench;
-        bench_open(&bench, NULL, ROWS, COLUMNS, RANGE);
+        bench_open(&bench, ROWS, COLUMNS, RANGE);
         make_rough(add(&bench, is_user));
         bench_ready(&bench);
         trace_tiles(&bench, &sums[is_user]);
@@ -144,7 +144,7 @@ static void test_glint_of_a_sphere(void **state)
     (void)state;
     for (int is_user = 0; is_user < 2; is_user++) {
         struct bench bench;
-        bench_open(&bench, NULL, ROWS, COLUMNS, RANGE);
+        bench_open(&bench, ROWS, COLUMNS, RANGE);
         add_sphere(&bench, is_user)->burial_m = -1.0;
         bench_ready(&bench);
         lines[is_user] = bench_glint_line(&bench, 0);
@@ -175,7 +175,7 @@ static void test_chains_of_a_sphere(void **state)
     for (int is_user = 0; is_user < 2; is_user++) {
         struct bench bench;
         struct chain_trace trace;
-        bench_open(&bench, NULL, ROWS, COLUMNS, RANGE);
+        bench_open(&bench, ROWS, COLUMNS, RANGE);
         bench.scene.injection.interactions = 3;
         bench.scene.injection.order_energies = 1;
         bench.scene.injection.ray_scale = 0.25;
@@ -213,7 +213,7 @@ static void test_a_shape_meets_itself(void **state)
         for (uint64_t seed = 0; seed < 4; seed++) {
             struct bench bench;
             struct chain_trace trace;
-            bench_open(&bench, NULL, ROWS, COLUMNS, RANGE);
+            bench_open(&bench, ROWS, COLUMNS, RANGE);
             bench.scene.injection.interactions = 2;
             bench.scene.injection.seed = 10 + seed;
             bench.scene.seabed.lambert = 1e-12;
@@ -323,7 +323,7 @@ static void test_dome_against_double(void **state)
     uint64_t random = 7;
     size_t met = 0, wrong = 0;
     (void)state;
-    bench_open(&bench, NULL, ROWS, COLUMNS, RANGE);
+    bench_open(&bench, ROWS, COLUMNS, RANGE);
     add_code(&bench.scene.user_shapes, &bench.report, "dome.cl", DOME_CODE, radius, DOME_A, DOME_H);
     if (shape_probe_begin(&probe, &bench.report, bench.tracer.device, &bench.scene.user_shapes,
                           0) != SONJECT_OK)
@@ -414,7 +414,7 @@ static void test_several_codes_and_a_mesh(void **state)
     (void)state;
     for (int is_user = 0; is_user < 2; is_user++) {
         struct bench bench;
-        bench_open(&bench, NULL, 321, COLUMNS, RANGE);
+        bench_open(&bench, 321, COLUMNS, RANGE);
         struct user_shapes *shapes = &bench.scene.user_shapes;
         make_mesh(&bench);
         for (int i = 0; i < 5; i++) {
@@ -494,35 +494,31 @@ static void test_errors_are_in_the_users_lines(void **state)
         {"float shape_distance(float3 p, float3 d, float t, const float *a);\n" SPHERE_NORMAL,
          "shape_distance"},
     };
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
+    struct bench bench;
     (void)state;
-    for (size_t device = 0; device < devices; device++) {
-        struct bench bench;
-        bench_open(&bench, names[device], ROWS, COLUMNS, RANGE);
-        for (size_t i = 0; i < COUNT(cases); i++) {
-            struct user_snippet snippet;
-            if (snippet_make(&bench.report, "my shape.cl", 1, cases[i].code, 1, &snippet) ==
-                SONJECT_OK) {
-                snippet_clear(&snippet);
-                assert_int_equal(
-                    compile(&bench, cases[i].code, PROGRAM_PROBE_USER_SHAPE, "probe_user_shape"),
-                    SONJECT_ERROR_INPUT);
-            }
-            print_message("%s\n", bench.report.message);
-            if (!strstr(bench.report.message, cases[i].place))
-                fail_msg("case %zu: '%s' is not in the message", i, cases[i].place);
-            assert_null(strstr(bench.report.message, "user_1_"));
-            assert_null(strchr(bench.report.message, '\n'));
+    bench_open(&bench, ROWS, COLUMNS, RANGE);
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        struct user_snippet snippet;
+        if (snippet_make(&bench.report, "my shape.cl", 1, cases[i].code, 1, &snippet) ==
+            SONJECT_OK) {
+            snippet_clear(&snippet);
+            assert_int_equal(
+                compile(&bench, cases[i].code, PROGRAM_PROBE_USER_SHAPE, "probe_user_shape"),
+                SONJECT_ERROR_INPUT);
         }
-        /* the programs that trace say the same */
-        assert_int_equal(compile(&bench, cases[0].code, PROGRAM_TRACE_ROUGH, "trace_rough"),
-                         SONJECT_ERROR_INPUT);
-        assert_non_null(strstr(bench.report.message, cases[0].place));
-        assert_int_equal(compile(&bench, DOME_CODE, PROGRAM_PROBE_USER_SHAPE, "probe_user_shape"),
-                         SONJECT_OK);
-        bench_close(&bench);
+        print_message("%s\n", bench.report.message);
+        if (!strstr(bench.report.message, cases[i].place))
+            fail_msg("case %zu: '%s' is not in the message", i, cases[i].place);
+        assert_null(strstr(bench.report.message, "user_1_"));
+        assert_null(strchr(bench.report.message, '\n'));
     }
+    /* the programs that trace say the same */
+    assert_int_equal(compile(&bench, cases[0].code, PROGRAM_TRACE_ROUGH, "trace_rough"),
+                     SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(bench.report.message, cases[0].place));
+    assert_int_equal(compile(&bench, DOME_CODE, PROGRAM_PROBE_USER_SHAPE, "probe_user_shape"),
+                     SONJECT_OK);
+    bench_close(&bench);
 }
 
 /* A normal that is none must not be drawn. */
@@ -531,7 +527,7 @@ static void test_a_missing_normal_fails_the_run(void **state)
     struct bench bench;
     struct rough_trace trace;
     (void)state;
-    bench_open(&bench, NULL, ROWS, COLUMNS, RANGE);
+    bench_open(&bench, ROWS, COLUMNS, RANGE);
     sonject_object_params *object = bench_add(&bench, SONJECT_SHAPE_USER, 0.0, 0.0, 0.0);
     make_rough(object);
     object->user_shape = add_code(
@@ -574,7 +570,7 @@ static void test_sound_shapes_pass_the_check(void **state)
     };
     struct bench bench;
     (void)state;
-    bench_open(&bench, NULL, ROWS, COLUMNS, RANGE);
+    bench_open(&bench, ROWS, COLUMNS, RANGE);
     for (size_t i = 0; i < COUNT(cases); i++) {
         struct shape_check check;
         if (try_code(&bench, cases[i].code, cases[i].radius, cases[i].is_open, &check) !=
@@ -645,7 +641,7 @@ static void test_the_check_catches(void **state)
     };
     struct bench bench;
     (void)state;
-    bench_open(&bench, NULL, ROWS, COLUMNS, RANGE);
+    bench_open(&bench, ROWS, COLUMNS, RANGE);
     for (size_t i = 0; i < COUNT(cases); i++) {
         struct shape_check check;
         if (try_code(&bench, cases[i].code, cases[i].radius, cases[i].is_open, &check) !=
@@ -673,5 +669,5 @@ int main(void)
         cmocka_unit_test(test_sound_shapes_pass_the_check),
         cmocka_unit_test(test_the_check_catches),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }
