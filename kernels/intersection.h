@@ -116,7 +116,8 @@ FUNCTION int is_solid(GLOBAL const struct object_record *object)
  * cuts leave it so. */
 FUNCTION int is_convex(GLOBAL const struct object_record *object)
 {
-    return object->shape != SHAPE_TORUS && object->shape != SHAPE_OPEN_CYLINDER;
+    return object->shape != SHAPE_TORUS && object->shape != SHAPE_OPEN_CYLINDER &&
+           object->shape != SHAPE_MESH;
 }
 
 /* Plain shapes, in the object's own frame, outward, unit. */
