@@ -182,11 +182,12 @@ void corners_end(struct corners *corners)
 /* Sub-strips of first hits whose echoes may lie in the given ones. */
 static struct span launched_for(const struct corners *corners, struct span strips)
 {
-    int32_t first = strips.first;
-    int32_t end = strips.first + strips.count;
+    /* at its edge a strip may round into the next */
+    int32_t first = strips.first - 1;
+    int32_t end = strips.first + strips.count + 1;
     if (corners->is_focused) {
-        first = 2 * first - (corners->last_hits.first + corners->last_hits.count) - 2;
-        end = 2 * end - corners->last_hits.first + 2;
+        first = 2 * first - (corners->last_hits.first + corners->last_hits.count);
+        end = 2 * end - corners->last_hits.first;
     }
     const int32_t last = corners->first_hits.first + corners->first_hits.count;
     struct span launched;
