@@ -270,6 +270,192 @@ static void test_caustic(void **unused)
     }
 }
 
+static void set_rigid_seabed(struct bench *bench, double reflection)
+{
+    sonject_material_params *seabed = &bench->scene.seabed.forward;
+    seabed->reflection_kind = SONJECT_REFLECTION_CONSTANT;
+    seabed->reflection = reflection;
+    seabed->lambert = 0.0;
+}
+
+/* Puts a plate so that it mirrors sound that goes along `in` into `out`, both unit vectors. */
+static void put_mirror(struct bench *bench, uint32_t part, const double centre[3],
+                       const double in[3], const double out[3])
+{
+    double normal[3], aside[3], own_y[3];
+    mix(1.0, out, -1.0, in, normal);
+    cross(in, out, aside);
+    const double length =
+        sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
+    const double breadth = sqrt(aside[0] * aside[0] + aside[1] * aside[1] + aside[2] * aside[2]);
+    mix(1.0 / length, normal, 0.0, normal, normal);
+    mix(1.0 / breadth, aside, 0.0, aside, aside);
+    cross(normal, aside, own_y);
+    put(bench, part, centre, aside, own_y);
+}
+
+/* From one plate by way of the seabed to the other. */
+static void test_seabed_between(void **unused)
+{
+    (void)unused;
+    struct bench bench;
+    open_at(&bench, 3);
+    set_rigid_seabed(&bench, -0.7);
+    bench_add(&bench, SONJECT_SHAPE_PLANE, 0.2, 0.2, 0.0)->burial_m = -0.5;
+    bench_add(&bench, SONJECT_SHAPE_PLANE, 0.2, 0.2, 0.0)->burial_m = -0.5;
+    bench_ready(&bench);
+    const struct sight sight = sight_of(&bench, 0.25);
+    static const double down[3] = {0.6, 0.0, -0.8};
+    static const double up[3] = {0.6, 0.0, 0.8};
+    double from_sonar[3], other[3];
+    mix(-1.0, sight.to_sonar, 0.0, down, from_sonar);
+    mix(1.0, sight.middle, 0.3125, down, other);
+    mix(1.0, other, 0.3125, up, other);
+    put_mirror(&bench, 0, sight.middle, from_sonar, down);
+    put_mirror(&bench, 1, other, up, sight.to_sonar);
+    struct corner_way way = straight_way(&bench);
+    way.is_folded = true;
+    const struct face one = face_of_plane(&bench, 0);
+    const struct face two = face_of_plane(&bench, 1);
+    const double range = corner_range(&way, sight.middle, other);
+    expect_echo(further_echo(&bench, 0, 0, range),
+                -0.7 * corner_echo(&bench, &way, &one, &two, SPACING, range));
+    expect_echo(further_echo(&bench, 1, 1, range),
+                -0.7 * corner_echo(&bench, &way, &two, &one, SPACING, range));
+    bench_close(&bench);
+}
+
+/* By way of the seabed to two plates and straight home, and the reverse, which is what is traced.
+ */
+static void test_seabed_before(void **unused)
+{
+    (void)unused;
+    for (uint32_t interactions = 2; interactions <= 3; interactions++) {
+        struct bench bench;
+        open_at(&bench, interactions);
+        set_rigid_seabed(&bench, -0.7);
+        bench_add(&bench, SONJECT_SHAPE_PLANE, 0.2, 0.2, 0.0)->burial_m = -1.0;
+        bench_add(&bench, SONJECT_SHAPE_PLANE, 0.2, 0.2, 0.0)->burial_m = -1.0;
+        bench_ready(&bench);
+        const struct sight sight = sight_of(&bench, 3.0);
+        struct corner_way way = straight_way(&bench);
+        way.height_home = -way.height_out;
+        const double drop = way.height_home - sight.middle[2];
+        const double reach = hypot(sight.middle[1], drop);
+        const double from_image[3] = {0.0, sight.middle[1] / reach, -drop / reach};
+        double other[3];
+        mix(1.0, sight.middle, 0.4, sight.along, other);
+        put_mirror(&bench, 0, sight.middle, from_image, sight.along);
+        put_mirror(&bench, 1, other, sight.along, sight.to_sonar);
+        const struct face one = face_of_plane(&bench, 0);
+        const struct face two = face_of_plane(&bench, 1);
+        const double range = corner_range(&way, other, sight.middle);
+        const double complex expected =
+            2.0 * -0.7 * corner_echo(&bench, &way, &two, &one, SPACING, range);
+        const double complex measured = further_echo(&bench, 1, 1, range);
+        if (interactions == 3)
+            expect_echo(measured, expected);
+        else /* but for what plates return by way of the seabed alone */
+            expect_below("without a third interaction", cabs(measured / expected), 0.05);
+        bench_close(&bench);
+    }
+}
+
+/* The image: an upright edge focuses all of the corner on its own pixel; of one along the track
+ * each pixel has what lies within the resolution. */
+static void test_image(void **unused)
+{
+    (void)unused;
+    const double a = 0.2;
+    static const double lengths[] = {0.15, 1.0};
+    for (int upright = 0; upright < 2; upright++) {
+        struct bench bench;
+        struct echoes echoes;
+        open_at(&bench, 2);
+        const double length = lengths[1 - upright];
+        lay_dihedral(&bench, a, length, upright, 0.0);
+        bench_echoes(&bench, NULL, SEABED_FIELD_NONE, &echoes);
+        const size_t middle = (ROWS / 2) * COLUMNS + COLUMNS / 2;
+        const double expected =
+            sqrt(2.0) * a * (upright ? length : bench.tracer.response.resolution_m) / WAVELENGTH;
+        print_message("edge %s the track\n", upright ? "across" : "along");
+        expect_close("pixel, dB re 1 m^2",
+                     decibels_of_amplitude(
+                         hypot(echoes.target_real[middle], echoes.target_imaginary[middle])),
+                     decibels_of_amplitude(expected), LEVEL_DB);
+        /* each object has the half that meets it first */
+        for (uint32_t i = 0; i < 2; i++) {
+            const struct object_echo *echo = &echoes.objects[i];
+            const size_t at = (ROWS / 2) * echo->columns + COLUMNS / 2 - echo->first_column;
+            expect_close("object, dB re 1 m^2", decibels_of_energy(echo->energy[at]),
+                         decibels_of_amplitude(0.5 * expected), LEVEL_DB);
+        }
+        echoes_clear(&echoes);
+        bench_close(&bench);
+    }
+}
+
+/* In the columns of the first hit the halves of an upright corner lie on its two sides. */
+static void test_paper_columns(void **unused)
+{
+    (void)unused;
+    struct bench bench;
+    struct echoes echoes;
+    open_at(&bench, 2);
+    bench.scene.injection.column_rule = SONJECT_COLUMNS_PAPER;
+    lay_dihedral(&bench, 0.3, 0.15, true, 0.0);
+    bench_echoes(&bench, NULL, SEABED_FIELD_NONE, &echoes);
+    const double expected = 0.15 * bench.tracer.response.resolution_m / WAVELENGTH;
+    for (int row = -4; row <= 4; row += 8) { /* of 0.21 m, on the face that sound meets there */
+        const size_t at = (size_t)(ROWS / 2 + row) * COLUMNS + COLUMNS / 2;
+        expect_close(
+            "pixel, dB re 1 m^2",
+            decibels_of_amplitude(hypot(echoes.target_real[at], echoes.target_imaginary[at])),
+            decibels_of_amplitude(expected), LEVEL_DB);
+    }
+    echoes_clear(&echoes);
+    bench_close(&bench);
+}
+
+static void expect_same_line(const struct echo_line *a, const struct echo_line *b)
+{
+    assert_int_equal(a->bins, b->bins);
+    assert_memory_equal(a->real_part, b->real_part, a->bins * sizeof *a->real_part);
+    assert_memory_equal(a->imaginary_part, b->imaginary_part, a->bins * sizeof *a->imaginary_part);
+}
+
+/* Not a bit changes where sound cannot meet a second smooth face: a convex part alone, or beside a
+ * rough one, or with one interaction. */
+static void test_unchanged(void **unused)
+{
+    (void)unused;
+    struct echo_line before = {0, 0.0, 0.0, NULL, NULL};
+    for (int i = 0; i < 5; i++) {
+        static const uint32_t interactions[] = {1, 2, 5, 4, 1};
+        struct bench bench;
+        open_at(&bench, interactions[i]);
+        bench_add(&bench, SONJECT_SHAPE_CAPSULE, 0.6, 0.0, 0.3)->heading_rad = 0.05;
+        if (i >= 3) {
+            sonject_object_params *box = bench_add(&bench, SONJECT_SHAPE_BOX, 0.3, 0.3, 0.0);
+            box->height_m = 0.3;
+            box->position_kind = SONJECT_POSITION_METRES;
+            box->position_range = RANGE + 1.5;
+            if (i == 3) {
+                box->material.reflection = 0.0;
+                box->material.lambert = 0.1;
+            }
+        }
+        bench_ready(&bench);
+        struct echo_line line = bench_glint_line(&bench, 0);
+        if (i > 0)
+            expect_same_line(&line, &before);
+        echo_line_clear(&before);
+        before = line;
+        bench_close(&bench);
+    }
+    echo_line_clear(&before);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -277,6 +463,11 @@ int main(void)
         cmocka_unit_test(test_dihedral_off_its_bisector),
         cmocka_unit_test(test_sphere_and_plate),
         cmocka_unit_test(test_caustic),
+        cmocka_unit_test(test_seabed_between),
+        cmocka_unit_test(test_seabed_before),
+        cmocka_unit_test(test_image),
+        cmocka_unit_test(test_paper_columns),
+        cmocka_unit_test(test_unchanged),
     };
     char names[BENCH_DEVICES][128];
     const size_t devices = bench_devices(names);
