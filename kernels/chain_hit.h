@@ -100,10 +100,12 @@ FUNCTION real scattering_at(const struct fan_record *fan, GLOBAL const struct ch
     return scattering;
 }
 
-/* A point off the surface by more than its rounding, less than anything that throws a shadow. */
+/* m: more than a hit's rounding, less than anything that throws a shadow. */
+#define START_OFF_SURFACE 2.0e-5f
+
 FUNCTION struct vector3 start_from(const struct chain_hit *hit)
 {
-    return along3(hit->point, hit->normal, SPLAT(2.0e-5f));
+    return along3(hit->point, hit->normal, SPLAT(START_OFF_SURFACE));
 }
 
 /* Whether nothing is between a hit and a point that lies `path` away. */

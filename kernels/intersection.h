@@ -123,7 +123,8 @@ FUNCTION int is_convex(GLOBAL const struct object_record *object)
     if (object->shape == SHAPE_USER)
         return 0;
 #endif
-    return object->shape != SHAPE_TORUS && object->shape != SHAPE_OPEN_CYLINDER;
+    return object->shape != SHAPE_TORUS && object->shape != SHAPE_OPEN_CYLINDER &&
+           object->shape != SHAPE_MESH;
 }
 
 /* Plain shapes, in the object's own frame, outward, unit. */

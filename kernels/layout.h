@@ -34,6 +34,7 @@ enum random_stream {
     STREAM_CHAIN_RAYS = 2050,    /* + first surface: part, -1 the seabed, -2 any */
     STREAM_MIRRORED_RAYS = 4096, /* + STREAMS_OF_PAIR * number of the pair of sources + part */
     STREAM_MIRRORED_ROUGH_RAYS = 1048576, /* likewise */
+    STREAM_CORNER_RAYS = 2097152,         /* likewise; the sonar alone is pair 0 */
     STREAMS_OF_PAIR = 1024
 };
 
@@ -242,6 +243,15 @@ struct source_pair_record {
     struct source_record outgoing, returning;
     struct mirror_record mirrors[MIRROR_KINDS];
     float echoes; /* 2 where the reverse path is an echo of its own, else 1 */
+};
+
+/* How paths over several smooth faces are followed, and the strips whose echoes are tallied. */
+struct corner_record {
+    RECORD_INT interactions; /* most surfaces that a path may meet between its sources */
+    RECORD_INT is_focused;   /* echoes go to the mean of first and last hit, else to the first */
+    RECORD_INT tally_first_strip;
+    RECORD_INT tally_strips;
+    struct surface_record seabed; /* a mirror between two hits; else without a smooth part */
 };
 
 /* What a work-item counted. */

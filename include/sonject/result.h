@@ -68,9 +68,11 @@ SONJECT_API sonject_status sonject_result_layer(const sonject_result *result, so
 
 /* Copies the expected cross-section in m^2, as SONJECT_LAYER_ENERGY counts it, of the paths that
  * meet exactly `order` surfaces, 1...interactions: float, rows x columns, packed, into buffer of
- * exactly that many bytes. Echoes of an object by way of mirrors (sea surface, smooth seabed) are
- * in order 1, with which they interfere. Kept where the scene's injection asked for order_energies;
- * all orders add up to that layer. Errors: ARGUMENT (not asked for, no such order, wrong size). */
+ * exactly that many bytes. Echoes of an object by way of mirrors (sea surface, smooth seabed) and
+ * over several smooth faces are in order 1, with which they interfere; what two objects return
+ * together counts for each of them as the half that meets it first. Kept where the scene's
+ * injection asked for order_energies; all orders add up to that layer. Errors: ARGUMENT (not asked
+ * for, no such order, wrong size). */
 SONJECT_API sonject_status sonject_result_order_energy(const sonject_result *result, uint32_t order,
                                                        void *buffer, size_t bytes);
 

@@ -21,6 +21,14 @@ static sonject_status begin_mirrored(struct glints *glints, struct tracer *trace
     return SONJECT_OK;
 }
 
+static sonject_status begin_corners(struct glints *glints, struct tracer *tracer, uint32_t object)
+{
+    const sonject_status status = corners_begin(&glints->corners, tracer, object);
+    glints->grid.strips = span_join(glints->grid.strips, glints->corners.grid.strips);
+    glints->grid.bins = span_join(glints->grid.bins, glints->corners.grid.bins);
+    return status;
+}
+
 sonject_status glints_begin(struct glints *glints, struct tracer *tracer, uint32_t object)
 {
     memset(glints, 0, sizeof *glints);
@@ -35,6 +43,8 @@ sonject_status glints_begin(struct glints *glints, struct tracer *tracer, uint32
         if (glints->grid.strips.count > 0)
             status = begin_mirrored(glints, tracer, object);
     }
+    if (status == SONJECT_OK)
+        status = begin_corners(glints, tracer, object);
     if (status == SONJECT_OK) {
         const size_t chunk = (size_t)glints_chunk(glints) * (size_t)glints->grid.bins.count;
         glints->real_part = allocate_array(chunk, sizeof(float));
@@ -51,6 +61,7 @@ void glints_end(struct glints *glints)
 {
     for (size_t i = 0; i < glints->count; i++)
         smooth_trace_end(&glints->traces[i]);
+    corners_end(&glints->corners);
     free(glints->traces);
     free(glints->real_part);
     free(glints->imaginary_part);
@@ -64,17 +75,19 @@ int32_t glints_chunk(const struct glints *glints)
         const int32_t one = smooth_trace_chunk(&glints->traces[i]);
         chunk = one < chunk ? one : chunk;
     }
+    if (glints->corners.count > 0 && glints->corners.chunk < chunk)
+        chunk = glints->corners.chunk;
     return chunk;
 }
 
-/* Adds one trace's bins to those of the common grid. */
+/* Adds one trace's bins to those of the common grid, from a line of the planes on. */
 static void add_bins(const struct glints *glints, const struct smooth_trace *trace, int32_t strips,
-                     float *real_part, float *imaginary_part)
+                     size_t first_line, float *real_part, float *imaginary_part)
 {
     const size_t width = (size_t)trace->grid.bins.count;
     const size_t offset = (size_t)(trace->grid.bins.first - glints->grid.bins.first);
     for (size_t strip = 0; strip < (size_t)strips; strip++) {
-        const size_t at = strip * (size_t)glints->grid.bins.count + offset;
+        const size_t at = (first_line + strip) * (size_t)glints->grid.bins.count + offset;
         for (size_t bin = 0; bin < width; bin++) {
             real_part[at + bin] += glints->real_part[strip * width + bin];
             imaginary_part[at + bin] += glints->imaginary_part[strip * width + bin];
@@ -86,16 +99,20 @@ sonject_status glints_trace(struct glints *glints, struct tracer *tracer, struct
                             float *real_part, float *imaginary_part)
 {
     const size_t bytes = (size_t)strips.count * (size_t)glints->grid.bins.count * sizeof *real_part;
-    if (glints->count == 1)
+    if (glints->count == 1 && glints->corners.count == 0)
         return smooth_trace_strips(&glints->traces[0], tracer, strips, real_part, imaginary_part);
     memset(real_part, 0, bytes);
     memset(imaginary_part, 0, bytes);
     for (size_t i = 0; i < glints->count; i++) {
+        const struct span some = span_overlap(strips, glints->traces[i].grid.strips);
+        if (some.count == 0)
+            continue;
         const sonject_status status = smooth_trace_strips(
-            &glints->traces[i], tracer, strips, glints->real_part, glints->imaginary_part);
+            &glints->traces[i], tracer, some, glints->real_part, glints->imaginary_part);
         if (status != SONJECT_OK)
             return status;
-        add_bins(glints, &glints->traces[i], strips.count, real_part, imaginary_part);
+        add_bins(glints, &glints->traces[i], some.count, (size_t)(some.first - strips.first),
+                 real_part, imaginary_part);
     }
-    return SONJECT_OK;
+    return corners_add(&glints->corners, tracer, strips, &glints->grid, real_part, imaginary_part);
 }

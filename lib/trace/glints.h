@@ -1,14 +1,16 @@
-/* All of one object's glints, straight and by way of mirrors, which interfere: one trace for each
- * pair of sources, added up on one grid. */
+/* All of one object's glints, straight, by way of mirrors and by way of further smooth faces, which
+ * interfere: one trace for each pair of sources, added up on one grid. */
 #ifndef SONJECT_TRACE_GLINTS_H
 #define SONJECT_TRACE_GLINTS_H
 
+#include "trace/corners.h"
 #include "trace/smooth.h"
 
 struct glints {
-    struct line_grid grid;       /* that holds every trace's bins; all have the same sub-strips */
+    struct line_grid grid;       /* that holds every trace's strips and bins */
     struct smooth_trace *traces; /* owned; the straight one is the first */
     size_t count;
+    struct corners corners;            /* owned */
     float *real_part, *imaginary_part; /* owned; a chunk of one trace */
 };
 

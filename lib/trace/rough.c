@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "trace/corners.h"
 #include "trace/patch_fan.h"
 #include "trace/source_pairs.h"
 
@@ -42,7 +43,8 @@ static struct span part_bins(const struct rough_trace *trace, const struct trace
     struct span bins;
     bins.first = (int32_t)fmin(fmax(first, trace->grid.bins.first), limit);
     bins.count = (int32_t)fmax(0.0, fmin(last + 1.0, limit) - bins.first);
-    return bins;
+    return span_overlap(span_join(bins, corner_bins(tracer, number, &trace->grid)),
+                        trace->grid.bins);
 }
 
 static struct span part_strips(const struct rough_trace *trace, const struct tracer *tracer,

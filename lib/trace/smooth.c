@@ -8,13 +8,11 @@
 #include "cl/launch.h"
 #include "trace/object_rays.h"
 
-#define STRIP_WAVELENGTHS  0.25  /* widest sub-strip: wider ones alias glints (physics.md 2) */
-#define CELL_WAVELENGTHS   0.125 /* spacing of rays on the wavefront */
-#define BINS_PER_DEVIATION 16.0  /* linear sharing between bins then errs by 5e-4 */
-#define MIRRORED_STRIPS    64    /* of a launch: there may be dozens of pairs at a time */
+#define STRIP_WAVELENGTHS  0.25 /* widest sub-strip: wider ones alias glints (physics.md 2) */
+#define BINS_PER_DEVIATION 16.0 /* linear sharing between bins then errs by 5e-4 */
+#define MIRRORED_STRIPS    64   /* of a launch: there may be dozens of pairs at a time */
 
-/* Sizes of sub-strips and bins, and the sub-strips that the object covers. */
-static void lay_strips(struct line_grid *grid, const struct tracer *tracer, uint32_t number)
+void glint_strips_lay(struct line_grid *grid, const struct tracer *tracer, uint32_t number)
 {
     static const double along[3] = {1.0, 0.0, 0.0};
     const struct patch_view *view = &tracer->view;
@@ -32,23 +30,23 @@ static void lay_strips(struct line_grid *grid, const struct tracer *tracer, uint
         grid->strips.first;
 }
 
-static void lay_fan(struct smooth_trace *trace, const struct tracer *tracer, uint32_t number,
-                    const struct water_way *way)
+void glint_fan_lay(struct fan_record *fan, const struct tracer *tracer, uint32_t number,
+                   const struct water_way *way, double finer)
 {
     const struct placement *placement = &tracer->placements[number];
     const double radius =
         water_way_ray(way, water_way_grazing(way, placement->centre[1], placement->centre[2]),
                       placement->centre[2])
             .wavefront_m;
-    const double cell =
-        CELL_WAVELENGTHS * tracer->view.wavelength_m / sqrt(tracer->scene->injection.ray_scale);
+    const double cell = GLINT_CELL_WAVELENGTHS * tracer->view.wavelength_m /
+                        sqrt(tracer->scene->injection.ray_scale) / finer;
     const struct elevations edges = elevations_of_object(tracer, number, way);
     const double rays = ceil((edges.highest - edges.lowest) * radius / cell) + 1.0;
-    trace->fan.rays = (uint32_t)rays;
-    trace->fan.first_elevation = (float)edges.lowest;
-    trace->fan.elevation_step = (float)((edges.highest - edges.lowest) / rays);
-    trace->fan.strata = (uint32_t)ceil(trace->fan.strip_width / cell - 1e-6);
-    trace->fan.only_object = (int32_t)number;
+    fan->rays = (uint32_t)rays;
+    fan->first_elevation = (float)edges.lowest;
+    fan->elevation_step = (float)((edges.highest - edges.lowest) / rays);
+    fan->strata = (uint32_t)ceil(fan->strip_width / cell - 1e-6);
+    fan->only_object = (int32_t)number;
 }
 
 static void choose_quanta(struct smooth_trace *trace, const struct tracer *tracer)
@@ -86,11 +84,11 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
         return SONJECT_OK;
     /* the frame is centred on the object: phases then keep their digits */
     const double *origin = tracer->placements[number].centre;
-    lay_strips(&trace->grid, tracer, number);
+    glint_strips_lay(&trace->grid, tracer, number);
     trace->grid.bins = source_pair_bins(tracer, number, &straight, &trace->grid);
     fan_record_init(&trace->fan, tracer, origin, &trace->grid);
     trace->fan.stream = STREAM_SMOOTH_RAYS + number;
-    lay_fan(trace, tracer, number, &sonar.way);
+    glint_fan_lay(&trace->fan, tracer, number, &sonar.way, 1.0);
     choose_quanta(trace, tracer);
     sonject_status status =
         object_rays_add(&trace->rays, tracer, number, &sonar.way, &trace->fan.table);
@@ -107,14 +105,14 @@ sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tr
     const struct placement *placement = &tracer->placements[number];
     struct source_pair_record sources;
     memset(trace, 0, sizeof *trace);
-    lay_strips(&trace->grid, tracer, number);
+    glint_strips_lay(&trace->grid, tracer, number);
     trace->grid.bins = source_pair_bins_in_patch(tracer, number, pair, &trace->grid);
     if (trace->grid.bins.count == 0)
         return SONJECT_OK;
     sonject_status status =
         source_pair_aim(&trace->fan, &sources, &trace->rays, tracer, number, pair, &trace->grid);
     trace->fan.stream = STREAM_MIRRORED_RAYS + STREAMS_OF_PAIR * pair->number + number;
-    lay_fan(trace, tracer, number, &pair->outgoing->way);
+    glint_fan_lay(&trace->fan, tracer, number, &pair->outgoing->way, 1.0);
     choose_quanta(trace, tracer);
     const int32_t strips =
         trace->grid.strips.count < MIRRORED_STRIPS ? trace->grid.strips.count : MIRRORED_STRIPS;

@@ -5,6 +5,8 @@
 #include "trace/source_pairs.h"
 #include "trace/tracer.h"
 
+#define GLINT_CELL_WAVELENGTHS 0.125 /* spacing of rays on the wavefront */
+
 struct smooth_trace {
     struct line_grid grid;       /* that the object covers */
     double amplitude_of_quantum; /* m */
@@ -13,6 +15,14 @@ struct smooth_trace {
     struct trace_device on_device;
     cl_mem sources; /* source_pair_record; NULL: straight there and back */
 };
+
+/* Sizes of sub-strips and bins, and the sub-strips that a part covers. */
+void glint_strips_lay(struct line_grid *grid, const struct tracer *tracer, uint32_t part);
+
+/* Rays of a fan, whose strips are known, from a source to a part; `finer` than glints need them by
+ * that factor each way, >= 1. */
+void glint_fan_lay(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
+                   const struct water_way *way, double finer);
 
 /* Prepares a trace of one object's glints; as rough_trace_begin. An object without a smooth part
  * has grid.strips.count 0 and nothing to trace. */

@@ -59,7 +59,12 @@ struct span source_pair_bins(const struct tracer *tracer, uint32_t object,
 struct span source_pair_bins_in_patch(const struct tracer *tracer, uint32_t object,
                                       const struct source_pair *pair, const struct line_grid *grid)
 {
-    struct span bins = source_pair_bins(tracer, object, pair, grid);
+    return bins_in_patch(tracer, grid, source_pair_bins(tracer, object, pair, grid));
+}
+
+struct span bins_in_patch(const struct tracer *tracer, const struct line_grid *grid,
+                          struct span bins)
+{
     const int32_t pulse = pulse_reach_bins(&tracer->view, &tracer->response, grid->bins_per_pixel);
     const int32_t end_of_patch =
         (int32_t)((tracer->view.columns - 1) * grid->bins_per_pixel) + 1 + pulse;
@@ -145,6 +150,17 @@ struct span span_join(struct span one, struct span other)
     struct span both;
     both.first = one.first < other.first ? one.first : other.first;
     both.count = (end > other_end ? end : other_end) - both.first;
+    return both;
+}
+
+struct span span_overlap(struct span one, struct span other)
+{
+    const int32_t end = one.first + one.count;
+    const int32_t other_end = other.first + other.count;
+    struct span both;
+    both.first = one.first > other.first ? one.first : other.first;
+    both.count = (end < other_end ? end : other_end) - both.first;
+    both.count = both.count > 0 ? both.count : 0;
     return both;
 }
 

@@ -37,6 +37,10 @@ struct span source_pair_bins(const struct tracer *tracer, uint32_t object,
 struct span source_pair_bins_in_patch(const struct tracer *tracer, uint32_t object,
                                       const struct source_pair *pair, const struct line_grid *grid);
 
+/* What of some bins, of the grid's size, has a pulse that reaches the patch. */
+struct span bins_in_patch(const struct tracer *tracer, const struct line_grid *grid,
+                          struct span bins);
+
 /* The bins in the patch of all the object's pairs but the straight one; count 0 if there is none.
  */
 struct span mirrored_bins(const struct tracer *tracer, uint32_t object,
@@ -44,6 +48,9 @@ struct span mirrored_bins(const struct tracer *tracer, uint32_t object,
 
 /* The smallest span that holds both; a span of count 0 holds nothing. */
 struct span span_join(struct span one, struct span other);
+
+/* What both hold. */
+struct span span_overlap(struct span one, struct span other);
 
 /* Fills in the pair's record, and a fan from the outgoing source, in a frame centred on the
  * object. The fan as fan_record_init, its bins and phases those of half the path. Appends the rays

@@ -1,0 +1,74 @@
+/* How a surface's normal turns from one of its points to the next: by differences of the shapes'
+ * own normals, so that every shape has it (kernels/MATH.md, "Corners"). */
+#ifndef SONJECT_KERNELS_CURVATURE_H
+#define SONJECT_KERNELS_CURVATURE_H
+
+#include "chain_hit.h"
+
+/* Of the bounding radius: so small that the square of it does not count, so large that the normals'
+ * rounding (6e-8) does not. */
+#define CURVATURE_STEP 5.0e-4f
+
+APART struct vector3 own_normal(GLOBAL const struct object_record *object, struct vector3 point,
+                                struct vector3 direction)
+{
+#ifdef WITH_USER_SHAPES
+    if (object->shape == SHAPE_USER)
+        return user_object_normal(object, point, direction);
+#endif
+    return shape_normal(object, point, direction);
+}
+
+/* Change of one object's normal, in its own frame, for a shift on the tangent plane of a point. The
+ * face of a cut is flat: there the shape's normal is not the hit's. Beside an edge the two sides
+ * differ; the one that bends less is the hit's own face. */
+FUNCTION struct vector3 own_normal_change(GLOBAL const struct object_record *object,
+                                          struct vector3 point, struct vector3 normal,
+                                          struct vector3 direction, struct vector3 shift)
+{
+    const real length = larger(SQUARE_ROOT(dot3(shift, shift)), SPLAT(1.0e-12f));
+    const real step = CURVATURE_STEP * object->bounding_radius / length;
+    const struct vector3 here = own_normal(object, point, direction);
+    const struct vector3 ahead = own_normal(object, along3(point, shift, step), direction);
+    const struct vector3 behind = own_normal(object, along3(point, shift, -step), direction);
+    const struct vector3 forth = along3(ahead, here, -1.0f);
+    const struct vector3 back = along3(here, behind, -1.0f);
+    const real square_forth = dot3(forth, forth);
+    const real square_back = dot3(back, back);
+    const struct vector3 unlike = along3(forth, back, -1.0f);
+    const mask is_even = MASK_OF(dot3(unlike, unlike) <= 0.25f * (square_forth + square_back));
+    struct vector3 change = choose3(MASK_OF(square_forth < square_back), forth, back);
+    change = choose3(is_even, along3(back, unlike, 0.5f), change);
+    /* the hit's normal is on the side that the ray is on, which may be the inner one */
+    const real side = CHOOSE(MASK_OF(dot3(here, normal) < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
+    const struct vector3 off = along3(normal, here, -side);
+    const mask is_own = MASK_OF(dot3(off, off) < 1.0e-4f);
+    const real scale = CHOOSE(is_own, side / step, SPLAT(0.0f));
+    change.x = change.x * scale;
+    change.y = change.y * scale;
+    change.z = change.z * scale;
+    return change;
+}
+
+/* Change of a hit's normal for a shift on its tangent plane. Seabed and facets are flat. */
+FUNCTION struct vector3 normal_change_at(GLOBAL const struct object_record *objects, int count,
+                                         const struct chain_hit *hit, struct vector3 shift)
+{
+    struct vector3 change;
+    change.x = change.y = change.z = SPLAT(0.0f);
+    for (int i = 0; i < count; i++) {
+        GLOBAL const struct object_record *object = &objects[i];
+        const mask here = hit->is_hit & MASK_OF(hit->surface == i);
+        if (object->shape == SHAPE_MESH || !ANY(here))
+            continue;
+        const struct vector3 turned = out_of_object(
+            object, own_normal_change(object, into_object(object, from_centre(object, hit->point)),
+                                      into_object(object, hit->normal),
+                                      into_object(object, reversed3(hit->back)),
+                                      into_object(object, shift)));
+        change = choose3(here, turned, change);
+    }
+    return change;
+}
+
+#endif

@@ -1,0 +1,278 @@
+/* The coherent part of several smooth faces one after the other: mirror bounces, and physical
+ * optics at the last hit (kernels/MATH.md, "Corners"). The fan goes out from one source of a pair,
+ * the echo comes home to the other; both may be the sonar itself. */
+#ifndef SONJECT_KERNELS_TRACE_CORNERS_H
+#define SONJECT_KERNELS_TRACE_CORNERS_H
+
+#include "chain_echo.h"
+#include "corner_home.h"
+#include "curvature.h"
+#include "trace_smooth.h"
+#include "tube.h"
+
+/* One group of paths under way. */
+struct corner_path {
+    struct chain_hit hit;
+    struct tube tube;
+    real range;           /* from the outgoing source to the first hit less the source's range */
+    real length;          /* from the first hit to this one */
+    real first_x;         /* along-track, of the first hit */
+    real first_reach;     /* as struct chain has it */
+    real first_wavefront; /* width per rad of elevation at the first hit */
+    real first_spreading; /* of the amplitude on the way there, 1/m */
+    real reflection_real, reflection_imaginary; /* of all bounces and mirrors so far */
+    mask is_alive;
+};
+
+/* Echoes of one group and the strips of the whole track that they belong to. */
+struct corner_echo {
+    struct smooth_echo echo;
+    int strip[WIDTH];
+};
+
+FUNCTION void begin_corner(const struct fan_record *fan,
+                           GLOBAL const struct source_pair_record *pair,
+                           GLOBAL const struct object_record *objects,
+                           const struct wavefront_cell *cell, struct corner_path *path,
+                           struct outcome_record *outcome)
+{
+    GLOBAL const struct object_record *object = &objects[fan->only_object];
+    const struct fan_ray *ray = &cell->ray;
+    const struct mirrored_hit first = find_mirrored_hit(fan, pair, object, ray, cell->is_ray);
+    path->first_wavefront = ray->wavefront + (first.range - ray->range_at_closest);
+    path->hit.point = first.point;
+    path->hit.normal = first.normal;
+    path->hit.back = reversed3(ray->direction);
+    path->hit.surface = WHOLE_OF(SPLAT((float)fan->only_object));
+    path->hit.left_behind = is_convex(object) ? path->hit.surface : WHOLE_OF(SPLAT(-1.0f));
+    const struct leg out =
+        follow_leg(pair, &pair->outgoing, objects, fan->objects, start_from(&path->hit),
+                   path->hit.back, path->first_wavefront, first.is_hit);
+    outcome->queries += count_lanes(first.is_hit);
+    path->is_alive = out.is_open;
+    path->hit.is_hit = out.is_open;
+    path->reflection_real = out.reflection_real;
+    path->reflection_imaginary = out.reflection_imaginary;
+    path->range = first.range;
+    path->length = SPLAT(0.0f);
+    path->first_x = ray->closest.x;
+    path->first_reach = fan->reference_range + first.range;
+    path->first_spreading = 1.0f / path->first_reach;
+    if (fan->table.pieces > 0) {
+        const real ground = fan->table.ground_range + first.point.y;
+        path->first_reach = ground / ray->direction.y;
+        path->first_spreading = SQUARE_ROOT(ray->spreading / (ground * path->first_wavefront));
+    }
+    const real inverse = 1.0f / path->first_wavefront;
+    path->tube.along.offset.x = SPLAT(1.0f);
+    path->tube.along.offset.y = path->tube.along.offset.z = SPLAT(0.0f);
+    path->tube.along.turn.x = path->tube.along.turn.y = path->tube.along.turn.z = SPLAT(0.0f);
+    path->tube.across.offset = ray->upward;
+    path->tube.across.turn.x = SPLAT(0.0f);
+    path->tube.across.turn.y = ray->upward.y * inverse;
+    path->tube.across.turn.z = ray->upward.z * inverse;
+}
+
+/* Coherent reflection of the surfaces that the paths are at; paths whose surface has no smooth part
+ * end there. */
+FUNCTION void reflection_of_hit(const struct fan_record *fan,
+                                GLOBAL const struct corner_record *corners,
+                                GLOBAL const struct object_record *objects,
+                                const struct chain_hit *hit, real cosine, mask *is_alive,
+                                real *real_part, real *imaginary_part)
+{
+    *real_part = SPLAT(0.0f);
+    *imaginary_part = SPLAT(0.0f);
+    mask is_smooth = *is_alive & 0;
+    for (int i = -1; i < fan->objects; i++) {
+        GLOBAL const struct surface_record *surface =
+            i < 0 ? &corners->seabed : &objects[i].surface;
+        const mask here = *is_alive & MASK_OF(hit->surface == i);
+        if (!has_smooth_part(surface) || !ANY(here))
+            continue;
+        real one_real, one_imaginary;
+        smooth_reflection(surface, cosine, &one_real, &one_imaginary);
+        *real_part = CHOOSE(here, one_real, *real_part);
+        *imaginary_part = CHOOSE(here, one_imaginary, *imaginary_part);
+        is_smooth = is_smooth | here;
+    }
+    *is_alive = is_smooth;
+}
+
+/* The mirror bounce at a hit, and the way to the next one. */
+FUNCTION void bounce_on(const struct fan_record *fan, GLOBAL const struct corner_record *corners,
+                        GLOBAL const struct object_record *objects, struct corner_path *path,
+                        struct outcome_record *outcome)
+{
+    const struct chain_hit *hit = &path->hit;
+    const real cosine = larger(dot3(hit->normal, hit->back), SPLAT(1.0e-4f));
+    const struct vector3 came = reversed3(hit->back);
+    real one_real, one_imaginary;
+    reflection_of_hit(fan, corners, objects, hit, cosine, &path->is_alive, &one_real,
+                      &one_imaginary);
+    if (!ANY(path->is_alive))
+        return;
+    const real was_real = path->reflection_real;
+    path->reflection_real = was_real * one_real - path->reflection_imaginary * one_imaginary;
+    path->reflection_imaginary = was_real * one_imaginary + path->reflection_imaginary * one_real;
+    struct vector3 nothing;
+    nothing.x = nothing.y = nothing.z = SPLAT(0.0f);
+    struct tube_side *sides[2];
+    sides[0] = &path->tube.along;
+    sides[1] = &path->tube.across;
+    for (int i = 0; i < 2; i++) {
+        const struct vector3 shift = offset_on_surface(sides[i], came, hit->normal, cosine);
+        mirror_side(sides[i], came, hit->normal, cosine,
+                    normal_change_at(objects, fan->objects, hit, shift));
+    }
+    const struct vector3 direction = mirrored3(came, hit->normal);
+    outcome->queries += count_lanes(path->is_alive);
+    const struct chain_hit next = find_chain_hit(fan, objects, start_from(hit), direction, 0.0f,
+                                                 hit->left_behind, path->is_alive);
+    turn_by_caustics(&path->tube, direction, next.distance, &path->reflection_real,
+                     &path->reflection_imaginary);
+    transfer_tube(&path->tube, next.distance);
+    /* the way begins off the surface, where the wave is so much later */
+    path->length = path->length + (next.distance + START_OFF_SURFACE * cosine);
+    path->hit = next;
+    path->is_alive = next.is_hit & is_narrow(&path->tube);
+    /* what has ended stays finite */
+    for (int i = 0; i < 2; i++) {
+        sides[i]->offset = choose3(path->is_alive, sides[i]->offset, nothing);
+        sides[i]->turn = choose3(path->is_alive, sides[i]->turn, nothing);
+    }
+}
+
+/* The whole path's gradient along one side of the tube at the last hit, home being the way to the
+ * source at receiver_x. The source moves along: dx/2 with each of both hits in focused columns,
+ * else with the first (kernels/MATH.md, "Corners"). first_step: how far the first hit moves
+ * along-track.
+ */
+FUNCTION real path_gradient(const struct corner_path *path, const struct tube_side *side,
+                            struct vector3 home, real cosine, float first_step, real receiver_x,
+                            int is_focused)
+{
+    const struct vector3 direction = reversed3(path->hit.back);
+    const real onward = dot3(path->hit.normal, side->offset) / cosine;
+    const real shift = path->first_x - receiver_x;
+    const real reach = SQUARE_ROOT(path->first_reach * path->first_reach + shift * shift);
+    const real last_step = side->offset.x + onward * direction.x;
+    const real source_step = is_focused ? 0.5f * (first_step + last_step) : SPLAT(first_step);
+    return onward * (1.0f - dot3(home, direction)) - dot3(home, side->offset) +
+           home.x * source_step + shift / reach * (first_step - source_step);
+}
+
+/* The echo that the last hit sends home by physical optics. */
+FUNCTION void keep_corner_echo(const struct fan_record *fan,
+                               GLOBAL const struct ray_piece_record *pieces,
+                               GLOBAL const struct source_pair_record *pair,
+                               GLOBAL const struct corner_record *corners,
+                               GLOBAL const struct object_record *objects,
+                               const struct wavefront_cell *cell, const struct corner_path *path,
+                               struct corner_echo *kept, struct outcome_record *outcome)
+{
+    const struct chain_hit *hit = &path->hit;
+    const real last_x = CHOOSE(path->is_alive, hit->point.x, path->first_x);
+    const real receiver_x = corners->is_focused ? 0.5f * (path->first_x + last_x) : path->first_x;
+    const struct way_home home =
+        way_home(&pair->returning, pieces, hit->point, receiver_x - last_x);
+    const real cosine = larger(dot3(hit->normal, hit->back), SPLAT(1.0e-4f));
+    const real cosine_home = dot3(hit->normal, home.direction);
+    mask is_lit = path->is_alive & MASK_OF(hit->surface >= 0) & MASK_OF(cosine_home > 0.0f);
+    real one_real, one_imaginary;
+    reflection_of_hit(fan, corners, objects, hit, 0.5f * (cosine + magnitude(cosine_home)), &is_lit,
+                      &one_real, &one_imaginary);
+    const struct leg leg = follow_leg(pair, &pair->returning, objects, fan->objects,
+                                      start_from(hit), home.direction, home.length, is_lit);
+    outcome->queries += count_lanes(is_lit);
+    const real shift = path->first_x - receiver_x;
+    const real first = path->first_reach;
+    const real lengthened = shift * shift / (SQUARE_ROOT(first * first + shift * shift) + first);
+    const real range = 0.5f * (path->range + lengthened + path->length + home.excess);
+    const real half_path = 0.5f * (fan->reference_range + pair->returning.range) + range;
+    struct cell_phase phase =
+        integrate_cell(fan, cell,
+                       path_gradient(path, &path->tube.along, home.direction, cosine, 1.0f,
+                                     receiver_x, corners->is_focused),
+                       path_gradient(path, &path->tube.across, home.direction, cosine, 0.0f,
+                                     receiver_x, corners->is_focused),
+                       range, path->first_wavefront);
+    const real section =
+        magnitude(tube_section(&path->tube, reversed3(hit->back))); /* of the wavefront's */
+    phase.amplitude =
+        smaller(phase.amplitude * (0.5f * pair->echoes) * (1.0f + cosine_home / cosine) *
+                    SQUARE_ROOT(section) * (half_path * path->first_spreading) *
+                    (half_path * home.spreading),
+                SPLAT(QUANTA_LIMIT));
+    real product_real =
+        path->reflection_real * one_real - path->reflection_imaginary * one_imaginary;
+    real product_imaginary =
+        path->reflection_real * one_imaginary + path->reflection_imaginary * one_real;
+    put_smooth_echo(
+        fan, leg.is_open, phase,
+        product_real * leg.reflection_real - product_imaginary * leg.reflection_imaginary,
+        product_real * leg.reflection_imaginary + product_imaginary * leg.reflection_real,
+        &kept->echo);
+    const whole strip = strip_at(fan, receiver_x);
+    STORE_WHOLE(strip, kept->strip);
+}
+
+/* tallies: corners->tally_strips x bins x (real, imaginary). */
+FUNCTION void tally_corner_echo(const struct fan_record *fan,
+                                GLOBAL const struct corner_record *corners, GLOBAL TALLY *tallies,
+                                const struct corner_echo *kept, struct outcome_record *outcome)
+{
+    for (int lane = 0; lane < WIDTH; lane++) {
+        const int strip = kept->strip[lane] - corners->tally_first_strip;
+        if (strip >= 0 && strip < corners->tally_strips)
+            tally_smooth_echo(tallies + (long)strip * fan->bins * 2, &kept->echo, lane, outcome);
+    }
+}
+
+FUNCTION void trace_corner_group(const struct fan_record *fan,
+                                 GLOBAL const struct ray_piece_record *pieces,
+                                 GLOBAL const struct source_pair_record *pair,
+                                 GLOBAL const struct corner_record *corners,
+                                 GLOBAL const struct object_record *objects, GLOBAL TALLY *tallies,
+                                 int strip, int stratum, struct random_key key,
+                                 RECORD_WORD first_ray, struct outcome_record *outcome)
+{
+    const struct wavefront_cell cell =
+        wavefront_cell_at(fan, pieces, strip, stratum, key, first_ray);
+    struct corner_path path;
+    begin_corner(fan, pair, objects, &cell, &path, outcome);
+    for (int order = 2; order <= corners->interactions && ANY(path.is_alive); order++) {
+        bounce_on(fan, corners, objects, &path, outcome);
+        if (!ANY(path.is_alive & MASK_OF(path.hit.surface >= 0)))
+            continue;
+        struct corner_echo kept;
+        keep_corner_echo(fan, pieces, pair, corners, objects, &cell, &path, &kept, outcome);
+        tally_corner_echo(fan, corners, tallies, &kept, outcome);
+    }
+}
+
+/* Traces the share `segment` of a sub-strip's fan. */
+FUNCTION struct outcome_record trace_corners_strip(const struct fan_record *fan,
+                                                   GLOBAL const struct ray_piece_record *pieces,
+                                                   GLOBAL const struct source_pair_record *pair,
+                                                   GLOBAL const struct corner_record *corners,
+                                                   GLOBAL const struct object_record *objects,
+                                                   GLOBAL TALLY *tallies, int strip, int segment)
+{
+    struct outcome_record outcome = {0, 0, 0, 0};
+    const struct random_key key = random_key_of(fan->seed_low, fan->seed_high, fan->stream,
+                                                (RECORD_WORD)(fan->first_strip + strip));
+    const RECORD_WORD groups = (fan->rays + WIDTH - 1u) / WIDTH;
+    for (int stratum = 0; stratum < (int)fan->strata; stratum++)
+        for (RECORD_WORD group = (RECORD_WORD)segment; group < groups;
+             group += (RECORD_WORD)fan->segments) {
+            const RECORD_WORD left = fan->rays - group * WIDTH;
+            outcome.rays += left < WIDTH ? left : WIDTH;
+            trace_corner_group(fan, pieces, pair, corners, objects, tallies, strip, stratum, key,
+                               group * WIDTH, &outcome);
+        }
+    outcome.queries += outcome.rays;
+    return outcome;
+}
+
+#endif

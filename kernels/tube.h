@@ -1,0 +1,104 @@
+/* A thin tube of rays about one ray: how far, and at what angle, the rays beside it run that left
+ * the wavefront at its first hit a unit away along-track or across (kernels/MATH.md, "Corners"). */
+#ifndef SONJECT_KERNELS_TUBE_H
+#define SONJECT_KERNELS_TUBE_H
+
+#include "vector3.h"
+
+/* Both across the ray. */
+struct tube_side {
+    struct vector3 offset; /* m per m */
+    struct vector3 turn;   /* change of the direction, rad per m */
+};
+
+struct tube {
+    struct tube_side along, across;
+};
+
+/* (a x b) . c */
+FUNCTION real triple3(struct vector3 a, struct vector3 b, struct vector3 c)
+{
+    return (a.y * b.z - a.z * b.y) * c.x + (a.z * b.x - a.x * b.z) * c.y +
+           (a.x * b.y - a.y * b.x) * c.z;
+}
+
+/* Where the ray beside meets the tangent plane of a surface that the middle ray meets at the
+ * angle of that cosine. */
+FUNCTION struct vector3 offset_on_surface(const struct tube_side *side, struct vector3 direction,
+                                          struct vector3 normal, real cosine)
+{
+    return along3(side->offset, direction, dot3(normal, side->offset) / cosine);
+}
+
+FUNCTION void transfer_side(struct tube_side *side, real distance)
+{
+    side->offset = along3(side->offset, side->turn, distance);
+}
+
+FUNCTION void transfer_tube(struct tube *tube, real distance)
+{
+    transfer_side(&tube->along, distance);
+    transfer_side(&tube->across, distance);
+}
+
+FUNCTION struct vector3 mirrored3(struct vector3 v, struct vector3 normal)
+{
+    return along3(v, normal, -2.0f * dot3(v, normal));
+}
+
+/* d' = d - 2 (d.n) n, varied in d and n. direction: of the ray that comes; cosine: -(d.n);
+ * normal_change: of the surface where the ray beside meets it. */
+FUNCTION void mirror_side(struct tube_side *side, struct vector3 direction, struct vector3 normal,
+                          real cosine, struct vector3 normal_change)
+{
+    const struct vector3 turned = mirrored3(side->turn, normal);
+    side->offset = mirrored3(side->offset, normal);
+    side->turn = along3(along3(turned, normal_change, 2.0f * cosine), normal,
+                        -2.0f * dot3(direction, normal_change));
+}
+
+/* The tube's cross-section over that of the wavefront at the first hit; its sign is the hand that
+ * the sides make with the ray. */
+FUNCTION real tube_section(const struct tube *tube, struct vector3 direction)
+{
+    return triple3(tube->along.offset, tube->across.offset, direction);
+}
+
+/* Turns (real_part, imaginary_part) by -pi/2 for every point within the distance where the tube has
+ * no cross-section. A + B s + C s^2 has real roots always, since a wavefront's curvatures are real:
+ * one between ends of unlike sign; two where the ends' signs are alike and the turning point, which
+ * lies between them, is no longer of that sign (but for rounding: both roots may be one). */
+FUNCTION void turn_by_caustics(const struct tube *tube, struct vector3 direction, real distance,
+                               real *real_part, real *imaginary_part)
+{
+    const real a = tube_section(tube, direction);
+    const real b = triple3(tube->along.turn, tube->across.offset, direction) +
+                   triple3(tube->along.offset, tube->across.turn, direction);
+    const real c = triple3(tube->along.turn, tube->across.turn, direction);
+    const real end = a + distance * (b + distance * c);
+    const mask is_one = MASK_OF(a * end < 0.0f);
+    const mask is_bent = MASK_OF(magnitude(c) > 0.0f);
+    const real turning = -0.5f * b / CHOOSE(is_bent, c, SPLAT(1.0f));
+    const real there = a + 0.5f * b * turning;
+    const mask is_two = ~is_one & is_bent & MASK_OF(turning > 0.0f) & MASK_OF(turning < distance) &
+                        MASK_OF(a * c > 0.0f) & MASK_OF(there * a < 0.1f * (a * a));
+    const real was_real = *real_part;
+    const real was_imaginary = *imaginary_part;
+    *real_part = CHOOSE(is_one, was_imaginary, CHOOSE(is_two, -was_real, was_real));
+    *imaginary_part = CHOOSE(is_one, -was_real, CHOOSE(is_two, -was_imaginary, was_imaginary));
+}
+
+#define TUBE_LIMIT 1.0e4f /* a tube that has grown so much is no part of any echo */
+
+FUNCTION mask is_narrow_side(const struct tube_side *side)
+{
+    return MASK_OF(dot3(side->offset, side->offset) < TUBE_LIMIT * TUBE_LIMIT) &
+           MASK_OF(dot3(side->turn, side->turn) < TUBE_LIMIT * TUBE_LIMIT);
+}
+
+FUNCTION mask is_narrow(const struct tube *tube)
+{
+    return is_narrow_side(&tube->along) & is_narrow_side(&tube->across);
+}
+
+#endif

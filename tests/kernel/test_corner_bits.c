@@ -1,0 +1,225 @@
+/* The same bits everywhere for echoes of several smooth faces: what a device tallies, at any width
+ * and chunking, is what the same kernel functions give as plain C, one lane at a time. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "trace_corners.h"
+
+#include "cl/launch.h"
+#include "physics/bench.h"
+#include "trace/corners.h"
+
+#define ROWS    64
+#define COLUMNS 160
+
+struct variant {
+    const char *name;
+    uint32_t column_rule;
+    int seabed_is_smooth, has_layers;
+};
+
+static const struct variant variants[] = {
+    {"focused", SONJECT_COLUMNS_FOCUSED, 0, 0},
+    {"paper columns, smooth seabed and surface", SONJECT_COLUMNS_PAPER, 1, 0},
+    {"focused, smooth seabed, through layers", SONJECT_COLUMNS_FOCUSED, 1, 1},
+};
+
+static void place(sonject_object_params *object, double row, double column, double heading,
+                  double pitch, double roll)
+{
+    object->position_kind = SONJECT_POSITION_PIXELS;
+    object->position_along = row;
+    object->position_range = column;
+    object->heading_rad = heading;
+    object->pitch_rad = pitch;
+    object->roll_rad = roll;
+    object->material.reflection = 0.8;
+    object->material.roughness_m = 5e-4;
+}
+
+/* A plate that leans, a cut sphere, a torus, half a tube and a box, close to each other. */
+static void make_scene(struct bench *bench, const struct variant *variant)
+{
+    static const struct water_layer layers[] = {{0.0, 1490.0, 1.02}, {3.0, 1530.0, 1.0}};
+    struct scene *scene = &bench->scene;
+    place(bench_add(bench, SONJECT_SHAPE_PLANE, 0.5, 0.4, 0.0), 30.0, 70.0, 0.2, 0.1, 0.9);
+    sonject_object_params *sphere = bench_add(bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.3);
+    place(sphere, 24.0, 55.0, 0.0, 0.0, 0.0);
+    sphere->cuts[0].azimuth_rad = 1.0;
+    sphere->cuts[0].elevation_rad = 0.3;
+    sphere->cuts[0].distance_m = 0.1;
+    sphere->cut_count = 1;
+    sonject_object_params *torus = bench_add(bench, SONJECT_SHAPE_TORUS, 0.0, 0.0, 0.5);
+    torus->height_m = 0.12;
+    place(torus, 44.0, 60.0, 0.3, 1.0, 0.0);
+    sonject_object_params *tube = bench_add(bench, SONJECT_SHAPE_CYLINDER, 0.4, 0.0, 0.4);
+    place(tube, 20.0, 85.0, 1.3, 0.1, 0.0);
+    tube->nose_end = SONJECT_END_OPEN;
+    tube->tail_end = SONJECT_END_SPHERICAL;
+    tube->tail_end_depth_m = 0.05;
+    sonject_object_params *box = bench_add(bench, SONJECT_SHAPE_BOX, 0.4, 0.3, 0.0);
+    box->height_m = 0.3;
+    place(box, 40.0, 80.0, 0.7, 0.0, 0.0);
+    if (variant->has_layers)
+        bench_set_layers(bench, layers, 2);
+    if (variant->seabed_is_smooth) {
+        scene->seabed.forward.reflection_kind = SONJECT_REFLECTION_FLUID;
+        scene->seabed.forward.density_ratio = 1.8;
+        scene->seabed.forward.speed_ratio = 1.15;
+        scene->seabed.forward.loss = 0.016;
+        scene->surface.water_depth_m = 12.0;
+    }
+    scene->injection.interactions = 4;
+    scene->injection.column_rule = variant->column_rule;
+    scene->injection.ray_scale = 0.1;
+    scene->injection.seed = 0xfedcba9876543210u;
+    bench_ready(bench);
+}
+
+/* Tallies of one pair of sources and one first part, whatever the chunking. */
+struct tallies {
+    size_t count;
+    int64_t *sums;
+    uint64_t impulses; /* of all strips at once */
+};
+
+static struct tallies tallies_of(const struct corners *corners, const struct corner_trace *trace)
+{
+    struct tallies tallies = {2 * (size_t)corners->grid.strips.count * (size_t)trace->bins.count,
+                              NULL, 0};
+    tallies.sums = calloc(tallies.count, sizeof *tallies.sums);
+    assert_non_null(tallies.sums);
+    return tallies;
+}
+
+static struct tallies trace_on_device(struct bench *bench, struct corners *corners, size_t number,
+                                      int32_t wanted_chunk)
+{
+    struct corner_trace *trace = &corners->traces[number];
+    struct tallies tallies = tallies_of(corners, trace);
+    const size_t line = 2 * (size_t)trace->bins.count;
+    const int32_t count = corners->grid.strips.count;
+    const int32_t chunk = wanted_chunk < corners->chunk ? wanted_chunk : corners->chunk;
+    bench->tracer.counts.impulses = 0;
+    for (int32_t done = 0; done < count; done += chunk) {
+        const int32_t left = count - done;
+        const struct span strips = {corners->grid.strips.first + done, left < chunk ? left : chunk};
+        if (corner_trace_strips(corners, &bench->tracer, number, strips, corners->real_part,
+                                corners->imaginary_part) != SONJECT_OK ||
+            buffer_read(&bench->report, bench->tracer.device, corners->tallies, 0,
+                        (size_t)strips.count * line * sizeof(int64_t),
+                        tallies.sums + (size_t)done * line) != SONJECT_OK)
+            fail_msg("%s", bench->report.message);
+    }
+    tallies.impulses = bench->tracer.counts.impulses;
+    return tallies;
+}
+
+/* Reads a record that a device was given, so that both work from the same one. */
+static void read_record(struct bench *bench, cl_mem buffer, void *record, size_t bytes)
+{
+    if (buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, record) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+}
+
+static struct tallies trace_as_c(struct bench *bench, struct corners *corners, size_t number)
+{
+    struct corner_trace *trace = &corners->traces[number];
+    struct tallies tallies = tallies_of(corners, trace);
+    struct object_record objects[BENCH_OBJECTS];
+    struct source_pair_record sources;
+    struct corner_record record;
+    read_record(bench, trace->on_device.objects, objects,
+                bench->scene.object_count * sizeof *objects);
+    read_record(bench, trace->sources, &sources, sizeof sources);
+    read_record(bench, trace->corners, &record, sizeof record);
+    record.tally_first_strip = corners->grid.strips.first;
+    record.tally_strips = corners->grid.strips.count;
+    trace->fan.first_strip = corners->first_hits.first;
+    trace->fan.strips = corners->first_hits.count;
+    trace->fan.segments = 1;
+    for (int strip = 0; strip < trace->fan.strips; strip++) {
+        const struct outcome_record outcome = trace_corners_strip(
+            &trace->fan, trace->rays.pieces, &sources, &record, objects, tallies.sums, strip, 0);
+        assert_int_equal(outcome.faults, 0);
+        tallies.impulses += outcome.impulses;
+    }
+    return tallies;
+}
+
+static void expect_same(const struct tallies *a, const struct tallies *b)
+{
+    for (size_t i = 0; i < a->count; i++)
+        if (a->sums[i] != b->sums[i])
+            fail_msg("element %zu of %zu is %lld, not %lld", i, a->count, (long long)a->sums[i],
+                     (long long)b->sums[i]);
+}
+
+/* Echoes of one pair; compares them whole, in chunks, and in chunks that divide nothing. */
+static uint64_t compare_pair(struct bench *bench, struct corners *corners, size_t number)
+{
+    static const int32_t chunks[] = {1 << 20, 37};
+    struct tallies expected = trace_as_c(bench, corners, number);
+    for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
+        struct tallies measured = trace_on_device(bench, corners, number, chunks[i]);
+        expect_same(&measured, &expected);
+        assert_int_equal(measured.impulses, expected.impulses);
+        free(measured.sums);
+    }
+    free(expected.sums);
+    return expected.impulses;
+}
+
+static void compare_variant(struct bench *bench, const struct variant *variant)
+{
+    make_scene(bench, variant);
+    uint64_t impulses = 0;
+    size_t pairs = 0;
+    for (uint32_t part = 0; part < bench->scene.object_count; part++) {
+        struct corners corners;
+        if (corners_begin(&corners, &bench->tracer, part) != SONJECT_OK)
+            fail_msg("%s", bench->report.message);
+        for (size_t i = 0; i < corners.count; i++)
+            impulses += compare_pair(bench, &corners, i);
+        pairs += corners.count;
+        corners_end(&corners);
+    }
+    print_message("%s: %zu pairs, %llu echoes\n", variant->name, pairs,
+                  (unsigned long long)impulses);
+    assert_true(pairs >= bench->scene.object_count * (variant->seabed_is_smooth ? 4 : 1));
+    assert_true(impulses > 2000);
+}
+
+static void test_corner_tallies(void **unused)
+{
+    (void)unused;
+    static const uint32_t widths[] = {1, 4, 8, 16};
+    for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
+        struct bench bench;
+        bench_open(&bench, ROWS, COLUMNS, 18.0);
+        bench.tracer.device->width = widths[w];
+        print_message("width %u\n", (unsigned)widths[w]);
+        for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
+            scene_clear(&bench.scene);
+            bench_set_layers(&bench, NULL, 0);
+            bench_move(&bench, 18.0);
+            compare_variant(&bench, &variants[i]);
+        }
+        bench_close(&bench);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_corner_tallies),
+    };
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
+}

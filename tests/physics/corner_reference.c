@@ -1,0 +1,250 @@
+#include "corner_reference.h"
+
+#include <math.h>
+
+struct face_point {
+    double place[3], normal[3]; /* the normal is on the side that sound meets */
+    double scale[2];            /* m per unit of the coordinates */
+};
+
+static double dot_of(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+struct face face_of_plane(const struct bench *bench, uint32_t part)
+{
+    const struct placement *placement = &bench->placements[part];
+    const double half[2] = {placement->size.half_length_m, placement->size.half_width_m};
+    const struct face face = {placement, FACE_PLANE, {-half[0], -half[1]}, {half[0], half[1]}};
+    return face;
+}
+
+static void from_own_frame(const struct placement *part, const double own[3], double out[3])
+{
+    for (int k = 0; k < 3; k++)
+        out[k] = own[0] * part->axes[0][k] + own[1] * part->axes[1][k] + own[2] * part->axes[2][k];
+}
+
+static struct face_point point_at(const struct bench *bench, const struct face *face,
+                                  const double at[2])
+{
+    const struct placement *part = face->part;
+    const double radius = part->size.radius_m;
+    struct face_point point = {{0}, {0}, {1.0, 1.0}};
+    double own[3] = {at[0], at[1], 0.0};
+    double normal[3] = {0.0, 0.0, 1.0};
+    if (face->kind == FACE_SPHERE) {
+        const double direction[3] = {cos(at[0]) * cos(at[1]), cos(at[0]) * sin(at[1]), sin(at[0])};
+        for (int k = 0; k < 3; k++) {
+            normal[k] = direction[k];
+            own[k] = radius * direction[k];
+        }
+        point.scale[0] = radius;
+        point.scale[1] = radius * cos(at[0]);
+    } else if (face->kind == FACE_INSIDE_TUBE) {
+        own[1] = radius * cos(at[1]);
+        own[2] = radius * sin(at[1]);
+        normal[1] = -cos(at[1]);
+        normal[2] = -sin(at[1]);
+        point.scale[1] = radius;
+    } else {
+        const double to_sonar[3] = {0.0, -part->centre[1],
+                                    bench->tracer.view.altitude_m - part->centre[2]};
+        normal[2] = dot_of(part->axes[2], to_sonar) > 0.0 ? 1.0 : -1.0;
+    }
+    from_own_frame(part, own, point.place);
+    from_own_frame(part, normal, point.normal);
+    for (int k = 0; k < 3; k++)
+        point.place[k] += part->centre[k];
+    return point;
+}
+
+/* A path source - one - other - source, the sources abreast of the mean of both. */
+struct path {
+    double legs[3], ways[3][3]; /* lengths, unit vectors where they begin */
+    double last_way[3];         /* where the second leg ends */
+    double length;
+};
+
+static struct path path_over(const struct corner_way *way, const double one[3],
+                             const double other[3])
+{
+    const double x = 0.5 * (one[0] + other[0]);
+    const double out[3] = {x, 0.0, way->height_out};
+    const double home[3] = {x, 0.0, way->height_home};
+    const double folded[3] = {other[0], other[1], way->is_folded ? -other[2] : other[2]};
+    const double *begins[3] = {out, one, other};
+    const double *ends[3] = {one, folded, home};
+    struct path path;
+    path.length = 0.0;
+    for (int leg = 0; leg < 3; leg++) {
+        for (int k = 0; k < 3; k++)
+            path.ways[leg][k] = ends[leg][k] - begins[leg][k];
+        path.legs[leg] = sqrt(dot_of(path.ways[leg], path.ways[leg]));
+        for (int k = 0; k < 3; k++)
+            path.ways[leg][k] /= path.legs[leg];
+        path.length += path.legs[leg];
+    }
+    for (int k = 0; k < 3; k++)
+        path.last_way[k] = path.ways[1][k];
+    if (way->is_folded)
+        path.last_way[2] = -path.last_way[2];
+    return path;
+}
+
+struct corner_way straight_way(const struct bench *bench)
+{
+    const double height = bench->tracer.view.altitude_m;
+    const struct corner_way way = {height, height, false};
+    return way;
+}
+
+double corner_range(const struct corner_way *way, const double one[3], const double other[3])
+{
+    return 0.5 * path_over(way, one, other).length;
+}
+
+/* What the search for a stationary point needs. */
+struct search {
+    const struct bench *bench;
+    const struct corner_way *way;
+    const struct face *first;
+};
+
+/* Path length by way of the point of the first face at `at`, displaced by steps of the given size
+ * in m. */
+static double length_by(const struct search *search, const double at[2], int one_step,
+                        int other_step, double step, const double place[3])
+{
+    const struct face_point here = point_at(search->bench, search->first, at);
+    const double displaced[2] = {at[0] + one_step * step / here.scale[0],
+                                 at[1] + other_step * step / here.scale[1]};
+    const struct face_point there = point_at(search->bench, search->first, displaced);
+    return path_over(search->way, there.place, place).length;
+}
+
+/* Second derivatives, 1/m, and gradient of the path length on the first face. */
+struct shape_of_path {
+    double gradient[2], one, other, mixed;
+};
+
+static struct shape_of_path shape_of_path(const struct search *search, const double at[2],
+                                          const double place[3])
+{
+    const double step = 2e-4;
+    const double middle = length_by(search, at, 0, 0, step, place);
+    double around[2][2];
+    struct shape_of_path shape;
+    for (int i = 0; i < 2; i++)
+        for (int sign = 0; sign < 2; sign++)
+            around[i][sign] = length_by(search, at, i == 0 ? 2 * sign - 1 : 0,
+                                        i == 1 ? 2 * sign - 1 : 0, step, place);
+    for (int i = 0; i < 2; i++)
+        shape.gradient[i] = (around[i][1] - around[i][0]) / (2.0 * step);
+    shape.one = (around[0][1] - 2.0 * middle + around[0][0]) / (step * step);
+    shape.other = (around[1][1] - 2.0 * middle + around[1][0]) / (step * step);
+    shape.mixed =
+        (length_by(search, at, 1, 1, step, place) - length_by(search, at, 1, -1, step, place) -
+         length_by(search, at, -1, 1, step, place) + length_by(search, at, -1, -1, step, place)) /
+        (4.0 * step * step);
+    return shape;
+}
+
+/* Newton's iteration from `at` on, by steps of at most 2 cm; whether it came to an end on the face.
+ */
+static bool ends_on_face(const struct search *search, double at[2], const double place[3])
+{
+    const struct face *first = search->first;
+    double size = 1.0;
+    for (int i = 0; i < 60 && size > 1e-9; i++) {
+        const struct shape_of_path shape = shape_of_path(search, at, place);
+        const double determinant = shape.one * shape.other - shape.mixed * shape.mixed;
+        const double step[2] = {
+            -(shape.other * shape.gradient[0] - shape.mixed * shape.gradient[1]) / determinant,
+            -(shape.one * shape.gradient[1] - shape.mixed * shape.gradient[0]) / determinant};
+        size = hypot(step[0], step[1]);
+        const double scale = size > 0.02 ? 0.02 / size : 1.0;
+        const struct face_point here = point_at(search->bench, search->first, at);
+        for (int k = 0; k < 2; k++)
+            at[k] += scale * step[k] / here.scale[k];
+    }
+    return size < 1e-7 && at[0] >= first->first[0] && at[0] <= first->last[0] &&
+           at[1] >= first->first[1] && at[1] <= first->last[1];
+}
+
+#define STARTS 9
+
+/* From the last point's, or from anywhere on the face. */
+static bool find_stationary(const struct search *search, double at[2], const double place[3])
+{
+    const struct face *first = search->first;
+    if (ends_on_face(search, at, place))
+        return true;
+    for (int i = 0; i < STARTS * STARTS; i++) {
+        const double share[2] = {(i / STARTS + 0.5) / STARTS, (i % STARTS + 0.5) / STARTS};
+        for (int k = 0; k < 2; k++)
+            at[k] = first->first[k] + share[k] * (first->last[k] - first->first[k]);
+        if (ends_on_face(search, at, place))
+            return true;
+    }
+    return false;
+}
+
+/* What a point of the last face gets of the first, and sends home: exp(ikr) times
+ * -(i/2 lambda)(cos + cos)/(r1 d) lambda e^(i pi signature/4) / sqrt|det H|, likewise at the last.
+ */
+static double complex echo_of_point(const struct search *search, const double at[2],
+                                    const struct face_point *last, double range)
+{
+    const struct bench *bench = search->bench;
+    const double wavelength = bench->tracer.view.wavelength_m;
+    const struct face_point one = point_at(bench, search->first, at);
+    const struct path path = path_over(search->way, one.place, last->place);
+    const double in_first = -dot_of(one.normal, path.ways[0]);
+    const double out_first = dot_of(one.normal, path.ways[1]);
+    const double in_last = -dot_of(last->normal, path.last_way);
+    const double out_last = dot_of(last->normal, path.ways[2]);
+    if (in_first <= 0.0 || out_first <= 0.0 || in_last <= 0.0 || out_last <= 0.0)
+        return 0.0;
+    const struct shape_of_path shape = shape_of_path(search, at, last->place);
+    const double determinant = shape.one * shape.other - shape.mixed * shape.mixed;
+    const double complex turn = determinant < 0.0 ? 1.0 : shape.one + shape.other > 0.0 ? I : -I;
+    const double half = 0.5 * path.length;
+    return -I / 2.0 * turn * (in_first + out_first) /
+           (path.legs[0] * path.legs[1] * sqrt(fabs(determinant))) * -I / (2.0 * wavelength) *
+           (in_last + out_last) / path.legs[2] * half * half *
+           range_response(&bench->tracer.response, range - half) *
+           cexp(2.0 * I * bench_wavenumber(bench) * half);
+}
+
+double complex corner_echo(const struct bench *bench, const struct corner_way *way,
+                           const struct face *first, const struct face *last, double spacing,
+                           double range)
+{
+    const struct search search = {bench, way, first};
+    double complex sum = 0.0;
+    int steps[2];
+    const double middle[2] = {0.5 * (last->first[0] + last->last[0]),
+                              0.5 * (last->first[1] + last->last[1])};
+    const struct face_point there = point_at(bench, last, middle);
+    for (int k = 0; k < 2; k++)
+        steps[k] = (int)ceil((last->last[k] - last->first[k]) * there.scale[k] / spacing);
+    for (int i = 0; i < steps[0]; i++) {
+        double at[2] = {0.5 * (first->first[0] + first->last[0]),
+                        0.5 * (first->first[1] + first->last[1])};
+        for (int j = 0; j < steps[1]; j++) {
+            const double share[2] = {(i + 0.5) / steps[0], (j + 0.5) / steps[1]};
+            double on_last[2];
+            double area = 1.0;
+            for (int k = 0; k < 2; k++)
+                on_last[k] = last->first[k] + share[k] * (last->last[k] - last->first[k]);
+            const struct face_point point = point_at(bench, last, on_last);
+            for (int k = 0; k < 2; k++)
+                area *= (last->last[k] - last->first[k]) / steps[k] * point.scale[k];
+            if (find_stationary(&search, at, point.place))
+                sum += area * echo_of_point(&search, at, &point, range);
+        }
+    }
+    return sum;
+}
