@@ -119,13 +119,13 @@ static double half_track(struct bench *bench)
 }
 
 static void expect_energies(const char *what, const struct energies *measured, int order,
-                            const struct slab_value *expected, double systematic)
+                            const struct slab_value *expected, int ranges, double systematic)
 {
     int compared = 0;
     double most = 0.0;
-    for (int range = 0; range < RANGES; range++)
+    for (int range = 0; range < ranges; range++)
         most = fmax(most, expected[range].mean);
-    for (int range = 0; range < RANGES; range++) {
+    for (int range = 0; range < ranges; range++) {
         const double mean = mean_of(measured, order, range);
         const double error = hypot(error_of(measured, order, range), expected[range].error);
         if (expected[range].mean < 0.02 * most) /* beside the edge of what comes first */
@@ -202,7 +202,7 @@ static void compare_disc(uint32_t column_rule, const char *what)
                       size * size / STEPS / STEPS, track, expected);
     const struct energies measured = trace_seeds(&bench, 1);
     /* 1.5 %: the disc is no point, and the angles at it are those of the first hit's column */
-    expect_energies(what, &measured, 0, expected, 0.015);
+    expect_energies(what, &measured, 0, expected, RANGES, 0.015);
     bench_close(&bench);
 }
 
@@ -368,7 +368,7 @@ static void compare_all_paths(uint32_t column_rule, enum convention convention, 
     find_expected(&bench, convention, 24000000, expected);
     const struct energies measured = trace_seeds(&bench, 1);
     for (int order = 0; order < ORDERS; order++)
-        expect_energies(what, &measured, order, expected[order], systematic);
+        expect_energies(what, &measured, order, expected[order], RANGES, systematic);
     bench_close(&bench);
 }
 
@@ -402,7 +402,7 @@ static void test_brute_force(void **unused)
     find_expected(&bench, AS_BY_CHANCE, 24000000, expected);
     const struct energies measured = trace_seeds(&bench, 1);
     for (int order = 0; order < ORDERS; order++)
-        expect_energies("by chance", &measured, order, expected[order], 0.01);
+        expect_energies("by chance", &measured, order, expected[order], RANGES, 0.01);
     bench_close(&bench);
 }
 
@@ -433,7 +433,8 @@ static struct energies trace_beside(uint32_t column_rule, bool is_below_surface,
     return energies;
 }
 
-/* 1 %: in paper columns the surface's share keeps the angles at the sphere. */
+/* 1 %: in paper columns the surface's share keeps the angles at the sphere. The last ranges hear
+ * seabed further from the sphere than 17 radii, which the library leaves out. */
 static void test_upside_down(void **unused)
 {
     (void)unused;
@@ -447,7 +448,7 @@ static void test_upside_down(void **unused)
             expected[range].error = error_of(&upright, 0, range);
         }
         expect_energies(i == 0 ? "upside down, paper" : "upside down, focused", &turned, 0,
-                        expected, 0.01);
+                        expected, RANGES - 3, 0.01);
     }
 }
 
