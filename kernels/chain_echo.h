@@ -144,12 +144,38 @@ struct ways_counted {
     mask is_counted, stands_for_reverse;
 };
 
+/* Fans do not look at the sea surface, and at seabed for what it sends to targets: so nothing finds
+ * the reverse of a path that ends on the sea surface, or on seabed that is lit from there. */
+FUNCTION mask is_found_one_way(const struct chain *chain)
+{
+    return MASK_OF(chain->hit.surface == SEA_SURFACE) |
+           (MASK_OF(chain->hit.surface == SEABED) & MASK_OF(chain->surface_before == SEA_SURFACE));
+}
+
+/* The same where chains meet the sea surface. In `paper` columns reverse paths have connections of
+ * their own (connect_reverse). Brute force starts from all seabed. Without a target between, sea
+ * surface and seabed are what was measured. */
+FUNCTION void count_ways_by_sea_surface(GLOBAL const struct chain_record *chains, int order,
+                                        const struct chain *chain, struct ways_counted *ways)
+{
+    if (chains->estimator == CHAINS_BRUTE_FORCE) {
+        ways->stands_for_reverse = MASK_OF(chain->hit.surface == SEA_SURFACE);
+    } else {
+        const mask is_alone = is_found_one_way(chain);
+        ways->is_counted = ways->is_counted | is_alone;
+        ways->stands_for_reverse = chains->is_focused ? ways->stands_for_reverse | is_alone
+                                                      : ways->stands_for_reverse & ~is_alone;
+    }
+    if (order > 1)
+        ways->is_counted = ways->is_counted & chain->met_object;
+}
+
 FUNCTION struct ways_counted count_ways(GLOBAL const struct chain_record *chains, int order,
                                         const struct chain *chain)
 {
     const mask none = chain->is_alive & 0;
-    const mask began_on_seabed = MASK_OF(chain->first_surface == -1);
-    const mask ends_on_seabed = MASK_OF(chain->hit.surface == -1);
+    const mask began_on_seabed = MASK_OF(chain->first_surface == SEABED);
+    const mask ends_on_seabed = MASK_OF(chain->hit.surface == SEABED);
     struct ways_counted ways;
     ways.is_counted = ~none;
     ways.stands_for_reverse = chains->estimator == CHAINS_CONNECT ? chain->began_smooth : none;
@@ -158,6 +184,8 @@ FUNCTION struct ways_counted count_ways(GLOBAL const struct chain_record *chains
         ways.stands_for_reverse =
             ways.stands_for_reverse | (~chain->began_smooth & began_on_seabed & ~ends_on_seabed);
     }
+    if (has_sea_surface(chains))
+        count_ways_by_sea_surface(chains, order, chain, &ways);
     /* one object seen by way of the seabed's mirror is a pair of sources' (trace_rough_mirrored.h)
      */
     if (order == 2 && chains->estimator == CHAINS_CONNECT)
@@ -168,10 +196,9 @@ FUNCTION struct ways_counted count_ways(GLOBAL const struct chain_record *chains
 /* Keeps the echo that a hit sends to the source: energy is that of the path, way the one to the
  * source. */
 FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
-                        int order, const struct chain *chain, real energy, real range,
-                        real normalisation, struct chain_echo *echo)
+                        struct ways_counted ways, const struct chain *chain, real energy,
+                        real range, real normalisation, struct chain_echo *echo)
 {
-    const struct ways_counted ways = count_ways(chains, order, chain);
     const mask both = ways.stands_for_reverse;
     real kept = energy * normalisation;
     const whole none = WHOLE_OF(SPLAT((float)NO_STRIP));
@@ -234,7 +261,8 @@ FUNCTION void connect_chain(const struct fan_record *fan,
         CHOOSE(is_open, chain->energy * scattering * cosine * way.spreading, SPLAT(0.0f));
     const real half_path = fan->reference_range + way.range;
     const real square = half_path * half_path;
-    keep_echo(fan, chains, order, chain, energy, way.range, square * square, echo);
+    keep_echo(fan, chains, count_ways(chains, order, chain), chain, energy, way.range,
+              square * square, echo);
 }
 
 #endif

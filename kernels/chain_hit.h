@@ -7,11 +7,14 @@
 #include "random.h"
 #include "surface.h"
 
+#define SEABED      (-1)
+#define SEA_SURFACE (-2)
+
 struct chain_hit {
     struct vector3 point, normal; /* the normal is on the side that the ray came from */
     struct vector3 back;          /* the way that it came, unit, away from the surface */
     real distance;
-    whole surface;     /* object's number, -1: the seabed */
+    whole surface;     /* object's number, SEABED or SEA_SURFACE */
     whole left_behind; /* convex object that no way from here meets again, -1: none */
     mask is_hit;
 };
@@ -76,11 +79,25 @@ FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
     return hit;
 }
 
-/* The record of surface number i of a scene, -1: the seabed. */
-FUNCTION GLOBAL const struct surface_record *surface_number(
-    GLOBAL const struct chain_record *chain, GLOBAL const struct object_record *objects, int i)
+/* Whether chains meet the sea surface. */
+FUNCTION int has_sea_surface(GLOBAL const struct chain_record *chains)
 {
-    return i < 0 ? &chain->seabed : &objects[i].surface;
+    return chains->sea_surface_height > 0.0f;
+}
+
+/* The lowest number of a surface that chains meet. */
+FUNCTION int first_surface_number(GLOBAL const struct chain_record *chains)
+{
+    return has_sea_surface(chains) ? SEA_SURFACE : SEABED;
+}
+
+/* The record of surface number i of a scene. */
+FUNCTION GLOBAL const struct surface_record *surface_number(
+    GLOBAL const struct chain_record *chains, GLOBAL const struct object_record *objects, int i)
+{
+    if (i == SEA_SURFACE)
+        return &chains->sea_surface;
+    return i == SEABED ? &chains->seabed : &objects[i].surface;
 }
 
 /* Scattering at a hit from one direction into another (rough part), kernels/surface.h. */
@@ -89,7 +106,7 @@ FUNCTION real scattering_at(const struct fan_record *fan, GLOBAL const struct ch
                             struct vector3 out)
 {
     real scattering = SPLAT(0.0f);
-    for (int i = -1; i < fan->objects; i++) {
+    for (int i = first_surface_number(chain); i < fan->objects; i++) {
         const mask here = hit->is_hit & MASK_OF(hit->surface == i);
         if (ANY(here))
             scattering = CHOOSE(
@@ -133,7 +150,9 @@ struct chain {
     real first_reach; /* ground range of the first hit over the cosine of the grazing angle: without
                          layers the range */
     whole first_surface;
-    mask began_smooth; /* the first hit was a mirror bounce: nothing finds the reverse path */
+    whole surface_before; /* that the sound came from to this hit */
+    mask began_smooth;    /* the first hit was a mirror bounce: nothing finds the reverse path */
+    mask met_object;
     mask is_alive;
 };
 

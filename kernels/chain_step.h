@@ -1,5 +1,5 @@
-/* How a chain of sound goes on from a hit: by the surface's lobes, by its mirror, or from the
- * seabed towards the targets (kernels/MATH.md, "Chains"). */
+/* How a chain of sound goes on from a hit: by the surface's lobes, by its mirror, or from seabed
+ * and sea surface towards the targets (kernels/MATH.md, "Chains"). */
 #ifndef SONJECT_KERNELS_CHAIN_STEP_H
 #define SONJECT_KERNELS_CHAIN_STEP_H
 
@@ -14,16 +14,18 @@ struct chain_step {
     mask is_mirror;
 };
 
-/* The rough part of the seabed: towards the targets; where the hit is among them, also all around.
- */
-FUNCTION struct chain_step step_from_seabed(GLOBAL const struct chain_record *chains,
-                                            GLOBAL const struct sphere_record *spheres,
-                                            const struct chain_hit *hit, real choice, real u,
-                                            real v)
+/* The rough part of seabed or sea surface: towards the targets; where the hit is among them, or the
+ * step leads elsewhere too, also all around. */
+FUNCTION struct chain_step step_to_targets(GLOBAL const struct chain_record *chains,
+                                           GLOBAL const struct sphere_record *spheres,
+                                           GLOBAL const struct surface_record *surface,
+                                           int leads_elsewhere, const struct chain_hit *hit,
+                                           real choice, real u, real v)
 {
     struct target_cones cones;
     view_targets(spheres, chains->spheres, hit->point, &cones);
-    const real lobe_share = CHOOSE(cones.is_inside, SPLAT(0.5f), SPLAT(0.0f));
+    const real lobe_share =
+        leads_elsewhere ? SPLAT(0.5f) : CHOOSE(cones.is_inside, SPLAT(0.5f), SPLAT(0.0f));
     const real cone_share = 1.0f - lobe_share;
     const mask by_lobe = MASK_OF(choice < lobe_share);
     const real cone_choice = (choice - lobe_share) / cone_share;
@@ -31,20 +33,19 @@ FUNCTION struct chain_step step_from_seabed(GLOBAL const struct chain_record *ch
     step.direction = sample_target_direction(spheres, chains->spheres, hit->point, &cones,
                                              larger(cone_choice, SPLAT(0.0f)), u, v);
     if (ANY(by_lobe)) {
-        const struct vector3 around =
-            sample_rough_direction(&chains->seabed, hit->normal, hit->back,
-                                   choice / larger(lobe_share, SPLAT(0.5f)), u, v);
+        const struct vector3 around = sample_rough_direction(
+            surface, hit->normal, hit->back, choice / larger(lobe_share, SPLAT(0.5f)), u, v);
         step.direction = choose3(by_lobe, around, step.direction);
     }
     real density = cone_share * target_direction_density(spheres, chains->spheres, hit->point,
                                                          &cones, step.direction);
-    if (ANY(cones.is_inside))
-        density += lobe_share *
-                   rough_direction_density(&chains->seabed, hit->normal, hit->back, step.direction);
+    if (leads_elsewhere || ANY(cones.is_inside))
+        density +=
+            lobe_share * rough_direction_density(surface, hit->normal, hit->back, step.direction);
     const real cosine = dot3(hit->normal, step.direction);
     const mask is_possible = MASK_OF(density > 0.0f) & MASK_OF(cosine > 0.0f);
     step.weight = CHOOSE(is_possible,
-                         rough_scattering(&chains->seabed, hit->normal, hit->back, step.direction) *
+                         rough_scattering(surface, hit->normal, hit->back, step.direction) *
                              cosine / CHOOSE(is_possible, density, SPLAT(1.0f)),
                          SPLAT(0.0f));
     step.is_mirror = MASK_OF(choice < -1.0f);
@@ -70,19 +71,22 @@ FUNCTION struct chain_step step_from_object(GLOBAL const struct surface_record *
 }
 
 /* Rough or smooth part of one surface: a mirror bounce is taken with a probability near its share
- * of the energy. */
+ * of the energy. From the seabed in view of the sonar sound is sought that goes to a target; beyond
+ * that it may also go to the sea surface, and come from there. */
 FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *chains,
                                              GLOBAL const struct sphere_record *spheres,
                                              GLOBAL const struct surface_record *surface,
-                                             int is_seabed, const struct chain_hit *hit,
+                                             int number, int order, const struct chain_hit *hit,
                                              real choice, real u, real v)
 {
     struct chain_step step;
     const int follows_cones =
-        is_seabed && chains->spheres > 0 && chains->estimator == CHAINS_CONNECT;
+        number < 0 && chains->spheres > 0 && chains->estimator == CHAINS_CONNECT;
+    const int leads_elsewhere = has_sea_surface(chains) && order > 1;
     if (!has_smooth_part(surface))
-        return follows_cones ? step_from_seabed(chains, spheres, hit, choice, u, v)
-                             : step_from_object(surface, hit, choice, u, v);
+        return follows_cones
+                   ? step_to_targets(chains, spheres, surface, leads_elsewhere, hit, choice, u, v)
+                   : step_from_object(surface, hit, choice, u, v);
     const real cosine = dot3(hit->normal, hit->back);
     const real energy = mirror_energy(surface, cosine);
     real probability = SPLAT(1.0f);
@@ -95,7 +99,8 @@ FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *c
     const real rest = smaller((choice - probability) / left, SPLAT(0.9999999f));
     if (has_rough_part(surface)) {
         const real rough_choice = larger(rest, SPLAT(0.0f));
-        step = follows_cones ? step_from_seabed(chains, spheres, hit, rough_choice, u, v)
+        step = follows_cones ? step_to_targets(chains, spheres, surface, leads_elsewhere, hit,
+                                               rough_choice, u, v)
                              : step_from_object(surface, hit, rough_choice, u, v);
     } else {
         step.direction = hit->back;
@@ -116,7 +121,7 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
                                      GLOBAL const struct chain_record *chains,
                                      GLOBAL const struct object_record *objects,
                                      GLOBAL const struct sphere_record *spheres,
-                                     GLOBAL const float *map, const struct chain *chain,
+                                     GLOBAL const float *map, int order, const struct chain *chain,
                                      RECORD_WORD draw)
 {
     real u, v, choice;
@@ -126,12 +131,12 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
     step.direction = hit->back;
     step.weight = SPLAT(0.0f);
     step.is_mirror = MASK_OF(choice < -1.0f);
-    for (int i = -1; i < fan->objects; i++) {
+    for (int i = first_surface_number(chains); i < fan->objects; i++) {
         const mask here = chain->is_alive & MASK_OF(hit->surface == i);
         if (!ANY(here))
             continue;
         const struct chain_step from = step_from_surface(
-            chains, spheres, surface_number(chains, objects, i), i < 0, hit, choice, u, v);
+            chains, spheres, surface_number(chains, objects, i), i, order, hit, choice, u, v);
         step.direction = choose3(here, from.direction, step.direction);
         step.weight = CHOOSE(here, from.weight, step.weight);
         step.is_mirror = CHOOSE(here, from.is_mirror, step.is_mirror);

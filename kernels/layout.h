@@ -212,6 +212,8 @@ struct chain_record {
     RECORD_INT tally_first_strip;
     RECORD_INT tally_strips;
     struct surface_record seabed;
+    float sea_surface_height; /* z in the frame, m; 0: chains do not meet the sea surface */
+    struct surface_record sea_surface;
 };
 
 /* The plane mirrors that sound may meet on its way; both are level. */

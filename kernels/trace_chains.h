@@ -5,6 +5,7 @@
 #define SONJECT_KERNELS_TRACE_CHAINS_H
 
 #include "chain_echo.h"
+#include "chain_sea_surface.h"
 #include "chain_step.h"
 
 /* Where a ray crosses the source's rectangle: the echo of brute force, which counts what happens to
@@ -35,7 +36,8 @@ FUNCTION void count_arrival(const struct fan_record *fan, GLOBAL const struct ch
     const real range = 0.5f * (chain->range + chain->length + (path - fan->reference_range));
     const real half_path = fan->reference_range + range;
     const real square = half_path * half_path;
-    keep_echo(fan, chains, order, chain, energy, range, square * square, echo);
+    keep_echo(fan, chains, count_ways(chains, order, chain), chain, energy, range, square * square,
+              echo);
 }
 
 #define THIN_BLOCK 64u /* rays that are followed, or not, together; whatever the width */
@@ -121,6 +123,8 @@ FUNCTION void begin_chain(const struct fan_record *fan,
     chain->length = SPLAT(0.0f);
     chain->first_x = x;
     chain->first_surface = chain->hit.surface;
+    chain->surface_before = chain->hit.surface;
+    chain->met_object = MASK_OF(chain->hit.surface >= 0);
     chain->is_alive = chain->hit.is_hit;
     if (fan->only_object >= -1)
         chain->is_alive = chain->is_alive & MASK_OF(chain->hit.surface == fan->only_object);
@@ -158,15 +162,19 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
                           outcome);
             tally_chain_echo(fan, chains, tallies, order, &echo, outcome);
         }
+        if (is_connected && has_sea_surface(chains))
+            connect_by_sea_surface(fan, pieces, chains, objects, map, tallies, order, &chain,
+                                   draw + 3, outcome);
         if (is_connected && order == chains->interactions)
             break;
         const struct chain_step step =
-            next_step(fan, pieces, chains, objects, spheres, map, &chain, draw);
+            next_step(fan, pieces, chains, objects, spheres, map, order, &chain, draw);
         const mask goes_on = chain.is_alive & MASK_OF(step.weight > 0.0f);
         outcome->queries += count_lanes(goes_on);
-        const struct chain_hit next =
-            find_chain_hit(fan, objects, start_from(&chain.hit), step.direction, 0.0f,
-                           chain.hit.left_behind, goes_on);
+        struct chain_hit next = find_chain_hit(fan, objects, start_from(&chain.hit), step.direction,
+                                               0.0f, chain.hit.left_behind, goes_on);
+        if (has_sea_surface(chains))
+            meet_sea_surface(chains, start_from(&chain.hit), step.direction, goes_on, &next);
         if (!is_connected) {
             const real clear =
                 CHOOSE(next.is_hit, next.distance, CHOOSE(goes_on, SPLAT(FAR_AWAY), SPLAT(-1.0f)));
@@ -177,8 +185,12 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
             chain.began_smooth = step.is_mirror;
         chain.energy = chain.energy * step.weight;
         chain.length = chain.length + next.distance;
+        chain.surface_before = chain.hit.surface;
         chain.hit = next;
         chain.is_alive = next.is_hit;
+        chain.met_object = chain.met_object | MASK_OF(next.surface >= 0);
+        if (has_sea_surface(chains))
+            leave_out_unheard(fan, pieces, chains, order, &chain);
     }
 }
 

@@ -10,14 +10,17 @@
 
 static void add_material(struct hash *hash, const sonject_material_params *material)
 {
-    /* NaN has many patterns and one meaning, the seabed's own */
+    /* NaN has many patterns and one meaning: the seabed's own, what the sea surface's lambert
+     * leaves
+     */
     const double lambert = isnan(material->lambert) ? -1.0 : material->lambert;
+    const double glossy_albedo = isnan(material->glossy_albedo) ? -1.0 : material->glossy_albedo;
     ADD(hash, material->reflection_kind);
     ADD(hash, material->reflection);
     ADD(hash, material->roughness_m);
     ADD(hash, lambert);
     ADD(hash, material->lambert_exponent);
-    ADD(hash, material->glossy_albedo);
+    ADD(hash, glossy_albedo);
     ADD(hash, material->glossy_slope);
     ADD(hash, material->density_ratio);
     ADD(hash, material->speed_ratio);

@@ -149,6 +149,16 @@ static const struct field seabed_fields[] = {
 static const struct section seabed_section = {seabed_fields, COUNT(seabed_fields), finish_seabed};
 #undef STRUCTURE
 
+#define STRUCTURE sonject_material_params
+static const struct field waves_fields[] = {
+    {"albedo", "fraction that the cone returns at most, by default what lambert leaves",
+     QUANTITY(STRUCTURE, glossy_albedo, QUANTITY_NUMBER)},
+    {"slope", "rms slope of the waves, which make the cone",
+     QUANTITY(STRUCTURE, glossy_slope, QUANTITY_NUMBER)},
+};
+static const struct section waves_section = {waves_fields, COUNT(waves_fields), NULL};
+#undef STRUCTURE
+
 #define STRUCTURE sonject_surface_params
 static const struct field surface_fields[] = {
     {"depth", "of the water: height of the surface over the mean seabed",
@@ -157,6 +167,11 @@ static const struct field surface_fields[] = {
      QUANTITY(STRUCTURE, material.reflection, QUANTITY_NUMBER)},
     {"roughness", "rms height of the waves",
      QUANTITY(STRUCTURE, material.roughness_m, QUANTITY_LENGTH)},
+    {"lambert", "coefficient mu of the rough part",
+     QUANTITY(STRUCTURE, material.lambert, QUANTITY_LEVEL)},
+    {"exponent", "of the rough part's cosines, 1 for Lambert's law",
+     QUANTITY(STRUCTURE, material.lambert_exponent, QUANTITY_NUMBER)},
+    {"glossy", "cone about the mirror direction", PART(STRUCTURE, material, waves_section)},
 };
 static const struct section surface_section = {surface_fields, COUNT(surface_fields),
                                                finish_surface};

@@ -7,6 +7,7 @@
 #include "scene/check_material.h"
 #include "scene/check_shape.h"
 #include "scene/scene.h"
+#include "scene/surface_material.h"
 
 #define PI 3.14159265358979323846
 
@@ -97,11 +98,8 @@ sonject_status check_surface(const sonject_surface_params *surface, struct repor
     static const struct material_keys keys = MATERIAL_KEYS("");
     struct check check = {report, key, SONJECT_OK};
     check_length(&check, "depth", surface->water_depth_m);
-    check_material(&check, &keys, &surface->material, NAN);
-    if (surface->material.lambert != 0.0)
-        check_failure(&check, keys.lambert, "must be 0: the sea surface has no rough part");
-    if (surface->material.glossy_albedo != 0.0)
-        check_failure(&check, keys.albedo, "must be 0: the sea surface has no rough part");
+    const sonject_material_params material = surface_material(surface);
+    check_material(&check, &keys, &material, NAN);
     return check.status;
 }
 

@@ -51,6 +51,8 @@ void sonject_surface_params_init(sonject_surface_params *surface)
     surface->material.reflection = -1.0;
     surface->material.roughness_m = 0.0;
     surface->material.lambert = 0.0;
+    surface->material.glossy_albedo = NAN;
+    surface->material.glossy_slope = 0.2;
 }
 
 /* No first slant range is right for most images, so there is none until the caller gives it. */

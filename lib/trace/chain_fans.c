@@ -4,12 +4,14 @@
 
 #include "trace/object_rays.h"
 #include "trace/patch_fan.h"
+#include "trace/sea_surface.h"
 
 #define PI 3.14159265358979323846
 
 #define PATCH_RAYS_PER_BIN  2.0 /* brute force */
 #define SEABED_RAYS_PER_BIN 8.0 /* near the objects; thinned out with distance */
-/* An object is small, and what it mirrors spreads far; its rough part matters between objects. */
+/* An object is small, and what it mirrors, or sends to the sea surface, spreads far; else its rough
+ * part matters between objects. */
 #define OBJECT_RAYS_PER_BIN 32.0
 #define ROUGH_RAYS_PER_BIN  4.0 /* where the seabed's rays stand for its own */
 
@@ -83,8 +85,9 @@ static sonject_status lay_object_fan(struct chain_fan *fan, struct tracer *trace
         material->reflection_kind == SONJECT_REFLECTION_FLUID || material->reflection != 0.0;
     const bool is_stood_for = tracer->scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED &&
                               tracer->scene->sonar.transducer_side_m == 0.0;
+    const bool finds_surface = sea_surface_is_in_chains(tracer, grid);
     const double rays_per_bin =
-        is_mirror || !is_stood_for ? OBJECT_RAYS_PER_BIN : ROUGH_RAYS_PER_BIN;
+        is_mirror || !is_stood_for || finds_surface ? OBJECT_RAYS_PER_BIN : ROUGH_RAYS_PER_BIN;
     fan->strips = strips_between(tracer, grid, placement->centre[0] - half_length,
                                  placement->centre[0] + half_length);
     fan->record.only_object = (int32_t)object;

@@ -6,8 +6,10 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "scene/surface_material.h"
 #include "trace/object_buffer.h"
 #include "trace/patch_fan.h"
+#include "trace/sea_surface.h"
 #include "trace/target_spheres.h"
 #include "user/user_program.h"
 
@@ -43,6 +45,11 @@ static void chain_record_init(struct chain_record *record, const struct chain_tr
     record->tally_strips = trace->grid.strips.count;
     surface_record_init(&record->seabed, &seabed, tracer->view.wavelength_m);
     record->seabed.rough_is_apart = true; /* as for sound that goes straight back */
+    if (!trace->has_sea_surface)
+        return;
+    const sonject_material_params sea_surface = surface_material(&scene->surface);
+    record->sea_surface_height = (float)scene->surface.water_depth_m;
+    surface_record_init(&record->sea_surface, &sea_surface, tracer->view.wavelength_m);
 }
 
 /* The most that one ray can bring is about its wavefront times the brightest scattering; quanta
@@ -55,7 +62,10 @@ static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tr
         return status;
     const double wavefront =
         (double)fan.strip_width * fan.elevation_step * 2.0 * fan.reference_range;
-    trace->quanta = power_of_two_below(ldexp(1.0, 37) / (wavefront * brightest_scattering(tracer)));
+    double brightest = brightest_scattering(tracer);
+    if (trace->has_sea_surface)
+        brightest = fmax(brightest, sea_surface_brightness(tracer->scene));
+    trace->quanta = power_of_two_below(ldexp(1.0, 37) / (wavefront * brightest));
     trace->energy_of_quantum = view_energy_scale(&tracer->view) / trace->quanta;
     return SONJECT_OK;
 }
@@ -122,6 +132,7 @@ sonject_status chain_trace_begin(struct chain_trace *trace, struct tracer *trace
     trace->planes = injection->order_energies ? trace->orders : 1;
     line_grid_for_patch(&trace->grid, &tracer->view, &tracer->response);
     trace->has_map = map != NULL;
+    trace->has_sea_surface = sea_surface_is_in_chains(tracer, &trace->grid);
     sonject_status status = choose_quanta(trace, tracer);
     if (status == SONJECT_OK)
         status = patch_rays_init(&trace->rays, &trace->table, tracer, &trace->grid);

@@ -1,5 +1,5 @@
-/* The incoherent part beyond the first interaction: energies of chains between seabed and objects.
- */
+/* The incoherent part beyond the first interaction: energies of chains between seabed, objects and
+ * sea surface. */
 #ifndef SONJECT_TRACE_CHAINS_H
 #define SONJECT_TRACE_CHAINS_H
 
@@ -13,7 +13,7 @@ struct chain_trace {
     uint32_t planes;          /* orders if they are kept apart, else 1 */
     double energy_of_quantum; /* m^2 */
     float quanta;             /* of it */
-    bool has_map;
+    bool has_map, has_sea_surface;
     struct ray_table rays; /* of all fans */
     struct ray_table_record table;
     cl_kernel kernel;

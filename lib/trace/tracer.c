@@ -16,7 +16,7 @@
 /* Host and device must agree on every byte. */
 typedef char object_record_is_packed[sizeof(struct object_record) == 56 * 4 ? 1 : -1];
 typedef char fan_record_is_packed[sizeof(struct fan_record) == 40 * 4 ? 1 : -1];
-typedef char chain_record_is_packed[sizeof(struct chain_record) == 22 * 4 ? 1 : -1];
+typedef char chain_record_is_packed[sizeof(struct chain_record) == 34 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
 typedef char source_pair_record_is_packed[sizeof(struct source_pair_record) == 49 * 4 ? 1 : -1];
 typedef char corner_record_is_packed[sizeof(struct corner_record) == 15 * 4 ? 1 : -1];
@@ -88,16 +88,18 @@ void surface_record_init(struct surface_record *record, const sonject_material_p
     record->glossy_slope = (float)material->glossy_slope;
 }
 
+double material_brightness(const sonject_material_params *material)
+{
+    const double cone =
+        material->glossy_albedo / (4.0 * PI * material->glossy_slope * material->glossy_slope);
+    return 0.5 * material->lambert * (material->lambert_exponent + 1.0) + cone;
+}
+
 double brightest_scattering(const struct tracer *tracer)
 {
     double brightest = 1.0 / PI;
-    for (uint32_t i = 0; i < tracer->part_count; i++) {
-        const sonject_material_params *material = tracer->placements[i].material;
-        const double cone =
-            material->glossy_albedo / (4.0 * PI * material->glossy_slope * material->glossy_slope);
-        brightest =
-            fmax(brightest, 0.5 * material->lambert * (material->lambert_exponent + 1.0) + cone);
-    }
+    for (uint32_t i = 0; i < tracer->part_count; i++)
+        brightest = fmax(brightest, material_brightness(tracer->placements[i].material));
     return brightest;
 }
 

@@ -44,8 +44,11 @@ void object_records_init(struct object_record *records, const struct tracer *tra
 void surface_record_init(struct surface_record *record, const sonject_material_params *material,
                          double wavelength_m);
 
-/* The most that an object's rough part scatters (f at normal incidence and mirror direction), at
- * least Lambert's 1/pi: tallies are scaled by it. */
+/* The most that a rough part scatters: f at normal incidence and mirror direction. */
+double material_brightness(const sonject_material_params *material);
+
+/* The most that an object's rough part scatters, at least Lambert's 1/pi: tallies are scaled by it.
+ */
 double brightest_scattering(const struct tracer *tracer);
 
 /* Runs a trace kernel over the fan's strips and adds up what the work-items report. Arguments: the

@@ -23,22 +23,28 @@
 struct variant {
     const char *name;
     uint32_t interactions, estimator, column_rule, forward_rule;
-    int has_map, has_wide_source, seabed_is_smooth, has_layers;
+    int has_map, has_wide_source, seabed_is_smooth, has_layers, has_surface;
 };
 
 static const struct variant variants[] = {
     {"focused", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_FOCUSED, SONJECT_FORWARD_MODEL, 0, 0,
-     0, 0},
+     0, 0, 0},
     {"paper columns and map", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_PAPER,
-     SONJECT_FORWARD_MAP, 1, 0, 0, 0},
+     SONJECT_FORWARD_MAP, 1, 0, 0, 0, 0},
     {"wide source, smooth seabed", 4, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_FOCUSED,
-     SONJECT_FORWARD_MODEL, 0, 1, 1, 0},
+     SONJECT_FORWARD_MODEL, 0, 1, 1, 0, 0},
     {"brute force", 3, SONJECT_ESTIMATOR_BRUTE_FORCE, SONJECT_COLUMNS_PAPER, SONJECT_FORWARD_MODEL,
-     0, 1, 0, 0},
+     0, 1, 0, 0, 0},
     {"focused through layers", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_FOCUSED,
-     SONJECT_FORWARD_MODEL, 0, 0, 1, 1},
+     SONJECT_FORWARD_MODEL, 0, 0, 1, 1, 0},
     {"wide source and map through layers", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_PAPER,
-     SONJECT_FORWARD_MAP, 1, 1, 0, 1},
+     SONJECT_FORWARD_MAP, 1, 1, 0, 1, 0},
+    {"focused below the surface", 4, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_FOCUSED,
+     SONJECT_FORWARD_MODEL, 0, 0, 1, 0, 1},
+    {"wide source and map below the surface", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_PAPER,
+     SONJECT_FORWARD_MAP, 1, 1, 0, 0, 1},
+    {"brute force below the surface", 3, SONJECT_ESTIMATOR_BRUTE_FORCE, SONJECT_COLUMNS_PAPER,
+     SONJECT_FORWARD_MODEL, 0, 1, 0, 0, 1},
 };
 
 static void make_scene(struct bench *bench, const struct variant *variant)
@@ -69,6 +75,12 @@ static void make_scene(struct bench *bench, const struct variant *variant)
         scene->seabed.forward.speed_ratio = 1.15;
         scene->seabed.forward.loss = 0.016;
         scene->seabed.forward.roughness_m = 2e-3;
+    }
+    if (variant->has_surface) {
+        scene->surface.water_depth_m = 13.0;
+        scene->surface.material.roughness_m = 2e-3;
+        scene->surface.material.lambert = 0.1;
+        scene->surface.material.lambert_exponent = 1.5;
     }
     scene->sonar.transducer_side_m = variant->has_wide_source ? 4.0 : 0.0;
     scene->injection.interactions = variant->interactions;

@@ -98,10 +98,92 @@ static void test_closed_sphere(void **state)
     free(tallies);
 }
 
+#define SAMPLES 400000
+
+/* A wavy surface over a target that is near, with a lobe of its own kinds each. */
+static void lay_waves(struct chain_record *chains, struct sphere_record *sphere, int kind)
+{
+    memset(chains, 0, sizeof *chains);
+    chains->sea_surface_height = 10.0f;
+    chains->sea_surface.reflection_kind = kind == 0 ? REFLECTION_NONE : REFLECTION_CONSTANT;
+    chains->sea_surface.reflection = -0.95f;
+    chains->sea_surface.roughness_phase = kind == 1 ? 0.8f : 4.0f;
+    chains->sea_surface.lambert = kind == 2 ? 0.1f : 0.2f;
+    chains->sea_surface.lambert_exponent = kind == 1 ? 3.0f : 1.0f;
+    chains->sea_surface.glossy_albedo = 0.9f - 3.14159265f * chains->sea_surface.lambert;
+    chains->sea_surface.glossy_slope = 0.2f;
+    sphere->centre_x = 0.5f;
+    sphere->centre_y = 1.0f;
+    sphere->centre_z = 7.0f;
+    sphere->radius = 1.0f;
+}
+
+/* What the surface sends on of sound that comes at an angle: its mirror, and the integral of its
+ * rough part over all directions. */
+static double energy_sent_on(const struct chain_record *chains, const struct chain_hit *hit)
+{
+    const int steps = 1000;
+    const double cosine = (double)-hit->back.z;
+    double sum = 0.0;
+    for (int i = 0; i < steps; i++)
+        for (int k = 0; k < steps; k++) {
+            const double down = (i + 0.5) / steps;
+            const double across = sqrt(1.0 - down * down);
+            const double turn = 2.0 * PI * (k + 0.5) / steps;
+            struct vector3 out;
+            out.x = (float)(across * cos(turn));
+            out.y = (float)(across * sin(turn));
+            out.z = (float)-down;
+            sum += (double)rough_scattering(&chains->sea_surface, hit->normal, hit->back, out) *
+                   down * 2.0 * PI / steps / steps;
+        }
+    if (has_smooth_part(&chains->sea_surface))
+        sum += (double)mirror_energy(&chains->sea_surface, (float)cosine);
+    return sum;
+}
+
+/* A step from the sea surface brings, on average, what the surface sends on, whether directions are
+ * led to the target or not: no more than came. 4 standard errors and 0.2 % of the quadrature. */
+static void test_sea_surface_keeps_energy(void **state)
+{
+    (void)state;
+    static const float cosines[] = {1.0f, 0.6f, 0.2f, 0.05f};
+    for (int variant = 0; variant < 3 * 4 * 2; variant++) {
+        struct chain_record chains;
+        struct sphere_record sphere;
+        struct chain_hit hit;
+        lay_waves(&chains, &sphere, variant / 8);
+        chains.spheres = variant % 2;
+        memset(&hit, 0, sizeof hit);
+        const float cosine = cosines[variant / 2 % 4];
+        hit.point.z = chains.sea_surface_height;
+        hit.normal.z = -1.0f;
+        hit.back.y = -sqrtf(1.0f - cosine * cosine);
+        hit.back.z = -cosine;
+        double sum = 0.0, square = 0.0;
+        for (uint32_t i = 0; i < SAMPLES; i++) {
+            float u, v, choice;
+            three_uniforms(random_key_of(3, 0, 77, (uint32_t)variant), i, 0, &u, &v, &choice);
+            const struct chain_step step = step_from_surface(&chains, &sphere, &chains.sea_surface,
+                                                             SEA_SURFACE, 2, &hit, choice, u, v);
+            sum += (double)step.weight;
+            square += (double)step.weight * (double)step.weight;
+        }
+        const double mean = sum / SAMPLES;
+        const double error = sqrt((square / SAMPLES - mean * mean) / SAMPLES);
+        const double expected = energy_sent_on(&chains, &hit);
+        printf("waves %d, cosine %.2f, led %d: %.4f, expected %.4f +- %.1g\n", variant / 8,
+               (double)cosine, variant % 2, mean, expected, error);
+        assert_true(fabs(mean - expected) < 4.0 * error + 0.002 * expected);
+        assert_true(expected < 1.0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_closed_sphere),
+        cmocka_unit_test(test_sea_surface_keeps_energy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,6 +10,7 @@
 #include <string.h>
 
 #include "scene/scene.h"
+#include "scene/surface_material.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
@@ -463,6 +464,40 @@ static void test_the_seabeds_forward_material(void **state)
     expect_refused(&all, "forward.lambert", "infinity");
 }
 
+/* What its lambert leaves is the surface's cone unless a number is given. */
+static void test_the_sea_surfaces_rough_part(void **state)
+{
+    struct report report = {{0}, NULL, NULL};
+    const char *key = NULL;
+    sonject_surface_params surface;
+    sonject_material_params *material = &surface.material;
+    (void)state;
+    sonject_surface_params_init(&surface);
+    assert_true(surface.water_depth_m == 0.0 && material->reflection == -1.0);
+    assert_true(material->roughness_m == 0.0 && material->lambert == 0.0);
+    assert_true(isnan(material->glossy_albedo) && material->glossy_slope == 0.2);
+    assert_true(surface_material(&surface).glossy_albedo == 1.0);
+    material->reflection = -0.5;
+    material->lambert = 0.05;
+    assert_int_equal(check_surface(&surface, &report, &key), SONJECT_OK);
+    const double left = 0.25 - 3.14159265358979 * 0.05;
+    assert_true(fabs(surface_material(&surface).glossy_albedo - left) < 1e-12); /* digits of pi */
+    material->glossy_albedo = 0.0;
+    assert_true(surface_material(&surface).glossy_albedo == 0.0);
+    material->glossy_albedo = 0.1;
+    assert_int_equal(check_surface(&surface, &report, &key), SONJECT_ERROR_INPUT);
+    assert_string_equal(key, "glossy.albedo");
+    material->glossy_albedo = NAN;
+    material->lambert = 0.0796; /* 0.25 / pi = 0.0795775 */
+    assert_int_equal(check_surface(&surface, &report, &key), SONJECT_ERROR_INPUT);
+    assert_string_equal(key, "lambert");
+    material->reflection = 0.0;
+    material->lambert = 0.0;
+    assert_true(surface_material(&surface).glossy_albedo == 0.0);
+    material->reflection_kind = SONJECT_REFLECTION_FLUID;
+    assert_true(surface_material(&surface).glossy_albedo == 1.0);
+}
+
 static void test_sizes_of_swath_and_patch(void **state)
 {
     struct report report = {{0}, NULL, NULL};
@@ -580,6 +615,7 @@ int main(void)
         cmocka_unit_test(test_brute_force_traces_the_whole_patch),
         cmocka_unit_test(test_no_surface_returns_more_than_it_receives),
         cmocka_unit_test(test_the_seabeds_forward_material),
+        cmocka_unit_test(test_the_sea_surfaces_rough_part),
         cmocka_unit_test(test_sizes_of_swath_and_patch),
         cmocka_unit_test(test_names),
         cmocka_unit_test(test_defaults),

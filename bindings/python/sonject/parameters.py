@@ -135,10 +135,11 @@ class Seabed(Parameters):
 
 @dataclass(kw_only=True)
 class Surface(Parameters):
-    """The sea surface, a plane over the seabed that reflects as a mirror.
+    """The sea surface, a plane over the seabed that reflects as a mirror and, where it is rough, scatters.
 
     water_depth_m: its height over the mean seabed, above the sonar; 0: so far away that nothing of it
-    is heard. material: reflection -1 for air above water; roughness_m is the rms height of the waves.
+    is heard. material: reflection -1 for air above water; roughness_m is the rms height of the waves;
+    lambert and the cone are of what they scatter, glossy_albedo NaN for all that lambert leaves.
     """
 
     _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_surface_params
