@@ -199,14 +199,13 @@ FUNCTION void keep_corner_echo(const struct fan_record *fan,
                        range, path->first_wavefront);
     const real section =
         magnitude(tube_section(&path->tube, reversed3(hit->back))); /* of the wavefront's */
-    phase.amplitude =
-        smaller(phase.amplitude * (0.5f * pair->echoes) * (1.0f + cosine_home / cosine) *
-                    SQUARE_ROOT(section) * (half_path * path->first_spreading) *
-                    (half_path * home.spreading),
-                SPLAT(QUANTA_LIMIT));
-    real product_real =
+    const real amplitude = phase.amplitude * (0.5f * pair->echoes) * (1.0f + cosine_home / cosine) *
+                           SQUARE_ROOT(section) * (half_path * path->first_spreading) *
+                           (half_path * home.spreading);
+    phase.amplitude = larger(smaller(amplitude, SPLAT(QUANTA_LIMIT)), SPLAT(-QUANTA_LIMIT));
+    const real product_real =
         path->reflection_real * one_real - path->reflection_imaginary * one_imaginary;
-    real product_imaginary =
+    const real product_imaginary =
         path->reflection_real * one_imaginary + path->reflection_imaginary * one_real;
     put_smooth_echo(
         fan, leg.is_open, phase,
