@@ -247,13 +247,19 @@ struct source_pair_record {
     float echoes; /* 2 where the reverse path is an echo of its own, else 1 */
 };
 
-/* How paths over several smooth faces are followed, and the strips whose echoes are tallied. */
+/* How paths over several smooth faces are followed. */
 struct corner_record {
     RECORD_INT interactions; /* most surfaces that a path may meet between its sources */
     RECORD_INT is_focused;   /* echoes go to the mean of first and last hit, else to the first */
-    RECORD_INT tally_first_strip;
-    RECORD_INT tally_strips;
     struct surface_record seabed; /* a mirror between two hits; else without a smooth part */
+};
+
+/* One echo of such a path. */
+struct corner_echo_record {
+    RECORD_INT strip; /* of the whole track */
+    RECORD_INT bin;
+    float real_part, imaginary_part; /* quanta */
+    float fraction;                  /* of a bin beyond `bin` */
 };
 
 /* What a work-item counted. */

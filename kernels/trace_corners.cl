@@ -1,20 +1,17 @@
-/* Entry point: one work-item traces one segment of one sub-strip. Echoes end in other strips too,
- * so all work-items share the tallies. */
-#ifndef TALLY_IS_SHARED
-#define TALLY_IS_SHARED
-#endif
+/* Entry point: one work-item traces one segment of one sub-strip. */
 #include "trace_corners.h"
 
 __kernel void trace_corners(__global const struct fan_record *fan_buffer,
                             __global const struct ray_piece_record *pieces,
-                            __global const struct object_record *objects, __global long *tallies,
+                            __global const struct object_record *objects,
                             __global const struct source_pair_record *pair,
                             __global const struct corner_record *corners,
+                            __global struct corner_echo_record *echoes, __global uint *listed,
                             __global struct outcome_record *outcomes)
 {
     const struct fan_record fan = *fan_buffer;
     const int strip = strip_of_item(&fan, (int)get_global_id(0));
     const int segment = (int)(get_global_id(0) % (size_t)fan.segments);
     outcomes[get_global_id(0)] =
-        trace_corners_strip(&fan, pieces, pair, corners, objects, tallies, strip, segment);
+        trace_corners_strip(&fan, pieces, pair, corners, objects, echoes, listed, strip, segment);
 }

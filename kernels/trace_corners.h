@@ -199,14 +199,13 @@ FUNCTION void keep_corner_echo(const struct fan_record *fan,
                        range, path->first_wavefront);
     const real section =
         magnitude(tube_section(&path->tube, reversed3(hit->back))); /* of the wavefront's */
-    phase.amplitude =
-        smaller(phase.amplitude * (0.5f * pair->echoes) * (1.0f + cosine_home / cosine) *
-                    SQUARE_ROOT(section) * (half_path * path->first_spreading) *
-                    (half_path * home.spreading),
-                SPLAT(QUANTA_LIMIT));
-    real product_real =
+    const real amplitude = phase.amplitude * (0.5f * pair->echoes) * (1.0f + cosine_home / cosine) *
+                           SQUARE_ROOT(section) * (half_path * path->first_spreading) *
+                           (half_path * home.spreading);
+    phase.amplitude = larger(smaller(amplitude, SPLAT(QUANTA_LIMIT)), SPLAT(-QUANTA_LIMIT));
+    const real product_real =
         path->reflection_real * one_real - path->reflection_imaginary * one_imaginary;
-    real product_imaginary =
+    const real product_imaginary =
         path->reflection_real * one_imaginary + path->reflection_imaginary * one_real;
     put_smooth_echo(
         fan, leg.is_open, phase,
@@ -217,25 +216,48 @@ FUNCTION void keep_corner_echo(const struct fan_record *fan,
     STORE_WHOLE(strip, kept->strip);
 }
 
-/* tallies: corners->tally_strips x bins x (real, imaginary). */
-FUNCTION void tally_corner_echo(const struct fan_record *fan,
-                                GLOBAL const struct corner_record *corners, GLOBAL TALLY *tallies,
-                                const struct corner_echo *kept, struct outcome_record *outcome)
+/* Where the next echo goes in a list that all work-items share. */
+FUNCTION RECORD_WORD next_in_list(GLOBAL RECORD_WORD *listed)
+{
+#ifdef __OPENCL_C_VERSION__
+    return atomic_inc((volatile GLOBAL RECORD_WORD *)listed);
+#else
+    return (*listed)++;
+#endif
+}
+
+/* Lists what is heard: echoes lie in few places of a large grid, so it is the host that adds them
+ * up. As tally_add, it reports what cannot be counted. */
+FUNCTION void list_corner_echo(GLOBAL struct corner_echo_record *echoes, GLOBAL RECORD_WORD *listed,
+                               const struct corner_echo *kept, struct outcome_record *outcome)
 {
     for (int lane = 0; lane < WIDTH; lane++) {
-        const int strip = kept->strip[lane] - corners->tally_first_strip;
-        if (strip >= 0 && strip < corners->tally_strips)
-            tally_smooth_echo(tallies + (long)strip * fan->bins * 2, &kept->echo, lane, outcome);
+        struct corner_echo_record record;
+        record.strip = kept->strip[lane];
+        record.bin = kept->echo.bin[lane];
+        record.real_part = kept->echo.real_part[lane];
+        record.imaginary_part = kept->echo.imaginary_part[lane];
+        record.fraction = kept->echo.fraction[lane];
+        if (record.bin < 0)
+            continue;
+        const float most =
+            record.real_part * record.real_part + record.imaginary_part * record.imaginary_part;
+        if (most != most)
+            outcome->faults |= FAULT_NOT_A_NUMBER;
+        else if (most > QUANTA_LIMIT * QUANTA_LIMIT)
+            outcome->faults |= FAULT_OVERFLOW;
+        else
+            echoes[next_in_list(listed)] = record;
+        outcome->impulses++;
     }
 }
 
-FUNCTION void trace_corner_group(const struct fan_record *fan,
-                                 GLOBAL const struct ray_piece_record *pieces,
-                                 GLOBAL const struct source_pair_record *pair,
-                                 GLOBAL const struct corner_record *corners,
-                                 GLOBAL const struct object_record *objects, GLOBAL TALLY *tallies,
-                                 int strip, int stratum, struct random_key key,
-                                 RECORD_WORD first_ray, struct outcome_record *outcome)
+FUNCTION void trace_corner_group(
+    const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
+    GLOBAL const struct source_pair_record *pair, GLOBAL const struct corner_record *corners,
+    GLOBAL const struct object_record *objects, GLOBAL struct corner_echo_record *echoes,
+    GLOBAL RECORD_WORD *listed, int strip, int stratum, struct random_key key,
+    RECORD_WORD first_ray, struct outcome_record *outcome)
 {
     const struct wavefront_cell cell =
         wavefront_cell_at(fan, pieces, strip, stratum, key, first_ray);
@@ -247,17 +269,17 @@ FUNCTION void trace_corner_group(const struct fan_record *fan,
             continue;
         struct corner_echo kept;
         keep_corner_echo(fan, pieces, pair, corners, objects, &cell, &path, &kept, outcome);
-        tally_corner_echo(fan, corners, tallies, &kept, outcome);
+        list_corner_echo(echoes, listed, &kept, outcome);
     }
 }
 
-/* Traces the share `segment` of a sub-strip's fan. */
-FUNCTION struct outcome_record trace_corners_strip(const struct fan_record *fan,
-                                                   GLOBAL const struct ray_piece_record *pieces,
-                                                   GLOBAL const struct source_pair_record *pair,
-                                                   GLOBAL const struct corner_record *corners,
-                                                   GLOBAL const struct object_record *objects,
-                                                   GLOBAL TALLY *tallies, int strip, int segment)
+/* Traces the share `segment` of a sub-strip's fan. echoes: room for rays x strata x (interactions -
+ * 1) of each sub-strip; listed: how many there are. */
+FUNCTION struct outcome_record trace_corners_strip(
+    const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
+    GLOBAL const struct source_pair_record *pair, GLOBAL const struct corner_record *corners,
+    GLOBAL const struct object_record *objects, GLOBAL struct corner_echo_record *echoes,
+    GLOBAL RECORD_WORD *listed, int strip, int segment)
 {
     struct outcome_record outcome = {0, 0, 0, 0};
     const struct random_key key = random_key_of(fan->seed_low, fan->seed_high, fan->stream,
@@ -268,8 +290,8 @@ FUNCTION struct outcome_record trace_corners_strip(const struct fan_record *fan,
              group += (RECORD_WORD)fan->segments) {
             const RECORD_WORD left = fan->rays - group * WIDTH;
             outcome.rays += left < WIDTH ? left : WIDTH;
-            trace_corner_group(fan, pieces, pair, corners, objects, tallies, strip, stratum, key,
-                               group * WIDTH, &outcome);
+            trace_corner_group(fan, pieces, pair, corners, objects, echoes, listed, strip, stratum,
+                               key, group * WIDTH, &outcome);
         }
     outcome.queries += outcome.rays;
     return outcome;

@@ -6,8 +6,8 @@
 #include "trace/smooth.h"
 
 #define BINS_MAX           1.0e9 /* beyond any patch, within a 32-bit number */
-#define FINER_MAX          4.0   /* 16 times the rays */
-#define WIDEST_WAVELENGTHS 0.5  /* of a cell where it meets the next face */
+#define FINER_MAX          2.0   /* 4 times the rays */
+#define WIDEST_WAVELENGTHS 0.5   /* of a cell where it meets the next face */
 
 static bool is_smooth(const struct tracer *tracer, uint32_t part)
 {

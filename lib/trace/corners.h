@@ -3,30 +3,33 @@
 #ifndef SONJECT_TRACE_CORNERS_H
 #define SONJECT_TRACE_CORNERS_H
 
+#include "trace/corner_sums.h"
 #include "trace/source_pairs.h"
 #include "trace/tracer.h"
 
+/* The echoes of one pair of sources. */
 struct corner_trace {
-    struct span bins;            /* of its echoes, in the patch */
+    struct corner_sums sums;
     double amplitude_of_quantum; /* m */
-    struct fan_record fan;
-    struct ray_table rays;
-    struct trace_device on_device; /* without tallies worth the name */
-    cl_mem sources;                /* source_pair_record */
-    cl_mem corners;                /* corner_record */
-    struct corner_record record;
 };
 
 struct corners {
     struct line_grid grid; /* that holds all echoes; laid out as glints are; no strips: no echoes */
-    struct span first_hits; /* sub-strips that the part covers */
-    struct span last_hits;  /* that all smooth parts cover */
-    bool is_focused;
+    struct span first_hits;      /* sub-strips that the part covers */
     struct corner_trace *traces; /* owned */
     size_t count;
-    cl_mem tallies;                    /* of one trace */
-    int32_t chunk;                     /* strips that they have room for */
-    float *real_part, *imaginary_part; /* owned; of as many */
+};
+
+/* What a launch needs. */
+struct corner_launch {
+    struct fan_record fan;
+    struct ray_table rays;
+    struct corner_record record;
+    struct source_pair_record sources;
+    struct trace_device on_device; /* without tallies worth the name */
+    cl_mem source_buffer, record_buffer, echoes, listed;
+    size_t capacity; /* of echoes */
+    int32_t chunk;   /* sub-strips whose echoes fit that */
 };
 
 /* Whether sound from the part may meet a smooth face after it: the scene has two smooth parts, or
@@ -36,19 +39,27 @@ bool corners_may_echo(const struct tracer *tracer, uint32_t part);
 /* Bins of the patch where such echoes may lie, of the given size; count 0 if there are none. */
 struct span corner_bins(const struct tracer *tracer, uint32_t part, const struct line_grid *grid);
 
-/* Prepares the traces of a part. On success to be given to corners_end, also after later failures;
- * on failure nothing is held. Errors: DEVICE, MEMORY. */
+/* Traces all echoes that a part is the first to meet. On success to be given to corners_end; on
+ * failure nothing is held. Errors: DEVICE, MEMORY. */
 sonject_status corners_begin(struct corners *corners, struct tracer *tracer, uint32_t part);
 void corners_end(struct corners *corners);
 
-/* Traces one pair's echoes of strips.count <= chunk sub-strips: complex amplitudes in m,
- * strips.count x traces[number].bins.count, in two planes. However strips are grouped, the sums are
- * the same. Errors: DEVICE, MEMORY. */
-sonject_status corner_trace_strips(struct corners *corners, struct tracer *tracer, size_t number,
-                                   struct span strips, float *real_part, float *imaginary_part);
+/* Adds the echoes of strips, complex amplitudes in m, to planes of strips.count x grid->bins.count.
+ */
+void corners_add(const struct corners *corners, struct span strips, const struct line_grid *grid,
+                 float *real_part, float *imaginary_part);
 
-/* Adds the echoes of strips, of any number, to planes of strips.count x grid->bins.count. */
-sonject_status corners_add(struct corners *corners, struct tracer *tracer, struct span strips,
-                           const struct line_grid *grid, float *real_part, float *imaginary_part);
+/* The steps of corners_begin: the grid of one pair's echoes and its launch, whose echoes are listed
+ * chunk by chunk of first hits. The grid's bins.count is 0, and nothing is held, where there can be
+ * none; else to be given to corner_launch_end. */
+void corners_lay(struct corners *corners, const struct tracer *tracer, uint32_t part);
+sonject_status corner_launch_begin(struct corner_launch *launch, struct line_grid *grid,
+                                   const struct corners *corners, struct tracer *tracer,
+                                   uint32_t part, const struct source_pair *pair);
+void corner_launch_end(struct corner_launch *launch);
+
+/* Adds the echoes of first hits in strips.count <= chunk sub-strips to the sums. */
+sonject_status corner_launch_strips(struct corner_launch *launch, struct tracer *tracer,
+                                    struct span strips, struct corner_sums *sums);
 
 #endif

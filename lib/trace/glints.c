@@ -75,8 +75,6 @@ int32_t glints_chunk(const struct glints *glints)
         const int32_t one = smooth_trace_chunk(&glints->traces[i]);
         chunk = one < chunk ? one : chunk;
     }
-    if (glints->corners.count > 0 && glints->corners.chunk < chunk)
-        chunk = glints->corners.chunk;
     return chunk;
 }
 
@@ -99,7 +97,7 @@ sonject_status glints_trace(struct glints *glints, struct tracer *tracer, struct
                             float *real_part, float *imaginary_part)
 {
     const size_t bytes = (size_t)strips.count * (size_t)glints->grid.bins.count * sizeof *real_part;
-    if (glints->count == 1 && glints->corners.count == 0)
+    if (glints->count == 1 && glints->corners.grid.strips.count == 0)
         return smooth_trace_strips(&glints->traces[0], tracer, strips, real_part, imaginary_part);
     memset(real_part, 0, bytes);
     memset(imaginary_part, 0, bytes);
@@ -114,5 +112,6 @@ sonject_status glints_trace(struct glints *glints, struct tracer *tracer, struct
         add_bins(glints, &glints->traces[i], some.count, (size_t)(some.first - strips.first),
                  real_part, imaginary_part);
     }
-    return corners_add(&glints->corners, tracer, strips, &glints->grid, real_part, imaginary_part);
+    corners_add(&glints->corners, strips, &glints->grid, real_part, imaginary_part);
+    return SONJECT_OK;
 }

@@ -14,6 +14,7 @@
 
 #include "cl/launch.h"
 #include "physics/bench.h"
+#include "trace/corner_reach.h"
 #include "trace/corners.h"
 
 #define ROWS    64
@@ -83,45 +84,6 @@ static void make_scene(struct bench *bench, const struct variant *variant)
     bench_ready(bench);
 }
 
-/* Tallies of one pair of sources and one first part, whatever the chunking. */
-struct tallies {
-    size_t count;
-    int64_t *sums;
-    uint64_t impulses; /* of all strips at once */
-};
-
-static struct tallies tallies_of(const struct corners *corners, const struct corner_trace *trace)
-{
-    struct tallies tallies = {2 * (size_t)corners->grid.strips.count * (size_t)trace->bins.count,
-                              NULL, 0};
-    tallies.sums = calloc(tallies.count, sizeof *tallies.sums);
-    assert_non_null(tallies.sums);
-    return tallies;
-}
-
-static struct tallies trace_on_device(struct bench *bench, struct corners *corners, size_t number,
-                                      int32_t wanted_chunk)
-{
-    struct corner_trace *trace = &corners->traces[number];
-    struct tallies tallies = tallies_of(corners, trace);
-    const size_t line = 2 * (size_t)trace->bins.count;
-    const int32_t count = corners->grid.strips.count;
-    const int32_t chunk = wanted_chunk < corners->chunk ? wanted_chunk : corners->chunk;
-    bench->tracer.counts.impulses = 0;
-    for (int32_t done = 0; done < count; done += chunk) {
-        const int32_t left = count - done;
-        const struct span strips = {corners->grid.strips.first + done, left < chunk ? left : chunk};
-        if (corner_trace_strips(corners, &bench->tracer, number, strips, corners->real_part,
-                                corners->imaginary_part) != SONJECT_OK ||
-            buffer_read(&bench->report, bench->tracer.device, corners->tallies, 0,
-                        (size_t)strips.count * line * sizeof(int64_t),
-                        tallies.sums + (size_t)done * line) != SONJECT_OK)
-            fail_msg("%s", bench->report.message);
-    }
-    tallies.impulses = bench->tracer.counts.impulses;
-    return tallies;
-}
-
 /* Reads a record that a device was given, so that both work from the same one. */
 static void read_record(struct bench *bench, cl_mem buffer, void *record, size_t bytes)
 {
@@ -129,52 +91,81 @@ static void read_record(struct bench *bench, cl_mem buffer, void *record, size_t
         fail_msg("%s", bench->report.message);
 }
 
-static struct tallies trace_as_c(struct bench *bench, struct corners *corners, size_t number)
+static uint64_t add_on_device(struct bench *bench, const struct corners *corners,
+                              struct corner_launch *launch, int32_t wanted_chunk,
+                              struct corner_sums *sums)
 {
-    struct corner_trace *trace = &corners->traces[number];
-    struct tallies tallies = tallies_of(corners, trace);
-    struct object_record objects[BENCH_OBJECTS];
-    struct source_pair_record sources;
-    struct corner_record record;
-    read_record(bench, trace->on_device.objects, objects,
-                bench->scene.object_count * sizeof *objects);
-    read_record(bench, trace->sources, &sources, sizeof sources);
-    read_record(bench, trace->corners, &record, sizeof record);
-    record.tally_first_strip = corners->grid.strips.first;
-    record.tally_strips = corners->grid.strips.count;
-    trace->fan.first_strip = corners->first_hits.first;
-    trace->fan.strips = corners->first_hits.count;
-    trace->fan.segments = 1;
-    for (int strip = 0; strip < trace->fan.strips; strip++) {
-        const struct outcome_record outcome = trace_corners_strip(
-            &trace->fan, trace->rays.pieces, &sources, &record, objects, tallies.sums, strip, 0);
-        assert_int_equal(outcome.faults, 0);
-        tallies.impulses += outcome.impulses;
+    const struct span all = corners->first_hits;
+    const int32_t chunk = wanted_chunk < launch->chunk ? wanted_chunk : launch->chunk;
+    bench->tracer.counts.impulses = 0;
+    for (int32_t done = 0; done < all.count; done += chunk) {
+        const int32_t left = all.count - done;
+        const struct span strips = {all.first + done, left < chunk ? left : chunk};
+        if (corner_launch_strips(launch, &bench->tracer, strips, sums) != SONJECT_OK)
+            fail_msg("%s", bench->report.message);
     }
-    return tallies;
+    return bench->tracer.counts.impulses;
 }
 
-static void expect_same(const struct tallies *a, const struct tallies *b)
+static uint64_t add_as_c(struct bench *bench, const struct corners *corners,
+                         struct corner_launch *launch, struct corner_sums *sums)
 {
-    for (size_t i = 0; i < a->count; i++)
-        if (a->sums[i] != b->sums[i])
-            fail_msg("element %zu of %zu is %lld, not %lld", i, a->count, (long long)a->sums[i],
-                     (long long)b->sums[i]);
+    struct object_record objects[BENCH_OBJECTS];
+    struct corner_echo_record *echoes = calloc(launch->capacity, sizeof *echoes);
+    uint64_t impulses = 0;
+    assert_non_null(echoes);
+    read_record(bench, launch->on_device.objects, objects,
+                bench->scene.object_count * sizeof *objects);
+    launch->fan.strips = 1;
+    launch->fan.segments = 1;
+    for (int32_t strip = 0; strip < corners->first_hits.count; strip++) {
+        uint32_t listed = 0;
+        launch->fan.first_strip = corners->first_hits.first + strip;
+        const struct outcome_record outcome =
+            trace_corners_strip(&launch->fan, launch->rays.pieces, &launch->sources,
+                                &launch->record, objects, echoes, &listed, 0, 0);
+        assert_int_equal(outcome.faults, 0);
+        assert_int_equal(outcome.impulses, listed);
+        impulses += listed;
+        assert_true(corner_sums_add(sums, echoes, listed));
+    }
+    free(echoes);
+    return impulses;
 }
 
-/* Echoes of one pair; compares them whole, in chunks, and in chunks that divide nothing. */
-static uint64_t compare_pair(struct bench *bench, struct corners *corners, size_t number)
+static void expect_same(const struct corner_sums *a, const struct corner_sums *b)
+{
+    for (size_t i = 0; i < a->rows * a->columns; i++) {
+        assert_int_equal(a->tiles[i] != NULL, b->tiles[i] != NULL);
+        if (a->tiles[i])
+            assert_memory_equal(a->tiles[i], b->tiles[i],
+                                2 * TILE_STRIPS * TILE_BINS * sizeof(int64_t));
+    }
+}
+
+/* Echoes of one pair; compares them in launches as they come and in small ones. */
+static uint64_t compare_pair(struct bench *bench, const struct corners *corners, uint32_t part,
+                             const struct source_pair *pair)
 {
     static const int32_t chunks[] = {1 << 20, 37};
-    struct tallies expected = trace_as_c(bench, corners, number);
+    struct corner_launch launch;
+    struct line_grid grid;
+    struct corner_sums expected, measured;
+    if (corner_launch_begin(&launch, &grid, corners, &bench->tracer, part, pair) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+    if (grid.bins.count == 0)
+        return 0;
+    assert_true(corner_sums_init(&expected, &grid));
+    const uint64_t impulses = add_as_c(bench, corners, &launch, &expected);
     for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
-        struct tallies measured = trace_on_device(bench, corners, number, chunks[i]);
+        assert_true(corner_sums_init(&measured, &grid));
+        assert_int_equal(add_on_device(bench, corners, &launch, chunks[i], &measured), impulses);
         expect_same(&measured, &expected);
-        assert_int_equal(measured.impulses, expected.impulses);
-        free(measured.sums);
+        corner_sums_clear(&measured);
     }
-    free(expected.sums);
-    return expected.impulses;
+    corner_sums_clear(&expected);
+    corner_launch_end(&launch);
+    return impulses;
 }
 
 static void compare_variant(struct bench *bench, const struct variant *variant)
@@ -184,12 +175,13 @@ static void compare_variant(struct bench *bench, const struct variant *variant)
     size_t pairs = 0;
     for (uint32_t part = 0; part < bench->scene.object_count; part++) {
         struct corners corners;
-        if (corners_begin(&corners, &bench->tracer, part) != SONJECT_OK)
-            fail_msg("%s", bench->report.message);
-        for (size_t i = 0; i < corners.count; i++)
-            impulses += compare_pair(bench, &corners, i);
-        pairs += corners.count;
-        corners_end(&corners);
+        struct corner_pairs all;
+        const struct source_pair *pair;
+        assert_true(corners_may_echo(&bench->tracer, part));
+        corners_lay(&corners, &bench->tracer, part);
+        corner_pairs_begin(&all, &bench->tracer, part);
+        for (; (pair = corner_pairs_next(&all)) != NULL; pairs++)
+            impulses += compare_pair(bench, &corners, part, pair);
     }
     print_message("%s: %zu pairs, %llu echoes\n", variant->name, pairs,
                   (unsigned long long)impulses);

@@ -197,7 +197,7 @@ static void test_sphere_and_plate(void **unused)
 {
     (void)unused;
     const double radius = 0.15;
-    static const double distances[] = {0.6, 1.5};
+    static const double distances[] = {0.6, 1.0};
     for (int i = 0; i < 4; i += 3) {
         struct bench bench;
         open_at(&bench, 2);
