@@ -138,6 +138,9 @@ sonject_status shape_check_run(struct report *report, struct device *device,
     trial.name = shapes->snippets[shape->snippet].name;
     trial.is_open = shape->is_open;
     trial.radius = shape->bounding_radius_m;
+    trial.half_sizes[0] = shape->half_length_m;
+    trial.half_sizes[1] = shape->half_width_m;
+    trial.half_sizes[2] = shape->half_height_m;
     sonject_status status = shape_probe_begin(&trial.probe, report, device, shapes, number);
     if (status != SONJECT_OK)
         return status;

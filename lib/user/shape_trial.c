@@ -6,6 +6,8 @@
 #define DISC    1.3    /* radii about the origin that rays pass within */
 #define OUTSIDE 1.0001 /* radii: beyond, for the rounding of what lies on the sphere */
 
+static const char *const box_keys[3] = {"half_length", "half_width", "half_height"};
+
 double dot_product(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -104,6 +106,13 @@ static sonject_status take_meeting(const struct trial *trial, struct meeting *ra
                               "bounding_radius of %g m; make that larger",
                               trial->name, sqrt(dot_product(ray->point, ray->point)),
                               trial->radius);
+    for (int k = 0; k < 3; k++)
+        if (fabs(ray->point[k]) > trial->half_sizes[k] + (OUTSIDE - 1.0) * trial->radius)
+            return report_failure(trial->report, SONJECT_ERROR_INPUT,
+                                  "%s: a ray meets the shape %g m from its middle, beyond the "
+                                  "%s of %g m; make that larger",
+                                  trial->name, fabs(ray->point[k]), box_keys[k],
+                                  trial->half_sizes[k]);
     if (!(largest > 0.0))
         return trial_refuse(trial, "shape_normal gives a normal of length 0");
     for (int k = 0; k < 3; k++)

@@ -20,7 +20,8 @@ struct trial {
     struct shape_probe probe;
     const char *name;
     bool is_open;
-    double radius;
+    double radius;        /* of the bounding sphere, m */
+    double half_sizes[3]; /* of the box, m */
     struct meeting *meetings;
     size_t count;
     struct probe_ray *rays; /* room for TRIAL_NEIGHBOURS rays for each of SHAPE_CHECK_RAYS */
