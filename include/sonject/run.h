@@ -34,10 +34,10 @@ SONJECT_API sonject_status sonject_run(sonject_context *context, const sonject_s
  * geometry as a text with a drawing: track, patch, objects, grazing angles, shadow lengths. *text
  * is the caller's, for sonject_text_release. User shapes are compiled and tried with 4096 rays each
  * on the device: INPUT where a distance or normal is not a number, a surface lies outside the
- * bounding sphere or not beyond `nearest`, or where more than one ray in a hundred finds a solid's
- * normals pointing inwards, normals more than 3 deg (or half of the rays more than 1 deg) off the
- * surface's finite differences away from edges, a surface that is not found again from just before
- * it, no inner side behind an outer one, or the surface that it leaves from 20 um off it.
+ * bounding sphere or box or not beyond `nearest`, or where more than one ray in a hundred finds a
+ * solid's normals pointing inwards, normals more than 3 deg (or half of the rays more than 1 deg)
+ * off the surface's finite differences away from edges, a surface that is not found again from just
+ * before it, no inner side behind an outer one, or the surface that it leaves from 20 um off it.
  * Errors: ARGUMENT, INPUT, STORAGE, MEMORY; with user shapes also DEVICE. */
 SONJECT_API sonject_status sonject_check(sonject_context *context, const sonject_scene *scene,
                                          char **text);

@@ -26,9 +26,9 @@ SONJECT_BEGIN_DECLARATIONS
  * is not one fails the run. Every ray must get the same answer each time it is asked.
  *
  * The code may hold further functions, types, `constant` tables and macros; their names meet
- * neither those of the program nor of other shapes (but enumerators do). Functions must not be
- * `static`. #include, #pragma, #undef and #line are refused. sonject_check tries a shape with some
- * thousand rays.
+ * neither those of the program nor of other shapes (but enumerators do). The two
+ * functions must not be `static`. #include, #pragma, #undef and #line are refused. sonject_check
+ * tries a shape with some thousand rays.
  *
  * The code is a program: it runs with the rights of the process (on a CPU it can do what the
  * process can), and one that does not come to an end cannot be stopped, it holds the device until

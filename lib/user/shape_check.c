@@ -5,294 +5,20 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "user/shape_probe.h"
+#include "user/shape_trial.h"
 
-#define PI         3.14159265358979323846
-#define RAYS       SHAPE_CHECK_RAYS
-#define DISC       1.3    /* radii about the origin that rays pass within */
-#define OUTSIDE    1.0001 /* radii: beyond, for the rounding of what lies on the sphere */
-#define STEP       2e-3   /* radii, from a ray to its neighbours */
-#define NEIGHBOURS 8      /* at one step, then at half of it */
-#define STEEP      0.2    /* least cosine of incidence where normals are compared */
-#define BEND       0.1    /* of the neighbours' plane, over their distance */
-#define AGREE_RAD  8.7e-3 /* half a degree */
-#define OFF_M      2.0e-5 /* start_from of kernels/chain_hit.h */
-#define GRAZING    0.05   /* cosine of incidence below which sides are not judged */
-#define AGAIN      1e-3   /* radii before a hit that is looked for again */
-#define SAME       1e-4   /* radii */
-
-/* A ray that met the shape. */
-struct meeting {
-    double offset[3], direction[3]; /* of the ray: its point is the offset */
-    double distance;
-    double point[3], normal[3]; /* unit */
-};
-
-struct trial {
-    struct report *report;
-    struct shape_probe probe;
-    const char *name;
-    bool is_open;
-    double radius;
-    struct meeting *meetings;
-    size_t count;
-    struct probe_ray *rays; /* room for NEIGHBOURS of each ray */
-    struct probe_hit *hits;
-    uint64_t random;
-};
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(double c[3], const double a[3], const double b[3])
-{
-    c[0] = a[1] * b[2] - a[2] * b[1];
-    c[1] = a[2] * b[0] - a[0] * b[2];
-    c[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double angle_between(const double a[3], const double b[3])
-{
-    double c[3];
-    cross(c, a, b);
-    return atan2(sqrt(dot(c, c)), dot(a, b));
-}
-
-/* 0...1; the generator is Steele, Lea and Flood's SplitMix64. */
-static double next_random(struct trial *trial)
-{
-    uint64_t z = trial->random += UINT64_C(0x9e3779b97f4a7c15);
-    z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
-    z = (z ^ (z >> 27)) * UINT64_C(0x94d049bb133111eb);
-    return (double)((z ^ (z >> 31)) >> 11) * 0x1p-53;
-}
-
-/* Two unit vectors across a direction. */
-static void find_across(const double direction[3], double u[3], double v[3])
-{
-    const double helper[3] = {fabs(direction[0]) < 0.6, fabs(direction[0]) >= 0.6, 0.0};
-    cross(u, direction, helper);
-    const double length = sqrt(dot(u, u));
-    for (int k = 0; k < 3; k++)
-        u[k] /= length;
-    cross(v, direction, u);
-}
-
-static void set_ray(struct probe_ray *ray, const double point[3], const double direction[3],
-                    double nearest)
-{
-    for (int k = 0; k < 3; k++) {
-        ray->point[k] = (float)point[k];
-        ray->direction[k] = (float)direction[k];
-    }
-    ray->nearest = (float)nearest;
-    ray->reserved = 0.0f;
-}
-
-static bool is_met(const struct probe_hit *hit)
-{
-    return isfinite(hit->distance) && fabsf(hit->distance) < 1e30f;
-}
-
-static sonject_status ask(struct trial *trial, size_t count)
-{
-    return shape_probe_ask(&trial->probe, trial->rays, trial->hits, count);
-}
-
-static sonject_status refuse(const struct trial *trial, const char *what)
-{
-    return report_failure(trial->report, SONJECT_ERROR_INPUT, "%s: %s", trial->name, what);
-}
-
-static bool is_too_many(size_t wrong, size_t count)
-{
-    return (double)wrong > SHAPE_CHECK_SHARE * (double)count;
-}
-
-/* A random ray, past the origin at less than DISC radii. */
-static void draw_ray(struct trial *trial, struct meeting *ray)
-{
-    double u[3], v[3];
-    const double z = 2.0 * next_random(trial) - 1.0;
-    const double turn = 2.0 * PI * next_random(trial);
-    const double away = DISC * trial->radius * sqrt(next_random(trial));
-    const double around = 2.0 * PI * next_random(trial);
-    ray->direction[0] = sqrt(1.0 - z * z) * cos(turn);
-    ray->direction[1] = sqrt(1.0 - z * z) * sin(turn);
-    ray->direction[2] = z;
-    find_across(ray->direction, u, v);
-    for (int k = 0; k < 3; k++)
-        ray->offset[k] = away * (cos(around) * u[k] + sin(around) * v[k]);
-}
-
-/* Takes what a ray met; the normal is made a unit vector, on the ray's side if the shape is open.
- */
-static sonject_status take_meeting(const struct trial *trial, struct meeting *ray,
-                                   const struct probe_hit *hit)
-{
-    double largest = 0.0;
-    ray->distance = hit->distance;
-    for (int k = 0; k < 3; k++) {
-        ray->point[k] = ray->offset[k] + ray->distance * ray->direction[k];
-        ray->normal[k] = hit->normal[k];
-        largest = fmax(largest, fabs(ray->normal[k]));
-        if (!isfinite(ray->normal[k]))
-            return refuse(trial, "shape_normal gives what is not a finite number");
-    }
-    if (dot(ray->point, ray->point) > pow(OUTSIDE * trial->radius, 2.0))
-        return report_failure(trial->report, SONJECT_ERROR_INPUT,
-                              "%s: a ray meets the shape %g m from its origin, beyond the "
-                              "bounding_radius of %g m; make that larger",
-                              trial->name, sqrt(dot(ray->point, ray->point)), trial->radius);
-    if (!(largest > 0.0))
-        return refuse(trial, "shape_normal gives a normal of length 0");
-    for (int k = 0; k < 3; k++)
-        ray->normal[k] /= largest;
-    double length = sqrt(dot(ray->normal, ray->normal));
-    if (trial->is_open && dot(ray->normal, ray->direction) > 0.0)
-        length = -length;
-    for (int k = 0; k < 3; k++)
-        ray->normal[k] /= length;
-    return SONJECT_OK;
-}
-
-/* Rays from all around; keeps those that meet the shape. */
-static sonject_status shoot(struct trial *trial)
-{
-    const double nearest = -(1.0 + 1e-6) * trial->radius;
-    for (size_t i = 0; i < RAYS; i++) {
-        draw_ray(trial, &trial->meetings[i]);
-        set_ray(&trial->rays[i], trial->meetings[i].offset, trial->meetings[i].direction, nearest);
-    }
-    sonject_status status = ask(trial, RAYS);
-    for (size_t i = 0; status == SONJECT_OK && i < RAYS; i++) {
-        const struct probe_hit *hit = &trial->hits[i];
-        if (isnan(hit->distance))
-            return refuse(trial, "shape_distance gives what is not a number");
-        if (!is_met(hit))
-            continue;
-        if (!(hit->distance > trial->rays[i].nearest))
-            return report_failure(trial->report, SONJECT_ERROR_INPUT,
-                                  "%s: shape_distance gives %g m where the nearest that is asked "
-                                  "for is %g m; give the first surface beyond it, or INFINITY",
-                                  trial->name, (double)hit->distance,
-                                  (double)trial->rays[i].nearest);
-        struct meeting *met = &trial->meetings[trial->count];
-        *met = trial->meetings[i];
-        status = take_meeting(trial, met, hit);
-        trial->count++;
-    }
-    if (status == SONJECT_OK && trial->count == 0)
-        return report_failure(trial->report, SONJECT_ERROR_INPUT,
-                              "%s: none of %d rays through the bounding sphere meets the shape",
-                              trial->name, RAYS);
-    return status;
-}
-
-/* Normal of the plane through four neighbours; false where they are not on one. */
-static bool plane_through(const struct meeting *met, const struct probe_ray *rays,
-                          const struct probe_hit *hits, double normal[3])
-{
-    double across[2][3];
-    for (int pair = 0; pair < 2; pair++) {
-        double bend[3];
-        for (int k = 0; k < 3; k++) {
-            double ends[2];
-            for (int end = 0; end < 2; end++) {
-                const size_t i = (size_t)(2 * pair + end);
-                if (!is_met(&hits[i]))
-                    return false;
-                ends[end] = rays[i].point[k] + (double)hits[i].distance * met->direction[k];
-            }
-            across[pair][k] = ends[0] - ends[1];
-            bend[k] = ends[0] + ends[1] - 2.0 * met->point[k];
-        }
-        if (dot(bend, bend) > BEND * BEND * dot(across[pair], across[pair]))
-            return false;
-    }
-    cross(normal, across[0], across[1]);
-    const double length = sqrt(dot(normal, normal));
-    const double side = dot(normal, met->direction) > 0.0 ? -length : length;
-    for (int k = 0; k < 3; k++)
-        normal[k] /= side;
-    return -dot(normal, met->direction) > STEEP;
-}
-
-static void set_neighbours(const struct trial *trial, const struct meeting *met,
-                           struct probe_ray *rays)
-{
-    const double nearest = -(1.0 + 1e-6) * trial->radius;
-    double across[2][3];
-    find_across(met->direction, across[0], across[1]);
-    for (int i = 0; i < NEIGHBOURS; i++) {
-        const double step = (i < 4 ? STEP : 0.5 * STEP) * trial->radius * (i % 2 == 0 ? 1.0 : -1.0);
-        double point[3];
-        for (int k = 0; k < 3; k++)
-            point[k] = met->offset[k] + step * across[i / 2 % 2][k];
-        set_ray(&rays[i], point, met->direction, nearest);
-    }
-}
-
-static int compare_numbers(const void *a, const void *b)
-{
-    const double x = *(const double *)a;
-    const double y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static sonject_status judge_angles(const struct trial *trial, double *angles,
-                                   struct shape_check *check)
-{
-    if (check->compared == 0)
-        return SONJECT_OK;
-    qsort(angles, check->compared, sizeof *angles, compare_numbers);
-    size_t far_off = 0;
-    for (size_t i = 0; i < check->compared; i++)
-        far_off += angles[i] > SHAPE_CHECK_ANGLE_DEG;
-    check->median_deg = angles[check->compared / 2];
-    check->largest_deg = angles[check->compared - 1];
-    if (check->median_deg <= SHAPE_CHECK_MEDIAN_DEG && !is_too_many(far_off, check->compared))
-        return SONJECT_OK;
-    return report_failure(trial->report, SONJECT_ERROR_INPUT,
-                          "%s: shape_normal is not the normal of what shape_distance gives: off by "
-                          "%.3g deg in the median, %.3g deg at most; %zu of %zu by more than %g "
-                          "deg",
-                          trial->name, check->median_deg, check->largest_deg, far_off,
-                          check->compared, SHAPE_CHECK_ANGLE_DEG);
-}
-
-static sonject_status compare_normals(struct trial *trial, struct shape_check *check)
-{
-    double *angles = allocate_array(trial->count, sizeof *angles);
-    if (!angles)
-        return report_out_of_memory(trial->report, "the check of a shape");
-    for (size_t i = 0; i < trial->count; i++)
-        set_neighbours(trial, &trial->meetings[i], &trial->rays[NEIGHBOURS * i]);
-    sonject_status status = ask(trial, NEIGHBOURS * trial->count);
-    for (size_t i = 0; status == SONJECT_OK && i < trial->count; i++) {
-        const struct meeting *met = &trial->meetings[i];
-        const size_t first = NEIGHBOURS * i;
-        double wide[3], narrow[3];
-        if (plane_through(met, &trial->rays[first], &trial->hits[first], wide) &&
-            plane_through(met, &trial->rays[first + 4], &trial->hits[first + 4], narrow) &&
-            angle_between(wide, narrow) < AGREE_RAD)
-            angles[check->compared++] = angle_between(met->normal, narrow) * 180.0 / PI;
-    }
-    if (status == SONJECT_OK)
-        status = judge_angles(trial, angles, check);
-    free(angles);
-    return status;
-}
+#define OFF_M 2.0e-5 /* start_from of kernels/chain_hit.h */
+#define AGAIN 1e-3   /* radii before a hit that is looked for again */
+#define SAME  1e-4   /* radii */
 
 /* From outside, a ray first meets an outer side. */
 static sonject_status check_sides(const struct trial *trial)
 {
     size_t wrong = 0;
     for (size_t i = 0; i < trial->count; i++)
-        wrong += dot(trial->meetings[i].normal, trial->meetings[i].direction) > GRAZING;
-    if (trial->is_open || !is_too_many(wrong, trial->count))
+        wrong +=
+            dot_product(trial->meetings[i].normal, trial->meetings[i].direction) > TRIAL_GRAZING;
+    if (trial->is_open || !trial_is_too_many(wrong, trial->count))
         return SONJECT_OK;
     return report_failure(trial->report, SONJECT_ERROR_INPUT,
                           "%s: %zu of %zu normals point away from the ray where it first meets the "
@@ -307,11 +33,11 @@ static sonject_status check_nearest(struct trial *trial)
     size_t inner = 0;
     for (size_t i = 0; i < trial->count; i++) {
         const struct meeting *met = &trial->meetings[i];
-        set_ray(&trial->rays[2 * i], met->offset, met->direction,
-                fmax(met->distance - AGAIN * trial->radius, -trial->radius));
-        set_ray(&trial->rays[2 * i + 1], met->offset, met->direction, met->distance + OFF_M);
+        probe_ray_set(&trial->rays[2 * i], met->offset, met->direction,
+                      fmax(met->distance - AGAIN * trial->radius, -trial->radius));
+        probe_ray_set(&trial->rays[2 * i + 1], met->offset, met->direction, met->distance + OFF_M);
     }
-    const sonject_status status = ask(trial, 2 * trial->count);
+    const sonject_status status = trial_ask(trial, 2 * trial->count);
     if (status != SONJECT_OK)
         return status;
     for (size_t i = 0; i < trial->count; i++) {
@@ -319,18 +45,20 @@ static sonject_status check_nearest(struct trial *trial)
         const struct probe_hit *again = &trial->hits[2 * i];
         const struct probe_hit *behind = &trial->hits[2 * i + 1];
         const double way[3] = {behind->normal[0], behind->normal[1], behind->normal[2]};
-        lost += !is_met(again) || fabs(again->distance - met->distance) > SAME * trial->radius;
-        if (is_met(behind) && !(behind->distance > trial->rays[2 * i + 1].nearest))
-            return refuse(trial, "shape_distance gives a surface that is not beyond `nearest`");
-        inner += !trial->is_open && -dot(met->normal, met->direction) > GRAZING &&
-                 !(is_met(behind) && dot(way, met->direction) > 0.0);
+        lost += !probe_hit_is_met(again) ||
+                fabs(again->distance - met->distance) > SAME * trial->radius;
+        if (probe_hit_is_met(behind) && !(behind->distance > trial->rays[2 * i + 1].nearest))
+            return trial_refuse(trial,
+                                "shape_distance gives a surface that is not beyond `nearest`");
+        inner += !trial->is_open && -dot_product(met->normal, met->direction) > TRIAL_GRAZING &&
+                 !(probe_hit_is_met(behind) && dot_product(way, met->direction) > 0.0);
     }
-    if (is_too_many(lost, trial->count))
+    if (trial_is_too_many(lost, trial->count))
         return report_failure(trial->report, SONJECT_ERROR_INPUT,
                               "%s: %zu of %zu surfaces are not found again by the same ray from "
                               "just before them; `nearest` must only leave out what lies before it",
                               trial->name, lost, trial->count);
-    if (is_too_many(inner, trial->count))
+    if (trial_is_too_many(inner, trial->count))
         return report_failure(trial->report, SONJECT_ERROR_INPUT,
                               "%s: %zu of %zu rays that enter the solid do not next meet its inner "
                               "side: distances are not good to 20 um, or the surface is not closed "
@@ -345,24 +73,24 @@ static sonject_status check_restarts(struct trial *trial, struct shape_check *ch
 {
     for (size_t i = 0; i < trial->count; i++) {
         struct meeting *met = &trial->meetings[i];
-        const double cosine = dot(met->normal, met->direction);
+        const double cosine = dot_product(met->normal, met->direction);
         double start[3];
-        if (-cosine < GRAZING)
+        if (-cosine < TRIAL_GRAZING)
             continue;
         for (int k = 0; k < 3; k++) {
             start[k] = met->point[k] + OFF_M * met->normal[k];
             met->direction[k] -= 2.0 * cosine * met->normal[k];
         }
-        met->distance = dot(start, met->direction);
+        met->distance = dot_product(start, met->direction);
         if (met->distance >= trial->radius)
             continue;
         for (int k = 0; k < 3; k++)
             start[k] -= met->distance * met->direction[k];
-        set_ray(&trial->rays[check->restarts], start, met->direction,
-                fmax(met->distance, -trial->radius));
+        probe_ray_set(&trial->rays[check->restarts], start, met->direction,
+                      fmax(met->distance, -trial->radius));
         check->restarts++;
     }
-    const sonject_status status = ask(trial, check->restarts);
+    const sonject_status status = trial_ask(trial, check->restarts);
     if (status != SONJECT_OK)
         return status;
     for (size_t i = 0; i < check->restarts; i++) {
@@ -372,10 +100,10 @@ static sonject_status check_restarts(struct trial *trial, struct shape_check *ch
                            (double)hit->normal[1] * ray->direction[1] +
                            (double)hit->normal[2] * ray->direction[2];
         const double gap = (double)hit->distance - (double)ray->nearest;
-        if (is_met(hit))
+        if (probe_hit_is_met(hit))
             check->acne += trial->is_open ? gap < AGAIN * trial->radius : way > 0.0;
     }
-    if (!is_too_many(check->acne, check->restarts))
+    if (!trial_is_too_many(check->acne, check->restarts))
         return SONJECT_OK;
     return report_failure(trial->report, SONJECT_ERROR_INPUT,
                           "%s: %zu of %zu rays that leave the surface meet it again at once: "
@@ -385,11 +113,11 @@ static sonject_status check_restarts(struct trial *trial, struct shape_check *ch
 
 static sonject_status try_shape(struct trial *trial, struct shape_check *check)
 {
-    sonject_status status = shoot(trial);
+    sonject_status status = trial_shoot(trial);
     if (status == SONJECT_OK)
         status = check_sides(trial);
     if (status == SONJECT_OK)
-        status = compare_normals(trial, check);
+        status = trial_compare_normals(trial, check);
     if (status == SONJECT_OK)
         status = check_nearest(trial);
     if (status == SONJECT_OK)
@@ -410,12 +138,15 @@ sonject_status shape_check_run(struct report *report, struct device *device,
     trial.name = shapes->snippets[shape->snippet].name;
     trial.is_open = shape->is_open;
     trial.radius = shape->bounding_radius_m;
+    trial.half_sizes[0] = shape->half_length_m;
+    trial.half_sizes[1] = shape->half_width_m;
+    trial.half_sizes[2] = shape->half_height_m;
     sonject_status status = shape_probe_begin(&trial.probe, report, device, shapes, number);
     if (status != SONJECT_OK)
         return status;
-    trial.meetings = allocate_array(RAYS, sizeof *trial.meetings);
-    trial.rays = allocate_array(NEIGHBOURS * RAYS, sizeof *trial.rays);
-    trial.hits = allocate_array(NEIGHBOURS * RAYS, sizeof *trial.hits);
+    trial.meetings = allocate_array(SHAPE_CHECK_RAYS, sizeof *trial.meetings);
+    trial.rays = allocate_array(TRIAL_NEIGHBOURS * SHAPE_CHECK_RAYS, sizeof *trial.rays);
+    trial.hits = allocate_array(TRIAL_NEIGHBOURS * SHAPE_CHECK_RAYS, sizeof *trial.hits);
     status = trial.meetings && trial.rays && trial.hits
                  ? try_shape(&trial, check)
                  : report_out_of_memory(report, "the check of a shape");

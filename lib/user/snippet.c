@@ -1,56 +1,46 @@
 #include "user/snippet.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/growing_text.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "user/snippet_words.h"
 
 static const char *const functions[] = {"shape_distance", "shape_normal"};
 
-/* A text of which the room is counted first: a line holds at most two words and 64 more. */
-static char *room_for(const struct snippet_words *words, const char *name)
-{
-    size_t bytes = 128 + strlen(name);
-    for (size_t i = 0; i < words->names.count; i++)
-        bytes += 64 + 2 * words->names.words[i].length;
-    for (size_t i = 0; i < words->macros.count; i++)
-        bytes += 64 + words->macros.words[i].length;
-    return allocate_array(bytes, 1);
-}
-
 static char *text_before(const struct user_snippet *snippet, const struct snippet_words *words,
                          uint32_t number)
 {
-    char *text = room_for(words, snippet->name);
-    char *end = text;
-    for (size_t i = 0; text && i < words->names.count; i++) {
+    struct growing_text text = {NULL, 0, 0, false};
+    for (size_t i = 0; i < words->names.count; i++) {
         const struct word *word = &words->names.words[i];
         const char *start = snippet->code + word->start;
-        end += sprintf(end, "#define %.*s user_%lu_%.*s\n", (int)word->length, start,
-                       (unsigned long)number, (int)word->length, start);
+        growing_text_add(&text, "#define %.*s user_%lu_%.*s\n", (int)word->length, start,
+                         (unsigned long)number, (int)word->length, start);
     }
-    if (text)
-        sprintf(end, "#line %lu \"%s\"\n", (unsigned long)snippet->first_line, snippet->name);
-    return text;
+    growing_text_add(&text, "#line %lu \"%s\"\n", (unsigned long)snippet->first_line,
+                     snippet->name);
+    return growing_text_end(&text);
+}
+
+static void take_words_away(struct growing_text *text, const struct user_snippet *snippet,
+                            const struct words *words)
+{
+    for (size_t i = 0; i < words->count; i++)
+        growing_text_add(text, "#undef %.*s\n", (int)words->words[i].length,
+                         snippet->code + words->words[i].start);
 }
 
 /* Starts a line of its own: the code may end without one, or in a backslash. */
 static char *text_behind(const struct user_snippet *snippet, const struct snippet_words *words)
 {
-    char *text = room_for(words, snippet->name);
-    char *end = text;
-    if (text)
-        end += sprintf(end, "\n\n#line 1 \"end of %s\"\n", snippet->name);
-    for (size_t i = 0; text && i < words->names.count; i++)
-        end += sprintf(end, "#undef %.*s\n", (int)words->names.words[i].length,
-                       snippet->code + words->names.words[i].start);
-    for (size_t i = 0; text && i < words->macros.count; i++)
-        end += sprintf(end, "#undef %.*s\n", (int)words->macros.words[i].length,
-                       snippet->code + words->macros.words[i].start);
-    return text;
+    struct growing_text text = {NULL, 0, 0, false};
+    growing_text_add(&text, "\n\n#line 1 \"end of %s\"\n", snippet->name);
+    take_words_away(&text, snippet, &words->names);
+    take_words_away(&text, snippet, &words->macros);
+    return growing_text_end(&text);
 }
 
 static sonject_status check_name(struct report *report, const char *name)

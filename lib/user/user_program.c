@@ -1,10 +1,9 @@
 #include "user/user_program.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
+#include "base/growing_text.h"
 #include "cl/sources.h"
 #include "user/build_log.h"
 
@@ -25,50 +24,41 @@ struct user_record user_record_of(const struct user_shape *shape)
 static char *text_without_macros(const char *source)
 {
     static const char define[] = "#define ";
-    static const char given[] =
-        "#undef WIDTH\n#undef WITH_MESHES\n#undef WITH_USER_SHAPES\n#undef TALLY_IS_SHARED\n";
-    char *text = allocate_array(strlen(source) + sizeof given, 1);
-    if (!text)
-        return NULL;
-    char *end = text + sprintf(text, "%s", given);
+    struct growing_text text = {NULL, 0, 0, false};
+    growing_text_add(&text, "#undef WIDTH\n#undef WITH_MESHES\n#undef WITH_USER_SHAPES\n"
+                            "#undef TALLY_IS_SHARED\n");
     for (const char *line = source; *line != '\0';) {
         const size_t length = strcspn(line, "\n");
         if (strncmp(line, define, sizeof define - 1) == 0) {
             const char *name = line + sizeof define - 1;
-            end += sprintf(end, "#undef %.*s\n", (int)strcspn(name, " (\n"), name);
+            growing_text_add(&text, "#undef %.*s\n", (int)strcspn(name, " (\n"), name);
         }
         line += length + (line[length] == '\n');
     }
-    return text;
+    return growing_text_end(&text);
 }
 
-#define CALLS_HEAD 400
-#define CALLS_EACH 400
-
 /* What the kernels call, which call the snippets by their numbers. */
-static char *text_of_calls(uint32_t count)
+static char *text_of_calls(unsigned long count)
 {
-    char *text = allocate_array(CALLS_HEAD + (size_t)count * CALLS_EACH, 1);
-    if (!text)
-        return NULL;
-    char *end = text + sprintf(text, "#line 1 \"calls of user shapes\"\n");
-    for (uint32_t i = 0; i < count; i++)
-        end += sprintf(end,
-                       "float user_%lu_shape_distance(float3, float3, float, const float *);\n"
-                       "float3 user_%lu_shape_normal(float3, const float *);\n",
-                       (unsigned long)i, (unsigned long)i);
-    end += sprintf(end, "float user_distance(int n, float3 p, float3 d, float t, const float *a)\n"
-                        "{\n");
-    for (uint32_t i = 0; i < count; i++)
-        end += sprintf(end, "if (n == %lu) return user_%lu_shape_distance(p, d, t, a);\n",
-                       (unsigned long)i, (unsigned long)i);
-    end += sprintf(end, "return INFINITY;\n}\n"
-                        "float3 user_normal(int n, float3 p, const float *a)\n{\n");
-    for (uint32_t i = 0; i < count; i++)
-        end += sprintf(end, "if (n == %lu) return user_%lu_shape_normal(p, a);\n", (unsigned long)i,
-                       (unsigned long)i);
-    sprintf(end, "return (float3)(0.0f);\n}\n");
-    return text;
+    struct growing_text text = {NULL, 0, 0, false};
+    growing_text_add(&text, "#line 1 \"calls of user shapes\"\n");
+    for (unsigned long i = 0; i < count; i++)
+        growing_text_add(&text,
+                         "float user_%lu_shape_distance(float3, float3, float, const float *);\n"
+                         "float3 user_%lu_shape_normal(float3, const float *);\n",
+                         i, i);
+    growing_text_add(
+        &text, "float user_distance(int n, float3 p, float3 d, float t, const float *a)\n{\n");
+    for (unsigned long i = 0; i < count; i++)
+        growing_text_add(&text, "    if (n == %lu) return user_%lu_shape_distance(p, d, t, a);\n",
+                         i, i);
+    growing_text_add(&text, "    return INFINITY;\n}\n"
+                            "float3 user_normal(int n, float3 p, const float *a)\n{\n");
+    for (unsigned long i = 0; i < count; i++)
+        growing_text_add(&text, "    if (n == %lu) return user_%lu_shape_normal(p, a);\n", i, i);
+    growing_text_add(&text, "    return (float3)(0.0f);\n}\n");
+    return growing_text_end(&text);
 }
 
 static sonject_status explain(struct report *report, const struct device *device, const char *log,

@@ -602,6 +602,32 @@ static void test_sound_shapes_pass_the_check(void **state)
     "    return dot(p, p) > a[0] * a[0] ? INFINITY : " result ";\n"                                \
     "}\n"
 
+static void test_the_check_catches_small_boxes(void **state)
+{
+    struct bench bench;
+    struct shape_check check;
+    struct user_shapes *shapes = &bench.scene.user_shapes;
+    (void)state;
+    bench_open(&bench, NULL, ROWS, COLUMNS, RANGE);
+    add_code(shapes, &bench.report, "dome.cl", DOME_CODE, 0.5, DOME_A, DOME_H);
+    struct user_shape *shape = &shapes->shapes[0];
+    double *const sizes[3] = {&shape->half_length_m, &shape->half_width_m, &shape->half_height_m};
+    const double true_sizes[3] = {DOME_A, DOME_A, DOME_H};
+    const char *const keys[3] = {"half_length", "half_width", "half_height"};
+    for (int k = 0; k < 3; k++)
+        *sizes[k] = true_sizes[k];
+    assert_int_equal(shape_check_run(&bench.report, bench.tracer.device, shapes, 0, &check),
+                     SONJECT_OK);
+    for (int k = 0; k < 3; k++) {
+        *sizes[k] = 0.97 * true_sizes[k];
+        assert_int_equal(shape_check_run(&bench.report, bench.tracer.device, shapes, 0, &check),
+                         SONJECT_ERROR_INPUT);
+        assert_non_null(strstr(bench.report.message, keys[k]));
+        *sizes[k] = true_sizes[k];
+    }
+    bench_close(&bench);
+}
+
 static void test_the_check_catches(void **state)
 {
     static const struct {
@@ -668,6 +694,7 @@ int main(void)
         cmocka_unit_test(test_a_missing_normal_fails_the_run),
         cmocka_unit_test(test_sound_shapes_pass_the_check),
         cmocka_unit_test(test_the_check_catches),
+        cmocka_unit_test(test_the_check_catches_small_boxes),
     };
     return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

@@ -7,8 +7,8 @@
 #define SPHERE_DISTANCE                                                                            \
     "#define WIDTH 3\n"                                                                            \
     "struct vector3 { float one; };\n"                                                             \
-    "constant float real = 1.0f, FAR_AWAY = 1.0f;\n"                                               \
-    "float helper(float x) { return x * real * FAR_AWAY; }\n"                                      \
+    "constant float real = 1.0f;\n"                                                                \
+    "float helper(float x) { const float FAR_AWAY = real; return x * FAR_AWAY; }\n"                \
     "float shape_distance(float3 p, float3 d, float nearest, const float *a)\n"                    \
     "{\n"                                                                                          \
     "    struct vector3 middle;\n"                                                                 \
