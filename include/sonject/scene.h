@@ -45,7 +45,7 @@ SONJECT_API sonject_status sonject_scene_create(sonject_context *context, sonjec
  * add keys, such as "input.path=swath.tif" or "objects[0].heading=30 deg". Relative file names are
  * resolved against the scene file's folder, those of overrides against the working directory.
  * Message on failure: file:line:column, the key, what is wrong. On failure *scene is NULL.
- * Errors: ARGUMENT, INPUT, STORAGE, MEMORY. */
+ * Errors: ARGUMENT, INPUT, STORAGE, UNSUPPORTED (a mesh's format), MEMORY. */
 SONJECT_API sonject_status sonject_scene_read(sonject_context *context, const char *path,
                                               const char *const *overrides, size_t count,
                                               sonject_scene **scene);

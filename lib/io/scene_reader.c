@@ -133,18 +133,22 @@ sonject_status refuse_word(const struct reader *reader, const struct tree_node *
 static sonject_status read_word(struct reader *reader, const struct field *field,
                                 const struct tree_node *node, uint32_t *value)
 {
+    const char *words[FIELD_WORDS_MAX];
     struct word_list list = {{0}, 0};
     const char *text = read_text(reader, node);
     if (!text)
         return SONJECT_ERROR_INPUT;
     for (uint32_t i = 0; i < FIELD_WORDS_MAX && field->words[i]; i++) {
+        if (*field->words[i] == 0)
+            continue;
         if (strcmp(field->words[i], text) == 0) {
             *value = i;
             return SONJECT_OK;
         }
+        words[list.count] = field->words[i];
         list_word(&list, field->words[i]);
     }
-    const char *near = nearest_word(text, field->words, list.count);
+    const char *near = nearest_word(text, words, list.count);
     for (size_t i = 0; field->section && i < field->section->count; i++) {
         char key[32];
         snprintf(key, sizeof key, "{%s: ...}", field->section->fields[i].key);

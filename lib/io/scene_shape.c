@@ -97,7 +97,7 @@ sonject_status check_shape_keys(struct reader *reader, const struct tree_node *n
 {
     static const struct {
         const char *key;
-        unsigned char presence[SONJECT_SHAPE_TORUS + 1]; /* enum presence, by shape */
+        unsigned char presence[SONJECT_SHAPE_MESH + 1]; /* enum presence, by shape */
     } sizes[] = {
         {"length",
          {[SONJECT_SHAPE_PLANE] = NEEDED,
@@ -130,6 +130,7 @@ sonject_status check_shape_keys(struct reader *reader, const struct tree_node *n
         {"front_height", {[SONJECT_SHAPE_WEDGE] = POSSIBLE}},
         {"nose_end", {[SONJECT_SHAPE_CYLINDER] = POSSIBLE}},
         {"tail_end", {[SONJECT_SHAPE_CYLINDER] = POSSIBLE}},
+        {"mesh", {[SONJECT_SHAPE_MESH] = NEEDED}},
     };
     const char *name = shape_name(shape);
     for (size_t i = 0; i < COUNT(sizes); i++) {

@@ -60,7 +60,7 @@ SIZES = {
     "sonject_cut": 24,
     "sonject_object_params": 416,
     "sonject_part_params": 56,
-    "sonject_mesh_params": 32,
+    "sonject_mesh_params": 40,
     "sonject_geometry_params": 40,
     "sonject_transfer_params": 24,
     "sonject_synthetic_params": 88,
