@@ -248,6 +248,27 @@ static void test_meshes_that_cannot_be_read(void **state)
     }
 }
 
+/* As many as a scene may have, and one more. */
+static void test_too_many_meshes(void **state)
+{
+    char text[16384] = SCENE;
+    size_t length = strlen(text);
+    struct scene_folder *folder = *state;
+    write_file(folder, "corner.obj", corner, sizeof corner - 1);
+    for (int i = 0; i <= SCENE_MESHES_MAX; i++) {
+        if (i == SCENE_MESHES_MAX)
+            expect_scene_taken(folder, text);
+        length +=
+            (size_t)snprintf(text + length, sizeof text - length,
+                             "  - {shape: mesh, mesh: {file: corner.obj, unit: %d mm}}\n", i + 1);
+    }
+    assert_int_equal(folder->scene.mesh_count, SCENE_MESHES_MAX);
+    expect_scene_refused(folder, text,
+                         ":69:32: objects[64].mesh.file: meshes must be at most 64 in a scene; "
+                         "split it");
+    remove_file(folder, "corner.obj");
+}
+
 /* A sheet is refused unless it is said to be one, wherever it was read before. */
 static void test_open_meshes(void **state)
 {
@@ -311,6 +332,7 @@ int main(void)
         cmocka_unit_test(test_meshes_are_shared),
         cmocka_unit_test(test_what_is_refused),
         cmocka_unit_test(test_meshes_that_cannot_be_read),
+        cmocka_unit_test(test_too_many_meshes),
         cmocka_unit_test(test_open_meshes),
         cmocka_unit_test(test_the_hash_covers_the_mesh),
     };
