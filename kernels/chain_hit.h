@@ -44,8 +44,9 @@ FUNCTION struct nearest_hit find_nearest_ahead(const struct fan_record *fan,
 /* The first surface on a ray; left_behind: of where it starts. */
 FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
                                          GLOBAL const struct object_record *objects,
-                                         struct vector3 start, struct vector3 direction,
-                                         float minimum, whole left_behind, mask is_ray)
+                                         enum wanted_face wanted, struct vector3 start,
+                                         struct vector3 direction, float minimum, whole left_behind,
+                                         mask is_ray)
 {
     const real to_seabed = seabed_distance(fan, start, direction);
     const struct nearest_hit nearest =
@@ -58,23 +59,27 @@ FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
     hit.surface = CHOOSE(on_object, nearest.object, WHOLE_OF(SPLAT(-1.0f)));
     hit.point = along3(start, direction, hit.distance);
     hit.back = reversed3(direction);
-    hit.normal.x = SPLAT(0.0f);
-    hit.normal.y = SPLAT(0.0f);
-    hit.normal.z = SPLAT(1.0f);
+    struct surface_face face;
+    face.normal.x = face.normal.y = SPLAT(0.0f);
+    face.normal.z = SPLAT(1.0f);
+#if HAS_MESHES
+    face.lift.x = face.lift.y = face.lift.z = SPLAT(0.0f);
+#endif
     hit.left_behind = WHOLE_OF(SPLAT(-1.0f));
     for (int i = 0; i < fan->objects; i++) {
         const mask here = hit.is_hit & MASK_OF(hit.surface == i);
         if (!ANY(here))
             continue;
-        const struct vector3 outward =
-            object_normal(&objects[i], start, direction, CHOOSE(here, hit.distance, SPLAT(0.0f)));
-        hit.normal = choose3(here, outward, hit.normal);
+        const struct surface_face found = object_face(&objects[i], wanted, start, direction,
+                                                      CHOOSE(here, hit.distance, SPLAT(0.0f)));
+        face = choose_face(here, found, face);
         if (is_convex(&objects[i]))
             hit.left_behind = CHOOSE(here, hit.surface, hit.left_behind);
     }
     /* inner sides scatter as outer ones do, but what they scatter meets the object again */
-    const mask is_outer = MASK_OF(dot3(hit.normal, hit.back) >= 0.0f);
-    hit.normal = choose3(is_outer, hit.normal, reversed3(hit.normal));
+    const mask is_outer = MASK_OF(dot3(face.normal, hit.back) >= 0.0f);
+    hit.normal = choose3(is_outer, face.normal, reversed3(face.normal));
+    hit.point = lifted_point(hit.point, &face);
     hit.left_behind = CHOOSE(is_outer, hit.left_behind, WHOLE_OF(SPLAT(-1.0f)));
     return hit;
 }

@@ -268,14 +268,14 @@ APART struct vector3 normal_with_cuts(GLOBAL const struct object_record *object,
 
 #if HAS_MESHES
 /* In the object's own frame. */
-FUNCTION struct vector3 normal_of_mesh(GLOBAL const struct object_record *object,
-                                       struct vector3 point, struct vector3 direction,
-                                       real distance)
+FUNCTION struct mesh_surface surface_of_mesh(GLOBAL const struct object_record *object,
+                                             struct vector3 point, struct vector3 direction,
+                                             real distance)
 {
     const struct vector3 relative = from_centre(object, point);
     const real approach = -dot3(relative, direction);
-    return mesh_object_normal(object, into_object(object, along3(relative, direction, approach)),
-                              into_object(object, direction), distance - approach);
+    return mesh_object_surface(object, into_object(object, along3(relative, direction, approach)),
+                               into_object(object, direction), distance - approach);
 }
 #endif
 
@@ -294,13 +294,13 @@ FUNCTION struct vector3 normal_of_user_shape(GLOBAL const struct object_record *
 #endif
 
 /* Outward unit normal where the ray meets the object at that distance, which object_distance gave
- * for the same ray. */
+ * for the same ray. Of a mesh that of the facet: what physical optics integrates over. */
 FUNCTION struct vector3 object_normal(GLOBAL const struct object_record *object,
                                       struct vector3 point, struct vector3 direction, real distance)
 {
 #if HAS_MESHES
     if (object->shape == SHAPE_MESH)
-        return out_of_object(object, normal_of_mesh(object, point, direction, distance));
+        return out_of_object(object, surface_of_mesh(object, point, direction, distance).facet);
 #endif
 #ifdef WITH_USER_SHAPES
     if (object->shape == SHAPE_USER)
@@ -311,6 +311,62 @@ FUNCTION struct vector3 object_normal(GLOBAL const struct object_record *object,
     const struct vector3 hit = from_centre(object, along3(point, direction, distance));
     return out_of_object(
         object, plain_normal(object, into_object(object, hit), into_object(object, direction)));
+}
+
+/* What is wanted of a hit: where facets stand for a smooth surface the two differ. */
+enum wanted_face {
+    FACE_OF_OPTICS,
+    FACE_OF_SCATTERING
+};
+
+/* A surface where a ray meets it. What scatters sees meshes that stand for smooth surfaces as such;
+ * all else is as object_normal says. */
+struct surface_face {
+    struct vector3 normal;
+#if HAS_MESHES
+    struct vector3 lift; /* from the hit to where rays that test visibility start, m */
+#endif
+};
+
+FUNCTION struct surface_face object_face(GLOBAL const struct object_record *object,
+                                         enum wanted_face wanted, struct vector3 point,
+                                         struct vector3 direction, real distance)
+{
+    struct surface_face face;
+#if HAS_MESHES
+    if (object->shape == SHAPE_MESH && wanted == FACE_OF_SCATTERING) {
+        const struct mesh_surface surface = surface_of_mesh(object, point, direction, distance);
+        face.normal = out_of_object(object, surface.smooth);
+        face.lift = out_of_object(object, minus3(surface.lifted, surface.point));
+        return face;
+    }
+    face.lift.x = face.lift.y = face.lift.z = SPLAT(0.0f);
+#endif
+    (void)wanted;
+    face.normal = object_normal(object, point, direction, distance);
+    return face;
+}
+
+/* A point of the surface, brought off it so far that its facets throw no shadows. */
+FUNCTION struct vector3 lifted_point(struct vector3 point, const struct surface_face *face)
+{
+#if HAS_MESHES
+    return along3(point, face->lift, SPLAT(1.0f));
+#else
+    (void)face;
+    return point;
+#endif
+}
+
+FUNCTION struct surface_face choose_face(mask condition, struct surface_face yes,
+                                         struct surface_face no)
+{
+    struct surface_face face;
+    face.normal = choose3(condition, yes.normal, no.normal);
+#if HAS_MESHES
+    face.lift = choose3(condition, yes.lift, no.lift);
+#endif
+    return face;
 }
 
 struct nearest_hit {

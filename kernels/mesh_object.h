@@ -11,15 +11,24 @@
  * rounding. */
 #define MESH_FACET_SLACK 1.0e-6f
 
-/* Meshes lie behind the records of all objects: a mesh_record, its branches, its leaves. */
+FUNCTION GLOBAL const struct mesh_record *mesh_record_of_object(
+    GLOBAL const struct object_record *object)
+{
+    return (GLOBAL const struct mesh_record *)((GLOBAL const RECORD_WORD *)object +
+                                               object->mesh_words);
+}
+
+/* Meshes lie behind the records of all objects: a mesh_record, its branches, its leaves and, of a
+ * smooth one, the normals at its corners. */
 FUNCTION struct mesh_view mesh_of_object(GLOBAL const struct object_record *object)
 {
-    GLOBAL const RECORD_WORD *words = (GLOBAL const RECORD_WORD *)object + object->mesh_words;
-    GLOBAL const struct mesh_record *mesh = (GLOBAL const struct mesh_record *)words;
+    GLOBAL const struct mesh_record *mesh = mesh_record_of_object(object);
     GLOBAL const struct mesh_branch *branches = (GLOBAL const struct mesh_branch *)(mesh + 1);
     GLOBAL const struct mesh_leaf *leaves =
         (GLOBAL const struct mesh_leaf *)(branches + mesh->branches);
-    return mesh_view_of(mesh, branches, leaves, 0); /* facets are flat */
+    GLOBAL const struct mesh_corner_normals *normals =
+        (GLOBAL const struct mesh_corner_normals *)(leaves + mesh->leaves);
+    return mesh_view_of(mesh, branches, leaves, normals);
 }
 
 /* Distance from the ray's closest approach `start`, in the object's own frame, to the first facet
@@ -31,17 +40,23 @@ APART real mesh_object_distance(GLOBAL const struct object_record *object, struc
     return mesh_nearest_hit(mesh_of_object(object), start, direction, minimum, farthest).distance;
 }
 
-/* Outward normal of the facet at a distance from the closest approach, in the object's own
- * frame. */
-APART struct vector3 mesh_object_normal(GLOBAL const struct object_record *object,
-                                        struct vector3 start, struct vector3 direction,
-                                        real distance)
+/* The surface at a distance from the closest approach, in the object's own frame. Normals are
+ * outward; those of sheets, which have no inside, on the side that the ray came from. */
+APART struct mesh_surface mesh_object_surface(GLOBAL const struct object_record *object,
+                                              struct vector3 start, struct vector3 direction,
+                                              real distance)
 {
     const struct mesh_view mesh = mesh_of_object(object);
     const real slack = MESH_FACET_SLACK * (object->bounding_radius + magnitude(distance));
     const struct mesh_hit hit =
         mesh_nearest_hit(mesh, start, direction, distance - slack, distance + slack);
-    return mesh_surface_at(mesh, start, direction, hit.triangle).facet;
+    struct mesh_surface surface = mesh_surface_at(mesh, start, direction, hit.triangle);
+    if (mesh_record_of_object(object)->is_sheet) {
+        const mask is_behind = MASK_OF(dot3(surface.facet, direction) > 0.0f);
+        surface.facet = choose3(is_behind, reversed3(surface.facet), surface.facet);
+        surface.smooth = choose3(is_behind, reversed3(surface.smooth), surface.smooth);
+    }
+    return surface;
 }
 
 #endif

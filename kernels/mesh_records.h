@@ -61,8 +61,8 @@ struct mesh_record {
     RECORD_WORD first_leaf, leaves;
     RECORD_WORD first_normals; /* leaves * MESH_SLOTS elements, if the mesh is smooth */
     RECORD_INT is_smooth;
-    float radius; /* m, about the frame's origin; holds every corner */
-    RECORD_INT unused;
+    float radius;        /* m, about the frame's origin; holds every corner */
+    RECORD_INT is_sheet; /* not closed: facets have no inside and reflect on both sides */
 };
 
 #endif

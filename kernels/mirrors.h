@@ -133,6 +133,8 @@ FUNCTION real distance_past_mirrors(const struct fan_record *fan,
 struct mirrored_hit {
     mask is_hit;
     struct vector3 point, normal;
+    struct vector3
+        start;   /* where rays that test visibility start, but for a step off the surface */
     real range;  /* from the outgoing source less the reference range */
     real cosine; /* of the angle of incidence */
 };
@@ -140,7 +142,8 @@ struct mirrored_hit {
 FUNCTION struct mirrored_hit find_mirrored_hit(const struct fan_record *fan,
                                                GLOBAL const struct source_pair_record *pair,
                                                GLOBAL const struct object_record *object,
-                                               const struct fan_ray *ray, mask is_ray)
+                                               enum wanted_face wanted, const struct fan_ray *ray,
+                                               mask is_ray)
 {
     const real distance = object_distance(object, ray->closest, ray->direction,
                                           distance_past_mirrors(fan, pair, ray));
@@ -149,7 +152,10 @@ FUNCTION struct mirrored_hit find_mirrored_hit(const struct fan_record *fan,
                  MASK_OF(distance < seabed_distance(fan, ray->closest, ray->direction));
     const real safe = CHOOSE(hit.is_hit, distance, SPLAT(0.0f));
     hit.point = along3(ray->closest, ray->direction, safe);
-    hit.normal = object_normal(object, ray->closest, ray->direction, safe);
+    const struct surface_face face =
+        object_face(object, wanted, ray->closest, ray->direction, safe);
+    hit.normal = face.normal;
+    hit.start = lifted_point(hit.point, &face);
     hit.range = ray->range_at_closest + safe;
     hit.cosine = -dot3(hit.normal, ray->direction);
     /* from inside: the mirror's point is buried in the object */
@@ -201,7 +207,7 @@ FUNCTION struct mirrored_path follow_path(const struct fan_record *fan,
     path.cosine_back = -dot3(hit->normal, path.back.direction);
     const mask is_lit = hit->is_hit & MASK_OF(path.cosine_back > 0.0f);
     /* start off the surface by more than its rounding, less than anything that throws a shadow */
-    const struct vector3 start = along3(hit->point, hit->normal, SPLAT(2.0e-5f));
+    const struct vector3 start = along3(hit->start, hit->normal, SPLAT(2.0e-5f));
     const struct leg out = follow_leg(pair, &pair->outgoing, objects, fan->objects, start,
                                       reversed3(ray->direction), path.wavefront_out, is_lit);
     const struct leg home =

@@ -117,8 +117,8 @@ FUNCTION void begin_chain(const struct fan_record *fan,
     const struct fan_ray ray =
         fan_ray_at(fan, pieces, x,
                    fan->first_elevation + (REAL_OF(chain->number) + across) * fan->elevation_step);
-    chain->hit = find_chain_hit(fan, objects, ray.closest, ray.direction, -fan->reference_range,
-                                WHOLE_OF(SPLAT(-1.0f)), is_ray);
+    chain->hit = find_chain_hit(fan, objects, FACE_OF_SCATTERING, ray.closest, ray.direction,
+                                -fan->reference_range, WHOLE_OF(SPLAT(-1.0f)), is_ray);
     chain->range = ray.range_at_closest + chain->hit.distance;
     chain->length = SPLAT(0.0f);
     chain->first_x = x;
@@ -171,8 +171,9 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
             next_step(fan, pieces, chains, objects, spheres, map, order, &chain, draw);
         const mask goes_on = chain.is_alive & MASK_OF(step.weight > 0.0f);
         outcome->queries += count_lanes(goes_on);
-        struct chain_hit next = find_chain_hit(fan, objects, start_from(&chain.hit), step.direction,
-                                               0.0f, chain.hit.left_behind, goes_on);
+        struct chain_hit next =
+            find_chain_hit(fan, objects, FACE_OF_SCATTERING, start_from(&chain.hit), step.direction,
+                           0.0f, chain.hit.left_behind, goes_on);
         if (has_sea_surface(chains))
             meet_sea_surface(chains, start_from(&chain.hit), step.direction, goes_on, &next);
         if (!is_connected) {

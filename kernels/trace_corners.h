@@ -38,7 +38,8 @@ FUNCTION void begin_corner(const struct fan_record *fan,
 {
     GLOBAL const struct object_record *object = &objects[fan->only_object];
     const struct fan_ray *ray = &cell->ray;
-    const struct mirrored_hit first = find_mirrored_hit(fan, pair, object, ray, cell->is_ray);
+    const struct mirrored_hit first =
+        find_mirrored_hit(fan, pair, object, FACE_OF_OPTICS, ray, cell->is_ray);
     path->first_wavefront = ray->wavefront + (first.range - ray->range_at_closest);
     path->hit.point = first.point;
     path->hit.normal = first.normal;
@@ -127,8 +128,8 @@ FUNCTION void bounce_on(const struct fan_record *fan, GLOBAL const struct corner
     }
     const struct vector3 direction = mirrored3(came, hit->normal);
     outcome->queries += count_lanes(path->is_alive);
-    const struct chain_hit next = find_chain_hit(fan, objects, start_from(hit), direction, 0.0f,
-                                                 hit->left_behind, path->is_alive);
+    const struct chain_hit next = find_chain_hit(fan, objects, FACE_OF_OPTICS, start_from(hit),
+                                                 direction, 0.0f, hit->left_behind, path->is_alive);
     turn_by_caustics(&path->tube, direction, next.distance, &path->reflection_real,
                      &path->reflection_imaginary);
     transfer_tube(&path->tube, next.distance);

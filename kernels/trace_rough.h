@@ -162,14 +162,16 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
         if (!ANY(here))
             continue;
         const real distance = CHOOSE(here, nearest.distance, SPLAT(0.0f));
-        const struct vector3 normal =
-            object_normal(&objects[i], ray.closest, ray.direction, distance);
+        const struct surface_face face =
+            object_scattering_face(&objects[i], ray.closest, ray.direction, distance);
+        const struct vector3 normal = face.normal;
         const struct vector3 back = reversed3(ray.direction);
         struct vector3 out = back;
         mask is_open = here;
         if (fan->source_side > 0.0f) {
             const struct connection way =
-                connect_to_source(fan, objects, &ray, along3(ray.closest, ray.direction, distance),
+                connect_to_source(fan, objects, &ray,
+                                  lifted_point(along3(ray.closest, ray.direction, distance), &face),
                                   normal, distance, source_along, source_across);
             outcome->queries += count_lanes(here);
             is_open = is_open & way.is_open;

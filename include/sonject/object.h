@@ -115,9 +115,13 @@ typedef struct sonject_mesh_params {
                              negative: the reverse of it. Together a rotation, not a mirror. A file
                              whose y axis is up and whose nose is x: 1, -3, 2 */
     int32_t reserved;
+    double smooth_angle_rad; /* 0...pi: facets that meet at less stand for one smooth surface where
+                                sound is scattered (the rough part, and paths of several
+                                interactions); 0: all facets are flat. Glints by physical optics
+                                are always those of the facets */
 } sonject_mesh_params;
 
-/* Metres, the file's axes, closed meshes only. */
+/* Metres, the file's axes, closed meshes only, flat facets. */
 SONJECT_API void sonject_mesh_params_init(sonject_mesh_params *mesh);
 
 /* Where a part lies in its object. */

@@ -46,7 +46,7 @@ SONJECT_API sonject_status sonject_scene_create(sonject_context *context, sonjec
  * add keys, such as "input.path=swath.tif" or "objects[0].heading=30 deg". Relative file names are
  * resolved against the scene file's folder, those of overrides against the working directory.
  * Message on failure: file:line:column, the key, what is wrong. On failure *scene is NULL.
- * Errors: ARGUMENT, INPUT, STORAGE, MEMORY. */
+ * Errors: ARGUMENT, INPUT, STORAGE, UNSUPPORTED (a mesh's format), MEMORY. */
 SONJECT_API sonject_status sonject_scene_read(sonject_context *context, const char *path,
                                               const char *const *overrides, size_t count,
                                               sonject_scene **scene);
@@ -124,9 +124,11 @@ SONJECT_API sonject_status sonject_scene_add_object(sonject_scene *scene,
                                                     uint32_t *index);
 
 /* Reads a mesh file (STL, OBJ, PLY, with Assimp others) for objects of the shape
- * SONJECT_SHAPE_MESH, any number of which may show it. *mesh gets its number, counted from 0. An
- * object's centre is then the middle of the mesh's bounding box. Up to 64 meshes a scene. Errors:
- * ARGUMENT, STORAGE, INPUT (what is wrong and where), UNSUPPORTED (format), MEMORY. */
+ * SONJECT_SHAPE_MESH, any number of which may show it: each call reads and keeps one (of scene
+ * files, sonject_scene_read keeps one for all that name it alike). *mesh gets its number, counted
+ * from 0. An object's centre is then the middle of the mesh's bounding box. Up to 64 meshes a
+ * scene. Errors: ARGUMENT, STORAGE, INPUT (what is wrong and where), UNSUPPORTED (format), MEMORY.
+ */
 SONJECT_API sonject_status sonject_scene_add_mesh(sonject_scene *scene, const char *path,
                                                   const sonject_mesh_params *params,
                                                   uint32_t *mesh);

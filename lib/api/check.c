@@ -10,6 +10,7 @@
 
 #include "api/swath.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "scene/placement.h"
 #include "user/shape_check.h"
 
@@ -116,6 +117,45 @@ static void describe_objects(struct text *text, const struct scene *scene,
     }
 }
 
+static uint32_t count_showing(const struct placements *placements, const struct mesh *mesh)
+{
+    uint32_t count = 0;
+    for (uint32_t i = 0; i < placements->part_count; i++)
+        count += placements->parts[i].size.mesh == mesh;
+    return count;
+}
+
+static void describe_meshes(struct text *text, const struct scene *scene,
+                            const struct placements *placements)
+{
+    for (uint32_t i = 0; i < scene->mesh_count; i++) {
+        const struct mesh *mesh = &scene->meshes[i];
+        const struct mesh_topology *topology = &mesh->topology;
+        char excerpt[200];
+        text_add(text, "mesh %-5u %s: %zu triangles, %.4g x %.4g x %.4g m, shown %lu time%s\n",
+                 (unsigned)(i + 1), text_excerpt(excerpt, sizeof excerpt, mesh->name),
+                 mesh->triangle_count, (double)mesh->upper_m[0] - (double)mesh->lower_m[0],
+                 (double)mesh->upper_m[1] - (double)mesh->lower_m[1],
+                 (double)mesh->upper_m[2] - (double)mesh->lower_m[2],
+                 (unsigned long)count_showing(placements, mesh),
+                 count_showing(placements, mesh) == 1 ? "" : "s");
+        if (topology->is_closed)
+            text_add(text, "           watertight, %.4g m3", mesh->volume_m3);
+        else
+            text_add(
+                text,
+                "           not watertight, thin sheets: %zu edges of one triangle, %zu of more "
+                "than two, %zu twisted",
+                topology->open_edges, topology->crowded_edges, topology->twisted_edges);
+        text_add(text, ", %zu piece%s", topology->pieces, topology->pieces == 1 ? "" : "s");
+        if (topology->turned > 0)
+            text_add(text, "; %zu triangles turned to show the outside", topology->turned);
+        if (mesh->degenerate > 0)
+            text_add(text, "; %zu triangles without area left out", mesh->degenerate);
+        text_add(text, "\n");
+    }
+}
+
 /* Marks the cells of the plan that a box on the ground covers. */
 static void mark(char plan[MAP_ROWS][MAP_COLUMNS + 1], const struct patch_view *view,
                  const double low[2], const double high[2], char sign)
@@ -208,6 +248,7 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
         struct text text = {NULL, 0, 0, false};
         describe_patch(&text, scene, &swath, &view);
         describe_objects(&text, scene, &view, &placements);
+        describe_meshes(&text, scene, &placements);
         status = try_user_shapes(&text, context, &scene->user_shapes);
         draw_plan(&text, &view, &placements);
         if (text.failed && status == SONJECT_OK)

@@ -255,6 +255,7 @@ sonject_status sonject_scene_add_mesh(sonject_scene *scene, const char *path,
     sonject_status status =
         params_take(scene->report, &taken, sizeof taken, params, sizeof taken, "mesh");
     options.unit_m = taken.unit_m;
+    options.smooth_angle_rad = taken.smooth_angle_rad;
     for (int axis = 0; axis < 3; axis++)
         options.axes[axis] = taken.axes[axis];
     if (status == SONJECT_OK)

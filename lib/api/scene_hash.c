@@ -121,6 +121,9 @@ static void add_meshes(struct hash *hash, const struct scene *scene)
 {
     for (uint32_t i = 0; i < scene->mesh_count; i++) {
         const struct mesh *mesh = &scene->meshes[i];
+        const uint64_t counts[2] = {mesh->vertex_count, mesh->triangle_count};
+        ADD(hash, counts);
+        ADD(hash, mesh->options.smooth_angle_rad);
         hash_add(hash, mesh->vertices, 3 * mesh->vertex_count * sizeof *mesh->vertices);
         hash_add(hash, mesh->corners, 3 * mesh->triangle_count * sizeof *mesh->corners);
     }

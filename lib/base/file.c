@@ -225,6 +225,26 @@ sonject_status folder_make(struct report *report, const char *path)
     return error == 0 ? SONJECT_OK : file_failure(report, path, "make the folder", error);
 }
 
+sonject_status file_identify(struct report *report, const char *path,
+                             struct file_identity *identity)
+{
+    struct stat facts;
+    memset(identity, 0, sizeof *identity);
+    if (stat(path, &facts) != 0)
+        return file_failure(report, path, "open", errno);
+    if (S_ISDIR(facts.st_mode))
+        return file_failure(report, path, "read", EISDIR);
+    if (!S_ISREG(facts.st_mode))
+        return report_failure(report, SONJECT_ERROR_STORAGE,
+                              "%s: cannot read: it is not a regular file", path);
+    identity->device = (uint64_t)facts.st_dev;
+    identity->number = (uint64_t)facts.st_ino;
+    identity->bytes = (uint64_t)facts.st_size;
+    identity->changed_s = (int64_t)facts.st_mtim.tv_sec;
+    identity->changed_ns = (int64_t)facts.st_mtim.tv_nsec;
+    return SONJECT_OK;
+}
+
 bool file_exists(const char *path)
 {
     struct stat facts;

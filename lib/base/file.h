@@ -41,6 +41,18 @@ sonject_status folder_make(struct report *report, const char *path);
 
 bool file_exists(const char *path);
 
+/* What tells a file from others and from what it was before it was written anew. */
+struct file_identity {
+    uint64_t device, number; /* of the file on it */
+    uint64_t bytes;
+    int64_t changed_s, changed_ns; /* when it last changed */
+};
+
+/* Of a regular file, links followed. Errors: STORAGE (there is none, or it is not a regular file:
+ * folders, pipes, devices). */
+sonject_status file_identify(struct report *report, const char *path,
+                             struct file_identity *identity);
+
 /* folder + "/" + name, to be given to free(); an absolute name is copied as it is; folder "" gives
  * name. NULL when memory is out. */
 char *path_join(const char *folder, const char *name);

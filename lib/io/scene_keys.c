@@ -66,7 +66,9 @@ static void list_section(struct listing *listing, const char *prefix, const stru
         char path[64];
         char below[sizeof path + 4];
         snprintf(path, sizeof path, "%s%s", prefix, field->key);
-        if (field->kind == FIELD_WORD || field->kind == FIELD_NAMED || !field->section)
+        /* a section with a unit may be written as a single value too */
+        if (field->kind == FIELD_WORD || field->kind == FIELD_NAMED || !field->section ||
+            (field->unit && !field->is_list))
             list_field(listing, path, field);
         if (!field->section)
             continue;

@@ -133,13 +133,13 @@ sonject_status refuse_word(const struct reader *reader, const struct tree_node *
 static sonject_status read_word(struct reader *reader, const struct field *field,
                                 const struct tree_node *node, uint32_t *value)
 {
+    const char *words[FIELD_WORDS_MAX];
     struct word_list list = {{0}, 0};
     const char *text = read_text(reader, node);
     if (!text)
         return SONJECT_ERROR_INPUT;
-    const char *words[FIELD_WORDS_MAX];
-    for (uint32_t i = 0; i < FIELD_WORDS_MAX; i++) {
-        if (!field->words[i])
+    for (uint32_t i = 0; i < FIELD_WORDS_MAX && field->words[i]; i++) {
+        if (*field->words[i] == 0)
             continue;
         if (strcmp(field->words[i], text) == 0) {
             *value = i;

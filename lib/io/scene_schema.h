@@ -39,7 +39,8 @@ struct field {
     enum quantity quantity;
     size_t offset;                      /* of the destination in the section's structure */
     uint64_t maximum;                   /* of a count */
-    const char *words[FIELD_WORDS_MAX]; /* in the order of the enumeration; NULL: none for it */
+    const char *words[FIELD_WORDS_MAX]; /* ended by NULL, in the order of the enumeration; "" for
+                                           values that no word stands for */
     const struct section *section;
     const char *unit; /* as told to users, where kind and quantity do not say it */
     sonject_status (*read)(struct reader *reader, const struct tree_node *node, void *structure);

@@ -132,6 +132,7 @@ sonject_status check_shape_keys(struct reader *reader, const struct tree_node *n
         {"front_height", {[SONJECT_SHAPE_WEDGE] = POSSIBLE}},
         {"nose_end", {[SONJECT_SHAPE_CYLINDER] = POSSIBLE}},
         {"tail_end", {[SONJECT_SHAPE_CYLINDER] = POSSIBLE}},
+        {"mesh", {[SONJECT_SHAPE_MESH] = NEEDED}},
     };
     const char *name = shape_name(shape);
     for (size_t i = 0; i < COUNT(sizes); i++) {

@@ -9,8 +9,12 @@
 
 extern const struct section nose_end_section;
 extern const struct section tail_end_section;
+extern const struct section mesh_section;
 extern const struct section cut_section;
 sonject_status read_cuts(struct reader *reader, const struct tree_node *node, void *structure);
+
+/* Reads the mesh into the scene, which keeps one however many shapes show it; in scene_mesh.c. */
+sonject_status read_mesh(struct reader *reader, const struct tree_node *node, void *structure);
 
 /* A shape, its sizes, ends and cuts. */
 #define SHAPE_FIELDS                                                                               \
@@ -26,6 +30,8 @@ sonject_status read_cuts(struct reader *reader, const struct tree_node *node, vo
                                            [SONJECT_SHAPE_CONE] = "cone",                          \
                                            [SONJECT_SHAPE_TRUNCATED_CONE] = "truncated_cone",      \
                                            [SONJECT_SHAPE_TORUS] = "torus",                        \
+                                           [SONJECT_SHAPE_PARTS] = "",                             \
+                                           [SONJECT_SHAPE_MESH] = "mesh",                          \
                                            [SONJECT_SHAPE_USER] = "user"}},                        \
         {"user", "code that is the shape, where that is user", .kind = FIELD_SPECIAL,              \
          .section = &user_section, .read = read_user_shape},                                       \
@@ -52,6 +58,12 @@ sonject_status read_cuts(struct reader *reader, const struct tree_node *node, vo
                                                   [SONJECT_END_OPEN] = "open",                     \
                                                   [SONJECT_END_SPHERICAL] = "spherical"},          \
          .section = &tail_end_section},                                                            \
+        {"mesh",                                                                                   \
+         "of the shape mesh: its file's name, or a section",                                       \
+         .kind = FIELD_SPECIAL,                                                                    \
+         .unit = "file name",                                                                      \
+         .section = &mesh_section,                                                                 \
+         .read = read_mesh},                                                                       \
     {                                                                                              \
         "cuts", "planes that cut parts off, at most 2", .kind = FIELD_SPECIAL, .unit = "list",     \
                                                         .section = &cut_section, .is_list = true,  \

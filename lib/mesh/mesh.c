@@ -21,11 +21,22 @@ void mesh_options_init(struct mesh_options *options)
         options->axes[axis] = axis + 1;
 }
 
+bool mesh_is_of(const struct mesh *mesh, const struct file_identity *file,
+                const struct mesh_options *options)
+{
+    return mesh->file.device == file->device && mesh->file.number == file->number &&
+           mesh->file.bytes == file->bytes && mesh->file.changed_s == file->changed_s &&
+           mesh->file.changed_ns == file->changed_ns && mesh->options.unit_m == options->unit_m &&
+           memcmp(mesh->options.axes, options->axes, sizeof options->axes) == 0 &&
+           mesh->options.smooth_angle_rad == options->smooth_angle_rad;
+}
+
 void mesh_clear(struct mesh *mesh)
 {
     free(mesh->vertices);
     free(mesh->corners);
     free(mesh->normals);
+    free(mesh->name);
     mesh_hierarchy_clear(&mesh->hierarchy);
     memset(mesh, 0, sizeof *mesh);
 }
@@ -199,6 +210,10 @@ static sonject_status prepare(struct report *report, const char *name, const str
 {
     struct mesh_soup welded;
     memset(&welded, 0, sizeof welded);
+    mesh->options = *options;
+    mesh->name = copy_text(name);
+    if (!mesh->name)
+        return report_out_of_memory(report, name);
     if (soup->triangles == 0)
         return report_failure(report, SONJECT_ERROR_INPUT, "%s: the mesh has no triangles", name);
     if (soup->triangles > MESH_TRIANGLES_MAX)
@@ -233,6 +248,8 @@ sonject_status mesh_load(struct report *report, const char *path,
     memset(&soup, 0, sizeof soup);
     memset(mesh, 0, sizeof *mesh);
     sonject_status status = check_options(report, path, options);
+    if (status == SONJECT_OK)
+        status = file_identify(report, path, &mesh->file);
     if (status == SONJECT_OK)
         status = mesh_file_read(report, path, &soup);
     if (status == SONJECT_OK)
@@ -309,5 +326,6 @@ struct mesh_record mesh_record_of(const struct mesh *mesh, uint32_t first_branch
     record.first_normals = first_normals;
     record.is_smooth = mesh->normals != NULL;
     record.radius = mesh->radius_m;
+    record.is_sheet = !mesh->topology.is_closed;
     return record;
 }

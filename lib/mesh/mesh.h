@@ -6,6 +6,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "base/file.h"
 #include "mesh/hierarchy.h"
 #include "mesh/topology.h"
 
@@ -35,10 +36,17 @@ struct mesh {
     size_t degenerate; /* triangles of the file with two equal corners, which were left out */
 
     struct mesh_hierarchy hierarchy;
+    char *name;                  /* of its file, or as given; owned */
+    struct file_identity file;   /* as it was before it was read; of a mesh from arrays: 0 */
+    struct mesh_options options; /* that it was read with */
     struct mesh_corner_normals *normals; /* hierarchy.leaf_count * MESH_SLOTS; NULL: flat; owned */
 };
 
 void mesh_options_init(struct mesh_options *options);
+
+/* Whether a mesh read with these options from that file would be this one. */
+bool mesh_is_of(const struct mesh *mesh, const struct file_identity *file,
+                const struct mesh_options *options);
 
 /* Reads a mesh file: STL, OBJ, PLY, with Assimp others too. Equal vertices become one (after
  * rounding to single precision in the mesh's frame), triangles with two equal corners are left out,

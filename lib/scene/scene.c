@@ -97,6 +97,25 @@ sonject_status scene_append_mesh(struct scene *scene, struct report *report, con
     return SONJECT_OK;
 }
 
+sonject_status scene_share_mesh(struct scene *scene, struct report *report, const char *path,
+                                const struct mesh_options *options, bool allows_open,
+                                uint32_t *number)
+{
+    struct file_identity file;
+    sonject_status status = file_identify(report, path, &file);
+    for (uint32_t i = 0; i < scene->mesh_count && status == SONJECT_OK; i++) {
+        if (!mesh_is_of(&scene->meshes[i], &file, options))
+            continue;
+        *number = i;
+        return allows_open ? SONJECT_OK : mesh_require_closed(report, path, &scene->meshes[i]);
+    }
+    if (status == SONJECT_OK)
+        status = scene_append_mesh(scene, report, path, options, allows_open);
+    if (status == SONJECT_OK)
+        *number = scene->mesh_count - 1;
+    return status;
+}
+
 const char *shape_name(uint32_t shape)
 {
     switch (shape) {

@@ -70,6 +70,12 @@ sonject_status scene_append_part(struct scene *scene, struct report *report,
 sonject_status scene_append_mesh(struct scene *scene, struct report *report, const char *path,
                                  const struct mesh_options *options, bool allows_open);
 
+/* The number of the mesh that the scene already has from that file, as it now is, with those
+ * options; else reads and appends it. Errors: the same. */
+sonject_status scene_share_mesh(struct scene *scene, struct report *report, const char *path,
+                                const struct mesh_options *options, bool allows_open,
+                                uint32_t *number);
+
 /* Checks of one structure each, ranges and relations as the public headers state them. The message
  * starts with the name of the value as the scene file writes it ("bandwidth must be ..."); key, if
  * not NULL, gets that name (static storage), so that a reader can point at the line. Errors: INPUT.

@@ -12,11 +12,16 @@
 #define WORDS_MOST  ((size_t)UINT32_MAX)
 #define WORDS_OF(x) (sizeof(x) / WORD)
 
+static size_t normal_words(const struct mesh *mesh)
+{
+    return mesh->normals ? mesh->hierarchy.leaf_count * MESH_SLOTS * WORDS_OF(*mesh->normals) : 0;
+}
+
 static size_t mesh_words(const struct mesh *mesh)
 {
     return ALIGNED(WORDS_OF(struct mesh_record) +
                    mesh->hierarchy.branch_count * WORDS_OF(struct mesh_branch) +
-                   mesh->hierarchy.leaf_count * WORDS_OF(struct mesh_leaf));
+                   mesh->hierarchy.leaf_count * WORDS_OF(struct mesh_leaf) + normal_words(mesh));
 }
 
 static void write_words(uint32_t *words, size_t *at, const void *elements, size_t count)
@@ -35,6 +40,8 @@ static void write_mesh(uint32_t *words, const struct mesh *mesh)
                 hierarchy->branch_count * WORDS_OF(*hierarchy->branches));
     write_words(words, &at, hierarchy->leaves,
                 hierarchy->leaf_count * WORDS_OF(*hierarchy->leaves));
+    if (mesh->normals)
+        write_words(words, &at, mesh->normals, normal_words(mesh));
 }
 
 /* The records of users' shapes follow, one for each part that shows one. */

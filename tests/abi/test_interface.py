@@ -60,7 +60,7 @@ SIZES = {
     "sonject_cut": 24,
     "sonject_object_params": 424,
     "sonject_part_params": 56,
-    "sonject_mesh_params": 32,
+    "sonject_mesh_params": 40,
     "sonject_user_shape_params": 192,
     "sonject_scene_read_params": 8,
     "sonject_geometry_params": 40,

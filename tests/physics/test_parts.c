@@ -14,6 +14,7 @@
 
 #include "bench.h"
 #include "scene/pose.h"
+#include "union_mesh.h"
 
 #define ROWS    161
 #define COLUMNS 161
@@ -153,6 +154,15 @@ static void build_lopsided(struct bench *bench, bool is_starboard, size_t pose)
     cut->cut_count = 1;
     cut->cuts[0].azimuth_rad = 1.0 * hand;
     cut->cuts[0].distance_m = 0.05;
+}
+
+/* Turned about the upright, and tipped. */
+static const double union_poses[][3] = {{0.4, 0.0, 0.0}, {0.0, 0.0, -GRAZING}};
+
+static void build_union(struct bench *bench, bool is_mesh, size_t pose)
+{
+    add_union(bench, is_mesh);
+    turn(&bench->scene.objects[0], union_poses[pose]);
 }
 
 static void make_rough(struct bench *bench)
@@ -350,6 +360,46 @@ static void test_mirrored_view(void **unused)
     expect_same_rough_object(build_lopsided);
 }
 
+/* Echoes and shadows of a mesh of the union, pixel by pixel, and its glints. Facets of the cylinder
+ * are 3 mm wide and lie 0.005 mm within it: 0.004 rad of phase. Its edges are 10 m long. */
+static void test_mesh_of_the_union(void **unused)
+{
+    (void)unused;
+    expect_same_rough_object(build_union);
+    expect_same_smooth_object(build_union, 2, 10.0);
+}
+
+/* What a union's parts scatter to one another, its mesh scatters to itself. */
+static void test_mesh_of_the_union_lights_itself(void **unused)
+{
+    (void)unused;
+    double mean[2] = {0.0, 0.0}, square[2] = {0.0, 0.0};
+    for (int i = 0; i < 2 * SEEDS; i++) {
+        struct bench bench;
+        struct echoes echoes;
+        bench_open(&bench, ROWS, COLUMNS, RANGE);
+        add_union(&bench, i % 2 > 0);
+        make_rough(&bench);
+        bench.scene.objects[0].burial_m = -1.0;
+        bench.scene.seabed.lambert = 1e-6; /* so that it is all from the object to the object */
+        bench.scene.injection.interactions = 2;
+        bench.scene.injection.order_energies = 1;
+        bench.scene.injection.seed = (uint64_t)i + 1;
+        bench_ready(&bench);
+        bench_echoes(&bench, NULL, SEABED_FIELD_NONE, &echoes);
+        const double share = total(echoes.order_energy[1]) / total(echoes.order_energy[0]);
+        mean[i % 2] += share / SEEDS;
+        square[i % 2] += share * share / SEEDS;
+        echoes_clear(&echoes);
+        bench_close(&bench);
+    }
+    const double variance =
+        (square[0] - mean[0] * mean[0] + square[1] - mean[1] * mean[1]) / (SEEDS - 1);
+    assert_true(mean[0] > 1e-3);
+    expect_close("share of two interactions", mean[1], mean[0],
+                 4.0 * sqrt(fmax(variance, 0.0)) + 1e-3 * mean[0]);
+}
+
 static void expect_nothing_added(builder build)
 {
     for (int is_rough = 0; is_rough < 2; is_rough++) {
@@ -415,9 +465,14 @@ static void test_parts_rest_on_the_seabed(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_capsule),      cmocka_unit_test(test_cylinder_with_round_ends),
-        cmocka_unit_test(test_box_of_two),   cmocka_unit_test(test_mirrored_view),
-        cmocka_unit_test(test_hidden_parts), cmocka_unit_test(test_parts_rest_on_the_seabed),
+        cmocka_unit_test(test_capsule),
+        cmocka_unit_test(test_cylinder_with_round_ends),
+        cmocka_unit_test(test_box_of_two),
+        cmocka_unit_test(test_mirrored_view),
+        cmocka_unit_test(test_mesh_of_the_union),
+        cmocka_unit_test(test_mesh_of_the_union_lights_itself),
+        cmocka_unit_test(test_hidden_parts),
+        cmocka_unit_test(test_parts_rest_on_the_seabed),
     };
     return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

@@ -53,7 +53,8 @@ static void test_unknown_keys(void **state)
         {OBJECT "sphere\n    \xC3\xA9tat: 1 m\n",
          ":6:5: objects[0].\xC3\xA9tat: unknown key; known here are target, name, class, shape, "
          "user, "
-         "length, width, diameter, height, top_diameter, front_height, nose_end, tail_end, cuts, "
+         "length, width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, "
+         "cuts, "
          "position, heading, pitch, roll, burial, material, parts"},
     };
     expect_all(state, wrong, COUNT(wrong));
@@ -152,7 +153,7 @@ static void test_wrong_values(void **state)
          ":4:11: objects[0]: must be a section of 'key: value' lines, not a single value"},
         {OBJECT "cube\n",
          ":5:12: objects[0].shape: 'cube' is not one of plane, sphere, cylinder, capsule, disc, "
-         "ellipsoid, box, wedge, cone, truncated_cone, torus, user; did you mean 'cone'?"},
+         "ellipsoid, box, wedge, cone, truncated_cone, torus, mesh, user; did you mean 'cone'?"},
         {OBJECT "cylinder\n    diameter: 1\n    length: 2\n    nose_end: round\n",
          ":8:15: objects[0].nose_end: 'round' is not one of flat, open, spherical, {depth: ...}"},
         {OBJECT "cylinder\n    diameter: 1\n    length: 2\n    tail_end: {depth: 0}\n",

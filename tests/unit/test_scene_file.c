@@ -345,6 +345,32 @@ static const struct key_case {
      SIZED(cuts[0].elevation_rad), -PI / 2.0, NULL, A_PART(A_SPHERE ", cuts: [{distance: 0}]")},
     {"objects[].parts[].cuts[].distance", small, "-5 cm", TYPE_DOUBLE, SIZED(cuts[0].distance_m),
      -0.05, NULL, A_PART(A_SPHERE ", cuts: [{distance: 0}]")},
+#define MESH(member) offsetof(struct mesh, member)
+#define ROCK         SOURCE_ROOT "/tools/targets/rock.obj"
+#define A_MESH       "objects[0]={shape: mesh, mesh: {file: '" ROCK "'}}"
+#define A_MESH_PART  A_PART("shape: mesh, mesh: {file: '" ROCK "'}")
+    {"objects[].mesh", small, ROCK, TYPE_PATH, MESH(name), 0.0, ROCK, "objects[0]={shape: mesh}"},
+    {"objects[].mesh.file", small, ROCK, TYPE_PATH, MESH(name), 0.0, ROCK,
+     "objects[0]={shape: mesh}"},
+    {"objects[].mesh.unit", small, "cm", TYPE_DOUBLE, MESH(options.unit_m), 0.01, NULL, A_MESH},
+    {"objects[].mesh.nose", small, "y", TYPE_U32, MESH(options.axes[0]), 2.0, NULL, A_MESH},
+    {"objects[].mesh.up", small, "y", TYPE_U32, MESH(options.axes[2]), 2.0, NULL, A_MESH},
+    {"objects[].mesh.open", small, "true", TYPE_NOTHING, 0, 0.0, NULL, A_MESH},
+    {"objects[].mesh.smooth", small, "90 deg", TYPE_DOUBLE, MESH(options.smooth_angle_rad),
+     PI / 2.0, NULL, A_MESH},
+    {"objects[].parts[].mesh", small, ROCK, TYPE_PATH, MESH(name), 0.0, ROCK,
+     A_PART("shape: mesh")},
+    {"objects[].parts[].mesh.file", small, ROCK, TYPE_PATH, MESH(name), 0.0, ROCK,
+     A_PART("shape: mesh")},
+    {"objects[].parts[].mesh.unit", small, "cm", TYPE_DOUBLE, MESH(options.unit_m), 0.01, NULL,
+     A_MESH_PART},
+    {"objects[].parts[].mesh.nose", small, "y", TYPE_U32, MESH(options.axes[0]), 2.0, NULL,
+     A_MESH_PART},
+    {"objects[].parts[].mesh.up", small, "y", TYPE_U32, MESH(options.axes[2]), 2.0, NULL,
+     A_MESH_PART},
+    {"objects[].parts[].mesh.open", small, "true", TYPE_NOTHING, 0, 0.0, NULL, A_MESH_PART},
+    {"objects[].parts[].mesh.smooth", small, "90 deg", TYPE_DOUBLE, MESH(options.smooth_angle_rad),
+     PI / 2.0, NULL, A_MESH_PART},
     {"objects[].parts[].at.along", small, "20 cm", TYPE_DOUBLE, PART(centre[0]), 0.2, NULL,
      A_PART(A_SPHERE)},
     {"objects[].parts[].at.across", small, "-3 m", TYPE_DOUBLE, PART(centre[1]), -3.0, NULL,
@@ -467,6 +493,8 @@ static const void *structure_of(const struct scene *scene, const char *path)
 {
     if (strstr(path, ".user."))
         return scene->user_shapes.shapes;
+    if (strstr(path, "].mesh"))
+        return scene->meshes;
     if (strncmp(path, "objects[].parts", 15) == 0)
         return scene->parts;
     if (strncmp(path, "objects", 7) == 0)

@@ -180,7 +180,7 @@ static void test_what_is_refused(void **state)
          ":5:50: objects[0].parts[0].length: a sphere has none; remove it"},
         {OBJECT "parts: [{shape: parts}]\n",
          ":5:21: objects[0].parts[0].shape: 'parts' is not one of plane, sphere, cylinder, "
-         "capsule, disc, ellipsoid, box, wedge, cone, truncated_cone, torus, user"},
+         "capsule, disc, ellipsoid, box, wedge, cone, truncated_cone, torus, mesh, user"},
         {OBJECT "parts: [{shape: sphere, diameter: 1, at: {up: 2e6}}]\n",
          ":5:51: objects[0].parts[0].at.up: must be -1e+06...1e+06 m, not 2e+06"},
         {OBJECT "parts: [{shape: sphere, diameter: 1, heading: inf}]\n",
@@ -197,7 +197,7 @@ static void test_what_is_refused(void **state)
         {OBJECT "parts: [{shape: sphere, diameter: 1, burial: 1}]\n",
          ":5:42: objects[0].parts[0].burial: unknown key; known here are name, shape, user, "
          "length, "
-         "width, diameter, height, top_diameter, front_height, nose_end, tail_end, cuts, at, "
+         "width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, cuts, at, "
          "heading, pitch, roll, material, parts"},
     };
     for (size_t i = 0; i < COUNT(wrong); i++)
@@ -300,7 +300,8 @@ static void test_targets_that_are_wrong(void **state)
         {"sonject_target: 1\ntarget: target.yaml\n",
          ":2:1: target: unknown key; known here are sonject_target, name, class, shape, user, "
          "length, "
-         "width, diameter, height, top_diameter, front_height, nose_end, tail_end, cuts, material, "
+         "width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, cuts, "
+         "material, "
          "parts"},
         {"sonject_target: 1\nparts: &p [*p]\n",
          ":2:8: parts: anchors and tags (&name, !name) are not supported; remove it"},
@@ -375,7 +376,8 @@ static void test_the_library_of_targets(void **state)
     if (scene_file_read(&report, SOURCE_ROOT "/tools/scenes/targets.yaml", NULL, 0, &scene) !=
         SONJECT_OK)
         fail_msg("%s", report.message);
-    assert_int_equal(scene.object_count, 9);
+    assert_int_equal(scene.object_count, 11);
+    assert_int_equal(scene.mesh_count, 1);
     for (uint32_t i = 0; i < scene.object_count; i++) {
         assert_true(scene.objects[i].name[0] != 0);
         assert_true(strcmp(scene.objects[i].class_name, "mine") == 0 ||

@@ -185,6 +185,7 @@ class sonject_mesh_params(Structure):
         ("unit_m", c_double),
         ("axes", c_int32 * 3),
         ("reserved", c_int32),
+        ("smooth_angle_rad", c_double),
     ]
 
 

@@ -203,15 +203,24 @@ class Scene(Handle):
         unit_m: float = 1.0,
         axes: Sequence[int] = (1, 2, 3),
         allows_open: bool = False,
+        smooth_angle_rad: float = 0.0,
     ) -> int:
         """Reads a mesh file (STL, OBJ, PLY) for ``Mesh`` objects; gives its number.
 
         unit_m: metres a unit of the file; axes: which axis of the file the object's nose, y and z
         axis is, 1, 2, 3, negative for the reverse of it; allows_open: a mesh that is not closed is
-        taken as thin sheets.
+        taken as thin sheets; smooth_angle_rad: facets that meet at less stand for one smooth
+        surface to what scatters on them.
         """
         params = initialised(s.sonject_mesh_params)
-        fill(params, {"allows_open": int(allows_open), "unit_m": unit_m})
+        fill(
+            params,
+            {
+                "allows_open": int(allows_open),
+                "unit_m": unit_m,
+                "smooth_angle_rad": smooth_angle_rad,
+            },
+        )
         params.axes[:] = [int(axis) for axis in axes]
         index = ctypes.c_uint32()
         self._context.call(

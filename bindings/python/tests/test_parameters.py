@@ -236,6 +236,23 @@ def test_scene_files_with_code_need_consent(tmp_path, context):
     assert "user shape 1 (" in sonject.check(scene)
 
 
+def test_smooth_facets_scatter_otherwise(make_scene, complex_patch, tmp_path):
+    path = tmp_path / "tetrahedron.obj"
+    path.write_text(TETRAHEDRON)
+    rough = sonject.Material(reflection=0, lambert=0.1)
+    energies = []
+    for angle in (0.0, 3.1):
+        scene = make_scene(objects=[])
+        number = scene.add_mesh(path, unit_m=1e-3, smooth_angle_rad=angle)
+        scene.add(sonject.Mesh(mesh=number, material=rough))
+        energies.append(sonject.inject(complex_patch, scene).energy)
+    assert numpy.isfinite(energies).all()
+    assert (energies[0] != energies[1]).any()
+    for wrong in (-0.1, 4.0, math.nan):
+        with pytest.raises(sonject.SonjectError, match="smooth normals"):
+            scene.add_mesh(path, smooth_angle_rad=wrong)
+
+
 def test_pixel_positions_are_row_then_column():
     thing = sonject.Sphere(diameter_m=1, position=sonject.Pixels(row=3, column=4)).to_structure()
     assert (thing.position_kind, thing.position_along, thing.position_range) == (2, 3.0, 4.0)

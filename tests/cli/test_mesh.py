@@ -1,0 +1,85 @@
+"""Meshes in scenes: what the command says about them, and that their content counts."""
+
+import json
+
+import pytest
+
+from conftest import SCENE, assert_refused
+
+TETRAHEDRON = """\
+v 0 0 0
+v 600 0 0
+v 0 500 0
+v 0 0 400
+f 1 3 2
+f 1 2 4
+f 1 4 3
+f 2 3 4
+"""
+
+OBJECTS = """\
+objects:
+  - {name: one, shape: mesh, mesh: {file: shapes/rock.obj, unit: mm}}
+  - {name: other, shape: mesh, mesh: {file: shapes/rock.obj, unit: mm},
+     position: {row: 20, column: 30}, heading: 90 deg}
+"""
+
+
+@pytest.fixture
+def mesh(tmp_path, scene):
+    """The file that the scene shows twice."""
+    scene.write_text(SCENE[: SCENE.index("objects:")] + OBJECTS)
+    (tmp_path / "shapes").mkdir()
+    path = tmp_path / "shapes" / "rock.obj"
+    path.write_text(TETRAHEDRON)
+    return path
+
+
+def test_check_describes_meshes(sonject, scene, mesh):
+    answer = sonject("check", scene)
+    assert answer.returncode == 0, answer.stderr
+    assert "shapes/rock.obj: 4 triangles, 0.6 x 0.5 x 0.4 m, shown 2 times\n" in answer.stdout
+    assert "watertight, 0.02 m3, 1 piece\n" in answer.stdout
+    mesh.write_text(TETRAHEDRON.replace("f 2 3 4\n", ""))
+    assert_refused(sonject("check", scene), 3, "scene.yaml:13:43", "rock.obj", "enclose a volume")
+    scene.write_text(scene.read_text().replace("unit: mm", "unit: mm, open: true"))
+    answer = sonject("check", scene)
+    assert answer.returncode == 0, answer.stderr
+    assert "not watertight, thin sheets: 3 edges of one triangle" in answer.stdout
+
+
+def test_the_content_of_a_mesh_counts(sonject, scene, mesh, tmp_path):
+    def run():
+        answer = sonject("run", scene, "-o", "out")
+        assert answer.returncode == 0, answer.stderr
+        return json.loads((tmp_path / "out" / "run.json").read_text())["scene_hash"], answer.stderr
+
+    first, _ = run()
+    again, said = run()
+    assert again == first and "already holds" in said
+    mesh.write_text(TETRAHEDRON.replace("400", "300"))
+    other, said = run()
+    assert other != first and "already holds" not in said
+
+
+@pytest.mark.parametrize(
+    "content, code, words",
+    [
+        (None, 3, ["there is no file"]),
+        ("v 0 0 nan\n", 3, ["line 1", "finite coordinate"]),
+        ("f 1 2 3\n", 3, ["line 1", "vertex 1, but 0"]),
+        ("nothing of the kind\n", 3, ["no triangles"]),
+    ],
+)
+def test_bad_meshes_are_told_in_one_line(sonject, scene, mesh, content, code, words):
+    mesh.unlink()
+    if content is not None:
+        mesh.write_text(content)
+    answer = sonject("run", scene, "-o", "out")
+    assert_refused(answer, code, "scene.yaml:13:", "objects[0].mesh.file", "rock.obj", *words)
+
+
+def test_a_folder_is_no_mesh(sonject, scene, mesh):
+    mesh.unlink()
+    mesh.mkdir()
+    assert_refused(sonject("check", scene), 5, "scene.yaml:13:", "rock.obj", "s a directory")

@@ -1,0 +1,340 @@
+/* Meshes in scene files: how their numbers are meant, that one is kept however many shapes show it,
+ * and what is said about those that cannot be read. */
+#define _POSIX_C_SOURCE 200809L
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <sys/stat.h>
+
+#include "api/scene_hash.h"
+#include "scene_folder.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+#define SCENE                                                                                      \
+    "sonject: 1\ninput: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, "              \
+    "column_spacing: 1, first_slant_range: 40}}\n"                                                 \
+    "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\nobjects:\n"
+
+/* A corner of a box: four faces, 1 x 2 x 3 units. */
+static const char corner[] = "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\n"
+                             "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+static const char *file_in(const struct scene_folder *folder, const char *name)
+{
+    static char path[SCENE_FOLDER_CAPACITY + 64];
+    snprintf(path, sizeof path, "%s/%s", folder->folder, name);
+    return path;
+}
+
+static void write_file(const struct scene_folder *folder, const char *name, const void *bytes,
+                       size_t count)
+{
+    FILE *file = fopen(file_in(folder, name), "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, count, file), count);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void remove_file(const struct scene_folder *folder, const char *name)
+{
+    assert_int_equal(unlink(file_in(folder, name)), 0);
+}
+
+static void expect_size(const struct scene_folder *folder, double x, double y, double z)
+{
+    const double expected[3] = {x, y, z};
+    const struct mesh *mesh = &folder->scene.meshes[folder->scene.objects[0].mesh];
+    for (int axis = 0; axis < 3; axis++) {
+        const double size = (double)mesh->upper_m[axis] - (double)mesh->lower_m[axis];
+        if (fabs(size / expected[axis] - 1.0) > 1e-6) /* a few roundings to single precision */
+            fail_msg("axis %d is %g m long and not %g", axis, size, expected[axis]);
+    }
+}
+
+static void test_units_and_axes(void **state)
+{
+    static const struct {
+        const char *keys;
+        double size[3];
+    } cases[] = {
+        {"corner.obj", {1.0, 2.0, 3.0}},
+        {"{file: corner.obj}", {1.0, 2.0, 3.0}},
+        {"{file: corner.obj, unit: m}", {1.0, 2.0, 3.0}},
+        {"{file: corner.obj, unit: cm}", {0.01, 0.02, 0.03}},
+        {"{file: corner.obj, unit: 2.54 cm}", {0.0254, 0.0508, 0.0762}},
+        {"{file: corner.obj, unit: 0.5}", {0.5, 1.0, 1.5}},
+        {"{file: corner.obj, up: y}", {1.0, 3.0, 2.0}},
+        {"{file: corner.obj, up: -z, nose: y}", {2.0, 1.0, 3.0}},
+        {"{file: corner.obj, nose: -z, up: x, unit: mm}", {0.003, 0.002, 0.001}},
+    };
+    struct scene_folder *folder = *state;
+    write_file(folder, "corner.obj", corner, sizeof corner - 1);
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        char text[1000];
+        snprintf(text, sizeof text, SCENE "  - shape: mesh\n    mesh: %s\n", cases[i].keys);
+        expect_scene_taken(folder, text);
+        assert_int_equal(folder->scene.objects[0].shape, SONJECT_SHAPE_MESH);
+        expect_size(folder, cases[i].size[0], cases[i].size[1], cases[i].size[2]);
+    }
+    remove_file(folder, "corner.obj");
+}
+
+/* In all 24 ways to choose nose and up the mesh is turned, not mirrored: own y = up x nose. */
+static void test_axes_turn(void **state)
+{
+    static const char *const names[] = {"x", "y", "z", "-x", "-y", "-z"};
+    struct scene_folder *folder = *state;
+    write_file(folder, "corner.obj", corner, sizeof corner - 1);
+    for (int nose = 0; nose < 6; nose++)
+        for (int up = 0; up < 6; up++) {
+            char text[1000];
+            snprintf(text, sizeof text,
+                     SCENE "  - {shape: mesh, mesh: {file: corner.obj, nose: %s, up: %s}}\n",
+                     names[nose], names[up]);
+            if (nose % 3 == up % 3) {
+                expect_scene_refused(folder, text,
+                                     ":5:25: objects[0].mesh: nose and up are the same axis of the "
+                                     "file; give both, such as nose: x, up: y");
+                continue;
+            }
+            expect_scene_taken(folder, text);
+            const int *axes = folder->scene.meshes[0].options.axes;
+            double n[3] = {0.0, 0.0, 0.0};
+            double u[3] = {0.0, 0.0, 0.0};
+            n[nose % 3] = nose < 3 ? 1.0 : -1.0;
+            u[up % 3] = up < 3 ? 1.0 : -1.0;
+            const double y[3] = {u[1] * n[2] - u[2] * n[1], u[2] * n[0] - u[0] * n[2],
+                                 u[0] * n[1] - u[1] * n[0]};
+            const double *const wanted[3] = {n, y, u};
+            for (int axis = 0; axis < 3; axis++)
+                assert_true(wanted[axis][abs(axes[axis]) - 1] == (axes[axis] < 0 ? -1.0 : 1.0));
+        }
+    remove_file(folder, "corner.obj");
+}
+
+/* Objects, parts and targets that name one file have one mesh; other options, or another content,
+ * make another one. Names are counted from the file that they stand in. */
+static void test_meshes_are_shared(void **state)
+{
+    static const char target[] = "sonject_target: 1\nshape: mesh\nmesh: corner.obj\n";
+    static const char scene[] =
+        SCENE "  - {shape: mesh, mesh: parts/corner.obj}\n"
+              "  - target: parts/target.yaml\n"
+              "  - parts:\n"
+              "      - {shape: mesh, mesh: {file: parts/../parts/corner.obj}}\n"
+              "      - {shape: mesh, mesh: {file: parts/corner.obj, unit: cm}}\n"
+              "  - {shape: mesh, mesh: {file: parts/corner.obj, smooth: 40 deg}}\n"
+              "  - {shape: mesh, mesh: {file: parts/copy.obj, up: z}}\n";
+    struct scene_folder *folder = *state;
+    assert_int_equal(mkdir(file_in(folder, "parts"), 0777), 0);
+    write_file(folder, "parts/corner.obj", corner, sizeof corner - 1);
+    write_file(folder, "parts/copy.obj", corner, sizeof corner - 1);
+    write_file(folder, "parts/target.yaml", target, sizeof target - 1);
+    expect_scene_taken(folder, scene);
+    const struct scene *read = &folder->scene;
+    assert_int_equal(read->mesh_count, 4);
+    assert_int_equal(read->objects[0].mesh, 0);
+    assert_int_equal(read->objects[1].mesh, 0);
+    assert_int_equal(read->parts[0].shape.mesh, 0);
+    assert_int_equal(read->parts[1].shape.mesh, 1);
+    assert_int_equal(read->objects[3].mesh, 2);
+    assert_true(read->meshes[0].normals == NULL && read->meshes[2].normals != NULL);
+    assert_int_equal(read->objects[4].mesh, 3);
+    remove_file(folder, "parts/corner.obj");
+    remove_file(folder, "parts/copy.obj");
+    remove_file(folder, "parts/target.yaml");
+    assert_int_equal(rmdir(file_in(folder, "parts")), 0);
+}
+
+#define MESH(keys) SCENE "  - shape: mesh\n    mesh: " keys "\n"
+
+static void test_what_is_refused(void **state)
+{
+    static const struct {
+        const char *text, *message;
+    } wrong[] = {
+        {SCENE "  - shape: mesh\n", ":5:5: objects[0].mesh: missing; a mesh needs it"},
+        {SCENE "  - {shape: sphere, diameter: 1, mesh: corner.obj}\n",
+         ":5:40: objects[0].mesh: a sphere has none; remove it"},
+        {SCENE "  - {mesh: corner.obj}\n",
+         ":5:5: objects[0]: none of shape, parts and target is there; give one"},
+        {SCENE "  - {shape: mesh, mesh: corner.obj, length: 1}\n",
+         ":5:45: objects[0].length: a mesh has none; remove it"},
+        {SCENE "  - {shape: mesh, mesh: corner.obj, cuts: [{distance: 1}]}\n",
+         ":5:43: objects[0].cuts: are not made in meshes; cut the file's"},
+        {SCENE "  - {shape: mesg, mesh: corner.obj}\n",
+         ":5:13: objects[0].shape: 'mesg' is not one of plane, sphere, cylinder, capsule, disc, "
+         "ellipsoid, box, wedge, cone, truncated_cone, torus, mesh, user; did you mean 'mesh'?"},
+        {MESH("~"), ":6:11: objects[0].mesh: has no value; write one or remove the key"},
+        {MESH("{unit: mm}"), ":6:11: objects[0].mesh.file: missing; add it (of triangles: STL, OBJ "
+                             "or PLY)"},
+        {MESH("{file: corner.obj, unit: foot}"),
+         ":6:36: objects[0].mesh.unit: unit 'foot' is not one of m, km, cm, mm"},
+        {MESH("{file: corner.obj, unit: -1}"),
+         ":6:36: objects[0].mesh.unit: must be a length of 1e-9 to 1e9 m, not -1 m"},
+        {MESH("{file: corner.obj, open: yes}"),
+         ":6:36: objects[0].mesh.open: 'yes' is neither true nor false"},
+        {MESH("{file: corner.obj, smooth: 200 deg}"),
+         ":6:38: objects[0].mesh.smooth: must be 0 to 180 deg, not 200 deg"},
+        {MESH("{file: corner.obj, up: w}"),
+         ":6:34: objects[0].mesh.up: 'w' is not one of x, y, z, -x, -y, -z"},
+        {MESH("{file: corner.obj, axes: y}"),
+         ":6:30: objects[0].mesh.axes: unknown key; known here are file, unit, nose, up, open, "
+         "smooth"},
+    };
+    struct scene_folder *folder = *state;
+    write_file(folder, "corner.obj", corner, sizeof corner - 1);
+    for (size_t i = 0; i < COUNT(wrong); i++)
+        expect_scene_refused(folder, wrong[i].text, wrong[i].message);
+    assert_int_equal(folder->scene.mesh_count, 0);
+    remove_file(folder, "corner.obj");
+}
+
+/* One line that names scene file, line, key, mesh file and what is wrong with it. */
+static void expect_bad_mesh(struct scene_folder *folder, const char *name, sonject_status status,
+                            const char *what)
+{
+    char text[1000];
+    char place[SCENE_FOLDER_CAPACITY + 64];
+    snprintf(text, sizeof text, SCENE "  - shape: mesh\n    mesh: {file: %s}\n", name);
+    snprintf(place, sizeof place, "%s:6:18: objects[0].mesh.file: ", folder->file);
+    write_scene(folder, text, strlen(text));
+    assert_int_equal(read_scene(folder, NULL, 0), status);
+    const char *message = folder->report.message;
+    if (strncmp(message, place, strlen(place)) != 0 || !strstr(message, file_in(folder, name)) ||
+        !strstr(message, what) || strchr(message, '\n'))
+        fail_msg("'%s' is not '%s... %s ... %s'", message, place, name, what);
+    assert_int_equal(folder->scene.mesh_count, 0);
+}
+
+static void test_meshes_that_cannot_be_read(void **state)
+{
+    static const char binary[84 + 50] = {[80] = 2};
+    static const char infinite[] = "v 0 0 0\nv 1 0 inf\n";
+    static const char ply[] = "ply\nformat ascii 1.0\nelement vertex 90000000000\n"
+                              "property float x\nproperty float y\nproperty float z\n"
+                              "element face 1\nproperty list uchar int vertex_index\nend_header\n";
+    struct scene_folder *folder = *state;
+    expect_bad_mesh(folder, "absent.obj", SONJECT_ERROR_INPUT, "there is no file");
+    assert_int_equal(mkdir(file_in(folder, "folder.stl"), 0777), 0);
+    expect_bad_mesh(folder, "folder.stl", SONJECT_ERROR_STORAGE, "s a directory");
+    assert_int_equal(rmdir(file_in(folder, "folder.stl")), 0);
+    assert_int_equal(mkfifo(file_in(folder, "pipe.stl"), 0666), 0);
+    expect_bad_mesh(folder, "pipe.stl", SONJECT_ERROR_STORAGE, "not a regular file");
+    remove_file(folder, "pipe.stl");
+    static const struct {
+        const char *name;
+        const void *bytes;
+        size_t count;
+        const char *what;
+    } bad[] = {
+        {"a.stl", binary, sizeof binary, "the header says 2 triangles, the file holds 1"},
+        {"a.stl", binary, 20, "too few"},
+        {"a.obj", infinite, sizeof infinite - 1, "line 2: expected a finite coordinate"},
+        {"a.obj", "sonject: 1\n", 11, "no triangles"},
+        {"a.ply", ply, sizeof ply - 1, "the header says 90000000000 elements"},
+        {"a.ply", "PNG", 3, "expected 'ply'"},
+    };
+    for (size_t i = 0; i < COUNT(bad); i++) {
+        write_file(folder, bad[i].name, bad[i].bytes, bad[i].count);
+        expect_bad_mesh(folder, bad[i].name, SONJECT_ERROR_INPUT, bad[i].what);
+        remove_file(folder, bad[i].name);
+    }
+}
+
+/* As many as a scene may have, and one more. */
+static void test_too_many_meshes(void **state)
+{
+    char text[16384] = SCENE;
+    size_t length = strlen(text);
+    struct scene_folder *folder = *state;
+    write_file(folder, "corner.obj", corner, sizeof corner - 1);
+    for (int i = 0; i <= SCENE_MESHES_MAX; i++) {
+        if (i == SCENE_MESHES_MAX)
+            expect_scene_taken(folder, text);
+        length +=
+            (size_t)snprintf(text + length, sizeof text - length,
+                             "  - {shape: mesh, mesh: {file: corner.obj, unit: %d mm}}\n", i + 1);
+    }
+    assert_int_equal(folder->scene.mesh_count, SCENE_MESHES_MAX);
+    expect_scene_refused(folder, text,
+                         ":69:32: objects[64].mesh.file: meshes must be at most 64 in a scene; "
+                         "split it");
+    remove_file(folder, "corner.obj");
+}
+
+/* A sheet is refused unless it is said to be one, wherever it was read before. */
+static void test_open_meshes(void **state)
+{
+    static const char sheet[] = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    static const char both[] = SCENE "  - {shape: mesh, mesh: {file: sheet.obj, open: true}}\n"
+                                     "  - {shape: mesh, mesh: {file: sheet.obj}}\n";
+    struct scene_folder *folder = *state;
+    write_file(folder, "sheet.obj", sheet, sizeof sheet - 1);
+    expect_bad_mesh(folder, "sheet.obj", SONJECT_ERROR_INPUT, "does not enclose a volume");
+    expect_scene_taken(folder, MESH("{file: sheet.obj, open: true}"));
+    assert_false(folder->scene.meshes[0].topology.is_closed);
+    write_scene(folder, both, sizeof both - 1);
+    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(folder->report.message, "objects[1].mesh.file"));
+    remove_file(folder, "sheet.obj");
+}
+
+static void hash_of(const struct scene *scene, char text[HASH_TEXT_CAPACITY])
+{
+    struct report report = {{0}, NULL, NULL};
+    assert_int_equal(scene_hash(&report, scene, NULL, text), SONJECT_OK);
+}
+
+/* What a result depends on: the mesh's content and options, not where it lies. */
+static void test_the_hash_covers_the_mesh(void **state)
+{
+    static const char text[] = MESH("{file: corner.obj, smooth: 30 deg}");
+    static const char *const other_text[] = {MESH("{file: corner.obj, smooth: 31 deg}"),
+                                             MESH("{file: corner.obj, smooth: 30 deg, unit: cm}"),
+                                             MESH("{file: corner.obj, smooth: 30 deg, up: y}")};
+    char first[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];
+    char changed[sizeof corner];
+    struct scene_folder *folder = *state;
+    write_file(folder, "corner.obj", corner, sizeof corner - 1);
+    write_file(folder, "copy.obj", corner, sizeof corner - 1);
+    expect_scene_taken(folder, text);
+    hash_of(&folder->scene, first);
+    expect_scene_taken(folder, MESH("{file: copy.obj, smooth: 30 deg}"));
+    hash_of(&folder->scene, other);
+    assert_string_equal(first, other);
+    for (size_t i = 0; i < COUNT(other_text); i++) {
+        expect_scene_taken(folder, other_text[i]);
+        hash_of(&folder->scene, other);
+        assert_string_not_equal(first, other);
+    }
+    memcpy(changed, corner, sizeof corner);
+    *strchr(changed, '3') = '4'; /* of as many bytes */
+    write_file(folder, "corner.obj", changed, sizeof changed - 1);
+    expect_scene_taken(folder, text);
+    hash_of(&folder->scene, other);
+    assert_string_not_equal(first, other);
+    remove_file(folder, "corner.obj");
+    remove_file(folder, "copy.obj");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_units_and_axes),
+        cmocka_unit_test(test_axes_turn),
+        cmocka_unit_test(test_meshes_are_shared),
+        cmocka_unit_test(test_what_is_refused),
+        cmocka_unit_test(test_meshes_that_cannot_be_read),
+        cmocka_unit_test(test_too_many_meshes),
+        cmocka_unit_test(test_open_meshes),
+        cmocka_unit_test(test_the_hash_covers_the_mesh),
+    };
+    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
+}
