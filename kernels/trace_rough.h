@@ -163,7 +163,7 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
             continue;
         const real distance = CHOOSE(here, nearest.distance, SPLAT(0.0f));
         const struct surface_face face =
-            object_scattering_face(&objects[i], ray.closest, ray.direction, distance);
+            object_face(&objects[i], FACE_OF_SCATTERING, ray.closest, ray.direction, distance);
         const struct vector3 normal = face.normal;
         const struct vector3 back = reversed3(ray.direction);
         struct vector3 out = back;

@@ -369,5 +369,5 @@ int main(void)
         cmocka_unit_test(test_cones),
         cmocka_unit_test(test_prisms),
     };
-    return cmocka_run_group_tests(tests, NULL, NULL);
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

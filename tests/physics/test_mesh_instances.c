@@ -17,8 +17,6 @@
 #define RANGE   40.0
 #define OBJECTS 3
 
-static const char *device;
-
 static void load(struct bench *bench, struct mesh *mesh)
 {
     struct mesh_sample sample;
@@ -36,7 +34,7 @@ static void load(struct bench *bench, struct mesh *mesh)
 /* Rings in different poses; each object shows a mesh of its own, or all the first one. */
 static void lay_rings(struct bench *bench, bool is_shared)
 {
-    bench_open(bench, device, ROWS, COLUMNS, RANGE);
+    bench_open(bench, ROWS, COLUMNS, RANGE);
     bench->scene.injection.interactions = 2;
     bench->scene.mesh_count = is_shared ? 1 : OBJECTS;
     bench->scene.meshes = calloc(OBJECTS, sizeof *bench->scene.meshes);
@@ -109,12 +107,5 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_one_mesh_of_many_objects),
     };
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    int failures = 0;
-    for (size_t i = 0; i < devices; i++) {
-        device = names[i];
-        failures += cmocka_run_group_tests(tests, NULL, NULL);
-    }
-    return failures;
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

@@ -22,8 +22,6 @@
 #define RADIUS  0.3
 #define SEEDS   4
 
-static const char *device;
-
 /* Gives the scene its only mesh. */
 static const struct mesh *use_mesh(struct bench *bench, const struct mesh_sample *sample,
                                    double unit_m, double smooth_angle_rad)
@@ -101,7 +99,7 @@ static void test_box_of_facets(void **unused)
         struct echoes echoes[2];
         for (int is_mesh = 0; is_mesh < 2; is_mesh++) {
             struct bench bench;
-            bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+            bench_open(&bench, ROWS, COLUMNS, RANGE);
             sonject_object_params *object =
                 bench_add(&bench, is_mesh ? SONJECT_SHAPE_MESH : SONJECT_SHAPE_BOX, 1.0, 0.6, 0.0);
             object->height_m = 0.3;
@@ -192,7 +190,7 @@ static void test_octahedron(void **unused)
         double ranges[40];
         struct complex_value reference[40];
         const size_t count = sizeof ranges / sizeof *ranges;
-        bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+        bench_open(&bench, ROWS, COLUMNS, RANGE);
         bench_add(&bench, SONJECT_SHAPE_MESH, 0.0, 0.0, 0.0)->burial_m = -0.5;
         turned_octahedron(&sample, asin((bench.scene.sonar.altitude_m - 0.8) / RANGE) + off[i]);
         const struct mesh *mesh = use_mesh(&bench, &sample, RADIUS, 0.0);
@@ -243,7 +241,7 @@ static void compute_sheet(struct echoes *echoes, int kind, bool is_rough)
         {-0.3, -0.2, 0.0}, {0.3, -0.2, 0.0}, {0.3, 0.2, 0.0}, {-0.3, 0.2, 0.0}};
     static uint32_t corners[][2][3] = {{{0, 1, 2}, {0, 2, 3}}, {{0, 2, 1}, {0, 3, 2}}};
     struct bench bench;
-    bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+    bench_open(&bench, ROWS, COLUMNS, RANGE);
     bench.scene.injection.interactions = is_rough ? 3 : 1;
     sonject_object_params *object =
         bench_add(&bench, kind < 2 ? SONJECT_SHAPE_MESH : SONJECT_SHAPE_PLANE, 0.6, 0.4, 0.0);
@@ -334,7 +332,7 @@ static double shading_error(enum sphere_kind kind, double *brightness)
 {
     struct bench bench;
     struct rough_trace trace;
-    bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+    bench_open(&bench, ROWS, COLUMNS, RANGE);
     bench.scene.injection.ray_scale = 16.0;
     add_lambert_sphere(&bench, kind);
     bench_ready(&bench);
@@ -396,7 +394,7 @@ static double energy_of_two(enum sphere_kind kind)
 {
     struct bench bench;
     struct echoes echoes;
-    bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+    bench_open(&bench, ROWS, COLUMNS, RANGE);
     bench.scene.injection.interactions = 2;
     bench.scene.injection.order_energies = 1;
     bench.scene.seabed.lambert = 1e-6;
@@ -426,7 +424,7 @@ static void mirrored_energy(enum sphere_kind kind, double columns[COLUMNS])
     for (uint32_t interactions = 2; interactions >= 1; interactions--) {
         struct bench bench;
         struct echoes echoes;
-        bench_open(&bench, device, ROWS, COLUMNS, 13.5);
+        bench_open(&bench, ROWS, COLUMNS, 13.5);
         bench.scene.injection.ray_scale = 4.0;
         bench.scene.injection.interactions = interactions;
         set_mirror(&bench);
@@ -471,12 +469,5 @@ int main(void)
         cmocka_unit_test(test_facets_see_nothing_of_themselves),
         cmocka_unit_test(test_facets_throw_no_shadows),
     };
-    char names[BENCH_DEVICES][128];
-    const size_t devices = bench_devices(names);
-    int failures = 0;
-    for (size_t i = 0; i < devices; i++) {
-        device = names[i];
-        failures += cmocka_run_group_tests(tests, NULL, NULL);
-    }
-    return failures;
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

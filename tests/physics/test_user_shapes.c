@@ -608,7 +608,7 @@ static void test_the_check_catches_small_boxes(void **state)
     struct shape_check check;
     struct user_shapes *shapes = &bench.scene.user_shapes;
     (void)state;
-    bench_open(&bench, NULL, ROWS, COLUMNS, RANGE);
+    bench_open(&bench, ROWS, COLUMNS, RANGE);
     add_code(shapes, &bench.report, "dome.cl", DOME_CODE, 0.5, DOME_A, DOME_H);
     struct user_shape *shape = &shapes->shapes[0];
     double *const sizes[3] = {&shape->half_length_m, &shape->half_width_m, &shape->half_height_m};
