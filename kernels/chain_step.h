@@ -126,7 +126,8 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
     step.direction = hit->back;
     step.weight = SPLAT(0.0f);
     step.is_mirror = MASK_OF(choice < -1.0f);
-    for (int i = -1; i < fan->objects; i++) {
+    for (int i = surface_after(-2, fan->objects, hit->surface, chain->is_alive); i < fan->objects;
+         i = surface_after(i, fan->objects, hit->surface, chain->is_alive)) {
         const mask here = chain->is_alive & MASK_OF(hit->surface == i);
         if (!ANY(here))
             continue;

@@ -106,6 +106,8 @@ struct object_record {
     float bounding_radius; /* m, about the centre */
     struct end_record ends[ENDS];
     RECORD_WORD mesh_words; /* mesh: where its mesh_record is, in 4-byte words from this record */
+    RECORD_WORD tree_words; /* of the first record: where the object_tree_record of all objects is,
+                               likewise; 0: there is none */
     RECORD_INT cuts;
     struct cut_record cut[OBJECT_CUTS];
     struct surface_record surface;

@@ -79,7 +79,8 @@ static sonject_status make_buffers(struct chain_trace *trace, struct tracer *tra
         status = buffer_create(report, device, sizeof chains, &chains, &trace->chains);
     }
     if (status == SONJECT_OK)
-        status = object_buffer_create(tracer, records, &trace->objects);
+        status = object_buffer_create(tracer, records, (struct part_list){NULL, tracer->part_count},
+                                      &trace->objects);
     if (status == SONJECT_OK)
         status = buffer_create(report, device, TARGET_SPHERES_MAX * sizeof *spheres, spheres,
                                &trace->spheres);

@@ -1,10 +1,12 @@
 #include "trace/object_buffer.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "trace/object_tree.h"
 
 #define WORD        4
 #define ALIGNED(n)  (((n) + 15) & ~(size_t)15) /* words: as wide as vectors are */
@@ -36,14 +38,59 @@ static void write_mesh(uint32_t *words, const struct mesh *mesh)
                 hierarchy->leaf_count * WORDS_OF(*hierarchy->leaves));
 }
 
-/* Where each mesh that some part shows begins, in words; 0: nobody shows it. Returns the words of
- * the whole buffer. */
-static size_t lay_out(const struct tracer *tracer, size_t begin[SCENE_MESHES_MAX])
+static const struct placement *placement_of(const struct tracer *tracer,
+                                            const struct part_list *parts, uint32_t i)
 {
-    size_t words = ALIGNED(tracer->part_count * WORDS_OF(struct object_record));
+    return &tracer->placements[parts->numbers ? parts->numbers[i] : i];
+}
+
+/* A mesh within the box that its own axes give, anything else by its extents. */
+static struct object_reach reach_of(const struct placement *placement)
+{
+    const struct shape_size *size = &placement->size;
+    struct object_reach reach;
+    for (int k = 0; k < 3; k++) {
+        double forward[3] = {0.0, 0.0, 0.0};
+        double back[3] = {0.0, 0.0, 0.0};
+        forward[k] = 1.0;
+        back[k] = -1.0;
+        const double turned = fabs(placement->axes[0][k]) * size->half_length_m +
+                              fabs(placement->axes[1][k]) * size->half_width_m +
+                              fabs(placement->axes[2][k]) * size->half_height_m;
+        const double upper = size->mesh ? turned : placement_extent(placement, forward);
+        const double lower = size->mesh ? turned : placement_extent(placement, back);
+        reach.upper[k] = fmax(0.0, fmin(upper, placement->bounding_radius_m));
+        reach.lower[k] = -fmax(0.0, fmin(lower, placement->bounding_radius_m));
+    }
+    return reach;
+}
+
+static sonject_status build_tree(const struct tracer *tracer, const struct object_record *records,
+                                 const struct part_list *parts, struct object_tree *tree)
+{
+    memset(tree, 0, sizeof *tree);
+    if (parts->count <= OBJECTS_IN_LOOP)
+        return SONJECT_OK;
+    struct object_reach *reaches = allocate_array(parts->count, sizeof *reaches);
+    if (!reaches)
+        return report_out_of_memory(tracer->report, "the hierarchy of objects");
+    for (uint32_t i = 0; i < parts->count; i++)
+        reaches[i] = reach_of(placement_of(tracer, parts, i));
+    const sonject_status status =
+        object_tree_build(tracer->report, records, reaches, parts->count, tree);
+    free(reaches);
+    return status;
+}
+
+/* Where each mesh that some part shows begins, in words; 0: nobody shows it. Returns the words of
+ * records and meshes. */
+static size_t lay_out(const struct tracer *tracer, const struct part_list *parts,
+                      size_t begin[SCENE_MESHES_MAX])
+{
+    size_t words = ALIGNED(parts->count * WORDS_OF(struct object_record));
     memset(begin, 0, SCENE_MESHES_MAX * sizeof *begin);
-    for (uint32_t i = 0; i < tracer->part_count; i++) {
-        const struct mesh *mesh = tracer->placements[i].size.mesh;
+    for (uint32_t i = 0; i < parts->count; i++) {
+        const struct mesh *mesh = placement_of(tracer, parts, i)->size.mesh;
         if (!mesh || begin[mesh - tracer->scene->meshes] != 0)
             continue;
         begin[mesh - tracer->scene->meshes] = words;
@@ -52,29 +99,46 @@ static size_t lay_out(const struct tracer *tracer, size_t begin[SCENE_MESHES_MAX
     return words;
 }
 
-sonject_status object_buffer_create(struct tracer *tracer, struct object_record *records,
-                                    cl_mem *buffer)
+static sonject_status write_buffer(struct tracer *tracer, struct object_record *records,
+                                   const struct part_list *parts, const struct object_tree *tree,
+                                   cl_mem *buffer)
 {
     size_t begin[SCENE_MESHES_MAX];
-    const size_t count = lay_out(tracer, begin);
+    const size_t tree_begin = lay_out(tracer, parts, begin);
+    const size_t count = tree_begin + tree->count;
     if (count > WORDS_MOST || count * WORD > tracer->device->allocation_limit)
         return report_failure(tracer->report, SONJECT_ERROR_INPUT,
                               "the meshes are too large for the device: use fewer triangles");
     uint32_t *words = allocate_array(count, sizeof *words);
     if (!words)
         return report_out_of_memory(tracer->report, "the objects");
-    for (uint32_t i = 0; i < tracer->part_count; i++) {
-        const struct mesh *mesh = tracer->placements[i].size.mesh;
+    for (uint32_t i = 0; i < parts->count; i++) {
+        const struct mesh *mesh = placement_of(tracer, parts, i)->size.mesh;
         if (mesh)
             records[i].mesh_words = (uint32_t)(begin[mesh - tracer->scene->meshes] -
                                                i * WORDS_OF(struct object_record));
     }
-    memcpy(words, records, tracer->part_count * sizeof *records);
+    if (tree->count > 0)
+        records[0].tree_words = (uint32_t)tree_begin;
+    memcpy(words, records, parts->count * sizeof *records);
     for (uint32_t i = 0; i < tracer->scene->mesh_count; i++)
         if (begin[i] != 0)
             write_mesh(words + begin[i], &tracer->scene->meshes[i]);
+    if (tree->count > 0)
+        memcpy(words + tree_begin, tree->words, tree->count * WORD);
     const sonject_status status =
         buffer_create(tracer->report, tracer->device, count * WORD, words, buffer);
     free(words);
+    return status;
+}
+
+sonject_status object_buffer_create(struct tracer *tracer, struct object_record *records,
+                                    struct part_list parts, cl_mem *buffer)
+{
+    struct object_tree tree;
+    sonject_status status = build_tree(tracer, records, &parts, &tree);
+    if (status == SONJECT_OK)
+        status = write_buffer(tracer, records, &parts, &tree, buffer);
+    object_tree_clear(&tree);
     return status;
 }
