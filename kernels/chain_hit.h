@@ -126,6 +126,8 @@ FUNCTION mask is_open_way(const struct fan_record *fan, GLOBAL const struct obje
            MASK_OF(seabed_distance(fan, start, direction) > path);
 }
 
+struct target_choice;
+
 /* One group of chains under way. */
 struct chain {
     struct chain_hit hit;
@@ -141,6 +143,7 @@ struct chain {
     whole first_surface;
     mask began_smooth; /* the first hit was a mirror bounce: nothing finds the reverse path */
     mask is_alive;
+    const struct target_choice *choice; /* of its block; where targets are many */
 };
 
 #endif

@@ -4,6 +4,7 @@
 #define SONJECT_KERNELS_CHAIN_STEP_H
 
 #include "chain_hit.h"
+#include "many_targets.h"
 #include "reflectivity_map.h"
 #include "target_cones.h"
 
@@ -51,6 +52,55 @@ FUNCTION struct chain_step step_from_seabed(GLOBAL const struct chain_record *ch
     return step;
 }
 
+/* As step_from_seabed among many targets. Where the point is inside the sphere chosen, the
+ * surface's own lobes find the direction. */
+APART struct chain_step step_among_many(GLOBAL const struct chain_record *chains,
+                                        GLOBAL const struct sphere_record *spheres,
+                                        const struct target_choice *choice,
+                                        const struct chain_hit *hit, real uniform, real u, real v)
+{
+    const mask is_here = hit->is_hit & MASK_OF(hit->surface < 0);
+    const struct chosen_spheres chosen = choose_spheres(chains, spheres, choice, uniform, is_here);
+    struct vector3 way;
+    way.x = chosen.centre.x - hit->point.x;
+    way.y = chosen.centre.y - hit->point.y;
+    way.z = chosen.centre.z - hit->point.z;
+    mask is_outside;
+    const real opening = opening_at(dot3(way, way), chosen.radius * chosen.radius, &is_outside);
+    struct vector3 upward = hit->normal;
+    struct chain_step step;
+    step.direction = direction_in_cone(choose3(is_outside, way, upward), opening, u, v);
+    if (ANY(is_here & ~is_outside))
+        step.direction = choose3(
+            is_outside, step.direction,
+            sample_rough_direction(&chains->seabed, hit->normal, hit->back, chosen.rest, u, v));
+    real density, lobe_share;
+    densities_towards(chains, spheres, choice, hit->point, step.direction, is_here, &density,
+                      &lobe_share);
+    if (ANY(MASK_OF(lobe_share > 0.0f)))
+        density += lobe_share *
+                   rough_direction_density(&chains->seabed, hit->normal, hit->back, step.direction);
+    const real cosine = dot3(hit->normal, step.direction);
+    const mask is_possible = MASK_OF(density > 0.0f) & MASK_OF(cosine > 0.0f);
+    step.weight = CHOOSE(is_possible,
+                         rough_scattering(&chains->seabed, hit->normal, hit->back, step.direction) *
+                             cosine / CHOOSE(is_possible, density, SPLAT(1.0f)),
+                         SPLAT(0.0f));
+    step.is_mirror = MASK_OF(uniform < -1.0f);
+    return step;
+}
+
+/* The rough part of the seabed towards targets, few or many. */
+FUNCTION struct chain_step step_to_targets(GLOBAL const struct chain_record *chains,
+                                           GLOBAL const struct sphere_record *spheres,
+                                           const struct target_choice *targets,
+                                           const struct chain_hit *hit, real choice, real u, real v)
+{
+    if (chains->groups > 0)
+        return step_among_many(chains, spheres, targets, hit, choice, u, v);
+    return step_from_seabed(chains, spheres, hit, choice, u, v);
+}
+
 /* The rough part of an object, by its own lobes. */
 FUNCTION struct chain_step step_from_object(GLOBAL const struct surface_record *surface,
                                             const struct chain_hit *hit, real choice, real u,
@@ -73,6 +123,7 @@ FUNCTION struct chain_step step_from_object(GLOBAL const struct surface_record *
  * of the energy. */
 FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *chains,
                                              GLOBAL const struct sphere_record *spheres,
+                                             const struct target_choice *targets,
                                              GLOBAL const struct surface_record *surface,
                                              int is_seabed, const struct chain_hit *hit,
                                              real choice, real u, real v)
@@ -81,7 +132,7 @@ FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *c
     const int follows_cones =
         is_seabed && chains->spheres > 0 && chains->estimator == CHAINS_CONNECT;
     if (!has_smooth_part(surface))
-        return follows_cones ? step_from_seabed(chains, spheres, hit, choice, u, v)
+        return follows_cones ? step_to_targets(chains, spheres, targets, hit, choice, u, v)
                              : step_from_object(surface, hit, choice, u, v);
     const real cosine = dot3(hit->normal, hit->back);
     const real energy = mirror_energy(surface, cosine);
@@ -95,7 +146,7 @@ FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *c
     const real rest = smaller((choice - probability) / left, SPLAT(0.9999999f));
     if (has_rough_part(surface)) {
         const real rough_choice = larger(rest, SPLAT(0.0f));
-        step = follows_cones ? step_from_seabed(chains, spheres, hit, rough_choice, u, v)
+        step = follows_cones ? step_to_targets(chains, spheres, targets, hit, rough_choice, u, v)
                              : step_from_object(surface, hit, rough_choice, u, v);
     } else {
         step.direction = hit->back;
@@ -131,8 +182,9 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
         const mask here = chain->is_alive & MASK_OF(hit->surface == i);
         if (!ANY(here))
             continue;
-        const struct chain_step from = step_from_surface(
-            chains, spheres, surface_number(chains, objects, i), i < 0, hit, choice, u, v);
+        const struct chain_step from =
+            step_from_surface(chains, spheres, chain->choice, surface_number(chains, objects, i),
+                              i < 0, hit, choice, u, v);
         step.direction = choose3(here, from.direction, step.direction);
         step.weight = CHOOSE(here, from.weight, step.weight);
         step.is_mirror = CHOOSE(here, from.is_mirror, step.is_mirror);

@@ -70,13 +70,26 @@ FUNCTION mask may_meet_target(const struct fan_record *fan,
     return may_meet;
 }
 
-/* What a ray of each of WIDTH blocks stands for, 0: not followed. Seabed far from the targets
+/* Where a block's choice of targets is seen from if its rays begin on an object. */
+FUNCTION struct vector3 middle_of_object(const struct fan_record *fan,
+                                         GLOBAL const struct object_record *objects)
+{
+    const int is_one = fan->only_object >= 0;
+    struct vector3 middle;
+    middle.x = SPLAT(is_one ? objects[fan->only_object].centre_x : 0.0f);
+    middle.y = SPLAT(is_one ? objects[fan->only_object].centre_y : 0.0f);
+    middle.z = SPLAT(is_one ? objects[fan->only_object].centre_z : 0.0f);
+    return middle;
+}
+
+/* What a ray of each of WIDTH blocks stands for, 0: not followed. *seen_from: where its middle ray
+ * meets the seabed, if that was found out. Seabed far from the targets
  * exchanges little sound with them, so of its rays only some blocks are followed and stand for the
  * others. Of an object's own rays those blocks are left out that cannot meet it. */
 FUNCTION real thin_out(const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
                        GLOBAL const struct chain_record *chains,
                        GLOBAL const struct sphere_record *spheres, struct random_key key, int strip,
-                       word block)
+                       word block, struct vector3 *seen_from)
 {
     const int begins_on_seabed = fan->only_object == -1;
     if (fan->only_object < -1 || (begins_on_seabed && chains->seabed_share == 0.0f) ||
@@ -89,10 +102,11 @@ FUNCTION real thin_out(const struct fan_record *fan, GLOBAL const struct ray_pie
     const mask is_seabed = MASK_OF(to_seabed < 0.5f * FAR_AWAY);
     const struct vector3 point =
         along3(middle.closest, middle.direction, CHOOSE(is_seabed, to_seabed, SPLAT(0.0f)));
-    struct target_cones cones;
-    view_targets(spheres, chains->spheres, point, &cones);
-    const real share = CHOOSE(cones.is_inside | ~is_seabed, SPLAT(1.0f),
-                              smaller(chains->seabed_share * cones.sum, SPLAT(1.0f)));
+    mask is_inside;
+    const real sum = sum_of_openings(spheres, chains->spheres, point, &is_inside);
+    const real share = CHOOSE(is_inside | ~is_seabed, SPLAT(1.0f),
+                              smaller(chains->seabed_share * sum, SPLAT(1.0f)));
+    *seen_from = point;
     real chosen, unused;
     two_uniforms(key, block, 1, &chosen, &unused);
     const mask is_followed = MASK_OF(chosen < share);
@@ -104,8 +118,9 @@ FUNCTION void begin_chain(const struct fan_record *fan,
                           GLOBAL const struct ray_piece_record *pieces,
                           GLOBAL const struct object_record *objects, int strip,
                           struct random_key key, RECORD_WORD first_ray, float stands_for,
-                          struct chain *chain)
+                          const struct target_choice *choice, struct chain *chain)
 {
+    chain->choice = choice;
     chain->key = key;
     chain->number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
     const mask is_ray = MASK_OF(chain->number < fan->rays);
@@ -145,12 +160,12 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
                                 GLOBAL const struct sphere_record *spheres, GLOBAL const float *map,
                                 GLOBAL TALLY *tallies, int strip, struct random_key key,
                                 RECORD_WORD first_ray, float stands_for,
-                                struct outcome_record *outcome)
+                                const struct target_choice *choice, struct outcome_record *outcome)
 {
     struct chain chain;
     struct chain_echo echo;
     const int is_connected = chains->estimator == CHAINS_CONNECT;
-    begin_chain(fan, pieces, objects, strip, key, first_ray, stands_for, &chain);
+    begin_chain(fan, pieces, objects, strip, key, first_ray, stands_for, choice, &chain);
     for (int order = 1; order <= chains->interactions && ANY(chain.is_alive); order++) {
         const RECORD_WORD draw = 4u * (RECORD_WORD)order;
         if (is_connected && order >= chains->first_order) {
@@ -195,13 +210,24 @@ FUNCTION void trace_chain_block(const struct fan_record *fan,
                                 GLOBAL const struct object_record *objects,
                                 GLOBAL const struct sphere_record *spheres, GLOBAL const float *map,
                                 GLOBAL TALLY *tallies, int strip, struct random_key key,
-                                RECORD_WORD first_ray, float stands_for,
-                                struct outcome_record *outcome)
+                                RECORD_WORD first_ray, float stands_for, struct vector3 seen_from,
+                                int lane, struct outcome_record *outcome)
 {
+    struct target_choice choice;
+    if (chains->groups > 0) {
+        float x[WIDTH], y[WIDTH], z[WIDTH];
+        STORE_REAL(seen_from.x, x);
+        STORE_REAL(seen_from.y, y);
+        STORE_REAL(seen_from.z, z);
+        choice.x = x[lane];
+        choice.y = y[lane];
+        choice.z = z[lane];
+        begin_choice(chains, spheres, &choice);
+    }
     const RECORD_WORD count = rays_of_block(fan, first_ray);
     for (RECORD_WORD ray = 0; ray < count; ray += WIDTH)
         trace_chain_group(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
-                          first_ray + ray, stands_for, outcome);
+                          first_ray + ray, stands_for, &choice, outcome);
 }
 
 /* Traces the share `segment` of a strip's fan. tallies: planes x tally_strips x bins. */
@@ -219,8 +245,9 @@ FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
     const RECORD_WORD blocks = (fan->rays + THIN_BLOCK - 1u) / THIN_BLOCK;
     const RECORD_WORD stride = (RECORD_WORD)fan->segments * WIDTH;
     for (RECORD_WORD some = (RECORD_WORD)segment * WIDTH; some < blocks; some += stride) {
-        const real stands_for =
-            thin_out(fan, pieces, chains, spheres, key, strip, SPLAT_WORD(some) + LANE_NUMBERS);
+        struct vector3 seen_from = middle_of_object(fan, objects);
+        const real stands_for = thin_out(fan, pieces, chains, spheres, key, strip,
+                                         SPLAT_WORD(some) + LANE_NUMBERS, &seen_from);
         float lanes[WIDTH];
         STORE_REAL(stands_for, lanes);
         for (RECORD_WORD lane = 0; lane < WIDTH && some + lane < blocks; lane++) {
@@ -232,7 +259,7 @@ FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
             }
             if (lanes[lane] > 0.0f)
                 trace_chain_block(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
-                                  first_ray, lanes[lane], &outcome);
+                                  first_ray, lanes[lane], seen_from, (int)lane, &outcome);
         }
     }
     return outcome;

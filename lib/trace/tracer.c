@@ -16,7 +16,8 @@
 /* Host and device must agree on every byte. */
 typedef char object_record_is_packed[sizeof(struct object_record) == 57 * 4 ? 1 : -1];
 typedef char fan_record_is_packed[sizeof(struct fan_record) == 40 * 4 ? 1 : -1];
-typedef char chain_record_is_packed[sizeof(struct chain_record) == 22 * 4 ? 1 : -1];
+typedef char chain_record_is_packed[sizeof(struct chain_record) == 23 * 4 ? 1 : -1];
+typedef char sphere_group_is_packed[sizeof(struct sphere_group) == 64 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
 typedef char source_pair_record_is_packed[sizeof(struct source_pair_record) == 49 * 4 ? 1 : -1];
 typedef char ray_piece_record_is_packed[sizeof(struct ray_piece_record) == 7 * 4 ? 1 : -1];

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "base/clock.h"
 #include "base/memory.h"
@@ -73,6 +74,14 @@ static void strew(struct benchmark_scene *set, uint32_t parts, double size)
     }
 }
 
+/* Of a CPU its processors' time over their number, as other programs may run too. */
+static double seconds_of(const struct benchmark_scene *set)
+{
+    const struct device *device = set->tracer.device;
+    return device->is_cpu ? (double)clock() / CLOCKS_PER_SEC / device->compute_units
+                          : clock_seconds();
+}
+
 struct cost {
     double seconds, rays;
 };
@@ -82,9 +91,9 @@ static void print_cost(const struct cost *cost)
     printf(" | %8.3f %7.1f", cost->seconds, 1e9 * cost->seconds / fmax(cost->rays, 1.0));
 }
 
-static struct cost since(double start, const struct tracer *tracer, uint64_t rays)
+static struct cost since(double start, const struct benchmark_scene *set, uint64_t rays)
 {
-    const struct cost cost = {clock_seconds() - start, (double)(tracer->counts.rays - rays)};
+    const struct cost cost = {seconds_of(set) - start, (double)(set->tracer.counts.rays - rays)};
     return cost;
 }
 
@@ -93,13 +102,13 @@ static struct cost cost_of_rough(struct benchmark_scene *set)
     static struct rough_trace trace;
     struct tracer *tracer = &set->tracer;
     const uint64_t rays = tracer->counts.rays;
-    const double start = clock_seconds();
+    const double start = seconds_of(set);
     if (rough_trace_begin(&trace, tracer, NULL) != SONJECT_OK)
         benchmark_fail(&set->report, "rough part");
     float *energy = allocate_array(line_grid_cells(&trace.grid), sizeof *energy);
     if (!energy || rough_trace_strips(&trace, tracer, trace.grid.strips, energy) != SONJECT_OK)
         benchmark_fail(&set->report, "rough part");
-    const struct cost cost = since(start, tracer, rays);
+    const struct cost cost = since(start, set, rays);
     free(energy);
     rough_trace_end(&trace);
     return cost;
@@ -128,10 +137,10 @@ static void trace_glints_of(struct benchmark_scene *set, uint32_t part)
 static struct cost cost_of_glints(struct benchmark_scene *set)
 {
     const uint64_t rays = set->tracer.counts.rays;
-    const double start = clock_seconds();
+    const double start = seconds_of(set);
     for (uint32_t i = 0; i < set->tracer.part_count; i++)
         trace_glints_of(set, i);
-    return since(start, &set->tracer, rays);
+    return since(start, set, rays);
 }
 
 /* Fan 0 begins on the seabed, the others on the objects. */
@@ -142,14 +151,14 @@ static struct cost cost_of_chains(struct benchmark_scene *set, uint32_t first_fa
     if (chain_trace_begin(&trace, tracer, NULL) != SONJECT_OK)
         benchmark_fail(&set->report, "chains");
     const uint64_t rays = tracer->counts.rays;
-    const double start = clock_seconds();
+    const double start = seconds_of(set);
     for (uint32_t i = first_fan; i < end && i < chain_fan_count(tracer); i++) {
         struct chain_fan fan;
         if (chain_fan_init(&fan, tracer, &trace.grid, false, i) != SONJECT_OK ||
             chain_trace_strips(&trace, tracer, &fan, fan.strips) != SONJECT_OK)
             benchmark_fail(&set->report, "chains");
     }
-    const struct cost cost = since(start, tracer, rays);
+    const struct cost cost = since(start, set, rays);
     chain_trace_end(&trace);
     return cost;
 }
@@ -162,11 +171,11 @@ static void print_injection(struct benchmark_scene *set)
     for (size_t i = 0; pixels && i < (size_t)PIXELS * PIXELS; i++)
         pixels[i] = 1.0f;
     input.pixels = pixels;
-    const double start = clock_seconds();
+    const double start = seconds_of(set);
     if (!pixels || injection_run(&set->report, set->tracer.device, &set->scene, &input, NULL, NULL,
                                  &result) != SONJECT_OK)
         benchmark_fail(&set->report, "injection");
-    printf(" | %8.3f %8.3f %8.3f\n", clock_seconds() - start, result.statistics.trace_s,
+    printf(" | %8.3f %8.3f %8.3f\n", seconds_of(set) - start, result.statistics.trace_s,
            result.statistics.form_s);
     injection_result_clear(&result);
     free(pixels);
