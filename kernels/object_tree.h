@@ -268,6 +268,10 @@ APART struct nearest_hit walk_objects(GLOBAL const struct object_record *objects
     struct tree_beam beam;
     const int is_beam =
         WIDTH > 1 && beam_of_rays(tree, closest, direction, first, search->is_ray, &beam);
+    if (WIDTH > 1 && !is_beam && count <= OBJECTS_IN_PACKET) {
+        test_all_objects(objects, count, point, direction, minimum, search, &nearest);
+        return nearest;
+    }
     struct tree_rays rays;
     if (!is_beam) {
         const real inverse_x = one_over_component(direction.x);

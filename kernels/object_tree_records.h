@@ -5,7 +5,8 @@
 
 #include "record_types.h"
 
-#define OBJECTS_IN_LOOP    8  /* so many or fewer are tested one after the other */
+#define OBJECTS_IN_LOOP    16 /* so many or fewer are tested one after the other */
+#define OBJECTS_IN_PACKET  40 /* likewise, by rays that run apart from each other */
 #define OBJECT_TREE_SLOTS  16 /* children of a branch */
 #define OBJECT_TREE_LEVELS 6  /* most branches from the root to an object, the root included */
 

@@ -8,6 +8,7 @@
 #include "kernels/target_numbers.h"
 #include "mesh/split.h"
 
+#define FEW_SPHERES_WANTED  32
 #define MANY_SPHERES_WANTED 1024
 
 /* Size of the object along its nose, and of the circle around its section across it. */
@@ -28,7 +29,7 @@ static void overall_size(const struct placement *placement, double *half_length,
  * there are more parts than that anyway, they are chosen from by groups. */
 static uint32_t spheres_for(double half_length, double radius, uint32_t parts)
 {
-    const double all = parts <= FEW_SPHERES_MAX ? FEW_SPHERES_MAX : MANY_SPHERES_WANTED;
+    const double all = parts <= FEW_SPHERES_MAX ? FEW_SPHERES_WANTED : MANY_SPHERES_WANTED;
     const double wanted = ceil(half_length / fmax(radius, 1e-9) - 1e-6);
     const double allowed = fmax(1.0, floor(all / (double)parts));
     return (uint32_t)fmax(1.0, fmin(wanted, allowed));

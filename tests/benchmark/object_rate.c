@@ -205,13 +205,14 @@ static void print_row(uint32_t parts, double size)
 
 int main(int argc, char **argv)
 {
-    /* the largest scene can be left out */
-    const uint32_t most = argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : 1000;
+    /* another range of numbers: from, to */
+    const uint32_t least = argc > 1 ? (uint32_t)strtoul(argv[1], NULL, 10) : 1;
+    const uint32_t most = argc > 2 ? (uint32_t)strtoul(argv[2], NULL, 10) : 1000;
     printf("parts size m |  rough s  ns/ray | glints s  ns/ray | seabed's s   ns | objects' s   ns "
            "| inject s  trace s   form s\n");
-    for (uint32_t parts = 1; parts <= most; parts *= 10)
+    for (uint32_t parts = least; parts <= most; parts *= 10)
         print_row(parts, SIZE_M);
-    for (uint32_t parts = 1; parts <= most; parts *= 10)
+    for (uint32_t parts = least; parts <= most; parts *= 10)
         print_row(parts, sqrt(AREA_M2 / parts));
     return 0;
 }
