@@ -143,7 +143,7 @@ struct chain {
     whole first_surface;
     mask began_smooth; /* the first hit was a mirror bounce: nothing finds the reverse path */
     mask is_alive;
-    const struct target_choice *choice; /* of its block; where targets are many */
+    const struct target_choice *choice; /* of targets, where they are many; 0: each ray's own */
 };
 
 #endif

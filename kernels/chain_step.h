@@ -53,14 +53,17 @@ FUNCTION struct chain_step step_from_seabed(GLOBAL const struct chain_record *ch
 }
 
 /* As step_from_seabed among many targets. Where the point is inside the sphere chosen, the
- * surface's own lobes find the direction. */
+ * surface's own lobes find the direction. choice: of first hits on the seabed; 0: each hit makes
+ * its own. */
 APART struct chain_step step_among_many(GLOBAL const struct chain_record *chains,
                                         GLOBAL const struct sphere_record *spheres,
                                         const struct target_choice *choice,
                                         const struct chain_hit *hit, real uniform, real u, real v)
 {
     const mask is_here = hit->is_hit & MASK_OF(hit->surface < 0);
-    const struct chosen_spheres chosen = choose_spheres(chains, spheres, choice, uniform, is_here);
+    struct target_choice own[WIDTH];
+    const struct chosen_spheres chosen =
+        choose_spheres(chains, spheres, choice, own, hit->point, uniform, is_here);
     struct vector3 way;
     way.x = chosen.centre.x - hit->point.x;
     way.y = chosen.centre.y - hit->point.y;
@@ -75,7 +78,7 @@ APART struct chain_step step_among_many(GLOBAL const struct chain_record *chains
             is_outside, step.direction,
             sample_rough_direction(&chains->seabed, hit->normal, hit->back, chosen.rest, u, v));
     real density, lobe_share;
-    densities_towards(chains, spheres, choice, hit->point, step.direction, is_here, &density,
+    densities_towards(chains, spheres, choice, own, hit->point, step.direction, is_here, &density,
                       &lobe_share);
     if (ANY(MASK_OF(lobe_share > 0.0f)))
         density += lobe_share *

@@ -1,7 +1,7 @@
 /* Directions from a point towards one of many targets. A sphere is chosen with a probability that
- * is the same for a whole block of rays: in proportion to its opening as seen from the block's
- * middle, so all spheres are gone through once a block only. The direction is uniform over the
- * chosen sphere's cone as seen from the ray's own point (kernels/MATH.md, "Chains"). */
+ * is the same for some neighbouring rays: in proportion to its opening as seen from their middle,
+ * so all spheres are gone through once for all of them. The direction is uniform over the chosen
+ * sphere's cone as seen from the ray's own point (kernels/MATH.md, "Chains"). */
 #ifndef SONJECT_KERNELS_MANY_TARGETS_H
 #define SONJECT_KERNELS_MANY_TARGETS_H
 
@@ -15,9 +15,10 @@ FUNCTION GLOBAL const struct sphere_group *groups_of(GLOBAL const struct chain_r
     return (GLOBAL const struct sphere_group *)(spheres + chains->spheres);
 }
 
-/* How a block of rays chooses its spheres. */
+/* How rays choose their spheres. */
 struct target_choice {
     float x, y, z;                       /* m: where the openings are seen from */
+    float square_blur;                   /* m^2, that distances from there are blurred by */
     float before[TARGET_GROUPS_MAX + 1]; /* sum of the openings in the groups before; last: all */
 };
 
@@ -50,7 +51,8 @@ FUNCTION real choice_weight(const struct target_choice *choice,
     from.z = SPLAT(choice->z);
     const struct seen_spheres seen = see_spheres(group, slot, from);
     mask is_outside;
-    const real opening = opening_at(seen.square_distance, seen.square_radius, &is_outside);
+    const real opening =
+        opening_at(seen.square_distance + choice->square_blur, seen.square_radius, &is_outside);
     return CHOOSE(MASK_OF(seen.square_radius > 0.0f), CHOOSE(is_outside, opening, SPLAT(1.0f)),
                   SPLAT(0.0f));
 }
@@ -80,7 +82,7 @@ FUNCTION void begin_choice(GLOBAL const struct chain_record *chains,
     choice->before[chains->groups] = sum;
 }
 
-/* The spheres that the lanes chose, and what is left of each lane's uniform number. */
+/* The spheres that lanes choose, and what is left of each lane's uniform number. */
 struct chosen_spheres {
     struct vector3 centre;
     real radius, rest;
@@ -115,23 +117,38 @@ FUNCTION void choose_sphere(const struct target_choice *choice,
     *rest = share < 0.9999999f ? share : 0.9999999f;
 }
 
+/* By a choice that all lanes share, or, if that is 0, by their own, which are left in own[lane]. */
 FUNCTION struct chosen_spheres choose_spheres(GLOBAL const struct chain_record *chains,
                                               GLOBAL const struct sphere_record *spheres,
-                                              const struct target_choice *choice, real uniform,
-                                              mask is_wanted)
+                                              const struct target_choice *shared,
+                                              struct target_choice *own, struct vector3 point,
+                                              real uniform, mask is_wanted)
 {
     GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
-    const real wanted = uniform * choice->before[chains->groups];
-    float lanes[WIDTH], x[WIDTH], y[WIDTH], z[WIDTH], radius[WIDTH], rest[WIDTH];
-    STORE_REAL(wanted, lanes);
+    float from[3][WIDTH], uniforms[WIDTH];
+    float x[WIDTH], y[WIDTH], z[WIDTH], radius[WIDTH], rest[WIDTH];
+    STORE_REAL(point.x, from[0]);
+    STORE_REAL(point.y, from[1]);
+    STORE_REAL(point.z, from[2]);
+    STORE_REAL(uniform, uniforms);
     for (int lane = 0; lane < WIDTH; lane++) {
         x[lane] = y[lane] = radius[lane] = rest[lane] = 0.0f;
         z[lane] = 1.0e6f; /* far up, where nothing is wanted */
     }
     for (RECORD_WORD left = lane_bits(is_wanted); left != 0; left &= left - 1) {
         const int lane = lowest_bit(left);
+        const struct target_choice *choice = shared;
         int group, slot;
-        choose_sphere(choice, groups, chains->groups, lanes[lane], &group, &slot, &rest[lane]);
+        if (!shared) {
+            own[lane].x = from[0][lane];
+            own[lane].y = from[1][lane];
+            own[lane].z = from[2][lane];
+            own[lane].square_blur = 0.0f;
+            begin_choice(chains, spheres, &own[lane]);
+            choice = &own[lane];
+        }
+        choose_sphere(choice, groups, chains->groups,
+                      uniforms[lane] * choice->before[chains->groups], &group, &slot, &rest[lane]);
         x[lane] = groups[group].centre_x[slot];
         y[lane] = groups[group].centre_y[slot];
         z[lane] = groups[group].centre_z[slot];
@@ -225,9 +242,9 @@ FUNCTION struct target_density lone_density(GLOBAL const struct chain_record *ch
 
 FUNCTION void densities_towards(GLOBAL const struct chain_record *chains,
                                 GLOBAL const struct sphere_record *spheres,
-                                const struct target_choice *choice, struct vector3 point,
-                                struct vector3 direction, mask is_wanted, real *by_cones,
-                                real *lobe_share)
+                                const struct target_choice *shared, const struct target_choice *own,
+                                struct vector3 point, struct vector3 direction, mask is_wanted,
+                                real *by_cones, real *lobe_share)
 {
     GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
     float lanes[6][WIDTH], cones[WIDTH], shares[WIDTH];
@@ -248,7 +265,8 @@ FUNCTION void densities_towards(GLOBAL const struct chain_record *chains,
         way.x = SPLAT(lanes[3][lane]);
         way.y = SPLAT(lanes[4][lane]);
         way.z = SPLAT(lanes[5][lane]);
-        const struct target_density density = lone_density(chains, groups, choice, from, way);
+        const struct target_density density =
+            lone_density(chains, groups, shared ? shared : &own[lane], from, way);
         cones[lane] = density.by_cones;
         shares[lane] = density.lobe_share;
     }

@@ -266,12 +266,15 @@ APART struct nearest_hit walk_objects(GLOBAL const struct object_record *objects
     const struct vector3 closest = along3(relative, direction, approach);
     const real first = (minimum - approach) - tree->slack;
     struct tree_beam beam;
-    const int is_beam =
-        WIDTH > 1 && beam_of_rays(tree, closest, direction, first, search->is_ray, &beam);
-    if (WIDTH > 1 && !is_beam && count <= OBJECTS_IN_PACKET) {
+#if WIDTH > 1
+    const int is_beam = beam_of_rays(tree, closest, direction, first, search->is_ray, &beam);
+    if (!is_beam && count <= OBJECTS_IN_PACKET) {
         test_all_objects(objects, count, point, direction, minimum, search, &nearest);
         return nearest;
     }
+#else
+    const int is_beam = 0;
+#endif
     struct tree_rays rays;
     if (!is_beam) {
         const real inverse_x = one_over_component(direction.x);

@@ -70,26 +70,13 @@ FUNCTION mask may_meet_target(const struct fan_record *fan,
     return may_meet;
 }
 
-/* Where a block's choice of targets is seen from if its rays begin on an object. */
-FUNCTION struct vector3 middle_of_object(const struct fan_record *fan,
-                                         GLOBAL const struct object_record *objects)
-{
-    const int is_one = fan->only_object >= 0;
-    struct vector3 middle;
-    middle.x = SPLAT(is_one ? objects[fan->only_object].centre_x : 0.0f);
-    middle.y = SPLAT(is_one ? objects[fan->only_object].centre_y : 0.0f);
-    middle.z = SPLAT(is_one ? objects[fan->only_object].centre_z : 0.0f);
-    return middle;
-}
-
-/* What a ray of each of WIDTH blocks stands for, 0: not followed. *seen_from: where its middle ray
- * meets the seabed, if that was found out. Seabed far from the targets
+/* What a ray of each of WIDTH blocks stands for, 0: not followed. Seabed far from the targets
  * exchanges little sound with them, so of its rays only some blocks are followed and stand for the
  * others. Of an object's own rays those blocks are left out that cannot meet it. */
 FUNCTION real thin_out(const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
                        GLOBAL const struct chain_record *chains,
                        GLOBAL const struct sphere_record *spheres, struct random_key key, int strip,
-                       word block, struct vector3 *seen_from)
+                       word block)
 {
     const int begins_on_seabed = fan->only_object == -1;
     if (fan->only_object < -1 || (begins_on_seabed && chains->seabed_share == 0.0f) ||
@@ -106,7 +93,6 @@ FUNCTION real thin_out(const struct fan_record *fan, GLOBAL const struct ray_pie
     const real sum = sum_of_openings(spheres, chains->spheres, point, &is_inside);
     const real share = CHOOSE(is_inside | ~is_seabed, SPLAT(1.0f),
                               smaller(chains->seabed_share * sum, SPLAT(1.0f)));
-    *seen_from = point;
     real chosen, unused;
     two_uniforms(key, block, 1, &chosen, &unused);
     const mask is_followed = MASK_OF(chosen < share);
@@ -190,6 +176,7 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
         }
         if (order == 1)
             chain.began_smooth = step.is_mirror;
+        chain.choice = 0;
         chain.energy = chain.energy * step.weight;
         chain.length = chain.length + next.distance;
         chain.hit = next;
@@ -203,6 +190,37 @@ FUNCTION RECORD_WORD rays_of_block(const struct fan_record *fan, RECORD_WORD fir
     return left < THIN_BLOCK ? left : THIN_BLOCK;
 }
 
+#define CHOICE_RAYS 16u /* that choose their targets alike; a multiple of any width */
+
+/* How the rays from first_ray on choose: as their middle sees the targets from the seabed, blurred
+ * by as much as they lie apart. */
+FUNCTION void aim_choice(const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
+                         GLOBAL const struct chain_record *chains,
+                         GLOBAL const struct sphere_record *spheres, int strip,
+                         RECORD_WORD first_ray, struct target_choice *choice)
+{
+    const real number = SPLAT((float)first_ray) + 0.5f * (float)CHOICE_RAYS;
+    const struct fan_ray middle = fan_ray_at(fan, pieces, SPLAT(strip_position(fan, strip)),
+                                             fan->first_elevation + number * fan->elevation_step);
+    const real to_seabed = seabed_distance(fan, middle.closest, middle.direction);
+    const mask is_seabed = MASK_OF(to_seabed < 0.5f * FAR_AWAY);
+    const real distance = CHOOSE(is_seabed, to_seabed, SPLAT(0.0f));
+    const struct vector3 point = along3(middle.closest, middle.direction, distance);
+    const real apart = 0.5f * (float)CHOICE_RAYS * fan->elevation_step *
+                       (middle.wavefront + distance) / larger(-middle.direction.z, SPLAT(0.05f));
+    const real square = apart * apart + 0.25f * fan->strip_width * fan->strip_width;
+    float x[WIDTH], y[WIDTH], z[WIDTH], blur[WIDTH];
+    STORE_REAL(point.x, x);
+    STORE_REAL(point.y, y);
+    STORE_REAL(point.z, z);
+    STORE_REAL(square, blur);
+    choice->x = x[0];
+    choice->y = y[0];
+    choice->z = z[0];
+    choice->square_blur = blur[0];
+    begin_choice(chains, spheres, choice);
+}
+
 /* Follows the block of rays that begins with first_ray. */
 FUNCTION void trace_chain_block(const struct fan_record *fan,
                                 GLOBAL const struct ray_piece_record *pieces,
@@ -210,24 +228,18 @@ FUNCTION void trace_chain_block(const struct fan_record *fan,
                                 GLOBAL const struct object_record *objects,
                                 GLOBAL const struct sphere_record *spheres, GLOBAL const float *map,
                                 GLOBAL TALLY *tallies, int strip, struct random_key key,
-                                RECORD_WORD first_ray, float stands_for, struct vector3 seen_from,
-                                int lane, struct outcome_record *outcome)
+                                RECORD_WORD first_ray, float stands_for,
+                                struct outcome_record *outcome)
 {
     struct target_choice choice;
-    if (chains->groups > 0) {
-        float x[WIDTH], y[WIDTH], z[WIDTH];
-        STORE_REAL(seen_from.x, x);
-        STORE_REAL(seen_from.y, y);
-        STORE_REAL(seen_from.z, z);
-        choice.x = x[lane];
-        choice.y = y[lane];
-        choice.z = z[lane];
-        begin_choice(chains, spheres, &choice);
-    }
+    const int is_shared = chains->groups > 0 && fan->only_object == -1;
     const RECORD_WORD count = rays_of_block(fan, first_ray);
-    for (RECORD_WORD ray = 0; ray < count; ray += WIDTH)
+    for (RECORD_WORD ray = 0; ray < count; ray += WIDTH) {
+        if (is_shared && ray % CHOICE_RAYS == 0)
+            aim_choice(fan, pieces, chains, spheres, strip, first_ray + ray, &choice);
         trace_chain_group(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
-                          first_ray + ray, stands_for, &choice, outcome);
+                          first_ray + ray, stands_for, is_shared ? &choice : 0, outcome);
+    }
 }
 
 /* Traces the share `segment` of a strip's fan. tallies: planes x tally_strips x bins. */
@@ -245,9 +257,8 @@ FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
     const RECORD_WORD blocks = (fan->rays + THIN_BLOCK - 1u) / THIN_BLOCK;
     const RECORD_WORD stride = (RECORD_WORD)fan->segments * WIDTH;
     for (RECORD_WORD some = (RECORD_WORD)segment * WIDTH; some < blocks; some += stride) {
-        struct vector3 seen_from = middle_of_object(fan, objects);
-        const real stands_for = thin_out(fan, pieces, chains, spheres, key, strip,
-                                         SPLAT_WORD(some) + LANE_NUMBERS, &seen_from);
+        const real stands_for =
+            thin_out(fan, pieces, chains, spheres, key, strip, SPLAT_WORD(some) + LANE_NUMBERS);
         float lanes[WIDTH];
         STORE_REAL(stands_for, lanes);
         for (RECORD_WORD lane = 0; lane < WIDTH && some + lane < blocks; lane++) {
@@ -259,7 +270,7 @@ FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
             }
             if (lanes[lane] > 0.0f)
                 trace_chain_block(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
-                                  first_ray, lanes[lane], seen_from, (int)lane, &outcome);
+                                  first_ray, lanes[lane], &outcome);
         }
     }
     return outcome;
