@@ -11,6 +11,8 @@
 #define FEW_SPHERES_WANTED  32
 #define MANY_SPHERES_WANTED 1024
 
+typedef char every_part_has_room[TARGET_SPHERES_MAX >= SCENE_SHAPES_MAX ? 1 : -1];
+
 /* Size of the object along its nose, and of the circle around its section across it. */
 static void overall_size(const struct placement *placement, double *half_length, double *radius)
 {
@@ -143,12 +145,6 @@ sonject_status target_spheres_init(struct target_spheres *spheres, const struct 
     const size_t room = most * sizeof *spheres->records +
                         (TARGET_GROUPS_MAX + bounds) * sizeof(struct sphere_group);
     memset(spheres, 0, sizeof *spheres);
-    if (tracer->part_count > TARGET_SPHERES_MAX)
-        return report_failure(
-            tracer->report, SONJECT_ERROR_INPUT,
-            "several interactions take at most %d parts of objects; the scene has "
-            "%u: use interactions: 1 or fewer parts",
-            TARGET_SPHERES_MAX, (unsigned)tracer->part_count);
     spheres->records = allocate_array(room, 1);
     struct split_triangle *sorted = allocate_array(most, sizeof *sorted);
     if (!spheres->records || !sorted) {

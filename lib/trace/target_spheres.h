@@ -13,7 +13,7 @@ struct target_spheres {
 
 /* Covers every part with a row of spheres along its length, about as many as it is times longer
  * than wide (fewer when there are many parts, at least one). Spheres wholly below the seabed are
- * left out. Errors: INPUT (more parts than there is room for), MEMORY; on failure *spheres is
+ * left out. Errors: MEMORY; on failure *spheres is
  * empty. */
 sonject_status target_spheres_init(struct target_spheres *spheres, const struct tracer *tracer,
                                    const double origin[3]);

@@ -328,12 +328,49 @@ static void test_leading_to_many_targets(void **unused)
     }
 }
 
+/* More shapes than random numbers are told apart for are refused with one line. */
+static void test_too_many_shapes(void **unused)
+{
+    (void)unused;
+    struct bench bench;
+    struct placements placed;
+    struct scene_part part;
+    bench_open(&bench, NULL, 160, 160, MIDDLE_M);
+    sonject_object_params object = object_at(80.0, 80.0, 0.1);
+    append(&bench, &object);
+    bench_ready(&bench);
+    memset(&part, 0, sizeof part);
+    part.object = 1;
+    part.shape = object;
+    for (int axis = 0; axis < 3; axis++)
+        part.axes[axis][axis] = 1.0;
+    for (int i = 0; i < 1000; i++)
+        assert_int_equal(scene_append_part(&bench.scene, &bench.report, &part), SONJECT_OK);
+    for (int i = 1; i <= 24; i++) {
+        object.shape = i == 1 ? SONJECT_SHAPE_PARTS : SONJECT_SHAPE_SPHERE;
+        append(&bench, &object);
+    }
+    assert_int_equal(
+        placements_init(&placed, &bench.report, &bench.scene, &bench.tracer.view, 0.0, 0.0),
+        SONJECT_OK); /* 1024 */
+    placements_clear(&placed);
+    append(&bench, &object);
+    assert_int_equal(
+        placements_init(&placed, &bench.report, &bench.scene, &bench.tracer.view, 0.0, 0.0),
+        SONJECT_ERROR_INPUT);
+    assert_string_equal(bench.report.message,
+                        "objects: 1025 shapes, counting those of parts, are too many: a scene may "
+                        "have 1024; split it");
+    bench_close(&bench);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_each_is_what_it_is_alone),
         cmocka_unit_test(test_shadows_are_lost_once),
         cmocka_unit_test(test_leading_to_many_targets),
+        cmocka_unit_test(test_too_many_shapes),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
