@@ -216,7 +216,7 @@ static void expect_same(const char *what, const int64_t *measured, const int64_t
             fail_msg("%s: element %zu of %zu is %lld, not %lld", what, i, count,
                      (long long)measured[i], (long long)expected[i]);
     }
-    assert_true(filled > count / 50); /* a dead trace would agree too */
+    assert_true(filled > 300); /* a dead trace would agree too */
 }
 
 /* The device walks the tree, plain C loops. A source rectangle has visibility tested too. */
@@ -347,7 +347,7 @@ static void test_devices(void **unused)
             print_message("%s, width %u\n", names[d], (unsigned)widths[w]);
             clutter_strew(&bench, 200, 0.4);
             bench.scene.injection.interactions = 3;
-            bench.scene.injection.ray_scale = 0.25;
+            bench.scene.injection.ray_scale = 0.1;
             bench.scene.seabed.lambert = 0.2;
             bench.scene.sonar.transducer_side_m = 0.1;
             bench_ready(&bench);
