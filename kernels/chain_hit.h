@@ -20,13 +20,19 @@ struct chain_hit {
 };
 
 /* The nearest object on each way, but for the one that it leaves behind: where that holds for all
- * ways, as on a lone target, the search costs nothing. */
+ * ways, as on a lone target, the search costs nothing. Where any object up to `limit` will do
+ * (is_any), what is found may not be the nearest. */
 FUNCTION struct nearest_hit find_nearest_ahead(const struct fan_record *fan,
                                                GLOBAL const struct object_record *objects,
                                                struct vector3 start, struct vector3 direction,
-                                               float minimum, whole left_behind, mask is_ray)
+                                               float minimum, real limit, int is_any,
+                                               whole left_behind, mask is_ray)
 {
     struct nearest_hit nearest;
+    if (has_object_tree(objects, fan->objects)) {
+        const struct object_search search = {limit, is_any, left_behind, is_ray};
+        return walk_objects(objects, fan->objects, start, direction, minimum, &search);
+    }
     nearest.distance = SPLAT(FAR_AWAY);
     nearest.object = WHOLE_OF(SPLAT(-1.0f));
     for (int i = 0; i < fan->objects; i++) {
@@ -49,8 +55,8 @@ FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
                                          mask is_ray)
 {
     const real to_seabed = seabed_distance(fan, start, direction);
-    const struct nearest_hit nearest =
-        find_nearest_ahead(fan, objects, start, direction, minimum, left_behind, is_ray);
+    const struct nearest_hit nearest = find_nearest_ahead(fan, objects, start, direction, minimum,
+                                                          SPLAT(FAR_AWAY), 0, left_behind, is_ray);
     const mask on_object = MASK_OF(nearest.distance < to_seabed);
     struct chain_hit hit;
     hit.distance = smaller(nearest.distance, to_seabed);
@@ -66,7 +72,8 @@ FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
     face.lift.x = face.lift.y = face.lift.z = SPLAT(0.0f);
 #endif
     hit.left_behind = WHOLE_OF(SPLAT(-1.0f));
-    for (int i = 0; i < fan->objects; i++) {
+    for (int i = surface_after(-1, fan->objects, hit.surface, hit.is_hit); i < fan->objects;
+         i = surface_after(i, fan->objects, hit.surface, hit.is_hit)) {
         const mask here = hit.is_hit & MASK_OF(hit.surface == i);
         if (!ANY(here))
             continue;
@@ -111,7 +118,9 @@ FUNCTION real scattering_at(const struct fan_record *fan, GLOBAL const struct ch
                             struct vector3 out)
 {
     real scattering = SPLAT(0.0f);
-    for (int i = first_surface_number(chain); i < fan->objects; i++) {
+    const int before = first_surface_number(chain) - 1;
+    for (int i = surface_after(before, fan->objects, hit->surface, hit->is_hit); i < fan->objects;
+         i = surface_after(i, fan->objects, hit->surface, hit->is_hit)) {
         const mask here = hit->is_hit & MASK_OF(hit->surface == i);
         if (ANY(here))
             scattering = CHOOSE(
@@ -137,10 +146,12 @@ FUNCTION mask is_open_way(const struct fan_record *fan, GLOBAL const struct obje
 {
     const struct vector3 start = start_from(hit);
     const struct nearest_hit blocking =
-        find_nearest_ahead(fan, objects, start, direction, 0.0f, hit->left_behind, is_way);
+        find_nearest_ahead(fan, objects, start, direction, 0.0f, path, 1, hit->left_behind, is_way);
     return is_way & MASK_OF(blocking.distance > path) &
            MASK_OF(seabed_distance(fan, start, direction) > path);
 }
+
+struct target_choice;
 
 /* One group of chains under way. */
 struct chain {
@@ -159,6 +170,7 @@ struct chain {
     mask began_smooth;    /* the first hit was a mirror bounce: nothing finds the reverse path */
     mask met_object;
     mask is_alive;
+    const struct target_choice *choice; /* of targets, where they are many; 0: each ray's own */
 };
 
 #endif

@@ -90,9 +90,10 @@ FUNCTION mask is_open_to_image(const struct fan_record *fan,
     const struct vector3 bounce = along3(hit->point, way->direction, to_surface);
     struct vector3 down = way->direction;
     down.z = -down.z;
-    const struct nearest_hit blocking =
-        find_nearest_ahead(fan, objects, bounce, down, 0.0f, WHOLE_OF(SPLAT(-1.0f)), is_open);
-    return is_open & MASK_OF(blocking.distance > way->path - to_surface);
+    const real left = way->path - to_surface;
+    const struct nearest_hit blocking = find_nearest_ahead(fan, objects, bounce, down, 0.0f, left,
+                                                           1, WHOLE_OF(SPLAT(-1.0f)), is_open);
+    return is_open & MASK_OF(blocking.distance > left);
 }
 
 /* What the hit sends home in lanes that want it, to a receiver abreast of receiver_x: straight, or

@@ -4,6 +4,7 @@
 #define SONJECT_KERNELS_CHAIN_STEP_H
 
 #include "chain_hit.h"
+#include "many_targets.h"
 #include "reflectivity_map.h"
 #include "target_cones.h"
 
@@ -16,11 +17,11 @@ struct chain_step {
 
 /* The rough part of seabed or sea surface: towards the targets; where the hit is among them, or the
  * step leads elsewhere too, also all around. */
-FUNCTION struct chain_step step_to_targets(GLOBAL const struct chain_record *chains,
-                                           GLOBAL const struct sphere_record *spheres,
-                                           GLOBAL const struct surface_record *surface,
-                                           int leads_elsewhere, const struct chain_hit *hit,
-                                           real choice, real u, real v)
+FUNCTION struct chain_step step_among_few(GLOBAL const struct chain_record *chains,
+                                          GLOBAL const struct sphere_record *spheres,
+                                          GLOBAL const struct surface_record *surface,
+                                          int leads_elsewhere, const struct chain_hit *hit,
+                                          real choice, real u, real v)
 {
     struct target_cones cones;
     view_targets(spheres, chains->spheres, hit->point, &cones);
@@ -52,6 +53,72 @@ FUNCTION struct chain_step step_to_targets(GLOBAL const struct chain_record *cha
     return step;
 }
 
+/* As step_among_few among many targets. Where the point is inside the sphere chosen, the surface's
+ * own lobes find the direction. targets: of first hits on the seabed; 0: each hit makes its own
+ * choice. */
+APART struct chain_step step_among_many(GLOBAL const struct chain_record *chains,
+                                        GLOBAL const struct sphere_record *spheres,
+                                        const struct target_choice *targets,
+                                        GLOBAL const struct surface_record *surface,
+                                        int leads_elsewhere, const struct chain_hit *hit,
+                                        real choice, real u, real v)
+{
+    const mask is_here = hit->is_hit & MASK_OF(hit->surface < 0);
+    const float elsewhere_share = leads_elsewhere ? 0.5f : 0.0f;
+    const float cone_share = 1.0f - elsewhere_share;
+    const mask leads_astray = MASK_OF(choice < elsewhere_share);
+    const real cone_choice = larger((choice - elsewhere_share) / cone_share, SPLAT(0.0f));
+    struct target_choice own[WIDTH];
+    const struct chosen_spheres chosen =
+        choose_spheres(chains, spheres, targets, own, hit->point, cone_choice, is_here);
+    struct vector3 way;
+    way.x = chosen.centre.x - hit->point.x;
+    way.y = chosen.centre.y - hit->point.y;
+    way.z = chosen.centre.z - hit->point.z;
+    mask is_outside;
+    const real opening = opening_at(dot3(way, way), chosen.radius * chosen.radius, &is_outside);
+    struct chain_step step;
+    step.direction = direction_in_cone(choose3(is_outside, way, hit->normal), opening, u, v);
+    const mask by_lobe = leads_astray | ~is_outside;
+    if (ANY(is_here & by_lobe)) {
+        const real lobe_choice =
+            CHOOSE(leads_astray, choice / larger(SPLAT(elsewhere_share), SPLAT(0.5f)), chosen.rest);
+        step.direction = choose3(
+            by_lobe, sample_rough_direction(surface, hit->normal, hit->back, lobe_choice, u, v),
+            step.direction);
+    }
+    real density, lobe_share;
+    densities_towards(chains, spheres, targets, own, hit->point, step.direction, is_here, &density,
+                      &lobe_share);
+    density = cone_share * density;
+    lobe_share = elsewhere_share + cone_share * lobe_share;
+    if (ANY(MASK_OF(lobe_share > 0.0f)))
+        density +=
+            lobe_share * rough_direction_density(surface, hit->normal, hit->back, step.direction);
+    const real cosine = dot3(hit->normal, step.direction);
+    const mask is_possible = MASK_OF(density > 0.0f) & MASK_OF(cosine > 0.0f);
+    step.weight = CHOOSE(is_possible,
+                         rough_scattering(surface, hit->normal, hit->back, step.direction) *
+                             cosine / CHOOSE(is_possible, density, SPLAT(1.0f)),
+                         SPLAT(0.0f));
+    step.is_mirror = MASK_OF(choice < -1.0f);
+    return step;
+}
+
+/* The rough part of seabed or sea surface towards targets, few or many. */
+FUNCTION struct chain_step step_to_targets(GLOBAL const struct chain_record *chains,
+                                           GLOBAL const struct sphere_record *spheres,
+                                           const struct target_choice *targets,
+                                           GLOBAL const struct surface_record *surface,
+                                           int leads_elsewhere, const struct chain_hit *hit,
+                                           real choice, real u, real v)
+{
+    if (chains->groups > 0)
+        return step_among_many(chains, spheres, targets, surface, leads_elsewhere, hit, choice, u,
+                               v);
+    return step_among_few(chains, spheres, surface, leads_elsewhere, hit, choice, u, v);
+}
+
 /* The rough part of an object, by its own lobes. */
 FUNCTION struct chain_step step_from_object(GLOBAL const struct surface_record *surface,
                                             const struct chain_hit *hit, real choice, real u,
@@ -75,6 +142,7 @@ FUNCTION struct chain_step step_from_object(GLOBAL const struct surface_record *
  * that it may also go to the sea surface, and come from there. */
 FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *chains,
                                              GLOBAL const struct sphere_record *spheres,
+                                             const struct target_choice *targets,
                                              GLOBAL const struct surface_record *surface,
                                              int number, int order, const struct chain_hit *hit,
                                              real choice, real u, real v)
@@ -84,9 +152,9 @@ FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *c
         number < 0 && chains->spheres > 0 && chains->estimator == CHAINS_CONNECT;
     const int leads_elsewhere = has_sea_surface(chains) && order > 1;
     if (!has_smooth_part(surface))
-        return follows_cones
-                   ? step_to_targets(chains, spheres, surface, leads_elsewhere, hit, choice, u, v)
-                   : step_from_object(surface, hit, choice, u, v);
+        return follows_cones ? step_to_targets(chains, spheres, targets, surface, leads_elsewhere,
+                                               hit, choice, u, v)
+                             : step_from_object(surface, hit, choice, u, v);
     const real cosine = dot3(hit->normal, hit->back);
     const real energy = mirror_energy(surface, cosine);
     real probability = SPLAT(1.0f);
@@ -99,8 +167,8 @@ FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *c
     const real rest = smaller((choice - probability) / left, SPLAT(0.9999999f));
     if (has_rough_part(surface)) {
         const real rough_choice = larger(rest, SPLAT(0.0f));
-        step = follows_cones ? step_to_targets(chains, spheres, surface, leads_elsewhere, hit,
-                                               rough_choice, u, v)
+        step = follows_cones ? step_to_targets(chains, spheres, targets, surface, leads_elsewhere,
+                                               hit, rough_choice, u, v)
                              : step_from_object(surface, hit, rough_choice, u, v);
     } else {
         step.direction = hit->back;
@@ -131,12 +199,15 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
     step.direction = hit->back;
     step.weight = SPLAT(0.0f);
     step.is_mirror = MASK_OF(choice < -1.0f);
-    for (int i = first_surface_number(chains); i < fan->objects; i++) {
+    const int before = first_surface_number(chains) - 1;
+    for (int i = surface_after(before, fan->objects, hit->surface, chain->is_alive);
+         i < fan->objects; i = surface_after(i, fan->objects, hit->surface, chain->is_alive)) {
         const mask here = chain->is_alive & MASK_OF(hit->surface == i);
         if (!ANY(here))
             continue;
-        const struct chain_step from = step_from_surface(
-            chains, spheres, surface_number(chains, objects, i), i, order, hit, choice, u, v);
+        const struct chain_step from =
+            step_from_surface(chains, spheres, chain->choice, surface_number(chains, objects, i), i,
+                              order, hit, choice, u, v);
         step.direction = choose3(here, from.direction, step.direction);
         step.weight = CHOOSE(here, from.weight, step.weight);
         step.is_mirror = CHOOSE(here, from.is_mirror, step.is_mirror);

@@ -56,7 +56,8 @@ FUNCTION struct vector3 normal_change_at(GLOBAL const struct object_record *obje
 {
     struct vector3 change;
     change.x = change.y = change.z = SPLAT(0.0f);
-    for (int i = 0; i < count; i++) {
+    for (int i = surface_after(-1, count, hit->surface, hit->is_hit); i < count;
+         i = surface_after(i, count, hit->surface, hit->is_hit)) {
         GLOBAL const struct object_record *object = &objects[i];
         const mask here = hit->is_hit & MASK_OF(hit->surface == i);
         if (object->shape == SHAPE_MESH || !ANY(here))

@@ -3,6 +3,7 @@
 #define SONJECT_KERNELS_INTERSECTION_H
 
 #include "layout.h"
+#include "mesh_ray.h" /* boxes, which many objects need too */
 #include "shapes/box.h"
 #include "shapes/capsule.h"
 #include "shapes/cone.h"
@@ -374,11 +375,17 @@ struct nearest_hit {
     whole object;  /* number, -1: none */
 };
 
+#include "object_tree.h"
+
 FUNCTION struct nearest_hit find_nearest_hit(GLOBAL const struct object_record *objects, int count,
                                              struct vector3 point, struct vector3 direction,
                                              float minimum)
 {
     struct nearest_hit nearest;
+    if (has_object_tree(objects, count)) {
+        const struct object_search search = {SPLAT(FAR_AWAY), 0, SPLAT_WHOLE(-1), SPLAT_WHOLE(-1)};
+        return walk_objects(objects, count, point, direction, minimum, &search);
+    }
     nearest.distance = SPLAT(FAR_AWAY);
     nearest.object = WHOLE_OF(SPLAT(-1.0f));
     for (int i = 0; i < count; i++) {
@@ -388,6 +395,17 @@ FUNCTION struct nearest_hit find_nearest_hit(GLOBAL const struct object_record *
         nearest.object = CHOOSE(is_nearer, WHOLE_OF(SPLAT((float)i)), nearest.object);
     }
     return nearest;
+}
+
+/* A distance beyond `path` where nothing is in the way up to there, else one that is not. */
+FUNCTION real find_obstacle(GLOBAL const struct object_record *objects, int count,
+                            struct vector3 point, struct vector3 direction, real path)
+{
+    if (has_object_tree(objects, count)) {
+        const struct object_search search = {path, 1, SPLAT_WHOLE(-1), SPLAT_WHOLE(-1)};
+        return walk_objects(objects, count, point, direction, 0.0f, &search).distance;
+    }
+    return find_nearest_hit(objects, count, point, direction, 0.0f).distance;
 }
 
 #endif

@@ -109,6 +109,8 @@ struct object_record {
     struct end_record ends[ENDS];
     RECORD_WORD mesh_words; /* mesh: where its mesh_record is, in 4-byte words from this record;
                                user's shape: likewise, its user_record */
+    RECORD_WORD tree_words; /* of the first record: where the object_tree_record of all objects is,
+                               likewise; 0: there is none */
     RECORD_INT cuts;
     struct cut_record cut[OBJECT_CUTS];
     struct surface_record surface;
@@ -184,6 +186,11 @@ struct fan_record {
     struct ray_table_record table;
 };
 
+/* Sixteen spheres, to be tested at once; radius 0: none. */
+struct sphere_group {
+    float centre_x[16], centre_y[16], centre_z[16], radius[16];
+};
+
 /* A sphere around a part of a target; a target lies within the union of its spheres. */
 struct sphere_record {
     float centre_x, centre_y, centre_z; /* m, in the frame */
@@ -205,6 +212,7 @@ struct chain_record {
                                   seabed and target found one way also stands for its reverse */
     RECORD_INT forward_is_map; /* the seabed's lambert part is times the map */
     RECORD_INT spheres;        /* of targets */
+    RECORD_INT groups;         /* that they lie in where they are many (many_targets.h), else 0 */
     float seabed_share;     /* of the seabed's rays that are followed, over the sum of the targets'
                                openings as seen from there; 0: all are */
     RECORD_INT first_order; /* lowest that is tallied */

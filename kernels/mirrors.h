@@ -44,9 +44,8 @@ FUNCTION struct leg follow_leg(GLOBAL const struct source_pair_record *pair,
         const mask is_level = MASK_OF(cosine < 1.0e-6f);
         const real step = (mirror->height - point.z) / CHOOSE(is_level, SPLAT(1.0f), direction.z);
         if (is_seen) {
-            const struct nearest_hit blocking =
-                find_nearest_hit(objects, count, point, direction, 0.0f);
-            leg.is_open = leg.is_open & MASK_OF(blocking.distance > step);
+            leg.is_open =
+                leg.is_open & MASK_OF(find_obstacle(objects, count, point, direction, step) > step);
         }
         leg.is_open = leg.is_open & ~is_level;
         is_seen = is_seen && !(is_bent && kind == MIRROR_SURFACE);
@@ -63,11 +62,9 @@ FUNCTION struct leg follow_leg(GLOBAL const struct source_pair_record *pair,
         leg.reflection_real = product_real;
         kind = 1 - kind;
     }
-    if (is_seen && ANY(leg.is_open)) {
-        const struct nearest_hit blocking =
-            find_nearest_hit(objects, count, point, direction, 0.0f);
-        leg.is_open = leg.is_open & MASK_OF(blocking.distance > length);
-    }
+    if (is_seen && ANY(leg.is_open))
+        leg.is_open =
+            leg.is_open & MASK_OF(find_obstacle(objects, count, point, direction, length) > length);
     return leg;
 }
 

@@ -5,14 +5,13 @@
 
 #include "elementary.h"
 #include "layout.h"
+#include "target_numbers.h"
 #include "vector3.h"
-
-#define TARGET_SPHERES_MAX 256
 
 /* The cones of all spheres as seen from a point. An opening is 1 - cosine of the cone's half angle;
  * 0 where the point is inside the sphere, which then is all around. */
 struct target_cones {
-    real openings[TARGET_SPHERES_MAX];
+    real openings[FEW_SPHERES_MAX];
     real sum;
     mask is_inside; /* of some sphere */
 };
@@ -26,6 +25,35 @@ FUNCTION struct vector3 to_sphere(GLOBAL const struct sphere_record *sphere, str
     return way;
 }
 
+/* Opening of a sphere at a distance; 0 where that is not outside. */
+FUNCTION real opening_at(real square_distance, real square_radius, mask *is_outside)
+{
+    *is_outside = MASK_OF(square_distance > square_radius * 1.0001f);
+    /* 1 - sqrt(1 - r^2/d^2) without a difference of nearly equal numbers, and one division */
+    const real square_tangent_length = square_distance - square_radius;
+    const real divisor =
+        square_distance +
+        SQUARE_ROOT(square_distance * CHOOSE(*is_outside, square_tangent_length, SPLAT(0.0f)));
+    return CHOOSE(*is_outside, square_radius / divisor, SPLAT(0.0f));
+}
+
+/* Sum of the openings of any number of spheres as seen from a point. */
+FUNCTION real sum_of_openings(GLOBAL const struct sphere_record *spheres, int count,
+                              struct vector3 point, mask *is_inside)
+{
+    real sum = SPLAT(0.0f);
+    *is_inside = MASK_OF(sum > 1.0f);
+    for (int i = 0; i < count; i++) {
+        const struct vector3 way = to_sphere(&spheres[i], point);
+        mask is_outside;
+        sum +=
+            opening_at(dot3(way, way), SPLAT(spheres[i].radius * spheres[i].radius), &is_outside);
+        *is_inside = *is_inside | ~is_outside;
+    }
+    return sum;
+}
+
+/* count: FEW_SPHERES_MAX at most. */
 FUNCTION void view_targets(GLOBAL const struct sphere_record *spheres, int count,
                            struct vector3 point, struct target_cones *cones)
 {
@@ -33,18 +61,29 @@ FUNCTION void view_targets(GLOBAL const struct sphere_record *spheres, int count
     cones->is_inside = MASK_OF(cones->sum > 1.0f);
     for (int i = 0; i < count; i++) {
         const struct vector3 way = to_sphere(&spheres[i], point);
-        const real square_distance = dot3(way, way);
-        const float square_radius = spheres[i].radius * spheres[i].radius;
-        const mask is_outside = MASK_OF(square_distance > square_radius * 1.0001f);
-        /* 1 - sqrt(1 - r^2/d^2) without a difference of nearly equal numbers, and one division */
-        const real square_tangent_length = square_distance - square_radius;
-        const real divisor =
-            square_distance +
-            SQUARE_ROOT(square_distance * CHOOSE(is_outside, square_tangent_length, SPLAT(0.0f)));
-        cones->openings[i] = CHOOSE(is_outside, square_radius / divisor, SPLAT(0.0f));
+        mask is_outside;
+        cones->openings[i] =
+            opening_at(dot3(way, way), SPLAT(spheres[i].radius * spheres[i].radius), &is_outside);
         cones->sum += cones->openings[i];
         cones->is_inside = cones->is_inside | ~is_outside;
     }
+}
+
+/* A direction in a cone, uniform over its solid angle; way: to the middle of its sphere. */
+FUNCTION struct vector3 direction_in_cone(struct vector3 way, real opening, real u, real v)
+{
+    const real inverse = 1.0f / SQUARE_ROOT(dot3(way, way));
+    struct vector3 axis;
+    axis.x = way.x * inverse;
+    axis.y = way.y * inverse;
+    axis.z = way.z * inverse;
+    const real fall = u * opening; /* 1 - cosine */
+    const real sine = SQUARE_ROOT(fall * (2.0f - fall));
+    real sine_about, cosine_about;
+    sine_cosine_of_cycles(v, &sine_about, &cosine_about);
+    struct vector3 first, second;
+    tangents3(axis, &first, &second);
+    return combine3(axis, 1.0f - fall, first, sine * cosine_about, second, sine * sine_about);
 }
 
 /* A direction in the cone of one sphere, chosen in proportion to the cones' solid angles. */
@@ -66,18 +105,7 @@ FUNCTION struct vector3 sample_target_direction(GLOBAL const struct sphere_recor
         opening = CHOOSE(is_next, cones->openings[i], opening);
         before += cones->openings[i];
     }
-    const real inverse = 1.0f / SQUARE_ROOT(dot3(way, way));
-    struct vector3 axis;
-    axis.x = way.x * inverse;
-    axis.y = way.y * inverse;
-    axis.z = way.z * inverse;
-    const real fall = u * opening; /* 1 - cosine */
-    const real sine = SQUARE_ROOT(fall * (2.0f - fall));
-    real sine_about, cosine_about;
-    sine_cosine_of_cycles(v, &sine_about, &cosine_about);
-    struct vector3 first, second;
-    tangents3(axis, &first, &second);
-    return combine3(axis, 1.0f - fall, first, sine * cosine_about, second, sine * sine_about);
+    return direction_in_cone(way, opening, u, v);
 }
 
 /* Density of these directions, 1/sr: the number of cones that hold the direction over the sum of

@@ -91,10 +91,10 @@ FUNCTION real thin_out(const struct fan_record *fan, GLOBAL const struct ray_pie
     const mask is_seabed = MASK_OF(to_seabed < 0.5f * FAR_AWAY);
     const struct vector3 point =
         along3(middle.closest, middle.direction, CHOOSE(is_seabed, to_seabed, SPLAT(0.0f)));
-    struct target_cones cones;
-    view_targets(spheres, chains->spheres, point, &cones);
-    const real share = CHOOSE(cones.is_inside | ~is_seabed, SPLAT(1.0f),
-                              smaller(chains->seabed_share * cones.sum, SPLAT(1.0f)));
+    mask is_inside;
+    const real sum = sum_of_openings(spheres, chains->spheres, point, &is_inside);
+    const real share = CHOOSE(is_inside | ~is_seabed, SPLAT(1.0f),
+                              smaller(chains->seabed_share * sum, SPLAT(1.0f)));
     real chosen, unused;
     two_uniforms(key, block, 1, &chosen, &unused);
     const mask is_followed = MASK_OF(chosen < share);
@@ -106,8 +106,9 @@ FUNCTION void begin_chain(const struct fan_record *fan,
                           GLOBAL const struct ray_piece_record *pieces,
                           GLOBAL const struct object_record *objects, int strip,
                           struct random_key key, RECORD_WORD first_ray, float stands_for,
-                          struct chain *chain)
+                          const struct target_choice *choice, struct chain *chain)
 {
+    chain->choice = choice;
     chain->key = key;
     chain->number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
     const mask is_ray = MASK_OF(chain->number < fan->rays);
@@ -149,12 +150,12 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
                                 GLOBAL const struct sphere_record *spheres, GLOBAL const float *map,
                                 GLOBAL TALLY *tallies, int strip, struct random_key key,
                                 RECORD_WORD first_ray, float stands_for,
-                                struct outcome_record *outcome)
+                                const struct target_choice *choice, struct outcome_record *outcome)
 {
     struct chain chain;
     struct chain_echo echo;
     const int is_connected = chains->estimator == CHAINS_CONNECT;
-    begin_chain(fan, pieces, objects, strip, key, first_ray, stands_for, &chain);
+    begin_chain(fan, pieces, objects, strip, key, first_ray, stands_for, choice, &chain);
     for (int order = 1; order <= chains->interactions && ANY(chain.is_alive); order++) {
         const RECORD_WORD draw = 4u * (RECORD_WORD)order;
         if (is_connected && order >= chains->first_order) {
@@ -184,6 +185,7 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
         }
         if (order == 1)
             chain.began_smooth = step.is_mirror;
+        chain.choice = 0;
         chain.energy = chain.energy * step.weight;
         chain.length = chain.length + next.distance;
         chain.surface_before = chain.hit.surface;
@@ -201,6 +203,37 @@ FUNCTION RECORD_WORD rays_of_block(const struct fan_record *fan, RECORD_WORD fir
     return left < THIN_BLOCK ? left : THIN_BLOCK;
 }
 
+#define CHOICE_RAYS 16u /* that choose their targets alike; a multiple of any width */
+
+/* How the rays from first_ray on choose: as their middle sees the targets from the seabed, blurred
+ * by as much as they lie apart. */
+FUNCTION void aim_choice(const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
+                         GLOBAL const struct chain_record *chains,
+                         GLOBAL const struct sphere_record *spheres, int strip,
+                         RECORD_WORD first_ray, struct target_choice *choice)
+{
+    const real number = SPLAT((float)first_ray) + 0.5f * (float)CHOICE_RAYS;
+    const struct fan_ray middle = fan_ray_at(fan, pieces, SPLAT(strip_position(fan, strip)),
+                                             fan->first_elevation + number * fan->elevation_step);
+    const real to_seabed = seabed_distance(fan, middle.closest, middle.direction);
+    const mask is_seabed = MASK_OF(to_seabed < 0.5f * FAR_AWAY);
+    const real distance = CHOOSE(is_seabed, to_seabed, SPLAT(0.0f));
+    const struct vector3 point = along3(middle.closest, middle.direction, distance);
+    const real apart = 0.5f * (float)CHOICE_RAYS * fan->elevation_step *
+                       (middle.wavefront + distance) / larger(-middle.direction.z, SPLAT(0.05f));
+    const real square = apart * apart + 0.25f * fan->strip_width * fan->strip_width;
+    float x[WIDTH], y[WIDTH], z[WIDTH], blur[WIDTH];
+    STORE_REAL(point.x, x);
+    STORE_REAL(point.y, y);
+    STORE_REAL(point.z, z);
+    STORE_REAL(square, blur);
+    choice->x = x[0];
+    choice->y = y[0];
+    choice->z = z[0];
+    choice->square_blur = blur[0];
+    begin_choice(chains, spheres, choice);
+}
+
 /* Follows the block of rays that begins with first_ray. */
 FUNCTION void trace_chain_block(const struct fan_record *fan,
                                 GLOBAL const struct ray_piece_record *pieces,
@@ -211,10 +244,15 @@ FUNCTION void trace_chain_block(const struct fan_record *fan,
                                 RECORD_WORD first_ray, float stands_for,
                                 struct outcome_record *outcome)
 {
+    struct target_choice choice;
+    const int is_shared = chains->groups > 0 && fan->only_object == -1;
     const RECORD_WORD count = rays_of_block(fan, first_ray);
-    for (RECORD_WORD ray = 0; ray < count; ray += WIDTH)
+    for (RECORD_WORD ray = 0; ray < count; ray += WIDTH) {
+        if (is_shared && ray % CHOICE_RAYS == 0)
+            aim_choice(fan, pieces, chains, spheres, strip, first_ray + ray, &choice);
         trace_chain_group(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
-                          first_ray + ray, stands_for, outcome);
+                          first_ray + ray, stands_for, is_shared ? &choice : 0, outcome);
+    }
 }
 
 /* Traces the share `segment` of a strip's fan. tallies: planes x tally_strips x bins. */

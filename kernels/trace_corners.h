@@ -85,7 +85,8 @@ FUNCTION void reflection_of_hit(const struct fan_record *fan,
     *real_part = SPLAT(0.0f);
     *imaginary_part = SPLAT(0.0f);
     mask is_smooth = *is_alive & 0;
-    for (int i = -1; i < fan->objects; i++) {
+    for (int i = surface_after(SEABED - 1, fan->objects, hit->surface, *is_alive); i < fan->objects;
+         i = surface_after(i, fan->objects, hit->surface, *is_alive)) {
         GLOBAL const struct surface_record *surface =
             i < 0 ? &corners->seabed : &objects[i].surface;
         const mask here = *is_alive & MASK_OF(hit->surface == i);

@@ -44,8 +44,8 @@ FUNCTION struct connection connect_to_source(const struct fan_record *fan,
     connection.direction = way;
     /* start off the surface by more than its rounding, less than anything that throws a shadow */
     const struct vector3 start = along3(hit, normal, SPLAT(2.0e-5f));
-    const struct nearest_hit blocking = find_nearest_hit(objects, fan->objects, start, way, 0.0f);
-    connection.is_open = MASK_OF(blocking.distance > path) & MASK_OF(connection.cosine > 0.0f);
+    const real obstacle = find_obstacle(objects, fan->objects, start, way, path);
+    connection.is_open = MASK_OF(obstacle > path) & MASK_OF(connection.cosine > 0.0f);
     return connection;
 }
 
@@ -157,7 +157,9 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     const real target_gain = refraction_gain(fan, &ray, to_target);
     const real target_area =
         strip_of_cell * (ray.wavefront + to_target) * (target_gain * target_gain) * fan->quanta;
-    for (int i = 0; i < fan->objects && ANY(on_object); i++) {
+    const int objects_end = ANY(on_object) ? fan->objects : 0;
+    for (int i = surface_after(-1, objects_end, nearest.object, on_object); i < objects_end;
+         i = surface_after(i, objects_end, nearest.object, on_object)) {
         const mask here = on_object & MASK_OF(nearest.object == i);
         if (!ANY(here))
             continue;

@@ -250,6 +250,20 @@ static sonject_status place(struct placements *placements, struct report *report
     return check_room(report, view, object, parts, placed->part_count);
 }
 
+/* Random numbers are told apart by the number of a shape. */
+static sonject_status check_shape_count(struct report *report, const struct scene *scene)
+{
+    uint32_t count = scene->part_count;
+    for (uint32_t i = 0; i < scene->object_count; i++)
+        count += scene->objects[i].shape != SONJECT_SHAPE_PARTS;
+    if (count <= SCENE_SHAPES_MAX)
+        return SONJECT_OK;
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "objects: %u shapes, counting those of parts, are too many: a scene may "
+                          "have %d; split it",
+                          (unsigned)count, SCENE_SHAPES_MAX);
+}
+
 sonject_status placements_init(struct placements *placements, struct report *report,
                                const struct scene *scene, const struct patch_view *view,
                                double first_row, double first_column)
@@ -262,6 +276,8 @@ sonject_status placements_init(struct placements *placements, struct report *rep
     sonject_status status = placements->parts && placements->objects
                                 ? SONJECT_OK
                                 : report_out_of_memory(report, "objects");
+    if (status == SONJECT_OK)
+        status = check_shape_count(report, scene);
     for (uint32_t i = 0; status == SONJECT_OK && i < scene->object_count; i++)
         status = place(placements, report, scene, view, first_row, first_column, i);
     if (status != SONJECT_OK)

@@ -15,6 +15,7 @@
 
 #define SCENE_OBJECTS_MAX      250 /* ids must fit the 8-bit label image */
 #define SCENE_PARTS_MAX        1000
+#define SCENE_SHAPES_MAX       1024 /* parts and objects of one shape: STREAMS_OF_PAIR */
 #define SCENE_MESHES_MAX       64
 #define SCENE_INTERACTIONS_MAX 8
 

@@ -25,7 +25,7 @@ static sonject_material_params seabed_material(const struct scene *scene)
 }
 
 static void chain_record_init(struct chain_record *record, const struct chain_trace *trace,
-                              const struct tracer *tracer, uint32_t spheres)
+                              const struct tracer *tracer, const struct target_spheres *spheres)
 {
     const struct scene *scene = tracer->scene;
     const sonject_material_params seabed = seabed_material(scene);
@@ -36,7 +36,8 @@ static void chain_record_init(struct chain_record *record, const struct chain_tr
     record->is_focused = scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED;
     record->is_reciprocal = record->is_focused && scene->sonar.transducer_side_m == 0.0;
     record->forward_is_map = scene->seabed.forward_rule == SONJECT_FORWARD_MAP;
-    record->spheres = (int32_t)spheres;
+    record->spheres = (int32_t)spheres->count;
+    record->groups = (int32_t)spheres->groups;
     record->seabed_share = SEABED_SHARE;
 
     record->first_order = (int32_t)trace->first_order;
@@ -77,28 +78,29 @@ static sonject_status make_buffers(struct chain_trace *trace, struct tracer *tra
     struct device *device = tracer->device;
     const uint32_t objects = tracer->part_count;
     struct object_record *records = allocate_array(objects, sizeof *records);
-    struct sphere_record *spheres = allocate_array(TARGET_SPHERES_MAX, sizeof *spheres);
+    struct target_spheres spheres;
     struct chain_record chains;
     double origin[3];
-    sonject_status status =
-        records && spheres ? SONJECT_OK : report_out_of_memory(report, "objects");
+    patch_fan_origin(origin, &tracer->view);
+    sonject_status status = target_spheres_init(&spheres, tracer, origin);
+    if (status == SONJECT_OK && !records)
+        status = report_out_of_memory(report, "objects");
     if (status == SONJECT_OK) {
-        patch_fan_origin(origin, &tracer->view);
         object_records_init(records, tracer, origin);
-        chain_record_init(&chains, trace, tracer, target_spheres_init(spheres, tracer, origin));
+        chain_record_init(&chains, trace, tracer, &spheres);
         status = buffer_create(report, device, sizeof chains, &chains, &trace->chains);
     }
     if (status == SONJECT_OK)
-        status = object_buffer_create(tracer, records, &trace->objects);
+        status = object_buffer_create(tracer, records, (struct part_list){NULL, tracer->part_count},
+                                      &trace->objects);
     if (status == SONJECT_OK)
-        status = buffer_create(report, device, TARGET_SPHERES_MAX * sizeof *spheres, spheres,
-                               &trace->spheres);
+        status = buffer_create(report, device, spheres.bytes, spheres.records, &trace->spheres);
     if (status == SONJECT_OK)
         status = buffer_create(report, device,
                                map ? tracer->view.rows * tracer->view.columns * sizeof *map : 0,
                                map, &trace->map);
     free(records);
-    free(spheres);
+    target_spheres_clear(&spheres);
     return status;
 }
 

@@ -69,8 +69,9 @@ static sonject_status begin_on_device(struct corner_launch *launch, struct trace
     if (!records)
         return report_out_of_memory(report, "objects");
     object_records_init(records, tracer, origin);
-    sonject_status status = trace_device_init(&launch->on_device, tracer, PROGRAM_TRACE_CORNERS,
-                                              "trace_corners", records, 1, 1);
+    sonject_status status =
+        trace_device_init(&launch->on_device, tracer, PROGRAM_TRACE_CORNERS, "trace_corners",
+                          records, (struct part_list){NULL, tracer->part_count}, 1, 1);
     free(records);
     if (status == SONJECT_OK)
         status = buffer_create(report, device, sizeof launch->sources, &launch->sources,

@@ -1,10 +1,12 @@
 #include "trace/object_buffer.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "trace/object_tree.h"
 #include "user/user_program.h"
 
 #define WORD        4
@@ -44,21 +46,27 @@ static void write_mesh(uint32_t *words, const struct mesh *mesh)
         write_words(words, &at, mesh->normals, normal_words(mesh));
 }
 
+static const struct placement *placement_of(const struct tracer *tracer,
+                                            const struct part_list *parts, uint32_t i)
+{
+    return &tracer->placements[parts->numbers ? parts->numbers[i] : i];
+}
+
 /* The records of users' shapes follow, one for each part that shows one. */
-static size_t user_words(const struct tracer *tracer)
+static size_t user_words(const struct tracer *tracer, const struct part_list *parts)
 {
     size_t words = 0;
-    for (uint32_t i = 0; i < tracer->part_count; i++)
-        if (tracer->placements[i].size.user_shape)
+    for (uint32_t i = 0; i < parts->count; i++)
+        if (placement_of(tracer, parts, i)->size.user_shape)
             words += ALIGNED(WORDS_OF(struct user_record));
     return words;
 }
 
-static void write_users(struct tracer *tracer, struct object_record *records, uint32_t *words,
-                        size_t at)
+static void write_users(const struct tracer *tracer, const struct part_list *parts,
+                        struct object_record *records, uint32_t *words, size_t at)
 {
-    for (uint32_t i = 0; i < tracer->part_count; i++) {
-        const struct user_shape *shape = tracer->placements[i].size.user_shape;
+    for (uint32_t i = 0; i < parts->count; i++) {
+        const struct user_shape *shape = placement_of(tracer, parts, i)->size.user_shape;
         if (!shape)
             continue;
         const struct user_record record = user_record_of(shape);
@@ -68,14 +76,53 @@ static void write_users(struct tracer *tracer, struct object_record *records, ui
     }
 }
 
-/* Where each mesh that some part shows begins, in words; 0: nobody shows it. Returns the words of
- * the whole buffer. */
-static size_t lay_out(const struct tracer *tracer, size_t begin[SCENE_MESHES_MAX])
+/* A mesh within the box that its own axes give, anything else by its extents. */
+static struct object_reach reach_of(const struct placement *placement)
 {
-    size_t words = ALIGNED(tracer->part_count * WORDS_OF(struct object_record));
+    const struct shape_size *size = &placement->size;
+    struct object_reach reach;
+    for (int k = 0; k < 3; k++) {
+        double forward[3] = {0.0, 0.0, 0.0};
+        double back[3] = {0.0, 0.0, 0.0};
+        forward[k] = 1.0;
+        back[k] = -1.0;
+        const double turned = fabs(placement->axes[0][k]) * size->half_length_m +
+                              fabs(placement->axes[1][k]) * size->half_width_m +
+                              fabs(placement->axes[2][k]) * size->half_height_m;
+        const double upper = size->mesh ? turned : placement_extent(placement, forward);
+        const double lower = size->mesh ? turned : placement_extent(placement, back);
+        reach.upper[k] = fmax(0.0, fmin(upper, placement->bounding_radius_m));
+        reach.lower[k] = -fmax(0.0, fmin(lower, placement->bounding_radius_m));
+    }
+    return reach;
+}
+
+static sonject_status build_tree(const struct tracer *tracer, const struct object_record *records,
+                                 const struct part_list *parts, struct object_tree *tree)
+{
+    memset(tree, 0, sizeof *tree);
+    if (parts->count <= OBJECTS_IN_LOOP)
+        return SONJECT_OK;
+    struct object_reach *reaches = allocate_array(parts->count, sizeof *reaches);
+    if (!reaches)
+        return report_out_of_memory(tracer->report, "the hierarchy of objects");
+    for (uint32_t i = 0; i < parts->count; i++)
+        reaches[i] = reach_of(placement_of(tracer, parts, i));
+    const sonject_status status =
+        object_tree_build(tracer->report, records, reaches, parts->count, tree);
+    free(reaches);
+    return status;
+}
+
+/* Where each mesh that some part shows begins, in words; 0: nobody shows it. Returns the words of
+ * records and meshes. */
+static size_t lay_out(const struct tracer *tracer, const struct part_list *parts,
+                      size_t begin[SCENE_MESHES_MAX])
+{
+    size_t words = ALIGNED(parts->count * WORDS_OF(struct object_record));
     memset(begin, 0, SCENE_MESHES_MAX * sizeof *begin);
-    for (uint32_t i = 0; i < tracer->part_count; i++) {
-        const struct mesh *mesh = tracer->placements[i].size.mesh;
+    for (uint32_t i = 0; i < parts->count; i++) {
+        const struct mesh *mesh = placement_of(tracer, parts, i)->size.mesh;
         if (!mesh || begin[mesh - tracer->scene->meshes] != 0)
             continue;
         begin[mesh - tracer->scene->meshes] = words;
@@ -84,31 +131,48 @@ static size_t lay_out(const struct tracer *tracer, size_t begin[SCENE_MESHES_MAX
     return words;
 }
 
-sonject_status object_buffer_create(struct tracer *tracer, struct object_record *records,
-                                    cl_mem *buffer)
+static sonject_status write_buffer(struct tracer *tracer, struct object_record *records,
+                                   const struct part_list *parts, const struct object_tree *tree,
+                                   cl_mem *buffer)
 {
     size_t begin[SCENE_MESHES_MAX];
-    const size_t meshes_end = lay_out(tracer, begin);
-    const size_t count = meshes_end + user_words(tracer);
+    const size_t users_begin = lay_out(tracer, parts, begin);
+    const size_t tree_begin = users_begin + user_words(tracer, parts);
+    const size_t count = tree_begin + tree->count;
     if (count > WORDS_MOST || count * WORD > tracer->device->allocation_limit)
         return report_failure(tracer->report, SONJECT_ERROR_INPUT,
                               "the meshes are too large for the device: use fewer triangles");
     uint32_t *words = allocate_array(count, sizeof *words);
     if (!words)
         return report_out_of_memory(tracer->report, "the objects");
-    for (uint32_t i = 0; i < tracer->part_count; i++) {
-        const struct mesh *mesh = tracer->placements[i].size.mesh;
+    for (uint32_t i = 0; i < parts->count; i++) {
+        const struct mesh *mesh = placement_of(tracer, parts, i)->size.mesh;
         if (mesh)
             records[i].mesh_words = (uint32_t)(begin[mesh - tracer->scene->meshes] -
                                                i * WORDS_OF(struct object_record));
     }
-    write_users(tracer, records, words, meshes_end);
-    memcpy(words, records, tracer->part_count * sizeof *records);
+    write_users(tracer, parts, records, words, users_begin);
+    if (tree->count > 0)
+        records[0].tree_words = (uint32_t)tree_begin;
+    memcpy(words, records, parts->count * sizeof *records);
     for (uint32_t i = 0; i < tracer->scene->mesh_count; i++)
         if (begin[i] != 0)
             write_mesh(words + begin[i], &tracer->scene->meshes[i]);
+    if (tree->count > 0)
+        memcpy(words + tree_begin, tree->words, tree->count * WORD);
     const sonject_status status =
         buffer_create(tracer->report, tracer->device, count * WORD, words, buffer);
     free(words);
+    return status;
+}
+
+sonject_status object_buffer_create(struct tracer *tracer, struct object_record *records,
+                                    struct part_list parts, cl_mem *buffer)
+{
+    struct object_tree tree;
+    sonject_status status = build_tree(tracer, records, &parts, &tree);
+    if (status == SONJECT_OK)
+        status = write_buffer(tracer, records, &parts, &tree, buffer);
+    object_tree_clear(&tree);
     return status;
 }

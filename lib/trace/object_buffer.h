@@ -1,13 +1,13 @@
-/* The buffer that kernels find objects in: a record of each part, behind them the meshes, and
- * behind these what users' shapes are told. */
+/* The buffer that kernels find objects in: a record of each part, behind them the meshes, what
+ * users' shapes are told and, where there are many, the hierarchy over all. */
 #ifndef SONJECT_TRACE_OBJECT_BUFFER_H
 #define SONJECT_TRACE_OBJECT_BUFFER_H
 
 #include "trace/tracer.h"
 
-/* records: part_count of object_records_init; where their meshes lie is filled in. Errors: DEVICE,
- * MEMORY. */
+/* records: those of the parts listed; where their meshes and the hierarchy lie is filled in.
+ * Errors: INPUT (meshes too large for the device), DEVICE, MEMORY. */
 sonject_status object_buffer_create(struct tracer *tracer, struct object_record *records,
-                                    cl_mem *buffer);
+                                    struct part_list parts, cl_mem *buffer);
 
 #endif

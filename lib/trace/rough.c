@@ -126,6 +126,7 @@ static sonject_status make_buffers(struct rough_trace *trace, struct tracer *tra
     const size_t map_bytes = map ? tracer->view.rows * tracer->view.columns * sizeof *map : 0;
     sonject_status status =
         trace_device_init(&trace->on_device, tracer, PROGRAM_TRACE_ROUGH, "trace_rough", records,
+                          (struct part_list){NULL, tracer->part_count},
                           (size_t)trace->grid.strips.count, (size_t)trace->grid.bins.count);
     if (status == SONJECT_OK)
         status = buffer_create(tracer->report, tracer->device, map_bytes, map, &trace->map);

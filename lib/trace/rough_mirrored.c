@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "trace/launch_parts.h"
 #include "trace/object_rays.h"
 #include "trace/source_pairs.h"
 
@@ -33,13 +34,13 @@ static void lay_fan(struct fan_record *fan, const struct rough_trace *trace,
     fan->rays = (uint32_t)rays;
     fan->first_elevation = (float)edges.lowest;
     fan->elevation_step = (float)((edges.highest - edges.lowest) / rays);
-    fan->only_object = (int32_t)part;
 }
 
 static sonject_status trace_pair(struct rough_trace *trace, struct tracer *tracer,
-                                 const struct trace_device *on_device, uint32_t part,
-                                 const struct source_pair *pair)
+                                 const struct trace_device *on_device,
+                                 const struct launch_parts *parts, const struct source_pair *pair)
 {
+    const uint32_t part = parts->numbers[parts->target];
     const struct rough_tile *tile = &trace->tiles[tracer->placements[part].object];
     struct source_pair_record record;
     struct fan_record fan;
@@ -47,6 +48,8 @@ static sonject_status trace_pair(struct rough_trace *trace, struct tracer *trace
     struct ray_table rays = {NULL, 0};
     sonject_status status = source_pair_aim(&fan, &record, &rays, tracer, part, pair, &trace->grid);
     lay_fan(&fan, trace, tracer, part, &pair->outgoing->way);
+    fan.objects = (int32_t)parts->count;
+    fan.only_object = (int32_t)parts->target;
     fan.stream = STREAM_MIRRORED_ROUGH_RAYS + STREAMS_OF_PAIR * pair->number + part;
     fan.quanta = trace->fan.quanta;
     fan.first_strip = tile->grid.strips.first;
@@ -62,33 +65,41 @@ static sonject_status trace_pair(struct rough_trace *trace, struct tracer *trace
 }
 
 static sonject_status trace_pairs(struct rough_trace *trace, struct tracer *tracer,
-                                  const struct trace_device *on_device, uint32_t part)
+                                  const struct trace_device *on_device,
+                                  const struct launch_parts *parts)
 {
+    const uint32_t part = parts->numbers[parts->target];
     struct source_pairs pairs;
     struct source_pair pair;
     sonject_status status = SONJECT_OK;
     source_pairs_begin(&pairs, tracer, part);
     while (status == SONJECT_OK && source_pairs_next(&pairs, &pair))
         if (source_pair_bins_in_patch(tracer, part, &pair, &trace->grid).count > 0)
-            status = trace_pair(trace, tracer, on_device, part, &pair);
+            status = trace_pair(trace, tracer, on_device, parts, &pair);
     return status;
 }
 
 static sonject_status trace_part(struct rough_trace *trace, struct tracer *tracer, uint32_t part)
 {
+    const uint32_t object = tracer->placements[part].object;
     struct trace_device on_device;
-    struct object_record *records = allocate_array(tracer->part_count, sizeof *records);
-    if (!records)
-        return report_out_of_memory(tracer->report, "objects");
-    object_records_init(records, tracer, tracer->placements[part].centre);
-    rough_tile_describe(trace, tracer->placements[part].object, &records[part]);
-    sonject_status status = trace_device_init(&on_device, tracer, PROGRAM_TRACE_ROUGH,
-                                              "trace_rough_mirrored", records, 1, 1);
-    free(records);
-    if (status != SONJECT_OK)
-        return status;
-    status = trace_pairs(trace, tracer, &on_device, part);
+    struct launch_parts parts;
+    struct object_record *records = NULL;
+    memset(&on_device, 0, sizeof on_device);
+    sonject_status status =
+        launch_parts_init(&parts, tracer, part, &trace->tiles[object].grid, false);
+    if (status == SONJECT_OK)
+        status = launch_records_create(&records, tracer, &parts, tracer->placements[part].centre);
+    if (status == SONJECT_OK) {
+        rough_tile_describe(trace, object, &records[parts.target]);
+        status = trace_device_init(&on_device, tracer, PROGRAM_TRACE_ROUGH, "trace_rough_mirrored",
+                                   records, (struct part_list){parts.numbers, parts.count}, 1, 1);
+    }
+    if (status == SONJECT_OK)
+        status = trace_pairs(trace, tracer, &on_device, &parts);
     trace_device_clear(&on_device);
+    free(records);
+    launch_parts_clear(&parts);
     return status;
 }
 

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "trace/launch_parts.h"
 #include "trace/object_rays.h"
 
 #define STRIP_WAVELENGTHS  0.25 /* widest sub-strip: wider ones alias glints (physics.md 2) */
@@ -59,18 +60,25 @@ static void choose_quanta(struct smooth_trace *trace, const struct tracer *trace
     trace->amplitude_of_quantum = ratio * ratio / trace->fan.quanta;
 }
 
+/* Of the parts, those in the way go to the device; the frame is centred on the one aimed at. */
 static sonject_status begin_on_device(struct smooth_trace *trace, struct tracer *tracer,
-                                      const char *kernel_name, const double origin[3],
+                                      const char *kernel_name, uint32_t number, bool is_straight,
                                       int32_t strips)
 {
-    struct object_record *records = allocate_array(tracer->part_count, sizeof *records);
-    if (!records)
-        return report_out_of_memory(tracer->report, "objects");
-    object_records_init(records, tracer, origin);
-    const sonject_status status =
-        trace_device_init(&trace->on_device, tracer, PROGRAM_TRACE_SMOOTH, kernel_name, records,
-                          (size_t)strips, 2 * (size_t)trace->grid.bins.count);
+    struct launch_parts parts;
+    struct object_record *records = NULL;
+    sonject_status status = launch_parts_init(&parts, tracer, number, &trace->grid, is_straight);
+    if (status == SONJECT_OK)
+        status = launch_records_create(&records, tracer, &parts, tracer->placements[number].centre);
+    if (status == SONJECT_OK) {
+        trace->fan.objects = (int32_t)parts.count;
+        trace->fan.only_object = (int32_t)parts.target;
+        status = trace_device_init(&trace->on_device, tracer, PROGRAM_TRACE_SMOOTH, kernel_name,
+                                   records, (struct part_list){parts.numbers, parts.count},
+                                   (size_t)strips, 2 * (size_t)trace->grid.bins.count);
+    }
     free(records);
+    launch_parts_clear(&parts);
     return status;
 }
 
@@ -93,7 +101,8 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
     sonject_status status =
         object_rays_add(&trace->rays, tracer, number, &sonar.way, &trace->fan.table);
     if (status == SONJECT_OK)
-        status = begin_on_device(trace, tracer, "trace_smooth", origin, trace->grid.strips.count);
+        status =
+            begin_on_device(trace, tracer, "trace_smooth", number, true, trace->grid.strips.count);
     if (status != SONJECT_OK)
         smooth_trace_end(trace);
     return status;
@@ -102,7 +111,6 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
 sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tracer *tracer,
                                            uint32_t number, const struct source_pair *pair)
 {
-    const struct placement *placement = &tracer->placements[number];
     struct source_pair_record sources;
     memset(trace, 0, sizeof *trace);
     glint_strips_lay(&trace->grid, tracer, number);
@@ -117,7 +125,7 @@ sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tr
     const int32_t strips =
         trace->grid.strips.count < MIRRORED_STRIPS ? trace->grid.strips.count : MIRRORED_STRIPS;
     if (status == SONJECT_OK)
-        status = begin_on_device(trace, tracer, "trace_smooth_mirrored", placement->centre, strips);
+        status = begin_on_device(trace, tracer, "trace_smooth_mirrored", number, false, strips);
     if (status == SONJECT_OK)
         status = buffer_create(tracer->report, tracer->device, sizeof sources, &sources,
                                &trace->sources);

@@ -14,9 +14,10 @@
 #define TALLY_BYTES ((size_t)64 << 20)
 
 /* Host and device must agree on every byte. */
-typedef char object_record_is_packed[sizeof(struct object_record) == 56 * 4 ? 1 : -1];
+typedef char object_record_is_packed[sizeof(struct object_record) == 57 * 4 ? 1 : -1];
 typedef char fan_record_is_packed[sizeof(struct fan_record) == 40 * 4 ? 1 : -1];
-typedef char chain_record_is_packed[sizeof(struct chain_record) == 34 * 4 ? 1 : -1];
+typedef char chain_record_is_packed[sizeof(struct chain_record) == 35 * 4 ? 1 : -1];
+typedef char sphere_group_is_packed[sizeof(struct sphere_group) == 64 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
 typedef char source_pair_record_is_packed[sizeof(struct source_pair_record) == 49 * 4 ? 1 : -1];
 typedef char corner_record_is_packed[sizeof(struct corner_record) == 13 * 4 ? 1 : -1];
@@ -104,22 +105,26 @@ double brightest_scattering(const struct tracer *tracer)
     return brightest;
 }
 
+void object_record_init(struct object_record *record, const struct tracer *tracer, uint32_t part,
+                        const double origin[3])
+{
+    const struct placement *placement = &tracer->placements[part];
+    memset(record, 0, sizeof *record);
+    record->centre_x = (float)(placement->centre[0] - origin[0]);
+    record->centre_y = (float)(placement->centre[1] - origin[1]);
+    record->centre_z = (float)(placement->centre[2] - origin[2]);
+    for (int axis = 0; axis < 3; axis++)
+        for (int k = 0; k < 3; k++)
+            record->axes[3 * axis + k] = (float)placement->axes[axis][k];
+    object_shape_init(record, &placement->size, placement->shape);
+    surface_record_init(&record->surface, placement->material, tracer->view.wavelength_m);
+}
+
 void object_records_init(struct object_record *records, const struct tracer *tracer,
                          const double origin[3])
 {
-    for (uint32_t i = 0; i < tracer->part_count; i++) {
-        const struct placement *placement = &tracer->placements[i];
-        struct object_record *record = &records[i];
-        memset(record, 0, sizeof *record);
-        record->centre_x = (float)(placement->centre[0] - origin[0]);
-        record->centre_y = (float)(placement->centre[1] - origin[1]);
-        record->centre_z = (float)(placement->centre[2] - origin[2]);
-        for (int axis = 0; axis < 3; axis++)
-            for (int k = 0; k < 3; k++)
-                record->axes[3 * axis + k] = (float)placement->axes[axis][k];
-        object_shape_init(record, &placement->size, placement->shape);
-        surface_record_init(&record->surface, placement->material, tracer->view.wavelength_m);
-    }
+    for (uint32_t i = 0; i < tracer->part_count; i++)
+        object_record_init(&records[i], tracer, i, origin);
 }
 
 /* Adds up the reports. A fault fails the run: a number that cannot be trusted must not be drawn. */
@@ -212,7 +217,8 @@ sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_
 
 sonject_status trace_device_init(struct trace_device *device, struct tracer *tracer,
                                  enum device_program program, const char *kernel_name,
-                                 struct object_record *records, size_t strips, size_t elements)
+                                 struct object_record *records, struct part_list parts,
+                                 size_t strips, size_t elements)
 {
     struct report *report = tracer->report;
     const size_t line_bytes = elements * sizeof(int64_t);
@@ -222,7 +228,7 @@ sonject_status trace_device_init(struct trace_device *device, struct tracer *tra
     sonject_status status = scene_kernel_create(report, tracer->device, tracer->scene, program,
                                                 kernel_name, &device->kernel);
     if (status == SONJECT_OK)
-        status = object_buffer_create(tracer, records, &device->objects);
+        status = object_buffer_create(tracer, records, parts, &device->objects);
     if (status == SONJECT_OK)
         status = buffer_create(report, tracer->device, device->tally_strips * line_bytes, NULL,
                                &device->tallies);

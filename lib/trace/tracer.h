@@ -36,6 +36,10 @@ struct tracer {
 void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const double origin[3],
                      const struct line_grid *grid);
 
+/* The record of one part in a frame; its tile left 0. */
+void object_record_init(struct object_record *record, const struct tracer *tracer, uint32_t part,
+                        const double origin[3]);
+
 /* Object records in a frame; tiles left 0. count = part_count. */
 void object_records_init(struct object_record *records, const struct tracer *tracer,
                          const double origin[3]);
@@ -65,12 +69,19 @@ struct trace_device {
     size_t tally_strips; /* that the tallies have room for */
 };
 
+/* The parts that a launch knows, in the order of its records. */
+struct part_list {
+    const uint32_t *numbers; /* of the scene's parts; NULL: 0, 1, 2... */
+    uint32_t count;
+};
+
 /* Creates the kernel, the objects' buffer and tallies for as many of `strips` strips, of `elements`
  * 64-bit integers each, as fit 64 MB (at least one). On failure nothing is held. Errors: DEVICE,
  * MEMORY. */
 sonject_status trace_device_init(struct trace_device *device, struct tracer *tracer,
                                  enum device_program program, const char *kernel_name,
-                                 struct object_record *records, size_t strips, size_t elements);
+                                 struct object_record *records, struct part_list parts,
+                                 size_t strips, size_t elements);
 void trace_device_clear(struct trace_device *device);
 
 /* The largest power of two not above value; value > 0. */

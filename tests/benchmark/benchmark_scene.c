@@ -12,25 +12,22 @@ void benchmark_fail(const struct report *report, const char *what)
     exit(1);
 }
 
-void benchmark_set_up(struct benchmark_scene *set, size_t pixels)
+void benchmark_begin(struct benchmark_scene *set, size_t pixels)
 {
-    sonject_object_params capsule;
+    sonject_context_params params;
     memset(set, 0, sizeof *set);
     scene_init(&set->scene);
     set->scene.geometry.first_slant_range_m = 50.0 - 0.0125 * (double)pixels;
-    sonject_object_params_init(&capsule);
-    capsule.shape = SONJECT_SHAPE_CAPSULE;
-    capsule.length_m = 2.3;
-    capsule.diameter_m = 0.3;
-    capsule.heading_rad = 0.6;
-    capsule.burial_m = 0.1;
-    sonject_context_params params;
     sonject_context_params_init(&params);
     set->tracer.report = &set->report;
     set->tracer.scene = &set->scene;
-    if (scene_append_object(&set->scene, &set->report, &capsule) != SONJECT_OK ||
-        device_open(&set->report, &params, &set->tracer.device) != SONJECT_OK ||
-        scene_lay_water(&set->scene, &set->report, &set->water) != SONJECT_OK ||
+    if (device_open(&set->report, &params, &set->tracer.device) != SONJECT_OK)
+        benchmark_fail(&set->report, "device");
+}
+
+void benchmark_place(struct benchmark_scene *set, size_t pixels)
+{
+    if (scene_lay_water(&set->scene, &set->report, &set->water) != SONJECT_OK ||
         patch_view_init(&set->tracer.view, &set->report, &set->scene, &set->water, 0.0, 0.0, pixels,
                         pixels) != SONJECT_OK ||
         placements_init(&set->placed, &set->report, &set->scene, &set->tracer.view, 0.0, 0.0) !=
@@ -40,6 +37,21 @@ void benchmark_set_up(struct benchmark_scene *set, size_t pixels)
     set->tracer.part_count = set->placed.part_count;
     set->tracer.objects = set->placed.objects;
     point_response_init(&set->tracer.response, &set->scene.sonar, 1500.0, 0.025);
+}
+
+void benchmark_set_up(struct benchmark_scene *set, size_t pixels)
+{
+    sonject_object_params capsule;
+    benchmark_begin(set, pixels);
+    sonject_object_params_init(&capsule);
+    capsule.shape = SONJECT_SHAPE_CAPSULE;
+    capsule.length_m = 2.3;
+    capsule.diameter_m = 0.3;
+    capsule.heading_rad = 0.6;
+    capsule.burial_m = 0.1;
+    if (scene_append_object(&set->scene, &set->report, &capsule) != SONJECT_OK)
+        benchmark_fail(&set->report, "set-up");
+    benchmark_place(set, pixels);
 }
 
 void benchmark_clear(struct benchmark_scene *set)

@@ -17,6 +17,10 @@ struct benchmark_scene {
 
 /* Lays a patch of pixels x pixels around 50 m. Ends the program where something fails. */
 void benchmark_set_up(struct benchmark_scene *set, size_t pixels);
+
+/* The same in two steps, for other objects: they are appended to the scene in between. */
+void benchmark_begin(struct benchmark_scene *set, size_t pixels);
+void benchmark_place(struct benchmark_scene *set, size_t pixels);
 void benchmark_clear(struct benchmark_scene *set);
 void benchmark_fail(const struct report *report, const char *what);
 

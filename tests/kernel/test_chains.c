@@ -164,8 +164,8 @@ static void test_sea_surface_keeps_energy(void **state)
         for (uint32_t i = 0; i < SAMPLES; i++) {
             float u, v, choice;
             three_uniforms(random_key_of(3, 0, 77, (uint32_t)variant), i, 0, &u, &v, &choice);
-            const struct chain_step step = step_from_surface(&chains, &sphere, &chains.sea_surface,
-                                                             SEA_SURFACE, 2, &hit, choice, u, v);
+            const struct chain_step step = step_from_surface(
+                &chains, &sphere, NULL, &chains.sea_surface, SEA_SURFACE, 2, &hit, choice, u, v);
             sum += (double)step.weight;
             square += (double)step.weight * (double)step.weight;
         }

@@ -1,0 +1,277 @@
+/* Directions from a point towards one of many targets. A sphere is chosen with a probability that
+ * is the same for some neighbouring rays: in proportion to its opening as seen from their middle,
+ * so all spheres are gone through once for all of them. The direction is uniform over the chosen
+ * sphere's cone as seen from the ray's own point (kernels/MATH.md, "Chains"). */
+#ifndef SONJECT_KERNELS_MANY_TARGETS_H
+#define SONJECT_KERNELS_MANY_TARGETS_H
+
+#include "target_cones.h"
+
+/* Groups lie behind the sphere_records: those of the spheres, then those of the spheres around
+ * groups. What is left of a group has radius 0. */
+FUNCTION GLOBAL const struct sphere_group *groups_of(GLOBAL const struct chain_record *chains,
+                                                     GLOBAL const struct sphere_record *spheres)
+{
+    return (GLOBAL const struct sphere_group *)(spheres + chains->spheres);
+}
+
+/* How rays choose their spheres. */
+struct target_choice {
+    float x, y, z;                       /* m: where the openings are seen from */
+    float square_blur;                   /* m^2, that distances from there are blurred by */
+    float before[TARGET_GROUPS_MAX + 1]; /* sum of the openings in the groups before; last: all */
+};
+
+/* The spheres of a group from some slot on, as seen from a point. */
+struct seen_spheres {
+    struct vector3 way;
+    real square_distance, square_radius;
+};
+
+FUNCTION struct seen_spheres see_spheres(GLOBAL const struct sphere_group *group, int slot,
+                                         struct vector3 point)
+{
+    struct seen_spheres seen;
+    seen.way.x = LOAD_REAL(group->centre_x + slot) - point.x;
+    seen.way.y = LOAD_REAL(group->centre_y + slot) - point.y;
+    seen.way.z = LOAD_REAL(group->centre_z + slot) - point.z;
+    const real radius = LOAD_REAL(group->radius + slot);
+    seen.square_distance = dot3(seen.way, seen.way);
+    seen.square_radius = radius * radius;
+    return seen;
+}
+
+/* The weight by which a sphere is chosen: its opening, 1 from inside. */
+FUNCTION real choice_weight(const struct target_choice *choice,
+                            GLOBAL const struct sphere_group *group, int slot)
+{
+    struct vector3 from;
+    from.x = SPLAT(choice->x);
+    from.y = SPLAT(choice->y);
+    from.z = SPLAT(choice->z);
+    const struct seen_spheres seen = see_spheres(group, slot, from);
+    mask is_outside;
+    const real opening =
+        opening_at(seen.square_distance + choice->square_blur, seen.square_radius, &is_outside);
+    return CHOOSE(MASK_OF(seen.square_radius > 0.0f), CHOOSE(is_outside, opening, SPLAT(1.0f)),
+                  SPLAT(0.0f));
+}
+
+FUNCTION void weigh_group(const struct target_choice *choice,
+                          GLOBAL const struct sphere_group *group, float weights[SPHERES_OF_GROUP])
+{
+    for (int slot = 0; slot < SPHERES_OF_GROUP; slot += WIDTH) {
+        const real weight = choice_weight(choice, group, slot);
+        STORE_REAL(weight, weights + slot);
+    }
+}
+
+/* Sums are formed one after the other whatever the width. */
+FUNCTION void begin_choice(GLOBAL const struct chain_record *chains,
+                           GLOBAL const struct sphere_record *spheres, struct target_choice *choice)
+{
+    GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
+    float sum = 0.0f;
+    for (int group = 0; group < chains->groups; group++) {
+        float weights[SPHERES_OF_GROUP];
+        choice->before[group] = sum;
+        weigh_group(choice, &groups[group], weights);
+        for (int slot = 0; slot < SPHERES_OF_GROUP; slot++)
+            sum += weights[slot];
+    }
+    choice->before[chains->groups] = sum;
+}
+
+/* The spheres that lanes choose, and what is left of each lane's uniform number. */
+struct chosen_spheres {
+    struct vector3 centre;
+    real radius, rest;
+};
+
+/* The sphere of one lane: the last whose predecessors' weights sum to no more than `wanted`. */
+FUNCTION void choose_sphere(const struct target_choice *choice,
+                            GLOBAL const struct sphere_group *groups, int count, float wanted,
+                            int *group, int *slot, float *rest)
+{
+    float weights[SPHERES_OF_GROUP];
+    int low = 0;
+    for (int end = count; end - low > 1;) {
+        const int middle = (low + end) / 2;
+        if (choice->before[middle] <= wanted)
+            low = middle;
+        else
+            end = middle;
+    }
+    weigh_group(choice, &groups[low], weights);
+    float before = choice->before[low];
+    float share = 0.0f;
+    *group = low;
+    *slot = 0;
+    for (int i = 0; i < SPHERES_OF_GROUP; i++) {
+        if (weights[i] > 0.0f && before <= wanted) {
+            *slot = i;
+            share = (wanted - before) / weights[i];
+        }
+        before += weights[i];
+    }
+    *rest = share < 0.9999999f ? share : 0.9999999f;
+}
+
+/* By a choice that all lanes share, or, if that is 0, by their own, which are left in own[lane]. */
+FUNCTION struct chosen_spheres choose_spheres(GLOBAL const struct chain_record *chains,
+                                              GLOBAL const struct sphere_record *spheres,
+                                              const struct target_choice *shared,
+                                              struct target_choice *own, struct vector3 point,
+                                              real uniform, mask is_wanted)
+{
+    GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
+    float from[3][WIDTH], uniforms[WIDTH];
+    float x[WIDTH], y[WIDTH], z[WIDTH], radius[WIDTH], rest[WIDTH];
+    STORE_REAL(point.x, from[0]);
+    STORE_REAL(point.y, from[1]);
+    STORE_REAL(point.z, from[2]);
+    STORE_REAL(uniform, uniforms);
+    for (int lane = 0; lane < WIDTH; lane++) {
+        x[lane] = y[lane] = radius[lane] = rest[lane] = 0.0f;
+        z[lane] = 1.0e6f; /* far up, where nothing is wanted */
+    }
+    for (RECORD_WORD left = lane_bits(is_wanted); left != 0; left &= left - 1) {
+        const int lane = lowest_bit(left);
+        const struct target_choice *choice = shared;
+        int group, slot;
+        if (!shared) {
+            own[lane].x = from[0][lane];
+            own[lane].y = from[1][lane];
+            own[lane].z = from[2][lane];
+            own[lane].square_blur = 0.0f;
+            begin_choice(chains, spheres, &own[lane]);
+            choice = &own[lane];
+        }
+        choose_sphere(choice, groups, chains->groups,
+                      uniforms[lane] * choice->before[chains->groups], &group, &slot, &rest[lane]);
+        x[lane] = groups[group].centre_x[slot];
+        y[lane] = groups[group].centre_y[slot];
+        z[lane] = groups[group].centre_z[slot];
+        radius[lane] = groups[group].radius[slot];
+    }
+    struct chosen_spheres chosen;
+    chosen.centre.x = LOAD_REAL(x);
+    chosen.centre.y = LOAD_REAL(y);
+    chosen.centre.z = LOAD_REAL(z);
+    chosen.radius = LOAD_REAL(radius);
+    chosen.rest = LOAD_REAL(rest);
+    return chosen;
+}
+
+/* Densities with which directions are found: by cones, 1/sr, and the share of choices that are left
+ * to the surface's own lobes, for the point is inside the sphere chosen. */
+struct target_density {
+    float by_cones, lobe_share;
+};
+
+/* Adds the spheres of a group that hold the direction, or the point. */
+FUNCTION void add_group_density(const struct target_choice *choice,
+                                GLOBAL const struct sphere_group *group, struct vector3 point,
+                                struct vector3 direction, struct target_density *density)
+{
+    float by_cones[SPHERES_OF_GROUP], inside[SPHERES_OF_GROUP];
+    RECORD_WORD met = 0;
+    for (int slot = 0; slot < SPHERES_OF_GROUP; slot += WIDTH) {
+        const struct seen_spheres seen = see_spheres(group, slot, point);
+        const real along = dot3(seen.way, direction);
+        const struct vector3 miss = along3(seen.way, direction, -along);
+        const mask is_there = MASK_OF(seen.square_radius > 0.0f);
+        mask is_outside;
+        const real opening = opening_at(seen.square_distance, seen.square_radius, &is_outside);
+        const mask is_in_cone = is_there & is_outside & MASK_OF(along > 0.0f) &
+                                MASK_OF(dot3(miss, miss) <= seen.square_radius);
+        const mask is_inside = is_there & ~is_outside;
+        const RECORD_WORD here = lane_bits(is_in_cone | is_inside);
+        if (here == 0)
+            continue;
+        met |= here << slot;
+        const real weight = choice_weight(choice, group, slot);
+        const real cones =
+            CHOOSE(is_in_cone, weight / CHOOSE(is_in_cone, opening, SPLAT(1.0f)), SPLAT(0.0f));
+        const real lobes = CHOOSE(is_inside, weight, SPLAT(0.0f));
+        STORE_REAL(cones, by_cones + slot);
+        STORE_REAL(lobes, inside + slot);
+    }
+    for (; met != 0; met &= met - 1) {
+        const int slot = lowest_bit(met);
+        density->by_cones += by_cones[slot];
+        density->lobe_share += inside[slot];
+    }
+}
+
+/* Bit i: the ray may meet sphere i of the group, a little larger than it is, or starts inside. */
+FUNCTION RECORD_WORD groups_ahead(GLOBAL const struct sphere_group *bounds, struct vector3 point,
+                                  struct vector3 direction)
+{
+    RECORD_WORD met = 0;
+    for (int slot = 0; slot < SPHERES_OF_GROUP; slot += WIDTH) {
+        const struct seen_spheres seen = see_spheres(bounds, slot, point);
+        const real along = dot3(seen.way, direction);
+        const struct vector3 miss = along3(seen.way, direction, -along);
+        const real reach = seen.square_radius * 1.01f;
+        met |= lane_bits(MASK_OF(seen.square_radius > 0.0f) & MASK_OF(dot3(miss, miss) <= reach) &
+                         (MASK_OF(along > 0.0f) | MASK_OF(seen.square_distance <= reach)))
+               << slot;
+    }
+    return met;
+}
+
+/* Density of one lane's direction. */
+FUNCTION struct target_density lone_density(GLOBAL const struct chain_record *chains,
+                                            GLOBAL const struct sphere_group *groups,
+                                            const struct target_choice *choice,
+                                            struct vector3 point, struct vector3 direction)
+{
+    GLOBAL const struct sphere_group *bounds = groups + chains->groups;
+    struct target_density density = {0.0f, 0.0f};
+    for (int first = 0; first < chains->groups; first += SPHERES_OF_GROUP) {
+        RECORD_WORD met = groups_ahead(&bounds[first / SPHERES_OF_GROUP], point, direction);
+        for (; met != 0; met &= met - 1)
+            add_group_density(choice, &groups[first + lowest_bit(met)], point, direction, &density);
+    }
+    const float all = choice->before[chains->groups];
+    density.by_cones = density.by_cones / all * 0.15915494309f;
+    density.lobe_share = density.lobe_share / all;
+    return density;
+}
+
+FUNCTION void densities_towards(GLOBAL const struct chain_record *chains,
+                                GLOBAL const struct sphere_record *spheres,
+                                const struct target_choice *shared, const struct target_choice *own,
+                                struct vector3 point, struct vector3 direction, mask is_wanted,
+                                real *by_cones, real *lobe_share)
+{
+    GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
+    float lanes[6][WIDTH], cones[WIDTH], shares[WIDTH];
+    STORE_REAL(point.x, lanes[0]);
+    STORE_REAL(point.y, lanes[1]);
+    STORE_REAL(point.z, lanes[2]);
+    STORE_REAL(direction.x, lanes[3]);
+    STORE_REAL(direction.y, lanes[4]);
+    STORE_REAL(direction.z, lanes[5]);
+    for (int lane = 0; lane < WIDTH; lane++)
+        cones[lane] = shares[lane] = 0.0f;
+    for (RECORD_WORD left = lane_bits(is_wanted); left != 0; left &= left - 1) {
+        const int lane = lowest_bit(left);
+        struct vector3 from, way;
+        from.x = SPLAT(lanes[0][lane]);
+        from.y = SPLAT(lanes[1][lane]);
+        from.z = SPLAT(lanes[2][lane]);
+        way.x = SPLAT(lanes[3][lane]);
+        way.y = SPLAT(lanes[4][lane]);
+        way.z = SPLAT(lanes[5][lane]);
+        const struct target_density density =
+            lone_density(chains, groups, shared ? shared : &own[lane], from, way);
+        cones[lane] = density.by_cones;
+        shares[lane] = density.lobe_share;
+    }
+    *by_cones = LOAD_REAL(cones);
+    *lobe_share = LOAD_REAL(shares);
+}
+
+#endif

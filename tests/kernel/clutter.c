@@ -1,0 +1,100 @@
+#include "kernel/clutter.h"
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "cl/launch.h"
+#include "random.h"
+
+/* Draws in turn. */
+static double draw(uint32_t *counter)
+{
+    float u, v;
+    two_uniforms(random_key_of(7, 0, 77, 0), (*counter)++, 0, &u, &v);
+    return u;
+}
+
+static void add_tetrahedron(struct bench *bench)
+{
+    static const double positions[] = {0.0,  0.0, 0.3,  0.4,  0.0,  -0.1,
+                                       -0.2, 0.3, -0.1, -0.2, -0.3, -0.1};
+    static const uint32_t corners[] = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2};
+    struct mesh_options options;
+    mesh_options_init(&options);
+    bench->scene.meshes = calloc(1, sizeof *bench->scene.meshes);
+    assert_non_null(bench->scene.meshes);
+    bench->scene.mesh_count = 1;
+    if (mesh_from_arrays(&bench->report, "tetrahedron", positions, 4, corners, 4, &options,
+                         &bench->scene.meshes[0]) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+}
+
+static void shape_object(sonject_object_params *object, uint32_t number, double size,
+                         uint32_t *counter)
+{
+    static const sonject_shape shapes[] = {
+        SONJECT_SHAPE_SPHERE,    SONJECT_SHAPE_CYLINDER, SONJECT_SHAPE_CAPSULE, SONJECT_SHAPE_PLANE,
+        SONJECT_SHAPE_DISC,      SONJECT_SHAPE_BOX,      SONJECT_SHAPE_WEDGE,   SONJECT_SHAPE_CONE,
+        SONJECT_SHAPE_ELLIPSOID, SONJECT_SHAPE_TORUS,    SONJECT_SHAPE_MESH,    SONJECT_SHAPE_BOX};
+    sonject_object_params_init(object);
+    object->shape = shapes[number % (sizeof shapes / sizeof *shapes)];
+    object->length_m = size * (0.5 + draw(counter));
+    object->width_m = 0.6 * object->length_m;
+    object->height_m = 0.3 * object->length_m;
+    object->diameter_m = object->shape == SONJECT_SHAPE_SPHERE ? size : 0.4 * object->length_m;
+    if (object->shape == SONJECT_SHAPE_TORUS)
+        object->height_m = 0.3 * object->diameter_m;
+    object->heading_rad = 6.28 * draw(counter);
+    object->pitch_rad = draw(counter) - 0.5;
+    object->roll_rad = draw(counter) - 0.5;
+    if (number % 3 == 0)
+        object->pitch_rad = object->roll_rad = 0.0;
+    object->material.lambert = 0.1;
+    object->material.reflection = 0.8;
+    object->material.roughness_m = 1e-3;
+}
+
+void clutter_strew(struct bench *bench, uint32_t count, double size)
+{
+    uint32_t counter = 0;
+    add_tetrahedron(bench);
+    for (uint32_t i = 0; i < count; i++) {
+        sonject_object_params object;
+        shape_object(&object, i, size * (0.2 + 0.8 * draw(&counter)), &counter);
+        object.position_kind = SONJECT_POSITION_PIXELS;
+        object.position_along = (double)bench->rows * (0.1 + 0.8 * draw(&counter));
+        object.position_range = (double)bench->columns * (0.1 + 0.75 * draw(&counter));
+        if (i % 8 == 7) { /* the same again, to the bit */
+            object = bench->scene.objects[i - 1];
+        } else if (i % 8 == 5) { /* one in the other */
+            const sonject_object_params *outer = &bench->scene.objects[i - 1];
+            object.position_along = outer->position_along;
+            object.position_range = outer->position_range;
+        } else if (i % 8 == 3) { /* side by side */
+            const sonject_object_params *other = &bench->scene.objects[i - 1];
+            object = *other;
+            object.position_along += other->width_m / 0.025;
+        }
+        if (scene_append_object(&bench->scene, &bench->report, &object) != SONJECT_OK)
+            fail_msg("%s", bench->report.message);
+    }
+}
+
+void *clutter_read(struct bench *bench, cl_mem buffer)
+{
+    size_t bytes = 0;
+    assert_int_equal(clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof bytes, &bytes, NULL),
+                     CL_SUCCESS);
+    void *copy = malloc(bytes);
+    assert_non_null(copy);
+    if (buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, copy) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+    return copy;
+}

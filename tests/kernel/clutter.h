@@ -1,0 +1,35 @@
+/* Hundreds of objects of all shapes for the tests of the hierarchy over objects: strewn, touching,
+ * one in the other, and the same one twice. */
+#ifndef SONJECT_TESTS_CLUTTER_H
+#define SONJECT_TESTS_CLUTTER_H
+
+#include "physics/bench.h"
+#include "trace/object_tree.h"
+
+/* Fills the scene of a bench; before bench_ready. count <= 250. size: largest, m. */
+void clutter_strew(struct bench *bench, uint32_t count, double size);
+
+/* A device's buffer; to be freed. */
+void *clutter_read(struct bench *bench, cl_mem buffer);
+
+enum search_question {
+    SEARCH_NEAREST,  /* find_nearest_hit: distance, object */
+    SEARCH_OBSTACLE, /* find_obstacle: -1 where something is within the limit */
+    SEARCH_AHEAD,    /* find_nearest_ahead, ways that leave an object behind */
+    SEARCH_QUESTIONS
+};
+
+/* Planes of `rays` elements: x, y, z of points, then of directions, limits, numbers of the objects
+ * left behind. */
+#define SEARCH_INPUTS 8
+
+/* Answers for rays [0, rays), a multiple of 16, as plain C of one lane and as native vectors of
+ * 16. distance, object: of each ray; obstacles leave distance 0. */
+void clutter_search_one(const struct object_record *objects, int count,
+                        enum search_question question, const float *input, float *distance,
+                        int32_t *object, uint32_t rays);
+void clutter_search_wide(const struct object_record *objects, int count,
+                         enum search_question question, const float *input, float *distance,
+                         int32_t *object, uint32_t rays);
+
+#endif

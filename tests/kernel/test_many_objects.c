@@ -1,0 +1,366 @@
+/* Many objects: what the hierarchy finds is what a loop over all objects finds, to the bit, for
+ * rays that run together and apart, from near and far, as plain C, as vectors and on devices of
+ * every width. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "trace_chains.h"
+#include "trace_rough.h"
+#include "trace_smooth.h"
+
+#include "cl/launch.h"
+#include "kernel/clutter.h"
+#include "kernel/random_rays.h"
+#include "trace/object_buffer.h"
+#include "trace/patch_fan.h"
+
+#define RAYS     102400 /* of each kind */
+#define ROWS     160
+#define COLUMNS  160
+#define MIDDLE_M 18.0
+
+/* How the rays of a test run. */
+enum ray_kind {
+    RAYS_TOGETHER, /* fans, as from the sonar */
+    RAYS_APART,    /* each from one object towards another */
+    RAYS_FAR,      /* from up to 5 km away */
+    RAYS_LEVEL,    /* along axes and in planes across them, along the seabed */
+    RAY_KINDS
+};
+
+static struct point point_on(const struct object_record *object)
+{
+    const struct point centre = {object->centre_x, object->centre_y, object->centre_z};
+    return add(centre, random_direction(), uniform(0.0, object->bounding_radius));
+}
+
+static void put_ray(float *input, uint32_t i, struct point from, struct point way)
+{
+    const double length = sqrt(dot(way, way));
+    input[i] = (float)from.x;
+    input[RAYS + i] = (float)from.y;
+    input[2 * RAYS + i] = (float)from.z;
+    input[3 * RAYS + i] = (float)(way.x / length);
+    input[4 * RAYS + i] = (float)(way.y / length);
+    input[5 * RAYS + i] = (float)(way.z / length);
+}
+
+static void draw_ray(float *input, uint32_t i, enum ray_kind kind,
+                     const struct object_record *objects, int count)
+{
+    static struct point target;
+    const struct object_record *one = &objects[(int)uniform(0.0, count)];
+    const struct object_record *other = &objects[(int)uniform(0.0, count)];
+    if (kind != RAYS_TOGETHER || i % 16 == 0)
+        target = point_on(one);
+    struct point from = point_on(other);
+    struct point to = target;
+    if (kind == RAYS_TOGETHER) {
+        /* counted from abreast of the frame's origin, 1 mm from ray to ray */
+        const struct point back = {0.0, -0.94, 0.34};
+        to.x += uniform(-0.01, 0.01);
+        to.z += 1e-3 * (i % 16);
+        from = add(to, back, 3.0);
+    } else if (kind == RAYS_FAR) {
+        from = add(to, random_direction(), uniform(50.0, 5000.0));
+    } else if (kind == RAYS_LEVEL) {
+        const int axis = (int)uniform(0.0, 4.0);
+        from.x = axis == 0 || axis == 3 ? to.x : from.x;
+        from.y = axis == 1 ? to.y : from.y;
+        from.z = axis == 2 || axis == 3 ? to.z : from.z;
+        from = axis == 3 ? add(to, (struct point){0.0, -1.0, 0.0}, uniform(0.1, 9.0)) : from;
+    }
+    put_ray(input, i, from, add(to, from, -1.0));
+    input[6 * RAYS + i] = (float)uniform(0.0, kind == RAYS_FAR ? 5000.0 : 4.0);
+    input[7 * RAYS + i] = (float)(other - objects);
+}
+
+/* A scene of clutter: its records with the tree, and without. */
+struct searched {
+    struct bench bench;
+    struct object_record *with_tree, *looped;
+    int count;
+};
+
+static void searched_begin(struct searched *searched, uint32_t count)
+{
+    struct tracer *tracer = &searched->bench.tracer;
+    double origin[3];
+    cl_mem buffer = NULL;
+    bench_open(&searched->bench, ROWS, COLUMNS, MIDDLE_M);
+    clutter_strew(&searched->bench, count, 0.8);
+    bench_ready(&searched->bench);
+    searched->count = (int)count;
+    struct object_record *records = calloc(count, sizeof *records);
+    assert_non_null(records);
+    patch_fan_origin(origin, &tracer->view);
+    object_records_init(records, tracer, origin);
+    if (object_buffer_create(tracer, records, (struct part_list){NULL, tracer->part_count},
+                             &buffer) != SONJECT_OK)
+        fail_msg("%s", searched->bench.report.message);
+    searched->with_tree = clutter_read(&searched->bench, buffer);
+    searched->looped = clutter_read(&searched->bench, buffer);
+    assert_true(searched->with_tree[0].tree_words != 0);
+    searched->looped[0].tree_words = 0;
+    free(records);
+    buffer_release(&buffer);
+}
+
+static void searched_end(struct searched *searched)
+{
+    free(searched->with_tree);
+    free(searched->looped);
+    bench_close(&searched->bench);
+}
+
+struct answers {
+    float distance[RAYS];
+    int32_t object[RAYS];
+};
+
+static void compare_answers(const char *what, const struct answers *found,
+                            const struct answers *expected)
+{
+    for (uint32_t i = 0; i < RAYS; i++)
+        if (memcmp(&found->distance[i], &expected->distance[i], sizeof(float)) != 0 ||
+            found->object[i] != expected->object[i])
+            fail_msg("%s: ray %u meets object %d at %.9g, not %d at %.9g", what, (unsigned)i,
+                     (int)found->object[i], (double)found->distance[i], (int)expected->object[i],
+                     (double)expected->distance[i]);
+}
+
+static void compare_searches(const struct searched *searched, enum ray_kind kind,
+                             enum search_question question, const float *input)
+{
+    static struct answers expected, found;
+    clutter_search_one(searched->looped, searched->count, question, input, expected.distance,
+                       expected.object, RAYS);
+    uint32_t met = 0;
+    for (uint32_t i = 0; i < RAYS; i++)
+        met += question == SEARCH_OBSTACLE ? expected.object[i] != 0 : expected.object[i] >= 0;
+    print_message("%d objects, rays of kind %d, question %d: %u of %u meet something\n",
+                  searched->count, (int)kind, (int)question, (unsigned)met, (unsigned)RAYS);
+    assert_true(met > RAYS / 10);
+    clutter_search_one(searched->with_tree, searched->count, question, input, found.distance,
+                       found.object, RAYS);
+    compare_answers("one lane", &found, &expected);
+    clutter_search_wide(searched->with_tree, searched->count, question, input, found.distance,
+                        found.object, RAYS);
+    compare_answers("sixteen lanes", &found, &expected);
+    clutter_search_wide(searched->looped, searched->count, question, input, found.distance,
+                        found.object, RAYS);
+    compare_answers("sixteen lanes in a loop", &found, &expected);
+}
+
+static void test_tree_is_the_loop(void **unused)
+{
+    (void)unused;
+    static const uint32_t counts[] = {17, 41, 250};
+    static float input[SEARCH_INPUTS * RAYS];
+    for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
+        struct searched searched;
+        searched_begin(&searched, counts[c]);
+        for (int kind = 0; kind < RAY_KINDS; kind++) {
+            for (uint32_t i = 0; i < RAYS; i++)
+                draw_ray(input, i, (enum ray_kind)kind, searched.looped, searched.count);
+            for (int question = 0; question < SEARCH_QUESTIONS; question++)
+                compare_searches(&searched, (enum ray_kind)kind, (enum search_question)question,
+                                 input);
+        }
+        searched_end(&searched);
+    }
+}
+
+/* Every hit lies inside the box that the tree has for the object: the margin is never used up, for
+ * rays that graze it as for others. */
+static void test_hits_are_in_their_spheres(void **unused)
+{
+    (void)unused;
+    struct searched searched;
+    searched_begin(&searched, 250);
+    for (uint32_t i = 0; i < 10 * RAYS; i++) {
+        const struct object_record *object = &searched.looped[i % 250];
+        const struct point centre = {object->centre_x, object->centre_y, object->centre_z};
+        const struct point way = random_direction();
+        const struct point edge =
+            add(centre, random_direction(), object->bounding_radius * sqrt(uniform(0.0, 1.0)));
+        const struct point from = add(edge, way, -uniform(0.0, 20.0));
+        struct vector3 p = {(float)from.x, (float)from.y, (float)from.z};
+        struct vector3 d = {(float)way.x, (float)way.y, (float)way.z};
+        const float distance = object_distance(object, p, d, -60.0f);
+        if (distance >= FAR_AWAY)
+            continue;
+        const struct point met = add(from, way, (double)distance);
+        const struct point off = add(met, centre, -1.0);
+        /* a thousandth of the radius, a tenth of the margin; rounding at 20 m */
+        assert_true(sqrt(dot(off, off)) <= 1.001 * object->bounding_radius + 2e-5);
+    }
+    searched_end(&searched);
+}
+
+static void expect_same(const char *what, const int64_t *measured, const int64_t *expected,
+                        size_t count)
+{
+    size_t filled = 0;
+    for (size_t i = 0; i < count; i++) {
+        filled += expected[i] != 0;
+        if (measured[i] != expected[i])
+            fail_msg("%s: element %zu of %zu is %lld, not %lld", what, i, count,
+                     (long long)measured[i], (long long)expected[i]);
+    }
+    assert_true(filled > 300); /* a dead trace would agree too */
+}
+
+/* The device walks the tree, plain C loops. A source rectangle has visibility tested too. */
+static void compare_rough(struct bench *bench)
+{
+    static struct rough_trace trace;
+    if (rough_trace_begin(&trace, &bench->tracer, NULL) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+    const size_t cells = line_grid_cells(&trace.grid);
+    float *energy = calloc(cells, sizeof *energy);
+    int64_t *lines = calloc(cells, sizeof *lines);
+    int64_t *tiles = calloc(trace.tile_elements, sizeof *tiles);
+    assert_true(energy && lines && tiles);
+    if (rough_trace_strips(&trace, &bench->tracer, trace.grid.strips, energy) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+    struct object_record *objects = clutter_read(bench, trace.on_device.objects);
+    int64_t *from_device = clutter_read(bench, trace.on_device.tallies);
+    int64_t *device_tiles = clutter_read(bench, trace.tile_buffer);
+    objects[0].tree_words = 0;
+    trace.fan.segments = 1;
+    for (int strip = 0; strip < trace.fan.strips; strip++)
+        assert_int_equal(
+            trace_rough_strip(&trace.fan, NULL, objects, NULL, lines, tiles, strip, 0).faults, 0);
+    expect_same("seabed", from_device, lines, cells);
+    expect_same("tiles", device_tiles, tiles, trace.tile_elements);
+    free(energy);
+    free(lines);
+    free(tiles);
+    free(objects);
+    free(from_device);
+    free(device_tiles);
+    rough_trace_end(&trace);
+}
+
+/* The device knows the parts in the way alone, plain C all of them. */
+static void compare_smooth(struct bench *bench, uint32_t number)
+{
+    struct smooth_trace trace;
+    struct tracer *tracer = &bench->tracer;
+    if (smooth_trace_begin(&trace, tracer, number) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+    const struct span strips = {trace.grid.strips.first, smooth_trace_chunk(&trace)};
+    const size_t cells = (size_t)strips.count * (size_t)trace.grid.bins.count;
+    float *field = calloc(2 * cells, sizeof *field);
+    int64_t *lines = calloc(2 * cells, sizeof *lines);
+    cl_mem buffer = NULL;
+    struct object_record *records = calloc(tracer->part_count, sizeof *records);
+    assert_true(field && lines && records);
+    object_records_init(records, tracer, tracer->placements[number].centre);
+    if (smooth_trace_strips(&trace, tracer, strips, field, field + cells) != SONJECT_OK ||
+        object_buffer_create(tracer, records, (struct part_list){NULL, tracer->part_count},
+                             &buffer) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+    struct object_record *objects = clutter_read(bench, buffer);
+    int64_t *from_device = clutter_read(bench, trace.on_device.tallies);
+    assert_true(trace.fan.objects < (int)tracer->part_count / 2);
+    objects[0].tree_words = 0;
+    trace.fan.segments = 1;
+    trace.fan.objects = (int)tracer->part_count;
+    trace.fan.only_object = (int)number;
+    for (int strip = 0; strip < trace.fan.strips; strip++)
+        assert_int_equal(trace_smooth_strip(&trace.fan, NULL, objects, lines, strip, 0).faults, 0);
+    for (size_t i = 0; i < 2 * cells; i++)
+        if (from_device[i] != lines[i])
+            fail_msg("glints of object %u: element %zu is %lld, not %lld", (unsigned)number, i,
+                     (long long)from_device[i], (long long)lines[i]);
+    free(field);
+    free(lines);
+    free(records);
+    free(objects);
+    free(from_device);
+    buffer_release(&buffer);
+    smooth_trace_end(&trace);
+}
+
+static void compare_chains(struct bench *bench)
+{
+    struct chain_trace trace;
+    struct tracer *tracer = &bench->tracer;
+    if (chain_trace_begin(&trace, tracer, NULL) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+    const size_t cells = trace.planes * line_grid_cells(&trace.grid);
+    struct chain_record *chains = clutter_read(bench, trace.chains);
+    struct object_record *objects = clutter_read(bench, trace.objects);
+    struct sphere_record *spheres = clutter_read(bench, trace.spheres);
+    int64_t *expected = calloc(cells, sizeof *expected);
+    assert_non_null(expected);
+    assert_true(chains->groups > 0);
+    objects[0].tree_words = 0;
+    /* the seabed's fan and some objects' */
+    for (uint32_t i = 0; i < chain_fan_count(tracer); i += 41) {
+        struct chain_fan fan;
+        if (chain_fan_init(&fan, tracer, &trace.grid, false, i) != SONJECT_OK)
+            fail_msg("%s", bench->report.message);
+        const struct span strips = {fan.strips.first + fan.strips.count / 3,
+                                    fan.strips.count < 24 ? fan.strips.count / 3 : 8};
+        if (chain_trace_strips(&trace, tracer, &fan, strips) != SONJECT_OK)
+            fail_msg("%s", bench->report.message);
+        fan.record.segments = 1;
+        for (int strip = 0; strip < strips.count; strip++)
+            assert_int_equal(trace_chains_strip(&fan.record, NULL, chains, objects, spheres, NULL,
+                                                expected, strip, 0)
+                                 .faults,
+                             0);
+    }
+    int64_t *measured = clutter_read(bench, trace.tallies);
+    expect_same("chains", measured, expected, cells);
+    free(measured);
+    free(expected);
+    free(chains);
+    free(objects);
+    free(spheres);
+    chain_trace_end(&trace);
+}
+
+static void test_devices(void **unused)
+{
+    (void)unused;
+    static const uint32_t widths[] = {1, 4, 8, 16};
+    for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
+        struct bench bench;
+        bench_open(&bench, ROWS, COLUMNS, MIDDLE_M);
+        bench.tracer.device->width = widths[w];
+        print_message("width %u\n", (unsigned)widths[w]);
+        clutter_strew(&bench, 200, 0.4);
+        bench.scene.injection.interactions = 3;
+        bench.scene.injection.ray_scale = 0.1;
+        bench.scene.seabed.lambert = 0.2;
+        bench.scene.sonar.transducer_side_m = 0.1;
+        bench_ready(&bench);
+        compare_rough(&bench);
+        for (uint32_t number = 0; number < 200; number += 23)
+            compare_smooth(&bench, number);
+        compare_chains(&bench);
+        bench_close(&bench);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_tree_is_the_loop),
+        cmocka_unit_test(test_hits_are_in_their_spheres),
+        cmocka_unit_test(test_devices),
+    };
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
+}
