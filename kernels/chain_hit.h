@@ -5,6 +5,7 @@
 #include "fan.h"
 #include "intersection.h"
 #include "random.h"
+#include "seabed.h"
 #include "surface.h"
 
 struct chain_hit {
@@ -44,7 +45,7 @@ FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
                                          struct vector3 start, struct vector3 direction,
                                          float minimum, whole left_behind, mask is_ray)
 {
-    const real to_seabed = seabed_distance(fan, start, direction);
+    const real to_seabed = seabed_distance(fan, objects, start, direction, SPLAT(minimum), is_ray);
     const struct nearest_hit nearest =
         find_nearest_ahead(fan, objects, start, direction, minimum, left_behind, is_ray);
     const mask on_object = MASK_OF(nearest.distance < to_seabed);
@@ -55,9 +56,7 @@ FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
     hit.surface = CHOOSE(on_object, nearest.object, WHOLE_OF(SPLAT(-1.0f)));
     hit.point = along3(start, direction, hit.distance);
     hit.back = reversed3(direction);
-    hit.normal.x = SPLAT(0.0f);
-    hit.normal.y = SPLAT(0.0f);
-    hit.normal.z = SPLAT(1.0f);
+    hit.normal = seabed_normal(fan, objects, hit.point, direction);
     hit.left_behind = WHOLE_OF(SPLAT(-1.0f));
     for (int i = 0; i < fan->objects; i++) {
         const mask here = hit.is_hit & MASK_OF(hit.surface == i);
@@ -114,8 +113,9 @@ FUNCTION mask is_open_way(const struct fan_record *fan, GLOBAL const struct obje
     const struct vector3 start = start_from(hit);
     const struct nearest_hit blocking =
         find_nearest_ahead(fan, objects, start, direction, 0.0f, hit->left_behind, is_way);
-    return is_way & MASK_OF(blocking.distance > path) &
-           MASK_OF(seabed_distance(fan, start, direction) > path);
+    const mask is_open = is_way & MASK_OF(blocking.distance > path);
+    return is_open &
+           MASK_OF(seabed_distance(fan, objects, start, direction, SPLAT(0.0f), is_open) > path);
 }
 
 /* One group of chains under way. */

@@ -174,7 +174,7 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
     struct swath swath;
     struct water water = {NULL, 0, 0.0};
     struct patch_view view;
-    struct placements placements = {NULL, 0, NULL, 0};
+    struct placements placements = {NULL, 0, NULL, 0, NULL};
     sonject_status status = swath_describe(report, scene, &swath);
     if (status == SONJECT_OK)
         status = injection_check(report, scene, (double)swath.patch.first_row,

@@ -21,11 +21,18 @@ enum device_program {
     PROGRAM_COUNT
 };
 
+/* What a program is built with, bits: each takes its time to build, so most scenes do without. */
+enum program_variant {
+    PROGRAM_WITH_MESHES = 1,
+    PROGRAM_WITH_RELIEF = 2,
+    PROGRAM_VARIANTS = 4
+};
+
 struct device {
     cl_device_id id;
     cl_context context;
     cl_command_queue queue;
-    cl_program programs[PROGRAM_COUNT][2]; /* without, with meshes; NULL until first used */
+    cl_program programs[PROGRAM_COUNT][PROGRAM_VARIANTS]; /* NULL until first used */
     bool is_cpu;
     uint32_t width; /* lanes that the kernels are compiled for */
     uint32_t compute_units;

@@ -21,11 +21,13 @@ static bool divides_correctly(const struct device *device)
 
 /* No fast-math of any kind; correctly rounded division where the compiler has to be told. A CPU's
  * work-items own their tallies; a GPU's share them. */
-static void write_options(const struct device *device, bool has_meshes, char *options,
+static void write_options(const struct device *device, uint32_t variant, char *options,
                           size_t capacity)
 {
-    snprintf(options, capacity, "-cl-std=CL1.2 -DWIDTH=%u%s%s%s", (unsigned)device->width,
-             has_meshes ? " -DWITH_MESHES" : "", device->is_cpu ? "" : " -DTALLY_IS_SHARED",
+    snprintf(options, capacity, "-cl-std=CL1.2 -DWIDTH=%u%s%s%s%s", (unsigned)device->width,
+             variant & PROGRAM_WITH_MESHES ? " -DWITH_MESHES" : "",
+             variant & PROGRAM_WITH_RELIEF ? " -DWITH_RELIEF" : "",
+             device->is_cpu ? "" : " -DTALLY_IS_SHARED",
              divides_correctly(device) ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
 }
 
@@ -124,14 +126,14 @@ static sonject_status build(struct report *report, struct device *device,
 }
 
 sonject_status program_get(struct report *report, struct device *device, enum device_program number,
-                           bool has_meshes, cl_program *out)
+                           uint32_t variant, cl_program *out)
 {
-    cl_program *program = &device->programs[number][has_meshes];
+    cl_program *program = &device->programs[number][variant];
     if (!*program) {
         const struct embedded_source *source = &embedded_sources[number];
-        char options[128];
+        char options[160];
         char key[HASH_TEXT_CAPACITY];
-        write_options(device, has_meshes, options, sizeof options);
+        write_options(device, variant, options, sizeof options);
         if (!key_of(device, source, options, key))
             return report_out_of_memory(report, "the program cache");
         *program = from_cache(device, key, options);
@@ -151,12 +153,12 @@ sonject_status program_get(struct report *report, struct device *device, enum de
 }
 
 sonject_status kernel_create(struct report *report, struct device *device,
-                             enum device_program number, bool has_meshes, const char *name,
+                             enum device_program number, uint32_t variant, const char *name,
                              cl_kernel *kernel)
 {
     cl_program program;
     *kernel = NULL;
-    const sonject_status status = program_get(report, device, number, has_meshes, &program);
+    const sonject_status status = program_get(report, device, number, variant, &program);
     if (status != SONJECT_OK)
         return status;
     cl_int error = CL_SUCCESS;

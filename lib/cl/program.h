@@ -4,15 +4,14 @@
 
 #include "cl/device.h"
 
-/* The program, built on first use; with what rays need for meshes, which takes as long again to
- * build, or without. Errors: DEVICE (with the first line of the build log), MEMORY.
- */
+/* The program, built on first use. variant: bits of enum program_variant. Errors: DEVICE (with the
+ * first line of the build log), MEMORY. */
 sonject_status program_get(struct report *report, struct device *device,
-                           enum device_program program, bool has_meshes, cl_program *out);
+                           enum device_program program, uint32_t variant, cl_program *out);
 
 /* A kernel of the program, to be given to clReleaseKernel. Errors: as program_get. */
 sonject_status kernel_create(struct report *report, struct device *device,
-                             enum device_program program, bool has_meshes, const char *name,
+                             enum device_program program, uint32_t variant, const char *name,
                              cl_kernel *kernel);
 
 #endif

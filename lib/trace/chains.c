@@ -131,7 +131,7 @@ sonject_status chain_trace_begin(struct chain_trace *trace, struct tracer *trace
         status = make_tallies(trace, tracer);
     if (status == SONJECT_OK)
         status = kernel_create(tracer->report, tracer->device, PROGRAM_TRACE_CHAINS,
-                               tracer->scene->mesh_count > 0, "trace_chains", &trace->kernel);
+                               tracer_variant(tracer), "trace_chains", &trace->kernel);
     if (status != SONJECT_OK)
         chain_trace_end(trace);
     return status;

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "trace/relief_words.h"
 
 #define WORD        4
 #define ALIGNED(n)  (((n) + 15) & ~(size_t)15) /* words: as wide as vectors are */
@@ -36,11 +37,25 @@ static void write_mesh(uint32_t *words, const struct mesh *mesh)
                 hierarchy->leaf_count * WORDS_OF(*hierarchy->leaves));
 }
 
+static size_t record_words(const struct tracer *tracer)
+{
+    return ALIGNED(tracer->part_count * WORDS_OF(struct object_record));
+}
+
+uint32_t object_buffer_relief_words(const struct tracer *tracer)
+{
+    /* no part, no record: 0 must go on to mean that there is no relief */
+    const size_t words = record_words(tracer);
+    return !tracer->relief ? 0 : words > 0 ? (uint32_t)words : (uint32_t)ALIGNED(1);
+}
+
 /* Where each mesh that some part shows begins, in words; 0: nobody shows it. Returns the words of
  * the whole buffer. */
 static size_t lay_out(const struct tracer *tracer, size_t begin[SCENE_MESHES_MAX])
 {
-    size_t words = ALIGNED(tracer->part_count * WORDS_OF(struct object_record));
+    size_t words = record_words(tracer);
+    if (tracer->relief)
+        words = object_buffer_relief_words(tracer) + ALIGNED(relief_word_count(tracer->relief));
     memset(begin, 0, SCENE_MESHES_MAX * sizeof *begin);
     for (uint32_t i = 0; i < tracer->part_count; i++) {
         const struct mesh *mesh = tracer->placements[i].size.mesh;
@@ -59,7 +74,8 @@ sonject_status object_buffer_create(struct tracer *tracer, struct object_record 
     const size_t count = lay_out(tracer, begin);
     if (count > WORDS_MOST || count * WORD > tracer->device->allocation_limit)
         return report_failure(tracer->report, SONJECT_ERROR_INPUT,
-                              "the meshes are too large for the device: use fewer triangles");
+                              "the meshes and the relief are too large for the device: use fewer "
+                              "triangles or a smaller patch");
     uint32_t *words = allocate_array(count, sizeof *words);
     if (!words)
         return report_out_of_memory(tracer->report, "the objects");
@@ -70,6 +86,8 @@ sonject_status object_buffer_create(struct tracer *tracer, struct object_record 
                                                i * WORDS_OF(struct object_record));
     }
     memcpy(words, records, tracer->part_count * sizeof *records);
+    if (tracer->relief)
+        relief_words_init(words + object_buffer_relief_words(tracer), tracer->relief);
     for (uint32_t i = 0; i < tracer->scene->mesh_count; i++)
         if (begin[i] != 0)
             write_mesh(words + begin[i], &tracer->scene->meshes[i]);

@@ -41,7 +41,7 @@ uint32_t target_spheres_init(struct sphere_record *records, const struct tracer 
             double centre[3];
             for (int k = 0; k < 3; k++)
                 centre[k] = placement->centre[k] + along * placement->axes[0][k];
-            if (centre[2] + sphere_radius <= 0.0)
+            if (centre[2] + sphere_radius <= tracer_lowest_seabed(tracer))
                 continue;
             records[count].centre_x = (float)(centre[0] - origin[0]);
             records[count].centre_y = (float)(centre[1] - origin[1]);

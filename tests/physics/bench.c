@@ -93,6 +93,7 @@ void bench_ready(struct bench *bench)
     tracer->placements = bench->placed.parts;
     tracer->part_count = bench->placed.part_count;
     tracer->objects = bench->placed.objects;
+    tracer->relief = bench->placed.relief;
     point_response_init(&tracer->response, &bench->scene.sonar,
                         tracer->view.range_ratio * bench->water.straight_speed_mps,
                         tracer->view.row_spacing_m);
