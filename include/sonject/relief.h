@@ -12,11 +12,13 @@ SONJECT_BEGIN_DECLARATIONS
  * heights are bilinear, outside the grid they are 0. */
 typedef struct sonject_relief_params {
     uint32_t struct_size;
-    uint32_t rows, columns; /* 2...16384 each, at most 2^24 points; rows 0: no grid */
+    uint32_t rows;    /* 2...16384, at most 2^24 points; 0: no grid */
+    uint32_t columns; /* 2...16384 */
     uint32_t reserved;
-    double first_along_track_m;             /* of row 0 */
-    double first_ground_range_m;            /* of column 0 */
-    double row_spacing_m, column_spacing_m; /* > 0 */
+    double first_along_track_m;  /* of row 0 */
+    double first_ground_range_m; /* of column 0 */
+    double row_spacing_m;        /* > 0 */
+    double column_spacing_m;     /* > 0 */
 } sonject_relief_params;
 
 /* No grid, spacings of 2.5 cm. */
