@@ -55,7 +55,8 @@ static sonject_status lay_grid(struct relief *relief, struct report *report,
     const double length = (double)view->rows * view->row_spacing_m;
     const double width =
         view_ground_range(view, view_apparent_range(view, (double)view->columns - 0.5)) - first_y;
-    double finest = INFINITY;
+    double finest = INFINITY;   /* m, of all features */
+    double coarsest = INFINITY; /* step that shows them */
     double step = fmin(view->row_spacing_m, view->column_spacing_m) / POINTS_PER_PIXEL;
     for (uint32_t i = 0; i < scene->relief.count; i++) {
         const struct relief_feature *feature = &scene->relief.features[i];
@@ -64,7 +65,15 @@ static sonject_status lay_grid(struct relief *relief, struct report *report,
                                                             : feature->radius_m;
         finest = fmin(finest, size);
     }
+    if (scene->relief.heights_m) {
+        /* as fine as the caller's, down to what no pixel shows */
+        const sonject_relief_params *grid = &scene->relief.grid;
+        const double wanted = fmax(0.5 * step, fmin(grid->row_spacing_m, grid->column_spacing_m));
+        step = fmin(step, wanted);
+        coarsest = 2.0 * wanted;
+    }
     step = fmin(step, finest / POINTS_PER_WAVELENGTH);
+    coarsest = fmin(coarsest, finest / POINTS_LEAST);
     step = fmax(step, sqrt(length * width / POINTS_MAX));
     step = fmax(step, fmax(length, width) / SIDE_MAX);
     if (step * POINTS_LEAST > finest)

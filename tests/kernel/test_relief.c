@@ -45,6 +45,12 @@ static double varied(double x, double y)
     return edge * part * (ripples + mound + pit);
 }
 
+static double one_mound(double x, double y)
+{
+    const double distance = hypot(x, y) / 0.7;
+    return distance < 1.0 ? 0.2 * (1.0 + cos(PI * distance)) : 0.0;
+}
+
 static double level(double x, double y)
 {
     (void)x;
@@ -282,7 +288,7 @@ static void test_rays_from_the_surface(void **unused)
                                        49.0f, -1) ||
                     -dot3(normal, direction) < 0.02f);
         const double azimuth = 2.0 * PI * uniform(0.0, 1.0);
-        const double up = uniform(0.0, 1.0);
+        const double up = uniform(-0.3, 1.0); /* also down into the pit */
         direction.x = (float)(sqrt(1.0 - up * up) * cos(azimuth));
         direction.y = (float)(sqrt(1.0 - up * up) * sin(azimuth));
         direction.z = (float)up;
@@ -356,6 +362,45 @@ static void test_level_relief(void **unused)
     sea_clear(&sea);
 }
 
+/* Whether all points are at 0 that a place's height and slopes come from. */
+static bool is_level_at(const struct sea *sea, struct vector3 place)
+{
+    const struct relief *relief = &sea->relief;
+    const int row = (int)floor(((double)place.x - relief->first_x_m) / relief->row_step_m);
+    const int column = (int)floor(((double)place.y - relief->first_y_m) / relief->column_step_m);
+    for (int r = row - 2; r <= row + 3; r++)
+        for (int c = column - 2; c <= column + 3; c++)
+            if (r < 0 || c < 0 || r >= (int)relief->rows || c >= (int)relief->columns ||
+                relief->heights[(size_t)r * relief->columns + (size_t)c] != 0.0f)
+                return false;
+    return true;
+}
+
+/* So where a mound ends, whatever is next to it. */
+static void test_level_ground_among_relief(void **unused)
+{
+    (void)unused;
+    struct sea sea;
+    size_t met = 0;
+    sea_init(&sea, one_mound, 0.025, 6.5);
+    for (int ray = 0; ray < RAYS; ray++) {
+        struct vector3 point, direction;
+        fan_ray_from(50.0, &point, &direction);
+        const float plane = plane_distance(&sea.fan, point, direction);
+        const float found =
+            seabed_distance(&sea.fan, objects_of(&sea), point, direction, -50.0f, -1);
+        const struct vector3 place = along3(point, direction, found);
+        if (!is_level_at(&sea, place) || fabsf(place.z) > 1e-5f)
+            continue;
+        const struct vector3 normal = seabed_normal(&sea.fan, objects_of(&sea), place, direction);
+        assert_memory_equal(&plane, &found, sizeof plane);
+        assert_true(normal.x == 0.0f && normal.y == 0.0f && normal.z == 1.0f);
+        met += hypot((double)place.x, (double)place.y) < 0.9;
+    }
+    assert_true(met > 200); /* in blocks that the mound reaches into */
+    sea_clear(&sea);
+}
+
 static double ripples_alone(double x, double y)
 {
     return 0.03 * cos(2.0 * PI * (0.6 * x + 0.8 * y) / 0.4);
@@ -403,6 +448,7 @@ int main(void)
         cmocka_unit_test(test_rays_from_the_surface),
         cmocka_unit_test(test_rays_on_grid_lines),
         cmocka_unit_test(test_level_relief),
+        cmocka_unit_test(test_level_ground_among_relief),
         cmocka_unit_test(test_normals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

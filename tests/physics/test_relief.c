@@ -420,6 +420,42 @@ static void test_shadow_on_a_slope(void **unused)
     bench_close(&bench);
 }
 
+/* Layers of nearly one sound speed bend nothing: the table of rays, with points above and below the
+ * mean seabed, gives what straight rays give. */
+static void test_layers(void **unused)
+{
+    (void)unused;
+    static const struct water_layer layers[] = {{0.0, 1500.0, 1.0}, {4.0, 1500.0001, 1.0}};
+    double sums[2] = {0.0, 0.0};
+    double difference = 0.0;
+    struct echoes echoes[2];
+    for (int i = 0; i < 2; i++) {
+        struct bench bench;
+        bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+        bench.scene.sonar.transducer_side_m = 0.05; /* ways home are looked up too */
+        lay_ripples(&bench, 0.5, 0.08, 0.6);
+        struct relief_feature *pit = bench_add_relief(&bench, RELIEF_PIT);
+        pit->radius_m = 1.0;
+        pit->height_m = 0.3;
+        if (i == 1)
+            bench_set_layers(&bench, layers, 2);
+        bench_ready(&bench);
+        assert_true(bench.tracer.view.water.is_straight == (i == 0));
+        bench_echoes(&bench, NULL, SEABED_FIELD_NONE, &echoes[i]);
+        bench_close(&bench);
+    }
+    for (size_t k = 0; k < PIXELS; k++) {
+        sums[0] += (double)echoes[0].seabed_energy[k];
+        sums[1] += (double)echoes[1].seabed_energy[k];
+        difference += fabs((double)echoes[0].seabed_energy[k] - (double)echoes[1].seabed_energy[k]);
+    }
+    expect_close("energy through layers over straight", sums[1] / sums[0], 1.0, 1e-3);
+    /* the fans' strata differ, so rays meet other points of a pixel: some per cent of it */
+    expect_below("difference of pixels over the mean", difference / sums[0], 0.05);
+    echoes_clear(&echoes[0]);
+    echoes_clear(&echoes[1]);
+}
+
 /* A composite keeps every bit beyond the relief's reach, brightens the face of a mound, darkens its
  * back, and keeps the mean where all is level. */
 static void test_composite(void **unused)
@@ -522,7 +558,7 @@ int main(void)
         cmocka_unit_test(test_slope_along_track), cmocka_unit_test(test_ripples),
         cmocka_unit_test(test_shadow_of_a_mound), cmocka_unit_test(test_glint_in_a_pit),
         cmocka_unit_test(test_shadow_on_a_slope), cmocka_unit_test(test_composite),
-        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_refusals),          cmocka_unit_test(test_layers),
     };
     char names[BENCH_DEVICES][128];
     const size_t devices = bench_devices(names);

@@ -114,29 +114,34 @@ static void test_features_lie_where_they_are_told(void **state)
     }
 }
 
-/* Crest to crest, trough to crest; level at the edges; the same heights of the whole swath. */
+/* Crest to crest, trough to crest, level at the edges; the same ground from both sides. */
 static void test_ripples(void **state)
 {
-    struct ground ground;
-    take(*state, &ground,
-         BASE("port") "  - ripples: {wavelength: 80 cm, height: 6 cm, heading: 30 deg, sharpness: "
-                      "0.5, phase: 20 deg}\n");
-    for (int i = 0; i < 50; i++) {
-        const double along = 1.5 + 0.14 * i;
-        const double range = 42.0 + 0.12 * i;
-        const double y = view_ground_range(&ground.view, range);
-        const double phase =
-            2.0 * PI * (along * cos(PI / 6.0) + y * sin(PI / 6.0)) / 0.8 + PI / 9.0;
-        /* bilinear between 64 points a wavelength: (2 pi/64)^2/8 of 4 cm */
-        expect_height("ripples", height_at(&ground, along, range),
-                      0.03 * (cos(phase) + 0.125 * cos(2.0 * phase)), 6e-5);
+    static const char *const texts[] = {
+        BASE("port") "  - ripples: {wavelength: 80 cm, height: 6 cm, heading: 30 deg, sharpness: "
+                     "0.5, phase: 20 deg}\n",
+        BASE("starboard") "  - ripples: {wavelength: 80 cm, height: 6 cm, heading: 30 deg, "
+                          "sharpness: 0.5, phase: 20 deg}\n"};
+    for (int side = 0; side < 2; side++) {
+        struct ground ground;
+        take(*state, &ground, texts[side]);
+        for (int i = 0; i < 50; i++) {
+            const double along = 1.5 + 0.14 * i;
+            const double range = 42.0 + 0.12 * i;
+            const double y = view_ground_range(&ground.view, range);
+            const double phase =
+                2.0 * PI * (along * cos(PI / 6.0) + y * sin(PI / 6.0)) / 0.8 + PI / 9.0;
+            /* bilinear between 64 points a wavelength: (2 pi/64)^2/8 of 4 cm */
+            expect_height("ripples", height_at(&ground, along, range),
+                          0.03 * (cos(phase) + 0.125 * cos(2.0 * phase)), 6e-5);
+        }
+        const struct relief *relief = ground.placements.relief;
+        for (uint32_t i = 0; i < relief->columns; i++)
+            assert_true(relief->heights[i] == 0.0f &&
+                        relief->heights[(size_t)(relief->rows - 1) * relief->columns + i] == 0.0f);
+        assert_true(relief->highest_m < 0.0338 && relief->highest_m > 0.0337);
+        ground_clear(&ground);
     }
-    const struct relief *relief = ground.placements.relief;
-    for (uint32_t i = 0; i < relief->columns; i++)
-        assert_true(relief->heights[i] == 0.0f &&
-                    relief->heights[(size_t)(relief->rows - 1) * relief->columns + i] == 0.0f);
-    assert_true(relief->highest_m < 0.0338 && relief->highest_m > 0.0337);
-    ground_clear(&ground);
 }
 
 static void test_irregular_ripples(void **state)
