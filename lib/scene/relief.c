@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "scene/relief_bumps.h"
 #include "scene/relief_ripples.h"
 
 #define PI 3.14159265358979323846
@@ -15,6 +16,16 @@
 #define POINTS_MAX            (UINT32_C(1) << 22)
 #define SIDE_MAX              16384.0
 #define SLOPE_MAX             1.75 /* 60 degrees: sand never stands so steep, rocks may */
+
+double relief_x(const struct relief *relief, uint32_t row)
+{
+    return relief->first_x_m + row * relief->row_step_m;
+}
+
+double relief_y(const struct relief *relief, uint32_t column)
+{
+    return relief->first_y_m + column * relief->column_step_m;
+}
 
 bool scene_has_relief(const struct scene *scene)
 {
@@ -91,90 +102,11 @@ static sonject_status lay_grid(struct relief *relief, struct report *report,
     return SONJECT_OK;
 }
 
-static double raised_cosine(double share)
-{
-    return share < 1.0 ? 0.5 + 0.5 * cos(PI * share) : 0.0;
-}
-
 /* What a patch's edge leaves of heights `inside` m from it. */
 static double taper(double inside, double side)
 {
     const double width = fmin(RELIEF_TAPER_M, RELIEF_TAPER_SHARE * side);
-    return raised_cosine(1.0 - fmin(1.0, fmax(0.0, inside / width)));
-}
-
-static double x_of(const struct relief *relief, uint32_t row)
-{
-    return relief->first_x_m + row * relief->row_step_m;
-}
-
-static double y_of(const struct relief *relief, uint32_t column)
-{
-    return relief->first_y_m + column * relief->column_step_m;
-}
-
-/* Grid points that a square about a point holds. */
-struct grid_window {
-    uint32_t first_row, end_row, first_column, end_column;
-};
-
-static uint32_t limited_index(double index, uint32_t count)
-{
-    return (uint32_t)fmin(fmax(index, 0.0), count);
-}
-
-static struct grid_window window_about(const struct relief *relief, double x, double y,
-                                       double reach)
-{
-    const double row = (x - relief->first_x_m) / relief->row_step_m;
-    const double column = (y - relief->first_y_m) / relief->column_step_m;
-    const double rows = reach / relief->row_step_m;
-    const double columns = reach / relief->column_step_m;
-    const struct grid_window window = {
-        limited_index(floor(row - rows), relief->rows),
-        limited_index(ceil(row + rows) + 1.0, relief->rows),
-        limited_index(floor(column - columns), relief->columns),
-        limited_index(ceil(column + columns) + 1.0, relief->columns)};
-    return window;
-}
-
-/* Mound or pit. */
-static void add_bump(const struct relief *relief, double *heights, double x, double y,
-                     double radius, double height)
-{
-    const struct grid_window window = window_about(relief, x, y, radius);
-    for (uint32_t row = window.first_row; row < window.end_row; row++)
-        for (uint32_t column = window.first_column; column < window.end_column; column++) {
-            const double distance = hypot(x_of(relief, row) - x, y_of(relief, column) - y) / radius;
-            if (distance < 1.0)
-                heights[(size_t)row * relief->columns + column] += height * raised_cosine(distance);
-        }
-}
-
-/* Distance from what an object covers of the ground, 0 within it. */
-static double outside_of(const struct footprint *footprint, double x, double y)
-{
-    const double dx = x - footprint->x_m;
-    const double dy = y - footprint->y_m;
-    const double along = fabs(dx * footprint->along_x + dy * footprint->along_y);
-    const double across = fabs(dx * footprint->along_y - dy * footprint->along_x);
-    return fmax(0.0, hypot(fmax(0.0, along - footprint->half_length_m), across) -
-                         footprint->half_width_m);
-}
-
-static void add_scour(const struct relief *relief, double *heights,
-                      const struct footprint *footprint, double width, double depth)
-{
-    const struct grid_window window =
-        window_about(relief, footprint->x_m, footprint->y_m,
-                     footprint->half_length_m + footprint->half_width_m + width);
-    for (uint32_t row = window.first_row; row < window.end_row; row++)
-        for (uint32_t column = window.first_column; column < window.end_column; column++) {
-            const double distance =
-                outside_of(footprint, x_of(relief, row), y_of(relief, column)) / width;
-            if (distance < 1.0)
-                heights[(size_t)row * relief->columns + column] -= depth * raised_cosine(distance);
-        }
+    return relief_raised_cosine(1.0 - fmin(1.0, fmax(0.0, inside / width)));
 }
 
 static sonject_status find_object(struct report *report, const struct scene *scene,
@@ -207,14 +139,15 @@ static sonject_status add_feature(const struct relief *relief, struct report *re
     if (feature->kind == RELIEF_SCOUR) {
         const sonject_status status = find_object(report, scene, feature->object, &object);
         if (status == SONJECT_OK)
-            add_scour(relief, heights, &footprints[object], feature->width_m, feature->height_m);
+            relief_add_scour(relief, heights, &footprints[object], feature->width_m,
+                             feature->height_m);
         return status;
     }
     view_find_pixel(view, first_row, first_column, feature->position_kind, feature->position_along,
                     feature->position_range, &row, &column);
-    add_bump(relief, heights, view_x_of_row(view, row),
-             view_ground_range(view, view_apparent_range(view, column)), feature->radius_m,
-             sign * feature->height_m);
+    relief_add_bump(relief, heights, view_x_of_row(view, row),
+                    view_ground_range(view, view_apparent_range(view, column)), feature->radius_m,
+                    sign * feature->height_m);
     return SONJECT_OK;
 }
 
@@ -239,11 +172,11 @@ static void add_grid(const struct relief *relief, const struct relief_features *
     const sonject_relief_params *grid = &features->grid;
     for (uint32_t row = 0; row < relief->rows; row++)
         for (uint32_t column = 0; column < relief->columns; column++) {
-            const double x = x_of(relief, row);
+            const double x = relief_x(relief, row);
             heights[(size_t)row * relief->columns + column] += mix_grid(
                 features->heights_m, grid->rows, grid->columns,
                 ((is_mirrored ? -x : x) - grid->first_along_track_m) / grid->row_spacing_m,
-                (y_of(relief, column) - grid->first_ground_range_m) / grid->column_spacing_m);
+                (relief_y(relief, column) - grid->first_ground_range_m) / grid->column_spacing_m);
         }
 }
 
@@ -305,14 +238,14 @@ static sonject_status check_slopes(const struct relief *relief, struct report *r
             const float *at = relief->heights + (size_t)row * relief->columns + column;
             const double along = ((double)at[relief->columns] - (double)at[0]) / relief->row_step_m;
             const double across = ((double)at[1] - (double)at[0]) / relief->column_step_m;
-            const double x = x_of(relief, row);
+            const double x = relief_x(relief, row);
             if (hypot(along, across) > SLOPE_MAX)
                 return report_failure(report, SONJECT_ERROR_INPUT,
                                       "the seabed's relief rises by %.0f degrees at %.2f m "
                                       "along-track, %.2f m ground "
                                       "range; at most 60 are possible: make it lower or wider",
                                       atan(hypot(along, across)) * 180.0 / PI,
-                                      view->is_mirrored ? -x : x, y_of(relief, column));
+                                      view->is_mirrored ? -x : x, relief_y(relief, column));
         }
     return SONJECT_OK;
 }

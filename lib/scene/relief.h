@@ -41,6 +41,10 @@ void relief_release(struct relief **relief);
 /* Height at a point of the view, m; 0 outside, or where relief is NULL. */
 double relief_height(const struct relief *relief, double x_m, double y_m);
 
+/* Where a row and a column of the grid lie in the view, m. */
+double relief_x(const struct relief *relief, uint32_t row);
+double relief_y(const struct relief *relief, uint32_t column);
+
 /* Sets slopes, lowest_m and highest_m from the heights. */
 void relief_finish(struct relief *relief);
 
