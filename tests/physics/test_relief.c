@@ -389,6 +389,42 @@ static void test_glint_in_a_pit(void **unused)
     }
 }
 
+/* What a mound hides from the sonar the sea surface shows: only the way by it, there and back,
+ * passes over the crest. */
+static void test_glint_over_a_mound(void **unused)
+{
+    (void)unused;
+    struct bench bench;
+    bench_open(&bench, device, ROWS, COLUMNS, RANGE);
+    bench_add(&bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.4);
+    struct relief_feature *mound = bench_add_relief(&bench, RELIEF_MOUND);
+    mound->radius_m = 1.2;
+    mound->height_m = 0.85;
+    mound->position_kind = SONJECT_POSITION_PIXELS;
+    mound->position_along = 0.5 * (ROWS - 1);
+    mound->position_range = 0.5 * (COLUMNS - 1) - 50.0;
+    bench.scene.surface.water_depth_m = 14.0;
+    bench.scene.injection.interactions = 3;
+    bench_ready(&bench);
+    const double *centre = bench.placements[0].centre;
+    struct echo_line line = bench_glint_line(&bench, 0);
+    double range;
+    const double peak = echo_line_peak(&bench, &line, &range);
+    const double image = 2.0 * 14.0 - bench.scene.sonar.altitude_m;
+    expect_close("range by way of the surface, m", range, hypot(centre[1], image - centre[2]) - 0.2,
+                 2e-3);
+    expect_close("its strength over a/2", peak / 0.1, 1.0, 0.01);
+    const double direct = hypot(centre[1], bench.scene.sonar.altitude_m - centre[2]) - 0.2;
+    const struct complex_value straight = echo_line_at(&bench, &line, direct);
+    const struct complex_value mixed = echo_line_at(&bench, &line, 0.5 * (direct + range));
+    /* the line over the crest passes 12 cm over where the sphere would glint */
+    expect_below("straight glint", hypot(straight.real_part, straight.imaginary_part), 1e-4);
+    expect_below("glint one way by the surface", hypot(mixed.real_part, mixed.imaginary_part),
+                 1e-4);
+    echo_line_clear(&line);
+    bench_close(&bench);
+}
+
 /* A plate that stands upright on rising ground throws its shadow up the slope: shorter. */
 static void test_shadow_on_a_slope(void **unused)
 {
@@ -554,11 +590,17 @@ static void test_refusals(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_no_height),         cmocka_unit_test(test_slopes_towards_and_away),
-        cmocka_unit_test(test_slope_along_track), cmocka_unit_test(test_ripples),
-        cmocka_unit_test(test_shadow_of_a_mound), cmocka_unit_test(test_glint_in_a_pit),
-        cmocka_unit_test(test_shadow_on_a_slope), cmocka_unit_test(test_composite),
-        cmocka_unit_test(test_refusals),          cmocka_unit_test(test_layers),
+        cmocka_unit_test(test_no_height),
+        cmocka_unit_test(test_slopes_towards_and_away),
+        cmocka_unit_test(test_slope_along_track),
+        cmocka_unit_test(test_ripples),
+        cmocka_unit_test(test_shadow_of_a_mound),
+        cmocka_unit_test(test_glint_in_a_pit),
+        cmocka_unit_test(test_shadow_on_a_slope),
+        cmocka_unit_test(test_composite),
+        cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_glint_over_a_mound),
+        cmocka_unit_test(test_layers),
     };
     char names[BENCH_DEVICES][128];
     const size_t devices = bench_devices(names);

@@ -691,6 +691,7 @@ static void test_examples_are_good(void **state)
         {"figure6", SONJECT_INPUT_FILE, SONJECT_MODE_COMPOSITE, 1, 10.0},
         {"figure7", SONJECT_INPUT_FILE, SONJECT_MODE_COMPOSITE, 1, 10.0},
         {"layers", SONJECT_INPUT_SYNTHETIC, SONJECT_MODE_COMPOSITE, 2, 20.0},
+        {"relief", SONJECT_INPUT_SYNTHETIC, SONJECT_MODE_COMPOSITE, 1, 10.0},
         {"surface", SONJECT_INPUT_SYNTHETIC, SONJECT_MODE_COMPOSITE, 2, 10.0},
     };
     struct scene_folder *folder = *state;
