@@ -5,6 +5,7 @@
 #include "fan.h"
 #include "intersection.h"
 #include "random.h"
+#include "seabed.h"
 #include "surface.h"
 
 #define SEABED      (-1)
@@ -54,7 +55,7 @@ FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
                                          struct vector3 direction, float minimum, whole left_behind,
                                          mask is_ray)
 {
-    const real to_seabed = seabed_distance(fan, start, direction);
+    const real to_seabed = seabed_distance(fan, objects, start, direction, SPLAT(minimum), is_ray);
     const struct nearest_hit nearest = find_nearest_ahead(fan, objects, start, direction, minimum,
                                                           SPLAT(FAR_AWAY), 0, left_behind, is_ray);
     const mask on_object = MASK_OF(nearest.distance < to_seabed);
@@ -66,8 +67,7 @@ FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
     hit.point = along3(start, direction, hit.distance);
     hit.back = reversed3(direction);
     struct surface_face face;
-    face.normal.x = face.normal.y = SPLAT(0.0f);
-    face.normal.z = SPLAT(1.0f);
+    face.normal = seabed_normal(fan, objects, hit.point, direction);
 #if HAS_MESHES
     face.lift.x = face.lift.y = face.lift.z = SPLAT(0.0f);
 #endif
@@ -147,8 +147,9 @@ FUNCTION mask is_open_way(const struct fan_record *fan, GLOBAL const struct obje
     const struct vector3 start = start_from(hit);
     const struct nearest_hit blocking =
         find_nearest_ahead(fan, objects, start, direction, 0.0f, path, 1, hit->left_behind, is_way);
-    return is_way & MASK_OF(blocking.distance > path) &
-           MASK_OF(seabed_distance(fan, start, direction) > path);
+    const mask is_open = is_way & MASK_OF(blocking.distance > path);
+    return is_open &
+           MASK_OF(seabed_distance(fan, objects, start, direction, SPLAT(0.0f), is_open) > path);
 }
 
 struct target_choice;

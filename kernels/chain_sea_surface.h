@@ -93,7 +93,8 @@ FUNCTION mask is_open_to_image(const struct fan_record *fan,
     const real left = way->path - to_surface;
     const struct nearest_hit blocking = find_nearest_ahead(fan, objects, bounce, down, 0.0f, left,
                                                            1, WHOLE_OF(SPLAT(-1.0f)), is_open);
-    return is_open & MASK_OF(blocking.distance > left);
+    return is_clear_of_relief(fan, objects, bounce, down, left,
+                              is_open & MASK_OF(blocking.distance > left));
 }
 
 /* What the hit sends home in lanes that want it, to a receiver abreast of receiver_x: straight, or

@@ -86,9 +86,9 @@ FUNCTION whole nearest_bin(real coordinate)
     return WHOLE_OF(limited + 4.5f) - 4; /* truncation is floor on positive numbers */
 }
 
-/* Distance from the closest point to the seabed plane; FAR_AWAY for rays that do not go down. */
-FUNCTION real seabed_distance(const struct fan_record *fan, struct vector3 point,
-                              struct vector3 direction)
+/* Distance from a point to the mean seabed; FAR_AWAY for rays that do not go down. */
+FUNCTION real plane_distance(const struct fan_record *fan, struct vector3 point,
+                             struct vector3 direction)
 {
     const mask is_downward = MASK_OF(direction.z < -1.0e-6f);
     return CHOOSE(is_downward,

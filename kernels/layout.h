@@ -152,7 +152,7 @@ struct ray_piece_record {
 struct fan_record {
     float reference_range;                    /* m, from the track to the frame's origin */
     float cosine_depression, sine_depression; /* of the direction from the track to the origin */
-    float seabed_height;                      /* z of the seabed plane in the frame, m */
+    float seabed_height;                      /* z of the mean seabed in the frame, m */
     float first_strip_x;                      /* x of the middle of strip 0, m */
     float strip_width;                        /* m */
     float first_elevation; /* upper... lower edge of the fan, rad from the central direction, upward
@@ -184,6 +184,9 @@ struct fan_record {
     RECORD_INT segments;     /* work-items that share a strip */
     RECORD_INT strip_stride; /* from a work-item's strip to the next one's, see strip_of_item */
     struct ray_table_record table;
+    RECORD_WORD relief_words; /* where the relief_record is, in words from the first object's
+                                 record; 0: the seabed is the plane */
+    float relief_x, relief_y; /* m, of its first grid point in the frame */
 };
 
 /* Sixteen spheres, to be tested at once; radius 0: none. */

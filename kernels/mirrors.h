@@ -6,6 +6,7 @@
 
 #include "fan.h"
 #include "intersection.h"
+#include "seabed.h"
 #include "surface.h"
 
 /* The way from a hit to a source. */
@@ -25,11 +26,11 @@ FUNCTION real cosine_at_mirror(GLOBAL const struct mirror_record *mirror, real c
 
 /* direction: from the hit to the source in unfolded space, unit; length: m. Lanes that are not
  * wanted stay closed. */
-FUNCTION struct leg follow_leg(GLOBAL const struct source_pair_record *pair,
+FUNCTION struct leg follow_leg(const struct fan_record *fan,
+                               GLOBAL const struct source_pair_record *pair,
                                GLOBAL const struct source_record *source,
-                               GLOBAL const struct object_record *objects, int count,
-                               struct vector3 point, struct vector3 direction, real length,
-                               mask is_wanted)
+                               GLOBAL const struct object_record *objects, struct vector3 point,
+                               struct vector3 direction, real length, mask is_wanted)
 {
     struct leg leg;
     leg.is_open = is_wanted;
@@ -44,8 +45,9 @@ FUNCTION struct leg follow_leg(GLOBAL const struct source_pair_record *pair,
         const mask is_level = MASK_OF(cosine < 1.0e-6f);
         const real step = (mirror->height - point.z) / CHOOSE(is_level, SPLAT(1.0f), direction.z);
         if (is_seen) {
-            leg.is_open =
-                leg.is_open & MASK_OF(find_obstacle(objects, count, point, direction, step) > step);
+            leg.is_open = leg.is_open & MASK_OF(find_obstacle(objects, fan->objects, point,
+                                                              direction, step) > step);
+            leg.is_open = is_clear_of_relief(fan, objects, point, direction, step, leg.is_open);
         }
         leg.is_open = leg.is_open & ~is_level;
         is_seen = is_seen && !(is_bent && kind == MIRROR_SURFACE);
@@ -62,9 +64,11 @@ FUNCTION struct leg follow_leg(GLOBAL const struct source_pair_record *pair,
         leg.reflection_real = product_real;
         kind = 1 - kind;
     }
-    if (is_seen && ANY(leg.is_open))
-        leg.is_open =
-            leg.is_open & MASK_OF(find_obstacle(objects, count, point, direction, length) > length);
+    if (is_seen && ANY(leg.is_open)) {
+        leg.is_open = leg.is_open & MASK_OF(find_obstacle(objects, fan->objects, point, direction,
+                                                          length) > length);
+        leg.is_open = is_clear_of_relief(fan, objects, point, direction, length, leg.is_open);
+    }
     return leg;
 }
 
@@ -138,15 +142,18 @@ struct mirrored_hit {
 
 FUNCTION struct mirrored_hit find_mirrored_hit(const struct fan_record *fan,
                                                GLOBAL const struct source_pair_record *pair,
-                                               GLOBAL const struct object_record *object,
+                                               GLOBAL const struct object_record *objects,
                                                enum wanted_face wanted, const struct fan_ray *ray,
                                                mask is_ray)
 {
-    const real distance = object_distance(object, ray->closest, ray->direction,
-                                          distance_past_mirrors(fan, pair, ray));
+    GLOBAL const struct object_record *object = &objects[fan->only_object];
+    const real past_mirrors = distance_past_mirrors(fan, pair, ray);
+    const real distance = object_distance(object, ray->closest, ray->direction, past_mirrors);
+    const mask on_object = is_ray & MASK_OF(distance < 0.5f * FAR_AWAY);
     struct mirrored_hit hit;
-    hit.is_hit = is_ray & MASK_OF(distance < 0.5f * FAR_AWAY) &
-                 MASK_OF(distance < seabed_distance(fan, ray->closest, ray->direction));
+    hit.is_hit =
+        on_object & MASK_OF(distance < seabed_distance(fan, objects, ray->closest, ray->direction,
+                                                       past_mirrors, on_object));
     const real safe = CHOOSE(hit.is_hit, distance, SPLAT(0.0f));
     hit.point = along3(ray->closest, ray->direction, safe);
     const struct surface_face face =
@@ -205,11 +212,11 @@ FUNCTION struct mirrored_path follow_path(const struct fan_record *fan,
     const mask is_lit = hit->is_hit & MASK_OF(path.cosine_back > 0.0f);
     /* start off the surface by more than its rounding, less than anything that throws a shadow */
     const struct vector3 start = along3(hit->start, hit->normal, SPLAT(2.0e-5f));
-    const struct leg out = follow_leg(pair, &pair->outgoing, objects, fan->objects, start,
+    const struct leg out = follow_leg(fan, pair, &pair->outgoing, objects, start,
                                       reversed3(ray->direction), path.wavefront_out, is_lit);
     const struct leg home =
-        follow_leg(pair, &pair->returning, objects, fan->objects, start,
-                   reversed3(path.back.direction), path.back.wavefront, out.is_open);
+        follow_leg(fan, pair, &pair->returning, objects, start, reversed3(path.back.direction),
+                   path.back.wavefront, out.is_open);
     outcome->queries += count_lanes(is_lit) + count_lanes(out.is_open);
     path.is_open = home.is_open;
     path.reflection_real = out.reflection_real * home.reflection_real -

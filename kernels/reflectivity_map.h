@@ -4,6 +4,7 @@
 
 #include "chain_hit.h"
 #include "layout.h"
+#include "seabed.h"
 #include "width.h"
 
 /* Reflectivity over mu0 at the pixel nearest to a row and column; 1 without a map. */
@@ -35,6 +36,14 @@ FUNCTION real range_abreast(const struct fan_record *fan,
     return square / (SQUARE_ROOT(larger(square + r * r, SPLAT(0.0f))) + r);
 }
 
+/* The same of the mean seabed's point under or over a point: the image shows a level seabed. */
+FUNCTION real range_in_plan(const struct fan_record *fan,
+                            GLOBAL const struct ray_piece_record *pieces, struct vector3 point)
+{
+    point.z = SPLAT(fan->seabed_height);
+    return range_abreast(fan, pieces, point);
+}
+
 /* The map at hits of a chain on the seabed where it rules sound that goes on, else 1. */
 FUNCTION real map_factor(const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
                          GLOBAL const struct chain_record *chains, GLOBAL const float *map,
@@ -43,7 +52,8 @@ FUNCTION real map_factor(const struct fan_record *fan, GLOBAL const struct ray_p
     const mask on_seabed = hit->is_hit & MASK_OF(hit->surface == -1);
     if (!chains->forward_is_map || !ANY(on_seabed))
         return SPLAT(1.0f);
-    const real range = range_abreast(fan, pieces, hit->point);
+    const real range = has_relief(fan) ? range_in_plan(fan, pieces, hit->point)
+                                       : range_abreast(fan, pieces, hit->point);
     const real row = fan->map_row_at_origin + hit->point.x * fan->map_rows_per_metre;
     const real column = fan->map_first_column + range * fan->map_columns_per_metre;
     const real safe_row = smaller(larger(row, SPLAT(-1.0f)), SPLAT(1.0e8f));

@@ -77,6 +77,7 @@ FUNCTION mask may_meet_target(const struct fan_record *fan,
  * others. Of an object's own rays those blocks are left out that cannot meet it. */
 FUNCTION real thin_out(const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
                        GLOBAL const struct chain_record *chains,
+                       GLOBAL const struct object_record *objects,
                        GLOBAL const struct sphere_record *spheres, struct random_key key, int strip,
                        word block)
 {
@@ -87,7 +88,9 @@ FUNCTION real thin_out(const struct fan_record *fan, GLOBAL const struct ray_pie
     const struct fan_ray middle = middle_ray(fan, pieces, strip, block);
     if (!begins_on_seabed)
         return CHOOSE(may_meet_target(fan, chains, spheres, &middle), SPLAT(1.0f), SPLAT(0.0f));
-    const real to_seabed = seabed_distance(fan, middle.closest, middle.direction);
+    const real to_seabed =
+        seabed_distance(fan, objects, middle.closest, middle.direction,
+                        SPLAT(-fan->reference_range), MASK_OF(block < fan->rays));
     const mask is_seabed = MASK_OF(to_seabed < 0.5f * FAR_AWAY);
     const struct vector3 point =
         along3(middle.closest, middle.direction, CHOOSE(is_seabed, to_seabed, SPLAT(0.0f)));
@@ -183,6 +186,10 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
             count_arrival(fan, chains, order, &chain, &step, clear, &echo);
             tally_chain_echo(fan, chains, tallies, order, &echo, outcome);
         }
+        /* sound from one slope of the relief to another is left out */
+        const mask is_between_slopes =
+            has_relief(fan) ? MASK_OF(chain.hit.surface == -1) & MASK_OF(next.surface == -1)
+                            : chain.is_alive & 0;
         if (order == 1)
             chain.began_smooth = step.is_mirror;
         chain.choice = 0;
@@ -190,7 +197,7 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
         chain.length = chain.length + next.distance;
         chain.surface_before = chain.hit.surface;
         chain.hit = next;
-        chain.is_alive = next.is_hit;
+        chain.is_alive = next.is_hit & ~is_between_slopes;
         chain.met_object = chain.met_object | MASK_OF(next.surface >= 0);
         if (has_sea_surface(chains))
             leave_out_unheard(fan, pieces, chains, order, &chain);
@@ -215,7 +222,7 @@ FUNCTION void aim_choice(const struct fan_record *fan, GLOBAL const struct ray_p
     const real number = SPLAT((float)first_ray) + 0.5f * (float)CHOICE_RAYS;
     const struct fan_ray middle = fan_ray_at(fan, pieces, SPLAT(strip_position(fan, strip)),
                                              fan->first_elevation + number * fan->elevation_step);
-    const real to_seabed = seabed_distance(fan, middle.closest, middle.direction);
+    const real to_seabed = plane_distance(fan, middle.closest, middle.direction);
     const mask is_seabed = MASK_OF(to_seabed < 0.5f * FAR_AWAY);
     const real distance = CHOOSE(is_seabed, to_seabed, SPLAT(0.0f));
     const struct vector3 point = along3(middle.closest, middle.direction, distance);
@@ -270,8 +277,8 @@ FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
     const RECORD_WORD blocks = (fan->rays + THIN_BLOCK - 1u) / THIN_BLOCK;
     const RECORD_WORD stride = (RECORD_WORD)fan->segments * WIDTH;
     for (RECORD_WORD some = (RECORD_WORD)segment * WIDTH; some < blocks; some += stride) {
-        const real stands_for =
-            thin_out(fan, pieces, chains, spheres, key, strip, SPLAT_WORD(some) + LANE_NUMBERS);
+        const real stands_for = thin_out(fan, pieces, chains, objects, spheres, key, strip,
+                                         SPLAT_WORD(some) + LANE_NUMBERS);
         float lanes[WIDTH];
         STORE_REAL(stands_for, lanes);
         for (RECORD_WORD lane = 0; lane < WIDTH && some + lane < blocks; lane++) {

@@ -39,16 +39,15 @@ FUNCTION void begin_corner(const struct fan_record *fan,
     GLOBAL const struct object_record *object = &objects[fan->only_object];
     const struct fan_ray *ray = &cell->ray;
     const struct mirrored_hit first =
-        find_mirrored_hit(fan, pair, object, FACE_OF_OPTICS, ray, cell->is_ray);
+        find_mirrored_hit(fan, pair, objects, FACE_OF_OPTICS, ray, cell->is_ray);
     path->first_wavefront = ray->wavefront + (first.range - ray->range_at_closest);
     path->hit.point = first.point;
     path->hit.normal = first.normal;
     path->hit.back = reversed3(ray->direction);
     path->hit.surface = WHOLE_OF(SPLAT((float)fan->only_object));
     path->hit.left_behind = is_convex(object) ? path->hit.surface : WHOLE_OF(SPLAT(-1.0f));
-    const struct leg out =
-        follow_leg(pair, &pair->outgoing, objects, fan->objects, start_from(&path->hit),
-                   path->hit.back, path->first_wavefront, first.is_hit);
+    const struct leg out = follow_leg(fan, pair, &pair->outgoing, objects, start_from(&path->hit),
+                                      path->hit.back, path->first_wavefront, first.is_hit);
     outcome->queries += count_lanes(first.is_hit);
     path->is_alive = out.is_open;
     path->hit.is_hit = out.is_open;
@@ -184,8 +183,8 @@ FUNCTION void keep_corner_echo(const struct fan_record *fan,
     real one_real, one_imaginary;
     reflection_of_hit(fan, corners, objects, hit, 0.5f * (cosine + magnitude(cosine_home)), &is_lit,
                       &one_real, &one_imaginary);
-    const struct leg leg = follow_leg(pair, &pair->returning, objects, fan->objects,
-                                      start_from(hit), home.direction, home.length, is_lit);
+    const struct leg leg = follow_leg(fan, pair, &pair->returning, objects, start_from(hit),
+                                      home.direction, home.length, is_lit);
     outcome->queries += count_lanes(is_lit);
     const real shift = path->first_x - receiver_x;
     const real first = path->first_reach;

@@ -7,6 +7,7 @@
 #include "intersection.h"
 #include "random.h"
 #include "reflectivity_map.h"
+#include "seabed.h"
 #include "surface.h"
 #include "tally.h"
 
@@ -46,6 +47,7 @@ FUNCTION struct connection connect_to_source(const struct fan_record *fan,
     const struct vector3 start = along3(hit, normal, SPLAT(2.0e-5f));
     const real obstacle = find_obstacle(objects, fan->objects, start, way, path);
     connection.is_open = MASK_OF(obstacle > path) & MASK_OF(connection.cosine > 0.0f);
+    connection.is_open = is_clear_of_relief(fan, objects, start, way, path, connection.is_open);
     return connection;
 }
 
@@ -118,14 +120,18 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     const real x = strip_position(fan, strip) + (along - 0.5f) * fan->strip_width;
     const struct fan_ray ray = fan_ray_at(
         fan, pieces, x, fan->first_elevation + (REAL_OF(number) + across) * fan->elevation_step);
-    const real to_seabed = seabed_distance(fan, ray.closest, ray.direction);
+    const real to_seabed = seabed_distance(fan, objects, ray.closest, ray.direction,
+                                           SPLAT(-fan->reference_range), is_ray);
     const struct nearest_hit nearest =
         find_nearest_hit(objects, fan->objects, ray.closest, ray.direction, -fan->reference_range);
     const mask on_object = is_ray & MASK_OF(nearest.distance < to_seabed);
 
     const real seabed_range = ray.range_at_closest + to_seabed;
     const float strip_of_cell = fan->strip_width * fan->elevation_step; /* times wavefront: area */
-    const real seabed_cosine = -ray.direction.z;
+    const struct vector3 bed = along3(ray.closest, ray.direction, to_seabed);
+    const struct vector3 bed_normal = seabed_normal(fan, objects, bed, ray.direction);
+    const real seabed_cosine =
+        has_relief(fan) ? -dot3(bed_normal, ray.direction) : -ray.direction.z;
     real bed_range = seabed_range;
     real bed_cosine = seabed_cosine;
     mask bed_open = is_ray & MASK_OF(to_seabed < 0.5f * FAR_AWAY);
@@ -133,13 +139,8 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     if (fan->source_side > 0.0f)
         two_uniforms(key, number, 1, &source_along, &source_across);
     if (fan->source_side > 0.0f && ANY(bed_open)) {
-        struct vector3 up;
-        up.x = SPLAT(0.0f);
-        up.y = SPLAT(0.0f);
-        up.z = SPLAT(1.0f);
-        const struct connection way =
-            connect_to_source(fan, objects, &ray, along3(ray.closest, ray.direction, to_seabed), up,
-                              to_seabed, source_along, source_across);
+        const struct connection way = connect_to_source(fan, objects, &ray, bed, bed_normal,
+                                                        to_seabed, source_along, source_across);
         outcome->queries += count_lanes(bed_open);
         bed_range = way.range;
         bed_cosine = way.cosine;
@@ -190,7 +191,8 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     const whole object_numbers = CHOOSE(on_object, nearest.object, WHOLE_OF(SPLAT(-1.0f)));
     const real kept = CHOOSE(bed_open, bed_energy, SPLAT(0.0f));
     const real row = fan->map_row_at_origin + x * fan->map_rows_per_metre;
-    const real column = fan->map_first_column + seabed_range * fan->map_columns_per_metre;
+    const real map_range = has_relief(fan) ? range_in_plan(fan, pieces, bed) : seabed_range;
+    const real column = fan->map_first_column + map_range * fan->map_columns_per_metre;
     const real safe_column = smaller(larger(column, SPLAT(-1.0f)), SPLAT(1.0e8f));
     STORE_REAL(kept, echo->seabed);
     STORE_REAL(energy, echo->target);

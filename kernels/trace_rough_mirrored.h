@@ -26,8 +26,8 @@ FUNCTION void trace_rough_mirrored_group(const struct fan_record *fan,
     const struct fan_ray ray =
         fan_ray_at(fan, pieces, strip_position(fan, strip) + (along - 0.5f) * fan->strip_width,
                    fan->first_elevation + (REAL_OF(number) + across) * fan->elevation_step);
-    const struct mirrored_hit hit =
-        find_mirrored_hit(fan, pair, object, FACE_OF_SCATTERING, &ray, MASK_OF(number < fan->rays));
+    const struct mirrored_hit hit = find_mirrored_hit(fan, pair, objects, FACE_OF_SCATTERING, &ray,
+                                                      MASK_OF(number < fan->rays));
     const struct mirrored_path path = follow_path(fan, pieces, pair, objects, &ray, &hit, outcome);
     const real wavefront = fan->strip_width * fan->elevation_step * path.wavefront_out;
     const real mirrors = path.reflection_real * path.reflection_real +

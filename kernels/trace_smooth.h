@@ -7,6 +7,7 @@
 #include "fan.h"
 #include "intersection.h"
 #include "random.h"
+#include "seabed.h"
 #include "surface.h"
 #include "tally.h"
 
@@ -111,9 +112,10 @@ FUNCTION void trace_smooth_group(const struct fan_record *fan,
     const struct fan_ray ray = cell.ray;
     const struct nearest_hit nearest =
         find_nearest_hit(objects, fan->objects, ray.closest, ray.direction, -fan->reference_range);
-    const mask is_hit =
-        cell.is_ray & MASK_OF(nearest.object == fan->only_object) &
-        MASK_OF(nearest.distance < seabed_distance(fan, ray.closest, ray.direction));
+    const mask on_object = cell.is_ray & MASK_OF(nearest.object == fan->only_object);
+    const real to_seabed = seabed_distance(fan, objects, ray.closest, ray.direction,
+                                           SPLAT(-fan->reference_range), on_object);
+    const mask is_hit = on_object & MASK_OF(nearest.distance < to_seabed);
     const real distance = CHOOSE(is_hit, nearest.distance, SPLAT(0.0f));
     const GLOBAL struct object_record *object = &objects[fan->only_object];
     const struct vector3 normal = object_normal(object, ray.closest, ray.direction, distance);

@@ -17,7 +17,7 @@ FUNCTION void trace_smooth_mirrored_group(const struct fan_record *fan,
         wavefront_cell_at(fan, pieces, strip, stratum, key, first_ray);
     GLOBAL const struct object_record *object = &objects[fan->only_object];
     const struct mirrored_hit hit =
-        find_mirrored_hit(fan, pair, object, FACE_OF_OPTICS, &cell.ray, cell.is_ray);
+        find_mirrored_hit(fan, pair, objects, FACE_OF_OPTICS, &cell.ray, cell.is_ray);
     const struct mirrored_path path =
         follow_path(fan, pieces, pair, objects, &cell.ray, &hit, outcome);
     const real cosine_out = larger(hit.cosine, SPLAT(1.0e-4f));

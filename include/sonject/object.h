@@ -60,7 +60,8 @@ typedef struct sonject_cut {
 
 /* How a position is given. The ground point under the object's centre is meant: the middle of its
  * overall length, width and height, whatever is cut off; of an object of parts, the origin that
- * their places are counted from. */
+ * their places are counted from. Over relief that point of the mean seabed is meant; burial counts
+ * from the relief's height there. */
 typedef enum sonject_position_kind {
     SONJECT_POSITION_PATCH_CENTRE = 0, /* along = range = 0 */
     SONJECT_POSITION_METRES = 1,       /* along: along-track m, range: apparent slant range m, both

@@ -49,7 +49,8 @@ typedef enum sonject_layer {
     SONJECT_LAYER_ENERGY = 2, /* float; expected cross-section in m^2 of what was traced: objects
                                  and the seabed that still is in view, no speckle, no noise */
     SONJECT_LAYER_VISIBILITY =
-        3, /* float 0...1; fraction of the seabed's energy that still arrives */
+        3, /* float 0...1; fraction of the seabed's energy that still arrives; with relief over that
+              of a level seabed without objects: slopes that face the sonar return more than 1 */
     SONJECT_LAYER_HIGHLIGHT = 4, /* uint8, 255 where an object's echo dominates */
     SONJECT_LAYER_SHADOW = 5, /* uint8, 255 where less than half of the seabed's energy arrives */
     SONJECT_LAYER_LABELS =
@@ -94,7 +95,7 @@ typedef struct sonject_object_truth {
     double along_track_m;      /* of the centre */
     double slant_range_m;      /* apparent, of the centre */
     double ground_range_m;     /* of the centre */
-    double height_m;           /* of the centre over the seabed */
+    double height_m;           /* of the centre over the mean seabed */
     sonject_box highlight;
     sonject_box shadow;
     sonject_box both;
@@ -104,7 +105,8 @@ typedef struct sonject_object_truth {
                                   -infinity where nothing of it is in view */
     double highlight_contrast_db; /* mean energy of the highlight over the local seabed level */
     double shadow_contrast_db;    /* mean energy left in the shadow over the local seabed level */
-    double burial_m;    /* depth of its lowest point below the seabed; negative: above it */
+    double burial_m;    /* depth of its lowest point below the seabed under its origin; negative:
+                           above that */
     double grazing_rad; /* of the sound that comes straight to the centre */
     double transmission_loss_db; /* one way, from 1 m off the sonar to the centre: spreading
                                     (through layers: of the ray tube, mean of there and back),

@@ -11,6 +11,7 @@
 #include <sonject/injection.h>
 #include <sonject/medium.h>
 #include <sonject/object.h>
+#include <sonject/relief.h>
 #include <sonject/seabed.h>
 #include <sonject/sonar.h>
 #include <sonject/surface.h>
@@ -100,6 +101,15 @@ SONJECT_API sonject_status sonject_scene_set_sound_speed_profile(sonject_scene *
 
 SONJECT_API sonject_status sonject_scene_set_seabed(sonject_scene *scene,
                                                     const sonject_seabed_params *seabed);
+/* Gives the seabed heights over the mean plane (ripples, a mound, a pit), in m, rows x columns,
+ * copied; they add to the relief of a scene file. relief->rows 0 takes them away (heights_m may
+ * then be NULL). At the edges of the patch all relief falls to 0 over 1 m, or an eighth of the
+ * patch's side where that is less. Slopes over 60 degrees, heights over half the altitude, a smooth
+ * seabed and the coherent map are refused when the scene is used. Objects then rest on the height
+ * under their origin. Errors: ARGUMENT, INPUT, MEMORY. */
+SONJECT_API sonject_status sonject_scene_set_relief(sonject_scene *scene,
+                                                    const sonject_relief_params *relief,
+                                                    const float *heights_m);
 /* depth 0 takes the surface away. That it lies above the sonar is checked when the scene is used.
  */
 SONJECT_API sonject_status sonject_scene_set_surface(sonject_scene *scene,

@@ -1,4 +1,5 @@
-/* The seabed: a plane at z = 0 whose reflectivity comes from the measured image. */
+/* The seabed, whose reflectivity comes from the measured image: the plane z = 0, or a relief about
+ * it (sonject_scene_set_relief, seabed.relief of scene files). */
 #ifndef SONJECT_SEABED_H
 #define SONJECT_SEABED_H
 

@@ -8,6 +8,7 @@
 #include <sonject/material.h>
 #include <sonject/medium.h>
 #include <sonject/object.h>
+#include <sonject/relief.h>
 #include <sonject/result.h>
 #include <sonject/run.h>
 #include <sonject/scene.h>

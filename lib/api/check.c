@@ -99,6 +99,14 @@ static double shadow_length(const struct patch_view *view, double ground_range, 
     return top > 0.0 ? top / tan(water_way_grazing(&view->water, ground_range, top)) : 0.0;
 }
 
+static void describe_relief(struct text *text, const struct relief *relief)
+{
+    if (relief)
+        text_add(text,
+                 "relief     %.3f...%.3f m over the mean seabed, points %.3g m x %.3g m apart\n",
+                 relief->lowest_m, relief->highest_m, relief->row_step_m, relief->column_step_m);
+}
+
 static void describe_objects(struct text *text, const struct scene *scene,
                              const struct patch_view *view, const struct placements *placements)
 {
@@ -238,7 +246,7 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
     struct swath swath;
     struct water water = {NULL, 0, 0.0};
     struct patch_view view;
-    struct placements placements = {NULL, 0, NULL, 0};
+    struct placements placements = {NULL, 0, NULL, 0, NULL};
     sonject_status status = swath_describe(report, scene, &swath);
     if (status == SONJECT_OK)
         status = injection_check(report, scene, (double)swath.patch.first_row,
@@ -247,6 +255,7 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
     if (status == SONJECT_OK) {
         struct text text = {NULL, 0, 0, false};
         describe_patch(&text, scene, &swath, &view);
+        describe_relief(&text, placements.relief);
         describe_objects(&text, scene, &view, &placements);
         describe_meshes(&text, scene, &placements);
         status = try_user_shapes(&text, context, &scene->user_shapes);

@@ -166,6 +166,22 @@ sonject_status sonject_scene_set_seabed(sonject_scene *scene, const sonject_seab
     SET_CHECKED(scene, sonject_seabed_params, seabed, seabed, check_seabed, "seabed");
 }
 
+sonject_status sonject_scene_set_relief(sonject_scene *scene, const sonject_relief_params *relief,
+                                        const float *heights_m)
+{
+    if (!scene)
+        return SONJECT_ERROR_ARGUMENT;
+    sonject_relief_params taken;
+    sonject_relief_params_init(&taken);
+    sonject_status status =
+        params_take(scene->report, &taken, sizeof taken, relief, sizeof taken, "relief");
+    if (status == SONJECT_OK && taken.rows > 0 && !heights_m)
+        status = null_argument(scene->report, "heights_m");
+    if (status == SONJECT_OK)
+        status = relief_features_set_grid(&scene->scene.relief, scene->report, &taken, heights_m);
+    return status;
+}
+
 sonject_status sonject_scene_set_surface(sonject_scene *scene,
                                          const sonject_surface_params *surface)
 {

@@ -62,6 +62,38 @@ static void add_sonar(struct hash *hash, const struct scene *scene)
     add_material(hash, &scene->surface.material);
 }
 
+/* Only where there is some: scenes that know of none keep their hashes. */
+static void add_relief(struct hash *hash, const struct relief_features *relief)
+{
+    for (uint32_t i = 0; i < relief->count; i++) {
+        const struct relief_feature *feature = &relief->features[i];
+        ADD(hash, feature->kind);
+        ADD(hash, feature->height_m);
+        ADD(hash, feature->wavelength_m);
+        ADD(hash, feature->heading_rad);
+        ADD(hash, feature->phase_rad);
+        ADD(hash, feature->sharpness);
+        ADD(hash, feature->irregularity);
+        ADD(hash, feature->seed);
+        ADD(hash, feature->radius_m);
+        ADD(hash, feature->width_m);
+        ADD(hash, feature->position_kind);
+        ADD(hash, feature->position_along);
+        ADD(hash, feature->position_range);
+        hash_add_text(hash, feature->object);
+    }
+    if (!relief->heights_m)
+        return;
+    ADD(hash, relief->grid.rows);
+    ADD(hash, relief->grid.columns);
+    ADD(hash, relief->grid.first_along_track_m);
+    ADD(hash, relief->grid.first_ground_range_m);
+    ADD(hash, relief->grid.row_spacing_m);
+    ADD(hash, relief->grid.column_spacing_m);
+    hash_add(hash, relief->heights_m,
+             (size_t)relief->grid.rows * relief->grid.columns * sizeof *relief->heights_m);
+}
+
 static void add_image(struct hash *hash, const struct scene *scene)
 {
     const sonject_geometry_params *geometry = &scene->geometry;
@@ -166,6 +198,7 @@ sonject_status scene_hash(struct report *report, const struct scene *scene,
     hash_add_text(hash, sonject_version());
     add_sonar(hash, scene);
     add_water_layers(hash, scene);
+    add_relief(hash, &scene->relief);
     add_image(hash, scene);
     add_injection(hash, &scene->injection);
     for (uint32_t i = 0; i < scene->object_count; i++)

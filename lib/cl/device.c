@@ -231,9 +231,9 @@ void device_close(struct device **device)
 {
     if (!device || !*device)
         return;
-    for (int i = 0; i < 2 * PROGRAM_COUNT; i++)
-        if ((*device)->programs[i / 2][i % 2])
-            clReleaseProgram((*device)->programs[i / 2][i % 2]);
+    for (int i = 0; i < PROGRAM_VARIANTS * PROGRAM_COUNT; i++)
+        if ((*device)->programs[i / PROGRAM_VARIANTS][i % PROGRAM_VARIANTS])
+            clReleaseProgram((*device)->programs[i / PROGRAM_VARIANTS][i % PROGRAM_VARIANTS]);
     for (size_t i = 0; i < USER_PROGRAMS_KEPT; i++)
         if ((*device)->user_programs[i].program)
             clReleaseProgram((*device)->user_programs[i].program);

@@ -24,6 +24,13 @@ enum device_program {
     PROGRAM_COUNT
 };
 
+/* What a program is built with, bits: each takes its time to build, so most scenes do without. */
+enum program_variant {
+    PROGRAM_WITH_MESHES = 1,
+    PROGRAM_WITH_RELIEF = 2,
+    PROGRAM_VARIANTS = 4
+};
+
 /* Programs that hold code of users: the latest ones are kept. */
 #define USER_PROGRAMS_KEPT 16
 struct user_program {
@@ -35,7 +42,7 @@ struct device {
     cl_device_id id;
     cl_context context;
     cl_command_queue queue;
-    cl_program programs[PROGRAM_COUNT][2]; /* without, with meshes; NULL until first used */
+    cl_program programs[PROGRAM_COUNT][PROGRAM_VARIANTS]; /* NULL until first used */
     struct user_program user_programs[USER_PROGRAMS_KEPT];
     size_t user_program_next; /* the one that gives way */
     bool is_cpu;

@@ -20,11 +20,12 @@ static bool divides_correctly(const struct device *device)
 
 /* No fast-math of any kind; correctly rounded division where the compiler has to be told. A CPU's
  * work-items own their tallies; a GPU's share them. */
-void program_options(const struct device *device, bool has_meshes, const char *more,
+void program_options(const struct device *device, uint32_t variant, const char *more,
                      char options[PROGRAM_OPTIONS_CAPACITY])
 {
-    snprintf(options, PROGRAM_OPTIONS_CAPACITY, "-cl-std=CL1.2 -DWIDTH=%u%s%s%s%s",
-             (unsigned)device->width, has_meshes ? " -DWITH_MESHES" : "",
+    snprintf(options, PROGRAM_OPTIONS_CAPACITY, "-cl-std=CL1.2 -DWIDTH=%u%s%s%s%s%s",
+             (unsigned)device->width, variant & PROGRAM_WITH_MESHES ? " -DWITH_MESHES" : "",
+             variant & PROGRAM_WITH_RELIEF ? " -DWITH_RELIEF" : "",
              device->is_cpu ? "" : " -DTALLY_IS_SHARED",
              divides_correctly(device) ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", more);
 }
@@ -151,14 +152,14 @@ sonject_status program_make(struct report *report, struct device *device,
 }
 
 sonject_status program_get(struct report *report, struct device *device, enum device_program number,
-                           bool has_meshes, cl_program *out)
+                           uint32_t variant, cl_program *out)
 {
-    cl_program *program = &device->programs[number][has_meshes];
+    cl_program *program = &device->programs[number][variant];
     if (!*program) {
         const char *const pieces[] = {embedded_sources[number].text};
         char options[PROGRAM_OPTIONS_CAPACITY];
         char key[HASH_TEXT_CAPACITY];
-        program_options(device, has_meshes, "", options);
+        program_options(device, variant, "", options);
         const struct program_text text = {
             embedded_sources[number].name, pieces, 1, options, NULL, NULL};
         sonject_status status = program_key(report, device, &text, key);
@@ -183,11 +184,11 @@ sonject_status program_kernel(struct report *report, const struct device *device
 }
 
 sonject_status kernel_create(struct report *report, struct device *device,
-                             enum device_program number, bool has_meshes, const char *name,
+                             enum device_program number, uint32_t variant, const char *name,
                              cl_kernel *kernel)
 {
     cl_program program;
     *kernel = NULL;
-    const sonject_status status = program_get(report, device, number, has_meshes, &program);
+    const sonject_status status = program_get(report, device, number, variant, &program);
     return status == SONJECT_OK ? program_kernel(report, device, program, name, kernel) : status;
 }

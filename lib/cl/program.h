@@ -6,7 +6,7 @@
 #include "base/hash.h"
 #include "cl/device.h"
 
-#define PROGRAM_OPTIONS_CAPACITY 160
+#define PROGRAM_OPTIONS_CAPACITY 192
 
 /* What a program is made of, one piece of text after the other. */
 struct program_text {
@@ -21,7 +21,7 @@ struct program_text {
 };
 
 /* The options for a device, and `more`, each with a space before it. */
-void program_options(const struct device *device, bool has_meshes, const char *more,
+void program_options(const struct device *device, uint32_t variant, const char *more,
                      char options[PROGRAM_OPTIONS_CAPACITY]);
 
 /* Digits that stand for text, options and device. Errors: MEMORY. */
@@ -37,15 +37,14 @@ sonject_status program_make(struct report *report, struct device *device,
 sonject_status program_kernel(struct report *report, const struct device *device,
                               cl_program program, const char *name, cl_kernel *kernel);
 
-/* The program, built on first use; with what rays need for meshes, which takes as long again to
- * build, or without. Errors: DEVICE (with the first line of the build log), MEMORY.
- */
+/* The program, built on first use. variant: bits of enum program_variant. Errors: DEVICE (with the
+ * first line of the build log), MEMORY. */
 sonject_status program_get(struct report *report, struct device *device,
-                           enum device_program program, bool has_meshes, cl_program *out);
+                           enum device_program program, uint32_t variant, cl_program *out);
 
 /* A kernel of the program, to be given to clReleaseKernel. Errors: as program_get. */
 sonject_status kernel_create(struct report *report, struct device *device,
-                             enum device_program program, bool has_meshes, const char *name,
+                             enum device_program program, uint32_t variant, const char *name,
                              cl_kernel *kernel);
 
 #endif

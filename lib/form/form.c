@@ -83,13 +83,13 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
     if (status == SONJECT_OK)
         status = buffer_create(report, device, bytes, NULL, &lines->imaginary_lines);
     if (status == SONJECT_OK)
-        status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, false, "compress_range",
+        status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "compress_range",
                                &lines->compress);
     if (status == SONJECT_OK)
-        status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, false, "combine_aspects",
+        status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "combine_aspects",
                                &lines->combine);
     if (status == SONJECT_OK)
-        status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, false, "draw_speckle",
+        status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "draw_speckle",
                                &lines->speckle);
     if (status != SONJECT_OK)
         form_lines_end(lines);

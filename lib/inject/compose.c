@@ -40,7 +40,8 @@ static void add_parts(const struct pixel_parts *parts, bool seabed_is_in_view_al
                       double *real_part, double *imaginary_part)
 {
     const double seabed = seabed_is_in_view_already ? 1.0 : sqrt(parts->visibility);
-    const double noise = sqrt((1.0 - parts->visibility) * parts->noise_energy);
+    /* noise is lost with the pixel that held it; a brighter pixel holds enough */
+    const double noise = sqrt(fmax(0.0, 1.0 - parts->visibility) * parts->noise_energy);
     *real_part = seabed * parts->input_real + parts->target_real + noise * parts->noise_real;
     *imaginary_part =
         seabed * parts->input_imaginary + parts->target_imaginary + noise * parts->noise_imaginary;
@@ -82,6 +83,17 @@ static double hidden_share(const struct echoes *echoes, size_t i)
     return without > 0.0 ? fmin(1.0, echoes->lost_energy[i] / without) : 0.0;
 }
 
+/* V: the seabed's energy over that of a level seabed without objects. Slopes that face the sonar
+ * return more than that. */
+static double visibility_of(const struct echoes *echoes, size_t i)
+{
+    const double left = 1.0 - hidden_share(echoes, i);
+    if (!echoes->level_energy)
+        return left;
+    const double level = echoes->level_energy[i];
+    return level > 0.0 ? left * (echoes->seabed_energy[i] / level) : left;
+}
+
 /* Image energy per m^2 of cross-section. */
 static double gain_at(const struct patch_level *level, const struct echoes *echoes, size_t i)
 {
@@ -99,8 +111,10 @@ static struct window mark_influence(const struct scene *scene, const struct patc
     size_t end_row = 0;
     size_t end_column = 0;
     for (size_t i = 0; i < echoes->rows * echoes->columns; i++) {
-        const double change = gain_at(level, echoes, i) * echoes->target_energy[i] +
-                              hidden_share(echoes, i) * level->level[i];
+        const double seabed_change =
+            echoes->level_energy ? fabs(1.0 - visibility_of(echoes, i)) : hidden_share(echoes, i);
+        const double change =
+            gain_at(level, echoes, i) * echoes->target_energy[i] + seabed_change * level->level[i];
         if (!resynthesises && !(change > 0.0 && change >= threshold * level->level[i]))
             continue;
         const size_t row = i / echoes->columns;
@@ -125,7 +139,7 @@ static void compose_pixel(const struct scene *scene, const struct patch_level *l
     const bool is_touched = result->influence[i] != 0;
     const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
     struct pixel_parts parts;
-    parts.visibility = is_touched ? 1.0 - hidden_share(echoes, i) : 1.0;
+    parts.visibility = is_touched ? visibility_of(echoes, i) : 1.0;
     parts.noise_energy = level->noise_ratio * level->level[i];
     parts.target_real = scale * echoes->target_real[i];
     parts.target_imaginary = scale * echoes->target_imaginary[i];
@@ -163,7 +177,7 @@ sonject_status compose(struct tracer *tracer, const struct patch_level *level,
     struct complex_plane noise = {NULL, NULL};
     struct complex_plane phase = {NULL, NULL};
     sonject_status status = SONJECT_OK;
-    if (scene->object_count > 0)
+    if (scene->object_count > 0 || echoes->level_energy)
         status = plane_of_noise(tracer, STREAM_NOISE, &touched, &noise);
     if (status == SONJECT_OK && !is_complex && !resynthesises)
         status = plane_of_noise(tracer, STREAM_INPUT_PHASE, &whole, &phase);

@@ -9,6 +9,7 @@
 #include "form/form.h"
 #include "inject/chain_echoes.h"
 #include "inject/coherent_seabed.h"
+#include "inject/level_seabed.h"
 #include "trace/glints.h"
 #include "trace/rough_mirrored.h"
 
@@ -54,6 +55,7 @@ void echoes_clear(struct echoes *echoes)
     }
     free(echoes->objects);
     free(echoes->seabed_energy);
+    free(echoes->level_energy);
     free(echoes->lost_energy);
     free(echoes->target_energy);
     free(echoes->energy);
@@ -428,7 +430,7 @@ sonject_status echoes_compute(struct echoes *echoes, struct tracer *tracer,
     struct rough_trace trace;
     sonject_status status = allocate_planes(echoes, tracer, request);
     if (status == SONJECT_OK)
-        status = rough_trace_begin(&trace, tracer, request->map);
+        status = rough_trace_begin(&trace, tracer, seabed_map(tracer, request));
     if (status == SONJECT_OK) {
         float *tiles = allocate_array(trace.tile_elements, sizeof *tiles);
         status = tiles ? SONJECT_OK : report_out_of_memory(tracer->report, "the objects' echoes");
@@ -436,6 +438,8 @@ sonject_status echoes_compute(struct echoes *echoes, struct tracer *tracer,
             status = compute_seabed(echoes, tracer, request, &trace, tiles);
         if (status == SONJECT_OK)
             status = compute_objects(echoes, tracer, request, &trace, tiles);
+        if (status == SONJECT_OK && tracer->relief)
+            status = level_seabed_compute(echoes, tracer, request, &trace);
         if (status == SONJECT_OK)
             status = chain_echoes_compute(echoes, tracer, request);
         free(tiles);

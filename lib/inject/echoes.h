@@ -19,9 +19,10 @@ struct object_echo {
 /* Everything is rows x columns of the view unless said otherwise. Owned. */
 struct echoes {
     size_t rows, columns;
-    float *seabed_energy;                  /* expected without objects, m^2 */
-    float *lost_energy;                    /* of it, hidden by objects */
-    float *target_energy;                  /* expected from all objects */
+    float *seabed_energy; /* expected without objects, m^2 */
+    float *level_energy;  /* expected without objects and relief; NULL: there is no relief */
+    float *lost_energy;   /* of it, hidden by objects */
+    float *target_energy; /* expected from all objects */
     float *target_real, *target_imaginary; /* one realisation, m */
     float *seabed_real,
         *seabed_imaginary; /* one realisation of what is in view; NULL if unwanted */

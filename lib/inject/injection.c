@@ -257,7 +257,7 @@ sonject_status injection_run(struct report *report, struct device *device,
                              struct injection_result *result)
 {
     memset(result, 0, sizeof *result);
-    struct placements placements = {NULL, 0, NULL, 0};
+    struct placements placements = {NULL, 0, NULL, 0, NULL};
     struct water water = {NULL, 0, 0.0};
     struct tracer tracer;
     memset(&tracer, 0, sizeof tracer);
@@ -271,6 +271,7 @@ sonject_status injection_run(struct report *report, struct device *device,
     tracer.placements = placements.parts;
     tracer.part_count = placements.part_count;
     tracer.objects = placements.objects;
+    tracer.relief = placements.relief;
     if (status == SONJECT_OK && scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
         !tracer.view.water.is_straight)
         status = report_failure(report, SONJECT_ERROR_INPUT,

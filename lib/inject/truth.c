@@ -146,7 +146,7 @@ static void locate(const struct tracer *tracer, uint32_t number, sonject_object_
     truth->along_track_m = origin[0];
     truth->ground_range_m = origin[1];
     truth->height_m = origin[2];
-    truth->burial_m = -object->bottom_m;
+    truth->burial_m = -(object->bottom_m - object->seabed_m);
     truth->slant_range_m = water_way_range(&view->water, origin[1], origin[2]) * view->range_ratio;
     truth->row = view_row_of_x(view, origin[0]);
     truth->column = view_column_of_range(view, truth->slant_range_m);

@@ -137,6 +137,10 @@ sonject_status finish_object(struct reader *reader, const struct tree_node *node
 extern const struct section medium_section;
 sonject_status read_medium(struct reader *reader, const struct tree_node *node, void *structure);
 
+/* The seabed's relief, in scene_relief.c. */
+extern const struct section relief_section;
+sonject_status read_relief(struct reader *reader, const struct tree_node *node, void *structure);
+
 /* The objects' table, for read_objects, in scene_object.c. */
 extern const struct section object_section;
 

@@ -10,6 +10,8 @@ sonject_status scene_lay_water(const struct scene *scene, struct report *report,
                                struct water *water)
 {
     double highest = 0.0;
+    double lowest_seabed, highest_seabed;
+    relief_features_bounds(&scene->relief, &lowest_seabed, &highest_seabed);
     for (uint32_t i = 0; i < scene->object_count; i++) {
         double top;
         const sonject_status status = object_top(scene, report, i, &top);
@@ -18,7 +20,7 @@ sonject_status scene_lay_water(const struct scene *scene, struct report *report,
         highest = fmax(highest, top);
     }
     return water_init(water, report, scene->water_layers, scene->water_layer_count,
-                      scene->medium.sound_speed_mps, highest);
+                      scene->medium.sound_speed_mps, highest + highest_seabed);
 }
 
 double scene_reference_speed(const struct scene *scene)
@@ -63,6 +65,21 @@ sonject_status patch_view_init(struct patch_view *view, struct report *report,
                               "first_slant_range or altitude",
                               view->first_range_m, view->altitude_m);
     return SONJECT_OK;
+}
+
+void view_find_pixel(const struct patch_view *view, double first_row, double first_column,
+                     uint32_t kind, double along, double range, double *row, double *column)
+{
+    *row = 0.5 * (double)(view->rows - 1);
+    *column = 0.5 * (double)(view->columns - 1);
+    if (kind == SONJECT_POSITION_METRES) {
+        *row = view_row_of_x(view, view->is_mirrored ? -along : along);
+        *column = view_column_of_range(view, range);
+    } else if (kind == SONJECT_POSITION_PIXELS) {
+        const double image_row = along - first_row;
+        *row = view->is_mirrored ? (double)(view->rows - 1) - image_row : image_row;
+        *column = range - first_column;
+    }
 }
 
 double view_x_of_row(const struct patch_view *view, double row)

@@ -36,6 +36,11 @@ sonject_status patch_view_init(struct patch_view *view, struct report *report,
                                const struct scene *scene, const struct water *water,
                                double first_row, double first_column, size_t rows, size_t columns);
 
+/* Row and column of the view at a position given as an object's is: kind sonject_position_kind.
+ * first_row, first_column: of the patch in the swath. */
+void view_find_pixel(const struct patch_view *view, double first_row, double first_column,
+                     uint32_t kind, double along, double range, double *row, double *column);
+
 /* Along-track position (in the view's x) of a row, which may be fractional. */
 double view_x_of_row(const struct patch_view *view, double row);
 

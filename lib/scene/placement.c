@@ -43,11 +43,13 @@ double placement_grazing(const struct placement *placement, const struct patch_v
     return water_way_grazing(&view->water, placement->centre[1], placement->centre[2]);
 }
 
-double placement_shadow_end(const struct placement *placement, const struct patch_view *view)
+double placement_shadow_end(const struct placement *placement, const struct patch_view *view,
+                            double ground_m)
 {
     const double top = placement->centre[2] + placement_extent(placement, upward);
     const double end = placement->centre[1] + placement_extent(placement, outward);
-    return top > 0.0 ? end + top / tan(water_way_grazing(&view->water, end, top)) : end;
+    return top > ground_m ? end + (top - ground_m) / tan(water_way_grazing(&view->water, end, top))
+                          : end;
 }
 
 /* How far some parts reach along a direction, from the origin that their centres are counted from;
@@ -156,31 +158,14 @@ sonject_status object_top(const struct scene *scene, struct report *report, uint
     return SONJECT_OK;
 }
 
-/* Row and column of the view under the object's origin. */
-static void find_pixel(const struct patch_view *view, double first_row, double first_column,
-                       const sonject_object_params *object, double *row, double *column)
-{
-    *row = 0.5 * (double)(view->rows - 1);
-    *column = 0.5 * (double)(view->columns - 1);
-    if (object->position_kind == SONJECT_POSITION_METRES) {
-        const double x = view->is_mirrored ? -object->position_along : object->position_along;
-        *row = view_row_of_x(view, x);
-        *column = view_column_of_range(view, object->position_range);
-    } else if (object->position_kind == SONJECT_POSITION_PIXELS) {
-        const double image_row = object->position_along - first_row;
-        *row = view->is_mirrored ? (double)(view->rows - 1) - image_row : image_row;
-        *column = object->position_range - first_column;
-    }
-}
-
-/* Where an object's origin comes to lie, its parts being posed. */
-static sonject_status find_origin(double origin[3], struct report *report,
-                                  const struct patch_view *view, double first_row,
-                                  double first_column, const sonject_object_params *object,
-                                  const struct placement *parts, uint32_t count)
+/* The ground point under an object's origin. */
+static sonject_status find_ground_point(double origin[3], struct report *report,
+                                        const struct patch_view *view, double first_row,
+                                        double first_column, const sonject_object_params *object)
 {
     double row, column;
-    find_pixel(view, first_row, first_column, object, &row, &column);
+    view_find_pixel(view, first_row, first_column, object->position_kind, object->position_along,
+                    object->position_range, &row, &column);
     if (!(row >= -0.5 && row < (double)view->rows - 0.5 && column >= -0.5 &&
           column < (double)view->columns - 0.5))
         return report_failure(
@@ -189,6 +174,17 @@ static sonject_status find_origin(double origin[3], struct report *report,
             "and at %.1f m slant range; move it or the patch",
             object->name, view_x_of_row(view, row) * (view->is_mirrored ? -1 : 1),
             view_apparent_range(view, column));
+    origin[0] = view_x_of_row(view, row);
+    origin[1] = view_ground_range(view, view_apparent_range(view, column));
+    origin[2] = 0.0;
+    return SONJECT_OK;
+}
+
+/* How high an object's origin comes to lie over the seabed under it, its parts being posed. */
+static sonject_status find_height(double *height_m, struct report *report,
+                                  const sonject_object_params *object,
+                                  const struct placement *parts, uint32_t count)
+{
     const double height = overall_size(parts, count, 2);
     const double burial = burial_in_pose(parts, count, object);
     if (object->burial_kind == SONJECT_BURIAL_PROUD && burial < 0.0)
@@ -196,12 +192,38 @@ static sonject_status find_origin(double origin[3], struct report *report,
                               "object '%s' cannot stand %.3f m proud of the seabed: in its pose it "
                               "is %.3f m high; lower burial.proud",
                               object->name, object->proud_height_m, height);
-    origin[0] = view_x_of_row(view, row);
-    origin[1] = view_ground_range(view, view_apparent_range(view, column));
-    origin[2] = parts_extent(parts, count, downward) - burial;
+    *height_m = parts_extent(parts, count, downward) - burial;
     if (height < THINNEST_M && burial == 0.0)
-        origin[2] += THINNEST_M;
+        *height_m += THINNEST_M;
     return SONJECT_OK;
+}
+
+/* What an object covers of the ground, its parts being posed about their origin. */
+static struct footprint footprint_of(const struct placement *parts, uint32_t count,
+                                     const double origin[3])
+{
+    const double *nose = parts[0].axes[0];
+    const double level = hypot(nose[0], nose[1]);
+    const double along[3] = {level > 0.1 ? nose[0] / level : 1.0,
+                             level > 0.1 ? nose[1] / level : 0.0, 0.0};
+    const double across[3] = {-along[1], along[0], 0.0};
+    double reach[4]; /* along, back, across and to its other side */
+    for (int i = 0; i < 4; i++) {
+        const double *axis = i < 2 ? along : across;
+        const double sign = i % 2 == 0 ? 1.0 : -1.0;
+        const double direction[3] = {sign * axis[0], sign * axis[1], 0.0};
+        reach[i] = parts_extent(parts, count, direction);
+    }
+    const double forward = 0.5 * (reach[0] - reach[1]);
+    const double aside = 0.5 * (reach[2] - reach[3]);
+    struct footprint footprint;
+    footprint.x_m = origin[0] + forward * along[0] + aside * across[0];
+    footprint.y_m = origin[1] + forward * along[1] + aside * across[1];
+    footprint.along_x = along[0];
+    footprint.along_y = along[1];
+    footprint.half_width_m = 0.5 * (reach[2] + reach[3]);
+    footprint.half_length_m = fmax(0.0, 0.5 * (reach[0] + reach[1]) - footprint.half_width_m);
+    return footprint;
 }
 
 static sonject_status check_room(struct report *report, const struct patch_view *view,
@@ -225,9 +247,10 @@ static sonject_status check_room(struct report *report, const struct patch_view 
     return SONJECT_OK;
 }
 
-static sonject_status place(struct placements *placements, struct report *report,
-                            const struct scene *scene, const struct patch_view *view,
-                            double first_row, double first_column, uint32_t number)
+/* Poses an object and finds its place on the ground. */
+static sonject_status pose(struct placements *placements, struct report *report,
+                           const struct scene *scene, const struct patch_view *view,
+                           double first_row, double first_column, uint32_t number)
 {
     const sonject_object_params *object = &scene->objects[number];
     struct placed_object *placed = &placements->objects[number];
@@ -238,10 +261,23 @@ static sonject_status place(struct placements *placements, struct report *report
     if (placed->part_count == 0)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "object '%s' has no parts: give it some or a shape", object->name);
-    const sonject_status status = find_origin(placed->origin, report, view, first_row, first_column,
-                                              object, parts, placed->part_count);
+    return find_ground_point(placed->origin, report, view, first_row, first_column, object);
+}
+
+/* Lets a posed object down on the seabed. */
+static sonject_status settle(struct placements *placements, struct report *report,
+                             const struct scene *scene, const struct patch_view *view,
+                             uint32_t number)
+{
+    const sonject_object_params *object = &scene->objects[number];
+    struct placed_object *placed = &placements->objects[number];
+    struct placement *parts = &placements->parts[placed->first_part];
+    double height = 0.0;
+    const sonject_status status = find_height(&height, report, object, parts, placed->part_count);
     if (status != SONJECT_OK)
         return status;
+    placed->seabed_m = relief_height(placements->relief, placed->origin[0], placed->origin[1]);
+    placed->origin[2] = placed->seabed_m + height;
     for (uint32_t i = 0; i < placed->part_count; i++)
         for (int k = 0; k < 3; k++)
             parts[i].centre[k] += placed->origin[k];
@@ -264,6 +300,25 @@ static sonject_status check_shape_count(struct report *report, const struct scen
                           (unsigned)count, SCENE_SHAPES_MAX);
 }
 
+/* Scour lies around objects, so the relief needs their places. */
+static sonject_status lay_relief(struct placements *placements, struct report *report,
+                                 const struct scene *scene, const struct patch_view *view,
+                                 double first_row, double first_column)
+{
+    struct footprint *footprints = allocate_array(scene->object_count, sizeof *footprints);
+    if (!footprints)
+        return report_out_of_memory(report, "objects");
+    for (uint32_t i = 0; i < scene->object_count; i++) {
+        const struct placed_object *placed = &placements->objects[i];
+        footprints[i] = footprint_of(&placements->parts[placed->first_part], placed->part_count,
+                                     placed->origin);
+    }
+    const sonject_status status = relief_create(&placements->relief, report, scene, view, first_row,
+                                                first_column, footprints);
+    free(footprints);
+    return status;
+}
+
 sonject_status placements_init(struct placements *placements, struct report *report,
                                const struct scene *scene, const struct patch_view *view,
                                double first_row, double first_column)
@@ -279,7 +334,11 @@ sonject_status placements_init(struct placements *placements, struct report *rep
     if (status == SONJECT_OK)
         status = check_shape_count(report, scene);
     for (uint32_t i = 0; status == SONJECT_OK && i < scene->object_count; i++)
-        status = place(placements, report, scene, view, first_row, first_column, i);
+        status = pose(placements, report, scene, view, first_row, first_column, i);
+    if (status == SONJECT_OK && scene_has_relief(scene))
+        status = lay_relief(placements, report, scene, view, first_row, first_column);
+    for (uint32_t i = 0; status == SONJECT_OK && i < scene->object_count; i++)
+        status = settle(placements, report, scene, view, i);
     if (status != SONJECT_OK)
         placements_clear(placements);
     return status;
@@ -289,5 +348,6 @@ void placements_clear(struct placements *placements)
 {
     free(placements->parts);
     free(placements->objects);
+    relief_release(&placements->relief);
     memset(placements, 0, sizeof *placements);
 }

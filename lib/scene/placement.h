@@ -4,6 +4,7 @@
 #define SONJECT_SCENE_PLACEMENT_H
 
 #include "scene/patch_view.h"
+#include "scene/relief.h"
 #include "scene/scene.h"
 #include "scene/shape_size.h"
 
@@ -23,6 +24,7 @@ struct placed_object {
     uint32_t first_part, part_count;
     double origin[3];       /* of its own frame; the centre of an object of one shape */
     double bottom_m, top_m; /* heights of its lowest and highest point over the mean seabed */
+    double seabed_m;        /* height of the seabed under its origin, which it rests on */
 };
 
 struct placements {
@@ -30,6 +32,7 @@ struct placements {
     uint32_t part_count;
     struct placed_object *objects; /* owned; the scene's, in their order */
     uint32_t object_count;
+    struct relief *relief; /* owned; NULL: the seabed is the plane */
 };
 
 /* Places all objects. first_row, first_column: of the patch in the swath, for positions in swath
@@ -54,9 +57,10 @@ double placement_range(const struct placement *placement, const struct patch_vie
 /* Grazing angle, rad, of the sound that comes to the centre. */
 double placement_grazing(const struct placement *placement, const struct patch_view *view);
 
-/* Ground range at which the shadow of the part's top ends; that of its far end where nothing of
- * it stands over the seabed. */
-double placement_shadow_end(const struct placement *placement, const struct patch_view *view);
+/* Ground range at which the shadow of the part's top ends on ground of a height; that of its far
+ * end where nothing of it stands over that. */
+double placement_shadow_end(const struct placement *placement, const struct patch_view *view,
+                            double ground_m);
 
 /* The highest point of an object of the scene, wherever it lies; 0 if it has no part. Errors:
  * MEMORY. */

@@ -17,6 +17,7 @@ void scene_init(struct scene *scene)
     sonject_injection_params_init(&scene->injection);
     sonject_synthetic_params_init(&scene->synthetic);
     scene->patch.struct_size = sizeof scene->patch;
+    sonject_relief_params_init(&scene->relief.grid);
     scene->input_kind = SONJECT_INPUT_MEMORY;
 }
 
@@ -30,6 +31,7 @@ void scene_clear(struct scene *scene)
     free(scene->meshes);
     user_shapes_clear(&scene->user_shapes);
     free(scene->water_layers);
+    relief_features_clear(&scene->relief);
     scene_init(scene);
 }
 

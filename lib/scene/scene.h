@@ -11,6 +11,7 @@
 #include "base/report.h"
 #include "medium/water_layer.h"
 #include "mesh/mesh.h"
+#include "scene/relief_features.h"
 #include "scene/user_shapes.h"
 
 #define SCENE_OBJECTS_MAX      250 /* ids must fit the 8-bit label image */
@@ -50,6 +51,7 @@ struct scene {
     struct user_shapes user_shapes;
     struct scene_part *parts; /* owned; in no order */
     uint32_t part_count;
+    struct relief_features relief;
 };
 
 /* All defaults; geometry.first_slant_range_m has none and is NaN, which check_geometry refuses. */

@@ -65,9 +65,12 @@ static sonject_status lay_seabed_fan(struct chain_fan *fan, struct tracer *trace
     const double near = around.near_ground > 0.0
                             ? water_way_grazing(&view->water, around.near_ground, 0.0)
                             : 0.5 * PI;
+    struct grazing_angles edges = {near, far};
+    if (tracer->relief)
+        edges = grazing_over_relief(tracer, edges);
     fan->strips = strips_between(tracer, grid, around.first_x, around.last_x);
     fan->record.only_object = -1;
-    return fan_lay_rays(&fan->record, tracer->report, central - near, central - far,
+    return fan_lay_rays(&fan->record, tracer->report, central - edges.near, central - edges.far,
                         fan_elevation_step(tracer, grid, far, SEABED_RAYS_PER_BIN));
 }
 

@@ -144,7 +144,8 @@ sonject_status chain_trace_begin(struct chain_trace *trace, struct tracer *trace
         status = make_tallies(trace, tracer);
     if (status == SONJECT_OK)
         status = scene_kernel_create(tracer->report, tracer->device, tracer->scene,
-                                     PROGRAM_TRACE_CHAINS, "trace_chains", &trace->kernel);
+                                     tracer_variant(tracer), PROGRAM_TRACE_CHAINS, "trace_chains",
+                                     &trace->kernel);
     if (status != SONJECT_OK)
         chain_trace_end(trace);
     return status;

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "cl/launch.h"
 #include "trace/object_tree.h"
+#include "trace/relief_words.h"
 #include "user/user_program.h"
 
 #define WORD        4
@@ -114,12 +115,27 @@ static sonject_status build_tree(const struct tracer *tracer, const struct objec
     return status;
 }
 
+static size_t record_words(uint32_t part_count)
+{
+    return ALIGNED(part_count * WORDS_OF(struct object_record));
+}
+
+uint32_t object_buffer_relief_words(const struct tracer *tracer, uint32_t part_count)
+{
+    /* no part, no record: 0 must go on to mean that there is no relief */
+    const size_t words = record_words(part_count);
+    return !tracer->relief ? 0 : words > 0 ? (uint32_t)words : (uint32_t)ALIGNED(1);
+}
+
 /* Where each mesh that some part shows begins, in words; 0: nobody shows it. Returns the words of
  * records and meshes. */
 static size_t lay_out(const struct tracer *tracer, const struct part_list *parts,
                       size_t begin[SCENE_MESHES_MAX])
 {
-    size_t words = ALIGNED(parts->count * WORDS_OF(struct object_record));
+    size_t words = record_words(parts->count);
+    if (tracer->relief)
+        words = object_buffer_relief_words(tracer, parts->count) +
+                ALIGNED(relief_word_count(tracer->relief));
     memset(begin, 0, SCENE_MESHES_MAX * sizeof *begin);
     for (uint32_t i = 0; i < parts->count; i++) {
         const struct mesh *mesh = placement_of(tracer, parts, i)->size.mesh;
@@ -141,7 +157,8 @@ static sonject_status write_buffer(struct tracer *tracer, struct object_record *
     const size_t count = tree_begin + tree->count;
     if (count > WORDS_MOST || count * WORD > tracer->device->allocation_limit)
         return report_failure(tracer->report, SONJECT_ERROR_INPUT,
-                              "the meshes are too large for the device: use fewer triangles");
+                              "the meshes and the relief are too large for the device: use fewer "
+                              "triangles or a smaller patch");
     uint32_t *words = allocate_array(count, sizeof *words);
     if (!words)
         return report_out_of_memory(tracer->report, "the objects");
@@ -155,6 +172,8 @@ static sonject_status write_buffer(struct tracer *tracer, struct object_record *
     if (tree->count > 0)
         records[0].tree_words = (uint32_t)tree_begin;
     memcpy(words, records, parts->count * sizeof *records);
+    if (tracer->relief)
+        relief_words_init(words + object_buffer_relief_words(tracer, parts->count), tracer->relief);
     for (uint32_t i = 0; i < tracer->scene->mesh_count; i++)
         if (begin[i] != 0)
             write_mesh(words + begin[i], &tracer->scene->meshes[i]);

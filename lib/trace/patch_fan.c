@@ -24,8 +24,8 @@ static double range_of_bin(const struct tracer *tracer, const struct line_grid *
 
 /* Seabed and heights that rays of the patch's frame come to. */
 struct region {
-    double near, far; /* ground range, m */
-    double top;       /* height, m */
+    double near, far;   /* ground range, m */
+    double bottom, top; /* heights, m */
 };
 
 static struct region region_of_patch(const struct tracer *tracer, const struct line_grid *grid)
@@ -36,7 +36,8 @@ static struct region region_of_patch(const struct tracer *tracer, const struct l
     region.near = view_ground_range(view, range_of_bin(tracer, grid, grid->bins.first - 0.5));
     region.far = view_ground_range(
         view, range_of_bin(tracer, grid, grid->bins.first + grid->bins.count - 0.5));
-    region.top = 0.0;
+    region.bottom = tracer_lowest_seabed(tracer);
+    region.top = tracer_highest_seabed(tracer);
     for (uint32_t i = 0; i < tracer->part_count; i++) {
         const struct placement *placement = &tracer->placements[i];
         const double reach = SURROUNDINGS * placement->bounding_radius_m;
@@ -54,9 +55,9 @@ sonject_status patch_rays_init(struct ray_table *rays, struct ray_table_record *
     const struct water_way *way = &tracer->view.water;
     const struct region region = region_of_patch(tracer, grid);
     /* a little farther: what is sought beside the region; much farther there may be no ray */
-    const double points[4][2] = {{region.near, 0.0},
+    const double points[4][2] = {{region.near, region.bottom},
                                  {region.near, region.top},
-                                 {region.far, 0.0},
+                                 {region.far, region.bottom},
                                  {1.05 * region.far, region.top}};
     double origin[3];
     patch_fan_origin(origin, &tracer->view);
@@ -101,6 +102,17 @@ sonject_status fan_lay_rays(struct fan_record *fan, struct report *report, doubl
     return SONJECT_OK;
 }
 
+struct grazing_angles grazing_over_relief(const struct tracer *tracer, struct grazing_angles plane)
+{
+    const struct relief *relief = tracer->relief;
+    const struct water_way *way = &tracer->view.water;
+    const double end = relief->first_y_m + (relief->columns - 1) * relief->column_step_m;
+    const struct grazing_angles angles = {
+        fmax(plane.near, water_way_grazing(way, relief->first_y_m, relief->lowest_m)),
+        fmin(plane.far, water_way_grazing(way, end, relief->highest_m))};
+    return angles;
+}
+
 sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
                               const struct line_grid *grid, bool has_map, double rays_per_bin)
 {
@@ -114,7 +126,10 @@ sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
     const double near = view_grazing(view, range_of_bin(tracer, grid, grid->bins.first - 0.5));
     const double far =
         view_grazing(view, range_of_bin(tracer, grid, grid->bins.first + grid->bins.count - 0.5));
-    return fan_lay_rays(fan, tracer->report, central - near,
-                        highest_elevation(tracer, central, central - far),
+    struct grazing_angles edges = {near, far};
+    if (tracer->relief)
+        edges = grazing_over_relief(tracer, edges);
+    return fan_lay_rays(fan, tracer->report, central - edges.near,
+                        highest_elevation(tracer, central, central - edges.far),
                         fan_elevation_step(tracer, grid, far, rays_per_bin));
 }

@@ -17,6 +17,14 @@ void patch_fan_origin(double origin[3], const struct patch_view *view);
 sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
                               const struct line_grid *grid, bool has_map, double rays_per_bin);
 
+/* Grazing angles, rad, at which sound comes to the near and the far end of what is traced. */
+struct grazing_angles {
+    double near, far;
+};
+
+/* Those of the mean plane, widened to what the tracer's relief needs. */
+struct grazing_angles grazing_over_relief(const struct tracer *tracer, struct grazing_angles plane);
+
 /* Works out the rays of all fans in the patch's frame: from the sonar to the patch and to whatever
  * is near the objects. The table is the caller's for ray_table_clear, also on failure. Errors: as
  * ray_table_add. */

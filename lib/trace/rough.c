@@ -24,11 +24,12 @@ static struct span part_bins(const struct rough_trace *trace, const struct trace
                              uint32_t number)
 {
     const struct placement *placement = &tracer->placements[number];
-    const double shadow_end = placement_shadow_end(placement, &tracer->view);
+    const double lowest = tracer_lowest_seabed(tracer);
+    const double shadow_end = placement_shadow_end(placement, &tracer->view, lowest);
     const double first_range =
         placement_range(placement, &tracer->view) - placement->bounding_radius_m;
     const double last_range =
-        fmax(water_way_range(&tracer->view.water, shadow_end, 0.0),
+        fmax(water_way_range(&tracer->view.water, shadow_end, lowest),
              placement_range(placement, &tracer->view) + placement->bounding_radius_m);
     const double slack =
         0.01 * placement->bounding_radius_m + tracer->scene->sonar.transducer_side_m;
@@ -176,6 +177,12 @@ void rough_trace_end(struct rough_trace *trace)
 int32_t rough_trace_chunk(const struct rough_trace *trace)
 {
     return (int32_t)trace->on_device.tally_strips;
+}
+
+void rough_trace_flatten(struct rough_trace *trace)
+{
+    trace->fan.relief_words = 0;
+    trace->fan.objects = 0;
 }
 
 static sonject_status read_tallies(struct tracer *tracer, cl_mem buffer, size_t count, double unit,

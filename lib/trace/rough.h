@@ -39,6 +39,10 @@ int32_t rough_trace_chunk(const struct rough_trace *trace);
 sonject_status rough_trace_strips(struct rough_trace *trace, struct tracer *tracer,
                                   struct span strips, float *seabed);
 
+/* From now on the trace is of the mean plane alone, without relief and objects; tiles stay as they
+ * are. */
+void rough_trace_flatten(struct rough_trace *trace);
+
 /* Reads all tiles as energies (planes TILE_ENERGY, TILE_LOST; m^2) and counts (TILE_FOOTPRINT):
  * tile_elements floats. Plane p of a tile starts at offset + p * line_grid_cells(&tile.grid). */
 sonject_status rough_trace_tiles(struct rough_trace *trace, struct tracer *tracer, float *tiles);

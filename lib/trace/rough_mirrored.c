@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "cl/launch.h"
 #include "trace/launch_parts.h"
+#include "trace/object_buffer.h"
 #include "trace/object_rays.h"
 #include "trace/source_pairs.h"
 
@@ -49,6 +50,7 @@ static sonject_status trace_pair(struct rough_trace *trace, struct tracer *trace
     sonject_status status = source_pair_aim(&fan, &record, &rays, tracer, part, pair, &trace->grid);
     lay_fan(&fan, trace, tracer, part, &pair->outgoing->way);
     fan.objects = (int32_t)parts->count;
+    fan.relief_words = object_buffer_relief_words(tracer, parts->count);
     fan.only_object = (int32_t)parts->target;
     fan.stream = STREAM_MIRRORED_ROUGH_RAYS + STREAMS_OF_PAIR * pair->number + part;
     fan.quanta = trace->fan.quanta;

@@ -7,6 +7,7 @@
 #include "base/memory.h"
 #include "cl/launch.h"
 #include "trace/launch_parts.h"
+#include "trace/object_buffer.h"
 #include "trace/object_rays.h"
 
 #define STRIP_WAVELENGTHS  0.25 /* widest sub-strip: wider ones alias glints (physics.md 2) */
@@ -72,6 +73,7 @@ static sonject_status begin_on_device(struct smooth_trace *trace, struct tracer 
         status = launch_records_create(&records, tracer, &parts, tracer->placements[number].centre);
     if (status == SONJECT_OK) {
         trace->fan.objects = (int32_t)parts.count;
+        trace->fan.relief_words = object_buffer_relief_words(tracer, parts.count);
         trace->fan.only_object = (int32_t)parts.target;
         status = trace_device_init(&trace->on_device, tracer, PROGRAM_TRACE_SMOOTH, kernel_name,
                                    records, (struct part_list){parts.numbers, parts.count},

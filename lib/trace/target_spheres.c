@@ -56,7 +56,7 @@ static void cover_part(struct target_spheres *spheres, const struct tracer *trac
         double centre[3];
         for (int k = 0; k < 3; k++)
             centre[k] = placement->centre[k] + along * placement->axes[0][k];
-        if (centre[2] + sphere_radius <= 0.0)
+        if (centre[2] + sphere_radius <= tracer_lowest_seabed(tracer))
             continue;
         struct sphere_record *record = &spheres->records[spheres->count++];
         record->centre_x = (float)(centre[0] - origin[0]);

@@ -15,7 +15,7 @@
 
 /* Host and device must agree on every byte. */
 typedef char object_record_is_packed[sizeof(struct object_record) == 57 * 4 ? 1 : -1];
-typedef char fan_record_is_packed[sizeof(struct fan_record) == 40 * 4 ? 1 : -1];
+typedef char fan_record_is_packed[sizeof(struct fan_record) == 43 * 4 ? 1 : -1];
 typedef char chain_record_is_packed[sizeof(struct chain_record) == 35 * 4 ? 1 : -1];
 typedef char sphere_group_is_packed[sizeof(struct sphere_group) == 64 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
@@ -67,6 +67,27 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
     fan->seed_high = (uint32_t)(tracer->scene->injection.seed >> 32);
     fan->objects = (int32_t)tracer->part_count;
     fan->segments = 1;
+    fan->relief_words = object_buffer_relief_words(tracer, tracer->part_count);
+    if (tracer->relief) {
+        fan->relief_x = (float)(tracer->relief->first_x_m - origin[0]);
+        fan->relief_y = (float)(tracer->relief->first_y_m - origin[1]);
+    }
+}
+
+double tracer_lowest_seabed(const struct tracer *tracer)
+{
+    return tracer->relief ? tracer->relief->lowest_m : 0.0;
+}
+
+double tracer_highest_seabed(const struct tracer *tracer)
+{
+    return tracer->relief ? tracer->relief->highest_m : 0.0;
+}
+
+uint32_t tracer_variant(const struct tracer *tracer)
+{
+    return (tracer->scene->mesh_count > 0 ? PROGRAM_WITH_MESHES : 0u) |
+           (tracer->relief ? PROGRAM_WITH_RELIEF : 0u);
 }
 
 void surface_record_init(struct surface_record *record, const sonject_material_params *material,
@@ -225,8 +246,9 @@ sonject_status trace_device_init(struct trace_device *device, struct tracer *tra
     const size_t fitting = TALLY_BYTES / line_bytes;
     memset(device, 0, sizeof *device);
     device->tally_strips = fitting < 1 ? 1 : fitting < strips ? fitting : strips;
-    sonject_status status = scene_kernel_create(report, tracer->device, tracer->scene, program,
-                                                kernel_name, &device->kernel);
+    sonject_status status =
+        scene_kernel_create(report, tracer->device, tracer->scene, tracer_variant(tracer), program,
+                            kernel_name, &device->kernel);
     if (status == SONJECT_OK)
         status = object_buffer_create(tracer, records, parts, &device->objects);
     if (status == SONJECT_OK)

@@ -28,6 +28,7 @@ struct tracer {
     const struct placement *placements; /* of all parts of objects: what rays meet */
     uint32_t part_count;
     const struct placed_object *objects; /* of scene->objects: where their parts are */
+    const struct relief *relief;         /* NULL: the seabed is the plane */
     struct trace_counts counts;
 };
 
@@ -43,6 +44,13 @@ void object_record_init(struct object_record *record, const struct tracer *trace
 /* Object records in a frame; tiles left 0. count = part_count. */
 void object_records_init(struct object_record *records, const struct tracer *tracer,
                          const double origin[3]);
+
+/* Heights that the seabed keeps to, m; both 0 where it is a plane. */
+double tracer_lowest_seabed(const struct tracer *tracer);
+double tracer_highest_seabed(const struct tracer *tracer);
+
+/* The variant of programs that the scene needs: bits of enum program_variant. */
+uint32_t tracer_variant(const struct tracer *tracer);
 
 /* The record of a material whose lambert is a number. */
 void surface_record_init(struct surface_record *record, const sonject_material_params *material,

@@ -104,7 +104,7 @@ static sonject_status get_program(struct report *report, struct device *device,
 }
 
 sonject_status user_kernel_create(struct report *report, struct device *device,
-                                  const struct user_shapes *shapes, bool has_meshes,
+                                  const struct user_shapes *shapes, uint32_t variant,
                                   enum device_program number, const char *name, cl_kernel *kernel)
 {
     const char *pieces[3 + 3 * USER_SNIPPETS_MAX];
@@ -122,7 +122,7 @@ sonject_status user_kernel_create(struct report *report, struct device *device,
         pieces[count++] = shapes->snippets[i].code;
         pieces[count++] = shapes->snippets[i].behind;
     }
-    program_options(device, has_meshes, " -DWITH_USER_SHAPES", options);
+    program_options(device, variant, " -DWITH_USER_SHAPES", options);
     const struct program_text text = {
         embedded_sources[number].name, pieces, count, options, explain, shapes};
     sonject_status status = without_macros && calls
@@ -136,12 +136,10 @@ sonject_status user_kernel_create(struct report *report, struct device *device,
 }
 
 sonject_status scene_kernel_create(struct report *report, struct device *device,
-                                   const struct scene *scene, enum device_program program,
-                                   const char *name, cl_kernel *kernel)
+                                   const struct scene *scene, uint32_t variant,
+                                   enum device_program program, const char *name, cl_kernel *kernel)
 {
-    const bool has_meshes = scene->mesh_count > 0;
     if (scene->user_shapes.count == 0)
-        return kernel_create(report, device, program, has_meshes, name, kernel);
-    return user_kernel_create(report, device, &scene->user_shapes, has_meshes, program, name,
-                              kernel);
+        return kernel_create(report, device, program, variant, name, kernel);
+    return user_kernel_create(report, device, &scene->user_shapes, variant, program, name, kernel);
 }

@@ -10,16 +10,18 @@
 /* What the kernels know of a shape. */
 struct user_record user_record_of(const struct user_shape *shape);
 
-/* A kernel of a program for the scene, to be given to clReleaseKernel. The first error of a user's
+/* A kernel of a program for the scene, to be given to clReleaseKernel. variant: bits of enum
+ * program_variant. The first error of a user's
  * code becomes the message "file:line: what"; the compiler's whole log goes to the report's log.
  * Errors: INPUT (code that does not compile), DEVICE, MEMORY. */
 sonject_status scene_kernel_create(struct report *report, struct device *device,
-                                   const struct scene *scene, enum device_program program,
-                                   const char *name, cl_kernel *kernel);
+                                   const struct scene *scene, uint32_t variant,
+                                   enum device_program program, const char *name,
+                                   cl_kernel *kernel);
 
-/* The same with users' code whether the scene has meshes or not. */
+/* The same with these users' code. */
 sonject_status user_kernel_create(struct report *report, struct device *device,
-                                  const struct user_shapes *shapes, bool has_meshes,
+                                  const struct user_shapes *shapes, uint32_t variant,
                                   enum device_program program, const char *name, cl_kernel *kernel);
 
 #endif

@@ -56,6 +56,7 @@ SIZES = {
     "sonject_medium_params": 32,
     "sonject_seabed_params": 120,
     "sonject_material_params": 80,
+    "sonject_relief_params": 48,
     "sonject_surface_params": 96,
     "sonject_cut": 24,
     "sonject_object_params": 424,

@@ -29,6 +29,8 @@ enum scene_kind {
     SCENE_EMPTY,       /* seabed alone */
     SCENE_MORE_SHAPES, /* shapes that are not plain, whole and cut; source rectangle */
     SCENE_LAYERS,      /* the first one's objects, under a layer of faster water */
+    SCENE_RELIEF,      /* the first one's objects among ripples, a mound and scour */
+    SCENE_WIDE_RELIEF, /* the same, source rectangle and map */
     SCENE_KINDS
 };
 
@@ -88,6 +90,24 @@ static void place_more_shapes(struct bench *bench)
     objects[7].nose_end = objects[7].tail_end = SONJECT_END_OPEN;
 }
 
+static void make_relief(struct bench *bench)
+{
+    struct relief_feature *ripples = bench_add_relief(bench, RELIEF_RIPPLES);
+    ripples->wavelength_m = 0.4;
+    ripples->height_m = 0.05;
+    ripples->heading_rad = 1.2;
+    ripples->sharpness = 0.5;
+    ripples->irregularity = 0.5;
+    struct relief_feature *mound = bench_add_relief(bench, RELIEF_MOUND);
+    mound->radius_m = 0.5;
+    mound->height_m = 0.3;
+    struct relief_feature *scour = bench_add_relief(bench, RELIEF_SCOUR);
+    scour->width_m = 0.3;
+    scour->height_m = 0.08;
+    strcpy(scour->object, "sphere");
+    strcpy(bench->scene.objects[0].name, "sphere");
+}
+
 static void make_scene(struct bench *bench, enum scene_kind kind)
 {
     static const struct water_layer layers[] = {{0.0, 1490.0, 1.02}, {3.0, 1530.0, 1.0}};
@@ -106,14 +126,17 @@ static void make_scene(struct bench *bench, enum scene_kind kind)
         place(bench_add(bench, SONJECT_SHAPE_PLANE, 0.6, 0.4, 0.0), 40.0, 55.0, 0.3, -0.5, 0.4);
         bench->scene.objects[3].burial_m = 0.05;
     }
-    if (kind == SCENE_WIDE_SOURCE || kind == SCENE_WITH_MAP || kind == SCENE_MORE_SHAPES)
+    if (kind == SCENE_RELIEF || kind == SCENE_WIDE_RELIEF)
+        make_relief(bench);
+    if (kind == SCENE_WIDE_RELIEF || kind == SCENE_WIDE_SOURCE || kind == SCENE_WITH_MAP ||
+        kind == SCENE_MORE_SHAPES)
         bench->scene.sonar.transducer_side_m = 0.2;
     bench_ready(bench);
 }
 
 static float *make_map(enum scene_kind kind)
 {
-    if (kind != SCENE_WITH_MAP)
+    if (kind != SCENE_WITH_MAP && kind != SCENE_WIDE_RELIEF)
         return NULL;
     float *map = malloc(ROWS * COLUMNS * sizeof *map);
     assert_non_null(map);
@@ -208,14 +231,6 @@ static struct tallies trace_rough_on_device(struct bench *bench, const float *ma
     return tallies;
 }
 
-static void read_objects(struct bench *bench, cl_mem buffer, struct object_record *records)
-{
-    if (bench->scene.object_count > 0)
-        assert_int_equal(buffer_read(&bench->report, bench->tracer.device, buffer, 0,
-                                     bench->scene.object_count * sizeof *records, records),
-                         SONJECT_OK);
-}
-
 static void count_outcome(struct tallies *tallies, struct outcome_record outcome)
 {
     assert_int_equal(outcome.faults, 0);
@@ -226,11 +241,10 @@ static void count_outcome(struct tallies *tallies, struct outcome_record outcome
 static struct tallies trace_rough_as_c(struct bench *bench, const float *map)
 {
     struct rough_trace trace;
-    struct object_record objects[BENCH_OBJECTS];
     struct tallies tallies = {0, 0, NULL, NULL, {0, 0, 0, 0}};
     if (rough_trace_begin(&trace, &bench->tracer, map) != SONJECT_OK)
         fail_msg("%s", bench->report.message);
-    read_objects(bench, trace.on_device.objects, objects);
+    struct object_record *objects = bench_copy_buffer(bench, trace.on_device.objects);
     tallies.lines = line_grid_cells(&trace.grid);
     tallies.tiles = trace.tile_elements;
     tallies.line = calloc(tallies.lines, sizeof(int64_t));
@@ -243,6 +257,7 @@ static struct tallies trace_rough_as_c(struct bench *bench, const float *map)
         count_outcome(&tallies, trace_rough_strip(&trace.fan, trace.rays.pieces, objects, map,
                                                   tallies.line, tallies.tile, strip, 0));
     tallies.counts.rays = (uint64_t)trace.fan.rays * (uint64_t)trace.fan.strips;
+    free(objects);
     rough_trace_end(&trace);
     return tallies;
 }
@@ -295,11 +310,10 @@ static struct tallies trace_smooth_as_c(struct bench *bench, uint32_t object,
 {
     struct smooth_trace trace;
     struct source_pair_record sources;
-    struct object_record objects[BENCH_OBJECTS];
     struct tallies tallies = {0, 0, NULL, NULL, {0, 0, 0, 0}};
     begin_smooth(&trace, bench, object, pair);
     assert_true(trace.grid.bins.count > 0);
-    read_objects(bench, trace.on_device.objects, objects);
+    struct object_record *objects = bench_copy_buffer(bench, trace.on_device.objects);
     if (pair)
         assert_int_equal(buffer_read(&bench->report, bench->tracer.device, trace.sources, 0,
                                      sizeof sources, &sources),
@@ -317,6 +331,7 @@ static struct tallies trace_smooth_as_c(struct bench *bench, uint32_t object,
                            : trace_smooth_strip(&trace.fan, trace.rays.pieces, objects,
                                                 tallies.line, strip, 0));
     tallies.counts.rays = (uint64_t)trace.fan.rays * trace.fan.strata * (uint64_t)trace.fan.strips;
+    free(objects);
     smooth_trace_end(&trace);
     return tallies;
 }
@@ -382,7 +397,8 @@ static bool compare_pair(struct bench *bench, uint32_t object, const struct sour
 
 static void compare_smooth(struct bench *bench, enum scene_kind kind)
 {
-    if (kind != SCENE_ALL_SHAPES && kind != SCENE_MORE_SHAPES && kind != SCENE_LAYERS)
+    if (kind != SCENE_ALL_SHAPES && kind != SCENE_MORE_SHAPES && kind != SCENE_LAYERS &&
+        kind != SCENE_RELIEF)
         return; /* neither source nor map matter to glints */
     make_scene(bench, kind);
     for (uint32_t object = 0; object < bench->scene.object_count; object++)
@@ -395,11 +411,30 @@ static void test_smooth_tallies(void **unused)
     at_every_width(compare_smooth, 1);
 }
 
+/* Over relief the sea surface alone is a mirror. */
+static void compare_under_relief(struct bench *bench)
+{
+    struct sound_source sources[SOURCES_MAX];
+    size_t alive = 0;
+    make_scene(bench, SCENE_RELIEF);
+    bench->scene.surface.water_depth_m = 7.5;
+    assert_int_equal(sources_list(&bench->scene, &bench->water, 2, sources), 2);
+    for (uint32_t object = 0; object < bench->scene.object_count; object++) {
+        const struct source_pair there_and_back = {&sources[0], &sources[1], 0};
+        const struct source_pair twice = {&sources[1], &sources[1], 1};
+        alive += compare_pair(bench, object, &there_and_back);
+        alive += compare_pair(bench, object, &twice);
+    }
+    assert_true(alive >= 6);
+}
+
 /* A fluid seabed, a rough surface, and pairs of the sonar and its images in both. */
 static void compare_mirrored(struct bench *bench, enum scene_kind kind)
 {
     static const size_t numbers[][2] = {{0, 1}, {1, 1}, {0, 2}, {1, 4}, {2, 4}};
     struct sound_source sources[SOURCES_MAX];
+    if (kind == SCENE_RELIEF)
+        compare_under_relief(bench);
     if (kind != SCENE_ALL_SHAPES && kind != SCENE_LAYERS)
         return;
     make_scene(bench, kind);
@@ -450,9 +485,9 @@ static void compare_rough_mirrored(struct bench *bench, enum scene_kind kind)
     static size_t all_elements[SCENE_KINDS];
     int64_t *first = all_first[kind];
     size_t elements;
-    if (kind != SCENE_ALL_SHAPES && kind != SCENE_LAYERS)
+    if (kind != SCENE_ALL_SHAPES && kind != SCENE_LAYERS && kind != SCENE_RELIEF)
         return;
-    bench->scene.seabed.forward.reflection = 0.9;
+    bench->scene.seabed.forward.reflection = kind == SCENE_RELIEF ? 0.0 : 0.9;
     bench->scene.surface.water_depth_m = 7.5;
     bench->scene.injection.interactions = 4;
     make_scene(bench, kind);

@@ -23,28 +23,34 @@
 struct variant {
     const char *name;
     uint32_t interactions, estimator, column_rule, forward_rule;
-    int has_map, has_wide_source, seabed_is_smooth, has_layers, has_surface;
+    int has_map, has_wide_source, seabed_is_smooth, has_layers, has_surface, has_relief;
 };
 
 static const struct variant variants[] = {
     {"focused", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_FOCUSED, SONJECT_FORWARD_MODEL, 0, 0,
-     0, 0, 0},
+     0, 0, 0, 0},
     {"paper columns and map", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_PAPER,
-     SONJECT_FORWARD_MAP, 1, 0, 0, 0, 0},
+     SONJECT_FORWARD_MAP, 1, 0, 0, 0, 0, 0},
     {"wide source, smooth seabed", 4, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_FOCUSED,
-     SONJECT_FORWARD_MODEL, 0, 1, 1, 0, 0},
+     SONJECT_FORWARD_MODEL, 0, 1, 1, 0, 0, 0},
     {"brute force", 3, SONJECT_ESTIMATOR_BRUTE_FORCE, SONJECT_COLUMNS_PAPER, SONJECT_FORWARD_MODEL,
-     0, 1, 0, 0, 0},
+     0, 1, 0, 0, 0, 0},
     {"focused through layers", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_FOCUSED,
-     SONJECT_FORWARD_MODEL, 0, 0, 1, 1, 0},
+     SONJECT_FORWARD_MODEL, 0, 0, 1, 1, 0, 0},
     {"wide source and map through layers", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_PAPER,
-     SONJECT_FORWARD_MAP, 1, 1, 0, 1, 0},
+     SONJECT_FORWARD_MAP, 1, 1, 0, 1, 0, 0},
     {"focused below the surface", 4, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_FOCUSED,
-     SONJECT_FORWARD_MODEL, 0, 0, 1, 0, 1},
+     SONJECT_FORWARD_MODEL, 0, 0, 1, 0, 1, 0},
     {"wide source and map below the surface", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_PAPER,
-     SONJECT_FORWARD_MAP, 1, 1, 0, 0, 1},
+     SONJECT_FORWARD_MAP, 1, 1, 0, 0, 1, 0},
     {"brute force below the surface", 3, SONJECT_ESTIMATOR_BRUTE_FORCE, SONJECT_COLUMNS_PAPER,
-     SONJECT_FORWARD_MODEL, 0, 1, 0, 0, 1},
+     SONJECT_FORWARD_MODEL, 0, 1, 0, 0, 1, 0},
+    {"among ripples", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_FOCUSED, SONJECT_FORWARD_MAP, 1,
+     0, 0, 0, 0, 1},
+    {"among ripples below the surface", 3, SONJECT_ESTIMATOR_CONNECT, SONJECT_COLUMNS_FOCUSED,
+     SONJECT_FORWARD_MAP, 1, 0, 0, 0, 1, 1},
+    {"brute force among ripples", 3, SONJECT_ESTIMATOR_BRUTE_FORCE, SONJECT_COLUMNS_PAPER,
+     SONJECT_FORWARD_MODEL, 0, 1, 0, 0, 0, 1},
 };
 
 static void make_scene(struct bench *bench, const struct variant *variant)
@@ -67,6 +73,12 @@ static void make_scene(struct bench *bench, const struct variant *variant)
     capsule->position_range = 40.0;
     if (variant->has_layers)
         bench_set_layers(bench, layers, 2);
+    if (variant->has_relief) {
+        struct relief_feature *ripples = bench_add_relief(bench, RELIEF_RIPPLES);
+        ripples->wavelength_m = 0.4;
+        ripples->height_m = 0.06;
+        ripples->heading_rad = 1.2;
+    }
     scene->seabed.lambert = 0.2;
     scene->seabed.forward_rule = variant->forward_rule;
     if (variant->seabed_is_smooth) {
@@ -149,8 +161,7 @@ static int64_t *trace_as_c(struct bench *bench, const float *map, struct trace_c
     if (chain_trace_begin(&trace, &bench->tracer, map) != SONJECT_OK)
         fail_msg("%s", bench->report.message);
     struct chain_record *chains = copy_buffer(bench, trace.chains, sizeof *chains);
-    struct object_record *objects =
-        copy_buffer(bench, trace.objects, bench->scene.object_count * sizeof *objects);
+    struct object_record *objects = bench_copy_buffer(bench, trace.objects);
     struct sphere_record *spheres =
         copy_buffer(bench, trace.spheres, (size_t)chains->spheres * sizeof *spheres);
     int64_t *tallies = calloc(trace.planes * line_grid_cells(&trace.grid), sizeof *tallies);

@@ -455,7 +455,7 @@ static void test_burial(void **unused)
         const double height = add(ray.origin, ray.direction, hit.distance).z - fan.seabed_height;
         if (fabs(height) < 1e-5)
             continue;
-        const float seabed = seabed_distance(&fan, ray.p, ray.d);
+        const float seabed = plane_distance(&fan, ray.p, ray.d);
         const float object_at = object_distance(&object, ray.p, ray.d, -50.0f);
         assert_int_equal(object_at<seabed, height> 0.0);
         shown += height > 0.0;
@@ -466,8 +466,8 @@ static void test_burial(void **unused)
     const struct vector3 point = {0.0f, 0.0f, 1.0f};
     const struct vector3 level = {0.0f, 1.0f, 0.0f};
     const struct vector3 rising = {0.0f, 0.8f, 0.6f};
-    assert_true(seabed_distance(&fan, point, level) == FAR_AWAY);
-    assert_true(seabed_distance(&fan, point, rising) == FAR_AWAY);
+    assert_true(plane_distance(&fan, point, level) == FAR_AWAY);
+    assert_true(plane_distance(&fan, point, rising) == FAR_AWAY);
 }
 
 int main(void)

@@ -12,6 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "cl/launch.h"
+
 static void expect_ok(struct bench *bench, sonject_status status)
 {
     if (status != SONJECT_OK)
@@ -80,6 +82,26 @@ sonject_object_params *bench_add(struct bench *bench, sonject_shape shape, doubl
     return &bench->scene.objects[bench->scene.object_count - 1];
 }
 
+struct relief_feature *bench_add_relief(struct bench *bench, enum relief_kind kind)
+{
+    struct relief_feature feature;
+    memset(&feature, 0, sizeof feature);
+    feature.kind = kind;
+    expect_ok(bench, relief_features_append(&bench->scene.relief, &bench->report, &feature));
+    return &bench->scene.relief.features[bench->scene.relief.count - 1];
+}
+
+void *bench_copy_buffer(struct bench *bench, cl_mem buffer)
+{
+    size_t bytes = 0;
+    assert_int_equal(clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof bytes, &bytes, NULL),
+                     CL_SUCCESS);
+    void *copy = malloc(bytes);
+    assert_non_null(copy);
+    expect_ok(bench, buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, copy));
+    return copy;
+}
+
 void bench_ready(struct bench *bench)
 {
     struct tracer *tracer = &bench->tracer;
@@ -94,6 +116,7 @@ void bench_ready(struct bench *bench)
     tracer->placements = bench->placed.parts;
     tracer->part_count = bench->placed.part_count;
     tracer->objects = bench->placed.objects;
+    tracer->relief = bench->placed.relief;
     point_response_init(&tracer->response, &bench->scene.sonar,
                         tracer->view.range_ratio * bench->water.straight_speed_mps,
                         tracer->view.row_spacing_m);

@@ -42,6 +42,12 @@ void bench_set_layers(struct bench *bench, const struct water_layer *layers, siz
 sonject_object_params *bench_add(struct bench *bench, sonject_shape shape, double length_m,
                                  double width_m, double diameter_m);
 
+/* A feature of the seabed's relief, in the middle of the patch, to be changed at will. */
+struct relief_feature *bench_add_relief(struct bench *bench, enum relief_kind kind);
+
+/* A copy of a whole buffer of the device, for free(). */
+void *bench_copy_buffer(struct bench *bench, cl_mem buffer);
+
 /* Works out view, response and placements from the scene as it now is; before any trace. */
 void bench_ready(struct bench *bench);
 

@@ -148,6 +148,56 @@ static void test_two_estimators(void **unused)
     bench_close(&bench);
 }
 
+/* Ripples with shadows of their own, and scour about the target. */
+static void lay_relief(struct bench *bench)
+{
+    struct relief_feature *ripples = bench_add_relief(bench, RELIEF_RIPPLES);
+    ripples->wavelength_m = 0.6;
+    ripples->height_m = 0.06;
+    ripples->heading_rad = 1.2;
+    ripples->sharpness = 0.5;
+    struct relief_feature *scour = bench_add_relief(bench, RELIEF_SCOUR);
+    scour->width_m = 0.5;
+    scour->height_m = 0.1;
+    strcpy(scour->object, "capsule");
+    strcpy(bench->scene.objects[0].name, "capsule");
+}
+
+/* The same over relief: visibility, normals, and directions towards the target. */
+static void test_two_estimators_over_relief(void **unused)
+{
+    (void)unused;
+    struct bench bench;
+    make_scene(&bench);
+    lay_relief(&bench);
+    bench.scene.sonar.transducer_side_m = 8.0;
+    const struct energies connected = trace_seeds(&bench, 100);
+    bench.scene.injection.estimator = SONJECT_ESTIMATOR_BRUTE_FORCE;
+    bench.scene.injection.mode = SONJECT_MODE_RESYNTHESISE;
+    bench.scene.injection.ray_scale = 8.0;
+    const struct energies counted = trace_seeds(&bench, 900);
+    for (int order = 1; order < ORDERS; order++)
+        expect_ratio("brute force over relief", &counted, &connected, order, 1.0, 0.0);
+    bench_close(&bench);
+}
+
+static void test_reciprocity_over_relief(void **unused)
+{
+    (void)unused;
+    struct bench bench;
+    make_scene(&bench);
+    lay_relief(&bench);
+    bench.scene.sonar.altitude_m = 80.0;
+    bench_move(&bench, FAR_M);
+    bench.scene.injection.column_rule = SONJECT_COLUMNS_FOCUSED;
+    const struct energies reciprocal = trace_seeds(&bench, 100);
+    bench.scene.sonar.transducer_side_m = 1e-3;
+    const struct energies plain = trace_seeds(&bench, 900);
+    for (int order = 1; order < ORDERS; order++)
+        expect_ratio("one way for both over relief", &reciprocal, &plain, order, 1.0, 0.03);
+    bench_close(&bench);
+}
+
 /* In focused columns paths between seabed and target are looked for from the seabed alone and stand
  * for both ways. A source of a millimetre beside the receiver has both found on their own, each
  * from where its first hit lies; at this range that changes the angles by less than a degree and
@@ -302,6 +352,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_reference),
         cmocka_unit_test(test_two_estimators),
+        cmocka_unit_test(test_two_estimators_over_relief),
+        cmocka_unit_test(test_reciprocity_over_relief),
         cmocka_unit_test(test_reciprocity),
         cmocka_unit_test(test_focused_columns),
         cmocka_unit_test(test_mirrored_object_is_left_to_pairs),

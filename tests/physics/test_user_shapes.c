@@ -464,7 +464,8 @@ static sonject_status compile(struct bench *bench, const char *code, enum device
     add_code(shapes, &bench->report, "sound.cl", SPHERE_CODE, 1.0, 1.0, 0.0);
     add_code(shapes, &bench->report, "my shape.cl", code, 1.0, 1.0, 0.0);
     const sonject_status status = scene_kernel_create(&bench->report, bench->tracer.device,
-                                                      &bench->scene, program, kernel_name, &kernel);
+                                                      &bench->scene, 0, program, kernel_name,
+                                                      &kernel);
     if (status == SONJECT_OK)
         clReleaseKernel(kernel);
     return status;

@@ -72,7 +72,8 @@ static const struct key_case {
     enum type type;
     size_t offset; /* in struct scene; in the first object if the path starts with objects, in the
                       first part if it goes on with parts, in the first user shape if it goes
-                      through user, in the layers if it starts with medium.layers or .profile */
+                      through user, in the layers if it starts with medium.layers or .profile, in
+                      the relief's first feature if with seabed.relief */
     double number;
     const char *text;
     const char *other;
@@ -81,7 +82,8 @@ static const struct key_case {
 #define OBJECT(member) offsetof(sonject_object_params, member)
 #define LAYER(index, member)                                                                       \
     ((index) * sizeof(struct water_layer) + offsetof(struct water_layer, member))
-#define CAST SOURCE_ROOT "/tests/unit/cast.csv"
+#define RELIEF(member) offsetof(struct relief_feature, member)
+#define CAST           SOURCE_ROOT "/tests/unit/cast.csv"
     {"sonject", small, "1", TYPE_NOTHING, 0, 0.0, NULL, NULL},
     {"input.path", file, "swath-2.tif", TYPE_PATH, SCENE(input_path), 0.0, "swath-2.tif", NULL},
     {"input.complex", file, "true", TYPE_BOOL, SCENE(input_is_complex), 1.0, NULL, NULL},
@@ -196,6 +198,56 @@ static const struct key_case {
      NULL},
     {"seabed.despeckle_radius", small, "5 cm", TYPE_DOUBLE, SCENE(seabed.despeckle_radius_m), 0.05,
      NULL, NULL},
+    {"seabed.relief[].ripples.wavelength", small, "40 cm", TYPE_DOUBLE, RELIEF(wavelength_m), 0.4,
+     NULL, "seabed.relief=[{ripples: {height: 5 cm}}]"},
+    {"seabed.relief[].ripples.height", small, "4 cm", TYPE_DOUBLE, RELIEF(height_m), 0.04, NULL,
+     "seabed.relief=[{ripples: {wavelength: 1 m}}]"},
+    {"seabed.relief[].ripples.heading", small, "90 deg", TYPE_DOUBLE, RELIEF(heading_rad), PI / 2.0,
+     NULL, "seabed.relief=[{ripples: {wavelength: 1 m, height: 5 cm}}]"},
+    {"seabed.relief[].ripples.phase", small, "90 deg", TYPE_DOUBLE, RELIEF(phase_rad), PI / 2.0,
+     NULL, "seabed.relief=[{ripples: {wavelength: 1 m, height: 5 cm}}]"},
+    {"seabed.relief[].ripples.sharpness", small, "0.5", TYPE_DOUBLE, RELIEF(sharpness), 0.5, NULL,
+     "seabed.relief=[{ripples: {wavelength: 1 m, height: 5 cm}}]"},
+    {"seabed.relief[].ripples.irregularity", small, "0.25", TYPE_DOUBLE, RELIEF(irregularity), 0.25,
+     NULL, "seabed.relief=[{ripples: {wavelength: 1 m, height: 5 cm}}]"},
+    {"seabed.relief[].ripples.seed", small, "9", TYPE_U64, RELIEF(seed), 9.0, NULL,
+     "seabed.relief=[{ripples: {wavelength: 1 m, height: 5 cm}}]"},
+    {"seabed.relief[].mound.position", small, "centre", TYPE_U32, RELIEF(position_kind),
+     SONJECT_POSITION_PATCH_CENTRE, NULL, "seabed.relief=[{mound: {radius: 1 m, height: 10 cm}}]"},
+    {"seabed.relief[].mound.position.along_track", small, "2 m", TYPE_DOUBLE,
+     RELIEF(position_along), 2.0, NULL,
+     "seabed.relief=[{mound: {radius: 1 m, height: 10 cm, position: {slant_range: 41}}}]"},
+    {"seabed.relief[].mound.position.slant_range", small, "42 m", TYPE_DOUBLE,
+     RELIEF(position_range), 42.0, NULL,
+     "seabed.relief=[{mound: {radius: 1 m, height: 10 cm, position: {along_track: 1}}}]"},
+    {"seabed.relief[].mound.position.row", small, "2.5", TYPE_DOUBLE, RELIEF(position_along), 2.5,
+     NULL, "seabed.relief=[{mound: {radius: 1 m, height: 10 cm, position: {column: 3}}}]"},
+    {"seabed.relief[].mound.position.column", small, "3.5", TYPE_DOUBLE, RELIEF(position_range),
+     3.5, NULL, "seabed.relief=[{mound: {radius: 1 m, height: 10 cm, position: {row: 3}}}]"},
+    {"seabed.relief[].mound.radius", small, "2 m", TYPE_DOUBLE, RELIEF(radius_m), 2.0, NULL,
+     "seabed.relief=[{mound: {height: 10 cm}}]"},
+    {"seabed.relief[].mound.height", small, "30 cm", TYPE_DOUBLE, RELIEF(height_m), 0.3, NULL,
+     "seabed.relief=[{mound: {radius: 1 m}}]"},
+    {"seabed.relief[].pit.position", small, "centre", TYPE_U32, RELIEF(position_kind),
+     SONJECT_POSITION_PATCH_CENTRE, NULL, "seabed.relief=[{pit: {radius: 1 m, depth: 10 cm}}]"},
+    {"seabed.relief[].pit.position.along_track", small, "2 m", TYPE_DOUBLE, RELIEF(position_along),
+     2.0, NULL, "seabed.relief=[{pit: {radius: 1 m, depth: 10 cm, position: {slant_range: 41}}}]"},
+    {"seabed.relief[].pit.position.slant_range", small, "42 m", TYPE_DOUBLE, RELIEF(position_range),
+     42.0, NULL, "seabed.relief=[{pit: {radius: 1 m, depth: 10 cm, position: {along_track: 1}}}]"},
+    {"seabed.relief[].pit.position.row", small, "2.5", TYPE_DOUBLE, RELIEF(position_along), 2.5,
+     NULL, "seabed.relief=[{pit: {radius: 1 m, depth: 10 cm, position: {column: 3}}}]"},
+    {"seabed.relief[].pit.position.column", small, "3.5", TYPE_DOUBLE, RELIEF(position_range), 3.5,
+     NULL, "seabed.relief=[{pit: {radius: 1 m, depth: 10 cm, position: {row: 3}}}]"},
+    {"seabed.relief[].pit.radius", small, "2 m", TYPE_DOUBLE, RELIEF(radius_m), 2.0, NULL,
+     "seabed.relief=[{pit: {depth: 10 cm}}]"},
+    {"seabed.relief[].pit.depth", small, "30 cm", TYPE_DOUBLE, RELIEF(height_m), 0.3, NULL,
+     "seabed.relief=[{pit: {radius: 1 m}}]"},
+    {"seabed.relief[].scour.object", small, "can", TYPE_TEXT, RELIEF(object), 0.0, "can",
+     "seabed.relief=[{scour: {width: 1 m, depth: 5 cm}}]"},
+    {"seabed.relief[].scour.width", small, "60 cm", TYPE_DOUBLE, RELIEF(width_m), 0.6, NULL,
+     "seabed.relief=[{scour: {object: can, depth: 5 cm}}]"},
+    {"seabed.relief[].scour.depth", small, "6 cm", TYPE_DOUBLE, RELIEF(height_m), 0.06, NULL,
+     "seabed.relief=[{scour: {object: can, width: 1 m}}]"},
     {"seabed.forward", small, "medium sand", TYPE_U32, SCENE(seabed.forward.reflection_kind),
      SONJECT_REFLECTION_FLUID, NULL, NULL},
     {"seabed.forward.sediment", small, "silt", TYPE_U32, SCENE(seabed.forward.reflection_kind),
@@ -501,6 +553,8 @@ static const void *structure_of(const struct scene *scene, const char *path)
         return scene->objects;
     if (strncmp(path, "medium.layers", 13) == 0 || strncmp(path, "medium.profile", 14) == 0)
         return scene->water_layers;
+    if (strncmp(path, "seabed.relief", 13) == 0)
+        return scene->relief.features;
     return scene;
 }
 
@@ -716,6 +770,7 @@ static void test_examples_are_good(void **state)
         {"figure6", SONJECT_INPUT_FILE, SONJECT_MODE_COMPOSITE, 1, 10.0},
         {"figure7", SONJECT_INPUT_FILE, SONJECT_MODE_COMPOSITE, 1, 10.0},
         {"layers", SONJECT_INPUT_SYNTHETIC, SONJECT_MODE_COMPOSITE, 2, 20.0},
+        {"relief", SONJECT_INPUT_SYNTHETIC, SONJECT_MODE_COMPOSITE, 1, 10.0},
         {"surface", SONJECT_INPUT_SYNTHETIC, SONJECT_MODE_COMPOSITE, 2, 10.0},
     };
     struct scene_folder *folder = *state;

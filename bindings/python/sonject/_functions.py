@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, c_char_p, c_double, c_int, c_size_t, c_uint32, c_uint64, c_void_p
+from ctypes import POINTER, c_char_p, c_double, c_float, c_int, c_size_t, c_uint32, c_uint64, c_void_p
 from typing import Any
 
 from . import _structures as s
@@ -71,6 +71,11 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
         [_scene, POINTER(c_double), POINTER(c_double), c_size_t],
     ),
     "sonject_scene_set_seabed": (_status, [_scene, POINTER(s.sonject_seabed_params)]),
+    "sonject_relief_params_init": (None, [POINTER(s.sonject_relief_params)]),
+    "sonject_scene_set_relief": (
+        _status,
+        [_scene, POINTER(s.sonject_relief_params), POINTER(c_float)],
+    ),
     "sonject_scene_set_geometry": (_status, [_scene, POINTER(s.sonject_geometry_params)]),
     "sonject_scene_set_transfer": (_status, [_scene, POINTER(s.sonject_transfer_params)]),
     "sonject_scene_set_injection": (_status, [_scene, POINTER(s.sonject_injection_params)]),

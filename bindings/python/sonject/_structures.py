@@ -212,6 +212,19 @@ class sonject_scene_read_params(Structure):
     ]
 
 
+class sonject_relief_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("rows", c_uint32),
+        ("columns", c_uint32),
+        ("reserved", c_uint32),
+        ("first_along_track_m", c_double),
+        ("first_ground_range_m", c_double),
+        ("row_spacing_m", c_double),
+        ("column_spacing_m", c_double),
+    ]
+
+
 class sonject_part_params(Structure):
     _fields_ = [
         ("struct_size", c_uint32),

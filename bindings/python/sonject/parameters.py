@@ -98,7 +98,8 @@ class Medium(Parameters):
 
 @dataclass(kw_only=True)
 class Seabed(Parameters):
-    """The seabed, a plane whose reflectivity comes from the image.
+    """The seabed, whose reflectivity comes from the image: a plane, unless Scene.set_relief or a
+    scene file gives it heights.
 
     map: the reflectivity when the patch is resynthesised; lambert: backscatter per area and solid
     angle at normal incidence, linear, at most 1/pi; level_radius_m: of the smooth local mean that

@@ -179,7 +179,10 @@ class Result(Handle):
 
     @cached_property
     def visibility(self) -> Array:
-        """float32, 0...1; fraction of the seabed's energy that still arrives."""
+        """float32; the seabed's energy that arrives, over that of a level seabed without objects.
+
+        0...1 without relief; slopes that face the sonar return more than 1.
+        """
         return self._layer(Layer.VISIBILITY)
 
     @cached_property

@@ -5,6 +5,8 @@ from __future__ import annotations
 import ctypes
 from typing import Any, Iterable, Mapping, Optional, Sequence, Type, Union
 
+import numpy
+
 from . import _structures as s
 from ._handle import Handle
 from ._values import PathLike, file_name, fill, initialised, real_numbers, whole_number
@@ -167,6 +169,54 @@ class Scene(Handle):
 
     def set_seabed(self, seabed: Seabed) -> None:
         self._set("seabed", seabed, Seabed)
+
+    def set_relief(
+        self,
+        heights_m: Any,
+        *,
+        first_along_track_m: float = 0.0,
+        first_ground_range_m: float = 0.0,
+        row_spacing_m: float = 0.025,
+        column_spacing_m: float = 0.025,
+    ) -> None:
+        """Heights of the seabed over its mean plane: rows along-track, columns in ground range.
+
+        first_...: where row and column 0 lie; ground range is horizontal from the track. Bilinear
+        in between, 0 outside; at the patch's edges relief falls to 0 over 1 m, or an eighth of the
+        patch's side where that is less. Adds to the relief of a scene file; None takes it away.
+        """
+        params = initialised(s.sonject_relief_params)
+        if heights_m is None:
+            self._context.call("sonject_scene_set_relief", self, ctypes.byref(params), None)
+            return
+        given = numpy.asarray(heights_m)
+        if given.ndim != 2 or given.dtype.kind not in "fiu":
+            raise ValueError(
+                f"heights_m must have rows and columns of real numbers, not the shape "
+                f"{given.shape} of {given.dtype}"
+            )
+        heights = numpy.ascontiguousarray(given, dtype=numpy.float32)
+        if max(heights.shape) > 0xFFFFFFFF:
+            raise ValueError(f"heights_m of the shape {heights.shape} is too large")
+        if 0 in heights.shape:
+            raise ValueError("heights_m is empty; None takes the relief away")
+        fill(
+            params,
+            {
+                "rows": heights.shape[0],
+                "columns": heights.shape[1],
+                "first_along_track_m": first_along_track_m,
+                "first_ground_range_m": first_ground_range_m,
+                "row_spacing_m": row_spacing_m,
+                "column_spacing_m": column_spacing_m,
+            },
+        )
+        self._context.call(
+            "sonject_scene_set_relief",
+            self,
+            ctypes.byref(params),
+            heights.ctypes.data_as(ctypes.POINTER(ctypes.c_float)),
+        )
 
     def set_surface(self, surface: Surface) -> None:
         self._set("surface", surface, Surface)

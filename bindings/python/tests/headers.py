@@ -10,6 +10,7 @@ FOLDER = pathlib.Path(__file__).resolve().parents[3] / "include" / "sonject"
 
 SCALARS = {
     "double": ctypes.c_double,
+    "float": ctypes.c_float,
     "int": ctypes.c_int,
     "size_t": ctypes.c_size_t,
     "int32_t": ctypes.c_int32,

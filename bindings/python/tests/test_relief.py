@@ -1,0 +1,56 @@
+"""A seabed that is not level."""
+
+import numpy
+import pytest
+
+import sonject
+
+
+def mound(height_m=0.2):
+    """Over the patch of make_scene: along-track 0...2.4 m, ground range 22.9...26.5 m."""
+    along, out = numpy.meshgrid(numpy.arange(96) * 0.025, 22.9 + numpy.arange(150) * 0.025, indexing="ij")
+    distance = numpy.hypot(along - 1.2, out - 24.5) / 0.5
+    return numpy.where(distance < 1.0, 0.5 * height_m * (1 + numpy.cos(numpy.pi * distance)), 0.0)
+
+
+def test_heights_change_the_image_where_they_are(make_scene, amplitude_patch):
+    scene = make_scene(objects=[])
+    scene.set_relief(mound(), first_ground_range_m=22.9)
+    result = sonject.inject(amplitude_patch, scene)
+    assert result.visibility.max() > 1.5
+    assert result.visibility.min() < 0.5
+    untouched = result.influence == 0
+    assert untouched.sum() > 2000
+    assert numpy.array_equal(result.image[untouched], amplitude_patch[untouched])
+    scene.set_relief(None)
+    assert numpy.array_equal(sonject.inject(amplitude_patch, scene).image, amplitude_patch)
+
+
+def test_objects_rest_on_the_heights(make_scene, amplitude_patch):
+    scene = make_scene()
+    level = sonject.inject(amplitude_patch, scene).objects[0]
+    scene.set_relief(numpy.full((97, 150), -0.1), first_ground_range_m=22.9)
+    lowered = sonject.inject(amplitude_patch, scene).objects[0]
+    assert lowered.height_m == pytest.approx(level.height_m - 0.1, abs=1e-4)
+    assert lowered.burial_m == pytest.approx(level.burial_m, abs=1e-4)
+
+
+def test_refusals(make_scene, amplitude_patch):
+    scene = make_scene(objects=[])
+    with pytest.raises(ValueError, match="rows and columns"):
+        scene.set_relief([1.0, 2.0])
+    with pytest.raises(ValueError, match="rows and columns"):
+        scene.set_relief(numpy.zeros((4, 4), dtype=complex))
+    with pytest.raises(ValueError, match="empty"):
+        scene.set_relief(numpy.zeros((0, 4)))
+    with pytest.raises(sonject.SonjectError, match="at row 1, column 2 it is nan"):
+        heights = numpy.zeros((3, 3))
+        heights[1, 2] = numpy.nan
+        scene.set_relief(heights)
+    with pytest.raises(sonject.SonjectError, match="relief's row_spacing must be"):
+        scene.set_relief(numpy.zeros((3, 3)), row_spacing_m=0.0)
+    with pytest.raises(sonject.SonjectError, match="2...16384 rows and columns"):
+        scene.set_relief(numpy.zeros((1, 3)))
+    scene.set_relief(20 * mound(), first_ground_range_m=22.9)
+    with pytest.raises(sonject.SonjectError, match="rises by"):
+        sonject.inject(amplitude_patch, scene)

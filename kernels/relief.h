@@ -1,0 +1,106 @@
+/* Where rays meet a seabed that is not level, and its normals there. Each lane walks alone
+ * (relief_walk.h). */
+#ifndef SONJECT_KERNELS_RELIEF_H
+#define SONJECT_KERNELS_RELIEF_H
+
+#include "layout.h"
+#include "relief_walk.h"
+
+/* The smallest cosine of incidence: interpolated normals may turn further away than the facet. */
+#define RELIEF_LEAST_COSINE 1.0e-3f
+
+/* The relief lies behind the records of all objects. */
+FUNCTION struct relief_view relief_of(const struct fan_record *fan,
+                                      GLOBAL const struct object_record *objects)
+{
+    GLOBAL const RECORD_WORD *words = (GLOBAL const RECORD_WORD *)objects + fan->relief_words;
+    struct relief_view relief;
+    relief.grid = (GLOBAL const struct relief_record *)words;
+    relief.heights = (GLOBAL const float *)(relief.grid + 1);
+    relief.slopes = relief.heights + (long)relief.grid->rows * relief.grid->columns;
+    relief.blocks = relief.slopes + 2 * (long)relief.grid->rows * relief.grid->columns;
+    return relief;
+}
+
+/* Distance along each ray to the seabed beyond `minimum`, FAR_AWAY if there is none. to_plane: to
+ * the mean plane. Lanes that are not wanted keep that. */
+APART real relief_distance(const struct fan_record *fan, GLOBAL const struct object_record *objects,
+                           struct vector3 point, struct vector3 direction, real minimum,
+                           real to_plane, mask is_wanted)
+{
+    const struct relief_view relief = relief_of(fan, objects);
+    const float rows = relief.grid->rows_per_metre;
+    const float columns = relief.grid->columns_per_metre;
+    const real starts[3] = {(point.x - fan->relief_x) * rows, (point.y - fan->relief_y) * columns,
+                            point.z - fan->seabed_height};
+    const real gains[3] = {direction.x * rows, direction.y * columns, direction.z};
+    float start[3][WIDTH], gain[3][WIDTH], plane[WIDTH], least[WIDTH];
+    int wanted[WIDTH];
+    for (int axis = 0; axis < 3; axis++) {
+        STORE_REAL(starts[axis], start[axis]);
+        STORE_REAL(gains[axis], gain[axis]);
+    }
+    STORE_REAL(to_plane, plane);
+    STORE_REAL(minimum, least);
+    STORE_WHOLE(is_wanted, wanted);
+    for (int lane = 0; lane < WIDTH; lane++) {
+        if (!wanted[lane])
+            continue;
+        struct relief_ray ray;
+        ray.row = relief_axis_of(start[0][lane], gain[0][lane]);
+        ray.column = relief_axis_of(start[1][lane], gain[1][lane]);
+        ray.height = start[2][lane];
+        ray.rise = gain[2][lane];
+        plane[lane] = relief_distance_of_one(relief, &ray, plane[lane], least[lane]);
+    }
+    return LOAD_REAL(plane);
+}
+
+/* Slope at a grid coordinate, mixed from those at the cell's corners, so that light does not show
+ * the cells; 0 outside the grid. part: 0 along-track, 1 in range. */
+FUNCTION float slope_at(struct relief_view relief, float row, float column, int part)
+{
+    const int rows = relief.grid->rows;
+    const int columns = relief.grid->columns;
+    if (!(row >= 0.0f && row <= (float)(rows - 1) && column >= 0.0f &&
+          column <= (float)(columns - 1)))
+        return 0.0f;
+    const int r = limited((int)row, 0, rows - 2);
+    const int c = limited((int)column, 0, columns - 2);
+    GLOBAL const float *at = relief.slopes + 2 * ((long)r * columns + c) + part;
+    const float corners[4] = {at[0], at[2], at[2 * columns], at[2 * columns + 2]};
+    return mix_corners(corners, row - (float)r, column - (float)c);
+}
+
+/* Unit normal at points of the relief that rays of these directions have met, on their side. */
+APART struct vector3 relief_normal(const struct fan_record *fan,
+                                   GLOBAL const struct object_record *objects, struct vector3 point,
+                                   struct vector3 direction)
+{
+    const struct relief_view relief = relief_of(fan, objects);
+    const real row = (point.x - fan->relief_x) * relief.grid->rows_per_metre;
+    const real column = (point.y - fan->relief_y) * relief.grid->columns_per_metre;
+    float rows[WIDTH], columns[WIDTH], slopes[2][WIDTH];
+    STORE_REAL(row, rows);
+    STORE_REAL(column, columns);
+    for (int lane = 0; lane < WIDTH; lane++)
+        for (int part = 0; part < 2; part++)
+            slopes[part][lane] = slope_at(relief, rows[lane], columns[lane], part);
+    const real along = LOAD_REAL(slopes[0]);
+    const real across = LOAD_REAL(slopes[1]);
+    const real up = 1.0f / SQUARE_ROOT(along * along + across * across + 1.0f);
+    struct vector3 normal;
+    normal.x = -along * up;
+    normal.y = -across * up;
+    normal.z = up;
+    const real lack = larger(RELIEF_LEAST_COSINE + dot3(normal, direction), SPLAT(0.0f));
+    const struct vector3 bent = along3(normal, direction, -lack);
+    const real length = SQUARE_ROOT(dot3(bent, bent));
+    struct vector3 unit;
+    unit.x = bent.x / length;
+    unit.y = bent.y / length;
+    unit.z = bent.z / length;
+    return choose3(MASK_OF(lack > 0.0f), unit, normal);
+}
+
+#endif

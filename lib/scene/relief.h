@@ -1,0 +1,56 @@
+/* The seabed's heights under a patch. */
+#ifndef SONJECT_SCENE_RELIEF_H
+#define SONJECT_SCENE_RELIEF_H
+
+#include "scene/patch_view.h"
+#include "scene/scene.h"
+
+/* Towards the patch's edges heights fall to 0 as a raised cosine, so that nothing steps: over so
+ * much, or over this share of the patch's side where that is less. */
+#define RELIEF_TAPER_M     1.0
+#define RELIEF_TAPER_SHARE 0.125
+
+/* Heights over the mean seabed on a level grid over the patch, in coordinates of the view; bilinear
+ * in between, 0 at its edges and outside. */
+struct relief {
+    uint32_t rows, columns;      /* along-track, in ground range; at least 5 each */
+    double first_x_m, first_y_m; /* of the first point */
+    double row_step_m, column_step_m;
+    double lowest_m, highest_m; /* of all heights; at most and at least 0 */
+    float *heights;             /* owned, rows x columns */
+    float *slopes; /* owned, rows x columns pairs: along-track and in range, by differences of
+                      fourth order */
+};
+
+/* What an object covers of the ground: half_width_m about a line of half_length_m each way. */
+struct footprint {
+    double x_m, y_m;         /* of its middle, in the view */
+    double along_x, along_y; /* unit: where its nose points */
+    double half_length_m, half_width_m;
+};
+
+/* Works out the relief that the scene tells, *relief NULL where it tells none. footprints: of the
+ * scene's objects. On success the relief is to be given to relief_release. Errors: INPUT (too
+ * steep, too high, finer than the grid can hold, scour around an unknown object), MEMORY. */
+sonject_status relief_create(struct relief **relief, struct report *report,
+                             const struct scene *scene, const struct patch_view *view,
+                             double first_row, double first_column,
+                             const struct footprint *footprints);
+void relief_release(struct relief **relief);
+
+/* Height at a point of the view, m; 0 outside, or where relief is NULL. */
+double relief_height(const struct relief *relief, double x_m, double y_m);
+
+/* Where a row and a column of the grid lie in the view, m. */
+double relief_x(const struct relief *relief, uint32_t row);
+double relief_y(const struct relief *relief, uint32_t column);
+
+/* Sets slopes, lowest_m and highest_m from the heights. */
+void relief_finish(struct relief *relief);
+
+/* Refuses what cannot be had with relief: a smooth seabed, a coherent map. Errors: INPUT. */
+sonject_status relief_check_scene(const struct scene *scene, struct report *report);
+
+bool scene_has_relief(const struct scene *scene);
+
+#endif

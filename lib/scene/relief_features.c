@@ -1,0 +1,156 @@
+#include "scene/relief_features.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/ranges.h"
+
+#define INDEX_MAX     1099511627776.0 /* 2^40, as of objects in swath pixels */
+#define HEIGHT_MAX_M  100.0
+#define GRID_SIDE_MAX 16384u
+#define GRID_SIZE_MAX (UINT32_C(1) << 24)
+#define OVERSHOOT     1.3 /* of irregular ripples where crests meet, over regular ones */
+
+void sonject_relief_params_init(sonject_relief_params *relief)
+{
+    memset(relief, 0, sizeof *relief);
+    relief->struct_size = sizeof *relief;
+    relief->row_spacing_m = 0.025;
+    relief->column_spacing_m = 0.025;
+}
+
+static void check_position(struct check *check, const struct relief_feature *feature)
+{
+    check_choice(check, "position", feature->position_kind, SONJECT_POSITION_PIXELS + 1);
+    if (feature->position_kind == SONJECT_POSITION_PIXELS) {
+        check_within(check, "position.row", feature->position_along, -INDEX_MAX, INDEX_MAX, "");
+        check_within(check, "position.column", feature->position_range, -INDEX_MAX, INDEX_MAX, "");
+    } else if (feature->position_kind == SONJECT_POSITION_METRES) {
+        check_coordinate(check, "position.along_track", feature->position_along);
+        check_length(check, "position.slant_range", feature->position_range);
+    }
+}
+
+static void check_ripples(struct check *check, const struct relief_feature *feature)
+{
+    check_positive_length(check, "wavelength", feature->wavelength_m);
+    check_within(check, "height", feature->height_m, 0.0, HEIGHT_MAX_M, " m");
+    check_finite(check, "heading", feature->heading_rad);
+    check_finite(check, "phase", feature->phase_rad);
+    check_within(check, "sharpness", feature->sharpness, 0.0, 1.0, "");
+    check_within(check, "irregularity", feature->irregularity, 0.0, 1.0, "");
+}
+
+sonject_status check_relief_feature(const struct relief_feature *feature, struct report *report,
+                                    const char **key)
+{
+    struct check check = {report, key, SONJECT_OK};
+    switch (feature->kind) {
+    case RELIEF_RIPPLES:
+        check_ripples(&check, feature);
+        break;
+    case RELIEF_SCOUR:
+        check_within(&check, "depth", feature->height_m, 0.0, HEIGHT_MAX_M, " m");
+        check_positive_length(&check, "width", feature->width_m);
+        break;
+    default:
+        check_within(&check, feature->kind == RELIEF_MOUND ? "height" : "depth", feature->height_m,
+                     0.0, HEIGHT_MAX_M, " m");
+        check_positive_length(&check, "radius", feature->radius_m);
+        check_position(&check, feature);
+    }
+    return check.status;
+}
+
+sonject_status check_relief_grid(const sonject_relief_params *grid, const float *heights_m,
+                                 struct report *report)
+{
+    struct check check = {report, NULL, SONJECT_OK};
+    if (grid->rows < 2 || grid->rows > GRID_SIDE_MAX || grid->columns < 2 ||
+        grid->columns > GRID_SIDE_MAX || grid->rows > GRID_SIZE_MAX / grid->columns)
+        check_failure(&check, "relief", "must be 2...%u rows and columns, at most 2^24 points",
+                      GRID_SIDE_MAX);
+    check_coordinate(&check, "relief's first_along_track", grid->first_along_track_m);
+    check_coordinate(&check, "relief's first_ground_range", grid->first_ground_range_m);
+    check_positive_length(&check, "relief's row_spacing", grid->row_spacing_m);
+    check_positive_length(&check, "relief's column_spacing", grid->column_spacing_m);
+    for (size_t i = 0; check.status == SONJECT_OK && i < (size_t)grid->rows * grid->columns; i++)
+        if (!(fabs((double)heights_m[i]) <= HEIGHT_MAX_M))
+            check_failure(&check, "relief",
+                          "must be within %g m of the mean seabed; at row %zu, column %zu it is %g "
+                          "m",
+                          HEIGHT_MAX_M, i / grid->columns, i % grid->columns, (double)heights_m[i]);
+    return check.status;
+}
+
+sonject_status relief_features_append(struct relief_features *features, struct report *report,
+                                      const struct relief_feature *feature)
+{
+    if (features->count >= RELIEF_FEATURES_MAX)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "relief must be at most %d features; join some", RELIEF_FEATURES_MAX);
+    struct relief_feature *grown =
+        realloc(features->features, (features->count + 1) * sizeof *grown);
+    if (!grown)
+        return report_out_of_memory(report, "relief");
+    features->features = grown;
+    features->features[features->count++] = *feature;
+    return SONJECT_OK;
+}
+
+sonject_status relief_features_set_grid(struct relief_features *features, struct report *report,
+                                        const sonject_relief_params *grid, const float *heights_m)
+{
+    float *copy = NULL;
+    if (grid->rows > 0) {
+        const sonject_status status = check_relief_grid(grid, heights_m, report);
+        if (status != SONJECT_OK)
+            return status;
+        const size_t count = (size_t)grid->rows * grid->columns;
+        copy = allocate_array(count, sizeof *copy);
+        if (!copy)
+            return report_out_of_memory(report, "relief");
+        memcpy(copy, heights_m, count * sizeof *copy);
+    }
+    free(features->heights_m);
+    features->heights_m = copy;
+    features->grid = *grid;
+    return SONJECT_OK;
+}
+
+void relief_features_clear(struct relief_features *features)
+{
+    free(features->features);
+    free(features->heights_m);
+    memset(features, 0, sizeof *features);
+}
+
+void relief_features_bounds(const struct relief_features *features, double *lowest_m,
+                            double *highest_m)
+{
+    double lowest = 0.0;
+    double highest = 0.0;
+    for (uint32_t i = 0; i < features->count; i++) {
+        const struct relief_feature *feature = &features->features[i];
+        const double ripples = OVERSHOOT * 0.5 * feature->height_m;
+        if (feature->kind == RELIEF_RIPPLES) {
+            lowest -= ripples;
+            highest += ripples;
+        } else if (feature->kind == RELIEF_MOUND) {
+            highest += feature->height_m;
+        } else {
+            lowest -= feature->height_m;
+        }
+    }
+    float low = 0.0f;
+    float high = 0.0f;
+    for (size_t i = 0;
+         features->heights_m && i < (size_t)features->grid.rows * features->grid.columns; i++) {
+        low = fminf(low, features->heights_m[i]);
+        high = fmaxf(high, features->heights_m[i]);
+    }
+    *lowest_m = lowest + (double)low;
+    *highest_m = highest + (double)high;
+}

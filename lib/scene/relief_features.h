@@ -1,0 +1,67 @@
+/* What a scene says about a seabed that is not level: features that are added together. */
+#ifndef SONJECT_SCENE_RELIEF_FEATURES_H
+#define SONJECT_SCENE_RELIEF_FEATURES_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <sonject/object.h>
+#include <sonject/relief.h>
+
+#include "base/report.h"
+
+#define RELIEF_FEATURES_MAX 256
+
+enum relief_kind {
+    RELIEF_RIPPLES,
+    RELIEF_MOUND,
+    RELIEF_PIT,
+    RELIEF_SCOUR
+};
+
+/* Members that a kind does not name are of no meaning. */
+struct relief_feature {
+    uint32_t kind;
+    double height_m;     /* of a mound; of ripples from trough to crest; depth of pit and scour */
+    double wavelength_m; /* ripples: from crest to crest */
+    double heading_rad;  /* ripples: direction across the crests, from along-track towards range */
+    double phase_rad;    /* ripples: at along-track 0, ground range 0; a crest is at 0 */
+    double sharpness;    /* ripples: 0 (a sine) ... 1 (narrow crests, wide troughs) */
+    double irregularity; /* ripples: 0 (straight crests) ... 1 (they wander, fork and end) */
+    uint64_t seed;       /* ripples: of their irregularity */
+    double radius_m;     /* mound, pit: raised cosine, 0 from there on */
+    double width_m;      /* scour: from the object's outline to where it ends */
+    uint32_t position_kind; /* mound, pit: as an object's */
+    double position_along, position_range;
+    char object[SONJECT_NAME_CAPACITY]; /* scour: name of the object */
+};
+
+/* Of a scene; all 0: the seabed is a plane. */
+struct relief_features {
+    struct relief_feature *features; /* owned */
+    uint32_t count;
+    sonject_relief_params grid; /* of the heights below */
+    float *heights_m;           /* owned, rows x columns; NULL: none */
+};
+
+/* Checks of one feature and of a caller's grid, as check_ functions of scene/scene.h do. */
+sonject_status check_relief_feature(const struct relief_feature *feature, struct report *report,
+                                    const char **key);
+sonject_status check_relief_grid(const sonject_relief_params *grid, const float *heights_m,
+                                 struct report *report);
+
+/* Appends a copy. Errors: INPUT (too many), MEMORY. */
+sonject_status relief_features_append(struct relief_features *features, struct report *report,
+                                      const struct relief_feature *feature);
+
+/* Replaces the heights by a copy; rows 0 takes them away. Errors: INPUT, MEMORY. */
+sonject_status relief_features_set_grid(struct relief_features *features, struct report *report,
+                                        const sonject_relief_params *grid, const float *heights_m);
+
+void relief_features_clear(struct relief_features *features);
+
+/* Heights, m, that what is said cannot exceed; both 0 where the seabed is a plane. */
+void relief_features_bounds(const struct relief_features *features, double *lowest_m,
+                            double *highest_m);
+
+#endif

@@ -1,0 +1,270 @@
+/* The seabed's relief in scene files: what is taken, what is refused, and what comes of it. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "api/scene_hash.h"
+#include "scene/placement.h"
+#include "scene_folder.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+#define PI 3.14159265358979323846
+
+/* Five lines; a feature's keys begin in column 7. */
+#define BASE(side)                                                                                 \
+    "sonject: 1\n"                                                                                 \
+    "input: {uniform: {rows: 400, columns: 400}, geometry: {row_spacing: 2.5 cm, "                 \
+    "column_spacing: 2.5 cm, first_slant_range: 40, side: " side "}}\n"                            \
+    "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"                                   \
+    "seabed:\n"                                                                                    \
+    "  relief:\n"
+#define OBJECTS                                                                                    \
+    "objects:\n"                                                                                   \
+    "  - {name: can, shape: cylinder, length: 2 m, diameter: 0.5 m, heading: 90 deg, burial: "     \
+    "{fraction: 0.5}, position: {along_track: 5 m, slant_range: 45 m}}\n"
+
+/* The scene as it is used, over the whole swath. */
+struct ground {
+    struct water water;
+    struct patch_view view;
+    struct placements placements;
+};
+
+static sonject_status lay(struct scene_folder *folder, struct ground *ground)
+{
+    struct scene *scene = &folder->scene;
+    memset(ground, 0, sizeof *ground);
+    sonject_status status = scene_lay_water(scene, &folder->report, &ground->water);
+    if (status == SONJECT_OK)
+        status = patch_view_init(&ground->view, &folder->report, scene, &ground->water, 0.0, 0.0,
+                                 scene->uniform_rows, scene->uniform_columns);
+    if (status == SONJECT_OK)
+        status =
+            placements_init(&ground->placements, &folder->report, scene, &ground->view, 0.0, 0.0);
+    return status;
+}
+
+static void ground_clear(struct ground *ground)
+{
+    placements_clear(&ground->placements);
+    water_clear(&ground->water);
+}
+
+/* Height at a place of the image. */
+static double height_at(const struct ground *ground, double along, double slant_range)
+{
+    return relief_height(ground->placements.relief, ground->view.is_mirrored ? -along : along,
+                         view_ground_range(&ground->view, slant_range));
+}
+
+static void expect_height(const char *what, double height, double expected, double tolerance)
+{
+    if (!(fabs(height - expected) <= tolerance))
+        fail_msg("%s: height %.5f m, not %.5f", what, height, expected);
+}
+
+static void take(struct scene_folder *folder, struct ground *ground, const char *text)
+{
+    expect_scene_taken(folder, text);
+    if (lay(folder, ground) != SONJECT_OK)
+        fail_msg("%s", folder->report.message);
+}
+
+/* Both sides of the track see the same ground. */
+static void test_features_lie_where_they_are_told(void **state)
+{
+    static const char *const texts[] = {
+        BASE("port") "  - mound: {position: {along_track: 3 m, slant_range: 43 m}, radius: 1 m, "
+                     "height: 30 cm}\n"
+                     "  - pit: {position: {row: 280, column: 240}, radius: 1 m, depth: 20 cm}\n"
+                     "  - scour: {object: can, width: 50 cm, depth: 10 cm}\n" OBJECTS,
+        BASE("starboard") "  - mound: {position: {along_track: 3 m, slant_range: 43 m}, radius: 1 "
+                          "m, height: 30 cm}\n"
+                          "  - pit: {position: {row: 280, column: 240}, radius: 1 m, depth: 20 "
+                          "cm}\n"
+                          "  - scour: {object: can, width: 50 cm, depth: 10 cm}\n" OBJECTS};
+    for (int side = 0; side < 2; side++) {
+        struct ground ground;
+        take(*state, &ground, texts[side]);
+        const struct placed_object *can = &ground.placements.objects[0];
+        expect_height("top of the mound", height_at(&ground, 3.0, 43.0), 0.3, 1e-4);
+        expect_height("half its radius", height_at(&ground, 3.5, 43.0), 0.15, 1e-3);
+        expect_height("bottom of the pit", height_at(&ground, 7.0, 46.0), -0.2, 1e-4);
+        expect_height("under the can", height_at(&ground, 5.0, 45.0), -0.1, 1e-6);
+        /* the can points outwards: it covers 1 m of range and 0.25 m along the track */
+        expect_height("at its side", height_at(&ground, 5.24, 45.0), -0.1, 1e-4);
+        expect_height("beside it", height_at(&ground, 5.5, 45.0), -0.05, 2e-3);
+        expect_height("beyond the scour", height_at(&ground, 5.76, 45.0), 0.0, 0.0);
+        expect_height("level ground", height_at(&ground, 5.0, 48.0), 0.0, 0.0);
+        expect_height("the can's middle", can->origin[2], -0.1, 1e-6);
+        expect_height("the ground that it rests on", can->seabed_m, -0.1, 1e-6);
+        expect_height("the can's lowest point", can->bottom_m, -0.35, 1e-6);
+        ground_clear(&ground);
+    }
+}
+
+/* Crest to crest, trough to crest, level at the edges; the same ground from both sides. */
+static void test_ripples(void **state)
+{
+    static const char *const texts[] = {
+        BASE("port") "  - ripples: {wavelength: 80 cm, height: 6 cm, heading: 30 deg, sharpness: "
+                     "0.5, phase: 20 deg}\n",
+        BASE("starboard") "  - ripples: {wavelength: 80 cm, height: 6 cm, heading: 30 deg, "
+                          "sharpness: 0.5, phase: 20 deg}\n"};
+    for (int side = 0; side < 2; side++) {
+        struct ground ground;
+        take(*state, &ground, texts[side]);
+        for (int i = 0; i < 50; i++) {
+            const double along = 1.5 + 0.14 * i;
+            const double range = 42.0 + 0.12 * i;
+            const double y = view_ground_range(&ground.view, range);
+            const double phase =
+                2.0 * PI * (along * cos(PI / 6.0) + y * sin(PI / 6.0)) / 0.8 + PI / 9.0;
+            /* bilinear between 64 points a wavelength: (2 pi/64)^2/8 of 4 cm */
+            expect_height("ripples", height_at(&ground, along, range),
+                          0.03 * (cos(phase) + 0.125 * cos(2.0 * phase)), 6e-5);
+        }
+        const struct relief *relief = ground.placements.relief;
+        for (uint32_t i = 0; i < relief->columns; i++)
+            assert_true(relief->heights[i] == 0.0f &&
+                        relief->heights[(size_t)(relief->rows - 1) * relief->columns + i] == 0.0f);
+        assert_true(relief->highest_m < 0.0338 && relief->highest_m > 0.0337);
+        ground_clear(&ground);
+    }
+}
+
+static void test_irregular_ripples(void **state)
+{
+    struct ground one, same, other;
+    take(*state, &one,
+         BASE("port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 4}\n");
+    take(*state, &same,
+         BASE("port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 4}\n");
+    take(*state, &other,
+         BASE("port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 5}\n");
+    const struct relief *relief = one.placements.relief;
+    const size_t bytes = (size_t)relief->rows * relief->columns * sizeof(float);
+    assert_memory_equal(relief->heights, same.placements.relief->heights, bytes);
+    assert_true(memcmp(relief->heights, other.placements.relief->heights, bytes) != 0);
+    /* no higher than the water's layers and the checks are told */
+    double lowest, highest;
+    relief_features_bounds(&((struct scene_folder *)*state)->scene.relief, &lowest, &highest);
+    assert_true(relief->lowest_m >= lowest && relief->highest_m <= highest);
+    ground_clear(&one);
+    ground_clear(&same);
+    ground_clear(&other);
+}
+
+static void test_refusals(void **state)
+{
+    static const struct {
+        const char *text, *message;
+    } cases[] = {
+        {BASE("port") "    {pit: 1}\n", ":6:5: seabed.relief: must be a list"},
+        {BASE("port") "  - {}\n", "needs one of ripples, mound, pit and scour"},
+        {BASE("port") "  - {pit: {radius: 1, depth: 1}, mound: {radius: 1, height: 1}}\n",
+         "needs one of"},
+        {BASE("port") "  - ripples: {height: 1 cm}\n", "relief[0].ripples.wavelength: missing"},
+        {BASE("port") "  - ripples: {wavelength: 1 m, height: 1 cm, sharpness: 2}\n",
+         "ripples.sharpness: must be 0...1"},
+        {BASE("port") "  - pit: {radius: 0, depth: 1 cm}\n", "pit.radius: must be"},
+        {BASE("port") "  - pit: {radius: 1, depth: -1 cm}\n", "pit.depth: must be 0...100 m"},
+        {BASE("port") "  - mound: {radius: 1, height: 1 cm, position: {row: 1}}\n",
+         "give one pair"},
+        {BASE("port") "  - scour: {width: 1, depth: 1 cm}\n", "scour.object: missing"},
+        {BASE("port") "  - dune: {}\n", "dune"},
+    };
+    struct scene_folder *folder = *state;
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        write_scene(folder, cases[i].text, strlen(cases[i].text));
+        assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+        if (!strstr(folder->report.message, cases[i].message))
+            fail_msg("'%s' does not say '%s'", folder->report.message, cases[i].message);
+    }
+}
+
+/* What only shows when the scene is used. */
+static void test_refusals_in_use(void **state)
+{
+    static const struct {
+        const char *text, *message;
+    } cases[] = {
+        {BASE("port") "  - scour: {object: tin, width: 1 m, depth: 1 cm}\n" OBJECTS,
+         "scour around 'tin': no object has that name"},
+        {BASE("port") "  - mound: {radius: 1 m, height: 2 m}\n", "rises by"},
+        {BASE("port") "  - mound: {radius: 20 m, height: 6 m}\n", "half the sonar's altitude"},
+        {BASE("port") "  - ripples: {wavelength: 5 mm, height: 1 mm}\n", "use a smaller patch"},
+        {BASE("port") "  - mound: {radius: 1 m, height: 10 cm}\n"
+                      "  forward: medium sand\n",
+         "cannot be smooth"},
+    };
+    struct scene_folder *folder = *state;
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        struct ground ground;
+        expect_scene_taken(folder, cases[i].text);
+        assert_int_equal(lay(folder, &ground), SONJECT_ERROR_INPUT);
+        if (!strstr(folder->report.message, cases[i].message))
+            fail_msg("'%s' does not say '%s'", folder->report.message, cases[i].message);
+        ground_clear(&ground);
+    }
+}
+
+static void hash_of(struct scene_folder *folder, char text[HASH_TEXT_CAPACITY])
+{
+    assert_int_equal(scene_hash(&folder->report, &folder->scene, "image", text), SONJECT_OK);
+}
+
+/* Every value counts in the hash of a scene, and a caller's heights do. */
+static void test_hash(void **state)
+{
+    struct scene_folder *folder = *state;
+    char before[HASH_TEXT_CAPACITY], after[HASH_TEXT_CAPACITY];
+    expect_scene_taken(folder, BASE("port") "  - mound: {radius: 1 m, height: 10 cm}\n");
+    struct relief_feature *feature = folder->scene.relief.features;
+    double *numbers[] = {&feature->height_m,      &feature->wavelength_m, &feature->heading_rad,
+                         &feature->phase_rad,     &feature->sharpness,    &feature->irregularity,
+                         &feature->radius_m,      &feature->width_m,      &feature->position_along,
+                         &feature->position_range};
+    hash_of(folder, before);
+    for (size_t i = 0; i < COUNT(numbers); i++) {
+        *numbers[i] += 0.5;
+        hash_of(folder, after);
+        assert_string_not_equal(before, after);
+        strcpy(before, after);
+    }
+    const float heights[4] = {0.0f, 0.0f, 0.0f, 0.1f};
+    sonject_relief_params grid;
+    sonject_relief_params_init(&grid);
+    grid.rows = grid.columns = 2;
+    assert_int_equal(
+        relief_features_set_grid(&folder->scene.relief, &folder->report, &grid, heights),
+        SONJECT_OK);
+    hash_of(folder, after);
+    assert_string_not_equal(before, after);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+#define IN_FOLDER(test)                                                                            \
+    cmocka_unit_test_setup_teardown(test, make_scene_folder, remove_scene_folder)
+        IN_FOLDER(test_features_lie_where_they_are_told),
+        IN_FOLDER(test_ripples),
+        IN_FOLDER(test_irregular_ripples),
+        IN_FOLDER(test_refusals),
+        IN_FOLDER(test_refusals_in_use),
+        IN_FOLDER(test_hash),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
