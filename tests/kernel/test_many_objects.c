@@ -22,7 +22,7 @@
 #include "trace/object_buffer.h"
 #include "trace/patch_fan.h"
 
-#define RAYS     102400 /* of each kind */
+#define RAYS     25600 /* of each of four kinds */
 #define ROWS     160
 #define COLUMNS  160
 #define MIDDLE_M 18.0
@@ -186,7 +186,7 @@ static void test_hits_are_in_their_spheres(void **unused)
     (void)unused;
     struct searched searched;
     searched_begin(&searched, 250);
-    for (uint32_t i = 0; i < 10 * RAYS; i++) {
+    for (uint32_t i = 0; i < 40 * RAYS; i++) {
         const struct object_record *object = &searched.looped[i % 250];
         const struct point centre = {object->centre_x, object->centre_y, object->centre_z};
         const struct point way = random_direction();
