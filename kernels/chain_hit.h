@@ -169,6 +169,7 @@ struct chain {
     whole first_surface;
     whole surface_before; /* that the sound came from to this hit */
     mask began_smooth;    /* the first hit was a mirror bounce: nothing finds the reverse path */
+    mask only_mirrors;    /* every hit before this one was a mirror bounce */
     mask met_object;
     mask is_alive;
     const struct target_choice *choice; /* of targets, where they are many; 0: each ray's own */

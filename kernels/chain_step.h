@@ -15,6 +15,22 @@ struct chain_step {
     mask is_mirror;
 };
 
+/* A step by a rough part: what the surface scatters that way over the density it was drawn with. */
+FUNCTION struct chain_step step_in_direction(GLOBAL const struct surface_record *surface,
+                                             const struct chain_hit *hit, struct vector3 direction,
+                                             real density)
+{
+    const real cosine = dot3(hit->normal, direction);
+    const mask is_possible = MASK_OF(density > 0.0f) & MASK_OF(cosine > 0.0f);
+    const real scattering = rough_scattering(surface, hit->normal, hit->back, direction);
+    struct chain_step step;
+    step.direction = direction;
+    step.weight = CHOOSE(
+        is_possible, scattering * cosine / CHOOSE(is_possible, density, SPLAT(1.0f)), SPLAT(0.0f));
+    step.is_mirror = is_possible & 0;
+    return step;
+}
+
 /* The rough part of seabed or sea surface: towards the targets; where the hit is among them, or the
  * step leads elsewhere too, also all around. */
 FUNCTION struct chain_step step_among_few(GLOBAL const struct chain_record *chains,
@@ -30,27 +46,18 @@ FUNCTION struct chain_step step_among_few(GLOBAL const struct chain_record *chai
     const real cone_share = 1.0f - lobe_share;
     const mask by_lobe = MASK_OF(choice < lobe_share);
     const real cone_choice = (choice - lobe_share) / cone_share;
-    struct chain_step step;
-    step.direction = sample_target_direction(spheres, chains->spheres, hit->point, &cones,
-                                             larger(cone_choice, SPLAT(0.0f)), u, v);
+    struct vector3 direction = sample_target_direction(spheres, chains->spheres, hit->point, &cones,
+                                                       larger(cone_choice, SPLAT(0.0f)), u, v);
     if (ANY(by_lobe)) {
         const struct vector3 around = sample_rough_direction(
             surface, hit->normal, hit->back, choice / larger(lobe_share, SPLAT(0.5f)), u, v);
-        step.direction = choose3(by_lobe, around, step.direction);
+        direction = choose3(by_lobe, around, direction);
     }
     real density = cone_share * target_direction_density(spheres, chains->spheres, hit->point,
-                                                         &cones, step.direction);
+                                                         &cones, direction);
     if (leads_elsewhere || ANY(cones.is_inside))
-        density +=
-            lobe_share * rough_direction_density(surface, hit->normal, hit->back, step.direction);
-    const real cosine = dot3(hit->normal, step.direction);
-    const mask is_possible = MASK_OF(density > 0.0f) & MASK_OF(cosine > 0.0f);
-    step.weight = CHOOSE(is_possible,
-                         rough_scattering(surface, hit->normal, hit->back, step.direction) *
-                             cosine / CHOOSE(is_possible, density, SPLAT(1.0f)),
-                         SPLAT(0.0f));
-    step.is_mirror = MASK_OF(choice < -1.0f);
-    return step;
+        density += lobe_share * rough_direction_density(surface, hit->normal, hit->back, direction);
+    return step_in_direction(surface, hit, direction, density);
 }
 
 /* As step_among_few among many targets. Where the point is inside the sphere chosen, the surface's
@@ -66,7 +73,7 @@ APART struct chain_step step_among_many(GLOBAL const struct chain_record *chains
     const mask is_here = hit->is_hit & MASK_OF(hit->surface < 0);
     const float elsewhere_share = leads_elsewhere ? 0.5f : 0.0f;
     const float cone_share = 1.0f - elsewhere_share;
-    const mask leads_astray = MASK_OF(choice < elsewhere_share);
+    const mask goes_elsewhere = MASK_OF(choice < elsewhere_share);
     const real cone_choice = larger((choice - elsewhere_share) / cone_share, SPLAT(0.0f));
     struct target_choice own[WIDTH];
     const struct chosen_spheres chosen =
@@ -77,32 +84,23 @@ APART struct chain_step step_among_many(GLOBAL const struct chain_record *chains
     way.z = chosen.centre.z - hit->point.z;
     mask is_outside;
     const real opening = opening_at(dot3(way, way), chosen.radius * chosen.radius, &is_outside);
-    struct chain_step step;
-    step.direction = direction_in_cone(choose3(is_outside, way, hit->normal), opening, u, v);
-    const mask by_lobe = leads_astray | ~is_outside;
+    struct vector3 direction =
+        direction_in_cone(choose3(is_outside, way, hit->normal), opening, u, v);
+    const mask by_lobe = goes_elsewhere | ~is_outside;
     if (ANY(is_here & by_lobe)) {
-        const real lobe_choice =
-            CHOOSE(leads_astray, choice / larger(SPLAT(elsewhere_share), SPLAT(0.5f)), chosen.rest);
-        step.direction = choose3(
+        const real lobe_choice = CHOOSE(goes_elsewhere, 2.0f * choice, chosen.rest);
+        direction = choose3(
             by_lobe, sample_rough_direction(surface, hit->normal, hit->back, lobe_choice, u, v),
-            step.direction);
+            direction);
     }
     real density, lobe_share;
-    densities_towards(chains, spheres, targets, own, hit->point, step.direction, is_here, &density,
+    densities_towards(chains, spheres, targets, own, hit->point, direction, is_here, &density,
                       &lobe_share);
     density = cone_share * density;
     lobe_share = elsewhere_share + cone_share * lobe_share;
     if (ANY(MASK_OF(lobe_share > 0.0f)))
-        density +=
-            lobe_share * rough_direction_density(surface, hit->normal, hit->back, step.direction);
-    const real cosine = dot3(hit->normal, step.direction);
-    const mask is_possible = MASK_OF(density > 0.0f) & MASK_OF(cosine > 0.0f);
-    step.weight = CHOOSE(is_possible,
-                         rough_scattering(surface, hit->normal, hit->back, step.direction) *
-                             cosine / CHOOSE(is_possible, density, SPLAT(1.0f)),
-                         SPLAT(0.0f));
-    step.is_mirror = MASK_OF(choice < -1.0f);
-    return step;
+        density += lobe_share * rough_direction_density(surface, hit->normal, hit->back, direction);
+    return step_in_direction(surface, hit, direction, density);
 }
 
 /* The rough part of seabed or sea surface towards targets, few or many. */
@@ -124,17 +122,10 @@ FUNCTION struct chain_step step_from_object(GLOBAL const struct surface_record *
                                             const struct chain_hit *hit, real choice, real u,
                                             real v)
 {
-    struct chain_step step;
-    step.direction = sample_rough_direction(surface, hit->normal, hit->back, choice, u, v);
-    const real density = rough_direction_density(surface, hit->normal, hit->back, step.direction);
-    const real cosine = dot3(hit->normal, step.direction);
-    const mask is_possible = MASK_OF(density > 0.0f) & MASK_OF(cosine > 0.0f);
-    step.weight = CHOOSE(is_possible,
-                         rough_scattering(surface, hit->normal, hit->back, step.direction) *
-                             cosine / CHOOSE(is_possible, density, SPLAT(1.0f)),
-                         SPLAT(0.0f));
-    step.is_mirror = MASK_OF(choice < -1.0f);
-    return step;
+    const struct vector3 direction =
+        sample_rough_direction(surface, hit->normal, hit->back, choice, u, v);
+    const real density = rough_direction_density(surface, hit->normal, hit->back, direction);
+    return step_in_direction(surface, hit, direction, density);
 }
 
 /* Rough or smooth part of one surface: a mirror bounce is taken with a probability near its share

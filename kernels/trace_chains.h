@@ -26,8 +26,10 @@ FUNCTION void count_arrival(const struct fan_record *fan, GLOBAL const struct ch
     const real off_up = (step->direction.y * path - to.y) * fan->sine_depression +
                         (step->direction.z * path - to.z) * fan->cosine_depression;
     const float half_side = 0.5f * fan->source_side;
-    const mask arrives = is_towards & MASK_OF(path > 0.0f) & MASK_OF(path < to_next_hit) &
-                         MASK_OF(magnitude(off_x) < half_side) &
+    /* what mirrors alone bring is the coherent part's */
+    const mask met_rough = ~(chain->only_mirrors & step->is_mirror);
+    const mask arrives = is_towards & met_rough & MASK_OF(path > 0.0f) &
+                         MASK_OF(path < to_next_hit) & MASK_OF(magnitude(off_x) < half_side) &
                          MASK_OF(magnitude(off_up) < half_side);
     const float area = fan->source_side * fan->source_side;
     const real energy = CHOOSE(
@@ -133,6 +135,7 @@ FUNCTION void begin_chain(const struct fan_record *fan,
     if (fan->only_object >= -1)
         chain->is_alive = chain->is_alive & MASK_OF(chain->hit.surface == fan->only_object);
     chain->began_smooth = chain->is_alive & 0;
+    chain->only_mirrors = chain->is_alive;
     /* the strip of wavefront w r de over r^2; through layers r de widens and 1/r^2 is s/(ground r)
      */
     const real ground =
@@ -192,6 +195,7 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
                             : chain.is_alive & 0;
         if (order == 1)
             chain.began_smooth = step.is_mirror;
+        chain.only_mirrors = chain.only_mirrors & step.is_mirror;
         chain.choice = 0;
         chain.energy = chain.energy * step.weight;
         chain.length = chain.length + next.distance;

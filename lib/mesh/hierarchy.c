@@ -127,28 +127,6 @@ static int sort_ranges(struct split_range *ranges, int count)
     return widest;
 }
 
-static void set_group_box(struct mesh_group_boxes *groups, int group, const struct split_box *box,
-                          float padding)
-{
-    groups->lower_x[group] = box->edges[0] - padding;
-    groups->lower_y[group] = box->edges[1] - padding;
-    groups->lower_z[group] = box->edges[2] - padding;
-    groups->upper_x[group] = -box->edges[4] + padding;
-    groups->upper_y[group] = -box->edges[5] + padding;
-    groups->upper_z[group] = -box->edges[6] + padding;
-}
-
-static void set_child_box(struct mesh_branch *branch, int slot, const struct split_box *box,
-                          float padding)
-{
-    branch->lower_x[slot] = box->edges[0] - padding;
-    branch->lower_y[slot] = box->edges[1] - padding;
-    branch->lower_z[slot] = box->edges[2] - padding;
-    branch->upper_x[slot] = -box->edges[4] + padding;
-    branch->upper_y[slot] = -box->edges[5] + padding;
-    branch->upper_z[slot] = -box->edges[6] + padding;
-}
-
 static void set_corner(const float *vertex, int slot, float *x, float *y, float *z)
 {
     x[slot] = vertex[0];
@@ -204,7 +182,7 @@ static bool add_leaf(struct builder *builder, const struct split_range *range, i
         const size_t first = range->first + (size_t)group * MESH_GROUP;
         const size_t last = first + MESH_GROUP < range->last ? first + MESH_GROUP : range->last;
         const struct split_box box = split_box_of(builder->triangles, first, last);
-        set_group_box(&leaf->groups, group, &box, builder->padding);
+        SPLIT_BOX_STORE(&box, builder->padding, &leaf->groups, group);
     }
     *child = ~(int32_t)number;
     return true;
@@ -238,10 +216,10 @@ static bool fill_group(struct builder *builder, const struct pending *pending,
     const int count = cut_in_four(builder, range, most_below(pending->level), children);
     branch->axes |= sort_ranges(children, count) << 2 * group;
     branch->children[group] = count;
-    set_group_box(&branch->groups, group, &range->box, builder->padding);
+    SPLIT_BOX_STORE(&range->box, builder->padding, &branch->groups, group);
     for (int i = 0; i < count; i++) {
         const int slot = group * MESH_GROUP + i;
-        set_child_box(branch, slot, &children[i].box, builder->padding);
+        SPLIT_BOX_STORE(&children[i].box, builder->padding, branch, slot);
         if (triangles_in(&children[i]) <= MESH_SLOTS
                 ? !add_leaf(builder, &children[i], &branch->child[slot])
                 : !add_branch(builder, &children[i], pending->level + 1, &branch->child[slot]))
@@ -258,7 +236,7 @@ static bool fill_branch(struct builder *builder, const struct pending *pending)
     struct mesh_branch branch;
     memset(&branch, 0, sizeof branch);
     for (int slot = 0; slot < MESH_SLOTS; slot++)
-        set_child_box(&branch, slot, &nowhere, 0.0f);
+        SPLIT_BOX_STORE(&nowhere, 0.0f, &branch, slot);
     const int count =
         cut_in_four(builder, &pending->range, MESH_GROUP * most_below(pending->level), groups);
     branch.axes = sort_ranges(groups, count) << 2 * MESH_GROUPS;

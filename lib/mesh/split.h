@@ -27,6 +27,17 @@ struct split_range {
 void split_box_unite(struct split_box *box, const struct split_box *other);
 struct split_box split_box_empty(void);
 
+/* Writes a box, its faces moved outwards, into a slot of a record with lower_x[]...upper_z[]. */
+#define SPLIT_BOX_STORE(box, padding, record, slot)                                                \
+    do {                                                                                           \
+        (record)->lower_x[slot] = (box)->edges[0] - (padding);                                     \
+        (record)->lower_y[slot] = (box)->edges[1] - (padding);                                     \
+        (record)->lower_z[slot] = (box)->edges[2] - (padding);                                     \
+        (record)->upper_x[slot] = -(box)->edges[4] + (padding);                                    \
+        (record)->upper_y[slot] = -(box)->edges[5] + (padding);                                    \
+        (record)->upper_z[slot] = -(box)->edges[6] + (padding);                                    \
+    } while (0)
+
 /* Half the surface; 0 for an empty box. */
 float split_box_area(const struct split_box *box);
 

@@ -89,17 +89,6 @@ static int cut_into_slots(struct builder *builder, const struct split_range *ran
     return count;
 }
 
-static void set_box(struct object_branch *branch, int slot, const struct split_box *box,
-                    float padding)
-{
-    branch->lower_x[slot] = box->edges[0] - padding;
-    branch->lower_y[slot] = box->edges[1] - padding;
-    branch->lower_z[slot] = box->edges[2] - padding;
-    branch->upper_x[slot] = -box->edges[4] + padding;
-    branch->upper_y[slot] = -box->edges[5] + padding;
-    branch->upper_z[slot] = -box->edges[6] + padding;
-}
-
 static int32_t add_branch(struct builder *builder, const struct split_range *range, uint32_t level)
 {
     struct pending *pending = &builder->pending[builder->pending_count++];
@@ -117,7 +106,7 @@ static void fill_branch(struct builder *builder, const struct pending *pending)
     struct object_branch *branch = &builder->branches[pending->branch];
     const int count = cut_into_slots(builder, &pending->range, most_below(pending->level), parts);
     for (int slot = 0; slot < OBJECT_TREE_SLOTS; slot++) {
-        set_box(branch, slot, slot < count ? &parts[slot].box : &nowhere, builder->padding);
+        SPLIT_BOX_STORE(slot < count ? &parts[slot].box : &nowhere, builder->padding, branch, slot);
         branch->child[slot] = -1;
         if (slot >= count)
             continue;
