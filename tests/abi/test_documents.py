@@ -1,0 +1,38 @@
+"""What the documents name exists: functions, files, scenes."""
+import os
+import pathlib
+import re
+
+SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
+FOLDERS = ("kernels", "lib", "include", "tools", "tests", "bindings")
+PATH = rf"(?<![\w/.])(?:{'|'.join(FOLDERS)})/[\w./*-]+"
+CODE = {".h", ".hpp", ".c", ".cpp", ".cl", ".py", ".build"}
+
+
+def quoted(document):
+    return set(re.findall(r"`([^`\n]+)`", (SOURCE / document).read_text(encoding="utf-8")))
+
+
+def words_of_the_code():
+    words = set()
+    for folder in FOLDERS:
+        for path in (SOURCE / folder).rglob("*"):
+            if path.suffix in CODE:
+                words |= set(re.findall(r"\w+", path.read_text(encoding="utf-8")))
+    return words
+
+
+def test_every_function_of_the_formulas_exists():
+    names = {name for name in quoted("kernels/MATH.md") if re.fullmatch(r"[a-z]\w*", name)}
+    assert len(names) > 100
+    assert sorted(names - words_of_the_code()) == []
+
+
+def test_every_file_that_documents_name_exists():
+    missing = []
+    for document in ("README.md", "kernels/MATH.md", "bindings/python/README.md"):
+        for text in quoted(document):
+            for name in re.findall(PATH, text):
+                if not list(SOURCE.glob(name)):
+                    missing.append(f"{document}: {name}")
+    assert sorted(missing) == []
