@@ -15,6 +15,7 @@ struct quicklook_options {
     const char *decibels;
     const char *range_axis;
     const char *transfer;
+    const char *channel;
     struct number_argument altitude;
     struct number_argument row_spacing;
     struct number_argument column_spacing;
@@ -39,6 +40,8 @@ static const struct argument arguments[] = {
      MEMBER(first_range)},
     {"--transfer", NULL, "KIND[:P[:OFFSET]]", "how stored numbers came from amplitudes, see below",
      ARGUMENT_TEXT, false, MEMBER(transfer)},
+    {"--channel", NULL, "port|starboard|N", "of an XTF file", ARGUMENT_TEXT, false,
+     MEMBER(channel)},
 };
 
 /* Copies the piece of text up to the separator and gives what follows it, NULL at the end. */
@@ -107,6 +110,24 @@ static bool read_transfer(const char *text, sonject_quicklook_params *params)
     return is_good;
 }
 
+static bool read_channel(const char *text, sonject_quicklook_params *params)
+{
+    double number = 0.0;
+    if (strcmp(text, "port") == 0) {
+        params->channel = SONJECT_CHANNEL_PORT;
+    } else if (strcmp(text, "starboard") == 0) {
+        params->channel = SONJECT_CHANNEL_STARBOARD;
+    } else if (number_parse(text, &number) && number >= 0.0 && number < 64.0 &&
+               number == (double)(int32_t)number) {
+        params->channel = (int32_t)number;
+    } else {
+        message("quicklook: --channel takes port, starboard or a channel's number, not \"", text,
+                "\"");
+        return false;
+    }
+    return true;
+}
+
 static bool read_geometry(const struct quicklook_options *options, sonject_quicklook_params *params)
 {
     int given = options->row_spacing.is_given + options->column_spacing.is_given +
@@ -139,6 +160,7 @@ static bool fill(const struct quicklook_options *options, sonject_quicklook_para
     return (!options->decibels || read_decibels(options->decibels, params)) &&
            (!options->range_axis || read_range_axis(options->range_axis, params)) &&
            (!options->transfer || read_transfer(options->transfer, params)) &&
+           (!options->channel || read_channel(options->channel, params)) &&
            read_geometry(options, params);
 }
 

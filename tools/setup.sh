@@ -5,7 +5,9 @@
 build_packages="build-essential meson ninja-build pkg-config python3
     libopenimageio-dev libyaml-dev libjansson-dev libxxhash-dev
     ocl-icd-opencl-dev opencl-headers pocl-opencl-icd"
-test_packages="libcmocka-dev python3-numpy python3-pytest clang valgrind"
+test_packages="libcmocka-dev python3-numpy python3-pytest python3-venv clang valgrind"
+# From PyPI: readers by others, which tests hold our files to.
+readers="pyxtf"
 
 # dpkg calls programs from here, which a plain su leaves out.
 PATH="$PATH:/usr/sbin:/sbin"
@@ -57,4 +59,17 @@ build_release() {
         meson setup build --buildtype=release "$@"
     fi
     ninja -C build
+}
+
+# Puts others' readers into build/readers, apart from the system's Python, and names that Python in
+# SONJECT_READERS; says so where PyPI cannot be reached, and their tests are skipped.
+install_readers() {
+    # shellcheck disable=SC2086 # a list of words
+    if python3 -m venv build/readers && build/readers/bin/pip -q --disable-pip-version-check \
+        install $readers; then
+        SONJECT_READERS="$(pwd)/build/readers/bin/python"
+        export SONJECT_READERS
+    else
+        echo "$0: PyPI cannot be reached: tests with $readers are skipped" >&2
+    fi
 }

@@ -29,9 +29,16 @@ typedef struct sonject_geometry_params {
 /* 2.5 cm pixels, port. first_slant_range_m is NaN, which is refused: it must be set. */
 SONJECT_API void sonject_geometry_params_init(sonject_geometry_params *geometry);
 
-/* How stored numbers came from amplitudes. v: stored value, as a number; q: v / full_scale, with
- * full_scale 255 or 65535 for 8 and 16 bit images and 1 for floating point. Amplitude is relative
- * to full scale. */
+/* A channel of an XTF file: a number as the file counts them, or the only one of a side. */
+enum {
+    SONJECT_CHANNEL_PORT = -1,
+    SONJECT_CHANNEL_STARBOARD = -2,
+    SONJECT_CHANNEL_ONLY = -3 /* the file's only sidescan channel */
+};
+
+/* How stored numbers came from amplitudes. v: stored value, as a number; q: v / full scale, which
+ * unless said otherwise is 255 or 65535 for 8 and 16 bit images and 1 for floating point. Amplitude
+ * is relative to full scale. */
 typedef enum sonject_transfer {
     SONJECT_TRANSFER_AMPLITUDE = 0, /* amplitude = q */
     SONJECT_TRANSFER_INTENSITY = 1, /* amplitude = sqrt(q) */
@@ -46,6 +53,9 @@ typedef struct sonject_transfer_params {
     uint32_t kind; /* sonject_transfer */
     double parameter;
     double offset;
+    double full_scale; /* the largest value that the recorder stores, such as 32767 or 4095 in 16
+                          bits: pixels there count as clipped, and none brighter is written; 0 or
+                          more than the type's: the type's. Floating point is only scaled by it */
 } sonject_transfer_params;
 
 /* Plain amplitude. */

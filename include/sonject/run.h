@@ -62,6 +62,9 @@ typedef struct sonject_quicklook_params {
         has_transfer; /* 1: transfer below is used; 0: the image's metadata, or plain amplitude */
     sonject_geometry_params geometry;
     sonject_transfer_params transfer;
+    int32_t channel; /* of an XTF file, SONJECT_CHANNEL_ONLY by default; its metadata are those of
+                        all its pings */
+    uint32_t reserved;
 } sonject_quicklook_params;
 
 SONJECT_API void sonject_quicklook_params_init(sonject_quicklook_params *params);

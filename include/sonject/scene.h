@@ -122,8 +122,17 @@ SONJECT_API sonject_status sonject_scene_set_injection(sonject_scene *scene,
                                                        const sonject_injection_params *injection);
 SONJECT_API sonject_status sonject_scene_set_patch(sonject_scene *scene,
                                                    const sonject_patch_params *patch);
-/* path is copied. */
+/* An image (TIFF, PNG, JPEG), a NumPy array or an XTF file. path is copied. */
 SONJECT_API sonject_status sonject_scene_set_input_file(sonject_scene *scene, const char *path);
+/* The channel of an input file that is XTF: 0...63, SONJECT_CHANNEL_PORT and the like; by default
+ * SONJECT_CHANNEL_ONLY. Rows are pings, columns range cells from the track outwards on either side.
+ * Errors: ARGUMENT (no such number). */
+SONJECT_API sonject_status sonject_scene_set_input_channel(sonject_scene *scene, int32_t channel);
+/* Sets the scene's geometry and the sonar's altitude from its input file, an XTF file: row spacing
+ * (straight line between positions) and altitude are means over the rows of the patch, to be set
+ * before. Other geometry (first_along_track_m) stays. On failure the scene is unchanged. Errors:
+ * INPUT (not XTF, no positions or altitude in it), STORAGE, MEMORY. */
+SONJECT_API sonject_status sonject_scene_take_geometry(sonject_scene *scene);
 SONJECT_API sonject_status sonject_scene_set_input_uniform(sonject_scene *scene, uint32_t rows,
                                                            uint32_t columns);
 SONJECT_API sonject_status

@@ -35,15 +35,15 @@ void geometry_notes_init(struct geometry_notes *notes, const sonject_sonar_param
     notes->attributes[8].value = "slant";
 }
 
-static bool read_number(const struct raster_file *file, const char *name, double *value)
+static bool read_number(const struct swath_file *file, const char *name, double *value)
 {
     char text[64];
     const char *rest;
-    return raster_file_attribute(file, name, text, sizeof text) &&
+    return swath_file_attribute(file, name, text, sizeof text) &&
            text_to_number(text, value, &rest) && *rest == '\0';
 }
 
-bool geometry_notes_read(const struct raster_file *file, sonject_geometry_params *geometry,
+bool geometry_notes_read(const struct swath_file *file, sonject_geometry_params *geometry,
                          double *altitude_m)
 {
     sonject_geometry_params read = *geometry;
@@ -54,7 +54,7 @@ bool geometry_notes_read(const struct raster_file *file, sonject_geometry_params
         !read_number(file, "sonject:first_along_track_m", &read.first_along_track_m) ||
         !read_number(file, "sonject:first_slant_range_m", &read.first_slant_range_m) ||
         !read_number(file, "sonject:altitude_m", &altitude) ||
-        !raster_file_attribute(file, "sonject:side", side, sizeof side))
+        !swath_file_attribute(file, "sonject:side", side, sizeof side))
         return false;
     read.side = strcmp(side, "starboard") == 0 ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
     *geometry = read;

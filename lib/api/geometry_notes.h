@@ -8,6 +8,7 @@
 #include "base/report.h"
 #include "image/raster.h"
 #include "io/raster_file.h"
+#include "io/swath_file.h"
 
 #define GEOMETRY_NOTES_COUNT 9
 
@@ -23,7 +24,7 @@ void geometry_notes_init(struct geometry_notes *notes, const sonject_sonar_param
                          double first_column);
 
 /* Reads them back; false (and nothing changed) if the file does not say all of it. */
-bool geometry_notes_read(const struct raster_file *file, sonject_geometry_params *geometry,
+bool geometry_notes_read(const struct swath_file *file, sonject_geometry_params *geometry,
                          double *altitude_m);
 
 #endif

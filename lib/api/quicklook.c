@@ -11,6 +11,7 @@
 #include "image/plot.h"
 #include "image/transfer.h"
 #include "io/raster_file.h"
+#include "io/swath_file.h"
 
 #define SIDE_LIMIT 4096 /* pixels that are drawn a side; larger images are averaged down to it */
 
@@ -20,6 +21,7 @@ void sonject_quicklook_params_init(sonject_quicklook_params *params)
     params->struct_size = sizeof *params;
     sonject_geometry_params_init(&params->geometry);
     sonject_transfer_params_init(&params->transfer);
+    params->channel = SONJECT_CHANNEL_ONLY;
 }
 
 /* An image as it is drawn: amplitudes of blocks of pixels. */
@@ -62,12 +64,12 @@ static void energies_to_amplitudes(struct view_image *image, const struct raster
 }
 
 static sonject_status read_reduced(struct report *report, const char *path,
-                                   struct raster_file *file,
+                                   struct swath_file *file,
                                    const sonject_transfer_params *transfer,
                                    struct view_image *image)
 {
     struct raster_layout layout;
-    raster_file_layout(file, &layout);
+    swath_file_layout(file, &layout);
     const uint64_t longest = layout.rows > layout.columns ? layout.rows : layout.columns;
     image->block = (longest + SIDE_LIMIT - 1) / SIDE_LIMIT;
     image->rows = (size_t)((layout.rows + image->block - 1) / image->block);
@@ -86,7 +88,7 @@ static sonject_status read_reduced(struct report *report, const char *path,
     for (; status == SONJECT_OK && strip.first_row < layout.rows; strip.first_row += strip.rows) {
         if (strip.rows > layout.rows - strip.first_row)
             strip.rows = layout.rows - strip.first_row;
-        status = raster_file_read(report, file, &strip, stored);
+        status = swath_file_read(report, file, &strip, stored);
         for (uint64_t row = 0; status == SONJECT_OK && row < strip.rows; row++)
             status = add_row(report, path, image, transfer, &layout, strip.first_row + row,
                              stored + row * row_bytes, linear);
@@ -152,14 +154,29 @@ static sonject_status draw(struct report *report, const struct plot_frame *frame
     return status;
 }
 
+/* What the file says of where its pixels lie; false if it does not say it. */
+static bool read_notes(const struct swath_file *file, sonject_geometry_params *geometry,
+                       double *altitude)
+{
+    const struct xtf_file *xtf = swath_file_xtf(file);
+    if (!xtf)
+        return geometry_notes_read(file, geometry, altitude);
+    const struct xtf_geometry noted = xtf_geometry_of(xtf, 0, xtf->rows.layout.rows);
+    geometry->row_spacing_m = noted.row_spacing_m;
+    geometry->column_spacing_m = noted.column_spacing_m;
+    geometry->first_slant_range_m = noted.first_slant_range_m;
+    *altitude = noted.altitude_m;
+    return noted.row_spacing_m > 0.0;
+}
+
 /* Axes: what the caller says, else what the file says, else pixels. */
 static void fill_frame(struct plot_frame *frame, const sonject_quicklook_params *params,
-                       const struct raster_file *file, const struct view_image *image,
+                       const struct swath_file *file, const struct view_image *image,
                        double *altitude)
 {
     sonject_geometry_params geometry = params->geometry;
     double noted_altitude = 0.0;
-    const bool is_noted = geometry_notes_read(file, &geometry, &noted_altitude);
+    const bool is_noted = read_notes(file, &geometry, &noted_altitude);
     if (params->has_geometry)
         geometry = params->geometry;
     const bool has_metres = params->has_geometry || is_noted;
@@ -196,12 +213,12 @@ sonject_status sonject_quicklook(sonject_context *context, const sonject_quicklo
         status = check_geometry(&taken.geometry, report, NULL);
     if (status == SONJECT_OK && taken.has_transfer)
         status = check_transfer(&taken.transfer, report, NULL);
-    struct raster_file *file = NULL;
+    struct swath_file *file = NULL;
     struct view_image image = {0, 0, 1, NULL};
     struct plot_frame frame;
     double altitude = 0.0;
     if (status == SONJECT_OK)
-        status = raster_file_open(report, taken.image, &file);
+        status = swath_file_open(report, taken.image, taken.channel, &file);
     if (status == SONJECT_OK)
         status = read_reduced(report, taken.image, file, &taken.transfer, &image);
     if (status == SONJECT_OK) {
@@ -211,7 +228,7 @@ sonject_status sonject_quicklook(sonject_context *context, const sonject_quicklo
     }
     if (status == SONJECT_OK)
         status = draw(report, &frame, &image, taken.picture);
-    raster_file_close(&file);
+    swath_file_close(&file);
     free(image.amplitude);
     return status;
 }

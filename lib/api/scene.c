@@ -5,7 +5,9 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "io/recording.h"
 #include "io/scene_file.h"
+#include "io/xtf_file.h"
 #include "medium/profile.h"
 
 /* Takes a structure into a local copy, checks it, and only then changes the scene. */
@@ -225,6 +227,23 @@ sonject_status sonject_scene_set_input_file(sonject_scene *scene, const char *pa
     scene->scene.input_path = copy;
     scene->scene.input_kind = SONJECT_INPUT_FILE;
     return SONJECT_OK;
+}
+
+sonject_status sonject_scene_set_input_channel(sonject_scene *scene, int32_t channel)
+{
+    if (!scene)
+        return SONJECT_ERROR_ARGUMENT;
+    if (channel < SONJECT_CHANNEL_ONLY || channel > XTF_CHANNEL_MAX)
+        return report_failure(scene->report, SONJECT_ERROR_ARGUMENT,
+                              "channel: %d is none of an XTF file", (int)channel);
+    scene->scene.channel = channel;
+    return SONJECT_OK;
+}
+
+sonject_status sonject_scene_take_geometry(sonject_scene *scene)
+{
+    return scene ? recording_describe(scene->report, true, true, &scene->scene)
+                 : SONJECT_ERROR_ARGUMENT;
 }
 
 sonject_status sonject_scene_set_input_uniform(sonject_scene *scene, uint32_t rows,

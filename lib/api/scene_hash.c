@@ -105,12 +105,14 @@ static void add_image(struct hash *hash, const struct scene *scene)
     ADD(hash, scene->transfer.kind);
     ADD(hash, scene->transfer.parameter);
     ADD(hash, scene->transfer.offset);
+    ADD(hash, scene->transfer.full_scale);
     ADD(hash, scene->patch.first_row);
     ADD(hash, scene->patch.first_column);
     ADD(hash, scene->patch.rows);
     ADD(hash, scene->patch.columns);
     ADD(hash, scene->input_kind);
     ADD(hash, scene->input_is_complex);
+    ADD(hash, scene->channel);
 }
 
 static void add_object(struct hash *hash, const sonject_object_params *object)

@@ -9,6 +9,7 @@
 #include "image/transfer.h"
 #include "inject/input_patch.h"
 #include "io/raster_file.h"
+#include "io/swath_file.h"
 
 /* The scene's patch; all zeros mean the whole swath. */
 static sonject_status choose_patch(struct report *report, const struct scene *scene,
@@ -40,10 +41,10 @@ static sonject_status choose_patch(struct report *report, const struct scene *sc
 }
 
 static sonject_status describe_file(struct report *report, const struct scene *scene,
-                                    const struct raster_file *file, struct swath *swath)
+                                    const struct swath_file *file, struct swath *swath)
 {
-    raster_file_layout(file, &swath->layout);
-    swath->is_lossless = raster_file_is_lossless(file);
+    swath_file_layout(file, &swath->layout);
+    swath->is_lossless = swath_file_is_lossless(file);
     swath->is_complex = swath->layout.channels == 2;
     if (swath->is_complex && !scene->input_is_complex)
         return report_failure(report, SONJECT_ERROR_INPUT,
@@ -77,8 +78,14 @@ static sonject_status describe_made(const struct scene *scene, struct swath *swa
     return SONJECT_OK;
 }
 
+static sonject_status open_input(struct report *report, const struct scene *scene,
+                                 struct swath_file **file)
+{
+    return swath_file_open(report, scene->input_path, scene->channel, file);
+}
+
 static sonject_status open_and_describe(struct report *report, const struct scene *scene,
-                                        struct swath *swath, struct raster_file **file)
+                                        struct swath *swath, struct swath_file **file)
 {
     memset(swath, 0, sizeof *swath);
     *file = NULL;
@@ -87,7 +94,7 @@ static sonject_status open_and_describe(struct report *report, const struct scen
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "the scene has no input image: give input.path");
     if (scene->input_kind == SONJECT_INPUT_FILE) {
-        status = raster_file_open(report, scene->input_path, file);
+        status = open_input(report, scene, file);
         if (status == SONJECT_OK)
             status = describe_file(report, scene, *file, swath);
     } else {
@@ -96,15 +103,15 @@ static sonject_status open_and_describe(struct report *report, const struct scen
     if (status == SONJECT_OK)
         status = choose_patch(report, scene, swath);
     if (status != SONJECT_OK)
-        raster_file_close(file);
+        swath_file_close(file);
     return status;
 }
 
 sonject_status swath_describe(struct report *report, const struct scene *scene, struct swath *swath)
 {
-    struct raster_file *file;
+    struct swath_file *file;
     const sonject_status status = open_and_describe(report, scene, swath, &file);
-    raster_file_close(&file);
+    swath_file_close(&file);
     return status;
 }
 
@@ -144,7 +151,7 @@ static sonject_status check_signs(struct report *report, const struct scene *sce
 }
 
 static sonject_status read_patch(struct report *report, const struct scene *scene,
-                                 struct raster_file *file, struct swath *swath)
+                                 struct swath_file *file, struct swath *swath)
 {
     size_t bytes;
     size_t bad = 0;
@@ -156,7 +163,7 @@ static sonject_status read_patch(struct report *report, const struct scene *scen
     swath->pixels = allocate_array(count, sizeof(float));
     if (!swath->stored || !swath->pixels)
         return report_out_of_memory(report, "the patch");
-    sonject_status status = raster_file_read(report, file, &swath->patch, swath->stored);
+    sonject_status status = swath_file_read(report, file, &swath->patch, swath->stored);
     if (status == SONJECT_OK) {
         status = transfer_to_amplitude(&scene->transfer, swath->layout.type, swath->stored, count,
                                        swath->pixels, &bad, &swath->clipped);
@@ -200,11 +207,11 @@ static sonject_status make_patch(struct report *report, const struct scene *scen
 
 sonject_status swath_open(struct report *report, const struct scene *scene, struct swath *swath)
 {
-    struct raster_file *file;
+    struct swath_file *file;
     sonject_status status = open_and_describe(report, scene, swath, &file);
     if (status == SONJECT_OK)
         status = file ? read_patch(report, scene, file, swath) : make_patch(report, scene, swath);
-    raster_file_close(&file);
+    swath_file_close(&file);
     if (status != SONJECT_OK)
         swath_close(swath);
     return status;
@@ -293,8 +300,12 @@ sonject_status swath_write(struct report *report, const struct scene *scene,
     void *stored = stored_with_result(scene, swath, result, clipped);
     if (!stored)
         return report_out_of_memory(report, "the patch");
-    const sonject_status status = raster_file_copy_with_patch(
-        report, scene->input_path, path, &swath->patch, stored, progress, user);
+    struct swath_file *file;
+    sonject_status status = open_input(report, scene, &file);
+    if (status == SONJECT_OK)
+        status =
+            swath_file_copy_with_patch(report, file, path, &swath->patch, stored, progress, user);
+    swath_file_close(&file);
     free(stored);
     return status;
 }

@@ -43,6 +43,14 @@ static double value_of(const sonject_transfer_params *transfer, double full_scal
     }
 }
 
+static double transfer_full_scale(const sonject_transfer_params *transfer, enum pixel_type type)
+{
+    const double most = pixel_full_scale(type);
+    if (transfer->full_scale > 0.0 && (type == PIXEL_FLOAT32 || transfer->full_scale < most))
+        return transfer->full_scale;
+    return most;
+}
+
 static double stored_value(enum pixel_type type, const void *stored, size_t index)
 {
     switch (type) {
@@ -72,7 +80,7 @@ static float *table_of(const sonject_transfer_params *transfer, enum pixel_type 
     const size_t length = (size_t)pixel_full_scale(type) + 1;
     float *table = malloc(length * sizeof *table);
     for (size_t i = 0; table && i < length; i++)
-        table[i] = (float)amplitude_of(transfer, pixel_full_scale(type), (double)i);
+        table[i] = (float)amplitude_of(transfer, transfer_full_scale(transfer, type), (double)i);
     return table;
 }
 
@@ -80,7 +88,7 @@ sonject_status transfer_to_amplitude(const sonject_transfer_params *transfer, en
                                      const void *stored, size_t count, float *amplitude,
                                      size_t *bad, uint64_t *clipped)
 {
-    const double full_scale = pixel_full_scale(type);
+    const double full_scale = transfer_full_scale(transfer, type);
     float *table = table_of(transfer, type, count);
     sonject_status status = SONJECT_OK;
     uint64_t at_full_scale = 0;
@@ -103,7 +111,7 @@ sonject_status transfer_to_amplitude(const sonject_transfer_params *transfer, en
 void transfer_to_stored(const sonject_transfer_params *transfer, enum pixel_type type,
                         const float *amplitude, size_t count, void *stored, uint64_t *clipped)
 {
-    const double full_scale = pixel_full_scale(type);
+    const double full_scale = transfer_full_scale(transfer, type);
     const double largest = type == PIXEL_FLOAT32 ? (double)FLT_MAX : full_scale;
     for (size_t i = 0; i < count; i++) {
         double value = value_of(transfer, full_scale, (double)amplitude[i]);

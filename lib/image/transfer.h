@@ -15,7 +15,7 @@ sonject_status transfer_to_amplitude(const sonject_transfer_params *transfer, en
                                      const void *stored, size_t count, float *amplitude,
                                      size_t *bad, uint64_t *clipped);
 
-/* Stored values of count amplitudes >= 0, rounded and limited to the type's range. *clipped is
+/* Stored values of count amplitudes >= 0, rounded and limited to full scale. *clipped is
  * increased by the number of values that were limited from above. */
 void transfer_to_stored(const sonject_transfer_params *transfer, enum pixel_type type,
                         const float *amplitude, size_t count, void *stored, uint64_t *clipped);

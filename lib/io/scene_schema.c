@@ -53,8 +53,7 @@ static const struct field geometry_fields[] = {
      WORD(STRUCTURE,
           side) = {[SONJECT_SIDE_PORT] = "port", [SONJECT_SIDE_STARBOARD] = "starboard"}},
 };
-static const struct section geometry_section = {geometry_fields, COUNT(geometry_fields),
-                                                finish_geometry};
+const struct section geometry_section = {geometry_fields, COUNT(geometry_fields), finish_geometry};
 #undef STRUCTURE
 
 #define STRUCTURE sonject_transfer_params
@@ -69,6 +68,8 @@ static const struct field transfer_fields[] = {
     {"parameter", "dB per stored unit (decibel), exponent (gamma) or b (schlick)",
      QUANTITY(STRUCTURE, parameter, QUANTITY_NUMBER)},
     {"offset", "level of a stored 0 (decibel)", QUANTITY(STRUCTURE, offset, QUANTITY_DECIBEL)},
+    {"full_scale", "largest value that the recorder stores; by default the pixel type's",
+     QUANTITY(STRUCTURE, full_scale, QUANTITY_NUMBER)},
 };
 static const struct section transfer_section = {transfer_fields, COUNT(transfer_fields),
                                                 finish_transfer};
@@ -77,12 +78,15 @@ static const struct section transfer_section = {transfer_fields, COUNT(transfer_
 #define STRUCTURE struct scene
 static const struct field input_fields[] = {
     {"path", "image file", .kind = FIELD_PATH, .offset = offsetof(STRUCTURE, input_path)},
+    {"channel", "of an XTF file: port, starboard, or its number there", .kind = FIELD_SPECIAL,
+     .read = read_channel, .unit = "word or whole number"},
     {"complex", "the file's two channels are real and imaginary part", .kind = FIELD_BOOL,
      .offset = offsetof(STRUCTURE, input_is_complex)},
     {"uniform", "a swath of unit reflectivity", SAME(uniform_section)},
     {"synthetic", "a swath that sonject makes", PART(STRUCTURE, synthetic, synthetic_section)},
-    {"geometry", "where the pixels lie: row_spacing, column_spacing and first_slant_range",
-     PART(STRUCTURE, geometry, geometry_section), REQUIRED},
+    {"geometry",
+     "where the pixels lie: row_spacing, column_spacing and first_slant_range, or from_file (XTF)",
+     .kind = FIELD_SPECIAL, .read = read_geometry, .section = &geometry_section, REQUIRED},
     {"transfer", "what the file's numbers mean", PART(STRUCTURE, transfer, transfer_section)},
 };
 static const struct section input_section = {input_fields, COUNT(input_fields), finish_input};
@@ -117,8 +121,8 @@ static const struct field sonar_fields[] = {
      REQUIRED},
     {"bandwidth", "sets the range resolution, c / (2 bandwidth)",
      QUANTITY(STRUCTURE, bandwidth_hz, QUANTITY_FREQUENCY), REQUIRED},
-    {"altitude", "height of the track over the mean seabed",
-     QUANTITY(STRUCTURE, altitude_m, QUANTITY_LENGTH), REQUIRED},
+    {"altitude", "height of the track over the mean seabed, or from_file (XTF)",
+     .kind = FIELD_SPECIAL, .read = read_altitude, .unit = "m, km, cm, mm, or from_file", REQUIRED},
     {"resolution", "along-track; by default the row spacing",
      QUANTITY(STRUCTURE, along_track_resolution_m, QUANTITY_LENGTH)},
     {"transducer", "side of the source, 0 for a point",
@@ -128,7 +132,7 @@ static const struct field sonar_fields[] = {
          {[SONJECT_WINDOW_RECTANGULAR] = "rectangular", [SONJECT_WINDOW_HAMMING] = "hamming"},
      .section = &response_section},
 };
-static const struct section sonar_section = {sonar_fields, COUNT(sonar_fields), finish_sonar};
+static const struct section sonar_section = {sonar_fields, COUNT(sonar_fields), finish_recording};
 #undef STRUCTURE
 
 #define STRUCTURE sonject_seabed_params

@@ -58,7 +58,9 @@ struct reader {
     const struct tree *tree;
     struct scene *scene;
     bool allows_user_shapes; /* code in files is wanted */
-    struct key_path path;    /* of the section or key that is read */
+    bool takes_geometry;     /* of the input file, once all is read */
+    bool takes_altitude;
+    struct key_path path; /* of the section or key that is read */
 };
 
 /* The whole file; its structure is struct scene. */
@@ -136,6 +138,16 @@ sonject_status finish_object(struct reader *reader, const struct tree_node *node
  * sonar and surface are known. */
 extern const struct section medium_section;
 sonject_status read_medium(struct reader *reader, const struct tree_node *node, void *structure);
+
+/* What an XTF file may say of itself, in scene_recording.c: the channel that is meant, geometry and
+ * altitude. They are taken when the sonar's keys, and so the input's and the patch's, are read:
+ * finish_recording is the sonar's check. */
+extern const struct section geometry_section;
+sonject_status read_channel(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status read_geometry(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status read_altitude(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status finish_recording(struct reader *reader, const struct tree_node *node,
+                                void *structure);
 
 /* The seabed's relief, in scene_relief.c. */
 extern const struct section relief_section;

@@ -124,6 +124,7 @@ sonject_status check_transfer(const sonject_transfer_params *transfer, struct re
     check_choice(&check, "kind", transfer->kind, SONJECT_TRANSFER_SCHLICK + 1);
     check_finite(&check, "parameter", transfer->parameter);
     check_finite(&check, "offset", transfer->offset);
+    check_within(&check, "full_scale", transfer->full_scale, 0.0, 1e30, "");
     if (transfer->kind == SONJECT_TRANSFER_DECIBEL) {
         check_within(&check, "parameter", transfer->parameter, 1e-6, 1e3, " dB per unit");
         check_within(&check, "offset", transfer->offset, -1e3, 1e3, " dB");

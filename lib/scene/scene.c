@@ -19,6 +19,7 @@ void scene_init(struct scene *scene)
     scene->patch.struct_size = sizeof scene->patch;
     sonject_relief_params_init(&scene->relief.grid);
     scene->input_kind = SONJECT_INPUT_MEMORY;
+    scene->channel = SONJECT_CHANNEL_ONLY;
 }
 
 void scene_clear(struct scene *scene)

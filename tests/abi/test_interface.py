@@ -65,7 +65,7 @@ SIZES = {
     "sonject_user_shape_params": 192,
     "sonject_scene_read_params": 8,
     "sonject_geometry_params": 40,
-    "sonject_transfer_params": 24,
+    "sonject_transfer_params": 32,
     "sonject_synthetic_params": 88,
     "sonject_injection_params": 64,
     "sonject_patch_params": 40,
@@ -74,7 +74,7 @@ SIZES = {
     "sonject_object_truth": 224,
     "sonject_statistics": 136,
     "sonject_run_params": 16,
-    "sonject_quicklook_params": 120,
+    "sonject_quicklook_params": 136,
     "sonject_seabed_file_params": 208,
 }
 

@@ -86,6 +86,7 @@ static const struct key_case {
 #define CAST           SOURCE_ROOT "/tests/unit/cast.csv"
     {"sonject", small, "1", TYPE_NOTHING, 0, 0.0, NULL, NULL},
     {"input.path", file, "swath-2.tif", TYPE_PATH, SCENE(input_path), 0.0, "swath-2.tif", NULL},
+    {"input.channel", file, "5", TYPE_U32, SCENE(channel), 5.0, NULL, NULL},
     {"input.complex", file, "true", TYPE_BOOL, SCENE(input_is_complex), 1.0, NULL, NULL},
     {"input.uniform.rows", small, "1048576", TYPE_U32, SCENE(uniform_rows), 1048576.0, NULL, NULL},
     {"input.uniform.columns", small, "7", TYPE_U32, SCENE(uniform_columns), 7.0, NULL, NULL},
@@ -128,6 +129,8 @@ static const struct key_case {
      "input.transfer.kind=gamma"},
     {"input.transfer.offset", file, "-96 dB", TYPE_DOUBLE, SCENE(transfer.offset), -96.0, NULL,
      "input.transfer={kind: decibel, parameter: 0.378}"},
+    {"input.transfer.full_scale", file, "4095", TYPE_DOUBLE, SCENE(transfer.full_scale), 4095.0,
+     NULL, "input.transfer.kind=amplitude"},
     {"patch.row", small, "3", TYPE_U64, SCENE(patch.first_row), 3.0, NULL,
      "patch={rows: 1, columns: 1}"},
     {"patch.column", small, "1099511627776", TYPE_U64, SCENE(patch.first_column), 1099511627776.0,

@@ -14,7 +14,7 @@
 
 static sonject_transfer_params make(sonject_transfer kind, double parameter, double offset)
 {
-    sonject_transfer_params transfer = {sizeof transfer, (uint32_t)kind, parameter, offset};
+    sonject_transfer_params transfer = {sizeof transfer, (uint32_t)kind, parameter, offset, 0.0};
     return transfer;
 }
 
@@ -208,6 +208,31 @@ static void test_full_scale_is_counted(void **state)
     assert_int_equal(clipped, 13);
 }
 
+/* Twelve bits in sixteen. */
+static void test_the_recorders_full_scale(void **state)
+{
+    (void)state;
+    sonject_transfer_params plain = make(SONJECT_TRANSFER_AMPLITUDE, 0.0, 0.0);
+    plain.full_scale = 4095.0;
+    const uint16_t stored[] = {4095, 4094, 8190};
+    uint16_t back[3];
+    float amplitude[3];
+    size_t bad;
+    uint64_t clipped = 0;
+    assert_int_equal(
+        transfer_to_amplitude(&plain, PIXEL_UINT16, stored, 3, amplitude, &bad, &clipped),
+        SONJECT_OK);
+    assert_true(amplitude[0] == 1.0f && amplitude[2] == 2.0f);
+    assert_int_equal(clipped, 2);
+    transfer_to_stored(&plain, PIXEL_UINT16, amplitude, 3, back, &clipped);
+    assert_int_equal(back[1], 4094);
+    assert_int_equal(back[2], 4095);
+    assert_int_equal(clipped, 3);
+    uint8_t narrow;
+    transfer_to_stored(&plain, PIXEL_UINT8, amplitude, 1, &narrow, &clipped);
+    assert_int_equal(narrow, 255);
+}
+
 static void test_rounding_and_limits(void **state)
 {
     (void)state;
@@ -239,6 +264,7 @@ int main(void)
         cmocka_unit_test(test_plain_floats_keep_every_bit),
         cmocka_unit_test(test_values_without_an_amplitude),
         cmocka_unit_test(test_full_scale_is_counted),
+        cmocka_unit_test(test_the_recorders_full_scale),
         cmocka_unit_test(test_rounding_and_limits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, c_char_p, c_double, c_float, c_int, c_size_t, c_uint32, c_uint64, c_void_p
+from ctypes import POINTER, c_char_p, c_double, c_float, c_int, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
 from typing import Any
 
 from . import _structures as s
@@ -77,9 +77,11 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
         [_scene, POINTER(s.sonject_relief_params), POINTER(c_float)],
     ),
     "sonject_scene_set_geometry": (_status, [_scene, POINTER(s.sonject_geometry_params)]),
+    "sonject_scene_take_geometry": (_status, [_scene]),
     "sonject_scene_set_transfer": (_status, [_scene, POINTER(s.sonject_transfer_params)]),
     "sonject_scene_set_injection": (_status, [_scene, POINTER(s.sonject_injection_params)]),
     "sonject_scene_set_patch": (_status, [_scene, POINTER(s.sonject_patch_params)]),
+    "sonject_scene_set_input_channel": (_status, [_scene, c_int32]),
     "sonject_scene_set_input_file": (_status, [_scene, c_char_p]),
     "sonject_scene_set_input_uniform": (_status, [_scene, c_uint32, c_uint32]),
     "sonject_scene_set_input_synthetic": (_status, [_scene, POINTER(s.sonject_synthetic_params)]),

@@ -81,6 +81,7 @@ class sonject_transfer_params(Structure):
         ("kind", c_uint32),
         ("parameter", c_double),
         ("offset", c_double),
+        ("full_scale", c_double),
     ]
 
 
@@ -386,6 +387,8 @@ class sonject_quicklook_params(Structure):
         ("has_transfer", c_uint32),
         ("geometry", sonject_geometry_params),
         ("transfer", sonject_transfer_params),
+        ("channel", c_int32),
+        ("reserved", c_uint32),
     ]
 
 

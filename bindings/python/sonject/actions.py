@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any, Optional
+from typing import Any, Optional, Union
 
 from . import _structures as s
 from ._callbacks import Progress, ProgressBridge, text
@@ -12,7 +12,7 @@ from ._pixels import library_pixels
 from ._values import PathLike, choice, file_name, initialised, real_number
 from .context import Context, default_context
 from .enumerations import RangeAxis
-from .parameters import Geometry, Sonar, Synthetic, Transfer
+from .parameters import Geometry, Recording, Sonar, Synthetic, Transfer
 from .result import Result
 from .scene import Scene
 
@@ -94,9 +94,10 @@ def quicklook(
     altitude_m: Optional[float] = None,
     geometry: Optional[Geometry] = None,
     transfer: Optional[Transfer] = None,
+    channel: Union[str, int, None] = None,
     context: Optional[Context] = None,
 ) -> None:
-    """Draws an image file as a PNG.
+    """Draws an image file, or a channel of an XTF file (see Recording), as a PNG.
 
     decibels: ends of the grey scale, None: chosen from the image; altitude_m, geometry, transfer:
     None for what the image's metadata says.
@@ -111,6 +112,7 @@ def quicklook(
         if not minimum < maximum:
             raise ValueError(f"decibels must be (minimum, maximum), not {decibels!r}")
         params.minimum_db, params.maximum_db = minimum, maximum
+    params.channel = Recording(image, channel).number()
     if altitude_m is not None:
         params.altitude_m = real_number("altitude_m", altitude_m)
     if geometry is not None:

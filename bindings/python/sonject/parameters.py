@@ -10,12 +10,12 @@ import ctypes
 import enum
 import math
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar, Mapping, Optional, Type
+from typing import Any, ClassVar, Mapping, Optional, Type, Union
 
 from . import _structures as s
 from ._library import load
 from ._parameters import Parameters, library_default
-from ._values import fill, real_number, sized
+from ._values import PathLike, fill, real_number, sized, whole_number
 from .enumerations import (
     ColumnRule,
     Estimator,
@@ -182,7 +182,8 @@ class Geometry(Parameters):
 class Transfer(Parameters):
     """How an image file's stored numbers came from amplitudes; arrays are always linear.
 
-    parameter: dB per unit (decibel), exponent (gamma) or b (schlick); offset: dB (decibel).
+    parameter: dB per unit (decibel), exponent (gamma) or b (schlick); offset: dB (decibel);
+    full_scale: largest value that the recorder stores, 0: the pixel type's.
     """
 
     _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_transfer_params
@@ -191,6 +192,7 @@ class Transfer(Parameters):
     kind: TransferKind = library_default()
     parameter: float = library_default()
     offset: float = library_default()
+    full_scale: float = library_default()
 
 
 @dataclass(kw_only=True)
@@ -273,6 +275,21 @@ class Uniform:
 
     rows: int
     columns: int
+
+
+@dataclass
+class Recording:
+    """A channel of an XTF file: "port", "starboard", its number there, or None for the only one."""
+
+    path: PathLike
+    channel: Union[str, int, None] = None
+
+    def number(self) -> int:
+        """The channel as the library counts them."""
+        words = {"port": -1, "starboard": -2, None: -3}
+        if self.channel in words:
+            return words[self.channel]
+        return whole_number("channel", self.channel, 63)
 
 
 @dataclass(kw_only=True)

@@ -17,6 +17,7 @@ from .parameters import (
     Injection,
     Medium,
     Patch,
+    Recording,
     Seabed,
     Surface,
     Sonar,
@@ -25,7 +26,7 @@ from .parameters import (
     Uniform,
 )
 
-Input = Union[PathLike, Uniform, Synthetic]
+Input = Union[PathLike, Recording, Uniform, Synthetic]
 
 
 class Scene(Handle):
@@ -234,7 +235,7 @@ class Scene(Handle):
         self._set("patch", patch, Patch)
 
     def set_input(self, source: Input) -> None:
-        """Where the swath comes from: an image file, Uniform or Synthetic."""
+        """Where the swath comes from: an image file, a Recording, Uniform or Synthetic."""
         if isinstance(source, Synthetic):
             self._set("input_synthetic", source, Synthetic)
         elif isinstance(source, Uniform):
@@ -242,9 +243,18 @@ class Scene(Handle):
             rows = whole_number("rows", source.rows, largest)
             columns = whole_number("columns", source.columns, largest)
             self._context.call("sonject_scene_set_input_uniform", self, rows, columns)
+        elif isinstance(source, Recording):
+            number = source.number()
+            path = file_name("input", source.path)
+            self._context.call("sonject_scene_set_input_file", self, path)
+            self._context.call("sonject_scene_set_input_channel", self, number)
         else:
             path = file_name("input", source)
             self._context.call("sonject_scene_set_input_file", self, path)
+
+    def take_geometry(self) -> None:
+        """Sets geometry and altitude from the input, a Recording, over the rows of the patch."""
+        self._context.call("sonject_scene_take_geometry", self)
 
     def add_mesh(
         self,

@@ -1,0 +1,38 @@
+/* Files whose rows are runs of plain samples at known places: channels of XTF files, NumPy arrays.
+ * Copies differ from their source in the replaced samples alone, byte for byte. */
+#ifndef SONJECT_IO_SAMPLE_ROWS_H
+#define SONJECT_IO_SAMPLE_ROWS_H
+
+#include <stdio.h>
+
+#include "base/report.h"
+#include "image/raster.h"
+
+struct sample_rows {
+    FILE *file; /* owned; open for reading */
+    char *path; /* owned */
+    uint64_t file_bytes;
+    struct raster_layout layout;
+    uint64_t *places; /* owned: of each row's first stored sample; NULL: row_bytes apart */
+    uint64_t first_place, row_bytes;
+    bool is_reversed; /* column 0 is the row's last stored sample */
+    bool is_big_endian;
+    uint32_t largest; /* samples above are refused: they mean negative numbers; 0: none are */
+};
+
+/* Frees what rows owns; fit for zeroed ones. */
+void sample_rows_clear(struct sample_rows *rows);
+
+/* Reads a region's samples in the machine's byte order, row after row. Errors: INPUT (cut short, a
+ * sample above the largest). */
+sonject_status sample_rows_read(struct report *report, const struct sample_rows *rows,
+                                const struct region *region, void *pixels);
+
+/* Writes at path a copy of the file with the region's samples replaced. path is published whole or
+ * not at all. progress may be NULL. Errors: INPUT (cut short), STORAGE, MEMORY, CANCELLED. */
+sonject_status sample_rows_copy_with_patch(struct report *report, const struct sample_rows *rows,
+                                           const char *path, const struct region *region,
+                                           const void *pixels, sonject_progress_function progress,
+                                           void *user);
+
+#endif

@@ -1,0 +1,142 @@
+#include "io/swath_file.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "io/byte_file.h"
+#include "io/npy_file.h"
+#include "io/raster_file.h"
+
+enum swath_kind {
+    SWATH_IMAGE,
+    SWATH_XTF,
+    SWATH_NPY
+};
+
+struct swath_file {
+    enum swath_kind kind;
+    char *path;
+    struct raster_file *image; /* SWATH_IMAGE */
+    struct xtf_file xtf;
+    struct sample_rows array; /* SWATH_NPY */
+};
+
+static sonject_status tell_kind(struct report *report, struct swath_file *file)
+{
+    unsigned char head[8] = {0};
+    uint64_t bytes;
+    FILE *stream = byte_file_open(file->path, &bytes);
+    if (!stream) {
+        (void)file_failure(report, file->path, "open", errno);
+        return SONJECT_ERROR_INPUT;
+    }
+    const size_t got = fread(head, 1, sizeof head, stream);
+    fclose(stream);
+    file->kind = xtf_begins(head, got)   ? SWATH_XTF
+                 : npy_begins(head, got) ? SWATH_NPY
+                                         : SWATH_IMAGE;
+    return SONJECT_OK;
+}
+
+static sonject_status open_kind(struct report *report, struct swath_file *file, int32_t channel)
+{
+    if (file->kind == SWATH_XTF)
+        return xtf_file_open(report, file->path, channel, &file->xtf);
+    if (channel != SONJECT_CHANNEL_ONLY)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: is no XTF file, so it has no channels: take input.channel out",
+                              file->path);
+    if (file->kind == SWATH_NPY)
+        return npy_file_open(report, file->path, &file->array);
+    return raster_file_open(report, file->path, &file->image);
+}
+
+sonject_status swath_file_open(struct report *report, const char *path, int32_t channel,
+                               struct swath_file **file)
+{
+    *file = NULL;
+    struct swath_file *opened = allocate_array(1, sizeof *opened);
+    char *copy = copy_text(path);
+    sonject_status status = SONJECT_OK;
+    if (!opened || !copy) {
+        free(copy);
+        free(opened);
+        return report_out_of_memory(report, "a file");
+    }
+    opened->path = copy;
+    status = tell_kind(report, opened);
+    if (status == SONJECT_OK)
+        status = open_kind(report, opened, channel);
+    if (status == SONJECT_OK)
+        *file = opened;
+    else
+        swath_file_close(&opened);
+    return status;
+}
+
+void swath_file_close(struct swath_file **file)
+{
+    if (!file || !*file)
+        return;
+    raster_file_close(&(*file)->image);
+    xtf_file_close(&(*file)->xtf);
+    sample_rows_clear(&(*file)->array);
+    free((*file)->path);
+    free(*file);
+    *file = NULL;
+}
+
+/* NULL: it is an image. */
+static const struct sample_rows *sample_rows_of(const struct swath_file *file)
+{
+    if (file->kind == SWATH_XTF)
+        return &file->xtf.rows;
+    return file->kind == SWATH_NPY ? &file->array : NULL;
+}
+
+void swath_file_layout(const struct swath_file *file, struct raster_layout *layout)
+{
+    const struct sample_rows *rows = sample_rows_of(file);
+    if (rows)
+        *layout = rows->layout;
+    else
+        raster_file_layout(file->image, layout);
+}
+
+bool swath_file_is_lossless(const struct swath_file *file)
+{
+    return sample_rows_of(file) || raster_file_is_lossless(file->image);
+}
+
+const struct xtf_file *swath_file_xtf(const struct swath_file *file)
+{
+    return file->kind == SWATH_XTF ? &file->xtf : NULL;
+}
+
+bool swath_file_attribute(const struct swath_file *file, const char *name, char *value,
+                          size_t capacity)
+{
+    return file->kind == SWATH_IMAGE && raster_file_attribute(file->image, name, value, capacity);
+}
+
+sonject_status swath_file_read(struct report *report, struct swath_file *file,
+                               const struct region *region, void *pixels)
+{
+    const struct sample_rows *rows = sample_rows_of(file);
+    return rows ? sample_rows_read(report, rows, region, pixels)
+                : raster_file_read(report, file->image, region, pixels);
+}
+
+sonject_status swath_file_copy_with_patch(struct report *report, const struct swath_file *file,
+                                          const char *path, const struct region *region,
+                                          const void *pixels, sonject_progress_function progress,
+                                          void *user)
+{
+    const struct sample_rows *rows = sample_rows_of(file);
+    return rows ? sample_rows_copy_with_patch(report, rows, path, region, pixels, progress, user)
+                : raster_file_copy_with_patch(report, file->path, path, region, pixels, progress,
+                                              user);
+}

@@ -1,0 +1,43 @@
+/* Files that hold a swath: images, channels of XTF files, NumPy arrays. */
+#ifndef SONJECT_IO_SWATH_FILE_H
+#define SONJECT_IO_SWATH_FILE_H
+
+#include "base/report.h"
+#include "image/raster.h"
+#include "io/xtf_file.h"
+
+struct swath_file;
+
+/* Opens for reading; the file's first bytes tell what it is. choice: of an XTF file's channels;
+ * must not choose for other files. Errors: INPUT (as raster_file_open, xtf_file_open, npy_file_open
+ * say), UNSUPPORTED, STORAGE, MEMORY. On success *file is the caller's, for swath_file_close; on
+ * failure NULL. */
+sonject_status swath_file_open(struct report *report, const char *path, int32_t channel,
+                               struct swath_file **file);
+void swath_file_close(struct swath_file **file);
+
+void swath_file_layout(const struct swath_file *file, struct raster_layout *layout);
+
+/* False where writing the format changes pixels (JPEG). */
+bool swath_file_is_lossless(const struct swath_file *file);
+
+/* The XTF file behind it; NULL for other kinds. */
+const struct xtf_file *swath_file_xtf(const struct swath_file *file);
+
+/* A text that sonject stored with an image, as raster_file_attribute; false for other kinds. */
+bool swath_file_attribute(const struct swath_file *file, const char *name, char *value,
+                          size_t capacity);
+
+/* As raster_file_read. */
+sonject_status swath_file_read(struct report *report, struct swath_file *file,
+                               const struct region *region, void *pixels);
+
+/* Writes at path a copy of the file with region replaced by pixels, everything else as it was.
+ * Published whole or not at all. progress may be NULL. Errors: INPUT, STORAGE, MEMORY, CANCELLED.
+ */
+sonject_status swath_file_copy_with_patch(struct report *report, const struct swath_file *file,
+                                          const char *path, const struct region *region,
+                                          const void *pixels, sonject_progress_function progress,
+                                          void *user);
+
+#endif

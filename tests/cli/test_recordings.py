@@ -1,0 +1,239 @@
+"""XTF files and NumPy arrays as input: read, injected into and written back."""
+
+import json
+import os
+import pathlib
+import subprocess
+
+import numpy
+import pytest
+
+import images
+import recordings
+from conftest import assert_refused
+
+ROWS, COLUMNS = 60, 200
+RECORDING = pathlib.Path(os.environ["SONJECT_SOURCE"]).parent / "shared/data/sidescan"
+SCENE = """\
+sonject: 1
+input: {{path: {path}, {channel} geometry: {geometry}}}
+patch: {{row: 10, column: 60, rows: 40, columns: 120}}
+sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: {altitude}, resolution: 0.1 m}}
+objects: [{{name: can, shape: cylinder, length: 1 m, diameter: 0.4 m, heading: 30 deg}}]
+"""
+
+
+@pytest.fixture
+def sides():
+    """Samples of port and starboard."""
+    random = numpy.random.default_rng(7)
+    return [random.rayleigh(2000.0, (ROWS, COLUMNS)).astype(numpy.uint16) for _ in range(2)]
+
+
+def write_scene(folder, name, channel="", geometry="from_file", altitude="from_file"):
+    path = folder / f"{name}.yaml"
+    path.write_text(SCENE.format(path=name, channel=channel and f"channel: {channel},",
+                                 geometry=geometry, altitude=altitude))
+    return path
+
+
+@pytest.mark.parametrize("side", ["port", "starboard"])
+def test_a_channel_is_as_its_pixels_in_a_tiff(sonject, tmp_path, sides, side):
+    pixels = sides[side == "starboard"]
+    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides))
+    (tmp_path / "line.tif").write_bytes(images.tiff_bytes(pixels))
+    explicit = ("{row_spacing: 0.1 m, column_spacing: 0.15 m, first_slant_range: 0.075 m, "
+                f"side: {side}}}")
+    scenes = {
+        "xtf": write_scene(tmp_path, "line.xtf", channel=side),
+        "tif": write_scene(tmp_path, "line.tif", geometry=explicit, altitude="6 m"),
+    }
+    for kind, scene in scenes.items():
+        answer = sonject("run", scene, "-o", kind)
+        assert answer.returncode == 0, answer.stderr
+    before = (tmp_path / "line.xtf").read_bytes()
+    after = (tmp_path / "xtf" / "image.xtf").read_bytes()
+    injected = recordings_pixels(after, side)
+    as_tiff = numpy.frombuffer((tmp_path / "tif" / "image.tif").read_bytes(), "<u2",
+                               ROWS * COLUMNS, 8).reshape(ROWS, COLUMNS)
+    assert numpy.array_equal(recordings_pixels(before, side), pixels)
+    assert numpy.array_equal(injected, as_tiff)
+    assert (injected != pixels).sum() > 50
+    # nothing but samples of that channel's patch has changed
+    changed = numpy.flatnonzero(numpy.frombuffer(before, "u1") != numpy.frombuffer(after, "u1"))
+    assert set(changed) <= set(sample_places(before, side, (10, 50), (60, 180)))
+
+
+def packets(data):
+    """(place, kind, bytes) of each packet."""
+    place = 1024
+    while place < len(data):
+        size = int.from_bytes(data[place + 10:place + 14], "little")
+        yield place, data[place + 2], size
+        place += size
+
+
+def line_places(data, side):
+    """Where each ping's samples of the side begin in a file of xtf_bytes."""
+    step = 0 if side == "port" else 64 + 2 * COLUMNS
+    return [place + 256 + 64 + 14 + 64 + step for place, kind, _ in packets(data) if kind == 0]
+
+
+def recordings_pixels(data, side):
+    lines = [numpy.frombuffer(data, "<u2", COLUMNS, place) for place in line_places(data, side)]
+    return numpy.array([line[::-1] if side == "port" else line for line in lines])
+
+
+def sample_places(data, side, rows, columns):
+    for place in line_places(data, side)[slice(*rows)]:
+        for column in range(*columns):
+            stored = COLUMNS - 1 - column if side == "port" else column
+            yield from (place + 2 * stored, place + 2 * stored + 1)
+
+
+def test_degrees_are_metres_on_the_ground(sonject, tmp_path, sides):
+    header = recordings.file_header([recordings.STARBOARD], units=3)
+    step = 0.1 / (1852 * 60)
+    data = header + b"".join(
+        recordings.ping([(0, line.astype("<u2"))], position=(7.0, 60.0 + row * step))
+        for row, line in enumerate(sides[1]))
+    (tmp_path / "line.xtf").write_bytes(data)
+    answer = sonject("check", write_scene(tmp_path, "line.xtf"))
+    assert answer.returncode == 0, answer.stderr
+    assert "4.00 m along-track, slant range 9.07...26.92 m, starboard" in answer.stdout
+
+
+@pytest.mark.parametrize("order", "<>")
+@pytest.mark.parametrize("kind", ["u1", "u2", "f4", "c8"])
+def test_arrays_come_back_as_they_were(sonject, tmp_path, sides, kind, order):
+    pixels = sides[0].astype(numpy.float32) / 20000.0
+    if kind.startswith("u"):
+        pixels = pixels * numpy.iinfo(kind).max
+    array = pixels.astype(numpy.dtype(kind).newbyteorder(order))
+    numpy.save(tmp_path / "line.npy", array)
+    explicit = "{row_spacing: 0.1 m, column_spacing: 0.15 m, first_slant_range: 0.075 m}"
+    scene = write_scene(tmp_path, "line.npy", geometry=explicit, altitude="6 m")
+    if kind == "c8":
+        scene.write_text(scene.read_text().replace("path: line.npy,",
+                                                   "path: line.npy, complex: true,"))
+    answer = sonject("run", scene, "-o", "out")
+    assert answer.returncode == 0, answer.stderr
+    after = numpy.load(tmp_path / "out" / "image.npy")
+    assert after.dtype == array.dtype and after.shape == array.shape
+    changed = numpy.argwhere(after != array)
+    assert len(changed) > 50
+    assert (changed.min(0) >= (10, 60)).all() and (changed.max(0) < (50, 180)).all()
+
+
+def test_full_scale_is_where_the_recorder_clips(sonject, tmp_path, sides):
+    sides[0][20:30, 100:110] = 4095
+    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides))
+    scene = write_scene(tmp_path, "line.xtf", channel="port")
+    answer = sonject("run", scene, "-o", "out", "--set",
+                     "input.transfer={kind: amplitude, full_scale: 4095}")
+    assert answer.returncode == 0, answer.stderr
+    facts = json.loads((tmp_path / "out" / "run.json").read_text())
+    inside = recordings_pixels((tmp_path / "line.xtf").read_bytes(), "port")[10:50, 60:180]
+    assert facts["input_clipped_pixels"] == (inside >= 4095).sum()
+    after = recordings_pixels((tmp_path / "out" / "image.xtf").read_bytes(), "port")
+    assert after[10:50, 60:180].max() == max(4095, inside.max())
+
+
+
+
+REFUSALS = {
+    "no channel": (lambda data: data, "", "choose one of 1 (port), 2 (starboard)"),
+    "wrong channel": (lambda data: data, "0", "choose one of 1 (port), 2 (starboard)"),
+    "cut short": (lambda data: data[:-100], "port", "cut short"),
+    "no packet": (lambda data: data[:1024] + b"\0" * 300, "port", "no packet"),
+    "only a header": (lambda data: data[:1024], "port", "has no pings"),
+    "half a header": (lambda data: data[:200], "port", "header is cut short"),
+    "more samples": (lambda data: data[:1024 + 256 + 42] + b"\xff\xff\xff\xff" +
+                     data[1024 + 256 + 46:], "port", "more samples than the ping holds"),
+}
+
+
+@pytest.mark.parametrize("case", REFUSALS)
+def test_damaged_recordings_are_refused(sonject, tmp_path, sides, case):
+    damage, channel, words = REFUSALS[case]
+    (tmp_path / "line.xtf").write_bytes(damage(recordings.xtf_bytes(*sides)))
+    answer = sonject("run", write_scene(tmp_path, "line.xtf", channel=channel), "-o", "out")
+    assert_refused(answer, 3, words)
+    assert not (tmp_path / "out").exists()
+
+
+def test_other_slant_ranges_within_a_file_are_refused(sonject, tmp_path, sides):
+    data = recordings.xtf_bytes(*sides)
+    data += recordings.ping([(1, sides[0][0].astype("<u2"))], slant_range=50.0)
+    (tmp_path / "line.xtf").write_bytes(data)
+    answer = sonject("check", write_scene(tmp_path, "line.xtf", channel="port"))
+    assert_refused(answer, 3, "ping 60 has 200 samples to 50 m")
+
+
+def test_signed_samples_below_zero_are_refused(sonject, tmp_path, sides):
+    sides[1][30, 100] = 40000
+    data = recordings.file_header([recordings.STARBOARD], unipolar=0) + b"".join(
+        recordings.ping([(0, line.astype("<u2"))], position=(0.1 * row, 1.0))
+        for row, line in enumerate(sides[1]))
+    (tmp_path / "line.xtf").write_bytes(data)
+    answer = sonject("run", write_scene(tmp_path, "line.xtf"), "-o", "out")
+    assert_refused(answer, 3, "the sample at ping 30, column 100 is negative")
+
+
+@pytest.mark.parametrize("array, words", [
+    (numpy.zeros((4, 5, 2), numpy.float32), "not two-dimensional"),
+    (numpy.zeros((40, 50), numpy.float64), "a type that sonject does not read"),
+    (numpy.zeros((50, 40), numpy.float32).T, "Fortran order"),
+])
+def test_other_arrays_are_refused(sonject, tmp_path, array, words):
+    numpy.save(tmp_path / "line.npy", array)
+    explicit = "{row_spacing: 0.1 m, column_spacing: 0.15 m, first_slant_range: 0.075 m}"
+    scene = write_scene(tmp_path, "line.npy", geometry=explicit, altitude="6 m")
+    assert_refused(sonject("run", scene, "-o", "out"), 3, words)
+
+
+def test_an_array_cut_short_is_refused(sonject, tmp_path):
+    numpy.save(tmp_path / "line.npy", numpy.ones((ROWS, COLUMNS), numpy.float32))
+    data = (tmp_path / "line.npy").read_bytes()
+    explicit = "{row_spacing: 0.1 m, column_spacing: 0.15 m, first_slant_range: 0.075 m}"
+    scene = write_scene(tmp_path, "line.npy", geometry=explicit, altitude="6 m")
+    for count in (5, 9, 60, len(data) - 1):
+        (tmp_path / "line.npy").write_bytes(data[:count])
+        answer = sonject("run", scene, "-o", "out")
+        assert answer.returncode == 3, answer.stderr
+        assert len(answer.stderr.splitlines()) == 1, answer.stderr
+
+
+def test_a_measured_line_is_read_by_others(sonject, tmp_path):
+    """The Iver2's line, injected into at 10 to 28 m to port, in the eyes of pyxtf."""
+    measured = RECORDING / "scotsman-iver2.xtf"
+    reader = os.environ.get("SONJECT_READERS")
+    if not measured.exists():
+        pytest.skip(f"{measured.parent} is not there")
+    if not reader:
+        pytest.skip("SONJECT_READERS does not name a Python that has pyxtf")
+    (tmp_path / "line.xtf").write_bytes(measured.read_bytes())
+    scene = write_scene(tmp_path, "line.xtf", channel="port")
+    answer = sonject("run", scene, "-o", "out", "--set",
+                     "patch={row: 10, column: 340, rows: 120, columns: 600}", "--set",
+                     "sonar.bandwidth=25 kHz")
+    assert answer.returncode == 0, answer.stderr
+    script = ("import sys, numpy, pyxtf\n"
+              "for path in sys.argv[1:]:\n"
+              "    head, packets = pyxtf.xtf_read(path)\n"
+              "    pings = packets[pyxtf.XTFHeaderType.sonar]\n"
+              "    for channel in range(2):\n"
+              "        numpy.save(f'{path}.{channel}.npy',\n"
+              "                   numpy.array([ping.data[channel] for ping in pings]))\n")
+    subprocess.run([reader, "-c", script, tmp_path / "line.xtf", tmp_path / "out" / "image.xtf"],
+                   check=True, env={**os.environ, "PYTHONPATH": ""})
+    port, starboard = (
+        (numpy.load(f"{tmp_path}/line.xtf.{channel}.npy").astype(float),
+         numpy.load(f"{tmp_path}/out/image.xtf.{channel}.npy").astype(float))
+        for channel in range(2))
+    assert port[0].shape == (461, 1024)
+    assert numpy.array_equal(*starboard)
+    changed = numpy.argwhere(port[0] != port[1])
+    assert len(changed) > 100
+    assert (changed.min(0) >= (10, 1024 - 940)).all()
+    assert (changed.max(0) < (130, 1024 - 340)).all()
