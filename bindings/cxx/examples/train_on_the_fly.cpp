@@ -1,0 +1,128 @@
+/* A detector that learns from targets put into seabed on the fly: no image is stored, every step of
+ * training sees a target in a pose that it has never seen. The detector is as small as can be (a
+ * logistic regression on four numbers of a window); what the example shows is how injection joins a
+ * training loop. Prints how well it tells windows with a target from windows without, on targets
+ * that it was not trained on.
+ *
+ *     c++ train_on_the_fly.cpp $(pkg-config --cflags --libs sonject) && ./a.out
+ */
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <random>
+#include <vector>
+
+#include <sonject.hpp>
+
+namespace
+{
+
+constexpr std::uint32_t side = 128; /* pixels of a patch */
+constexpr double spacing = 0.05;    /* m */
+constexpr int features = 5;         /* with the constant one */
+using sample = std::array<double, features>;
+
+/* Rayleigh speckle: a seabed of one's own would come from measured swaths. */
+std::vector<float> make_seabed(std::mt19937 &random)
+{
+    std::normal_distribution<float> normal(0.0f, 0.05f);
+    std::vector<float> amplitudes(side * side);
+    for (float &amplitude : amplitudes)
+        amplitude = std::hypot(normal(random), normal(random));
+    return amplitudes;
+}
+
+sonject::scene make_scene(const sonject::context &context, std::mt19937 &random)
+{
+    std::uniform_real_distribution<double> unit(0.0, 1.0);
+    sonject::scene scene(context);
+    auto geometry = sonject::defaults<sonject_geometry_params>();
+    geometry.row_spacing_m = geometry.column_spacing_m = spacing;
+    geometry.first_slant_range_m = 30.0 + 40.0 * unit(random);
+    scene.set(geometry);
+    auto injection = sonject::defaults<sonject_injection_params>();
+    injection.seed = random();
+    scene.set(injection);
+    auto target = sonject::defaults<sonject_object_params>();
+    target.shape = unit(random) < 0.5 ? SONJECT_SHAPE_CYLINDER : SONJECT_SHAPE_TRUNCATED_CONE;
+    target.length_m = 1.0 + unit(random);
+    target.diameter_m = 0.4 + 0.4 * unit(random);
+    target.top_diameter_m = 0.5 * target.diameter_m;
+    target.height_m = 0.4;
+    target.heading_rad = 6.283 * unit(random);
+    target.burial_m = 0.1 * unit(random);
+    scene.add(target);
+    return scene;
+}
+
+/* Brightest and darkest smoothed pixel, spread and mean of the logarithms. */
+sample describe(const std::vector<float> &image)
+{
+    constexpr std::uint32_t cell = 4;
+    double brightest = -200.0, darkest = 200.0, sum = 0.0, squares = 0.0;
+    int cells = 0;
+    for (std::uint32_t row = 0; row + cell <= side; row += cell)
+        for (std::uint32_t column = 0; column + cell <= side; column += cell) {
+            double energy = 1e-12;
+            for (std::uint32_t i = 0; i < cell * cell; i++) {
+                const float pixel = image[(row + i / cell) * side + column + i % cell];
+                energy += static_cast<double>(pixel) * static_cast<double>(pixel);
+            }
+            const double level = 10.0 * std::log10(energy / (cell * cell));
+            brightest = std::max(brightest, level);
+            darkest = std::min(darkest, level);
+            sum += level;
+            squares += level * level;
+            cells++;
+        }
+    const double mean = sum / cells;
+    const double spread = std::sqrt(std::max(0.0, squares / cells - mean * mean));
+    return {{1.0, (brightest - mean) / 10.0, (mean - darkest) / 10.0, spread / 3.0, mean / 30.0}};
+}
+
+double answer(const sample &weights, const sample &numbers)
+{
+    double sum = 0.0;
+    for (int i = 0; i < features; i++)
+        sum += weights[static_cast<std::size_t>(i)] * numbers[static_cast<std::size_t>(i)];
+    return 1.0 / (1.0 + std::exp(-sum));
+}
+
+/* One window, with or without a target. */
+sample draw(const sonject::context &context, std::mt19937 &random, bool has_target)
+{
+    const std::vector<float> seabed = make_seabed(random);
+    if (!has_target)
+        return describe(seabed);
+    const sonject::scene scene = make_scene(context, random);
+    return describe(sonject::inject(scene, {seabed.data(), side, side}).image());
+}
+
+} // namespace
+
+int main(int argument_count, char **)
+{
+    const int steps = argument_count > 1 ? 40 : 400; /* any argument: a short run */
+    try {
+        const sonject::context context;
+        std::mt19937 training(1), testing(2);
+        sample weights = {};
+        for (int step = 0; step < steps; step++) {
+            const bool has_target = step % 2 == 0;
+            const sample numbers = draw(context, training, has_target);
+            const double error = (has_target ? 1.0 : 0.0) - answer(weights, numbers);
+            for (std::size_t i = 0; i < features; i++)
+                weights[i] += 0.5 * error * numbers[i];
+        }
+        int right = 0;
+        for (int step = 0; step < steps; step++)
+            right +=
+                (answer(weights, draw(context, testing, step % 2 == 0)) > 0.5) == (step % 2 == 0);
+        std::printf("%d of %d unseen windows told right\n", right, steps);
+        return 2 * right > steps ? 0 : 1;
+    } catch (const sonject::error &failure) {
+        std::fprintf(stderr, "%s\n", failure.what());
+        return 1;
+    }
+}

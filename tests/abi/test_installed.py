@@ -1,0 +1,94 @@
+"""The installed library: what is installed where, and that programs find it by pkg-config and by
+CMake."""
+import os
+import pathlib
+import shutil
+import subprocess
+
+import pytest
+
+SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
+BUILD = pathlib.Path(os.environ["SONJECT_LIBRARY"]).resolve().parent.parent
+CXX_COMPILER = os.environ.get("CXX", "c++")
+EXAMPLE = SOURCE / "bindings" / "cxx" / "examples" / "train_on_the_fly.cpp"
+WARNINGS = ["-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror"]
+
+
+@pytest.fixture(scope="module")
+def root(tmp_path_factory):
+    """Where DESTDIR put an installation."""
+    folder = tmp_path_factory.mktemp("root")
+    subprocess.run(["meson", "install", "-C", BUILD, "--no-rebuild", "--quiet"], check=True,
+                   env={**os.environ, "DESTDIR": str(folder)}, stdout=subprocess.DEVNULL)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def prefix(root):
+    """The same, as a prefix that nothing was configured for."""
+    return next(root.rglob("sonject.hpp")).parent.parent
+
+
+def pkg_config_flags(root):
+    folder = next(root.rglob("sonject.pc")).parent
+    variables = {**os.environ, "PKG_CONFIG_LIBDIR": str(folder),
+                 "PKG_CONFIG_SYSROOT_DIR": str(root)}
+    return subprocess.run(["pkg-config", "--cflags", "--libs", "sonject"], capture_output=True,
+                          text=True, check=True, env=variables).stdout.split()
+
+
+def library_folder(prefix):
+    return next(prefix.rglob("libsonject.so.0.*")).parent
+
+
+def run_program(program, prefix):
+    answer = subprocess.run([program, "short"], capture_output=True, text=True, check=False,
+                            env={**os.environ, "LD_LIBRARY_PATH": str(library_folder(prefix))})
+    assert answer.returncode == 0, answer.stderr
+    assert "right" in answer.stdout
+
+
+def test_headers_and_library_are_there(root, prefix):
+    assert (prefix / "include" / "sonject" / "sonject.h").exists()
+    assert (library_folder(prefix) / "cmake" / "sonject" / "sonjectConfig.cmake").exists()
+    assert str(root) in " ".join(pkg_config_flags(root))
+
+
+@pytest.mark.parametrize("standard", ["c++11", "c++20"])
+@pytest.mark.parametrize("program", [EXAMPLE, SOURCE / "tests" / "abi" / "cxx_checks.cpp"],
+                         ids=lambda path: path.stem)
+def test_programs_build_by_pkg_config(root, prefix, tmp_path, program, standard):
+    built = tmp_path / "program"
+    subprocess.run([CXX_COMPILER, f"-std={standard}", *WARNINGS, program, *pkg_config_flags(root),
+                    "-o", built], check=True)
+    run_program(built, prefix)
+
+
+def test_the_example_builds_by_cmake(prefix, tmp_path):
+    if not shutil.which("cmake"):
+        pytest.skip("cmake is not installed")
+    (tmp_path / "CMakeLists.txt").write_text(f"""\
+cmake_minimum_required(VERSION 3.16)
+project(train CXX)
+set(CMAKE_CXX_STANDARD 17)
+find_package(sonject 0.1 REQUIRED)
+add_executable(train {EXAMPLE})
+target_link_libraries(train sonject::sonject)
+""")
+    build = tmp_path / "build"
+    subprocess.run(["cmake", "-S", tmp_path, "-B", build, f"-DCMAKE_PREFIX_PATH={prefix}"],
+                   check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", build], check=True, stdout=subprocess.DEVNULL)
+    run_program(build / "train", prefix)
+
+
+@pytest.mark.parametrize("version, is_found", [("0.1", True), ("0.2", False), ("1", False)])
+def test_cmake_knows_the_version(prefix, tmp_path, version, is_found):
+    if not shutil.which("cmake"):
+        pytest.skip("cmake is not installed")
+    (tmp_path / "CMakeLists.txt").write_text(
+        f"cmake_minimum_required(VERSION 3.16)\nproject(t CXX)\n"
+        f"find_package(sonject {version} REQUIRED)\n")
+    answer = subprocess.run(["cmake", "-S", tmp_path, "-B", tmp_path / "build",
+                             f"-DCMAKE_PREFIX_PATH={prefix}"], capture_output=True, check=False)
+    assert (answer.returncode == 0) == is_found, answer.stderr
