@@ -220,18 +220,19 @@ FUNCTION real object_distance(GLOBAL const struct object_record *object, struct 
     if (is_plain(object))
         return first_end_beyond(plain_interval(object, start, step), approach, minimum);
 #if HAS_MESHES
-    if (object->shape == SHAPE_MESH)
-        return approach +
-               (object->cuts == 0
-                    ? mesh_object_distance(object, start, step, minimum - approach, is_near)
-                    : cut_mesh_distance(object, start, step, minimum - approach, is_near));
+    if (object->shape == SHAPE_MESH && object->cuts > 0)
+        return approach + cut_mesh_distance(object, start, step, minimum - approach, is_near);
+    if (object->shape == SHAPE_MESH) {
+        const real beyond = minimum - approach;
+        const real farthest = CHOOSE(is_near, SPLAT(FAR_AWAY), beyond - 1.0f);
+        return approach + mesh_object_distance(object, start, step, beyond, farthest);
+    }
 #endif
 #ifdef WITH_USER_SHAPES
+    if (object->shape == SHAPE_USER && object->cuts > 0)
+        return approach + cut_user_distance(object, start, step, minimum - approach, is_near);
     if (object->shape == SHAPE_USER)
-        return approach +
-               (object->cuts == 0
-                    ? user_object_distance(object, start, step, minimum - approach, is_near)
-                    : cut_user_distance(object, start, step, minimum - approach, is_near));
+        return approach + user_object_distance(object, start, step, minimum - approach, is_near);
 #endif
     const struct spans inside = object_spans(object, start, step);
     return smaller(first_end_beyond(inside.first, approach, minimum),

@@ -100,9 +100,9 @@ FUNCTION mask is_in_mesh_box(GLOBAL const struct object_record *object, struct v
            MASK_OF(magnitude(point.z) <= object->half_height + padding);
 }
 
-/* As mesh_object_distance, of what the cuts leave. A ray that comes out of what is cut off meets
- * the plane's own face if it is inside the mesh there; so does one that starts in the solid and
- * meets no facet before the plane. */
+/* As mesh_object_distance, of what the cuts leave, for the rays that are wanted. A ray that comes
+ * out of what is cut off meets the plane's own face if it is inside the mesh there; so does one
+ * that starts in the solid and meets no facet before the plane. */
 APART real cut_mesh_distance(GLOBAL const struct object_record *object, struct vector3 start,
                              struct vector3 direction, real minimum, mask is_wanted)
 {
@@ -111,7 +111,7 @@ APART real cut_mesh_distance(GLOBAL const struct object_record *object, struct v
     const real first = larger(minimum, left.entry);
     const mask is_left = is_wanted & MASK_OF(first <= left.exit);
     const real last = CHOOSE(is_left, left.exit, SPLAT(-FAR_AWAY));
-    const real facet = mesh_nearest_hit(mesh, start, direction, first, last).distance;
+    const real facet = mesh_object_distance(object, start, direction, first, last);
     if (mesh_record_of_object(object)->is_sheet)
         return facet;
     const mask enters = MASK_OF(left.entry > minimum);
