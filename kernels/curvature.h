@@ -47,6 +47,11 @@ FUNCTION struct vector3 own_normal_change(GLOBAL const struct object_record *obj
     change.x = change.x * scale;
     change.y = change.y * scale;
     change.z = change.z * scale;
+#ifdef WITH_USER_SHAPES /* their code need not know a normal off their surface, on a cut's face */
+    struct vector3 flat;
+    flat.x = flat.y = flat.z = SPLAT(0.0f);
+    change = choose3(is_own, change, flat);
+#endif
     return change;
 }
 

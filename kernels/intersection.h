@@ -2,6 +2,7 @@
 #ifndef SONJECT_KERNELS_INTERSECTION_H
 #define SONJECT_KERNELS_INTERSECTION_H
 
+#include "cut.h"
 #include "layout.h"
 #include "mesh_ray.h" /* boxes, which many objects need too */
 #include "shapes/box.h"
@@ -18,11 +19,13 @@
  * unless it is told otherwise. */
 #if defined(WITH_MESHES) || !(defined(__OPENCL_C_VERSION__) || defined(WITHOUT_MESHES))
 #define HAS_MESHES 1
+#include "mesh_cut.h"
 #include "mesh_object.h"
 #else
 #define HAS_MESHES 0
 #endif
 #ifdef WITH_USER_SHAPES /* only where a scene has some, in OpenCL C */
+#include "user_cut.h"
 #include "user_object.h"
 #endif
 
@@ -109,7 +112,8 @@ FUNCTION struct spans shape_spans(GLOBAL const struct object_record *object, str
     }
 }
 
-/* Whether a cut lays open an inside, which its face then closes. */
+/* Whether a cut of this shape, which is no mesh nor a user's, lays open an inside, which its face
+ * then closes. */
 FUNCTION int is_solid(GLOBAL const struct object_record *object)
 {
     return object->shape != SHAPE_PLANE && object->shape != SHAPE_DISC &&
@@ -175,17 +179,6 @@ FUNCTION struct vector3 shape_normal(GLOBAL const struct object_record *object,
     }
 }
 
-/* The part of a ray that a cut leaves, in the object's own frame. */
-FUNCTION struct interval interval_under_cut(GLOBAL const struct cut_record *cut,
-                                            struct vector3 point, struct vector3 direction)
-{
-    const real depth =
-        cut->offset - (point.x * cut->normal_x + point.y * cut->normal_y + point.z * cut->normal_z);
-    const real loss =
-        direction.x * cut->normal_x + direction.y * cut->normal_y + direction.z * cut->normal_z;
-    return interval_of_half_space(depth, loss);
-}
-
 /* What the cuts leave of the shape. */
 APART struct spans object_spans(GLOBAL const struct object_record *object, struct vector3 point,
                                 struct vector3 direction)
@@ -227,10 +220,17 @@ FUNCTION real object_distance(GLOBAL const struct object_record *object, struct 
     if (is_plain(object))
         return first_end_beyond(plain_interval(object, start, step), approach, minimum);
 #if HAS_MESHES
-    if (object->shape == SHAPE_MESH)
-        return approach + mesh_object_distance(object, start, step, minimum - approach, is_near);
+    if (object->shape == SHAPE_MESH && object->cuts > 0)
+        return approach + cut_mesh_distance(object, start, step, minimum - approach, is_near);
+    if (object->shape == SHAPE_MESH) {
+        const real beyond = minimum - approach;
+        const real farthest = CHOOSE(is_near, SPLAT(FAR_AWAY), beyond - 1.0f);
+        return approach + mesh_object_distance(object, start, step, beyond, farthest);
+    }
 #endif
 #ifdef WITH_USER_SHAPES
+    if (object->shape == SHAPE_USER && object->cuts > 0)
+        return approach + cut_user_distance(object, start, step, minimum - approach, is_near);
     if (object->shape == SHAPE_USER)
         return approach + user_object_distance(object, start, step, minimum - approach, is_near);
 #endif
@@ -239,8 +239,7 @@ FUNCTION real object_distance(GLOBAL const struct object_record *object, struct 
                    first_end_beyond(inside.second, approach, minimum));
 }
 
-/* The face of a cut takes the place of the shape's normal where the ray meets it at that very
- * distance: object_spans found it by the same arithmetic, so it has the same bits. */
+/* The face of a cut takes the place of the shape's normal where the ray meets it. */
 APART struct vector3 normal_with_cuts(GLOBAL const struct object_record *object,
                                       struct vector3 point, struct vector3 direction, real distance)
 {
@@ -248,23 +247,13 @@ APART struct vector3 normal_with_cuts(GLOBAL const struct object_record *object,
     const struct vector3 step = into_object(object, direction);
     const struct vector3 hit =
         into_object(object, from_centre(object, along3(point, direction, distance)));
-    struct vector3 normal = shape_normal(object, hit, step);
+    const struct vector3 normal = shape_normal(object, hit, step);
     if (object->cuts == 0 || !is_solid(object))
         return normal;
     const real approach = -dot3(relative, direction);
     const struct vector3 start = into_object(object, along3(relative, direction, approach));
-    for (int i = 0; i < object->cuts; i++) {
-        GLOBAL const struct cut_record *cut = &object->cut[i];
-        const struct interval left = interval_under_cut(cut, start, step);
-        struct vector3 face;
-        face.x = SPLAT(cut->normal_x);
-        face.y = SPLAT(cut->normal_y);
-        face.z = SPLAT(cut->normal_z);
-        normal = choose3(MASK_OF(distance == approach + left.entry) |
-                             MASK_OF(distance == approach + left.exit),
-                         face, normal);
-    }
-    return normal;
+    const struct cut_face face = cut_face_at(object, start, step, approach, distance);
+    return choose3(face.is_met, face.normal, normal);
 }
 
 #if HAS_MESHES
@@ -275,8 +264,10 @@ FUNCTION struct mesh_surface surface_of_mesh(GLOBAL const struct object_record *
 {
     const struct vector3 relative = from_centre(object, point);
     const real approach = -dot3(relative, direction);
-    return mesh_object_surface(object, into_object(object, along3(relative, direction, approach)),
-                               into_object(object, direction), distance - approach);
+    const struct vector3 start = into_object(object, along3(relative, direction, approach));
+    const struct vector3 step = into_object(object, direction);
+    return object->cuts == 0 ? mesh_object_surface(object, start, step, distance - approach)
+                             : cut_mesh_surface(object, start, step, approach, distance);
 }
 #endif
 
@@ -290,7 +281,12 @@ FUNCTION struct vector3 normal_of_user_shape(GLOBAL const struct object_record *
     const real approach = -dot3(relative, direction);
     const struct vector3 start = into_object(object, along3(relative, direction, approach));
     const struct vector3 step = into_object(object, direction);
-    return user_object_normal(object, along3(start, step, distance - approach), step);
+    const struct vector3 normal =
+        user_object_normal(object, along3(start, step, distance - approach), step);
+    if (object->cuts == 0 || user_of_object(object)->is_open)
+        return normal;
+    const struct cut_face face = cut_face_at(object, start, step, approach, distance);
+    return choose3(face.is_met, face.normal, normal);
 }
 #endif
 

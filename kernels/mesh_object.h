@@ -32,11 +32,10 @@ FUNCTION struct mesh_view mesh_of_object(GLOBAL const struct object_record *obje
 }
 
 /* Distance from the ray's closest approach `start`, in the object's own frame, to the first facet
- * beyond `minimum`; FAR_AWAY if there is none, or the ray is not wanted. */
+ * beyond `minimum` and not beyond `farthest`; FAR_AWAY if there is none. */
 APART real mesh_object_distance(GLOBAL const struct object_record *object, struct vector3 start,
-                                struct vector3 direction, real minimum, mask is_wanted)
+                                struct vector3 direction, real minimum, real farthest)
 {
-    const real farthest = CHOOSE(is_wanted, SPLAT(FAR_AWAY), minimum - 1.0f);
     return mesh_nearest_hit(mesh_of_object(object), start, direction, minimum, farthest).distance;
 }
 

@@ -29,8 +29,8 @@ typedef enum sonject_shape {
     SONJECT_SHAPE_TORUS = 10, /* diameter x height, lying flat when pose is level; its height is
                                  the thickness of the ring */
     SONJECT_SHAPE_PARTS = 11, /* the union of parts, see sonject_scene_add_part; no sizes */
-    SONJECT_SHAPE_MESH = 12,  /* triangles, see sonject_scene_add_mesh; no sizes, no cuts */
-    SONJECT_SHAPE_USER = 13   /* code, see sonject_scene_add_user_shape; no sizes, no cuts */
+    SONJECT_SHAPE_MESH = 12,  /* triangles, see sonject_scene_add_mesh; no sizes */
+    SONJECT_SHAPE_USER = 13   /* code, see sonject_scene_add_user_shape; no sizes */
 } sonject_shape;
 
 /* An end of a cylinder. With an open end the cylinder is a tube: its wall is thin and reflects on
@@ -49,7 +49,8 @@ typedef enum sonject_burial_kind {
 } sonject_burial_kind;
 
 /* A plane that cuts a part off an object: what lies more than distance_m from the centre towards a
- * direction of the object's own. A solid shows a flat face there. */
+ * direction of the object's own. A solid shows a flat face there, a sheet (a plane, a disc, a tube,
+ * an open mesh, an open user's shape) just ends. */
 typedef struct sonject_cut {
     double azimuth_rad;   /* of the direction, from the nose towards the object's own y */
     double elevation_rad; /* towards the object's own z */

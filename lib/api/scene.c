@@ -1,4 +1,5 @@
 #include "api/handles.h"
+#include "scene/check_cuts.h"
 #include "scene/pose.h"
 
 #include <stdlib.h>
@@ -322,7 +323,7 @@ sonject_status sonject_scene_add_user_shape(sonject_scene *scene,
     return status;
 }
 
-/* Whether a shape's mesh, or its code, is one of the scene. */
+/* Whether a shape's mesh, or its code, is one of the scene, and its cuts leave something of it. */
 static sonject_status check_number(const sonject_scene *scene, const sonject_object_params *shape)
 {
     if (shape->shape == SONJECT_SHAPE_USER && shape->user_shape >= scene->scene.user_shapes.count)
@@ -332,7 +333,7 @@ static sonject_status check_number(const sonject_scene *scene, const sonject_obj
     if (shape->shape == SONJECT_SHAPE_MESH && shape->mesh >= scene->scene.mesh_count)
         return report_failure(scene->report, SONJECT_ERROR_ARGUMENT,
                               "there is no mesh %lu in the scene", (unsigned long)shape->mesh);
-    return SONJECT_OK;
+    return check_cuts_in_scene(&scene->scene, shape, scene->report, NULL);
 }
 
 sonject_status sonject_scene_add_object(sonject_scene *scene, const sonject_object_params *object,

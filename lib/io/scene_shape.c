@@ -3,6 +3,8 @@
 
 #include <string.h>
 
+#include "scene/check_cuts.h"
+
 #define STRUCTURE sonject_object_params
 
 static bool is_given(const struct tree_node *node, const char *key)
@@ -174,7 +176,8 @@ sonject_status check_shape_values(struct reader *reader, const struct tree_node 
 {
     struct report report = {{0}, NULL, NULL};
     const char *key = "";
-    if (check_object(shape, &report, &key) != SONJECT_OK)
+    if (check_object(shape, &report, &key) != SONJECT_OK ||
+        check_cuts_in_scene(reader->scene, shape, &report, &key) != SONJECT_OK)
         return place_check(reader, node, key, &report);
     return SONJECT_OK;
 }

@@ -65,9 +65,9 @@ sonject_status read_mesh(struct reader *reader, const struct tree_node *node, vo
          .section = &mesh_section,                                                                 \
          .read = read_mesh},                                                                       \
     {                                                                                              \
-        "cuts", "planes that cut parts off, at most 2", .kind = FIELD_SPECIAL, .unit = "list",     \
-                                                        .section = &cut_section, .is_list = true,  \
-                                                        .read = read_cuts                          \
+        "cuts", "planes that cut parts off any shape, at most 2",                                  \
+            .kind = FIELD_SPECIAL, .unit = "list", .section = &cut_section, .is_list = true,       \
+            .read = read_cuts                                                                      \
     }
 
 /* Angles; what heading is counted from differs. */

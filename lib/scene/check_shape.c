@@ -67,8 +67,10 @@ static void check_cuts(struct check *check, const sonject_object_params *object)
         check_finite(check, "cuts", object->cuts[i].elevation_rad);
         check_coordinate(check, "cuts", object->cuts[i].distance_m);
     }
-    if (check->status != SONJECT_OK)
-        return;
+}
+
+static void check_what_is_left(struct check *check, const sonject_object_params *object)
+{
     struct shape_size size;
     shape_size_init(&size, object);
     if (!shape_is_left(&size, object->shape))
@@ -107,17 +109,14 @@ void check_shape(struct check *check, const sonject_object_params *object)
     check_choice(check, "shape", object->shape, SONJECT_SHAPE_USER + 1);
     if (check->status != SONJECT_OK)
         return;
-    if (object->shape == SONJECT_SHAPE_USER) {
+    if (object->shape == SONJECT_SHAPE_PARTS) {
         if (object->cut_count > 0)
-            check_failure(check, "cuts", "are not made in user shapes; let the code cut");
+            check_failure(check, "cuts", "are not made in objects of parts; cut the parts");
         return;
     }
-    if (object->shape == SONJECT_SHAPE_PARTS || object->shape == SONJECT_SHAPE_MESH) {
-        if (object->cut_count > 0)
-            check_failure(check, "cuts", "are not made in %s",
-                          object->shape == SONJECT_SHAPE_MESH ? "meshes; cut the file's"
-                                                              : "objects of parts; cut the parts");
-        return;
+    if (object->shape == SONJECT_SHAPE_MESH || object->shape == SONJECT_SHAPE_USER) {
+        check_cuts(check, object);
+        return; /* what they leave check_cuts_in_scene finds */
     }
     check_needed(check, object);
     if (object->shape == SONJECT_SHAPE_CYLINDER)
@@ -130,4 +129,6 @@ void check_shape(struct check *check, const sonject_object_params *object)
         check_torus(check, object);
     if (check->status == SONJECT_OK)
         check_cuts(check, object);
+    if (check->status == SONJECT_OK)
+        check_what_is_left(check, object);
 }

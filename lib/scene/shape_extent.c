@@ -2,6 +2,7 @@
  * largest p . v is the least of h(v - t n) + t c over t >= 0, h the shape's own. */
 #include <math.h>
 
+#include "scene/cut_mesh.h"
 #include "scene/shape_size.h"
 
 #define GOLDEN      0.61803398874989485
@@ -210,9 +211,43 @@ static double torus_extent(const struct shape_size *size, const double v[3])
     return largest;
 }
 
+/* The box and the sphere that hold a user's shape, as shapes. */
+static struct shape_size sphere_about(const struct shape_size *size)
+{
+    struct shape_size sphere = *size;
+    sphere.radius_m = size->user_shape->bounding_radius_m;
+    return sphere;
+}
+
+static double cut_user_shape_extent(const struct shape_size *size, const double v[3])
+{
+    const struct shape_size sphere = sphere_about(size);
+    return fmin(convex_extent(size, SONJECT_SHAPE_BOX, size->cut_count, v),
+                convex_extent(&sphere, SONJECT_SHAPE_SPHERE, size->cut_count, v));
+}
+
+/* Whether something of a mesh is left, and not just where a plane touches it. */
+static bool mesh_is_left(const struct shape_size *size)
+{
+    static const double upward[3] = {0.0, 0.0, 1.0};
+    struct cut_plane cuts[SONJECT_CUTS_CAPACITY];
+    for (uint32_t i = 0; i < size->cut_count; i++) {
+        cuts[i] = size->cuts[i];
+        cuts[i].offset_m -= 1e-9 * size->bounding_radius_m;
+    }
+    return isfinite(cut_mesh_extent(size->mesh, cuts, size->cut_count, upward));
+}
+
 bool shape_is_left(const struct shape_size *size, uint32_t shape)
 {
     static const double upward[3] = {0.0, 0.0, 1.0};
+    if (shape == SONJECT_SHAPE_MESH)
+        return size->cut_count == 0 || mesh_is_left(size);
+    if (shape == SONJECT_SHAPE_USER) {
+        const struct shape_size sphere = sphere_about(size);
+        return shape_is_left(size, SONJECT_SHAPE_BOX) &&
+               shape_is_left(&sphere, SONJECT_SHAPE_SPHERE);
+    }
     if (shape == SONJECT_SHAPE_TORUS && size->cut_count > 0)
         return isfinite(torus_extent(size, upward));
     /* nothing is left where some mean of the cuts lies beyond the whole shape */
@@ -244,14 +279,16 @@ bool shape_is_left(const struct shape_size *size, uint32_t shape)
 double shape_extent(const struct shape_size *size, uint32_t shape, const double v[3])
 {
     if (shape == SONJECT_SHAPE_MESH)
-        return mesh_extent(size->mesh, v);
-    if (shape == SONJECT_SHAPE_USER)
-        return user_shape_extent(size->user_shape, v);
+        return size->cut_count == 0 ? mesh_extent(size->mesh, v)
+                                    : cut_mesh_extent(size->mesh, size->cuts, size->cut_count, v);
     if (size->cut_count == 0)
-        return uncut_extent(size, shape, v);
+        return shape == SONJECT_SHAPE_USER ? user_shape_extent(size->user_shape, v)
+                                           : uncut_extent(size, shape, v);
     if (shape == SONJECT_SHAPE_TORUS)
         return torus_extent(size, v);
     if (!shape_is_left(size, shape))
         return -INFINITY;
+    if (shape == SONJECT_SHAPE_USER)
+        return cut_user_shape_extent(size, v);
     return convex_extent(size, shape, size->cut_count, v);
 }

@@ -51,7 +51,7 @@ void shape_size_of_user_shape(struct shape_size *size, const struct user_shape *
 /* The largest p . v over the points p of what the cuts leave of a shape (its support function), v
  * of any length; -INFINITY where they leave nothing. Exact but for cut tubes, which it takes as
  * filled, and for user shapes, of which only a box and a sphere about them are known: the lesser of
- * what these reach. */
+ * what the cuts leave of these. */
 double shape_extent(const struct shape_size *size, uint32_t shape, const double v[3]);
 
 /* Whether the cuts leave something. */

@@ -1,5 +1,5 @@
-/* Every analytic shape against a fine mesh of itself, which is made here from its outline: where
- * rays meet both, and how their surfaces face. */
+/* Every analytic shape against a fine mesh of itself, which is made here from its outline, both
+ * whole and cut: where rays meet both, and how their surfaces face. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -361,13 +361,40 @@ static void test_prisms(void **unused)
     expect_same_shape("wedge", &shape);
 }
 
+/* One or two planes, through the middle and off it. */
+static void expect_same_cut_shape(const char *name, sonject_object_params shape)
+{
+    shape.cut_count = 1;
+    shape.cuts[0] = (sonject_cut){0.7, 0.4, 0.03};
+    expect_same_shape(name, &shape);
+    shape.cut_count = 2;
+    shape.cuts[1] = (sonject_cut){-2.0, 1.1, 0.06};
+    expect_same_shape(name, &shape);
+}
+
+static void test_cut_shapes(void **unused)
+{
+    (void)unused;
+    sonject_object_params shape = object_of(SONJECT_SHAPE_SPHERE);
+    shape.diameter_m = 0.6;
+    expect_same_cut_shape("cut sphere", shape);
+    shape = object_of(SONJECT_SHAPE_TORUS);
+    shape.diameter_m = 0.9;
+    shape.height_m = 0.25;
+    expect_same_cut_shape("cut torus", shape);
+    shape = object_of(SONJECT_SHAPE_BOX);
+    shape.length_m = 1.2;
+    shape.width_m = 0.7;
+    shape.height_m = 0.4;
+    expect_same_cut_shape("cut box", shape);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_round_shapes),
-        cmocka_unit_test(test_cylinders),
-        cmocka_unit_test(test_cones),
-        cmocka_unit_test(test_prisms),
+        cmocka_unit_test(test_round_shapes), cmocka_unit_test(test_cylinders),
+        cmocka_unit_test(test_cones),        cmocka_unit_test(test_prisms),
+        cmocka_unit_test(test_cut_shapes),
     };
     return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

@@ -166,8 +166,8 @@ static void test_what_is_refused(void **state)
          ":5:5: objects[0]: none of shape, parts and target is there; give one"},
         {SCENE "  - {shape: mesh, mesh: corner.obj, length: 1}\n",
          ":5:45: objects[0].length: a mesh has none; remove it"},
-        {SCENE "  - {shape: mesh, mesh: corner.obj, cuts: [{distance: 1}]}\n",
-         ":5:43: objects[0].cuts: are not made in meshes; cut the file's"},
+        {SCENE "  - {shape: mesh, mesh: corner.obj, cuts: [{distance: -9}]}\n",
+         ":5:43: objects[0].cuts: leave nothing of the object; move one outwards"},
         {SCENE "  - {shape: mesg, mesh: corner.obj}\n",
          ":5:13: objects[0].shape: 'mesg' is not one of plane, sphere, cylinder, capsule, disc, "
          "ellipsoid, box, wedge, cone, truncated_cone, torus, mesh, user; did you mean 'mesh'?"},

@@ -321,8 +321,12 @@ static void test_wrong_sections_are_refused(void **state)
                                 "objects[0].user: a sphere has none; remove it");
     expect_refused_with_consent(folder, BASE "  - shape: user\n    diameter: 1\n" CODE,
                                 "objects[0].diameter: a user has none; remove it");
-    expect_refused_with_consent(folder, BASE "  - shape: user\n    cuts: [{distance: 0}]\n" CODE,
-                                "objects[0].cuts: are not made in user shapes; let the code cut");
+    expect_refused_with_consent(folder, BASE "  - shape: user\n    cuts: [{distance: -2}]\n" CODE,
+                                "objects[0].cuts: leave nothing of the object; move one outwards");
+    assert_int_equal(
+        read_with_consent(folder, BASE "  - shape: user\n    cuts: [{distance: 0}]\n" CODE),
+        SONJECT_OK);
+    assert_int_equal(folder->scene.objects[0].cut_count, 1);
     expect_refused_with_consent(folder, BASE "  - {shape: user, user: {bounding_radius: 1}}\n",
                                 "objects[0].user: none of file and code is there; give one");
     expect_refused_with_consent(

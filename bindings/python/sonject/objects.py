@@ -52,7 +52,7 @@ def _position_values(position: Position) -> dict[str, Any]:
 class Cut:
     """A plane that cuts off what lies more than distance_m from the centre towards a direction of
     the object's own: azimuth_rad from the nose towards its y, elevation_rad towards its z (its top
-    when level). A solid shows a flat face there."""
+    when level). A solid shows a flat face there, also a closed mesh or user's shape."""
 
     azimuth_rad: float = 0.0
     elevation_rad: float = 0.0

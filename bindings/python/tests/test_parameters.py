@@ -181,6 +181,25 @@ def test_meshes_are_read_and_injected(make_scene, complex_patch, tmp_path):
         scene.add(sonject.Mesh(mesh=2))
 
 
+def test_meshes_are_cut(make_scene, complex_patch, tmp_path):
+    path = tmp_path / "tetrahedron.obj"
+    path.write_text(TETRAHEDRON)
+    scene = make_scene(objects=[])
+    number = scene.add_mesh(path, unit_m=1e-3)
+    top_off = sonject.Cut(elevation_rad=math.pi / 2, distance_m=0.0)
+    scene.add(sonject.Mesh(mesh=number, cuts=[top_off], burial_fraction=0.5))
+    result = sonject.inject(complex_patch, scene)
+    assert result.objects[0].highlight_pixels > 0
+    # the centre, that of the whole, lies over the lowest point by 0.2 m, which is all that is left
+    assert abs(result.objects[0].height_m - 0.1) < 1e-6
+    with pytest.raises(sonject.SonjectError, match="cuts leave nothing of the object"):
+        scene.add(sonject.Mesh(mesh=number, cuts=[sonject.Cut(distance_m=-0.4)]))
+    code = scene.add_user_shape(SPHERE, bounding_radius_m=0.25, parameters=[0.25])
+    scene.add(sonject.UserShape(user_shape=code, cuts=[top_off]))
+    with pytest.raises(sonject.SonjectError, match="cuts leave nothing of the object"):
+        scene.add(sonject.UserShape(user_shape=code, cuts=[sonject.Cut(distance_m=-0.26)]))
+
+
 SPHERE = """
 float shape_distance(float3 p, float3 d, float nearest, const float *a)
 {
