@@ -183,7 +183,8 @@ class Scene(Handle):
 
         first_...: where row and column 0 lie; ground range is horizontal from the track. Bilinear
         in between, 0 outside; at the patch's edges relief falls to 0 over 1 m, or an eighth of the
-        patch's side where that is less. Adds to the relief of a scene file; None takes it away.
+        patch's side where that is less. Adds to the features of a scene file and takes the place of
+        its heights; None takes heights away.
         """
         params = initialised(s.sonject_relief_params)
         if heights_m is None:
