@@ -5,7 +5,7 @@
 build_packages="build-essential meson ninja-build pkg-config python3
     libopenimageio-dev libyaml-dev libjansson-dev libxxhash-dev
     ocl-icd-opencl-dev opencl-headers pocl-opencl-icd"
-test_packages="libcmocka-dev python3-numpy python3-pytest clang valgrind"
+test_packages="libassimp-dev libcmocka-dev python3-numpy python3-pytest clang valgrind"
 
 # dpkg calls programs from here, which a plain su leaves out.
 PATH="$PATH:/usr/sbin:/sbin"
