@@ -20,21 +20,6 @@
 #define COLUMNS 96
 #define OTHERS  20
 
-static void make_mesh(struct bench *bench)
-{
-    static const double positions[][3] = {
-        {-0.2, -0.2, -0.1}, {0.2, -0.2, -0.1}, {0.0, 0.3, -0.1}, {0.0, 0.0, 0.3}};
-    static const uint32_t corners[][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-    struct mesh_options options;
-    mesh_options_init(&options);
-    bench->scene.meshes = calloc(1, sizeof *bench->scene.meshes);
-    assert_non_null(bench->scene.meshes);
-    bench->scene.mesh_count = 1;
-    if (mesh_from_arrays(&bench->report, "tetrahedron", positions[0], 4, corners[0], 4, &options,
-                         &bench->scene.meshes[0]) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
-}
-
 static void make_user_shape(struct bench *bench)
 {
     sonject_user_shape_params params;
@@ -81,7 +66,7 @@ static void make_scene(struct bench *bench, bool is_crowded)
     bench->scene.injection.seed = 0x123456789abcdefu;
     bench->scene.injection.interactions = 3;
     bench->scene.surface.water_depth_m = 13.0;
-    make_mesh(bench);
+    bench_add_tetrahedron(bench);
     make_user_shape(bench);
     add(bench, SONJECT_SHAPE_SPHERE, 0.4, 30.0, 40.0);
     add(bench, SONJECT_SHAPE_MESH, 0.0, 100.0, 30.0);

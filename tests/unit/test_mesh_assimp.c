@@ -124,12 +124,12 @@ static void test_what_is_refused(void **state)
         {"a.gltf",
          "{\"asset\": {\"version\": \"2.0\"}, \"x\": [{\"KHR_draco_mesh_compression\": {}}]}",
          "its meshes are compressed"},
-        {"a.gltf", GLTF(GLTF_TREE "[{\"children\": [0]}]"), "do not form a tree"},
-        {"a.gltf", GLTF(GLTF_TREE "[{\"children\": [1, 1]}, {\"mesh\": 0}]"), "do not form a tree"},
-        {"a.gltf", GLTF(GLTF_TREE "[{\"children\": [7]}]"), "do not form a tree"},
+        {"a.gltf", GLTF(GLTF_TREE "[{\"children\": [0]}]"), "do not form trees"},
+        {"a.gltf", GLTF(GLTF_TREE "[{\"children\": [1, 1]}, {\"mesh\": 0}]"), "do not form trees"},
+        {"a.gltf", GLTF(GLTF_TREE "[{\"children\": [7]}]"), "do not form trees"},
         {"a.gltf",
          GLTF("\"scenes\": [{\"nodes\": [0, 1]}], \"nodes\": [{\"children\": [1]}, {\"mesh\": 0}]"),
-         "do not form a tree"},
+         "do not form trees"},
         {"a.gltf", GLTF(GLTF_TREE "[{\"mesh\": 0, \"translation\": [1e39, 0, 0]}]"), "a.gltf: "},
         {"a.glb", "glTF", "is not a whole GLB file"},
         {"a.glb", "glTF\2, and something else", "is not a whole GLB file"},
@@ -162,6 +162,48 @@ static void test_repetitions(void **state)
     snprintf(text + length, sizeof text - length, "]}]}");
     assert_int_equal(load(*state, "a.gltf", text, &mesh), SONJECT_ERROR_INPUT);
     assert_non_null(strstr(report.message, "too many times"));
+    length =
+        (size_t)snprintf(text, sizeof text, "{\"asset\": {\"version\": \"2.0\"}, \"nodes\": [{}");
+    for (int i = 0; i < 300; i++)
+        length +=
+            (size_t)snprintf(text + length, sizeof text - length, ", {\"children\": [%d]}", i);
+    snprintf(text + length, sizeof text - length, "]}");
+    assert_int_equal(load(*state, "a.gltf", text, &mesh), SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(report.message, "256 levels"));
+}
+
+/* One place of a sound document changed. */
+static void test_numbers_beyond_their_buffers(void **state)
+{
+    static const char good[] = GLTF("\"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"mesh\": 0}]");
+    static const struct {
+        const char *was, *is;
+    } changes[] = {
+        {"\"count\": 12", "\"count\": 13"},
+        {"\"count\": 4,", "\"count\": 5,"},
+        {"\"count\": 4,", "\"count\": 0,"},
+        {"\"byteOffset\": 48", "\"byteOffset\": 49"},
+        {"\"byteLength\": 24", "\"byteLength\": 23"},
+        {"\"byteLength\": 24", "\"byteStride\": 1, \"byteLength\": 24"},
+        {"\"bufferView\": 1", "\"bufferView\": 2"},
+        {"\"bufferView\": 1", "\"nothing\": 1"},
+        {"5123", "5126"},
+        {"5126", "5123"},
+        {"VEC3", "VEC4"},
+        {"\"indices\": 1", "\"indices\": 9"},
+        {"\"type\": \"VEC3\"", "\"type\": \"VEC3\", \"sparse\": {}"},
+    };
+    struct mesh mesh;
+    for (size_t i = 0; i < COUNT(changes); i++) {
+        char text[2 * sizeof good];
+        const char *at = strstr(good, changes[i].was);
+        assert_non_null(at);
+        snprintf(text, sizeof text, "%.*s%s%s", (int)(at - good), good, changes[i].is,
+                 at + strlen(changes[i].was));
+        if (load(*state, "a.gltf", text, &mesh) != SONJECT_ERROR_INPUT ||
+            !strstr(report.message, "within their buffers"))
+            fail_msg("%s for %s: '%s'", changes[i].is, changes[i].was, report.message);
+    }
 }
 
 /* No file makes another one be read, even if that is there. */
@@ -218,6 +260,7 @@ int main(void)
         cmocka_unit_test(test_nodes_put_meshes_in_their_places),
         cmocka_unit_test(test_what_is_refused),
         cmocka_unit_test(test_repetitions),
+        cmocka_unit_test(test_numbers_beyond_their_buffers),
         cmocka_unit_test(test_other_files_are_not_read),
         cmocka_unit_test(test_nothing_is_printed),
     };
