@@ -34,6 +34,20 @@ FUNCTION real first_leg(const struct chain *chain, real receiver_x)
     return chain->range + shift * shift / (SQUARE_ROOT(first * first + shift * shift) + first);
 }
 
+/* A straight way; its range is left to be set. */
+FUNCTION struct source_way straight_way(struct vector3 to)
+{
+    struct source_way way;
+    way.path = SQUARE_ROOT(dot3(to, to));
+    way.spreading = 1.0f / (way.path * way.path);
+    const real inverse = 1.0f / way.path;
+    way.direction.x = to.x * inverse;
+    way.direction.y = to.y * inverse;
+    way.direction.z = to.z * inverse;
+    way.range = SPLAT(0.0f);
+    return way;
+}
+
 /* The way to the point (aside, up) of the source's rectangle, which spans x and the fan's central
  * upward direction about the receiver at receiver_x. Its length less the reference range R is
  * formed without subtracting ranges: |s - p|^2 - R^2 = |p|^2 - 2 s.p + up^2 (+ x^2), s the source,
@@ -43,16 +57,10 @@ FUNCTION struct source_way way_to_source(const struct fan_record *fan, const str
 {
     const struct vector3 point = chain->hit.point;
     const float r = fan->reference_range;
-    struct source_way way;
     struct vector3 to = to_receiver(fan, point, receiver_x + aside);
     to.y += up * fan->sine_depression;
     to.z += up * fan->cosine_depression;
-    way.path = SQUARE_ROOT(dot3(to, to));
-    way.spreading = 1.0f / (way.path * way.path);
-    const real inverse = 1.0f / way.path;
-    way.direction.x = to.x * inverse;
-    way.direction.y = to.y * inverse;
-    way.direction.z = to.z * inverse;
+    struct source_way way = straight_way(to);
     const real height_along =
         point.y * fan->cosine_depression - point.z * fan->sine_depression; /* of p towards R */
     const real height_across = point.y * fan->sine_depression + point.z * fan->cosine_depression;

@@ -62,13 +62,7 @@ FUNCTION struct source_way way_to_image(const struct fan_record *fan,
     to.x = receiver_x + aside - point.x;
     to.y = source_y - point.y;
     to.z = image_z - point.z;
-    struct source_way way;
-    way.path = SQUARE_ROOT(dot3(to, to));
-    way.spreading = 1.0f / (way.path * way.path);
-    const real inverse = 1.0f / way.path;
-    way.direction.x = to.x * inverse;
-    way.direction.y = to.y * inverse;
-    way.direction.z = to.z * inverse;
+    struct source_way way = straight_way(to);
     const real excess = (to.x * to.x + point.y * point.y + point.z * point.z -
                          2.0f * (source_y * point.y + image_z * point.z) + up * up +
                          4.0f * surface * (surface - source_z)) /

@@ -1,4 +1,4 @@
-/* Image files by OpenImageIO. Implemented in the only C++ file; no exception leaves it. */
+/* Image files by OpenImageIO. Implemented in C++; no exception leaves it. */
 #ifndef SONJECT_IO_RASTER_FILE_H
 #define SONJECT_IO_RASTER_FILE_H
 

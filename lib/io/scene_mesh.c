@@ -1,6 +1,5 @@
 /* Meshes of scene files: the file, and how its numbers are meant. */
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/text.h"
 #include "io/scene_shape.h"
@@ -25,25 +24,10 @@ enum file_axis {
     AXIS_Z_REVERSED
 };
 
-/* A length, "2.54 cm", or a unit by itself, "mm". */
 static sonject_status read_unit(struct reader *reader, const struct tree_node *node,
                                 void *structure)
 {
-    struct mesh_text *mesh = structure;
-    char problem[200];
-    char one[40] = "1 ";
-    const char *text = read_text(reader, node);
-    if (!text)
-        return SONJECT_ERROR_INPUT;
-    const bool is_unit = (*text >= 'a' && *text <= 'z') || (*text >= 'A' && *text <= 'Z');
-    if (is_unit && strlen(text) < sizeof one - 2)
-        text = strcat(one, text);
-    if (!quantity_from_text(QUANTITY_LENGTH, text, &mesh->unit_m, problem, sizeof problem))
-        return refuse_value(reader, node, "%s", problem);
-    if (!(mesh->unit_m >= 1e-9 && mesh->unit_m <= 1e9))
-        return refuse_value(reader, node, "must be a length of 1e-9 to 1e9 m, not %g m",
-                            mesh->unit_m);
-    return SONJECT_OK;
+    return read_length_unit(reader, node, &((struct mesh_text *)structure)->unit_m);
 }
 
 /* 1, 2, 3, negative where reversed, as struct mesh_options has it. */
@@ -91,7 +75,7 @@ static sonject_status finish_mesh(struct reader *reader, const struct tree_node 
         [AXIS_Y_REVERSED] = "-y", [AXIS_Z_REVERSED] = "-z"                                         \
     }
 static const struct field mesh_fields[] = {
-    {"file", "of triangles: STL, OBJ or PLY", .kind = FIELD_PATH,
+    {"file", "of triangles: STL, OBJ or PLY; with Assimp OFF or glTF", .kind = FIELD_PATH,
      .offset = offsetof(STRUCTURE, path), REQUIRED},
     {"unit", "of the file's numbers, by default m", .kind = FIELD_SPECIAL, .unit = "m, km, cm, mm",
      .read = read_unit},

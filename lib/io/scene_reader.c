@@ -91,6 +91,23 @@ sonject_status read_quantity(struct reader *reader, const struct tree_node *node
     return SONJECT_OK;
 }
 
+sonject_status read_length_unit(struct reader *reader, const struct tree_node *node, double *unit_m)
+{
+    char problem[200];
+    char one[40] = "1 ";
+    const char *text = read_text(reader, node);
+    if (!text)
+        return SONJECT_ERROR_INPUT;
+    const bool is_unit = (*text >= 'a' && *text <= 'z') || (*text >= 'A' && *text <= 'Z');
+    if (is_unit && strlen(text) < sizeof one - 2)
+        text = strcat(one, text);
+    if (!quantity_from_text(QUANTITY_LENGTH, text, unit_m, problem, sizeof problem))
+        return refuse_value(reader, node, "%s", problem);
+    if (!(*unit_m >= 1e-9 && *unit_m <= 1e9))
+        return refuse_value(reader, node, "must be a length of 1e-9 to 1e9 m, not %g m", *unit_m);
+    return SONJECT_OK;
+}
+
 static sonject_status read_count(struct reader *reader, const struct field *field,
                                  const struct tree_node *node, uint64_t *count)
 {

@@ -125,9 +125,10 @@ static sonject_status finish_feature(struct reader *reader, const struct tree_no
 {
     (void)structure;
     if (is_given(node, "ripples") + is_given(node, "mound") + is_given(node, "pit") +
-            is_given(node, "scour") !=
+            is_given(node, "scour") + is_given(node, "heights") !=
         1)
-        return refuse_value(reader, node, "needs one of ripples, mound, pit and scour; give one");
+        return refuse_value(reader, node,
+                            "needs one of ripples, mound, pit, scour and heights; give one");
     return SONJECT_OK;
 }
 
@@ -136,6 +137,8 @@ static const struct field relief_fields[] = {
     {"mound", "a round rise", SAME(mound_section)},
     {"pit", "a round hollow", SAME(pit_section)},
     {"scour", "a hollow around an object", SAME(scour_section)},
+    {"heights", "from a file", .kind = FIELD_SPECIAL, .section = &heights_section,
+     .read = read_relief_heights},
 };
 const struct section relief_section = {relief_fields, COUNT(relief_fields), finish_feature};
 
@@ -155,7 +158,8 @@ sonject_status read_relief(struct reader *reader, const struct tree_node *node, 
         struct relief_feature feature;
         memset(&feature, 0, sizeof feature);
         status = read_section(reader, &relief_section, &node->entries[i].value, &feature);
-        if (status == SONJECT_OK)
+        /* heights are in the scene already */
+        if (status == SONJECT_OK && !is_given(&node->entries[i].value, "heights"))
             status = relief_features_append(&reader->scene->relief, reader->report, &feature);
         key_path_shorten(&reader->path, before);
     }

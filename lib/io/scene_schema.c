@@ -149,7 +149,8 @@ static const struct field seabed_fields[] = {
      QUANTITY(STRUCTURE, despeckle_radius_m, QUANTITY_LENGTH)},
     {"forward", "surface for sound that does not go straight back: a sediment's name, or a section",
      .kind = FIELD_NAMED, .offset = 0, .section = &forward_section, .read = read_sediment_name},
-    {"relief", "list of ripples, mounds, pits and scour, added together; by default all is level",
+    {"relief",
+     "list of ripples, mounds, pits, scour and heights, added together; by default all is level",
      .kind = FIELD_SPECIAL, .section = &relief_section, .is_list = true, .read = read_relief},
 };
 static const struct section seabed_section = {seabed_fields, COUNT(seabed_fields), finish_seabed};

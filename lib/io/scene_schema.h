@@ -74,6 +74,10 @@ sonject_status read_section(struct reader *reader, const struct section *section
 sonject_status read_quantity(struct reader *reader, const struct tree_node *node,
                              enum quantity quantity, double *value);
 
+/* Reads what one of a file's numbers stands for: a length, "2.54 cm", or a unit by itself, "mm". */
+sonject_status read_length_unit(struct reader *reader, const struct tree_node *node,
+                                double *unit_m);
+
 /* The text of a single value; NULL after a message, whose status is INPUT. */
 const char *read_text(struct reader *reader, const struct tree_node *node);
 
@@ -152,6 +156,11 @@ sonject_status finish_recording(struct reader *reader, const struct tree_node *n
 /* The seabed's relief, in scene_relief.c. */
 extern const struct section relief_section;
 sonject_status read_relief(struct reader *reader, const struct tree_node *node, void *structure);
+
+/* Its heights from a file, into the scene, in scene_heights.c. */
+extern const struct section heights_section;
+sonject_status read_relief_heights(struct reader *reader, const struct tree_node *node,
+                                   void *structure);
 
 /* The objects' table, for read_objects, in scene_object.c. */
 extern const struct section object_section;

@@ -10,7 +10,7 @@
 typedef sonject_status reader(struct report *report, const char *path, const char *bytes,
                               size_t count, struct mesh_soup *soup);
 
-static bool ends_with(const char *path, const char *extension)
+bool mesh_path_ends_with(const char *path, const char *extension)
 {
     const size_t length = strlen(path);
     const size_t tail = strlen(extension);
@@ -26,10 +26,10 @@ static bool ends_with(const char *path, const char *extension)
 
 sonject_status mesh_file_read(struct report *report, const char *path, struct mesh_soup *soup)
 {
-    reader *read = ends_with(path, ".stl")   ? stl_read
-                   : ends_with(path, ".obj") ? obj_read
-                   : ends_with(path, ".ply") ? ply_read
-                                             : NULL;
+    reader *read = mesh_path_ends_with(path, ".stl")   ? stl_read
+                   : mesh_path_ends_with(path, ".obj") ? obj_read
+                   : mesh_path_ends_with(path, ".ply") ? ply_read
+                                                       : NULL;
     char *bytes;
     size_t count;
     if (!read)

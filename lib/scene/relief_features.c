@@ -9,7 +9,6 @@
 
 #define INDEX_MAX     1099511627776.0 /* 2^40, as of objects in swath pixels */
 #define HEIGHT_MAX_M  100.0
-#define GRID_SIDE_MAX 16384u
 #define GRID_SIZE_MAX (UINT32_C(1) << 24)
 #define OVERSHOOT     1.3 /* of irregular ripples where crests meet, over regular ones */
 
@@ -64,14 +63,19 @@ sonject_status check_relief_feature(const struct relief_feature *feature, struct
     return check.status;
 }
 
+bool relief_grid_fits(uint64_t rows, uint64_t columns)
+{
+    return rows >= 2 && rows <= RELIEF_GRID_SIDE_MAX && columns >= 2 &&
+           columns <= RELIEF_GRID_SIDE_MAX && rows * columns <= GRID_SIZE_MAX;
+}
+
 sonject_status check_relief_grid(const sonject_relief_params *grid, const float *heights_m,
                                  struct report *report)
 {
     struct check check = {report, NULL, SONJECT_OK};
-    if (grid->rows < 2 || grid->rows > GRID_SIDE_MAX || grid->columns < 2 ||
-        grid->columns > GRID_SIDE_MAX || grid->rows > GRID_SIZE_MAX / grid->columns)
+    if (!relief_grid_fits(grid->rows, grid->columns))
         check_failure(&check, "relief", "must be 2...%u rows and columns, at most 2^24 points",
-                      GRID_SIDE_MAX);
+                      RELIEF_GRID_SIDE_MAX);
     check_coordinate(&check, "relief's first_along_track", grid->first_along_track_m);
     check_coordinate(&check, "relief's first_ground_range", grid->first_ground_range_m);
     check_positive_length(&check, "relief's row_spacing", grid->row_spacing_m);

@@ -2,6 +2,7 @@
 #ifndef SONJECT_SCENE_RELIEF_FEATURES_H
 #define SONJECT_SCENE_RELIEF_FEATURES_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -10,7 +11,8 @@
 
 #include "base/report.h"
 
-#define RELIEF_FEATURES_MAX 256
+#define RELIEF_FEATURES_MAX  256
+#define RELIEF_GRID_SIDE_MAX 16384u /* rows or columns of heights */
 
 enum relief_kind {
     RELIEF_RIPPLES,
@@ -49,6 +51,9 @@ sonject_status check_relief_feature(const struct relief_feature *feature, struct
                                     const char **key);
 sonject_status check_relief_grid(const sonject_relief_params *grid, const float *heights_m,
                                  struct report *report);
+
+/* Whether heights may have so many: 2...RELIEF_GRID_SIDE_MAX of each, at most 2^24 points. */
+bool relief_grid_fits(uint64_t rows, uint64_t columns);
 
 /* Appends a copy. Errors: INPUT (too many), MEMORY. */
 sonject_status relief_features_append(struct relief_features *features, struct report *report,

@@ -91,6 +91,20 @@ struct relief_feature *bench_add_relief(struct bench *bench, enum relief_kind ki
     return &bench->scene.relief.features[bench->scene.relief.count - 1];
 }
 
+void bench_add_tetrahedron(struct bench *bench)
+{
+    static const double positions[][3] = {
+        {-0.3, -0.3, -0.2}, {0.3, -0.3, -0.2}, {0.0, 0.4, -0.2}, {0.0, 0.0, 0.4}};
+    static const uint32_t corners[][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    struct mesh_options options;
+    mesh_options_init(&options);
+    bench->scene.meshes = calloc(1, sizeof *bench->scene.meshes);
+    assert_non_null(bench->scene.meshes);
+    bench->scene.mesh_count = 1;
+    expect_ok(bench, mesh_from_arrays(&bench->report, "tetrahedron", positions[0], 4, corners[0], 4,
+                                      &options, &bench->scene.meshes[0]));
+}
+
 void *bench_copy_buffer(struct bench *bench, cl_mem buffer)
 {
     size_t bytes = 0;

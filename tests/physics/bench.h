@@ -45,6 +45,9 @@ sonject_object_params *bench_add(struct bench *bench, sonject_shape shape, doubl
 /* A feature of the seabed's relief, in the middle of the patch, to be changed at will. */
 struct relief_feature *bench_add_relief(struct bench *bench, enum relief_kind kind);
 
+/* A mesh, the scene's only one: a tetrahedron within 0.5 m of its middle. */
+void bench_add_tetrahedron(struct bench *bench);
+
 /* A copy of a whole buffer of the device, for free(). */
 void *bench_copy_buffer(struct bench *bench, cl_mem buffer);
 

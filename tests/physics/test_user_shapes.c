@@ -389,22 +389,6 @@ static void test_dome_against_double(void **state)
     bench_close(&bench);
 }
 
-/* A tetrahedron. */
-static void make_mesh(struct bench *bench)
-{
-    static const double positions[][3] = {
-        {-0.3, -0.3, -0.2}, {0.3, -0.3, -0.2}, {0.0, 0.4, -0.2}, {0.0, 0.0, 0.4}};
-    static const uint32_t corners[][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-    struct mesh_options options;
-    mesh_options_init(&options);
-    bench->scene.meshes = calloc(1, sizeof *bench->scene.meshes);
-    assert_non_null(bench->scene.meshes);
-    bench->scene.mesh_count = 1;
-    if (mesh_from_arrays(&bench->report, "tetrahedron", positions[0], 4, corners[0], 4, &options,
-                         &bench->scene.meshes[0]) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
-}
-
 /* Dome, sphere twice (one code, two sizes), dome of other sizes and a mesh, along the track: each
  * tile is what it is where the library's own spheres stand. */
 static void test_several_codes_and_a_mesh(void **state)
@@ -416,7 +400,7 @@ static void test_several_codes_and_a_mesh(void **state)
         struct bench bench;
         bench_open(&bench, 321, COLUMNS, RANGE);
         struct user_shapes *shapes = &bench.scene.user_shapes;
-        make_mesh(&bench);
+        bench_add_tetrahedron(&bench);
         for (int i = 0; i < 5; i++) {
             const bool is_dome = i == 0 || i == 3;
             const bool is_sphere = i == 1 || i == 2;
@@ -463,9 +447,8 @@ static sonject_status compile(struct bench *bench, const char *code, enum device
     user_shapes_clear(shapes);
     add_code(shapes, &bench->report, "sound.cl", SPHERE_CODE, 1.0, 1.0, 0.0);
     add_code(shapes, &bench->report, "my shape.cl", code, 1.0, 1.0, 0.0);
-    const sonject_status status = scene_kernel_create(&bench->report, bench->tracer.device,
-                                                      &bench->scene, 0, program, kernel_name,
-                                                      &kernel);
+    const sonject_status status = scene_kernel_create(
+        &bench->report, bench->tracer.device, &bench->scene, 0, program, kernel_name, &kernel);
     if (status == SONJECT_OK)
         clReleaseKernel(kernel);
     return status;

@@ -19,11 +19,19 @@ enum format {
     PLY_AS_TEXT,
     PLY_LITTLE,
     PLY_BIG,
+    OWN_FORMATS,
+    OFF = OWN_FORMATS, /* from here on by Assimp */
+    GLTF,
+    GLB,
+#if defined(HAS_ASSIMP)
     FORMATS
+#else
+    FORMATS = OWN_FORMATS
+#endif
 };
 
 /* A file name for each. */
-extern const char *const draft_names[FORMATS];
+extern const char *const draft_names[];
 
 /* The sample in a format; to be given to clear_draft. */
 struct draft write_format(enum format format, const struct mesh_sample *sample);

@@ -73,7 +73,7 @@ static const struct key_case {
     size_t offset; /* in struct scene; in the first object if the path starts with objects, in the
                       first part if it goes on with parts, in the first user shape if it goes
                       through user, in the layers if it starts with medium.layers or .profile, in
-                      the relief's first feature if with seabed.relief */
+                      the relief's first feature, or in its grid, if with seabed.relief */
     double number;
     const char *text;
     const char *other;
@@ -83,7 +83,9 @@ static const struct key_case {
 #define LAYER(index, member)                                                                       \
     ((index) * sizeof(struct water_layer) + offsetof(struct water_layer, member))
 #define RELIEF(member) offsetof(struct relief_feature, member)
+#define GRID(member)   offsetof(sonject_relief_params, member)
 #define CAST           SOURCE_ROOT "/tests/unit/cast.csv"
+#define HEIGHTS        SOURCE_ROOT "/tests/unit/heights.png"
     {"sonject", small, "1", TYPE_NOTHING, 0, 0.0, NULL, NULL},
     {"input.path", file, "swath-2.tif", TYPE_PATH, SCENE(input_path), 0.0, "swath-2.tif", NULL},
     {"input.channel", file, "5", TYPE_U32, SCENE(channel), 5.0, NULL, NULL},
@@ -201,6 +203,34 @@ static const struct key_case {
      NULL},
     {"seabed.despeckle_radius", small, "5 cm", TYPE_DOUBLE, SCENE(seabed.despeckle_radius_m), 0.05,
      NULL, NULL},
+    {"seabed.relief[].heights.file", small, HEIGHTS, TYPE_U32, GRID(columns), 3.0, NULL,
+     "seabed.relief=[{heights: {unit: cm, row_spacing: 1, column_spacing: 1, first_ground_range: "
+     "30}}]"},
+    {"seabed.relief[].heights.unit", small, "10 cm", TYPE_NOTHING, 0, 0.0, NULL,
+     "seabed.relief=[{heights: {file: '" HEIGHTS
+     "', row_spacing: 1, column_spacing: 1, first_ground_range: 30}}]"},
+    {"seabed.relief[].heights.positive", small, "down", TYPE_NOTHING, 0, 0.0, NULL,
+     "seabed.relief=[{heights: {file: '" HEIGHTS
+     "', unit: cm, row_spacing: 1, column_spacing: 1, first_ground_range: 30}}]"},
+    {"seabed.relief[].heights.offset", small, "-20 cm", TYPE_NOTHING, 0, 0.0, NULL,
+     "seabed.relief=[{heights: {file: '" HEIGHTS
+     "', unit: cm, row_spacing: 1, column_spacing: 1, first_ground_range: 30}}]"},
+    {"seabed.relief[].heights.row_spacing", small, "50 cm", TYPE_DOUBLE, GRID(row_spacing_m), 0.5,
+     NULL,
+     "seabed.relief=[{heights: {file: '" HEIGHTS
+     "', unit: cm, column_spacing: 1, first_ground_range: 30}}]"},
+    {"seabed.relief[].heights.column_spacing", small, "25 cm", TYPE_DOUBLE, GRID(column_spacing_m),
+     0.25, NULL,
+     "seabed.relief=[{heights: {file: '" HEIGHTS
+     "', unit: cm, row_spacing: 1, first_ground_range: 30}}]"},
+    {"seabed.relief[].heights.first_ground_range", small, "38 m", TYPE_DOUBLE,
+     GRID(first_ground_range_m), 38.0, NULL,
+     "seabed.relief=[{heights: {file: '" HEIGHTS
+     "', unit: cm, row_spacing: 1, column_spacing: 1}}]"},
+    {"seabed.relief[].heights.first_along_track", small, "-2 m", TYPE_DOUBLE,
+     GRID(first_along_track_m), -2.0, NULL,
+     "seabed.relief=[{heights: {file: '" HEIGHTS
+     "', unit: cm, row_spacing: 1, column_spacing: 1, first_ground_range: 30}}]"},
     {"seabed.relief[].ripples.wavelength", small, "40 cm", TYPE_DOUBLE, RELIEF(wavelength_m), 0.4,
      NULL, "seabed.relief=[{ripples: {height: 5 cm}}]"},
     {"seabed.relief[].ripples.height", small, "4 cm", TYPE_DOUBLE, RELIEF(height_m), 0.04, NULL,
@@ -556,6 +586,8 @@ static const void *structure_of(const struct scene *scene, const char *path)
         return scene->objects;
     if (strncmp(path, "medium.layers", 13) == 0 || strncmp(path, "medium.profile", 14) == 0)
         return scene->water_layers;
+    if (strncmp(path, "seabed.relief[].heights", 23) == 0)
+        return &scene->relief.grid;
     if (strncmp(path, "seabed.relief", 13) == 0)
         return scene->relief.features;
     return scene;
@@ -584,8 +616,16 @@ static void expect_case(struct scene_folder *folder, const struct key_case *key)
     overrides[count++] = override;
     write_scene(folder, key->base, strlen(key->base));
     scene_clear(&folder->scene);
-    if (scene_file_read_with(&folder->report, folder->file, overrides, count, true,
-                             &folder->scene) != SONJECT_OK)
+    const sonject_status status =
+        scene_file_read_with(&folder->report, folder->file, overrides, count, true, &folder->scene);
+#if !defined(HAS_RASTER_FILES)
+    if (strstr(key->path, ".heights.")) {
+        assert_int_equal(status, SONJECT_ERROR_UNSUPPORTED);
+        assert_non_null(strstr(folder->report.message, "seabed.relief[0].heights.file: "));
+        return;
+    }
+#endif
+    if (status != SONJECT_OK)
         fail_msg("%s: %s", override, folder->report.message);
     expect_arrived(key, structure_of(&folder->scene, key->path));
 }

@@ -184,7 +184,8 @@ class Scene(Handle):
 
         first_...: where row and column 0 lie; ground range is horizontal from the track. Bilinear
         in between, 0 outside; at the patch's edges relief falls to 0 over 1 m, or an eighth of the
-        patch's side where that is less. Adds to the relief of a scene file; None takes it away.
+        patch's side where that is less. Adds to the features of a scene file and takes the place of
+        its heights; None takes heights away.
         """
         params = initialised(s.sonject_relief_params)
         if heights_m is None:
@@ -265,7 +266,7 @@ class Scene(Handle):
         allows_open: bool = False,
         smooth_angle_rad: float = 0.0,
     ) -> int:
-        """Reads a mesh file (STL, OBJ, PLY) for ``Mesh`` objects; gives its number.
+        """Reads a mesh file (STL, OBJ, PLY; with Assimp OFF, glTF) for ``Mesh`` objects; gives its number.
 
         unit_m: metres a unit of the file; axes: which axis of the file the object's nose, y and z
         axis is, 1, 2, 3, negative for the reverse of it; allows_open: a mesh that is not closed is

@@ -1,5 +1,7 @@
 """A seabed that is not level."""
 
+import struct
+
 import numpy
 import pytest
 
@@ -54,3 +56,32 @@ def test_refusals(make_scene, amplitude_patch):
     scene.set_relief(20 * mound(), first_ground_range_m=22.9)
     with pytest.raises(sonject.SonjectError, match="rises by"):
         sonject.inject(amplitude_patch, scene)
+
+
+def test_heights_from_a_file_give_the_same_image(context, make_scene, amplitude_patch, tmp_path):
+    heights = mound().astype(numpy.float32)
+    strip = heights.tobytes()
+    tags = {256: 150, 257: 96, 258: 32, 259: 1, 262: 1, 273: 8, 277: 1, 278: 96, 279: len(strip), 339: 3}
+    directory = b"".join(struct.pack("<HHII", tag, 4, 1, value) for tag, value in tags.items())
+    header = struct.pack("<2sHI", b"II", 42, 8 + len(strip))
+    count, end = struct.pack("<H", len(tags)), struct.pack("<I", 0)
+    (tmp_path / "heights.tif").write_bytes(header + strip + count + directory + end)
+    (tmp_path / "scene.yaml").write_text(
+        "sonject: 1\n"
+        "input: {uniform: {rows: 96, columns: 128}, geometry: {row_spacing: 0.025, "
+        "column_spacing: 0.025, first_slant_range: 25}}\n"
+        "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
+        "seabed: {relief: [{heights: {file: heights.tif, unit: m, row_spacing: 0.025, "
+        "column_spacing: 0.025, first_ground_range: 22.9}}]}\n"
+    )
+    try:
+        of_file = sonject.Scene.read(tmp_path / "scene.yaml", context=context)
+    except sonject.SonjectError as error:
+        if "no image files" not in str(error):
+            raise
+        pytest.skip("built without OpenImageIO")
+    of_array = make_scene(objects=[])
+    of_array.set_relief(heights, first_ground_range_m=22.9)
+    images = [sonject.inject(amplitude_patch, scene).image for scene in (of_file, of_array)]
+    assert numpy.array_equal(*images)
+    assert not numpy.array_equal(images[0], amplitude_patch)

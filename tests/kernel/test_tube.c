@@ -1,0 +1,55 @@
+/* How a thin tube of rays turns the phase where it closes to a line: by -pi/2 at each. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "tube.h"
+
+/* A tube along z whose sides close at the given distances, m; negative: they open. Both sides may
+ * be skew to the axes of the wavefront's curvature. */
+static struct tube closing_at(float along, float across, int is_skew)
+{
+    struct tube tube = {{{1.0f, 0.0f, 0.0f}, {-1.0f / along, 0.0f, 0.0f}},
+                        {{0.0f, 1.0f, 0.0f}, {0.0f, -1.0f / across, 0.0f}}};
+    if (is_skew) {
+        tube.along.offset.y = 1.0f;
+        tube.along.turn.y = -1.0f / across;
+    }
+    return tube;
+}
+
+static void test_each_line_turns_the_phase(void **unused)
+{
+    static const struct {
+        float along, across, distance;
+        int lines;
+    } cases[] = {
+        {2.0f, 3.0f, 1.0f, 0},     {2.0f, 3.0f, 2.5f, 1},  {3.0f, 2.0f, 2.5f, 1},
+        {2.0f, 3.0f, 4.0f, 2},     {2.0f, 2.0f, 4.0f, 2},  {2.0f, 2.0f, 1.9f, 0},
+        {-2.0f, 3.0f, 2.5f, 0},    {-2.0f, 3.0f, 4.0f, 1}, {-2.0f, -3.0f, 9.0f, 0},
+        {1e9f, 3.0f, 4.0f, 1},     {1e9f, 1e9f, 4.0f, 0},  {0.5f, 100.0f, 90.0f, 1},
+        {0.5f, 100.0f, 110.0f, 2},
+    };
+    static const float turned[3][2] = {{0.8f, 0.6f}, {0.6f, -0.8f}, {-0.8f, -0.6f}};
+    const struct vector3 direction = {0.0f, 0.0f, 1.0f};
+    (void)unused;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+        for (int is_skew = 0; is_skew < 2; is_skew++) {
+            const struct tube tube = closing_at(cases[i].along, cases[i].across, is_skew);
+            float real_part = 0.8f;
+            float imaginary_part = 0.6f;
+            turn_by_caustics(&tube, direction, cases[i].distance, &real_part, &imaginary_part);
+            if (real_part != turned[cases[i].lines][0] ||
+                imaginary_part != turned[cases[i].lines][1])
+                fail_msg("case %zu: %g + %g i", i, (double)real_part, (double)imaginary_part);
+        }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_each_line_turns_the_phase)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

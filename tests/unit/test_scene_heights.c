@@ -1,0 +1,248 @@
+/* Heights of the seabed from a file: the same scene as with the same heights from an array, and
+ * what is said about files that are no heights. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "api/scene_hash.h"
+#include "io/raster_file.h"
+#include "scene_folder.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+/* Five lines. */
+#define BASE                                                                                       \
+    "sonject: 1\n"                                                                                 \
+    "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
+    "first_slant_range: 40}}\n"                                                                    \
+    "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"                                   \
+    "seabed:\n"                                                                                    \
+    "  relief:\n"
+#define HEIGHTS(keys)                                                                              \
+    BASE "  - heights: {file: heights.tif, row_spacing: 50 cm, column_spacing: 25 cm, "            \
+         "first_ground_range: 30 m, " keys "}\n"
+
+#define ROWS    3
+#define COLUMNS 4
+
+static const char *heights_file(const struct scene_folder *folder)
+{
+    static char path[SCENE_FOLDER_CAPACITY + 64];
+    snprintf(path, sizeof path, "%s/heights.tif", folder->folder);
+    return path;
+}
+
+static void write_heights(struct scene_folder *folder, const struct raster_layout *layout,
+                          const void *pixels)
+{
+    assert_int_equal(
+        raster_file_write(&folder->report, heights_file(folder), layout, NULL, NULL, 0, pixels),
+        SONJECT_OK);
+}
+
+static int remove_heights(void **state)
+{
+    (void)unlink(heights_file(*state));
+    return remove_scene_folder(state);
+}
+
+static void hash_of(struct scene_folder *folder, char text[HASH_TEXT_CAPACITY])
+{
+    assert_int_equal(scene_hash(&folder->report, &folder->scene, "image", text), SONJECT_OK);
+}
+
+/* The scene that was read is the one that a caller gets who gives these heights himself. */
+static void expect_heights(struct scene_folder *folder, double first_along_track_m,
+                           const float heights_m[ROWS * COLUMNS])
+{
+    char of_file[HASH_TEXT_CAPACITY], of_array[HASH_TEXT_CAPACITY];
+    struct relief_features *relief = &folder->scene.relief;
+    sonject_relief_params grid;
+    sonject_relief_params_init(&grid);
+    grid.rows = ROWS;
+    grid.columns = COLUMNS;
+    grid.row_spacing_m = 0.5;
+    grid.column_spacing_m = 0.25;
+    grid.first_ground_range_m = 30.0;
+    grid.first_along_track_m = first_along_track_m;
+    assert_int_equal(relief->count, 0);
+    assert_memory_equal(&relief->grid, &grid, sizeof grid);
+    assert_memory_equal(relief->heights_m, heights_m, ROWS * COLUMNS * sizeof *heights_m);
+    hash_of(folder, of_file);
+    assert_int_equal(relief_features_set_grid(relief, &folder->report, &grid, heights_m),
+                     SONJECT_OK);
+    hash_of(folder, of_array);
+    assert_string_equal(of_file, of_array);
+}
+
+/* Binary fractions throughout, so that no height is rounded. */
+static void test_numbers_become_heights(void **state)
+{
+    static const double numbers[ROWS * COLUMNS] = {0, 1, 2, 3, 4, 50, 60, 70, 255, 100, 9, 11};
+    static const enum pixel_type types[] = {PIXEL_UINT8, PIXEL_UINT16, PIXEL_FLOAT32};
+    static const struct {
+        const char *text;
+        double scale, offset, first_along_track_m;
+    } cases[] = {
+        {HEIGHTS("unit: 0.125"), 0.125, 0.0, 0.0},
+        {HEIGHTS("unit: 0.03125 m, positive: up, offset: -2 m"), 0.03125, -2.0, 0.0},
+        {HEIGHTS("unit: 125 mm, positive: down, offset: 10 m, first_along_track: -7 m"), -0.125,
+         10.0, -7.0},
+    };
+    struct scene_folder *folder = *state;
+    for (size_t type = 0; type < COUNT(types); type++) {
+        const struct raster_layout layout = {ROWS, COLUMNS, 1, types[type]};
+        uint8_t bytes[ROWS * COLUMNS];
+        uint16_t words[ROWS * COLUMNS];
+        float floats[ROWS * COLUMNS];
+        const void *const pixels[] = {bytes, words, floats};
+        for (size_t i = 0; i < COUNT(numbers); i++) {
+            bytes[i] = (uint8_t)numbers[i];
+            words[i] = (uint16_t)numbers[i];
+            floats[i] = (float)numbers[i];
+        }
+        write_heights(folder, &layout, pixels[type]);
+        for (size_t i = 0; i < COUNT(cases); i++) {
+            float heights[ROWS * COLUMNS];
+            for (size_t j = 0; j < COUNT(numbers); j++)
+                heights[j] = (float)(cases[i].offset + cases[i].scale * numbers[j]);
+            expect_scene_taken(folder, cases[i].text);
+            expect_heights(folder, cases[i].first_along_track_m, heights);
+        }
+    }
+}
+
+/* Heights add to what else there is. */
+static void test_heights_among_features(void **state)
+{
+    static const float flat[ROWS * COLUMNS] = {0.0f};
+    static const struct raster_layout layout = {ROWS, COLUMNS, 1, PIXEL_FLOAT32};
+    struct scene_folder *folder = *state;
+    write_heights(folder, &layout, flat);
+    expect_scene_taken(folder, BASE
+                       "  - mound: {radius: 1 m, height: 10 cm}\n"
+                       "  - heights: {file: heights.tif, unit: m, row_spacing: 1, column_spacing: "
+                       "1, first_ground_range: 0}\n"
+                       "  - pit: {radius: 1 m, depth: 10 cm}\n");
+    assert_int_equal(folder->scene.relief.count, 2);
+    assert_int_equal(folder->scene.relief.features[1].kind, RELIEF_PIT);
+    assert_non_null(folder->scene.relief.heights_m);
+}
+
+static void test_what_is_refused(void **state)
+{
+    static const struct {
+        const char *text, *message;
+    } wrong[] = {
+        {BASE "  - heights: heights.tif\n",
+         ":6:14: seabed.relief[0].heights: must be a section of 'key: value' lines, not a single "
+         "value"},
+        {BASE "  - heights: {file: heights.tif, first_ground_range: 0}\n",
+         ":6:14: seabed.relief[0].heights: unit, row_spacing, column_spacing are missing; add "
+         "them"},
+        {HEIGHTS("offset: 1"),
+         ":6:14: seabed.relief[0].heights.unit: missing; add it (of the file's numbers)"},
+        {HEIGHTS("unit: feet"),
+         ":6:109: seabed.relief[0].heights.unit: unit 'feet' is not one of m, km, cm, mm"},
+        {HEIGHTS("unit: -1 m"),
+         ":6:109: seabed.relief[0].heights.unit: must be a length of 1e-9 to "
+         "1e9 m, not -1 m"},
+        {HEIGHTS("unit: m, positive: left"),
+         ":6:122: seabed.relief[0].heights.positive: 'left' is not one of up, down"},
+        {HEIGHTS("unit: m, offset: nan"), ":6:120: seabed.relief[0].heights.offset: 'nan' is not a "
+                                          "number with a unit of m, km, cm, mm"},
+        {BASE "  - heights: {file: heights.tif, unit: m, row_spacing: 0, column_spacing: 1, "
+              "first_ground_range: 0}\n",
+         ":6:56: seabed.relief[0].heights.row_spacing: must be 1e-06...1e+06 m, not 0"},
+        {HEIGHTS("unit: m") "  - heights: {file: heights.tif, unit: m, row_spacing: 1, "
+                            "column_spacing: 1, first_ground_range: 0}\n",
+         ":7:14: seabed.relief[1].heights: only one file of heights is possible; join them"},
+        {HEIGHTS("unit: m") "    mound: {radius: 1 m, height: 1 m}\n",
+         ":6:5: seabed.relief[0]: needs one of ripples, mound, pit, scour and heights; give one"},
+    };
+    static const uint8_t pixels[ROWS * COLUMNS] = {0};
+    static const struct raster_layout layout = {ROWS, COLUMNS, 1, PIXEL_UINT8};
+    struct scene_folder *folder = *state;
+    write_heights(folder, &layout, pixels);
+    for (size_t i = 0; i < COUNT(wrong); i++)
+        expect_scene_refused(folder, wrong[i].text, wrong[i].message);
+    assert_null(folder->scene.relief.heights_m);
+}
+
+/* One line that names scene file, line, key and what is wrong with the file. */
+static void expect_bad_file(struct scene_folder *folder, const char *keys, const char *what)
+{
+    char text[1000], place[SCENE_FOLDER_CAPACITY + 64];
+    snprintf(text, sizeof text, HEIGHTS("%s"), keys);
+    snprintf(place, sizeof place, "%s:6:21: seabed.relief[0].heights.file: ", folder->file);
+    write_scene(folder, text, strlen(text));
+    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    const char *message = folder->report.message;
+    if (strncmp(message, place, strlen(place)) != 0 || !strstr(message, what) ||
+        !strstr(message, heights_file(folder)) || strchr(message, '\n'))
+        fail_msg("'%s' is not '%s... %s'", message, place, what);
+    assert_null(folder->scene.relief.heights_m);
+}
+
+static void test_files_that_are_no_heights(void **state)
+{
+    static const float hole[ROWS * COLUMNS] = {[6] = NAN};
+    static const float deep[ROWS * COLUMNS] = {[11] = -9999.0f};
+    static const float huge[ROWS * COLUMNS] = {[1] = 3e38f};
+    static const struct raster_layout plain = {ROWS, COLUMNS, 1, PIXEL_FLOAT32};
+    static const struct raster_layout pairs = {ROWS, 2, 2, PIXEL_FLOAT32};
+    static const struct raster_layout line = {1, COLUMNS, 1, PIXEL_FLOAT32};
+    static const struct raster_layout wide = {2, 16385, 1, PIXEL_UINT8};
+    static const struct raster_layout large = {4096, 4097, 1, PIXEL_UINT8};
+    struct scene_folder *folder = *state;
+    uint8_t *many = calloc(4096, 4097);
+    assert_non_null(many);
+    const struct {
+        const struct raster_layout *layout;
+        const void *pixels;
+        const char *keys, *what;
+    } files[] = {
+        {&plain, hole, "unit: m", "at row 1, column 2 it is nan m"},
+        {&plain, deep, "unit: m", "at row 2, column 3 it is -9999 m"},
+        {&plain, huge, "unit: 1e9 m", "at row 0, column 1 it is inf m"},
+        {&plain, huge, "unit: 1e9 m, positive: down", "at row 0, column 1 it is -inf m"},
+        {&pairs, hole, "unit: m", "has 2 channels; heights need one"},
+        {&line, hole, "unit: m", "has 1 rows and 4 columns"},
+        {&wide, many, "unit: m", "has 2 rows and 16385 columns"},
+        {&large, many, "unit: m", "has 4096 rows and 4097 columns"},
+    };
+    for (size_t i = 0; i < COUNT(files); i++) {
+        write_heights(folder, files[i].layout, files[i].pixels);
+        expect_bad_file(folder, files[i].keys, files[i].what);
+    }
+    free(many);
+    write_heights(folder, &plain, hole);
+    assert_int_equal(truncate(heights_file(folder), 90), 0);
+    expect_bad_file(folder, "unit: m", "");
+    assert_int_equal(truncate(heights_file(folder), 0), 0);
+    expect_bad_file(folder, "unit: m", "");
+    assert_int_equal(unlink(heights_file(folder)), 0);
+    expect_bad_file(folder, "unit: m", "o such file");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+#define IN_FOLDER(test) cmocka_unit_test_setup_teardown(test, make_scene_folder, remove_heights)
+        IN_FOLDER(test_numbers_become_heights),
+        IN_FOLDER(test_heights_among_features),
+        IN_FOLDER(test_what_is_refused),
+        IN_FOLDER(test_files_that_are_no_heights),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
