@@ -435,7 +435,7 @@ static struct energies trace_beside(uint32_t column_rule, bool is_below_surface,
 }
 
 /* 1 %: in paper columns the surface's share keeps the angles at the sphere. The last ranges hear
- * seabed further from the sphere than 17 radii, which the library leaves out. */
+ * seabed further from the sphere than the library looks. */
 static void test_upside_down(void **unused)
 {
     (void)unused;
