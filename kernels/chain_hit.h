@@ -164,12 +164,13 @@ struct chain {
     real range;       /* from the receiver to the first hit less the reference range */
     real length;      /* from the first hit to this one */
     real first_x;     /* along-track, of the first hit */
-    real first_reach; /* ground range of the first hit over the cosine of the grazing angle: without
-                         layers the range */
+    real first_reach; /* ground range of the first hit that is no level mirror over the cosine of
+                         the grazing angle: without layers the range, by way of the mirrors */
     whole first_surface;
-    whole surface_before; /* that the sound came from to this hit */
-    mask began_smooth;    /* the first hit was a mirror bounce: nothing finds the reverse path */
-    mask only_mirrors;    /* every hit before this one was a mirror bounce */
+    whole surface_before;    /* that the sound came from to this hit */
+    mask began_smooth;       /* the first hit was a mirror bounce: nothing finds the reverse path */
+    mask only_mirrors;       /* every hit before this one was a mirror bounce */
+    mask only_level_mirrors; /* all of those on seabed or sea surface */
     mask met_object;
     mask is_alive;
     const struct target_choice *choice; /* of targets, where they are many; 0: each ray's own */

@@ -74,9 +74,22 @@ FUNCTION mask may_meet_target(const struct fan_record *fan,
     return may_meet;
 }
 
+/* The same of rays that the seabed mirrors at a point. */
+FUNCTION mask may_be_mirrored_to_target(const struct fan_record *fan,
+                                        GLOBAL const struct chain_record *chains,
+                                        GLOBAL const struct sphere_record *spheres,
+                                        const struct fan_ray *middle, struct vector3 point)
+{
+    struct fan_ray mirrored = *middle;
+    mirrored.closest = point;
+    mirrored.direction.z = -middle->direction.z;
+    return may_meet_target(fan, chains, spheres, &mirrored);
+}
+
 /* What a ray of each of WIDTH blocks stands for, 0: not followed. Seabed far from the targets
- * exchanges little sound with them, so of its rays only some blocks are followed and stand for the
- * others. Of an object's own rays those blocks are left out that cannot meet it. */
+ * exchanges little sound with them unless it mirrors, so of its rays only some blocks are followed
+ * and stand for the others. Of an object's own rays those blocks are left out that cannot meet it.
+ */
 FUNCTION real thin_out(const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
                        GLOBAL const struct chain_record *chains,
                        GLOBAL const struct object_record *objects,
@@ -98,8 +111,11 @@ FUNCTION real thin_out(const struct fan_record *fan, GLOBAL const struct ray_pie
         along3(middle.closest, middle.direction, CHOOSE(is_seabed, to_seabed, SPLAT(0.0f)));
     mask is_inside;
     const real sum = sum_of_openings(spheres, chains->spheres, point, &is_inside);
-    const real share = CHOOSE(is_inside | ~is_seabed, SPLAT(1.0f),
-                              smaller(chains->seabed_share * sum, SPLAT(1.0f)));
+    real share = CHOOSE(is_inside | ~is_seabed, SPLAT(1.0f),
+                        smaller(chains->seabed_share * sum, SPLAT(1.0f)));
+    if (has_smooth_part(&chains->seabed))
+        share = CHOOSE(may_be_mirrored_to_target(fan, chains, spheres, &middle, point), SPLAT(1.0f),
+                       share);
     real chosen, unused;
     two_uniforms(key, block, 1, &chosen, &unused);
     const mask is_followed = MASK_OF(chosen < share);
@@ -136,6 +152,7 @@ FUNCTION void begin_chain(const struct fan_record *fan,
         chain->is_alive = chain->is_alive & MASK_OF(chain->hit.surface == fan->only_object);
     chain->began_smooth = chain->is_alive & 0;
     chain->only_mirrors = chain->is_alive;
+    chain->only_level_mirrors = chain->is_alive;
     /* the strip of wavefront w r de over r^2; through layers r de widens and 1/r^2 is s/(ground r)
      */
     const real ground =
@@ -146,6 +163,21 @@ FUNCTION void begin_chain(const struct fan_record *fan,
         fan->table.pieces > 0 ? ray.spreading / ground : 1.0f / chain->first_reach;
     chain->energy = stands_for * fan->strip_width * fan->elevation_step * fan->quanta *
                     CHOOSE(chain->is_alive, spreading, SPLAT(1.0f));
+}
+
+/* Behind level mirrors sound spreads from the sonar's image: the ray's strip of the wavefront grows
+ * with the whole way, and its energy falls. Before the chain goes `distance` further. */
+FUNCTION void spread_from_image(struct chain *chain, const struct chain_step *step, real distance)
+{
+    chain->only_level_mirrors =
+        chain->only_level_mirrors & step->is_mirror & MASK_OF(chain->hit.surface < 0);
+    if (!ANY(chain->only_level_mirrors))
+        return;
+    const real reach =
+        chain->first_reach + CHOOSE(chain->only_level_mirrors, distance, SPLAT(0.0f));
+    chain->energy =
+        chain->energy * CHOOSE(chain->only_level_mirrors, chain->first_reach / reach, SPLAT(1.0f));
+    chain->first_reach = reach;
 }
 
 /* Follows one group of WIDTH rays of a strip over all their interactions. */
@@ -198,6 +230,7 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
         chain.only_mirrors = chain.only_mirrors & step.is_mirror;
         chain.choice = 0;
         chain.energy = chain.energy * step.weight;
+        spread_from_image(&chain, &step, next.distance);
         chain.length = chain.length + next.distance;
         chain.surface_before = chain.hit.surface;
         chain.hit = next;

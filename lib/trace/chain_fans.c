@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "trace/chain_reach.h"
 #include "trace/object_rays.h"
 #include "trace/patch_fan.h"
 #include "trace/sea_surface.h"
@@ -14,11 +15,6 @@
  * part matters between objects. */
 #define OBJECT_RAYS_PER_BIN 32.0
 #define ROUGH_RAYS_PER_BIN  4.0 /* where the seabed's rays stand for its own */
-
-/* Seabed further than this many times an object's size from it hears nothing of it: the solid angle
- * of the object falls with the square, the sine of the way towards it with the distance, which
- * leaves -60 dB of the seabed's own echo at 16 bounding radii. */
-#define REACH 16.0
 
 static struct span strips_between(const struct tracer *tracer, const struct line_grid *grid,
                                   double first_x, double last_x)
@@ -41,12 +37,12 @@ static struct surroundings surroundings_of_objects(const struct tracer *tracer)
     struct surroundings around = {INFINITY, -INFINITY, INFINITY, -INFINITY};
     for (uint32_t i = 0; i < tracer->part_count; i++) {
         const struct placement *placement = &tracer->placements[i];
-        const double reach = (1.0 + REACH) * placement->bounding_radius_m;
+        const struct chain_reach reach = chain_reach_of(tracer, placement);
         const double ground = placement->centre[1];
-        around.first_x = fmin(around.first_x, placement->centre[0] - reach);
-        around.last_x = fmax(around.last_x, placement->centre[0] + reach);
-        around.near_ground = fmin(around.near_ground, ground - reach);
-        around.far_ground = fmax(around.far_ground, ground + reach);
+        around.first_x = fmin(around.first_x, placement->centre[0] - reach.around_m);
+        around.last_x = fmax(around.last_x, placement->centre[0] + reach.around_m);
+        around.near_ground = fmin(around.near_ground, ground - reach.towards_sonar_m);
+        around.far_ground = fmax(around.far_ground, ground + reach.around_m);
     }
     return around;
 }

@@ -3,10 +3,11 @@
 #include <math.h>
 #include <string.h>
 
+#include "trace/chain_reach.h"
 #include "trace/object_rays.h"
 
 #define RAYS_MAX     67108864.0
-#define SURROUNDINGS 18.0 /* in bounding radii of an object; more than chains reach */
+#define SURROUNDINGS 18.0 /* in bounding radii of an object */
 
 void patch_fan_origin(double origin[3], const struct patch_view *view)
 {
@@ -28,6 +29,20 @@ struct region {
     double bottom, top; /* heights, m */
 };
 
+/* A little further than chains reach, if there are any. */
+static struct chain_reach surroundings_of(const struct tracer *tracer,
+                                          const struct placement *placement)
+{
+    const double least = SURROUNDINGS * placement->bounding_radius_m;
+    struct chain_reach reach = {least, least};
+    if (tracer->scene->injection.interactions < 2)
+        return reach;
+    reach = chain_reach_of(tracer, placement);
+    reach.around_m = fmax(least, 1.05 * reach.around_m);
+    reach.towards_sonar_m = fmax(least, 1.05 * reach.towards_sonar_m);
+    return reach;
+}
+
 static struct region region_of_patch(const struct tracer *tracer, const struct line_grid *grid)
 {
     static const double upward[3] = {0.0, 0.0, 1.0};
@@ -40,9 +55,9 @@ static struct region region_of_patch(const struct tracer *tracer, const struct l
     region.top = tracer_highest_seabed(tracer);
     for (uint32_t i = 0; i < tracer->part_count; i++) {
         const struct placement *placement = &tracer->placements[i];
-        const double reach = SURROUNDINGS * placement->bounding_radius_m;
-        region.near = fmin(region.near, placement->centre[1] - reach);
-        region.far = fmax(region.far, placement->centre[1] + reach);
+        const struct chain_reach reach = surroundings_of(tracer, placement);
+        region.near = fmin(region.near, placement->centre[1] - reach.towards_sonar_m);
+        region.far = fmax(region.far, placement->centre[1] + reach.around_m);
         region.top =
             fmax(region.top, placement->centre[2] + placement_half_extent(placement, upward));
     }

@@ -95,6 +95,8 @@ static double mirrored(const struct slab_scene *scene, double cosine)
 static double lambert_of(const struct slab_scene *scene, int hit, double cosine_in,
                          double cosine_out)
 {
+    if (hit == SLAB_SURFACE && scene->rough_is_apart)
+        return scene->surface_lambert;
     if (hit == SLAB_SURFACE)
         return scene->surface_lambert * taken(scene, cosine_in) * taken(scene, cosine_out);
     return hit == SLAB_TARGET ? scene->target_lambert : scene->seabed_lambert;
@@ -320,7 +322,12 @@ static void trace_batch(struct run *run)
         const double half = asin(scene->radius / hypot(rise, scene->centre_y));
         trace_fan(run, aims[i], scene->radius, middle - half, middle + half, rays);
     }
-    trace_fan(run, SLAB_SEABED, run->request->half_track, -0.5 * PI, 1.5 * PI, rays);
+    /* a first hit beside the track may be heard in a column between it and a last one */
+    const double half_track = run->request->half_track;
+    const double half_width = run->request->is_focused
+                                  ? fmin(2.0 * half_track, fmax(half_track, run->request->reach_x))
+                                  : half_track;
+    trace_fan(run, SLAB_SEABED, half_width, -0.5 * PI, 1.5 * PI, rays);
 }
 
 void slab_trace(const struct slab_scene *scene, const struct slab_request *request,

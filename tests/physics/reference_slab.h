@@ -28,6 +28,7 @@ struct slab_scene {
     double altitude, depth;
     double seabed_lambert;
     double surface_lambert, reflection, phase;
+    int rough_is_apart; /* the surface's rough part is Lambert's law beside a mirror too */
     double centre_y, centre_z, radius, target_lambert;
     double source_side;    /* of a square source, 0: a point; one edge along x, one across */
     double source_grazing; /* its normal's, rad; it is heard before it alone */

@@ -14,6 +14,7 @@
 
 #include "bench.h"
 #include "reference_slab.h"
+#include "trace/chain_reach.h"
 #include "trace/chains.h"
 #include "trace/sea_surface.h"
 
@@ -289,15 +290,15 @@ static void lay_slab(struct bench *bench, struct slab_scene *scene)
     scene->source_grazing = asin(scene->altitude / MIDDLE_M);
 }
 
-/* Connected chains begin on seabed within 17 radii around the target, brute force on the patch's.
+/* Connected chains begin on seabed that is not too far from the target, brute force on the patch's.
  */
 static void look_at_seabed(struct bench *bench, enum convention convention,
                            const struct slab_scene *scene, struct slab_request *request)
 {
-    const double reach = 17.0 * scene->radius;
-    request->near_ground = scene->centre_y - reach;
-    request->far_ground = scene->centre_y + reach;
-    request->reach_x = reach;
+    const struct chain_reach reach = chain_reach_of(&bench->tracer, &bench->placements[0]);
+    request->near_ground = scene->centre_y - reach.towards_sonar_m;
+    request->far_ground = scene->centre_y + reach.around_m;
+    request->reach_x = reach.around_m;
     request->is_focused = convention == AS_FOCUSED;
     if (convention != AS_BY_CHANCE)
         return;
@@ -434,7 +435,7 @@ static struct energies trace_beside(uint32_t column_rule, bool is_below_surface,
 }
 
 /* 1 %: in paper columns the surface's share keeps the angles at the sphere. The last ranges hear
- * seabed further from the sphere than 17 radii, which the library leaves out. */
+ * seabed further from the sphere than the library looks. */
 static void test_upside_down(void **unused)
 {
     (void)unused;
