@@ -20,6 +20,10 @@ void hdf5_leave(const struct hdf5_session *session);
 /* Groups without times, so that the same contents make the same file. A negative answer: failed. */
 hid_t hdf5_make_group(hid_t file, const char *path);
 
+/* Lets a file that cannot be written be closed: what HDF5 still wants to write goes nowhere. (After
+ * a write that failed HDF5 1.10 keeps the file open, and crashes when the program ends.) */
+void hdf5_abandon(hid_t file);
+
 /* Attributes of one value. */
 bool hdf5_write_whole(hid_t object, const char *name, uint64_t value);
 bool hdf5_write_integer(hid_t object, const char *name, int64_t value);

@@ -1,4 +1,3 @@
-#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -7,6 +6,7 @@
 #include "inject/echoes.h"
 #include "inject/hdf5_values.h"
 #include "inject/impulse_file.h"
+#include "inject/impulse_seal.h"
 #include "inject/reimaging.h"
 
 #define CELLS_AT_A_TIME ((size_t)1 << 22)
@@ -153,6 +153,8 @@ sonject_status impulse_file_open(struct report *report, const char *path,
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: there is no such file of impulses; check its name", path);
     sonject_status status = file_identify(report, path, &identity);
+    if (status == SONJECT_OK)
+        status = impulse_seal_check(report, path);
     if (status != SONJECT_OK)
         return status;
     struct impulse_file *made = allocate_array(1, sizeof *made);
@@ -161,16 +163,10 @@ sonject_status impulse_file_open(struct report *report, const char *path,
     made->report = report;
     made->path = path;
     hdf5_enter(&session);
-    errno = 0;
     made->file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-    if (made->file < 0)
-        status =
-            errno == EACCES
-                ? file_failure(report, path, "read", errno)
-                : report_failure(report, SONJECT_ERROR_INPUT,
-                                 "%s: not a file that sonject trace writes, or cut short", path);
-    else
-        status = read_head(made);
+    status = made->file >= 0 ? read_head(made)
+                             : report_failure(report, SONJECT_ERROR_INPUT,
+                                              "%s: not an HDF5 file: trace again", path);
     hdf5_leave(&session);
     if (status == SONJECT_OK)
         *file = made;

@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "inject/hdf5_values.h"
 #include "inject/impulse_file.h"
+#include "inject/impulse_seal.h"
 
 #define CELLS_A_CHUNK     ((size_t)1 << 18)
 #define DEFLATE_LEVEL     1 /* more saves a few per cent and takes several times as long */
@@ -19,11 +20,14 @@ struct impulse_writer {
     char *part; /* NULL once published */
     hid_t file;
     hid_t planes[IMPULSE_PLANES_MAX]; /* of the set that comes in; negative: closed */
+    bool has_folder[IMPULSE_KINDS];   /* the group of a kind's sets */
 };
 
 static sonject_status cannot_write(struct impulse_writer *writer)
 {
     const int error = errno;
+    if (writer->file >= 0)
+        hdf5_abandon(writer->file);
     if (error != 0)
         return file_failure(writer->report, writer->path, "write", error);
     return report_failure(writer->report, SONJECT_ERROR_STORAGE, "%s: cannot write: HDF5 failed",
@@ -34,9 +38,14 @@ static sonject_status cannot_write(struct impulse_writer *writer)
 static hid_t create_file(const char *path)
 {
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
     hid_t file = -1;
-    if (access >= 0 && H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0)
-        file = H5Fcreate(path, H5F_ACC_EXCL, H5P_DEFAULT, access);
+    if (access >= 0 && creation >= 0 && H5Pset_obj_track_times(creation, 0) >= 0 &&
+        H5Pset_userblock(creation, IMPULSE_SEAL_BYTES) >= 0 &&
+        H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110) >= 0)
+        file = H5Fcreate(path, H5F_ACC_EXCL, creation, access);
+    if (creation >= 0)
+        H5Pclose(creation);
     if (access >= 0)
         H5Pclose(access);
     return file;
@@ -70,15 +79,36 @@ sonject_status impulse_writer_begin(struct report *report, const char *path,
     return status;
 }
 
-static bool close_planes(struct impulse_writer *writer)
+static void close_planes(struct impulse_writer *writer)
 {
-    bool is_done = true;
     for (int i = 0; i < IMPULSE_PLANES_MAX; i++) {
         if (writer->planes[i] >= 0)
-            is_done = H5Dclose(writer->planes[i]) >= 0 && is_done;
+            H5Dclose(writer->planes[i]);
         writer->planes[i] = -1;
     }
-    return is_done;
+}
+
+/* Brings them to the file before they are closed. */
+static bool finish_planes(struct impulse_writer *writer)
+{
+    for (int i = 0; i < IMPULSE_PLANES_MAX; i++)
+        if (writer->planes[i] >= 0 && H5Dflush(writer->planes[i]) < 0)
+            return false;
+    close_planes(writer);
+    return true;
+}
+
+/* The groups "/objects" and the like. */
+static bool make_folder(struct impulse_writer *writer, enum impulse_kind kind)
+{
+    static const char *const folders[IMPULSE_KINDS] = {[IMPULSES_OBJECT] = "/objects",
+                                                       [IMPULSES_GLINT] = "/glints",
+                                                       [IMPULSES_CHAINS] = "/chains"};
+    if (!folders[kind] || writer->has_folder[kind])
+        return true;
+    writer->has_folder[kind] = true;
+    const hid_t group = hdf5_make_group(writer->file, folders[kind]);
+    return group >= 0 && H5Gclose(group) >= 0;
 }
 
 static bool describe_grid(hid_t group, const struct line_grid *grid)
@@ -131,6 +161,8 @@ static bool begin_set(struct impulse_writer *writer, const struct impulse_lines 
 {
     char name[IMPULSE_GROUP_CAPACITY];
     impulse_group_name(lines->kind, lines->number, name);
+    if (!make_folder(writer, lines->kind))
+        return false;
     const hid_t group = hdf5_make_group(writer->file, name);
     bool is_done = group >= 0 && describe_grid(group, &lines->grid);
     for (uint32_t i = 0; is_done && line_grid_cells(&lines->grid) > 0 && i < lines->planes; i++) {
@@ -169,7 +201,7 @@ static sonject_status take(void *taker, const struct impulse_lines *lines)
     for (uint32_t i = 0; is_done && line_grid_cells(&lines->grid) > 0 && i < lines->planes; i++)
         is_done = write_plane(writer->planes[i], lines, lines->plane[i]);
     if (is_done && impulse_lines_end(lines))
-        is_done = close_planes(writer);
+        is_done = finish_planes(writer);
     const sonject_status status = is_done ? SONJECT_OK : cannot_write(writer);
     hdf5_leave(&session);
     return status;
@@ -259,11 +291,15 @@ sonject_status impulse_writer_publish(struct impulse_writer *writer,
     struct hdf5_session session;
     hdf5_enter(&session);
     errno = 0;
-    bool is_done = write_head(writer->file, head);
-    is_done = H5Fclose(writer->file) >= 0 && is_done;
+    const bool is_whole =
+        write_head(writer->file, head) && H5Fflush(writer->file, H5F_SCOPE_GLOBAL) >= 0;
+    sonject_status status = is_whole ? SONJECT_OK : cannot_write(writer);
+    if (H5Fclose(writer->file) < 0 && is_whole)
+        status = cannot_write(writer);
     writer->file = -1;
-    sonject_status status = is_done ? SONJECT_OK : cannot_write(writer);
     hdf5_leave(&session);
+    if (status == SONJECT_OK)
+        status = impulse_seal_write(writer->report, writer->part, writer->path);
     if (status != SONJECT_OK)
         return status;
     status = file_publish(writer->report, writer->part, writer->path);
@@ -278,6 +314,8 @@ void impulse_writer_release(struct impulse_writer **writer)
     if (!*writer)
         return;
     hdf5_enter(&session);
+    if ((*writer)->file >= 0)
+        hdf5_abandon((*writer)->file);
     close_planes(*writer);
     if ((*writer)->file >= 0)
         H5Fclose((*writer)->file);
