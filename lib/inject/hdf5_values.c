@@ -14,10 +14,14 @@
 
 /* Most builds of HDF5 may be used by one thread at a time. */
 static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
+static bool is_begun;
 
 void hdf5_enter(struct hdf5_session *session)
 {
     pthread_mutex_lock(&one_at_a_time);
+    if (!is_begun)
+        H5dont_atexit();
+    is_begun = true;
     session->print = NULL;
     session->print_data = NULL;
     H5Eget_auto2(H5E_DEFAULT, &session->print, &session->print_data);

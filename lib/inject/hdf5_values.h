@@ -9,7 +9,9 @@
 
 #include <hdf5.h>
 
-/* Waits until no other thread is between them, and keeps the library from printing. */
+/* Waits until no other thread is between them, and keeps the library from printing. The first call
+ * also asks HDF5, if nothing has used it before, not to tidy up when the program ends: it crashes
+ * there where a full disk kept it from closing a file. */
 struct hdf5_session {
     H5E_auto2_t print;
     void *print_data;
@@ -20,8 +22,7 @@ void hdf5_leave(const struct hdf5_session *session);
 /* Groups without times, so that the same contents make the same file. A negative answer: failed. */
 hid_t hdf5_make_group(hid_t file, const char *path);
 
-/* Lets a file that cannot be written be closed: what HDF5 still wants to write goes nowhere. (After
- * a write that failed HDF5 1.10 keeps the file open, and crashes when the program ends.) */
+/* Lets a file that cannot be written be closed: what HDF5 still wants to write goes nowhere. */
 void hdf5_abandon(hid_t file);
 
 /* Attributes of one value. */

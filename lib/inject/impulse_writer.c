@@ -294,9 +294,10 @@ sonject_status impulse_writer_publish(struct impulse_writer *writer,
     const bool is_whole =
         write_head(writer->file, head) && H5Fflush(writer->file, H5F_SCOPE_GLOBAL) >= 0;
     sonject_status status = is_whole ? SONJECT_OK : cannot_write(writer);
-    if (H5Fclose(writer->file) < 0 && is_whole)
-        status = cannot_write(writer);
+    const bool is_closed = H5Fclose(writer->file) >= 0;
     writer->file = -1;
+    if (!is_closed && status == SONJECT_OK)
+        status = cannot_write(writer);
     hdf5_leave(&session);
     if (status == SONJECT_OK)
         status = impulse_seal_write(writer->report, writer->part, writer->path);
