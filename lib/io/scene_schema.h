@@ -60,6 +60,8 @@ struct reader {
     bool allows_user_shapes; /* code in files is wanted */
     bool takes_geometry;     /* of the input file, once all is read */
     bool takes_altitude;
+    const char *moved_folder; /* as in struct scene_text */
+    size_t moved_overrides;
     struct key_path path; /* of the section or key that is read */
 };
 

@@ -14,7 +14,7 @@ rows (track positions) x columns (slant ranges).
 
 from ._callbacks import Progress
 from ._library import load as _load
-from .actions import check, inject, quicklook, run, write_seabed
+from .actions import check, form, inject, quicklook, run, trace, write_seabed
 from .context import Context, Device, default_context, devices
 from .enumerations import (
     ColumnRule,
@@ -137,10 +137,12 @@ __all__ = [
     "check",
     "default_context",
     "devices",
+    "form",
     "from_degrees",
     "inject",
     "quicklook",
     "run",
+    "trace",
     "version",
     "write_seabed",
 ]
