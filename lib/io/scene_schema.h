@@ -141,6 +141,9 @@ sonject_status read_medium(struct reader *reader, const struct tree_node *node, 
 extern const struct section relief_section;
 sonject_status read_relief(struct reader *reader, const struct tree_node *node, void *structure);
 
+/* The array of the element level, in scene_elements.c. */
+extern const struct section elements_section;
+
 /* The objects' table, for read_objects, in scene_object.c. */
 extern const struct section object_section;
 
