@@ -61,14 +61,14 @@ static double energy_gain(const struct direction *d)
     return sum / white;
 }
 
-static double scale_of(const struct rough_trace *trace, const struct tracer *tracer)
+static double scale_of(const struct line_grid *grid, const struct tracer *tracer)
 {
     const struct patch_view *view = &tracer->view;
     const struct direction columns = {
         range_response,
         &tracer->response,
         view->column_spacing_m,
-        (int)trace->grid.bins_per_pixel,
+        (int)grid->bins_per_pixel,
         pulse_reach_bins(view, &tracer->response, 1),
         true,
     };
@@ -76,7 +76,7 @@ static double scale_of(const struct rough_trace *trace, const struct tracer *tra
         along_track_response,
         &tracer->response,
         view->row_spacing_m,
-        (int)trace->grid.strips_per_row,
+        (int)grid->strips_per_row,
         (int)ceil(24.0 * tracer->response.resolution_m / view->row_spacing_m),
         false,
     };
@@ -88,24 +88,24 @@ static double clamp_index(double index, size_t count)
     return fmin(fmax(index, 0.0), (double)(count - 1));
 }
 
-void coherent_seabed_lines(const struct rough_trace *trace, const struct tracer *tracer,
+void coherent_seabed_lines(const struct line_grid *grid, const struct tracer *tracer,
                            struct span strips, const float *reflectivity_real,
                            const float *reflectivity_imaginary, float *energy,
                            float *imaginary_part)
 {
     const struct patch_view *view = &tracer->view;
-    const double scale = scale_of(trace, tracer);
+    const double scale = scale_of(grid, tracer);
     for (int32_t s = 0; s < strips.count; s++) {
         const double row =
-            clamp_index(floor((double)(strips.first + s) / trace->grid.strips_per_row), view->rows);
+            clamp_index(floor((double)(strips.first + s) / grid->strips_per_row), view->rows);
         const size_t line = (size_t)row * view->columns;
-        for (int32_t b = 0; b < trace->grid.bins.count; b++) {
-            const double column = clamp_index(
-                (double)(trace->grid.bins.first + b) / trace->grid.bins_per_pixel, view->columns);
+        for (int32_t b = 0; b < grid->bins.count; b++) {
+            const double column =
+                clamp_index((double)(grid->bins.first + b) / grid->bins_per_pixel, view->columns);
             const size_t left = (size_t)column;
             const size_t right = left + 1 < view->columns ? left + 1 : left;
             const double part = column - (double)left;
-            const size_t at = (size_t)s * (size_t)trace->grid.bins.count + (size_t)b;
+            const size_t at = (size_t)s * (size_t)grid->bins.count + (size_t)b;
             const double amplitude = scale * sqrt(energy[at]);
             energy[at] = (float)(amplitude * ((1.0 - part) * reflectivity_real[line + left] +
                                               part * reflectivity_real[line + right]));

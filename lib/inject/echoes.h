@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "base/report.h"
-#include "trace/rough.h"
+#include "inject/impulses.h"
 #include "trace/tracer.h"
 
 /* One object's part, on a window of columns (all rows). */
@@ -33,7 +33,7 @@ struct echoes {
     uint32_t orders;
     struct object_echo *objects;
     uint32_t object_count;
-    double trace_s, form_s; /* wall clock */
+    double trace_s, form_s; /* wall clock; trace_s: of the impulses' source */
 };
 
 /* How the seabed's realisation is drawn. */
@@ -60,8 +60,12 @@ struct echo_request {
 sonject_status echo_request_tell(const struct echo_request *request, struct report *report,
                                  double fraction, const char *stage);
 
-/* Traces and forms all of it. On failure *echoes is empty. Errors: INPUT, DEVICE, MEMORY,
- * CANCELLED. */
+/* Forms all of it from impulses as they come. On failure *echoes is empty. Errors: DEVICE, MEMORY,
+ * and the source's own. */
+sonject_status echoes_form(struct echoes *echoes, struct tracer *tracer,
+                           const struct echo_request *request, const struct impulse_source *source);
+
+/* The same from rays: traces and forms. Errors: INPUT, DEVICE, MEMORY, CANCELLED. */
 sonject_status echoes_compute(struct echoes *echoes, struct tracer *tracer,
                               const struct echo_request *request);
 void echoes_clear(struct echoes *echoes);
