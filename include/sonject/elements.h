@@ -77,8 +77,9 @@ typedef struct sonject_element_layout {
     double along_track_resolution_m; /* of the scene's images */
 } sonject_element_layout;
 
-/* What the series of a patch of rows x columns pixels are. layout->struct_size must be set. Errors:
- * ARGUMENT, INPUT (too low a sampling rate, empty windows, ...). */
+/* What the series of a patch of rows x columns pixels are; both 0: of the uniform or synthetic
+ * patch that the scene makes. layout->struct_size must be set. Errors:
+ * ARGUMENT, INPUT (no pixels, too low a sampling rate, empty windows, ...). */
 SONJECT_API sonject_status sonject_elements_describe(sonject_context *context,
                                                      const sonject_scene *scene, uint64_t rows,
                                                      uint64_t columns,

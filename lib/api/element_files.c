@@ -39,7 +39,25 @@ static json_t *array_document(const sonject_elements_params *elements)
     return document;
 }
 
-static json_t *series_document(const struct scene *scene, const sonject_element_layout *layout)
+/* Where the scene's image lies, for those who want to see the same. */
+static json_t *image_document(const struct scene *scene, const struct injection_input *input)
+{
+    const sonject_geometry_params *geometry = &scene->geometry;
+    json_t *document = json_object();
+    add(document, "rows", json_integer((json_int_t)input->rows));
+    add(document, "columns", json_integer((json_int_t)input->columns));
+    add(document, "row_spacing_m", json_real(geometry->row_spacing_m));
+    add(document, "column_spacing_m", json_real(geometry->column_spacing_m));
+    add(document, "first_along_track_m",
+        json_real(geometry->first_along_track_m + input->first_row * geometry->row_spacing_m));
+    add(document, "first_slant_range_m",
+        json_real(geometry->first_slant_range_m +
+                  input->first_column * geometry->column_spacing_m));
+    return document;
+}
+
+static json_t *series_document(const struct scene *scene, const struct injection_input *input,
+                               const sonject_element_layout *layout)
 {
     const sonject_elements_params *elements = &layout->elements;
     const bool is_chirp = elements->pulse == SONJECT_SERIES_CHIRP;
@@ -70,6 +88,7 @@ static json_t *series_document(const struct scene *scene, const sonject_element_
     add(document, "side",
         json_string(scene->geometry.side == SONJECT_SIDE_STARBOARD ? "starboard" : "port"));
     add(document, "array", array_document(elements));
+    add(document, "image", image_document(scene, input));
     return document;
 }
 
@@ -85,6 +104,7 @@ static sonject_status write_document(struct report *report, json_t *document, co
 }
 
 static sonject_status write_files(struct report *report, const struct scene *scene,
+                                  const struct injection_input *input,
                                   const sonject_element_layout *layout, const float *series,
                                   const char *folder)
 {
@@ -101,7 +121,7 @@ static sonject_status write_files(struct report *report, const struct scene *sce
                                   layout->elements.form == SONJECT_SERIES_BASEBAND, series);
     }
     if (status == SONJECT_OK)
-        status = write_document(report, series_document(scene, layout), document_path);
+        status = write_document(report, series_document(scene, input, layout), document_path);
     free(series_path);
     free(document_path);
     return status;
@@ -126,7 +146,7 @@ static sonject_status compute_and_write(struct sonject_context *context, const s
             : report_out_of_memory(report, "the time series: narrow the window of times, or "
                                            "give fewer pings");
     if (status == SONJECT_OK)
-        status = write_files(report, scene, &layout, series, folder);
+        status = write_files(report, scene, input, &layout, series, folder);
     free(series);
     return status;
 }

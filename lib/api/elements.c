@@ -8,6 +8,18 @@
 #include "inject/element_echoes.h"
 #include "scene/element_plan.h"
 
+/* The size of the patch that the scene makes itself; nothing where it makes none. */
+static void made_size(const struct scene *scene, struct injection_input *input)
+{
+    if (scene->input_kind == SONJECT_INPUT_UNIFORM) {
+        input->rows = scene->uniform_rows;
+        input->columns = scene->uniform_columns;
+    } else if (scene->input_kind == SONJECT_INPUT_SYNTHETIC) {
+        input->rows = scene->synthetic.rows;
+        input->columns = scene->synthetic.columns;
+    }
+}
+
 sonject_status sonject_elements_describe(sonject_context *context, const sonject_scene *scene,
                                          uint64_t rows, uint64_t columns,
                                          sonject_element_layout *layout)
@@ -25,6 +37,8 @@ sonject_status sonject_elements_describe(sonject_context *context, const sonject
     memset(&input, 0, sizeof input);
     input.rows = (size_t)rows;
     input.columns = (size_t)columns;
+    if (rows == 0 && columns == 0)
+        made_size(&scene->scene, &input);
     input.is_complex = true; /* whatever the pixels are, the geometry is the same */
     sonject_element_layout made;
     memset(&made, 0, sizeof made);

@@ -16,6 +16,7 @@ from ._callbacks import Progress
 from ._library import load as _load
 from .actions import check, inject, quicklook, run, write_seabed
 from .context import Context, Device, default_context, devices
+from .elements import ElementLayout, Elements, element_layout, element_series, run_elements
 from .enumerations import (
     ColumnRule,
     End,
@@ -26,6 +27,8 @@ from .enumerations import (
     ReflectionKind,
     ResponseWindow,
     SeabedMap,
+    SeriesForm,
+    SeriesPulse,
     Side,
     Status,
     TransferKind,
@@ -89,6 +92,8 @@ __all__ = [
     "Cylinder",
     "Device",
     "Disc",
+    "ElementLayout",
+    "Elements",
     "Ellipsoid",
     "End",
     "Estimator",
@@ -116,6 +121,8 @@ __all__ = [
     "Scene",
     "Seabed",
     "SeabedMap",
+    "SeriesForm",
+    "SeriesPulse",
     "Side",
     "Sonar",
     "SonjectError",
@@ -135,10 +142,13 @@ __all__ = [
     "check",
     "default_context",
     "devices",
+    "element_layout",
+    "element_series",
     "from_degrees",
     "inject",
     "quicklook",
     "run",
+    "run_elements",
     "version",
     "write_seabed",
 ]

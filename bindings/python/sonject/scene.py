@@ -11,6 +11,7 @@ from . import _structures as s
 from ._handle import Handle
 from ._values import PathLike, file_name, fill, initialised, real_numbers, whole_number
 from .context import Context, default_context
+from ._elements import Elements
 from .objects import Object, Parts
 from .parameters import (
     Geometry,
@@ -229,6 +230,10 @@ class Scene(Handle):
 
     def set_transfer(self, transfer: Transfer) -> None:
         self._set("transfer", transfer, Transfer)
+
+    def set_elements(self, elements: Elements) -> None:
+        """The array that element_series listens with."""
+        self._set("elements", elements, Elements)
 
     def set_patch(self, patch: Patch) -> None:
         self._set("patch", patch, Patch)
