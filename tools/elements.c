@@ -1,30 +1,33 @@
 /* sonject elements: time series of the hydrophones of an array. */
+#include <stddef.h>
+
 #include <sonject/sonject.h>
 
 #include "exit_code.h"
 #include "message.h"
 #include "progress.h"
+#include "scene_arguments.h"
 #include "stop.h"
 #include "verbs.h"
 
 struct elements_options {
-    const char *scene;
+    struct scene_arguments scene;
     const char *folder;
     const char *device;
-    struct text_list overrides;
-    bool allows_user_shapes;
     bool is_quiet;
 };
 
 static const struct argument arguments[] = {
     {"--output", "-o", "DIR", "folder for series.npy and elements.json, made where missing",
      ARGUMENT_TEXT, true, offsetof(struct elements_options, folder)},
+    {"--seed", NULL, "N", "seed of the random numbers: --set injection.seed=N", ARGUMENT_WHOLE,
+     false, offsetof(struct elements_options, scene.seed)},
     {"--device", NULL, "NAME", "part of an OpenCL device's name, see sonject devices",
      ARGUMENT_TEXT, false, offsetof(struct elements_options, device)},
     {"--set", NULL, "KEY.PATH=VALUE", "replaces or adds a key of the scene; may be repeated",
-     ARGUMENT_TEXTS, false, offsetof(struct elements_options, overrides)},
+     ARGUMENT_TEXTS, false, offsetof(struct elements_options, scene.overrides)},
     {"--allow-user-shapes", NULL, NULL, "runs code of shapes in the scene; only if you trust it",
-     ARGUMENT_FLAG, false, offsetof(struct elements_options, allows_user_shapes)},
+     ARGUMENT_FLAG, false, offsetof(struct elements_options, scene.allows_user_shapes)},
     {"--quiet", NULL, NULL, "no progress bar, no news; only what is wrong", ARGUMENT_FLAG, false,
      offsetof(struct elements_options, is_quiet)},
 };
@@ -33,15 +36,10 @@ static sonject_status write_series(sonject_context *context, const struct elemen
                                    struct progress *progress)
 {
     sonject_scene *scene = NULL;
-    sonject_scene_read_params reading;
     sonject_run_params params;
-    sonject_scene_read_params_init(&reading);
-    reading.allows_user_shapes = options->allows_user_shapes;
     sonject_run_params_init(&params);
     params.folder = options->folder;
-    sonject_status status =
-        sonject_scene_read_with(context, options->scene, options->overrides.texts,
-                                options->overrides.count, &reading, &scene);
+    sonject_status status = scene_arguments_read(context, &options->scene, &scene);
     if (status == SONJECT_OK)
         status = sonject_elements_run(context, scene, &params, progress_update, progress);
     sonject_scene_release(&scene);
@@ -77,7 +75,7 @@ const struct verb elements_verb = {
     .name = "elements",
     .summary = "writes what each hydrophone of an array hears of a scene, ping by ping",
     .operand = "SCENE.yaml",
-    .operand_offset = offsetof(struct elements_options, scene),
+    .operand_offset = offsetof(struct elements_options, scene.path),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
     .notes =

@@ -1,23 +1,19 @@
 /* sonject run: the targets of a scene into its image. */
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include <stddef.h>
 
 #include <sonject/sonject.h>
 
 #include "exit_code.h"
 #include "message.h"
 #include "progress.h"
+#include "scene_arguments.h"
 #include "stop.h"
 #include "verbs.h"
 
 struct run_options {
-    const char *scene;
+    struct scene_arguments scene;
     const char *folder;
     const char *device;
-    struct whole_argument seed;
-    struct text_list overrides;
-    bool allows_user_shapes;
     bool is_verbose;
     bool is_quiet;
 };
@@ -26,45 +22,24 @@ static const struct argument arguments[] = {
     {"--output", "-o", "DIR", "folder for the results, made where missing", ARGUMENT_TEXT, true,
      offsetof(struct run_options, folder)},
     {"--seed", NULL, "N", "seed of the random numbers: --set injection.seed=N", ARGUMENT_WHOLE,
-     false, offsetof(struct run_options, seed)},
+     false, offsetof(struct run_options, scene.seed)},
     {"--device", NULL, "NAME", "part of an OpenCL device's name, see sonject devices",
      ARGUMENT_TEXT, false, offsetof(struct run_options, device)},
     {"--set", NULL, "KEY.PATH=VALUE", "replaces or adds a key of the scene; may be repeated",
-     ARGUMENT_TEXTS, false, offsetof(struct run_options, overrides)},
+     ARGUMENT_TEXTS, false, offsetof(struct run_options, scene.overrides)},
     {"--allow-user-shapes", NULL, NULL, "runs code of shapes in the scene; only if you trust it",
-     ARGUMENT_FLAG, false, offsetof(struct run_options, allows_user_shapes)},
+     ARGUMENT_FLAG, false, offsetof(struct run_options, scene.allows_user_shapes)},
     {"--verbose", NULL, NULL, "also tells the device, what was built for it, the noise floor, ...",
      ARGUMENT_FLAG, false, offsetof(struct run_options, is_verbose)},
     {"--quiet", NULL, NULL, "no progress bar, no news; only what is wrong", ARGUMENT_FLAG, false,
      offsetof(struct run_options, is_quiet)},
 };
 
-/* The scene with its overrides, the seed's last. */
-static sonject_status read_scene(sonject_context *context, const struct run_options *options,
-                                 const char *seed, const char **overrides, sonject_scene **scene)
-{
-    size_t count = options->overrides.count;
-    if (count > 0)
-        memcpy(overrides, options->overrides.texts, count * sizeof(*overrides));
-    if (options->seed.is_given)
-        overrides[count++] = seed;
-    sonject_scene_read_params params;
-    sonject_scene_read_params_init(&params);
-    params.allows_user_shapes = options->allows_user_shapes;
-    return sonject_scene_read_with(context, options->scene, overrides, count, &params, scene);
-}
-
 static sonject_status inject(sonject_context *context, const struct run_options *options,
                              struct progress *progress, int *was_finished)
 {
-    char seed[48];
-    snprintf(seed, sizeof(seed), "injection.seed=%llu", (unsigned long long)options->seed.value);
-    const char **overrides = calloc(options->overrides.count + 1, sizeof(*overrides));
-    if (!overrides)
-        return SONJECT_ERROR_MEMORY;
     sonject_scene *scene = NULL;
-    sonject_status status = read_scene(context, options, seed, overrides, &scene);
-    free(overrides);
+    sonject_status status = scene_arguments_read(context, &options->scene, &scene);
     if (status == SONJECT_OK) {
         sonject_run_params params;
         sonject_run_params_init(&params);
@@ -109,7 +84,7 @@ const struct verb run_verb = {
     .name = "run",
     .summary = "injects a scene's targets and writes images, masks and truth",
     .operand = "SCENE.yaml",
-    .operand_offset = offsetof(struct run_options, scene),
+    .operand_offset = offsetof(struct run_options, scene.path),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
     .notes = "A folder that already holds the finished result of the same inputs is left as it is.",

@@ -3,7 +3,7 @@
 # shellcheck shell=sh disable=SC2034
 
 build_packages="build-essential meson ninja-build pkg-config python3
-    libopenimageio-dev libyaml-dev libjansson-dev libxxhash-dev
+    libopenimageio-dev libhdf5-dev libyaml-dev libjansson-dev libxxhash-dev
     ocl-icd-opencl-dev opencl-headers pocl-opencl-icd"
 test_packages="libcmocka-dev python3-numpy python3-pytest clang valgrind"
 

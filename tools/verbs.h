@@ -5,6 +5,8 @@
 #include "arguments.h"
 
 extern const struct verb run_verb;
+extern const struct verb trace_verb;
+extern const struct verb form_verb;
 extern const struct verb check_verb;
 extern const struct verb quicklook_verb;
 extern const struct verb seabed_verb;

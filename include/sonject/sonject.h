@@ -15,6 +15,7 @@
 #include <sonject/scene.h>
 #include <sonject/seabed.h>
 #include <sonject/sonar.h>
+#include <sonject/stages.h>
 #include <sonject/status.h>
 #include <sonject/surface.h>
 #include <sonject/user_shape.h>

@@ -173,14 +173,7 @@ sonject_status sonject_elements_run(sonject_context *context, const sonject_scen
     status = swath_open(report, &scene->scene, &swath);
     if (status != SONJECT_OK)
         return status;
-    struct injection_input input;
-    memset(&input, 0, sizeof input);
-    input.rows = (size_t)swath.patch.rows;
-    input.columns = (size_t)swath.patch.columns;
-    input.first_row = (double)swath.patch.first_row;
-    input.first_column = (double)swath.patch.first_column;
-    input.is_complex = swath.is_complex;
-    input.pixels = swath.pixels;
+    const struct injection_input input = swath_input(&swath);
     status = compute_and_write(context, &scene->scene, &input, taken.folder, progress, user);
     swath_close(&swath);
     return status;

@@ -19,9 +19,17 @@ struct sonject_context {
     struct device *device;         /* NULL until first needed */
 };
 
+/* The file that a scene was read from, as it was then; owned. */
+struct scene_source {
+    char *path, *text; /* NULL: it was not read from a file */
+    char **overrides;
+    size_t override_count;
+};
+
 struct sonject_scene {
     struct report *report; /* the context's */
     struct scene scene;
+    struct scene_source source;
 };
 
 struct sonject_result {

@@ -7,10 +7,12 @@
 
 #include "api/documents.h"
 #include "api/layers.h"
+#include "api/run_scene.h"
 #include "api/scene_hash.h"
 #include "api/swath.h"
 #include "base/clock.h"
 #include "base/file.h"
+#include "inject/traced_impulses.h"
 
 /* Shares of a run's progress. */
 #define TRACE_START 0.1
@@ -95,61 +97,74 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
 
 /* Traces and writes; the folder has no run.json of an earlier run while this goes on, so that a
  * folder with run.json is always complete. */
-static sonject_status run_swath(struct sonject_context *context, const struct scene *scene,
-                                const struct swath *swath, struct run_facts *facts,
-                                const char *folder, double start,
-                                sonject_progress_function progress, void *user)
+static sonject_status run_swath(struct sonject_context *context, const struct run_request *request,
+                                const struct swath *swath, struct run_facts *facts, double start)
 {
     struct device *device;
     struct injection_result result;
-    struct stage_progress tracing = {progress, user, TRACE_START, WRITE_START - TRACE_START};
-    struct injection_input input;
-    memset(&input, 0, sizeof input);
-    input.rows = (size_t)swath->patch.rows;
-    input.columns = (size_t)swath->patch.columns;
-    input.first_row = (double)swath->patch.first_row;
-    input.first_column = (double)swath->patch.first_column;
-    input.is_complex = swath->is_complex;
-    input.pixels = swath->pixels;
+    const struct scene *scene = request->scene;
+    struct stage_progress stage = {request->progress, request->user, TRACE_START,
+                                   WRITE_START - TRACE_START};
+    const struct injection_input input = swath_input(swath);
+    const struct impulse_source source =
+        request->impulses ? impulse_file_source(request->impulses) : traced_impulses();
     sonject_status status = context_device(context, &device);
     if (status == SONJECT_OK)
-        status =
-            injection_run(&context->report, device, scene, &input, tell_stage, &tracing, &result);
+        status = injection_form(&context->report, device, scene, &input, &source, tell_stage,
+                                &stage, &result);
     if (status != SONJECT_OK)
         return status;
     tell_noise_floor(&context->report, scene, &result.statistics);
     result.statistics.input_clipped = swath->clipped;
     facts->result = &result;
     facts->device = device;
-    status = write_results(&context->report, facts, &result, folder, start, progress, user);
+    status = write_results(&context->report, facts, &result, request->folder, start,
+                           request->progress, request->user);
     if (status == SONJECT_OK)
         tell_clipped(&context->report, &result.statistics);
     injection_result_clear(&result);
     return status;
 }
 
-static sonject_status run_scene(struct sonject_context *context, const struct scene *scene,
-                                const char *folder, sonject_progress_function progress, void *user,
-                                int *was_finished)
+/* The image that the scene's targets go into. Where impulses are formed with another response it
+ * stays the one that they were traced for, also a made one. */
+static sonject_status open_swath(struct report *report, const struct run_request *request,
+                                 struct swath *swath)
+{
+    struct scene traced = *request->scene;
+    if (request->impulses)
+        impulse_head_take_sonar(impulse_file_head(request->impulses), &traced.sonar);
+    const sonject_status status = swath_open(report, &traced, swath);
+    if (status != SONJECT_OK || !request->impulses)
+        return status;
+    const sonject_status same = check_traced(report, request->impulses, request->scene, swath);
+    if (same != SONJECT_OK)
+        swath_close(swath);
+    return same;
+}
+
+sonject_status run_scene(struct sonject_context *context, const struct run_request *request,
+                         int *was_finished)
 {
     struct report *report = &context->report;
     const double start = clock_seconds();
+    const struct scene *scene = request->scene;
     struct swath swath;
     struct run_facts facts;
     char hash[HASH_TEXT_CAPACITY];
     memset(&facts, 0, sizeof facts);
-    sonject_status status = swath_open(report, scene, &swath);
+    sonject_status status = open_swath(report, request, &swath);
     if (status != SONJECT_OK)
         return status;
     char *image_name = swath_image_name(scene);
-    char *run_path = path_join(folder, "run.json");
+    char *run_path = path_join(request->folder, "run.json");
     if (!image_name || !run_path)
         status = report_out_of_memory(report, "a path");
     if (status == SONJECT_OK)
         status = scene_hash(report, scene, swath.identity, hash);
     const bool is_finished = status == SONJECT_OK && run_is_finished(run_path, hash);
     if (status == SONJECT_OK && !is_finished)
-        status = folder_make(report, folder);
+        status = folder_make(report, request->folder);
     if (status == SONJECT_OK && !is_finished)
         file_discard(run_path);
     if (status == SONJECT_OK && !is_finished) {
@@ -158,7 +173,7 @@ static sonject_status run_scene(struct sonject_context *context, const struct sc
         facts.scene_hash = hash;
         facts.image_name = image_name;
         facts.read_s = clock_seconds() - start;
-        status = run_swath(context, scene, &swath, &facts, folder, start, progress, user);
+        status = run_swath(context, request, &swath, &facts, start);
     }
     if (was_finished)
         *was_finished = is_finished;
@@ -185,5 +200,6 @@ sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
         return status;
     if (!taken.folder || !taken.folder[0])
         return null_argument(&context->report, "folder");
-    return run_scene(context, &scene->scene, taken.folder, progress, user, was_finished);
+    const struct run_request request = {&scene->scene, NULL, taken.folder, progress, user};
+    return run_scene(context, &request, was_finished);
 }

@@ -36,13 +36,56 @@ sonject_status sonject_scene_create(sonject_context *context, sonject_scene **sc
     return SONJECT_OK;
 }
 
+static void source_clear(struct scene_source *source)
+{
+    for (size_t i = 0; i < source->override_count; i++)
+        free(source->overrides[i]);
+    free(source->overrides);
+    free(source->path);
+    free(source->text);
+    memset(source, 0, sizeof *source);
+}
+
 void sonject_scene_release(sonject_scene **scene)
 {
     if (!scene || !*scene)
         return;
     scene_clear(&(*scene)->scene);
+    source_clear(&(*scene)->source);
     free(*scene);
     *scene = NULL;
+}
+
+/* Keeps what the scene is read from; takes the text over. */
+static sonject_status source_keep(struct scene_source *source, struct report *report,
+                                  const char *path, char *text, const char *const *overrides,
+                                  size_t count)
+{
+    source->text = text;
+    source->path = copy_text(path);
+    source->overrides = allocate_array(count, sizeof *source->overrides);
+    bool is_whole = source->path && source->overrides;
+    for (size_t i = 0; is_whole && i < count; i++) {
+        source->overrides[i] = copy_text(overrides[i]);
+        is_whole = source->overrides[i] != NULL;
+        source->override_count = i + 1;
+    }
+    return is_whole ? SONJECT_OK : report_out_of_memory(report, "a scene");
+}
+
+static sonject_status read_file(struct sonject_scene *scene, const char *path,
+                                const char *const *overrides, size_t count, bool allows_user_shapes)
+{
+    char *text;
+    size_t bytes;
+    sonject_status status = scene_file_load(scene->report, path, &text, &bytes);
+    if (status == SONJECT_OK)
+        status = source_keep(&scene->source, scene->report, path, text, overrides, count);
+    if (status != SONJECT_OK)
+        return status;
+    const struct scene_text source = {path,  text, bytes, overrides,
+                                      count, NULL, 0,     allows_user_shapes};
+    return scene_text_read(scene->report, &source, &scene->scene);
 }
 
 void sonject_scene_read_params_init(sonject_scene_read_params *params)
@@ -83,8 +126,7 @@ sonject_status sonject_scene_read_with(sonject_context *context, const char *pat
     status = sonject_scene_create(context, &made);
     if (status != SONJECT_OK)
         return status;
-    status = scene_file_read_with(&context->report, path, overrides, count,
-                                  taken.allows_user_shapes != 0, &made->scene);
+    status = read_file(made, path, overrides, count, taken.allows_user_shapes != 0);
     if (status == SONJECT_OK)
         *scene = made;
     else

@@ -5,6 +5,8 @@
 
 #include <sonject/version.h>
 
+#include "inject/impulse_file.h"
+
 /* Members one by one: the padding of a structure is not part of its value. */
 #define ADD(hash, member) hash_add(hash, &(member), sizeof(member))
 
@@ -216,4 +218,14 @@ sonject_status scene_hash(struct report *report, const struct scene *scene,
     hash_add_text(hash, input_identity);
     hash_end(hash, text);
     return SONJECT_OK;
+}
+
+sonject_status traced_scene_hash(struct report *report, const struct scene *scene,
+                                 const char *input_identity, char text[HASH_TEXT_CAPACITY])
+{
+    static const struct impulse_head none;
+    struct scene traced = *scene;
+    impulse_head_take_sonar(&none, &traced.sonar);
+    traced.input_path = NULL;
+    return scene_hash(report, &traced, input_identity, text);
 }

@@ -12,4 +12,9 @@
 sonject_status scene_hash(struct report *report, const struct scene *scene,
                           const char *input_identity, char hash[HASH_TEXT_CAPACITY]);
 
+/* The same of what tracing depends on: without the sonar's pulse and cross-range response
+ * (impulse_file.h), and without the name of the input's file. */
+sonject_status traced_scene_hash(struct report *report, const struct scene *scene,
+                                 const char *input_identity, char hash[HASH_TEXT_CAPACITY]);
+
 #endif

@@ -210,6 +210,19 @@ sonject_status swath_open(struct report *report, const struct scene *scene, stru
     return status;
 }
 
+struct injection_input swath_input(const struct swath *swath)
+{
+    struct injection_input input;
+    memset(&input, 0, sizeof input);
+    input.rows = (size_t)swath->patch.rows;
+    input.columns = (size_t)swath->patch.columns;
+    input.first_row = (double)swath->patch.first_row;
+    input.first_column = (double)swath->patch.first_column;
+    input.is_complex = swath->is_complex;
+    input.pixels = swath->pixels;
+    return input;
+}
+
 void swath_close(struct swath *swath)
 {
     free(swath->stored);

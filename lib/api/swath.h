@@ -30,6 +30,9 @@ sonject_status swath_describe(struct report *report, const struct scene *scene,
 sonject_status swath_open(struct report *report, const struct scene *scene, struct swath *swath);
 void swath_close(struct swath *swath);
 
+/* The patch, as an injection takes it; its pixels stay the swath's. */
+struct injection_input swath_input(const struct swath *swath);
+
 /* "image.tif" and the like: the input's extension, .tif for a made swath. To be given to free();
  * NULL when memory is out. */
 char *swath_image_name(const struct scene *scene);

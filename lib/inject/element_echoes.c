@@ -1,13 +1,12 @@
 #include "inject/element_echoes.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "elements/series.h"
 #include "inject/coherent_seabed.h"
-#include "inject/patch_level.h"
+#include "inject/injection_setup.h"
 #include "inject/traced_impulses.h"
 
 #define TRACE_SHARE 0.5 /* of a run's progress */
@@ -123,66 +122,13 @@ static int tell_tracing(void *user, double fraction, const char *stage)
     return outer->progress ? outer->progress(outer->user, TRACE_SHARE * fraction, stage) : 0;
 }
 
-static sonject_status check_scene(struct report *report, const struct scene *scene, bool is_complex)
+static sonject_status check_estimator(struct report *report, const struct scene *scene)
 {
-    if (scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "the brute force estimator is a reference for images: use connect "
-                              "for the element level");
-    if (scene->injection.mode == SONJECT_MODE_RESYNTHESISE &&
-        scene->seabed.map == SONJECT_MAP_COHERENT && !is_complex)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "the coherent seabed map needs a complex image: use map: intensity "
-                              "or despeckled");
-    return SONJECT_OK;
-}
-
-/* A scene laid out on a patch; to be given to patch_scene_clear, also on failure. */
-struct patch_scene {
-    struct water water;
-    struct placements placements;
-    struct tracer tracer;
-};
-
-static sonject_status patch_scene_init(struct patch_scene *laid, struct report *report,
-                                       const struct scene *scene,
-                                       const struct injection_input *input)
-{
-    memset(laid, 0, sizeof *laid);
-    struct tracer *tracer = &laid->tracer;
-    sonject_status status = check_scene(report, scene, input->is_complex);
-    if (status == SONJECT_OK)
-        status = injection_check(report, scene, input->first_row, input->first_column, input->rows,
-                                 input->columns, &laid->water, &tracer->view, &laid->placements);
-    if (status != SONJECT_OK)
-        return status;
-    tracer->report = report;
-    tracer->scene = scene;
-    tracer->placements = laid->placements.parts;
-    tracer->part_count = laid->placements.part_count;
-    tracer->objects = laid->placements.objects;
-    tracer->relief = laid->placements.relief;
-    point_response_init(&tracer->response, &scene->sonar, scene_reference_speed(scene),
-                        tracer->view.row_spacing_m);
-    return SONJECT_OK;
-}
-
-static void patch_scene_clear(struct patch_scene *laid)
-{
-    placements_clear(&laid->placements);
-    water_clear(&laid->water);
-}
-
-/* The patch's rows in the view's order. To be given to free(). */
-static float *view_pixels(const struct tracer *tracer, const struct injection_input *input)
-{
-    const size_t row = input->columns * (input->is_complex ? 2 : 1);
-    float *pixels = allocate_array(input->rows, row * sizeof *pixels);
-    for (size_t i = 0; pixels && i < input->rows; i++)
-        memcpy(pixels + i * row,
-               input->pixels + (tracer->view.is_mirrored ? input->rows - 1 - i : i) * row,
-               row * sizeof *pixels);
-    return pixels;
+    if (scene->injection.estimator == SONJECT_ESTIMATOR_CONNECT)
+        return SONJECT_OK;
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "the brute force estimator is a reference for images: use connect for "
+                          "the element level");
 }
 
 static sonject_status hear(struct element_taker *taker, sonject_progress_function progress,
@@ -194,69 +140,27 @@ static sonject_status hear(struct element_taker *taker, sonject_progress_functio
     return series_compute(&request, tracer->report, tracer->device, series);
 }
 
-/* Reflectivity of unit mean square for the coherent map: the pixels over the root of the level. To
- * be given to free(). */
-static float *coherent_plane(const struct patch_level *level, const float *pixels, size_t count,
-                             size_t part)
-{
-    float *plane = allocate_array(count, sizeof *plane);
-    for (size_t i = 0; plane && i < count; i++)
-        plane[i] = pixels[2 * i + part] / sqrtf(level->level[i]);
-    return plane;
-}
-
-/* What image formation would ask for. On failure the planes are still to be freed. */
-static sonject_status request_init(struct echo_request *request, const struct tracer *tracer,
-                                   const struct patch_level *level, const float *pixels,
-                                   float *planes[2])
-{
-    const size_t count = tracer->view.rows * tracer->view.columns;
-    memset(request, 0, sizeof *request);
-    request->map = level->map;
-    request->field = SEABED_FIELD_NONE;
-    if (tracer->scene->injection.mode != SONJECT_MODE_RESYNTHESISE)
-        return SONJECT_OK;
-    request->field = SEABED_FIELD_SPECKLE;
-    if (tracer->scene->seabed.map != SONJECT_MAP_COHERENT)
-        return SONJECT_OK;
-    request->field = SEABED_FIELD_COHERENT;
-    for (size_t part = 0; part < 2; part++)
-        planes[part] = coherent_plane(level, pixels, count, part);
-    request->reflectivity_real = planes[0];
-    request->reflectivity_imaginary = planes[1];
-    return planes[0] && planes[1] ? SONJECT_OK
-                                  : report_out_of_memory(tracer->report, "the reflectivity");
-}
-
-static sonject_status trace_and_hear(struct tracer *tracer, const float *pixels, bool is_complex,
+static sonject_status trace_and_hear(struct injection_setup *setup, bool is_complex,
                                      sonject_progress_function progress, void *user,
                                      const sonject_element_layout *layout, float *series)
 {
+    struct tracer *tracer = &setup->tracer;
     struct trace_progress tracing = {progress, user};
-    struct patch_level level;
-    struct echo_request request;
-    float *planes[2] = {NULL, NULL};
+    struct patch_request patch;
     struct element_taker taker;
-    memset(&taker, 0, sizeof taker);
-    sonject_status status = patch_level_init(&level, tracer->report, tracer->scene, &tracer->view,
-                                             &tracer->response, pixels, is_complex);
+    sonject_status status =
+        patch_request_init(&patch, tracer, setup->pixels, is_complex, tell_tracing, &tracing);
     if (status != SONJECT_OK)
         return status;
-    status = request_init(&request, tracer, &level, pixels, planes);
-    if (status == SONJECT_OK) {
-        request.progress = tell_tracing;
-        request.user = &tracing;
-        taker.tracer = tracer;
-        taker.request = &request;
-        impulse_list_init(&taker.impulses, tracer->report, tracer->device);
-        status = gather(&taker);
-        if (status == SONJECT_OK)
-            status = hear(&taker, progress, user, layout, series);
-        impulse_list_clear(&taker.impulses);
-    }
-    free(planes[0]);
-    free(planes[1]);
-    patch_level_clear(&level);
+    memset(&taker, 0, sizeof taker);
+    taker.tracer = tracer;
+    taker.request = &patch.request;
+    impulse_list_init(&taker.impulses, tracer->report, tracer->device);
+    status = gather(&taker);
+    if (status == SONJECT_OK)
+        status = hear(&taker, progress, user, layout, series);
+    impulse_list_clear(&taker.impulses);
+    patch_request_clear(&patch);
     return status;
 }
 
@@ -264,11 +168,14 @@ sonject_status element_echoes_describe(struct report *report, const struct scene
                                        const struct injection_input *input,
                                        sonject_element_layout *layout)
 {
-    struct patch_scene laid;
-    sonject_status status = patch_scene_init(&laid, report, scene, input);
+    struct injection_setup setup;
+    sonject_status status = check_estimator(report, scene);
+    if (status != SONJECT_OK)
+        return status;
+    status = injection_setup_lay(&setup, report, NULL, scene, input);
     if (status == SONJECT_OK)
-        status = element_plan(layout, report, scene, &laid.tracer.view, &laid.tracer.response);
-    patch_scene_clear(&laid);
+        status = element_plan(layout, report, scene, &setup.tracer.view, &setup.tracer.response);
+    injection_setup_clear(&setup);
     return status;
 }
 
@@ -278,16 +185,13 @@ sonject_status element_echoes_compute(struct report *report, struct device *devi
                                       sonject_progress_function progress, void *user,
                                       const sonject_element_layout *layout, float *series)
 {
-    struct patch_scene laid;
-    sonject_status status = patch_scene_init(&laid, report, scene, input);
-    if (status == SONJECT_OK) {
-        laid.tracer.device = device;
-        float *pixels = view_pixels(&laid.tracer, input);
-        status = pixels ? trace_and_hear(&laid.tracer, pixels, input->is_complex, progress, user,
-                                         layout, series)
-                        : report_out_of_memory(report, "the patch");
-        free(pixels);
-    }
-    patch_scene_clear(&laid);
+    struct injection_setup setup;
+    sonject_status status = check_estimator(report, scene);
+    if (status != SONJECT_OK)
+        return status;
+    status = injection_setup_init(&setup, report, device, scene, input);
+    if (status == SONJECT_OK)
+        status = trace_and_hear(&setup, input->is_complex, progress, user, layout, series);
+    injection_setup_clear(&setup);
     return status;
 }

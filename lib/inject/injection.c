@@ -9,7 +9,9 @@
 #include "image/statistics.h"
 #include "inject/compose.h"
 #include "inject/echoes.h"
+#include "inject/injection_setup.h"
 #include "inject/patch_level.h"
+#include "inject/traced_impulses.h"
 #include "inject/truth.h"
 
 sonject_status injection_check(struct report *report, const struct scene *scene, double first_row,
@@ -51,6 +53,12 @@ static sonject_status result_init(struct injection_result *result, struct report
     result->columns = input->columns;
     result->is_complex = input->is_complex;
     result->object_count = scene->object_count;
+    result->statistics.level_change_db = NAN;
+    result->statistics.input_contrast = NAN;
+    result->statistics.output_contrast = NAN;
+    result->statistics.histogram_distance = NAN;
+    result->statistics.correlation = NAN;
+    result->statistics.struct_size = sizeof result->statistics;
     result->image = allocate_array(pixels, (input->is_complex ? 2 : 1) * sizeof(float));
     result->field = allocate_array(pixels, 2 * sizeof(float));
     result->energy = allocate_array(pixels, sizeof(float));
@@ -67,19 +75,6 @@ static sonject_status result_init(struct injection_result *result, struct report
         return report_out_of_memory(report, "the result");
     }
     return SONJECT_OK;
-}
-
-/* Reverses the order of rows in place; scratch holds one row. */
-static void flip_rows(void *plane, size_t rows, size_t row_bytes, char *scratch)
-{
-    char *bytes = plane;
-    for (size_t row = 0; row < rows / 2; row++) {
-        char *a = bytes + row * row_bytes;
-        char *b = bytes + (rows - 1 - row) * row_bytes;
-        memcpy(scratch, a, row_bytes);
-        memcpy(a, b, row_bytes);
-        memcpy(b, scratch, row_bytes);
-    }
 }
 
 static void flip_box(sonject_box *box, size_t rows)
@@ -177,78 +172,54 @@ static void hand_over_orders(struct echoes *echoes, struct injection_result *res
     }
 }
 
-/* Reflectivity of unit mean square for the coherent map: the pixels over the root of the level. */
-static float *coherent_plane(const struct patch_level *level, const float *pixels, size_t count,
-                             size_t part)
+static sonject_status form_and_compose(struct tracer *tracer, const float *pixels, bool is_complex,
+                                       const struct impulse_source *source,
+                                       sonject_progress_function progress, void *user,
+                                       struct injection_result *result)
 {
-    float *plane = allocate_array(count, sizeof *plane);
-    for (size_t i = 0; plane && i < count; i++)
-        plane[i] = pixels[2 * i + part] / sqrtf(level->level[i]);
-    return plane;
-}
-
-static sonject_status trace_and_compose(struct tracer *tracer, const float *pixels, bool is_complex,
-                                        sonject_progress_function progress, void *user,
-                                        struct injection_result *result)
-{
-    const struct scene *scene = tracer->scene;
-    const size_t count = tracer->view.rows * tracer->view.columns;
-    const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
-    const bool is_coherent = resynthesises && scene->seabed.map == SONJECT_MAP_COHERENT;
-    struct patch_level level;
+    const bool resynthesises = tracer->scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
+    struct patch_request patch;
     struct echoes echoes;
-    struct echo_request request;
-    memset(&request, 0, sizeof request);
-    sonject_status status = patch_level_init(&level, tracer->report, scene, &tracer->view,
-                                             &tracer->response, pixels, is_complex);
+    sonject_status status = patch_request_init(&patch, tracer, pixels, is_complex, progress, user);
     if (status != SONJECT_OK)
         return status;
-    float *real_part = is_coherent ? coherent_plane(&level, pixels, count, 0) : NULL;
-    float *imaginary_part = is_coherent ? coherent_plane(&level, pixels, count, 1) : NULL;
-    request.map = level.map;
-    request.field = is_coherent     ? SEABED_FIELD_COHERENT
-                    : resynthesises ? SEABED_FIELD_SPECKLE
-                                    : SEABED_FIELD_NONE;
-    request.reflectivity_real = real_part;
-    request.reflectivity_imaginary = imaginary_part;
-    request.progress = progress;
-    request.user = user;
-    if (is_coherent && (!real_part || !imaginary_part))
-        status = report_out_of_memory(tracer->report, "the reflectivity");
-    else
-        status = echoes_compute(&echoes, tracer, &request);
+    status = echoes_form(&echoes, tracer, &patch.request, source);
     if (status == SONJECT_OK) {
         const double start = clock_seconds();
-        status = compose(tracer, &level, &echoes, pixels, is_complex, result);
+        status = compose(tracer, &patch.level, &echoes, pixels, is_complex, result);
         if (status == SONJECT_OK && resynthesises)
-            status = compare_seabed(tracer->report, &echoes, &level, result);
+            status = compare_seabed(tracer->report, &echoes, &patch.level, result);
         if (status == SONJECT_OK) {
-            find_truth(tracer, &level, &echoes, result);
-            fill_statistics(tracer, &level, &echoes, clock_seconds() - start, result);
+            find_truth(tracer, &patch.level, &echoes, result);
+            fill_statistics(tracer, &patch.level, &echoes, clock_seconds() - start, result);
             hand_over_orders(&echoes, result);
         }
         echoes_clear(&echoes);
     }
-    free(real_part);
-    free(imaginary_part);
-    patch_level_clear(&level);
+    patch_request_clear(&patch);
     return status;
 }
 
-static sonject_status check_combination(struct report *report, const struct scene *scene,
-                                        bool is_complex)
+sonject_status injection_form(struct report *report, struct device *device,
+                              const struct scene *scene, const struct injection_input *input,
+                              const struct impulse_source *source,
+                              sonject_progress_function progress, void *user,
+                              struct injection_result *result)
 {
-    if (scene->injection.mode == SONJECT_MODE_RESYNTHESISE &&
-        scene->seabed.map == SONJECT_MAP_COHERENT && !is_complex)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "the coherent seabed map needs a complex image: use map: intensity "
-                              "or despeckled");
-    if (scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
-        (scene->injection.mode != SONJECT_MODE_RESYNTHESISE || scene->sonar.transducer_side_m <= 0))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "the brute force estimator needs mode: resynthesise and a transducer "
-                              "that rays can hit: give its side");
-    return SONJECT_OK;
+    struct injection_setup setup;
+    memset(result, 0, sizeof *result);
+    sonject_status status = injection_setup_init(&setup, report, device, scene, input);
+    if (status == SONJECT_OK)
+        status = result_init(result, report, scene, input);
+    if (status == SONJECT_OK)
+        status = form_and_compose(&setup.tracer, setup.pixels, input->is_complex, source, progress,
+                                  user, result);
+    if (status == SONJECT_OK && setup.tracer.view.is_mirrored)
+        unmirror(result, setup.scratch);
+    injection_setup_clear(&setup);
+    if (status != SONJECT_OK)
+        injection_result_clear(result);
+    return status;
 }
 
 sonject_status injection_run(struct report *report, struct device *device,
@@ -256,57 +227,26 @@ sonject_status injection_run(struct report *report, struct device *device,
                              sonject_progress_function progress, void *user,
                              struct injection_result *result)
 {
-    memset(result, 0, sizeof *result);
-    struct placements placements = {NULL, 0, NULL, 0, NULL};
-    struct water water = {NULL, 0, 0.0};
-    struct tracer tracer;
-    memset(&tracer, 0, sizeof tracer);
-    tracer.report = report;
-    tracer.device = device;
-    tracer.scene = scene;
-    sonject_status status = check_combination(report, scene, input->is_complex);
+    const struct impulse_source source = traced_impulses();
+    return injection_form(report, device, scene, input, &source, progress, user, result);
+}
+
+sonject_status injection_trace(struct report *report, struct device *device,
+                               const struct scene *scene, const struct injection_input *input,
+                               const struct impulse_sink *sink, sonject_progress_function progress,
+                               void *user, struct trace_counts *counts)
+{
+    struct injection_setup setup;
+    struct patch_request patch;
+    sonject_status status = injection_setup_init(&setup, report, device, scene, input);
     if (status == SONJECT_OK)
-        status = injection_check(report, scene, input->first_row, input->first_column, input->rows,
-                                 input->columns, &water, &tracer.view, &placements);
-    tracer.placements = placements.parts;
-    tracer.part_count = placements.part_count;
-    tracer.objects = placements.objects;
-    tracer.relief = placements.relief;
-    if (status == SONJECT_OK && scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
-        !tracer.view.water.is_straight)
-        status = report_failure(report, SONJECT_ERROR_INPUT,
-                                "the brute force estimator follows straight rays only: use connect "
-                                "where layers of water bend them");
-    if (status == SONJECT_OK)
-        status = result_init(result, report, scene, input);
+        status = patch_request_init(&patch, &setup.tracer, setup.pixels, input->is_complex,
+                                    progress, user);
     if (status == SONJECT_OK) {
-        const size_t row_bytes = input->columns * (input->is_complex ? 2 : 1) * sizeof(float);
-        const double reference = tracer.view.range_ratio * water.straight_speed_mps;
-        /* a row of the widest layer, the field */
-        char *scratch = allocate_array(input->columns, 2 * sizeof(float));
-        float *pixels = allocate_array(input->rows, row_bytes);
-        point_response_init(&tracer.response, &scene->sonar, reference, tracer.view.row_spacing_m);
-        result->statistics.level_change_db = NAN;
-        result->statistics.input_contrast = NAN;
-        result->statistics.output_contrast = NAN;
-        result->statistics.histogram_distance = NAN;
-        result->statistics.correlation = NAN;
-        result->statistics.struct_size = sizeof result->statistics;
-        status = scratch && pixels ? SONJECT_OK : report_out_of_memory(report, "the patch");
-        if (status == SONJECT_OK) {
-            memcpy(pixels, input->pixels, input->rows * row_bytes);
-            if (tracer.view.is_mirrored)
-                flip_rows(pixels, input->rows, row_bytes, scratch);
-            status = trace_and_compose(&tracer, pixels, input->is_complex, progress, user, result);
-        }
-        if (status == SONJECT_OK && tracer.view.is_mirrored)
-            unmirror(result, scratch);
-        free(scratch);
-        free(pixels);
+        status = trace_impulses(&setup.tracer, &patch.request, sink);
+        *counts = setup.tracer.counts;
+        patch_request_clear(&patch);
     }
-    placements_clear(&placements);
-    water_clear(&water);
-    if (status != SONJECT_OK)
-        injection_result_clear(result);
+    injection_setup_clear(&setup);
     return status;
 }

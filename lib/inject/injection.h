@@ -8,8 +8,10 @@
 
 #include "base/report.h"
 #include "cl/device.h"
+#include "inject/impulses.h"
 #include "scene/placement.h"
 #include "scene/scene.h"
+#include "trace/tracer.h"
 
 /* The patch that objects are put into. Linear; row 0 is the image's. */
 struct injection_input {
@@ -40,6 +42,19 @@ sonject_status injection_run(struct report *report, struct device *device,
                              sonject_progress_function progress, void *user,
                              struct injection_result *result);
 void injection_result_clear(struct injection_result *result);
+
+/* The two stages of it. injection_trace hands the impulses to sink; injection_form makes the result
+ * of those that source gives, which must be of the same scene and patch. Errors: as sonject_inject,
+ * and those of sink and source. */
+sonject_status injection_trace(struct report *report, struct device *device,
+                               const struct scene *scene, const struct injection_input *input,
+                               const struct impulse_sink *sink, sonject_progress_function progress,
+                               void *user, struct trace_counts *counts);
+sonject_status injection_form(struct report *report, struct device *device,
+                              const struct scene *scene, const struct injection_input *input,
+                              const struct impulse_source *source,
+                              sonject_progress_function progress, void *user,
+                              struct injection_result *result);
 
 /* Everything that can be checked without tracing: geometry, water, objects, map. water, which
  * the view borrows, is the caller's for water_clear and placements for placements_clear, also on

@@ -7,15 +7,17 @@
 #include "base/text.h"
 #include "io/scene_schema.h"
 
-static sonject_status fill_scene(struct tree *tree, const char *const *overrides, size_t count,
-                                 bool allows_user_shapes, struct scene *scene)
+static sonject_status fill_scene(struct tree *tree, const struct scene_text *source,
+                                 struct scene *scene)
 {
     struct reader reader = {.report = tree->report,
                             .tree = tree,
                             .scene = scene,
-                            .allows_user_shapes = allows_user_shapes};
-    for (size_t i = 0; i < count; i++) {
-        const sonject_status status = tree_override(tree, overrides[i]);
+                            .allows_user_shapes = source->allows_user_shapes,
+                            .moved_folder = source->moved_folder,
+                            .moved_overrides = source->moved_overrides};
+    for (size_t i = 0; i < source->override_count; i++) {
+        const sonject_status status = tree_override(tree, source->overrides[i]);
         if (status != SONJECT_OK)
             return status;
     }
@@ -23,6 +25,30 @@ static sonject_status fill_scene(struct tree *tree, const char *const *overrides
         return refuse_value(&reader, &tree->root,
                             "there is nothing in it; start with 'sonject: 1'");
     return read_section(&reader, &scene_section, &tree->root, scene);
+}
+
+sonject_status scene_file_load(struct report *report, const char *path, char **text, size_t *bytes)
+{
+    char excerpt[400];
+    if (!file_exists(path))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: there is no such scene file; check its name",
+                              text_excerpt(excerpt, sizeof excerpt, path));
+    return file_read_whole(report, path, TREE_BYTES_MAX, text, bytes);
+}
+
+sonject_status scene_text_read(struct report *report, const struct scene_text *source,
+                               struct scene *scene)
+{
+    struct tree tree;
+    tree_init(&tree, report, source->path);
+    sonject_status status = tree_parse(&tree, source->text, source->bytes);
+    if (status == SONJECT_OK)
+        status = fill_scene(&tree, source, scene);
+    tree_clear(&tree);
+    if (status != SONJECT_OK)
+        scene_clear(scene);
+    return status;
 }
 
 sonject_status scene_file_read(struct report *report, const char *path,
@@ -35,24 +61,14 @@ sonject_status scene_file_read_with(struct report *report, const char *path,
                                     const char *const *overrides, size_t count,
                                     bool allows_user_shapes, struct scene *scene)
 {
-    char excerpt[400];
     char *text;
     size_t bytes;
-    struct tree tree;
-    if (!file_exists(path))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: there is no such scene file; check its name",
-                              text_excerpt(excerpt, sizeof excerpt, path));
-    sonject_status status = file_read_whole(report, path, TREE_BYTES_MAX, &text, &bytes);
+    sonject_status status = scene_file_load(report, path, &text, &bytes);
     if (status != SONJECT_OK)
         return status;
-    tree_init(&tree, report, path);
-    status = tree_parse(&tree, text, bytes);
+    const struct scene_text source = {path,  text, bytes, overrides,
+                                      count, NULL, 0,     allows_user_shapes};
+    status = scene_text_read(report, &source, scene);
     free(text);
-    if (status == SONJECT_OK)
-        status = fill_scene(&tree, overrides, count, allows_user_shapes, scene);
-    tree_clear(&tree);
-    if (status != SONJECT_OK)
-        scene_clear(scene);
     return status;
 }

@@ -18,6 +18,26 @@ sonject_status scene_file_read_with(struct report *report, const char *path,
                                     const char *const *overrides, size_t count,
                                     bool allows_user_shapes, struct scene *scene);
 
+/* The text of a scene file, *bytes long, to be given to free(). Errors: INPUT (there is none, too
+ * large), STORAGE, MEMORY. */
+sonject_status scene_file_load(struct report *report, const char *path, char **text, size_t *bytes);
+
+/* What scene_file_read_with does with the text of a file. */
+struct scene_text {
+    const char *path; /* of the file */
+    const char *text;
+    size_t bytes;
+    const char *const *overrides;
+    size_t override_count;
+    /* Where the names of files in the first so many overrides are meant from; NULL: where the user
+     * is, as with all others. */
+    const char *moved_folder;
+    size_t moved_overrides;
+    bool allows_user_shapes;
+};
+sonject_status scene_text_read(struct report *report, const struct scene_text *source,
+                               struct scene *scene);
+
 struct scene_file_key {
     char path[64];       /* "objects[].heading" */
     const char *unit;    /* "deg, rad", "whole number", "word", ...; static */

@@ -170,6 +170,16 @@ static sonject_status read_label(struct reader *reader, const struct tree_node *
     return SONJECT_OK;
 }
 
+/* The folder that an override's names of files are meant from; "" is where the user is. */
+static const char *folder_of_override(const struct reader *reader, const char *override)
+{
+    const struct tree *tree = reader->tree;
+    for (size_t i = 0; i < reader->moved_overrides && i < tree->override_count; i++)
+        if (reader->moved_folder && tree->override_paths[i] == override)
+            return reader->moved_folder;
+    return "";
+}
+
 sonject_status read_path(struct reader *reader, const struct tree_node *node, char **path)
 {
     const char *text = read_text(reader, node);
@@ -177,7 +187,9 @@ sonject_status read_path(struct reader *reader, const struct tree_node *node, ch
         return SONJECT_ERROR_INPUT;
     if (*text == 0 || !text_is_printable(text))
         return refuse_value(reader, node, "must be a file name on one line");
-    char *folder = node->place.override ? copy_text("") : path_folder(reader->tree->file);
+    char *folder = node->place.override
+                       ? copy_text(folder_of_override(reader, node->place.override))
+                       : path_folder(reader->tree->file);
     *path = folder ? path_join(folder, text) : NULL;
     free(folder);
     return *path ? SONJECT_OK : report_out_of_memory(reader->report, "a file name");

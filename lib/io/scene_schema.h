@@ -57,8 +57,10 @@ struct reader {
     struct report *report;
     const struct tree *tree;
     struct scene *scene;
-    bool allows_user_shapes; /* code in files is wanted */
-    struct key_path path;    /* of the section or key that is read */
+    bool allows_user_shapes;  /* code in files is wanted */
+    const char *moved_folder; /* as in struct scene_text */
+    size_t moved_overrides;
+    struct key_path path; /* of the section or key that is read */
 };
 
 /* The whole file; its structure is struct scene. */

@@ -31,6 +31,12 @@ void line_grid_for_patch(struct line_grid *grid, const struct patch_view *view,
     grid->bins.count = (int32_t)((view->columns - 1) * grid->bins_per_pixel) + 1 + 2 * bin_margin;
 }
 
+double line_grid_shortest_deviation(const struct line_grid *grid, double column_spacing_m)
+{
+    return BINS_PER_RESOLUTION * column_spacing_m /
+           (2.0 * sqrt(log(2.0)) * (double)grid->bins_per_pixel);
+}
+
 size_t line_grid_cells(const struct line_grid *grid)
 {
     return (size_t)grid->strips.count * (size_t)grid->bins.count;

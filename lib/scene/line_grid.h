@@ -29,6 +29,10 @@ void line_grid_for_patch(struct line_grid *grid, const struct patch_view *view,
 int32_t pulse_reach_bins(const struct patch_view *view, const struct point_response *response,
                          uint32_t bins_per_pixel);
 
+/* Standard deviation in m of the shortest pulse that the bins of line_grid_for_patch are fine
+ * enough for. */
+double line_grid_shortest_deviation(const struct line_grid *grid, double column_spacing_m);
+
 /* strips.count * bins.count */
 size_t line_grid_cells(const struct line_grid *grid);
 

@@ -14,15 +14,26 @@
 #define BINS_PER_DEVIATION 16.0 /* linear sharing between bins then errs by 5e-4 */
 #define MIRRORED_STRIPS    64   /* of a launch: there may be dozens of pairs at a time */
 
+void glint_cells_lay(struct line_grid *grid, const struct tracer *tracer)
+{
+    const struct patch_view *view = &tracer->view;
+    grid->strips_per_row =
+        (uint32_t)ceil(view->row_spacing_m / (STRIP_WAVELENGTHS * view->wavelength_m) - 1e-9);
+    grid->bins_per_pixel = (uint32_t)ceil(
+        BINS_PER_DEVIATION * view->column_spacing_m / tracer->response.range_deviation_m - 1e-9);
+}
+
+double glint_shortest_deviation(const struct line_grid *grid, double column_spacing_m)
+{
+    return BINS_PER_DEVIATION * column_spacing_m / grid->bins_per_pixel;
+}
+
 void glint_strips_lay(struct line_grid *grid, const struct tracer *tracer, uint32_t number)
 {
     static const double along[3] = {1.0, 0.0, 0.0};
     const struct patch_view *view = &tracer->view;
     const struct placement *placement = &tracer->placements[number];
-    grid->strips_per_row =
-        (uint32_t)ceil(view->row_spacing_m / (STRIP_WAVELENGTHS * view->wavelength_m) - 1e-9);
-    grid->bins_per_pixel = (uint32_t)ceil(
-        BINS_PER_DEVIATION * view->column_spacing_m / tracer->response.range_deviation_m - 1e-9);
+    glint_cells_lay(grid, tracer);
     const double extent = placement_half_extent(placement, along);
     const double per_row = grid->strips_per_row;
     grid->strips.first =

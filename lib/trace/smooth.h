@@ -16,6 +16,12 @@ struct smooth_trace {
     cl_mem sources; /* source_pair_record; NULL: straight there and back */
 };
 
+/* Sizes of the strips and bins of all glints: strips_per_row and bins_per_pixel of the grid. */
+void glint_cells_lay(struct line_grid *grid, const struct tracer *tracer);
+
+/* Standard deviation in m of the shortest pulse that such bins are fine enough for. */
+double glint_shortest_deviation(const struct line_grid *grid, double column_spacing_m);
+
 /* Sizes of sub-strips and bins, and the sub-strips that a part covers. */
 void glint_strips_lay(struct line_grid *grid, const struct tracer *tracer, uint32_t part);
 

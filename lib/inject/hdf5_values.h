@@ -1,0 +1,48 @@
+/* Values in HDF5 files: each call says whether it succeeded, and believes nothing of what it reads.
+ * The library keeps its state in one place, so calls come between hdf5_enter and hdf5_leave. */
+#ifndef SONJECT_INJECT_HDF5_VALUES_H
+#define SONJECT_INJECT_HDF5_VALUES_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <hdf5.h>
+
+/* Waits until no other thread is between them, and keeps the library from printing. The first call
+ * also asks HDF5, if nothing has used it before, not to tidy up when the program ends: it crashes
+ * there where a full disk kept it from closing a file. */
+struct hdf5_session {
+    H5E_auto2_t print;
+    void *print_data;
+};
+void hdf5_enter(struct hdf5_session *session);
+void hdf5_leave(const struct hdf5_session *session);
+
+/* Groups without times, so that the same contents make the same file. A negative answer: failed. */
+hid_t hdf5_make_group(hid_t file, const char *path);
+
+/* Lets a file that cannot be written be closed: what HDF5 still wants to write goes nowhere. */
+void hdf5_abandon(hid_t file);
+
+/* Attributes of one value. */
+bool hdf5_write_whole(hid_t object, const char *name, uint64_t value);
+bool hdf5_write_integer(hid_t object, const char *name, int64_t value);
+bool hdf5_write_number(hid_t object, const char *name, double value);
+bool hdf5_write_text(hid_t object, const char *name, const char *text);
+bool hdf5_read_whole(hid_t object, const char *name, uint64_t *value);
+bool hdf5_read_integer(hid_t object, const char *name, int64_t low, int64_t high, int32_t *value);
+bool hdf5_read_number(hid_t object, const char *name, double *value);
+
+/* *text is to be given to free(); at most 65535 bytes. */
+bool hdf5_read_text(hid_t object, const char *name, char **text);
+
+/* The same into a text of fixed capacity; fails where it does not fit. */
+bool hdf5_read_short_text(hid_t object, const char *name, char *text, size_t capacity);
+
+/* Datasets of texts, count of them; each read text is to be given to free(), and *texts. At most
+ * 2^24 bytes together. */
+bool hdf5_write_texts(hid_t group, const char *name, const char *const *texts, size_t count);
+bool hdf5_read_texts(hid_t group, const char *name, char ***texts, size_t *count);
+
+#endif
