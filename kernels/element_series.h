@@ -55,14 +55,15 @@ FUNCTION void hear_impulses(const struct impulse_grid_record *grid, struct eleme
                             mask is_impulse, struct element_echo *echo)
 {
     const real bin_range = REAL_OF(bins) * grid->bin_width;
-    const real range = grid->reference_range + bin_range;
+    const real apparent = grid->reference_range + bin_range;
+    const real range = larger(apparent, SPLAT(1.0e-3f)); /* margins may reach behind the track */
     const struct element_leg to = element_leg_of(offsets.transmitter, range);
     const struct element_leg back = element_leg_of(offsets.hydrophone, range);
     const real beyond = to.beyond + back.beyond;
     const real limit = grid->largest_slope_squared * range * range;
     const real position =
         (beyond + 2.0f * bin_range) * grid->samples_per_metre + grid->first_sample;
-    const mask is_heard = is_impulse & MASK_OF(position >= -1.0f) &
+    const mask is_heard = is_impulse & MASK_OF(apparent == range) & MASK_OF(position >= -1.0f) &
                           MASK_OF(position < (float)grid->samples) &
                           MASK_OF(limit >= offsets.transmitter * offsets.transmitter) &
                           MASK_OF(limit >= offsets.hydrophone * offsets.hydrophone);
