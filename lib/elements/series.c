@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "element_series_records.h"
+#include "kernels/element_series_records.h"
 
 #include "base/memory.h"
 #include "cl/launch.h"

@@ -74,12 +74,20 @@ static sonject_status plan_pings(sonject_element_layout *layout, struct report *
     return SONJECT_OK;
 }
 
+double element_least_rate(const sonject_elements_params *elements, double frequency_hz,
+                          double bandwidth_hz)
+{
+    return elements->form == SONJECT_SERIES_PASSBAND ? 2.0 * frequency_hz + bandwidth_hz
+                                                     : bandwidth_hz;
+}
+
 static sonject_status plan_rate(sonject_element_layout *layout, struct report *report)
 {
     sonject_elements_params *elements = &layout->elements;
     const bool is_passband = elements->form == SONJECT_SERIES_PASSBAND;
     const double carrier = is_passband ? 2.0 * layout->centre_frequency_hz : 0.0;
-    const double least = carrier + layout->bandwidth_hz;
+    const double least =
+        element_least_rate(elements, layout->centre_frequency_hz, layout->bandwidth_hz);
     if (elements->sampling_rate_hz == 0.0)
         elements->sampling_rate_hz = carrier + 2.0 * layout->bandwidth_hz;
     if (elements->sampling_rate_hz < least)

@@ -16,6 +16,10 @@ sonject_status element_plan(sonject_element_layout *layout, struct report *repor
 /* Slant range on each side of an echo that the image's pulse reaches. */
 double pulse_reach_m(const struct patch_view *view, const struct point_response *response);
 
+/* The lowest sampling rate, Hz, for a band. */
+double element_least_rate(const sonject_elements_params *elements, double frequency_hz,
+                          double bandwidth_hz);
+
 /* Values of all series: samples x hydrophones x pings. */
 size_t element_plan_samples(const sonject_element_layout *layout);
 

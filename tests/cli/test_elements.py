@@ -35,7 +35,7 @@ def test_files_hold_the_series(sonject, scene, tmp_path):
 def test_what_is_wrong_leaves_nothing(sonject, scene, tmp_path):
     scene.write_text(SCENE + ARRAY)
     refused = sonject("elements", scene, "-o", "out", "--set", "elements.sampling_rate=20 kHz")
-    assert_refused(refused, 3, "sampling_rate must be at least 30000 Hz")
+    assert_refused(refused, 3, "elements.sampling_rate: must be at least 30000 Hz")
     assert not files_below(tmp_path / "out")
     (tmp_path / "file").write_text("")
     assert_refused(sonject("elements", scene, "-o", "file/out", "--quiet"), 5, "file")
