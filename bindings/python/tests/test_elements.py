@@ -175,6 +175,32 @@ def test_a_rough_target_has_the_images_place_and_level(context):
     assert numpy.mean(levels) == pytest.approx(0, abs=0.2)
 
 
+def test_a_coherent_seabed_is_heard_as_it_is_drawn(context):
+    random = numpy.random.default_rng(7)
+    patch = random.standard_normal((2, ROWS, COLUMNS)).astype(numpy.float32)
+    patch = patch[0] + 1j * patch[1]
+    scene = speckle_scene(context, ARRAYS["one hydrophone"])
+    scene.set_seabed(sonject.Seabed(map="coherent"))
+    formed = sonject.inject(patch, scene).field
+    layout = sonject.element_layout(scene, patch.shape)
+    image = beamform(sonject.element_series(patch, scene), layout, *axes())
+    correlation, phase, _ = compare(formed, image)
+    assert correlation > 0.98
+    assert abs(phase) < 0.02
+
+
+def test_delays_are_those_of_the_processors_sound_speed(context):
+    """The sound is 2 % slower than the processor assumes: targets lie and count as in its image."""
+    scene = scene_of(context, SMOOTH, elements=ARRAYS["one hydrophone"])
+    scene.set_medium(sonject.Medium(sound_speed_mps=1470.0, reference_sound_speed_mps=1500.0))
+    layout = sonject.element_layout(scene, PATCH.shape)
+    assert layout.sound_speed_mps == 1500.0
+    formed = numpy.abs(sonject.inject(PATCH, scene).field)
+    image = numpy.abs(beamform(sonject.element_series(PATCH, scene), layout, *axes()))
+    assert image.argmax() == formed.argmax()
+    assert decibels(image.max() / formed.max()) == pytest.approx(0, abs=0.2)
+
+
 def few_pings(**more):
     return sonject.Elements(pings=3, first_ping_m=0.1, ping_spacing_m=0.4, **more)
 
