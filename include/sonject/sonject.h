@@ -3,6 +3,7 @@
 #define SONJECT_SONJECT_H
 
 #include <sonject/context.h>
+#include <sonject/elements.h>
 #include <sonject/image.h>
 #include <sonject/injection.h>
 #include <sonject/material.h>

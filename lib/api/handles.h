@@ -54,6 +54,13 @@ sonject_status params_take(struct report *report, void *to, size_t to_size, cons
 sonject_status params_give(struct report *report, void *to, const void *from, size_t from_size,
                            size_t smallest, const char *name);
 
+/* A caller's patch, its rows packed; pixels NULL: the uniform or synthetic patch that the scene
+ * makes. *owned, which input->pixels points to, is to be given to free(), also on failure if it is
+ * not NULL. Errors: ARGUMENT, INPUT, MEMORY. */
+sonject_status find_input(struct report *report, const struct scene *scene,
+                          const sonject_pixels *pixels, struct injection_input *input,
+                          float **owned);
+
 /* News of the noise floor, where it was estimated. */
 void tell_noise_floor(struct report *report, const struct scene *scene,
                       const sonject_statistics *statistics);

@@ -43,9 +43,9 @@ static sonject_status take_pixels(struct report *report, const sonject_pixels *p
     return SONJECT_OK;
 }
 
-static sonject_status find_input(struct report *report, const struct scene *scene,
-                                 const sonject_pixels *pixels, struct injection_input *input,
-                                 float **owned)
+sonject_status find_input(struct report *report, const struct scene *scene,
+                          const sonject_pixels *pixels, struct injection_input *input,
+                          float **owned)
 {
     if (pixels)
         return take_pixels(report, pixels, input, owned);

@@ -252,6 +252,12 @@ sonject_status sonject_scene_set_injection(sonject_scene *scene,
                 "injection");
 }
 
+sonject_status sonject_scene_set_elements(sonject_scene *scene,
+                                          const sonject_elements_params *elements)
+{
+    SET_CHECKED(scene, sonject_elements_params, elements, elements, check_elements, "elements");
+}
+
 sonject_status sonject_scene_set_patch(sonject_scene *scene, const sonject_patch_params *patch)
 {
     SET_CHECKED(scene, sonject_patch_params, patch, patch, check_patch, "patch");

@@ -31,6 +31,7 @@ static const struct units units_of[] = {
     [QUANTITY_ABSORPTION] = {"dB/m, dB/km", {{"dB/m", 0}, {"dB/km", -3}}},
     [QUANTITY_TEMPERATURE] = {"C", {{"C", 0}}},
     [QUANTITY_DENSITY] = {"kg/m3, g/cm3", {{"kg/m3", 0}, {"g/cm3", 3}}},
+    [QUANTITY_TIME] = {"s, ms, us", {{"s", 0}, {"ms", -3}, {"us", -6}}},
 };
 
 static bool is_blank(char c)

@@ -15,7 +15,8 @@ enum quantity {
     QUANTITY_LEVEL,       /* linear energy ratio out; "-27 dB" or a bare linear number */
     QUANTITY_ABSORPTION,  /* dB/m (bare numbers too); dB/km */
     QUANTITY_TEMPERATURE, /* degrees Celsius: C (bare numbers too) */
-    QUANTITY_DENSITY      /* kg/m3 (bare numbers too); g/cm3 */
+    QUANTITY_DENSITY,     /* kg/m3 (bare numbers too); g/cm3 */
+    QUANTITY_TIME         /* s (bare numbers too); ms, us */
 };
 
 /* Parses the whole text. On success *value is in SI units as listed above. On failure returns false

@@ -20,6 +20,7 @@ enum device_program {
     PROGRAM_TRACE_CHAINS,
     PROGRAM_TRACE_CORNERS,
     PROGRAM_IMAGE_FORMATION,
+    PROGRAM_ELEMENT_SERIES,
     PROGRAM_PROBE_USER_SHAPE, /* only with code of users */
     PROGRAM_COUNT
 };

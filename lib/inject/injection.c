@@ -9,6 +9,7 @@
 #include "image/statistics.h"
 #include "inject/compose.h"
 #include "inject/echoes.h"
+#include "inject/injection_setup.h"
 #include "inject/patch_level.h"
 #include "inject/traced_impulses.h"
 #include "inject/truth.h"
@@ -74,19 +75,6 @@ static sonject_status result_init(struct injection_result *result, struct report
         return report_out_of_memory(report, "the result");
     }
     return SONJECT_OK;
-}
-
-/* Reverses the order of rows in place; scratch holds one row. */
-static void flip_rows(void *plane, size_t rows, size_t row_bytes, char *scratch)
-{
-    char *bytes = plane;
-    for (size_t row = 0; row < rows / 2; row++) {
-        char *a = bytes + row * row_bytes;
-        char *b = bytes + (rows - 1 - row) * row_bytes;
-        memcpy(scratch, a, row_bytes);
-        memcpy(a, b, row_bytes);
-        memcpy(b, scratch, row_bytes);
-    }
 }
 
 static void flip_box(sonject_box *box, size_t rows)
@@ -184,59 +172,6 @@ static void hand_over_orders(struct echoes *echoes, struct injection_result *res
     }
 }
 
-/* Reflectivity of unit mean square for the coherent map: the pixels over the root of the level. */
-static float *coherent_plane(const struct patch_level *level, const float *pixels, size_t count,
-                             size_t part)
-{
-    float *plane = allocate_array(count, sizeof *plane);
-    for (size_t i = 0; plane && i < count; i++)
-        plane[i] = pixels[2 * i + part] / sqrtf(level->level[i]);
-    return plane;
-}
-
-/* What echoes are asked for, from the measured patch. */
-struct patch_request {
-    struct patch_level level;
-    float *real_part, *imaginary_part; /* of the coherent map; NULL: none */
-    struct echo_request request;
-};
-
-static void patch_request_clear(struct patch_request *patch)
-{
-    free(patch->real_part);
-    free(patch->imaginary_part);
-    patch_level_clear(&patch->level);
-}
-
-static sonject_status patch_request_init(struct patch_request *patch, struct tracer *tracer,
-                                         const float *pixels, bool is_complex,
-                                         sonject_progress_function progress, void *user)
-{
-    const struct scene *scene = tracer->scene;
-    const size_t count = tracer->view.rows * tracer->view.columns;
-    const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
-    const bool is_coherent = resynthesises && scene->seabed.map == SONJECT_MAP_COHERENT;
-    memset(patch, 0, sizeof *patch);
-    const sonject_status status = patch_level_init(
-        &patch->level, tracer->report, scene, &tracer->view, &tracer->response, pixels, is_complex);
-    if (status != SONJECT_OK)
-        return status;
-    patch->real_part = is_coherent ? coherent_plane(&patch->level, pixels, count, 0) : NULL;
-    patch->imaginary_part = is_coherent ? coherent_plane(&patch->level, pixels, count, 1) : NULL;
-    patch->request.map = patch->level.map;
-    patch->request.field = is_coherent     ? SEABED_FIELD_COHERENT
-                           : resynthesises ? SEABED_FIELD_SPECKLE
-                                           : SEABED_FIELD_NONE;
-    patch->request.reflectivity_real = patch->real_part;
-    patch->request.reflectivity_imaginary = patch->imaginary_part;
-    patch->request.progress = progress;
-    patch->request.user = user;
-    if (!is_coherent || (patch->real_part && patch->imaginary_part))
-        return SONJECT_OK;
-    patch_request_clear(patch);
-    return report_out_of_memory(tracer->report, "the reflectivity");
-}
-
 static sonject_status form_and_compose(struct tracer *tracer, const float *pixels, bool is_complex,
                                        const struct impulse_source *source,
                                        sonject_progress_function progress, void *user,
@@ -265,84 +200,6 @@ static sonject_status form_and_compose(struct tracer *tracer, const float *pixel
     return status;
 }
 
-static sonject_status check_combination(struct report *report, const struct scene *scene,
-                                        bool is_complex)
-{
-    if (scene->injection.mode == SONJECT_MODE_RESYNTHESISE &&
-        scene->seabed.map == SONJECT_MAP_COHERENT && !is_complex)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "the coherent seabed map needs a complex image: use map: intensity "
-                              "or despeckled");
-    if (scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
-        (scene->injection.mode != SONJECT_MODE_RESYNTHESISE || scene->sonar.transducer_side_m <= 0))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "the brute force estimator needs mode: resynthesise and a transducer "
-                              "that rays can hit: give its side");
-    return SONJECT_OK;
-}
-
-/* Patch and scene, ready for rays or for impulses. */
-struct injection_setup {
-    struct placements placements;
-    struct water water;
-    struct tracer tracer;
-    float *pixels; /* in the view's row order */
-    char *scratch; /* a row of the widest layer, the field */
-};
-
-static void setup_clear(struct injection_setup *setup)
-{
-    placements_clear(&setup->placements);
-    water_clear(&setup->water);
-    free(setup->pixels);
-    free(setup->scratch);
-}
-
-static sonject_status copy_pixels(struct injection_setup *setup, struct report *report,
-                                  const struct injection_input *input)
-{
-    const size_t row_bytes = input->columns * (input->is_complex ? 2 : 1) * sizeof(float);
-    setup->scratch = allocate_array(input->columns, 2 * sizeof(float));
-    setup->pixels = allocate_array(input->rows, row_bytes);
-    if (!setup->scratch || !setup->pixels)
-        return report_out_of_memory(report, "the patch");
-    memcpy(setup->pixels, input->pixels, input->rows * row_bytes);
-    if (setup->tracer.view.is_mirrored)
-        flip_rows(setup->pixels, input->rows, row_bytes, setup->scratch);
-    return SONJECT_OK;
-}
-
-/* To be given to setup_clear, also on failure. */
-static sonject_status setup_init(struct injection_setup *setup, struct report *report,
-                                 struct device *device, const struct scene *scene,
-                                 const struct injection_input *input)
-{
-    struct tracer *tracer = &setup->tracer;
-    memset(setup, 0, sizeof *setup);
-    tracer->report = report;
-    tracer->device = device;
-    tracer->scene = scene;
-    sonject_status status = check_combination(report, scene, input->is_complex);
-    if (status == SONJECT_OK)
-        status = injection_check(report, scene, input->first_row, input->first_column, input->rows,
-                                 input->columns, &setup->water, &tracer->view, &setup->placements);
-    tracer->placements = setup->placements.parts;
-    tracer->part_count = setup->placements.part_count;
-    tracer->objects = setup->placements.objects;
-    tracer->relief = setup->placements.relief;
-    if (status == SONJECT_OK && scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
-        !tracer->view.water.is_straight)
-        status = report_failure(report, SONJECT_ERROR_INPUT,
-                                "the brute force estimator follows straight rays only: use connect "
-                                "where layers of water bend them");
-    if (status != SONJECT_OK)
-        return status;
-    point_response_init(&tracer->response, &scene->sonar,
-                        tracer->view.range_ratio * setup->water.straight_speed_mps,
-                        tracer->view.row_spacing_m);
-    return copy_pixels(setup, report, input);
-}
-
 sonject_status injection_form(struct report *report, struct device *device,
                               const struct scene *scene, const struct injection_input *input,
                               const struct impulse_source *source,
@@ -351,7 +208,7 @@ sonject_status injection_form(struct report *report, struct device *device,
 {
     struct injection_setup setup;
     memset(result, 0, sizeof *result);
-    sonject_status status = setup_init(&setup, report, device, scene, input);
+    sonject_status status = injection_setup_init(&setup, report, device, scene, input);
     if (status == SONJECT_OK)
         status = result_init(result, report, scene, input);
     if (status == SONJECT_OK)
@@ -359,7 +216,7 @@ sonject_status injection_form(struct report *report, struct device *device,
                                   user, result);
     if (status == SONJECT_OK && setup.tracer.view.is_mirrored)
         unmirror(result, setup.scratch);
-    setup_clear(&setup);
+    injection_setup_clear(&setup);
     if (status != SONJECT_OK)
         injection_result_clear(result);
     return status;
@@ -381,7 +238,7 @@ sonject_status injection_trace(struct report *report, struct device *device,
 {
     struct injection_setup setup;
     struct patch_request patch;
-    sonject_status status = setup_init(&setup, report, device, scene, input);
+    sonject_status status = injection_setup_init(&setup, report, device, scene, input);
     if (status == SONJECT_OK)
         status = patch_request_init(&patch, &setup.tracer, setup.pixels, input->is_complex,
                                     progress, user);
@@ -390,6 +247,6 @@ sonject_status injection_trace(struct report *report, struct device *device,
         *counts = setup.tracer.counts;
         patch_request_clear(&patch);
     }
-    setup_clear(&setup);
+    injection_setup_clear(&setup);
     return status;
 }

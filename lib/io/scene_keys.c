@@ -24,6 +24,7 @@ static const char *unit_of(const struct field *field)
         [QUANTITY_ABSORPTION] = "dB/m, dB/km",
         [QUANTITY_TEMPERATURE] = "C",
         [QUANTITY_DENSITY] = "kg/m3, g/cm3",
+        [QUANTITY_TIME] = "s, ms, us",
     };
     switch (field->kind) {
     case FIELD_QUANTITY:

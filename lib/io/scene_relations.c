@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "io/scene_schema.h"
+#include "scene/element_plan.h"
 
 static bool is_given(const struct tree_node *node, const char *key)
 {
@@ -46,6 +47,12 @@ sonject_status finish_scene(struct reader *reader, const struct tree_node *node,
         !(scene->sonar.transducer_side_m > 0.0))
         return refuse_key(reader, node, "injection.estimator",
                           "brute_force needs a source that rays can hit; set transducer in sonar");
+    const double least_rate = element_least_rate(&scene->elements, scene->sonar.centre_frequency_hz,
+                                                 scene->sonar.bandwidth_hz);
+    if (scene->elements.sampling_rate_hz != 0.0 && scene->elements.sampling_rate_hz < least_rate)
+        return refuse_key(reader, node, "elements.sampling_rate",
+                          "must be at least %g Hz for the sonar's band, not %g Hz", least_rate,
+                          scene->elements.sampling_rate_hz);
     return SONJECT_OK;
 }
 

@@ -228,6 +228,8 @@ static const struct field scene_fields[] = {
     {"medium", "the water", .kind = FIELD_SPECIAL, .read = read_medium, .section = &medium_section},
     {"injection", "how targets are put into the image",
      PART(STRUCTURE, injection, injection_section)},
+    {"elements", "the array whose time series `sonject elements` writes",
+     PART(STRUCTURE, elements, elements_section)},
     {"objects", "list of the targets", .kind = FIELD_SPECIAL, .read = read_objects,
      .section = &object_section, .is_list = true},
 };

@@ -164,6 +164,9 @@ extern const struct section heights_section;
 sonject_status read_relief_heights(struct reader *reader, const struct tree_node *node,
                                    void *structure);
 
+/* The array of the element level, in scene_elements.c. */
+extern const struct section elements_section;
+
 /* The objects' table, for read_objects, in scene_object.c. */
 extern const struct section object_section;
 

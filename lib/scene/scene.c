@@ -15,6 +15,7 @@ void scene_init(struct scene *scene)
     sonject_geometry_params_init(&scene->geometry);
     sonject_transfer_params_init(&scene->transfer);
     sonject_injection_params_init(&scene->injection);
+    sonject_elements_params_init(&scene->elements);
     sonject_synthetic_params_init(&scene->synthetic);
     scene->patch.struct_size = sizeof scene->patch;
     sonject_relief_params_init(&scene->relief.grid);

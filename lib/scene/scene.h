@@ -6,6 +6,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include <sonject/elements.h>
 #include <sonject/scene.h>
 
 #include "base/report.h"
@@ -38,6 +39,7 @@ struct scene {
     sonject_geometry_params geometry;
     sonject_transfer_params transfer;
     sonject_injection_params injection;
+    sonject_elements_params elements;
     sonject_patch_params patch;
     sonject_input_kind input_kind;
     char *input_path;      /* owned; NULL unless input_kind is SONJECT_INPUT_FILE */
@@ -98,6 +100,8 @@ sonject_status check_transfer(const sonject_transfer_params *transfer, struct re
                               const char **key);
 sonject_status check_injection(const sonject_injection_params *injection, struct report *report,
                                const char **key);
+sonject_status check_elements(const sonject_elements_params *elements, struct report *report,
+                              const char **key);
 sonject_status check_patch(const sonject_patch_params *patch, struct report *report,
                            const char **key);
 sonject_status check_uniform(uint32_t rows, uint32_t columns, struct report *report,

@@ -69,6 +69,8 @@ SIZES = {
     "sonject_synthetic_params": 88,
     "sonject_injection_params": 64,
     "sonject_patch_params": 40,
+    "sonject_elements_params": 128,
+    "sonject_element_layout": 176,
     "sonject_pixels": 40,
     "sonject_box": 32,
     "sonject_object_truth": 224,

@@ -9,7 +9,7 @@ import pytest
 
 from conftest import COMMAND, assert_refused
 
-VERBS = {"run", "check", "quicklook", "seabed", "devices"}
+VERBS = {"run", "elements", "check", "quicklook", "seabed", "devices"}
 NOT_THERE = r"\b(merge|trace|form|measure|campaign|convert)\b|--(shard|labels)"
 
 

@@ -362,6 +362,35 @@ static void test_interactions(void **state)
     expect_all(state, wrong, COUNT(wrong));
 }
 
+static void test_elements(void **state)
+{
+    static const struct wrong wrong[] = {
+        {BASE "elements: {hydrophones: {count: 0}}\n",
+         ":4:33: elements.hydrophones.count: must be 1...65536, not 0"},
+        {BASE "elements: {hydrophones: 4}\n", ":4:25: elements.hydrophones: must be a section of "
+                                              "'key: value' lines, not a single value"},
+        {BASE "elements: {pings: {spacing: -1 m}}\n",
+         ":4:29: elements.pings.spacing: must be 1e-06...1e+06 m, not -1"},
+        {BASE "elements: {form: bassband}\n",
+         ":4:18: elements.form: 'bassband' is not one of baseband, passband; did you mean "
+         "'baseband'?"},
+        {BASE "elements: {first_time: 60 ms, last_time: 50 ms}\n",
+         ":4:42: elements.last_time: must not be before first_time, 0.06 s, but is 0.05 s"},
+        {BASE "elements: {chirp: 0 ms}\n", ":4:19: elements.chirp: must be 1e-09...100 s, not 0"},
+        {BASE "elements: {aspect_limit: 91 deg}\n",
+         ":4:26: elements.aspect_limit: must be 0...1.5708 rad, not 1.58825"},
+        {BASE "elements: {sampling_rate: 0.1}\n",
+         ":4:27: elements.sampling_rate: must be 1...1e+10 Hz, not 0.1"},
+        {BASE "elements: {sampling_rate: 20 kHz}\n",
+         ":4:27: elements.sampling_rate: must be at least 30000 Hz for the sonar's band, not 20000 "
+         "Hz"},
+        {BASE "elements: {form: passband, sampling_rate: 229 kHz}\n",
+         ":4:43: elements.sampling_rate: must be at least 230000 Hz for the sonar's band, not "
+         "229000 Hz"},
+    };
+    expect_all(state, wrong, COUNT(wrong));
+}
+
 static void test_yaml_that_is_not_wanted(void **state)
 {
     static const struct wrong wrong[] = {
@@ -481,6 +510,7 @@ int main(void)
         cmocka_unit_test(test_materials),
         cmocka_unit_test(test_the_seabeds_forward_material),
         cmocka_unit_test(test_interactions),
+        cmocka_unit_test(test_elements),
         cmocka_unit_test(test_yaml_that_is_not_wanted),
         cmocka_unit_test(test_overrides_that_are_wrong),
         cmocka_unit_test(test_a_missing_file_is_named),

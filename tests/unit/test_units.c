@@ -70,6 +70,9 @@ static void test_every_unit(void **state)
     expect(QUANTITY_DENSITY, "1025", 1025.0);
     expect(QUANTITY_DENSITY, "1025 kg/m3", 1025.0);
     expect(QUANTITY_DENSITY, "1.025 g/cm3", 1025.0);
+    expect(QUANTITY_TIME, "0.25", 0.25);
+    expect(QUANTITY_TIME, "12.5 ms", 0.0125);
+    expect(QUANTITY_TIME, "3 us", 3e-6);
 }
 
 static void test_angles_are_radians(void **state)

@@ -16,6 +16,7 @@ from ._callbacks import Progress
 from ._library import load as _load
 from .actions import check, form, inject, quicklook, run, trace, write_seabed
 from .context import Context, Device, default_context, devices
+from .elements import ElementLayout, Elements, element_layout, element_series, run_elements
 from .enumerations import (
     ColumnRule,
     End,
@@ -26,6 +27,8 @@ from .enumerations import (
     ReflectionKind,
     ResponseWindow,
     SeabedMap,
+    SeriesForm,
+    SeriesPulse,
     Side,
     Status,
     TransferKind,
@@ -90,6 +93,8 @@ __all__ = [
     "Cylinder",
     "Device",
     "Disc",
+    "ElementLayout",
+    "Elements",
     "Ellipsoid",
     "End",
     "Estimator",
@@ -118,6 +123,8 @@ __all__ = [
     "Scene",
     "Seabed",
     "SeabedMap",
+    "SeriesForm",
+    "SeriesPulse",
     "Side",
     "Sonar",
     "SonjectError",
@@ -137,11 +144,14 @@ __all__ = [
     "check",
     "default_context",
     "devices",
+    "element_layout",
+    "element_series",
     "form",
     "from_degrees",
     "inject",
     "quicklook",
     "run",
+    "run_elements",
     "trace",
     "version",
     "write_seabed",

@@ -309,6 +309,42 @@ class sonject_statistics(Structure):
     ]
 
 
+class sonject_elements_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("form", c_uint32),
+        ("pulse", c_uint32),
+        ("hydrophones", c_uint32),
+        ("pings", c_uint32),
+        ("reserved", c_uint32),
+        ("first_ping_m", c_double),
+        ("ping_spacing_m", c_double),
+        ("transmitter_offset_m", c_double),
+        ("transmitter_length_m", c_double),
+        ("first_hydrophone_m", c_double),
+        ("hydrophone_spacing_m", c_double),
+        ("hydrophone_length_m", c_double),
+        ("sampling_rate_hz", c_double),
+        ("first_time_s", c_double),
+        ("last_time_s", c_double),
+        ("chirp_duration_s", c_double),
+        ("aspect_limit_rad", c_double),
+    ]
+
+
+class sonject_element_layout(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("elements", sonject_elements_params),
+        ("samples", c_uint64),
+        ("sound_speed_mps", c_double),
+        ("centre_frequency_hz", c_double),
+        ("bandwidth_hz", c_double),
+        ("along_track_resolution_m", c_double),
+    ]
+
+
 class sonject_run_params(Structure):
     _fields_ = [
         ("struct_size", c_uint32),

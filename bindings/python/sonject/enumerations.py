@@ -157,6 +157,20 @@ class ForwardRule(enum.IntEnum):
     MAP = 1
 
 
+class SeriesForm(enum.IntEnum):
+    """Of time series: complex baseband, or real passband."""
+
+    BASEBAND = 0
+    PASSBAND = 1
+
+
+class SeriesPulse(enum.IntEnum):
+    """Of time series: the image's compressed pulse, or the chirp as transmitted."""
+
+    COMPRESSED = 0
+    CHIRP = 1
+
+
 class ResponseWindow(enum.IntEnum):
     """sonject_response_window: weighting of the aspects that form a pixel."""
 

@@ -20,6 +20,7 @@ from ._values import (
     whole_number,
 )
 from .context import Context, default_context
+from ._elements import Elements
 from .objects import Object, Parts
 from .parameters import (
     Geometry,
@@ -236,6 +237,10 @@ class Scene(Handle):
 
     def set_transfer(self, transfer: Transfer) -> None:
         self._set("transfer", transfer, Transfer)
+
+    def set_elements(self, elements: Elements) -> None:
+        """The array that element_series listens with."""
+        self._set("elements", elements, Elements)
 
     def set_patch(self, patch: Patch) -> None:
         self._set("patch", patch, Patch)

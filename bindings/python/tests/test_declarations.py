@@ -31,6 +31,8 @@ ENUMERATIONS = {
     "sonject_input_kind": (enumerations.InputKind, "SONJECT_INPUT_"),
     "sonject_seabed_map": (enumerations.SeabedMap, "SONJECT_MAP_"),
     "sonject_response_window": (enumerations.ResponseWindow, "SONJECT_WINDOW_"),
+    "sonject_series_form": (enumerations.SeriesForm, "SONJECT_SERIES_"),
+    "sonject_series_pulse": (enumerations.SeriesPulse, "SONJECT_SERIES_"),
 }
 
 

@@ -1,0 +1,89 @@
+#include "api/handles.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include <sonject/elements.h>
+
+#include "inject/element_echoes.h"
+#include "scene/element_plan.h"
+
+/* The size of the patch that the scene makes itself; nothing where it makes none. */
+static void made_size(const struct scene *scene, struct injection_input *input)
+{
+    if (scene->input_kind == SONJECT_INPUT_UNIFORM) {
+        input->rows = scene->uniform_rows;
+        input->columns = scene->uniform_columns;
+    } else if (scene->input_kind == SONJECT_INPUT_SYNTHETIC) {
+        input->rows = scene->synthetic.rows;
+        input->columns = scene->synthetic.columns;
+    }
+}
+
+sonject_status sonject_elements_describe(sonject_context *context, const sonject_scene *scene,
+                                         uint64_t rows, uint64_t columns,
+                                         sonject_element_layout *layout)
+{
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    struct report *report = &context->report;
+    if (!scene)
+        return null_argument(report, "scene");
+    const uint64_t limit = (uint64_t)1 << 31;
+    if (rows > limit || columns > limit || rows * columns > limit)
+        return report_failure(report, SONJECT_ERROR_INPUT, "a patch has at most 2^31 pixels");
+    struct injection_input input;
+    memset(&input, 0, sizeof input);
+    input.rows = (size_t)rows;
+    input.columns = (size_t)columns;
+    if (rows == 0 && columns == 0)
+        made_size(&scene->scene, &input);
+    input.is_complex = true; /* whatever the pixels are, the geometry is the same */
+    sonject_element_layout made;
+    memset(&made, 0, sizeof made);
+    const sonject_status status = element_echoes_describe(report, &scene->scene, &input, &made);
+    if (status != SONJECT_OK)
+        return status;
+    return params_give(report, layout, &made, sizeof made, sizeof made, "element layout");
+}
+
+static sonject_status check_bytes(struct report *report, const sonject_element_layout *layout,
+                                  size_t bytes)
+{
+    const size_t parts = layout->elements.form == SONJECT_SERIES_BASEBAND ? 2 : 1;
+    const size_t wanted = element_plan_samples(layout) * parts * sizeof(float);
+    if (bytes == wanted)
+        return SONJECT_OK;
+    return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                          "the series take %zu bytes, the buffer has %zu", wanted, bytes);
+}
+
+sonject_status sonject_element_series(sonject_context *context, const sonject_scene *scene,
+                                      const sonject_pixels *pixels,
+                                      sonject_progress_function progress, void *user, float *series,
+                                      size_t bytes)
+{
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    struct report *report = &context->report;
+    if (!scene || !series)
+        return null_argument(report, "scene and series");
+    struct injection_input input;
+    float *owned = NULL;
+    struct device *device = NULL;
+    sonject_element_layout layout;
+    sonject_status status = find_input(report, &scene->scene, pixels, &input, &owned);
+    if (status == SONJECT_OK)
+        status = element_echoes_describe(report, &scene->scene, &input, &layout);
+    if (status == SONJECT_OK)
+        status = check_bytes(report, &layout, bytes);
+    if (status == SONJECT_OK)
+        status = context_device(context, &device);
+    if (status == SONJECT_OK)
+        status = element_echoes_compute(report, device, &scene->scene, &input, progress, user,
+                                        &layout, series);
+    free(owned);
+    return status;
+}

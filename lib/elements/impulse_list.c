@@ -1,0 +1,129 @@
+#include "elements/impulse_list.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "elements/speckle.h"
+
+void impulse_list_init(struct impulse_list *list, struct report *report, struct device *device)
+{
+    memset(list, 0, sizeof *list);
+    list->report = report;
+    list->device = device;
+}
+
+static void piece_clear(struct impulse_piece *piece)
+{
+    free(piece->starts);
+    free(piece->bins);
+    free(piece->real_part);
+    free(piece->imaginary_part);
+    memset(piece, 0, sizeof *piece);
+}
+
+void impulse_list_clear(struct impulse_list *list)
+{
+    for (size_t i = 0; i < list->count; i++)
+        piece_clear(&list->pieces[i]);
+    free(list->pieces);
+    list->pieces = NULL;
+    list->count = 0;
+}
+
+static size_t count_impulses(const float *real_part, const float *imaginary_part, size_t cells)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < cells; i++)
+        count += real_part[i] != 0.0f || imaginary_part[i] != 0.0f;
+    return count;
+}
+
+static sonject_status piece_init(struct impulse_piece *piece, struct report *report,
+                                 const struct line_grid *grid, struct span strips, size_t count)
+{
+    memset(piece, 0, sizeof *piece);
+    piece->grid = *grid;
+    piece->grid.strips = strips;
+    piece->count = count;
+    piece->starts = allocate_array((size_t)strips.count + 1, sizeof *piece->starts);
+    piece->bins = allocate_array(count, sizeof *piece->bins);
+    piece->real_part = allocate_array(count, sizeof *piece->real_part);
+    piece->imaginary_part = allocate_array(count, sizeof *piece->imaginary_part);
+    if (piece->starts && piece->bins && piece->real_part && piece->imaginary_part)
+        return SONJECT_OK;
+    piece_clear(piece);
+    return report_out_of_memory(report, "impulses");
+}
+
+static void piece_fill(struct impulse_piece *piece, const float *real_part,
+                       const float *imaginary_part)
+{
+    const struct span bins = piece->grid.bins;
+    int32_t next = 0;
+    piece->first_bin = bins.first + bins.count;
+    piece->last_bin = bins.first;
+    for (int32_t strip = 0; strip < piece->grid.strips.count; strip++) {
+        const size_t line = (size_t)strip * (size_t)bins.count;
+        piece->starts[strip] = next;
+        for (int32_t bin = 0; bin < bins.count; bin++) {
+            const float a = real_part[line + (size_t)bin];
+            const float b = imaginary_part[line + (size_t)bin];
+            if (a == 0.0f && b == 0.0f)
+                continue;
+            const int32_t number = bins.first + bin;
+            piece->bins[next] = number;
+            piece->real_part[next] = a;
+            piece->imaginary_part[next++] = b;
+            piece->first_bin = number < piece->first_bin ? number : piece->first_bin;
+            piece->last_bin = number > piece->last_bin ? number : piece->last_bin;
+        }
+    }
+    piece->starts[piece->grid.strips.count] = next;
+}
+
+sonject_status impulse_list_add(struct impulse_list *list, const struct line_grid *grid,
+                                struct span strips, const float *real_part,
+                                const float *imaginary_part)
+{
+    const size_t cells = (size_t)strips.count * (size_t)grid->bins.count;
+    const size_t count = count_impulses(real_part, imaginary_part, cells);
+    if (count == 0)
+        return SONJECT_OK;
+    if (count > INT32_MAX)
+        return report_failure(list->report, SONJECT_ERROR_INPUT,
+                              "elements: the patch has more than 2^31 - 1 impulses in one piece: "
+                              "use a smaller patch");
+    struct impulse_piece *grown = realloc(list->pieces, (list->count + 1) * sizeof *list->pieces);
+    if (!grown)
+        return report_out_of_memory(list->report, "impulses");
+    list->pieces = grown;
+    struct impulse_piece *piece = &list->pieces[list->count];
+    const sonject_status status = piece_init(piece, list->report, grid, strips, count);
+    if (status != SONJECT_OK)
+        return status;
+    piece_fill(piece, real_part, imaginary_part);
+    list->count++;
+    return SONJECT_OK;
+}
+
+sonject_status impulse_list_add_speckle(struct impulse_list *list, const struct line_grid *grid,
+                                        struct span strips, const float *energy, uint64_t seed,
+                                        uint32_t stream)
+{
+    const size_t cells = (size_t)strips.count * (size_t)grid->bins.count;
+    if (cells == 0)
+        return SONJECT_OK;
+    float *real_part = allocate_array(cells, sizeof *real_part);
+    float *imaginary_part = allocate_array(cells, sizeof *imaginary_part);
+    sonject_status status =
+        real_part && imaginary_part ? SONJECT_OK : report_out_of_memory(list->report, "speckle");
+    if (status == SONJECT_OK)
+        status = speckle_draw(list->report, list->device, grid->bins, strips, energy, seed, stream,
+                              real_part, imaginary_part);
+    if (status == SONJECT_OK)
+        status = impulse_list_add(list, grid, strips, real_part, imaginary_part);
+    free(real_part);
+    free(imaginary_part);
+    return status;
+}

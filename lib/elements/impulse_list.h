@@ -1,0 +1,41 @@
+/* Impulses that are heard: traced lines without their empty cells, kept until all are there. */
+#ifndef SONJECT_ELEMENTS_IMPULSE_LIST_H
+#define SONJECT_ELEMENTS_IMPULSE_LIST_H
+
+#include "base/report.h"
+#include "cl/device.h"
+#include "scene/line_grid.h"
+
+/* Some strips of a grid. All owned. */
+struct impulse_piece {
+    struct line_grid grid;             /* strips: only these */
+    int32_t *starts;                   /* of each strip's impulses, strips.count + 1 */
+    int32_t *bins;                     /* on the grid's numbering, rising within a strip */
+    float *real_part, *imaginary_part; /* m */
+    size_t count;
+    int32_t first_bin, last_bin;
+};
+
+struct impulse_list {
+    struct report *report;
+    struct device *device;
+    struct impulse_piece *pieces; /* owned */
+    size_t count;
+};
+
+void impulse_list_init(struct impulse_list *list, struct report *report, struct device *device);
+void impulse_list_clear(struct impulse_list *list);
+
+/* Adds strips of a grid: complex amplitudes in m, strips.count x grid->bins.count, in two planes.
+ * Errors: MEMORY, INPUT (more than 2^31 - 1 impulses at a time). */
+sonject_status impulse_list_add(struct impulse_list *list, const struct line_grid *grid,
+                                struct span strips, const float *real_part,
+                                const float *imaginary_part);
+
+/* The same with amplitudes sqrt(energy) times the complex normal deviates of image formation.
+ * Errors: also DEVICE. */
+sonject_status impulse_list_add_speckle(struct impulse_list *list, const struct line_grid *grid,
+                                        struct span strips, const float *energy, uint64_t seed,
+                                        uint32_t stream);
+
+#endif

@@ -1,0 +1,345 @@
+#include "elements/series.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "kernels/element_series_records.h"
+
+#include "base/memory.h"
+#include "cl/launch.h"
+#include "cl/program.h"
+#include "elements/fine_pulse.h"
+
+#define PI               3.14159265358979323846
+#define WIDTH_MAX        16
+#define LINES_BYTES      67108864.0 /* that pairs are worked on at a time in */
+#define PAIRS_MAX        65536.0
+#define STRIPS_AWAY_MAX  1e9
+#define ANY_SLOPE_SQUARE 1e16
+#define WORK_ITEMS       65536 /* that a GPU wants */
+#define SHARE_SAMPLES    64    /* of a line, for a work-item at least */
+
+typedef char impulse_grid_record_is_packed[sizeof(struct impulse_grid_record) == 14 * 4 ? 1 : -1];
+typedef char element_pair_record_is_packed[sizeof(struct element_pair_record) == 4 * 4 ? 1 : -1];
+
+/* Device memory for some pairs of transmitter and hydrophone at a time. */
+struct series_work {
+    const struct series_request *request;
+    struct report *report;
+    struct device *device;
+    struct fine_pulse pulse;
+    size_t pairs;          /* of all, pings x hydrophones */
+    size_t chunk;          /* pairs at a time */
+    uint32_t fine_samples; /* of a line */
+    cl_int line_stride, series_stride;
+    struct element_pair_record *records; /* chunk */
+    float *real_part, *imaginary_part;   /* chunk x series_stride */
+    cl_mem lines_real, lines_imaginary, series_real, series_imaginary, pulse_real, pulse_imaginary;
+    cl_kernel hear, pulse_kernel;
+};
+
+static void work_clear(struct series_work *work)
+{
+    if (work->hear)
+        clReleaseKernel(work->hear);
+    if (work->pulse_kernel)
+        clReleaseKernel(work->pulse_kernel);
+    buffer_release(&work->lines_real);
+    buffer_release(&work->lines_imaginary);
+    buffer_release(&work->series_real);
+    buffer_release(&work->series_imaginary);
+    buffer_release(&work->pulse_real);
+    buffer_release(&work->pulse_imaginary);
+    free(work->records);
+    free(work->real_part);
+    free(work->imaginary_part);
+    fine_pulse_clear(&work->pulse);
+}
+
+static void choose_chunk(struct series_work *work)
+{
+    const sonject_element_layout *layout = work->request->layout;
+    const size_t padded = ((size_t)layout->samples + WIDTH_MAX - 1) / WIDTH_MAX * WIDTH_MAX;
+    work->pairs = (size_t)layout->elements.pings * layout->elements.hydrophones;
+    work->fine_samples = fine_pulse_samples(&work->pulse, layout);
+    work->line_stride = (cl_int)(padded * work->pulse.fine + work->pulse.taps);
+    work->series_stride = (cl_int)padded;
+    const double line_bytes = (double)work->line_stride * sizeof(float);
+    const double most = fmin(LINES_BYTES, (double)work->device->allocation_limit) / line_bytes;
+    work->chunk = (size_t)fmax(1.0, fmin(fmin(most, PAIRS_MAX), (double)work->pairs));
+}
+
+static sonject_status work_init(struct series_work *work, const struct series_request *request,
+                                struct report *report, struct device *device)
+{
+    memset(work, 0, sizeof *work);
+    work->request = request;
+    work->report = report;
+    work->device = device;
+    sonject_status status =
+        fine_pulse_init(&work->pulse, report, request->layout, request->view, request->response);
+    if (status != SONJECT_OK)
+        return status;
+    choose_chunk(work);
+    const size_t line_bytes = work->chunk * (size_t)work->line_stride * sizeof(float);
+    const size_t series_cells = work->chunk * (size_t)work->series_stride;
+    const size_t pulse_bytes = work->pulse.taps * sizeof(float);
+    work->records = allocate_array(work->chunk, sizeof *work->records);
+    work->real_part = allocate_array(series_cells, sizeof(float));
+    work->imaginary_part = allocate_array(series_cells, sizeof(float));
+    if (!work->records || !work->real_part || !work->imaginary_part)
+        status = report_out_of_memory(report, "time series");
+    cl_mem *const lines[] = {&work->lines_real, &work->lines_imaginary};
+    cl_mem *const series[] = {&work->series_real, &work->series_imaginary};
+    for (int part = 0; status == SONJECT_OK && part < 2; part++) {
+        status = buffer_create(report, device, line_bytes, NULL, lines[part]);
+        if (status == SONJECT_OK)
+            status =
+                buffer_create(report, device, series_cells * sizeof(float), NULL, series[part]);
+    }
+    if (status == SONJECT_OK)
+        status =
+            buffer_create(report, device, pulse_bytes, work->pulse.real_part, &work->pulse_real);
+    if (status == SONJECT_OK)
+        status = buffer_create(report, device, pulse_bytes, work->pulse.imaginary_part,
+                               &work->pulse_imaginary);
+    if (status == SONJECT_OK)
+        status =
+            kernel_create(report, device, PROGRAM_ELEMENT_SERIES, 0, "hear_elements", &work->hear);
+    if (status == SONJECT_OK)
+        status = kernel_create(report, device, PROGRAM_ELEMENT_SERIES, 0, "pulse_elements",
+                               &work->pulse_kernel);
+    return status;
+}
+
+/* A piece's strips and bins as the device counts them: bins from the piece's middle on, so that
+ * they keep their digits. */
+static struct impulse_grid_record grid_record_of(const struct series_work *work,
+                                                 const struct impulse_piece *piece)
+{
+    const sonject_element_layout *layout = work->request->layout;
+    const struct patch_view *view = work->request->view;
+    const sonject_elements_params *elements = &layout->elements;
+    const double c = layout->sound_speed_mps;
+    const double wavelength = c / layout->centre_frequency_hz;
+    const double bin_width = view->column_spacing_m / piece->grid.bins_per_pixel;
+    const double reference = view_apparent_range(view, 0.0);
+    const double fine_rate = elements->sampling_rate_hz * work->pulse.fine;
+    const double slope = tan(elements->aspect_limit_rad);
+    const int32_t share = (int32_t)(work->fine_samples / SHARE_SAMPLES) + 1;
+    const int32_t wanted = (int32_t)(WORK_ITEMS / work->chunk) + 1;
+    struct impulse_grid_record record;
+    memset(&record, 0, sizeof record);
+    record.strip_width = (float)(view->row_spacing_m / piece->grid.strips_per_row);
+    record.bin_width = (float)bin_width;
+    record.reference_range = (float)reference;
+    record.first_strip = piece->grid.strips.first;
+    record.strips = piece->grid.strips.count;
+    record.largest_range = (float)(reference + piece->last_bin * bin_width);
+    record.cycles_per_metre = (float)(1.0 / wavelength);
+    record.samples_per_metre = (float)(fine_rate / c);
+    record.first_sample = (float)((2.0 * reference / c - work->pulse.first_time_s) * fine_rate);
+    record.transmitter_cycles = (float)(0.5 * elements->transmitter_length_m / wavelength);
+    record.hydrophone_cycles = (float)(0.5 * elements->hydrophone_length_m / wavelength);
+    record.largest_slope_squared =
+        elements->aspect_limit_rad > 0.0 && slope * slope < ANY_SLOPE_SQUARE
+            ? (float)(slope * slope)
+            : (float)ANY_SLOPE_SQUARE;
+    record.samples = (cl_int)work->fine_samples;
+    record.segments = work->device->is_cpu ? 1 : share < wanted ? share : wanted;
+    return record;
+}
+
+/* Position on the numbering of a piece's strips: whole strips, and the rest. */
+static void find_strip(const struct patch_view *view, const struct impulse_piece *piece,
+                       double along_track_m, int32_t *strip, float *fraction)
+{
+    const double per_row = piece->grid.strips_per_row;
+    const double x = view->is_mirrored ? -along_track_m : along_track_m;
+    const double position = (view_row_of_x(view, x) + 0.5) * per_row - 0.5;
+    const double limited = fmax(-STRIPS_AWAY_MAX, fmin(position, STRIPS_AWAY_MAX));
+    *strip = (int32_t)floor(limited);
+    *fraction = (float)(limited - floor(limited));
+}
+
+static void fill_pairs(struct series_work *work, const struct impulse_piece *piece, size_t first,
+                       size_t count)
+{
+    const sonject_elements_params *elements = &work->request->layout->elements;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t ping = (uint32_t)((first + i) / elements->hydrophones);
+        const uint32_t hydrophone = (uint32_t)((first + i) % elements->hydrophones);
+        struct element_pair_record *record = &work->records[i];
+        find_strip(work->request->view, piece, element_transmitter_m(elements, ping),
+                   &record->transmitter_strip, &record->transmitter_fraction);
+        find_strip(work->request->view, piece, element_hydrophone_m(elements, ping, hydrophone),
+                   &record->hydrophone_strip, &record->hydrophone_fraction);
+    }
+}
+
+/* A buffer of a piece's numbers with room for a group of lanes behind them. */
+static sonject_status padded_buffer(struct series_work *work, const void *numbers, size_t count,
+                                    cl_mem *buffer)
+{
+    sonject_status status = buffer_create(work->report, work->device,
+                                          (count + WIDTH_MAX) * sizeof(float), NULL, buffer);
+    if (status == SONJECT_OK)
+        status =
+            buffer_write(work->report, work->device, *buffer, 0, count * sizeof(float), numbers);
+    return status;
+}
+
+struct piece_buffers {
+    cl_mem grid, pairs, starts, bins, real_part, imaginary_part;
+};
+
+static sonject_status piece_buffers_init(struct piece_buffers *buffers, struct series_work *work,
+                                         const struct impulse_piece *piece, size_t first,
+                                         size_t count, int32_t *segments)
+{
+    const struct impulse_grid_record grid = grid_record_of(work, piece);
+    *segments = grid.segments;
+    fill_pairs(work, piece, first, count);
+    memset(buffers, 0, sizeof *buffers);
+    sonject_status status =
+        buffer_create(work->report, work->device, sizeof grid, &grid, &buffers->grid);
+    if (status == SONJECT_OK)
+        status = buffer_create(work->report, work->device, count * sizeof *work->records,
+                               work->records, &buffers->pairs);
+    if (status == SONJECT_OK)
+        status = padded_buffer(work, piece->starts, (size_t)piece->grid.strips.count + 1,
+                               &buffers->starts);
+    if (status == SONJECT_OK)
+        status = padded_buffer(work, piece->bins, piece->count, &buffers->bins);
+    if (status == SONJECT_OK)
+        status = padded_buffer(work, piece->real_part, piece->count, &buffers->real_part);
+    if (status == SONJECT_OK)
+        status = padded_buffer(work, piece->imaginary_part, piece->count, &buffers->imaginary_part);
+    return status;
+}
+
+static void piece_buffers_clear(struct piece_buffers *buffers)
+{
+    buffer_release(&buffers->grid);
+    buffer_release(&buffers->pairs);
+    buffer_release(&buffers->starts);
+    buffer_release(&buffers->bins);
+    buffer_release(&buffers->real_part);
+    buffer_release(&buffers->imaginary_part);
+}
+
+static sonject_status hear_piece(struct series_work *work, const struct impulse_piece *piece,
+                                 size_t first, size_t count)
+{
+    struct piece_buffers buffers;
+    int32_t segments;
+    sonject_status status = piece_buffers_init(&buffers, work, piece, first, count, &segments);
+    if (status == SONJECT_OK) {
+        const struct kernel_argument arguments[] = {
+            ARGUMENT(buffers.grid),         ARGUMENT(buffers.pairs),
+            ARGUMENT(buffers.starts),       ARGUMENT(buffers.bins),
+            ARGUMENT(buffers.real_part),    ARGUMENT(buffers.imaginary_part),
+            ARGUMENT(work->line_stride),    ARGUMENT(work->lines_real),
+            ARGUMENT(work->lines_imaginary)};
+        const size_t global[2] = {(size_t)segments, count};
+        status = kernel_run(work->report, work->device, work->hear, arguments,
+                            sizeof arguments / sizeof *arguments, 2, global);
+    }
+    piece_buffers_clear(&buffers);
+    return status;
+}
+
+static sonject_status pulse_chunk(struct series_work *work, size_t count)
+{
+    const cl_int fine = (cl_int)work->pulse.fine;
+    const cl_int taps = (cl_int)work->pulse.taps;
+    const size_t bytes = count * (size_t)work->series_stride * sizeof(float);
+    const struct kernel_argument arguments[] = {ARGUMENT(work->lines_real),
+                                                ARGUMENT(work->lines_imaginary),
+                                                ARGUMENT(work->line_stride),
+                                                ARGUMENT(fine),
+                                                ARGUMENT(work->pulse_real),
+                                                ARGUMENT(work->pulse_imaginary),
+                                                ARGUMENT(taps),
+                                                ARGUMENT(work->series_stride),
+                                                ARGUMENT(work->series_real),
+                                                ARGUMENT(work->series_imaginary)};
+    const size_t global[2] = {(size_t)work->series_stride / work->device->width, count};
+    sonject_status status = kernel_run(work->report, work->device, work->pulse_kernel, arguments,
+                                       sizeof arguments / sizeof *arguments, 2, global);
+    if (status == SONJECT_OK)
+        status =
+            buffer_read(work->report, work->device, work->series_real, 0, bytes, work->real_part);
+    if (status == SONJECT_OK)
+        status = buffer_read(work->report, work->device, work->series_imaginary, 0, bytes,
+                             work->imaginary_part);
+    return status;
+}
+
+/* Puts a chunk's series into the caller's, on the carrier where that is wanted. */
+static void hand_over(const struct series_work *work, size_t first, size_t count, float *series)
+{
+    const sonject_element_layout *layout = work->request->layout;
+    const size_t samples = (size_t)layout->samples;
+    const bool is_passband = layout->elements.form == SONJECT_SERIES_PASSBAND;
+    for (size_t n = 0; n < samples; n++) {
+        const double time =
+            layout->elements.first_time_s + (double)n / layout->elements.sampling_rate_hz;
+        const double cycles = fmod(layout->centre_frequency_hz * time, 1.0);
+        const float cosine = (float)cos(2.0 * PI * cycles);
+        const float sine = (float)sin(2.0 * PI * cycles);
+        for (size_t i = 0; i < count; i++) {
+            const float a = work->real_part[i * (size_t)work->series_stride + n];
+            const float b = work->imaginary_part[i * (size_t)work->series_stride + n];
+            const size_t at = (first + i) * samples + n;
+            if (is_passband) {
+                series[at] = a * cosine + b * sine;
+            } else {
+                series[2 * at] = a;
+                series[2 * at + 1] = b;
+            }
+        }
+    }
+}
+
+static sonject_status compute_chunk(struct series_work *work, size_t first, size_t count,
+                                    float *series)
+{
+    const struct impulse_list *impulses = work->request->impulses;
+    const size_t bytes = count * (size_t)work->line_stride * sizeof(float);
+    sonject_status status = buffer_clear(work->report, work->device, work->lines_real, bytes);
+    if (status == SONJECT_OK)
+        status = buffer_clear(work->report, work->device, work->lines_imaginary, bytes);
+    for (size_t i = 0; status == SONJECT_OK && i < impulses->count; i++)
+        status = hear_piece(work, &impulses->pieces[i], first, count);
+    if (status == SONJECT_OK)
+        status = pulse_chunk(work, count);
+    if (status == SONJECT_OK)
+        hand_over(work, first, count, series);
+    return status;
+}
+
+static sonject_status tell(const struct series_request *request, struct report *report, double done)
+{
+    const double fraction = request->first_fraction + (1.0 - request->first_fraction) * done;
+    if (request->progress && request->progress(request->user, fraction, "hearing the impulses"))
+        return report_failure(report, SONJECT_CANCELLED, "cancelled while hearing the impulses");
+    return SONJECT_OK;
+}
+
+sonject_status series_compute(const struct series_request *request, struct report *report,
+                              struct device *device, float *series)
+{
+    struct series_work work;
+    sonject_status status = work_init(&work, request, report, device);
+    for (size_t first = 0; status == SONJECT_OK && first < work.pairs; first += work.chunk) {
+        const size_t left = work.pairs - first;
+        const size_t count = left < work.chunk ? left : work.chunk;
+        status = compute_chunk(&work, first, count, series);
+        if (status == SONJECT_OK)
+            status = tell(request, report, (double)(first + count) / (double)work.pairs);
+    }
+    work_clear(&work);
+    return status;
+}

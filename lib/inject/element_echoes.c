@@ -1,0 +1,197 @@
+#include "inject/element_echoes.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "elements/series.h"
+#include "inject/coherent_seabed.h"
+#include "inject/injection_setup.h"
+#include "inject/traced_impulses.h"
+
+#define TRACE_SHARE 0.5 /* of a run's progress */
+
+/* Takes the impulses that an image would be made of, with the same deviates. */
+struct element_taker {
+    struct tracer *tracer;
+    const struct echo_request *request;
+    struct impulse_list impulses;
+    float *chains; /* energies of all orders, m^2; NULL until the first */
+    struct line_grid chains_grid;
+};
+
+static sonject_status take_coherent_seabed(struct element_taker *taker,
+                                           const struct impulse_lines *lines)
+{
+    const size_t cells = (size_t)lines->strips.count * (size_t)lines->grid.bins.count;
+    float *real_part = allocate_array(cells, sizeof *real_part);
+    float *imaginary_part = allocate_array(cells, sizeof *imaginary_part);
+    sonject_status status = real_part && imaginary_part
+                                ? SONJECT_OK
+                                : report_out_of_memory(taker->tracer->report, "the seabed");
+    if (status == SONJECT_OK) {
+        memcpy(real_part, lines->plane[1], cells * sizeof *real_part);
+        coherent_seabed_lines(&lines->grid, taker->tracer, lines->strips,
+                              taker->request->reflectivity_real,
+                              taker->request->reflectivity_imaginary, real_part, imaginary_part);
+        status = impulse_list_add(&taker->impulses, &lines->grid, lines->strips, real_part,
+                                  imaginary_part);
+    }
+    free(real_part);
+    free(imaginary_part);
+    return status;
+}
+
+static sonject_status take_speckle(struct element_taker *taker, const struct impulse_lines *lines,
+                                   const float *energy, uint32_t stream)
+{
+    return impulse_list_add_speckle(&taker->impulses, &lines->grid, lines->strips, energy,
+                                    taker->tracer->scene->injection.seed, stream);
+}
+
+/* Orders are added up, and drawn together at the end. */
+static sonject_status take_chains(struct element_taker *taker, const struct impulse_lines *lines)
+{
+    const size_t cells = line_grid_cells(&lines->grid);
+    if (!taker->chains) {
+        taker->chains = allocate_array(cells, sizeof *taker->chains);
+        taker->chains_grid = lines->grid;
+    }
+    if (!taker->chains)
+        return report_out_of_memory(taker->tracer->report, "multiple interactions");
+    for (size_t i = 0; i < cells; i++)
+        taker->chains[i] += lines->plane[0][i];
+    return SONJECT_OK;
+}
+
+static sonject_status take_seabed(struct element_taker *taker, const struct impulse_lines *lines)
+{
+    switch (taker->request->field) {
+    case SEABED_FIELD_NONE:
+        return SONJECT_OK;
+    case SEABED_FIELD_COHERENT:
+        return take_coherent_seabed(taker, lines);
+    case SEABED_FIELD_SPECKLE:
+        break;
+    }
+    return take_speckle(taker, lines, lines->plane[1], STREAM_SEABED_SPECKLE);
+}
+
+static sonject_status take(void *user, const struct impulse_lines *lines)
+{
+    struct element_taker *taker = user;
+    switch (lines->kind) {
+    case IMPULSES_SEABED:
+        return take_seabed(taker, lines);
+    case IMPULSES_OBJECT:
+        return take_speckle(taker, lines, lines->plane[TILE_ENERGY],
+                            STREAM_OBJECT_SPECKLE + lines->number);
+    case IMPULSES_GLINT:
+        return impulse_list_add(&taker->impulses, &lines->grid, lines->strips, lines->plane[0],
+                                lines->plane[1]);
+    case IMPULSES_LEVEL:
+        return SONJECT_OK;
+    case IMPULSES_CHAINS:
+        return take_chains(taker, lines);
+    }
+    return SONJECT_OK;
+}
+
+static sonject_status gather(struct element_taker *taker)
+{
+    const struct impulse_sink sink = {take, taker};
+    sonject_status status = trace_impulses(taker->tracer, taker->request, &sink);
+    if (status == SONJECT_OK && taker->chains)
+        status = impulse_list_add_speckle(
+            &taker->impulses, &taker->chains_grid, taker->chains_grid.strips, taker->chains,
+            taker->tracer->scene->injection.seed, STREAM_CHAIN_SPECKLE);
+    free(taker->chains);
+    taker->chains = NULL;
+    return status;
+}
+
+/* The tracer's own progress as the first share of the run's. */
+struct trace_progress {
+    sonject_progress_function progress;
+    void *user;
+};
+
+static int tell_tracing(void *user, double fraction, const char *stage)
+{
+    const struct trace_progress *outer = user;
+    return outer->progress ? outer->progress(outer->user, TRACE_SHARE * fraction, stage) : 0;
+}
+
+static sonject_status check_estimator(struct report *report, const struct scene *scene)
+{
+    if (scene->injection.estimator == SONJECT_ESTIMATOR_CONNECT)
+        return SONJECT_OK;
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "the brute force estimator is a reference for images: use connect for "
+                          "the element level");
+}
+
+static sonject_status hear(struct element_taker *taker, sonject_progress_function progress,
+                           void *user, const sonject_element_layout *layout, float *series)
+{
+    struct tracer *tracer = taker->tracer;
+    const struct series_request request = {
+        layout, &tracer->view, &tracer->response, &taker->impulses, progress, user, TRACE_SHARE};
+    return series_compute(&request, tracer->report, tracer->device, series);
+}
+
+static sonject_status trace_and_hear(struct injection_setup *setup, bool is_complex,
+                                     sonject_progress_function progress, void *user,
+                                     const sonject_element_layout *layout, float *series)
+{
+    struct tracer *tracer = &setup->tracer;
+    struct trace_progress tracing = {progress, user};
+    struct patch_request patch;
+    struct element_taker taker;
+    sonject_status status =
+        patch_request_init(&patch, tracer, setup->pixels, is_complex, tell_tracing, &tracing);
+    if (status != SONJECT_OK)
+        return status;
+    memset(&taker, 0, sizeof taker);
+    taker.tracer = tracer;
+    taker.request = &patch.request;
+    impulse_list_init(&taker.impulses, tracer->report, tracer->device);
+    status = gather(&taker);
+    if (status == SONJECT_OK)
+        status = hear(&taker, progress, user, layout, series);
+    impulse_list_clear(&taker.impulses);
+    patch_request_clear(&patch);
+    return status;
+}
+
+sonject_status element_echoes_describe(struct report *report, const struct scene *scene,
+                                       const struct injection_input *input,
+                                       sonject_element_layout *layout)
+{
+    struct injection_setup setup;
+    sonject_status status = check_estimator(report, scene);
+    if (status != SONJECT_OK)
+        return status;
+    status = injection_setup_lay(&setup, report, NULL, scene, input);
+    if (status == SONJECT_OK)
+        status = element_plan(layout, report, scene, &setup.tracer.view, &setup.tracer.response);
+    injection_setup_clear(&setup);
+    return status;
+}
+
+sonject_status element_echoes_compute(struct report *report, struct device *device,
+                                      const struct scene *scene,
+                                      const struct injection_input *input,
+                                      sonject_progress_function progress, void *user,
+                                      const sonject_element_layout *layout, float *series)
+{
+    struct injection_setup setup;
+    sonject_status status = check_estimator(report, scene);
+    if (status != SONJECT_OK)
+        return status;
+    status = injection_setup_init(&setup, report, device, scene, input);
+    if (status == SONJECT_OK)
+        status = trace_and_hear(&setup, input->is_complex, progress, user, layout, series);
+    injection_setup_clear(&setup);
+    return status;
+}

@@ -1,0 +1,141 @@
+#include "inject/injection_setup.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+void flip_rows(void *plane, size_t rows, size_t row_bytes, char *scratch)
+{
+    char *bytes = plane;
+    for (size_t row = 0; row < rows / 2; row++) {
+        char *a = bytes + row * row_bytes;
+        char *b = bytes + (rows - 1 - row) * row_bytes;
+        memcpy(scratch, a, row_bytes);
+        memcpy(a, b, row_bytes);
+        memcpy(b, scratch, row_bytes);
+    }
+}
+
+/* Reflectivity of unit mean square for the coherent map: the pixels over the root of the level. */
+static float *coherent_plane(const struct patch_level *level, const float *pixels, size_t count,
+                             size_t part)
+{
+    float *plane = allocate_array(count, sizeof *plane);
+    for (size_t i = 0; plane && i < count; i++)
+        plane[i] = pixels[2 * i + part] / sqrtf(level->level[i]);
+    return plane;
+}
+
+void patch_request_clear(struct patch_request *patch)
+{
+    free(patch->real_part);
+    free(patch->imaginary_part);
+    patch_level_clear(&patch->level);
+}
+
+sonject_status patch_request_init(struct patch_request *patch, struct tracer *tracer,
+                                  const float *pixels, bool is_complex,
+                                  sonject_progress_function progress, void *user)
+{
+    const struct scene *scene = tracer->scene;
+    const size_t count = tracer->view.rows * tracer->view.columns;
+    const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
+    const bool is_coherent = resynthesises && scene->seabed.map == SONJECT_MAP_COHERENT;
+    memset(patch, 0, sizeof *patch);
+    const sonject_status status = patch_level_init(
+        &patch->level, tracer->report, scene, &tracer->view, &tracer->response, pixels, is_complex);
+    if (status != SONJECT_OK)
+        return status;
+    patch->real_part = is_coherent ? coherent_plane(&patch->level, pixels, count, 0) : NULL;
+    patch->imaginary_part = is_coherent ? coherent_plane(&patch->level, pixels, count, 1) : NULL;
+    patch->request.map = patch->level.map;
+    patch->request.field = is_coherent     ? SEABED_FIELD_COHERENT
+                           : resynthesises ? SEABED_FIELD_SPECKLE
+                                           : SEABED_FIELD_NONE;
+    patch->request.reflectivity_real = patch->real_part;
+    patch->request.reflectivity_imaginary = patch->imaginary_part;
+    patch->request.progress = progress;
+    patch->request.user = user;
+    if (!is_coherent || (patch->real_part && patch->imaginary_part))
+        return SONJECT_OK;
+    patch_request_clear(patch);
+    return report_out_of_memory(tracer->report, "the reflectivity");
+}
+
+static sonject_status check_combination(struct report *report, const struct scene *scene,
+                                        bool is_complex)
+{
+    if (scene->injection.mode == SONJECT_MODE_RESYNTHESISE &&
+        scene->seabed.map == SONJECT_MAP_COHERENT && !is_complex)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the coherent seabed map needs a complex image: use map: intensity "
+                              "or despeckled");
+    if (scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
+        (scene->injection.mode != SONJECT_MODE_RESYNTHESISE || scene->sonar.transducer_side_m <= 0))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the brute force estimator needs mode: resynthesise and a transducer "
+                              "that rays can hit: give its side");
+    return SONJECT_OK;
+}
+
+void injection_setup_clear(struct injection_setup *setup)
+{
+    placements_clear(&setup->placements);
+    water_clear(&setup->water);
+    free(setup->pixels);
+    free(setup->scratch);
+}
+
+static sonject_status copy_pixels(struct injection_setup *setup, struct report *report,
+                                  const struct injection_input *input)
+{
+    const size_t row_bytes = input->columns * (input->is_complex ? 2 : 1) * sizeof(float);
+    setup->scratch = allocate_array(input->columns, 2 * sizeof(float));
+    setup->pixels = allocate_array(input->rows, row_bytes);
+    if (!setup->scratch || !setup->pixels)
+        return report_out_of_memory(report, "the patch");
+    memcpy(setup->pixels, input->pixels, input->rows * row_bytes);
+    if (setup->tracer.view.is_mirrored)
+        flip_rows(setup->pixels, input->rows, row_bytes, setup->scratch);
+    return SONJECT_OK;
+}
+
+sonject_status injection_setup_lay(struct injection_setup *setup, struct report *report,
+                                   struct device *device, const struct scene *scene,
+                                   const struct injection_input *input)
+{
+    struct tracer *tracer = &setup->tracer;
+    memset(setup, 0, sizeof *setup);
+    tracer->report = report;
+    tracer->device = device;
+    tracer->scene = scene;
+    sonject_status status = check_combination(report, scene, input->is_complex);
+    if (status == SONJECT_OK)
+        status = injection_check(report, scene, input->first_row, input->first_column, input->rows,
+                                 input->columns, &setup->water, &tracer->view, &setup->placements);
+    tracer->placements = setup->placements.parts;
+    tracer->part_count = setup->placements.part_count;
+    tracer->objects = setup->placements.objects;
+    tracer->relief = setup->placements.relief;
+    if (status == SONJECT_OK && scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
+        !tracer->view.water.is_straight)
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "the brute force estimator follows straight rays only: use connect "
+                                "where layers of water bend them");
+    if (status != SONJECT_OK)
+        return status;
+    point_response_init(&tracer->response, &scene->sonar,
+                        tracer->view.range_ratio * setup->water.straight_speed_mps,
+                        tracer->view.row_spacing_m);
+    return SONJECT_OK;
+}
+
+sonject_status injection_setup_init(struct injection_setup *setup, struct report *report,
+                                    struct device *device, const struct scene *scene,
+                                    const struct injection_input *input)
+{
+    const sonject_status status = injection_setup_lay(setup, report, device, scene, input);
+    return status == SONJECT_OK ? copy_pixels(setup, report, input) : status;
+}

@@ -1,0 +1,41 @@
+"""sonject elements: series of an array from a scene's own image."""
+
+import json
+
+import numpy
+
+from conftest import COLUMNS, ROWS, SCENE, assert_refused, files_below
+
+ARRAY = "elements: {hydrophones: {count: 2}, pings: {count: 3, first: 1 m, spacing: 0.1 m}}\n"
+
+
+def test_files_hold_the_series(sonject, scene, tmp_path):
+    scene.write_text(SCENE + ARRAY)
+    answer = sonject("elements", scene, "-o", "out", "--quiet")
+    assert answer.returncode == 0, answer.stderr
+    assert not answer.stdout and not answer.stderr
+    names = [path.name for path in files_below(tmp_path / "out")]
+    assert names == ["elements.json", "series.npy"]
+    facts = json.loads((tmp_path / "out" / "elements.json").read_text())
+    series = numpy.load(tmp_path / "out" / "series.npy")
+    assert series.shape == (3, 2, facts["samples"]) and series.dtype == numpy.complex64
+    assert (facts["image"]["rows"], facts["image"]["columns"]) == (ROWS, COLUMNS)
+    assert facts["array"]["hydrophone_length_m"] == 0.05  # twice the resolution
+    assert facts["array"]["first_hydrophone_m"] == -0.025
+    assert facts["heard"] == "targets"
+    # the ball is in the middle; its nearest point is 25 cm before the middle of its range
+    peak = facts["first_time_s"] + numpy.abs(series[0, 0]).argmax() / facts["sampling_rate_hz"]
+    nearest = 25 + 0.025 * (COLUMNS - 1) / 2 - 0.25
+    assert abs(peak * 1500 / 2 - nearest) < 0.1
+    answer = sonject("elements", scene, "-o", "real", "--set", "elements.form=passband")
+    assert answer.returncode == 0, answer.stderr
+    assert numpy.load(tmp_path / "real" / "series.npy").dtype == numpy.float32
+
+
+def test_what_is_wrong_leaves_nothing(sonject, scene, tmp_path):
+    scene.write_text(SCENE + ARRAY)
+    refused = sonject("elements", scene, "-o", "out", "--set", "elements.sampling_rate=20 kHz")
+    assert_refused(refused, 3, "elements.sampling_rate: must be at least 30000 Hz")
+    assert not files_below(tmp_path / "out")
+    (tmp_path / "file").write_text("")
+    assert_refused(sonject("elements", scene, "-o", "file/out", "--quiet"), 5, "file")
