@@ -115,6 +115,9 @@ class sonject_injection_params(Structure):
         ("interactions", c_uint32),
         ("estimator", c_uint32),
         ("order_energies", c_uint32),
+        ("match_response", c_uint32),
+        ("match_looks", c_double),
+        ("match_saturation", c_uint32),
         ("reserved", c_uint32),
     ]
 
@@ -174,7 +177,8 @@ class sonject_object_params(Structure):
         ("mesh", c_uint32),
         ("cuts", sonject_cut * CUTS_CAPACITY),
         ("user_shape", c_uint32),
-        ("reserved", c_uint32),
+        ("level_kind", c_uint32),
+        ("level_db", c_double),
     ]
 
 
@@ -281,6 +285,11 @@ class sonject_object_truth(Structure):
         ("burial_m", c_double),
         ("grazing_rad", c_double),
         ("transmission_loss_db", c_double),
+        ("level_kind", c_uint32),
+        ("reserved", c_uint32),
+        ("level_gain_db", c_double),
+        ("over_seabed_db", c_double),
+        ("seabed_strength_db", c_double),
     ]
 
 
@@ -304,6 +313,15 @@ class sonject_statistics(Structure):
         ("output_contrast", c_double),
         ("histogram_distance", c_double),
         ("correlation", c_double),
+        ("seabed_amplitude_contrast", c_double),
+        ("seabed_shape", c_double),
+        ("seabed_looks", c_double),
+        ("seabed_row_correlation", c_double),
+        ("seabed_column_correlation", c_double),
+        ("along_track_resolution_m", c_double),
+        ("range_resolution_m", c_double),
+        ("looks", c_double),
+        ("saturation_amplitude", c_double),
     ]
 
 
