@@ -11,8 +11,8 @@
 #include "standard_streams.h"
 #include "verbs.h"
 
-static const struct verb *const verbs[] = {&run_verb, &check_verb, &quicklook_verb, &seabed_verb,
-                                           &devices_verb};
+static const struct verb *const verbs[] = {&run_verb,       &check_verb,  &measure_verb,
+                                           &quicklook_verb, &seabed_verb, &devices_verb};
 static const size_t verb_count = sizeof(verbs) / sizeof(verbs[0]);
 
 static void print_help(FILE *file)

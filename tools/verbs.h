@@ -7,6 +7,7 @@
 extern const struct verb run_verb;
 extern const struct verb check_verb;
 extern const struct verb quicklook_verb;
+extern const struct verb measure_verb;
 extern const struct verb seabed_verb;
 extern const struct verb devices_verb;
 

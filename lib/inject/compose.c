@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "inject/looks.h"
 
 struct complex_plane {
     float *real_part, *imaginary_part;
@@ -164,9 +165,17 @@ static void compose_pixel(const struct scene *scene, const struct patch_level *l
     result->energy[i] = echoes->energy[i];
 }
 
-sonject_status compose(struct tracer *tracer, const struct patch_level *level,
-                       const struct echoes *echoes, const float *pixels, bool is_complex,
-                       struct injection_result *result)
+/* Highlights are cut where the image's own are. */
+static void saturate(double amplitude, size_t count, struct injection_result *result)
+{
+    for (size_t i = 0; !result->is_complex && i < count; i++)
+        if (result->influence[i] && (double)result->image[i] > amplitude)
+            result->image[i] = (float)amplitude;
+}
+
+sonject_status compose(struct tracer *tracer, const struct image_match *match,
+                       const struct patch_level *level, const struct echoes *echoes,
+                       const float *pixels, bool is_complex, struct injection_result *result)
 {
     const struct scene *scene = tracer->scene;
     const size_t count = echoes->rows * echoes->columns;
@@ -187,6 +196,10 @@ sonject_status compose(struct tracer *tracer, const struct patch_level *level,
         for (size_t i = 0; i < count; i++)
             compose_pixel(scene, level, echoes, pixels, &noise, &phase, i, result);
     }
+    if (status == SONJECT_OK && match->looks > 1.0)
+        status = compose_looks(tracer, match->looks, level, echoes, pixels, &touched, result);
+    if (status == SONJECT_OK)
+        saturate(match->saturation, count, result);
     plane_clear(&noise);
     plane_clear(&phase);
     return status;

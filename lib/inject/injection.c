@@ -9,7 +9,9 @@
 #include "image/statistics.h"
 #include "inject/compose.h"
 #include "inject/echoes.h"
+#include "inject/match.h"
 #include "inject/patch_level.h"
+#include "inject/target_level.h"
 #include "inject/truth.h"
 
 sonject_status injection_check(struct report *report, const struct scene *scene, double first_row,
@@ -198,9 +200,13 @@ static sonject_status trace_and_compose(struct tracer *tracer, const float *pixe
     struct patch_level level;
     struct echoes echoes;
     struct echo_request request;
+    struct image_match match;
     memset(&request, 0, sizeof request);
-    sonject_status status = patch_level_init(&level, tracer->report, scene, &tracer->view,
-                                             &tracer->response, pixels, is_complex);
+    sonject_status status = match_image(tracer, pixels, is_complex, &match);
+    if (status != SONJECT_OK)
+        return status;
+    status = patch_level_init(&level, tracer->report, scene, &tracer->view, &tracer->response,
+                              pixels, is_complex);
     if (status != SONJECT_OK)
         return status;
     float *real_part = is_coherent ? coherent_plane(&level, pixels, count, 0) : NULL;
@@ -213,17 +219,21 @@ static sonject_status trace_and_compose(struct tracer *tracer, const float *pixe
     request.reflectivity_imaginary = imaginary_part;
     request.progress = progress;
     request.user = user;
+    request.wants_coherent = match.looks > 1.0;
     if (is_coherent && (!real_part || !imaginary_part))
         status = report_out_of_memory(tracer->report, "the reflectivity");
     else
         status = echoes_compute(&echoes, tracer, &request);
     if (status == SONJECT_OK) {
         const double start = clock_seconds();
-        status = compose(tracer, &level, &echoes, pixels, is_complex, result);
+        status = set_target_levels(tracer, &level, &echoes, result);
+        if (status == SONJECT_OK)
+            status = compose(tracer, &match, &level, &echoes, pixels, is_complex, result);
         if (status == SONJECT_OK && resynthesises)
             status = compare_seabed(tracer->report, &echoes, &level, result);
         if (status == SONJECT_OK) {
             find_truth(tracer, &level, &echoes, result);
+            tell_match(&match, &tracer->response, &result->statistics);
             fill_statistics(tracer, &level, &echoes, clock_seconds() - start, result);
             hand_over_orders(&echoes, result);
         }
@@ -248,6 +258,13 @@ static sonject_status check_combination(struct report *report, const struct scen
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "the brute force estimator needs mode: resynthesise and a transducer "
                               "that rays can hit: give its side");
+    for (uint32_t i = 0; i < scene->object_count; i++)
+        if (scene->objects[i].level_kind != SONJECT_LEVEL_PHYSICAL &&
+            scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE)
+            return report_failure(report, SONJECT_ERROR_INPUT,
+                                  "objects[%u].level needs the estimator connect: brute force does "
+                                  "not tell objects and seabed apart",
+                                  (unsigned)i);
     return SONJECT_OK;
 }
 

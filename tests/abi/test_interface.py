@@ -76,6 +76,8 @@ SIZES = {
     "sonject_run_params": 16,
     "sonject_quicklook_params": 120,
     "sonject_seabed_file_params": 208,
+    "sonject_measure_params": 64,
+    "sonject_measurement": 112,
 }
 
 

@@ -14,7 +14,7 @@ rows (track positions) x columns (slant ranges).
 
 from ._callbacks import Progress
 from ._library import load as _load
-from .actions import check, inject, quicklook, run, write_seabed
+from .actions import check, inject, measure, quicklook, run, write_seabed
 from .context import Context, Device, default_context, devices
 from .enumerations import (
     ColumnRule,
@@ -70,7 +70,7 @@ from .parameters import (
     absorption,
     from_degrees,
 )
-from .result import Box, ObjectTruth, Result, Statistics
+from .result import Box, Measurement, ObjectTruth, Result, Statistics
 from .scene import Scene
 
 
@@ -100,6 +100,7 @@ __all__ = [
     "LevelKind",
     "Match",
     "Material",
+    "Measurement",
     "Medium",
     "Metres",
     "Mode",
@@ -141,6 +142,7 @@ __all__ = [
     "devices",
     "from_degrees",
     "inject",
+    "measure",
     "quicklook",
     "run",
     "version",

@@ -407,6 +407,38 @@ class sonject_quicklook_params(Structure):
     ]
 
 
+class sonject_measure_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("has_transfer", c_uint32),
+        ("image", c_char_p),
+        ("before", c_char_p),
+        ("influence", c_char_p),
+        ("labels", c_char_p),
+        ("transfer", sonject_transfer_params),
+    ]
+
+
+class sonject_measurement(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("amplitude_contrast", c_double),
+        ("intensity_contrast", c_double),
+        ("looks", c_double),
+        ("shape", c_double),
+        ("row_correlation", c_double),
+        ("column_correlation", c_double),
+        ("row_length_pixels", c_double),
+        ("column_length_pixels", c_double),
+        ("seam", c_double),
+        ("seam_error", c_double),
+        ("seam_before", c_double),
+        ("seam_patches", c_uint64),
+        ("background_patches", c_uint64),
+    ]
+
+
 class sonject_seabed_file_params(Structure):
     _fields_ = [
         ("struct_size", c_uint32),

@@ -126,6 +126,31 @@ class Statistics:
     saturation_amplitude: float
 
 
+@dataclass(frozen=True)
+class Measurement:
+    """What an image says: untouched seabed (NaN: nothing), and the seam of an injection.
+
+    Contrasts: standard deviation over mean; looks: averaged in a pixel; shape: of the K
+    distribution; correlations: of speckle's intensity between neighbours; lengths: where the
+    intensity's correlation falls to 1/e; seam: how well a classifier tells background that the
+    injection changed from untouched, 0.5: not at all, 1: always (NaN: not asked, or too little was
+    changed), with its standard error and the number of patches of either kind.
+    """
+
+    amplitude_contrast: float
+    intensity_contrast: float
+    looks: float
+    shape: float
+    row_correlation: float
+    column_correlation: float
+    row_length_pixels: float
+    column_length_pixels: float
+    seam: float
+    seam_error: float
+    seam_patches: int
+    background_patches: int
+
+
 def _copied(kind: Any, structure: ctypes.Structure) -> dict[str, Any]:
     return {entry.name: getattr(structure, entry.name) for entry in fields(kind)}
 
