@@ -8,6 +8,7 @@
 #include "image/seam_classifier.h"
 
 #define GUARD        1 /* pixels around highlights and shadows */
+#define GAPS         3 /* pixels, in the influence, that are closed */
 #define MARGIN       6 /* pixels around a patch that its level is compared with */
 #define SURROUNDINGS (SEAM_PATCH + 2 * MARGIN)
 #define BAND_LEAST   30  /* pixels of a patch that are in the band */
@@ -68,11 +69,36 @@ static void mark_around(struct seam_search *search, size_t row, size_t column)
             search->kinds[r * search->columns + c] = PIXEL_TARGET;
 }
 
-static void mark_kinds(struct seam_search *search, const uint8_t *influence, const uint8_t *labels)
+/* Spreads the pixels of a kind over squares of GAPS pixels around them. scratch: as kinds. */
+static void spread(const struct seam_search *search, uint8_t kind, uint8_t *scratch)
+{
+    const size_t columns = search->columns;
+    memcpy(scratch, search->kinds, search->rows * columns);
+    for (size_t i = 0; i < search->rows * columns; i++) {
+        if (scratch[i] != kind)
+            continue;
+        const size_t row = i / columns;
+        const size_t column = i % columns;
+        for (size_t r = row > GAPS ? row - GAPS : 0; r <= row + GAPS && r < search->rows; r++)
+            for (size_t c = column > GAPS ? column - GAPS : 0; c <= column + GAPS && c < columns;
+                 c++)
+                search->kinds[r * columns + c] = kind;
+    }
+}
+
+/* Where little changes, dark pixels change first: gaps in the influence are closed, or the band
+ * would be of another level than its surroundings before anything was put in. */
+static void mark_kinds(struct seam_search *search, const uint8_t *influence, const uint8_t *labels,
+                       uint8_t *scratch)
 {
     const size_t count = search->rows * search->columns;
     for (size_t i = 0; i < count; i++)
         search->kinds[i] = influence[i] ? PIXEL_BAND : PIXEL_UNTOUCHED;
+    spread(search, PIXEL_BAND, scratch);
+    spread(search, PIXEL_UNTOUCHED, scratch);
+    for (size_t i = 0; i < count; i++)
+        if (influence[i])
+            search->kinds[i] = PIXEL_BAND;
     for (size_t i = 0; labels && i < count; i++)
         if (labels[i])
             mark_around(search, i / search->columns, i % search->columns);
@@ -270,25 +296,35 @@ static void deal_folds(struct seam_search *search, size_t injected)
     }
 }
 
+/* Takes a patch and its backgrounds; false where it has too little of the band, or nothing near to
+ * be compared with. */
+static bool add_group(struct seam_search *search, size_t row, size_t column, size_t least)
+{
+    struct outline outline;
+    const size_t first = search->count;
+    take_outline(search, row, column, &outline);
+    if (outline.pixels < least || !add_sample(search, row, column, &outline, true))
+        return false;
+    if (add_backgrounds(search, row, column, &outline) == 0) {
+        search->count = first;
+        return false;
+    }
+    take(search, row, column, &outline, PIXEL_TARGET);
+    centre(search->samples + first, search->count - first);
+    return true;
+}
+
+/* Whole patches first, then what is left of the band at its edges. */
 static size_t collect(struct seam_search *search)
 {
+    static const size_t least[] = {SEAM_PATCH * SEAM_PATCH * 9 / 10, SEAM_PATCH * SEAM_PATCH / 2,
+                                   BAND_LEAST};
     size_t injected = 0;
-    for (size_t row = 0; row + SEAM_PATCH <= search->rows; row += STEP)
-        for (size_t column = 0; column + SEAM_PATCH <= search->columns && injected < SAMPLES_MAX;
-             column += STEP) {
-            struct outline outline;
-            const size_t first = search->count;
-            take_outline(search, row, column, &outline);
-            if (outline.pixels < BAND_LEAST || !add_sample(search, row, column, &outline, true))
-                continue;
-            if (add_backgrounds(search, row, column, &outline) == 0) {
-                search->count--; /* nothing near to compare it with */
-                continue;
-            }
-            take(search, row, column, &outline, PIXEL_TARGET);
-            centre(search->samples + first, search->count - first);
-            injected++;
-        }
+    for (size_t pass = 0; pass < sizeof least / sizeof *least; pass++)
+        for (size_t row = 0; row + SEAM_PATCH <= search->rows; row += STEP)
+            for (size_t column = 0;
+                 column + SEAM_PATCH <= search->columns && injected < SAMPLES_MAX; column += STEP)
+                injected += add_group(search, row, column, least[pass]);
     return injected;
 }
 
@@ -318,14 +354,17 @@ sonject_status measure_seam(struct report *report, const float *amplitudes,
     seam->auc = NAN;
     seam->error = NAN;
     search.kinds = allocate_array(rows, columns);
+    uint8_t *scratch = allocate_array(rows, columns);
     search.samples = allocate_array((SAMPLES_MAX + 1) * (2 * PAIRS + 1), sizeof *search.samples);
-    sonject_status status =
-        search.kinds && search.samples ? SONJECT_OK : report_out_of_memory(report, "the seam");
+    sonject_status status = search.kinds && search.samples && scratch
+                                ? SONJECT_OK
+                                : report_out_of_memory(report, "the seam");
     if (status == SONJECT_OK) {
-        mark_kinds(&search, influence, labels);
+        mark_kinds(&search, influence, labels, scratch);
         status = judge(report, &search, collect(&search), seam);
     }
     free(search.kinds);
     free(search.samples);
+    free(scratch);
     return status;
 }
