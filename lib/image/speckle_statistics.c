@@ -8,6 +8,7 @@
 
 #define BLOCK_LEAST    16   /* pixels on a side, where the region is smaller than a block */
 #define KEPT_LEAST     0.75 /* of a block's pixels that must count */
+#define TREND_LEAST    0.2  /* of the mean */
 #define TEXTURE_LAG    5    /* from here on speckle is forgotten and only texture is left */
 #define CONTRAST_LEAST 0.01 /* squared; less is no speckle */
 
@@ -32,46 +33,84 @@ static bool is_kept(const struct block_view *block, size_t at)
     return !block->excluded || !block->excluded[at];
 }
 
-/* Mean of I(p) I(p + lag) over the pairs that count. */
-static double lagged_mean(const struct block_view *block, size_t row_lag, size_t column_lag)
+/* The block's intensity over its own linear trend in rows and columns, mean 1; what does not count
+ * is negative. False where too few pixels count, or all are 0. */
+static bool take_trend_off(const struct block_view *block,
+                           double values[SPECKLE_BLOCK * SPECKLE_BLOCK])
+{
+    const double middle_row = 0.5 * (double)(block->rows - 1);
+    const double middle_column = 0.5 * (double)(block->columns - 1);
+    double sum = 0.0;
+    double sums[2] = {0.0, 0.0};
+    double squares[2] = {0.0, 0.0};
+    size_t kept = 0;
+    for (size_t i = 0; i < block->rows * block->columns; i++) {
+        const size_t at = i / block->columns * block->stride + i % block->columns;
+        const double down = (double)(i / block->columns) - middle_row;
+        const double right = (double)(i % block->columns) - middle_column;
+        values[i] = is_kept(block, at) ? (double)block->intensity[at] : -1.0;
+        if (values[i] < 0.0)
+            continue;
+        sum += values[i];
+        sums[0] += down * values[i];
+        sums[1] += right * values[i];
+        squares[0] += down * down;
+        squares[1] += right * right;
+        kept++;
+    }
+    if ((double)kept < KEPT_LEAST * (double)(block->rows * block->columns) || !(sum > 0.0))
+        return false;
+    const double mean = sum / (double)kept;
+    double left = 0.0;
+    for (size_t i = 0; i < block->rows * block->columns; i++) {
+        const double down = (double)(i / block->columns) - middle_row;
+        const double right = (double)(i % block->columns) - middle_column;
+        const double trend = mean + sums[0] / squares[0] * down + sums[1] / squares[1] * right;
+        values[i] /= fmax(trend, TREND_LEAST * mean);
+        left += values[i] >= 0.0 ? values[i] / (double)kept : 0.0;
+    }
+    for (size_t i = 0; i < block->rows * block->columns; i++)
+        values[i] /= left;
+    return true;
+}
+
+/* Covariance of values of mean 1 that lie so far apart, both counting. */
+static double covariance_of(const struct block_view *block, const double *values, size_t row_lag,
+                            size_t column_lag)
 {
     double sum = 0.0;
     size_t pairs = 0;
     for (size_t row = 0; row + row_lag < block->rows; row++)
         for (size_t column = 0; column + column_lag < block->columns; column++) {
-            const size_t a = row * block->stride + column;
-            const size_t b = a + row_lag * block->stride + column_lag;
-            if (!is_kept(block, a) || !is_kept(block, b))
+            const double a = values[row * block->columns + column];
+            const double b = values[(row + row_lag) * block->columns + column + column_lag];
+            if (a < 0.0 || b < 0.0)
                 continue;
-            sum += (double)block->intensity[a] * (double)block->intensity[b];
+            sum += (a - 1.0) * (b - 1.0);
             pairs++;
         }
     return pairs > 0 ? sum / (double)pairs : 0.0;
 }
 
-/* False where too few pixels count, or all are 0. */
-static bool measure_block(const struct block_view *block, double values[BLOCK_VALUES])
+static bool measure_block(const struct block_view *block, double results[BLOCK_VALUES])
 {
-    double amplitudes = 0.0;
-    double intensities = 0.0;
-    size_t kept = 0;
-    for (size_t row = 0; row < block->rows; row++)
-        for (size_t column = 0; column < block->columns; column++) {
-            const size_t at = row * block->stride + column;
-            if (!is_kept(block, at))
-                continue;
-            amplitudes += sqrt((double)block->intensity[at]);
-            intensities += (double)block->intensity[at];
-            kept++;
-        }
-    if ((double)kept < KEPT_LEAST * (double)(block->rows * block->columns) || !(intensities > 0.0))
+    double values[SPECKLE_BLOCK * SPECKLE_BLOCK];
+    double amplitude = 0.0;
+    double intensity = 0.0;
+    double kept = 0.0;
+    if (!take_trend_off(block, values))
         return false;
-    const double mean = intensities / (double)kept;
-    const double amplitude = amplitudes / (double)kept;
-    values[AMPLITUDE_CONTRAST] = sqrt(fmax(0.0, mean / (amplitude * amplitude) - 1.0));
+    for (size_t i = 0; i < block->rows * block->columns; i++) {
+        if (values[i] < 0.0)
+            continue;
+        amplitude += sqrt(values[i]);
+        intensity += values[i];
+        kept += 1.0;
+    }
+    results[AMPLITUDE_CONTRAST] = sqrt(fmax(0.0, intensity * kept / (amplitude * amplitude) - 1.0));
     for (size_t lag = 0; lag < SPECKLE_LAGS; lag++) {
-        values[ROW_LAG(lag)] = lagged_mean(block, lag, 0) / (mean * mean) - 1.0;
-        values[COLUMN_LAG(lag)] = lagged_mean(block, 0, lag) / (mean * mean) - 1.0;
+        results[ROW_LAG(lag)] = covariance_of(block, values, lag, 0);
+        results[COLUMN_LAG(lag)] = covariance_of(block, values, 0, lag);
     }
     return true;
 }

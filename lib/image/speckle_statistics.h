@@ -17,7 +17,8 @@ struct speckle_axis {
                                          SPECKLE_LAGS - 1 */
 };
 
-/* Medians over blocks, so that a stone or a shadow in the region does not count. */
+/* Medians over blocks, each over its own linear trend, so that a stone or a shadow in the region
+ * does not count. */
 struct speckle_statistics {
     size_t blocks;             /* that were used; 0: the region is too small or has no speckle, and
                                   nothing else is filled in */
