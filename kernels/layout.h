@@ -29,6 +29,7 @@ enum random_stream {
     STREAM_NOISE = 3,
     STREAM_INPUT_PHASE = 4,
     STREAM_CHAIN_SPECKLE = 5,
+    STREAM_LOOKS = 8,            /* + 3 * (look - 1) + 0...2: phase, noise, targets; 63 looks */
     STREAM_OBJECT_SPECKLE = 256, /* + object */
     STREAM_SMOOTH_RAYS = 1024,   /* + part */
     STREAM_CHAIN_RAYS = 2050,    /* + first surface: part, -1 the seabed, -2 any */

@@ -7,6 +7,7 @@
 #include "exit_code.h"
 #include "message.h"
 #include "number.h"
+#include "transfer_argument.h"
 #include "verbs.h"
 
 struct quicklook_options {
@@ -44,14 +45,6 @@ static const struct argument arguments[] = {
      MEMBER(channel)},
 };
 
-/* Copies the piece of text up to the separator and gives what follows it, NULL at the end. */
-static const char *next_piece(const char *text, char *piece, size_t capacity)
-{
-    size_t length = strcspn(text, ":");
-    snprintf(piece, capacity, "%.*s", (int)(length < capacity ? length : capacity - 1), text);
-    return text[length] == ':' ? text + length + 1 : NULL;
-}
-
 static bool read_decibels(const char *text, sonject_quicklook_params *params)
 {
     char minimum[64];
@@ -76,38 +69,10 @@ static bool read_range_axis(const char *text, sonject_quicklook_params *params)
     return true;
 }
 
-static bool read_transfer_kind(const char *name, uint32_t *kind)
-{
-    static const char *const names[] = {"amplitude", "intensity", "decibel", "gamma", "schlick"};
-    static const uint32_t kinds[] = {SONJECT_TRANSFER_AMPLITUDE, SONJECT_TRANSFER_INTENSITY,
-                                     SONJECT_TRANSFER_DECIBEL, SONJECT_TRANSFER_GAMMA,
-                                     SONJECT_TRANSFER_SCHLICK};
-    for (size_t i = 0; i < sizeof(kinds) / sizeof(kinds[0]); i++) {
-        if (strcmp(name, names[i]) == 0) {
-            *kind = kinds[i];
-            return true;
-        }
-    }
-    return false;
-}
-
 static bool read_transfer(const char *text, sonject_quicklook_params *params)
 {
-    char kind[64], number[64];
-    const char *rest = next_piece(text, kind, sizeof(kind));
-    bool is_good = read_transfer_kind(kind, &params->transfer.kind);
-    if (is_good && rest) {
-        rest = next_piece(rest, number, sizeof(number));
-        is_good = number_parse(number, &params->transfer.parameter);
-    }
-    if (is_good && rest)
-        is_good = number_parse(rest, &params->transfer.offset);
     params->has_transfer = 1;
-    if (!is_good)
-        message("quicklook: --transfer takes amplitude, intensity, decibel:DB[:OFFSET], "
-                "gamma:EXPONENT or schlick:B, not \"",
-                text, "\"");
-    return is_good;
+    return transfer_parse("quicklook", text, &params->transfer);
 }
 
 static bool read_channel(const char *text, sonject_quicklook_params *params)
@@ -185,8 +150,7 @@ const struct verb quicklook_verb = {
     .operand_offset = MEMBER(image),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
-    .notes = "What is not given comes from the image's metadata. Transfer functions: amplitude,\n"
-             "intensity, decibel:DB_PER_UNIT[:OFFSET_DB], gamma:EXPONENT, schlick:B.",
+    .notes = "What is not given comes from the image's metadata.\n" TRANSFER_NOTES,
     .options_size = sizeof(struct quicklook_options),
     .work = work,
 };

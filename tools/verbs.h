@@ -9,6 +9,7 @@ extern const struct verb trace_verb;
 extern const struct verb form_verb;
 extern const struct verb check_verb;
 extern const struct verb quicklook_verb;
+extern const struct verb measure_verb;
 extern const struct verb seabed_verb;
 extern const struct verb elements_verb;
 extern const struct verb devices_verb;

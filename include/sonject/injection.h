@@ -28,6 +28,13 @@ typedef enum sonject_column_rule {
     SONJECT_COLUMNS_PAPER = 1    /* the first hit's */
 } sonject_column_rule;
 
+/* Where a property of what is put into a measured magnitude image comes from (composite; complex,
+ * uniform and synthetic images are taken as the sonar's parameters say). */
+typedef enum sonject_match {
+    SONJECT_MATCH_NOMINAL = 0, /* the sonar's parameters, the file's full scale */
+    SONJECT_MATCH_IMAGE = 1    /* the image around the objects, where it clearly differs */
+} sonject_match;
+
 typedef struct sonject_injection_params {
     uint32_t struct_size;
     uint32_t mode;           /* sonject_injection_mode */
@@ -41,11 +48,15 @@ typedef struct sonject_injection_params {
     uint32_t interactions;   /* surfaces that a path may meet, 1...8 */
     uint32_t estimator;      /* sonject_estimator */
     uint32_t order_energies; /* 1: keep the energy of each number of interactions (layers) */
+    uint32_t match_response; /* sonject_match: the point response's widths */
+    double match_looks; /* looks averaged in a magnitude pixel of the input: 1...64; 0: estimated
+                           from the image around the objects */
+    uint32_t match_saturation; /* sonject_match: the amplitude at which highlights are cut */
     uint32_t reserved;
 } sonject_injection_params;
 
 /* Composite, focused columns, estimated noise, -40 dB, ray scale 1, seed 1, one
- * interaction, connected. */
+ * interaction, connected; response, looks and saturation matched to the image. */
 SONJECT_API void sonject_injection_params_init(sonject_injection_params *injection);
 
 SONJECT_END_DECLARATIONS

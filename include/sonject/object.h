@@ -70,6 +70,15 @@ typedef enum sonject_position_kind {
     SONJECT_POSITION_PIXELS = 2 /* along: row, range: column of the swath, centres at integers */
 } sonject_position_kind;
 
+/* What sets the level of an object's echo. The other two scale all that the object returns by one
+ * factor, so that the largest expected energy of its pixels, speckle averaged out, becomes as told.
+ */
+typedef enum sonject_level_kind {
+    SONJECT_LEVEL_PHYSICAL = 0,        /* its shape and material, against the seabed's strength */
+    SONJECT_LEVEL_TARGET_STRENGTH = 1, /* level_db: re 1 m^2, -200...200 */
+    SONJECT_LEVEL_OVER_SEABED = 2      /* level_db: over the local mean seabed, -200...200 */
+} sonject_level_kind;
+
 #define SONJECT_NAME_CAPACITY 64
 
 typedef struct sonject_object_params {
@@ -104,7 +113,8 @@ typedef struct sonject_object_params {
     uint32_t mesh;           /* number of a mesh of the scene */
     sonject_cut cuts[SONJECT_CUTS_CAPACITY];
     uint32_t user_shape; /* number of a user's shape of the scene */
-    uint32_t reserved;
+    uint32_t level_kind; /* sonject_level_kind */
+    double level_db;     /* not for SONJECT_LEVEL_PHYSICAL */
 } sonject_object_params;
 
 /* How the numbers of a mesh file are meant. */

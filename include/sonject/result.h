@@ -111,6 +111,13 @@ typedef struct sonject_object_truth {
     double transmission_loss_db; /* one way, from 1 m off the sonar to the centre: spreading
                                     (through layers: of the ray tube, mean of there and back),
                                     transmission and absorption */
+    uint32_t level_kind;         /* sonject_level_kind that was asked for */
+    uint32_t reserved;
+    double level_gain_db;      /* by which its echo was scaled; 0: physical */
+    double over_seabed_db;     /* its brightest pixel's expected energy over the seabed's there;
+                                  -infinity where nothing of it is in view */
+    double seabed_strength_db; /* assumed: 10 log10 of the seabed's cross-section per m^2 at the
+                                  centre's grazing angle */
 } sonject_object_truth;
 
 /* Truth of object number index. truth->struct_size must be set. Errors: ARGUMENT. */
@@ -138,6 +145,17 @@ typedef struct sonject_statistics {
     double output_contrast;
     double histogram_distance; /* Kolmogorov-Smirnov, intensities over their means */
     double correlation;        /* of the intensities */
+    /* The measured image around the objects, NaN where it says nothing (too small, no speckle). */
+    double seabed_amplitude_contrast; /* amplitude standard deviation over mean */
+    double seabed_shape;              /* of the K distribution of intensity; infinite: no texture */
+    double seabed_looks;              /* independent samples averaged in a pixel, >= 1 */
+    double seabed_row_correlation;    /* of speckle's intensity, from a row to the next */
+    double seabed_column_correlation; /* from a column to the next */
+    /* What was used for what was put in. */
+    double along_track_resolution_m;
+    double range_resolution_m;   /* -3 dB width */
+    double looks;                /* 1: single-look */
+    double saturation_amplitude; /* infinite: none but the format's full scale */
 } sonject_statistics;
 
 /* statistics->struct_size must be set. Errors: ARGUMENT. */

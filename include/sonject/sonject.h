@@ -7,6 +7,7 @@
 #include <sonject/image.h>
 #include <sonject/injection.h>
 #include <sonject/material.h>
+#include <sonject/measure.h>
 #include <sonject/medium.h>
 #include <sonject/object.h>
 #include <sonject/relief.h>

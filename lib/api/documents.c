@@ -66,6 +66,22 @@ static json_t *box_document(const struct run_facts *facts, const sonject_box *bo
 
 #define DEGREES_PER_RADIAN 57.29577951308232
 
+/* How the echo's level came about, and against which seabed. */
+static json_t *level_document(const struct run_facts *facts, uint32_t index)
+{
+    static const char *const kinds[] = {"physical", "target_strength", "over_seabed"};
+    const sonject_object_params *object = &facts->scene->objects[index];
+    const sonject_object_truth *truth = &facts->result->objects[index];
+    const bool is_physical = truth->level_kind == SONJECT_LEVEL_PHYSICAL;
+    json_t *document = json_object();
+    add(document, "set_by", json_string(kinds[truth->level_kind]));
+    add(document, "asked_db", is_physical ? json_null() : number(object->level_db));
+    add(document, "gain_db", number(truth->level_gain_db));
+    add(document, "over_seabed_db", number(truth->over_seabed_db));
+    add(document, "seabed_strength_db", number(truth->seabed_strength_db));
+    return document;
+}
+
 static json_t *object_document(const struct run_facts *facts, uint32_t index)
 {
     const sonject_object_params *object = &facts->scene->objects[index];
@@ -107,6 +123,27 @@ static json_t *object_document(const struct run_facts *facts, uint32_t index)
     add(document, "target_strength_db", number(truth->target_strength_db));
     add(document, "highlight_contrast_db", number(truth->highlight_contrast_db));
     add(document, "shadow_contrast_db", number(truth->shadow_contrast_db));
+    add(document, "level", level_document(facts, index));
+    return document;
+}
+
+/* The measured image around the objects, and what was put in with it. */
+static json_t *blending_document(const sonject_statistics *statistics)
+{
+    const bool has_texture = isfinite(statistics->seabed_shape);
+    json_t *seabed = json_object();
+    add(seabed, "amplitude_contrast", number(statistics->seabed_amplitude_contrast));
+    add(seabed, "looks", number(statistics->seabed_looks));
+    add(seabed, "k_shape", has_texture ? number(statistics->seabed_shape) : json_null());
+    add(seabed, "row_correlation", number(statistics->seabed_row_correlation));
+    add(seabed, "column_correlation", number(statistics->seabed_column_correlation));
+    json_t *document = json_object();
+    add(document, "seabed_estimated", seabed);
+    add(document, "along_track_resolution_m", number(statistics->along_track_resolution_m));
+    add(document, "range_resolution_m", number(statistics->range_resolution_m));
+    add(document, "looks", number(statistics->looks));
+    add(document, "noise_floor_db", number(statistics->noise_floor_db));
+    add(document, "saturation_amplitude", number(statistics->saturation_amplitude));
     return document;
 }
 
@@ -124,6 +161,7 @@ sonject_status write_truth(struct report *report, const struct run_facts *facts,
     add(document, "image", json_string(facts->image_name));
     add(document, "range_axis", json_string("slant"));
     add(document, "patch", patch);
+    add(document, "blending", blending_document(&facts->result->statistics));
     add(document, "objects", objects);
     return write_document(report, document, path);
 }
@@ -224,6 +262,14 @@ static json_t *options_document(const struct scene *scene)
         json_string(scene->injection.column_rule == SONJECT_COLUMNS_PAPER ? "paper" : "focused"));
     add(document, "ray_scale", number(scene->injection.ray_scale));
     add(document, "influence_db", number(scene->injection.influence_db));
+    add(document, "match_response",
+        json_string(scene->injection.match_response == SONJECT_MATCH_IMAGE ? "image" : "nominal"));
+    add(document, "match_looks",
+        scene->injection.match_looks == 0.0 ? json_string("image")
+                                            : number(scene->injection.match_looks));
+    add(document, "match_saturation",
+        json_string(scene->injection.match_saturation == SONJECT_MATCH_IMAGE ? "image"
+                                                                             : "full_scale"));
     add(document, "seabed_lambert_db", number(10.0 * log10(scene->seabed.lambert)));
     add(document, "interactions", count(scene->injection.interactions));
     add(document, "estimator",
@@ -276,6 +322,7 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
     add(document, "impulses", count(statistics->impulses));
     add(document, "peak_memory_bytes", count(peak_memory()));
     add(document, "noise_floor_db", number(statistics->noise_floor_db));
+    add(document, "blending", blending_document(statistics));
     add(document, "input_clipped_pixels", count(statistics->input_clipped));
     add(document, "output_clipped_pixels", count(statistics->output_clipped));
     add(document, "changed_pixels", count(statistics->changed_pixels));

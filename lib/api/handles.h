@@ -65,6 +65,10 @@ sonject_status find_input(struct report *report, const struct scene *scene,
 void tell_noise_floor(struct report *report, const struct scene *scene,
                       const sonject_statistics *statistics);
 
+/* Packs a caller's rows; *packed is for free(), after failure as well. */
+sonject_status take_pixels(struct report *report, const sonject_pixels *pixels,
+                           struct injection_input *input, float **packed);
+
 /* report_failure(ARGUMENT, "... must not be NULL") */
 sonject_status null_argument(struct report *report, const char *name);
 

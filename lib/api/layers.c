@@ -127,8 +127,9 @@ sonject_status write_layers(struct report *report, const struct scene *scene,
                             const struct swath *swath, const struct injection_result *result,
                             const char *folder)
 {
-    static const char *const names[] = {"patch.tif",  "energy.tif", "highlight.png",
-                                        "shadow.png", "labels.png", "quicklook.png"};
+    static const char *const names[] = {"patch.tif",    "energy.tif", "highlight.png",
+                                        "shadow.png",   "labels.png", "influence.png",
+                                        "quicklook.png"};
     struct geometry_notes notes;
     geometry_notes_init(&notes, &scene->sonar, &scene->geometry, (double)swath->patch.first_row,
                         (double)swath->patch.first_column);
@@ -141,13 +142,14 @@ sonject_status write_layers(struct report *report, const struct scene *scene,
             status = write_float_layer(report, &notes, swath, 2, result->field, path);
         else if (i == 1)
             status = write_float_layer(report, &notes, swath, 1, result->energy, path);
-        else if (i == 5)
+        else if (i == 6)
             status = write_quicklook(report, scene, swath, result, path);
         else
             status = write_mask(report, swath,
                                 i == 2   ? result->highlight
                                 : i == 3 ? result->shadow
-                                         : result->labels,
+                                : i == 4 ? result->labels
+                                         : result->influence,
                                 path);
         free(path);
     }

@@ -4,9 +4,9 @@
 
 #include "api/swath.h"
 
-/* Writes patch.tif, energy.tif, highlight.png, shadow.png, labels.png, quicklook.png and, where the
- * result has them, energy_order_1.tif and so on into the folder, each whole or not at all.
- * Errors: STORAGE, MEMORY. */
+/* Writes patch.tif, energy.tif, highlight.png, shadow.png, labels.png, influence.png, quicklook.png
+ * and, where the result has them, energy_order_1.tif and so on into the folder, each whole or not
+ * at all. Errors: STORAGE, MEMORY. */
 sonject_status write_layers(struct report *report, const struct scene *scene,
                             const struct swath *swath, const struct injection_result *result,
                             const char *folder);

@@ -6,8 +6,7 @@
 #include "base/memory.h"
 #include "inject/input_patch.h"
 
-/* Packs a caller's rows. */
-static sonject_status take_pixels(struct report *report, const sonject_pixels *pixels,
+sonject_status take_pixels(struct report *report, const sonject_pixels *pixels,
                                   struct injection_input *input, float **packed)
 {
     const size_t parts = pixels->kind == SONJECT_PIXELS_COMPLEX ? 2 : 1;

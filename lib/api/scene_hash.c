@@ -144,6 +144,8 @@ static void add_object(struct hash *hash, const sonject_object_params *object)
     ADD(hash, object->tail_end_depth_m);
     ADD(hash, object->mesh);
     ADD(hash, object->user_shape);
+    ADD(hash, object->level_kind);
+    ADD(hash, object->level_db);
     ADD(hash, object->cut_count);
     for (uint32_t i = 0; i < object->cut_count && i < SONJECT_CUTS_CAPACITY; i++) {
         ADD(hash, object->cuts[i].azimuth_rad);
@@ -191,6 +193,9 @@ static void add_injection(struct hash *hash, const sonject_injection_params *inj
     ADD(hash, injection->interactions);
     ADD(hash, injection->estimator);
     ADD(hash, injection->order_energies);
+    ADD(hash, injection->match_response);
+    ADD(hash, injection->match_looks);
+    ADD(hash, injection->match_saturation);
 }
 
 sonject_status scene_hash(struct report *report, const struct scene *scene,

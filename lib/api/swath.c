@@ -263,6 +263,7 @@ static void *stored_with_result(const struct scene *scene, const struct swath *s
     const size_t bytes = pixel_bytes(swath->layout.type);
     unsigned char *stored = allocate_array(pixels * parts, bytes);
     unsigned char *fresh = allocate_array(pixels * parts, bytes);
+    const uint32_t step = quantisation_step(swath->layout.type, swath->stored, pixels * parts);
     if (stored && fresh) {
         memcpy(stored, swath->stored, pixels * parts * bytes);
         if (swath->is_complex)
@@ -270,8 +271,8 @@ static void *stored_with_result(const struct scene *scene, const struct swath *s
         else
             for (size_t i = 0; i < pixels; i++)
                 if (result->influence[i])
-                    transfer_to_stored(&scene->transfer, swath->layout.type, result->image + i, 1,
-                                       fresh + i * bytes, clipped);
+                    transfer_to_stored(&scene->transfer, swath->layout.type, step,
+                                       result->image + i, 1, fresh + i * bytes, clipped);
         for (size_t i = 0; i < pixels; i++)
             if (result->influence[i])
                 memcpy(stored + i * parts * bytes, fresh + i * parts * bytes, parts * bytes);

@@ -14,9 +14,10 @@
 #define SORT_BITS 11 /* at a time: three times are enough for all 32 */
 #define SORT_BINS ((size_t)1 << SORT_BITS)
 
-#define NOISE_BLOCK   7    /* pixels on a side */
-#define NOISE_LOWEST  1e-3 /* -30 dB */
-#define NOISE_HIGHEST 1e-2 /* -20 dB */
+#define NOISE_BLOCK   7           /* pixels on a side */
+#define NOISE_LOWEST  1e-3        /* -30 dB */
+#define NOISE_HIGHEST 1e-2        /* -20 dB */
+#define NOISE_UNKNOWN 5.6234133e-3 /* -22.5 dB, amid what shadows are measured at */
 
 /* A running mean along a line: full weight up to radius, edge_weight (0...1) one pixel further on
  * either side, so that any variance can be had, not only those of whole widths. */
@@ -219,8 +220,9 @@ static double block_ratio(const float *intensity, const float *level, size_t col
  * Two things can fool it, so the answer is limited. In a patch without a shadow the darkest block
  * is merely seabed, about -3 dB; taken for noise it would fill the target's shadow to the brim.
  * Measured shadows lie 15 to 30 dB below the seabed around them and hold some seabed echo too, so
- * noise is not above -20 dB. And a picture that was clipped at its dark end says less than is
- * there, so it is not below -30 dB. Blocks of nothing but 0 are blank corners, not water. */
+ * noise is not above -20 dB; where nothing is as dark as that, -22.5 dB is taken. And a picture
+ * that was clipped at its dark end says less than is there, so it is not below -30 dB. Blocks of
+ * nothing but 0 are blank corners, not water. */
 sonject_status estimate_noise_floor(struct report *report, const float *intensity,
                                     const float *level, size_t rows, size_t columns, double *ratio)
 {
@@ -236,7 +238,7 @@ sonject_status estimate_noise_floor(struct report *report, const float *intensit
             if (here > 0.0 && here < darkest)
                 darkest = here;
         }
-    *ratio = fmin(NOISE_HIGHEST, fmax(NOISE_LOWEST, darkest));
+    *ratio = darkest > NOISE_HIGHEST ? NOISE_UNKNOWN : fmax(NOISE_LOWEST, darkest);
     return SONJECT_OK;
 }
 

@@ -18,8 +18,9 @@ sonject_status local_mean(struct report *report, const float *values, size_t row
 void mean_and_deviation(const float *values, size_t count, double *mean, double *deviation);
 
 /* Noise floor over the local mean, as an energy ratio, from the darkest block of about 7 x 7 pixels
- * of the patch; limited to 0.001...0.01 (-30...-20 dB), because without a shadow in the patch the
- * darkest block is merely seabed. intensity and level: rows x columns, level > 0. Errors: MEMORY.
+ * of the patch; at least 0.001 (-30 dB). Where it is above 0.01 (-20 dB) there is no shadow in the
+ * patch and the darkest block is merely seabed: then 0.0056 (-22.5 dB). intensity and level: rows x
+ * columns, level > 0. Errors: MEMORY.
  */
 sonject_status estimate_noise_floor(struct report *report, const float *intensity,
                                     const float *level, size_t rows, size_t columns, double *ratio);

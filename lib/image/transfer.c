@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#define STEPS_LEAST 16 /* fewer levels are no picture that tells its step */
+
 /* NaN where the value has no amplitude. */
 static double amplitude_of(const sonject_transfer_params *transfer, double full_scale, double value)
 {
@@ -109,14 +111,17 @@ sonject_status transfer_to_amplitude(const sonject_transfer_params *transfer, en
 }
 
 void transfer_to_stored(const sonject_transfer_params *transfer, enum pixel_type type,
-                        const float *amplitude, size_t count, void *stored, uint64_t *clipped)
+                        uint32_t step, const float *amplitude, size_t count, void *stored,
+                        uint64_t *clipped)
 {
     const double full_scale = transfer_full_scale(transfer, type);
-    const double largest = type == PIXEL_FLOAT32 ? (double)FLT_MAX : full_scale;
+    const double unit = step;
+    const double largest =
+        type == PIXEL_FLOAT32 ? (double)FLT_MAX : unit * floor(full_scale / unit);
     for (size_t i = 0; i < count; i++) {
         double value = value_of(transfer, full_scale, (double)amplitude[i]);
         if (type != PIXEL_FLOAT32)
-            value = value > 0.0 ? floor(value + 0.5) : 0.0;
+            value = value > 0.0 ? unit * floor(value / unit + 0.5) : 0.0;
         if (value > largest) {
             value = largest;
             ++*clipped;
@@ -128,4 +133,20 @@ void transfer_to_stored(const sonject_transfer_params *transfer, enum pixel_type
         else
             ((float *)stored)[i] = (float)value;
     }
+}
+
+uint32_t quantisation_step(enum pixel_type type, const void *stored, size_t count)
+{
+    uint32_t step = 0;
+    uint32_t largest = 0;
+    for (size_t i = 0; type != PIXEL_FLOAT32 && step != 1 && i < count; i++) {
+        uint32_t value = (uint32_t)stored_value(type, stored, i);
+        largest = value > largest ? value : largest;
+        while (value != 0) { /* Euclid's */
+            const uint32_t rest = step % value;
+            step = value;
+            value = rest;
+        }
+    }
+    return step == 0 || largest / step < STEPS_LEAST ? 1 : step;
 }

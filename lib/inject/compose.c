@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "inject/looks.h"
 
 struct complex_plane {
     float *real_part, *imaginary_part;
@@ -100,6 +101,21 @@ static double gain_at(const struct patch_level *level, const struct echoes *echo
     return level->level[i] / (double)level->cell_energy[i % echoes->columns];
 }
 
+#define CLEARLY_HIDDEN 0.1 /* share of a pixel's energy; such pixels are always the target's */
+
+/* What the objects and the relief take from the seabed's energy, over its level: not over the
+ * pixel's own, or the influence would end at dark pixels later than at bright ones and its edge
+ * could be told by them. */
+static double seabed_change(const struct patch_level *level, const struct echoes *echoes, size_t i)
+{
+    const double hidden = hidden_share(echoes, i);
+    if (echoes->level_energy)
+        return fabs(1.0 - visibility_of(echoes, i));
+    return hidden > CLEARLY_HIDDEN
+               ? hidden
+               : (double)echoes->lost_energy[i] / (double)level->cell_energy[i % echoes->columns];
+}
+
 /* Marks the pixels that the objects change by more than the scene's influence level (all of them
  * when the patch is traced anew), and finds the window that holds them. */
 static struct window mark_influence(const struct scene *scene, const struct patch_level *level,
@@ -111,10 +127,8 @@ static struct window mark_influence(const struct scene *scene, const struct patc
     size_t end_row = 0;
     size_t end_column = 0;
     for (size_t i = 0; i < echoes->rows * echoes->columns; i++) {
-        const double seabed_change =
-            echoes->level_energy ? fabs(1.0 - visibility_of(echoes, i)) : hidden_share(echoes, i);
-        const double change =
-            gain_at(level, echoes, i) * echoes->target_energy[i] + seabed_change * level->level[i];
+        const double change = gain_at(level, echoes, i) * (double)echoes->target_energy[i] +
+                              seabed_change(level, echoes, i) * (double)level->level[i];
         if (!resynthesises && !(change > 0.0 && change >= threshold * level->level[i]))
             continue;
         const size_t row = i / echoes->columns;
@@ -164,9 +178,17 @@ static void compose_pixel(const struct scene *scene, const struct patch_level *l
     result->energy[i] = echoes->energy[i];
 }
 
-sonject_status compose(struct tracer *tracer, const struct patch_level *level,
-                       const struct echoes *echoes, const float *pixels, bool is_complex,
-                       struct injection_result *result)
+/* Highlights are cut where the image's own are. */
+static void saturate(double amplitude, size_t count, struct injection_result *result)
+{
+    for (size_t i = 0; !result->is_complex && i < count; i++)
+        if (result->influence[i] && (double)result->image[i] > amplitude)
+            result->image[i] = (float)amplitude;
+}
+
+sonject_status compose(struct tracer *tracer, const struct image_match *match,
+                       const struct patch_level *level, const struct echoes *echoes,
+                       const float *pixels, bool is_complex, struct injection_result *result)
 {
     const struct scene *scene = tracer->scene;
     const size_t count = echoes->rows * echoes->columns;
@@ -187,6 +209,10 @@ sonject_status compose(struct tracer *tracer, const struct patch_level *level,
         for (size_t i = 0; i < count; i++)
             compose_pixel(scene, level, echoes, pixels, &noise, &phase, i, result);
     }
+    if (status == SONJECT_OK && match->looks > 1.0)
+        status = compose_looks(tracer, match->looks, level, echoes, pixels, &touched, result);
+    if (status == SONJECT_OK)
+        saturate(match->saturation, count, result);
     plane_clear(&noise);
     plane_clear(&phase);
     return status;

@@ -50,9 +50,13 @@ static sonject_status allocate_planes(struct echoes *echoes, struct tracer *trac
     echoes->target_imaginary = allocate_array(pixels, sizeof(float));
     echoes->seabed_real = wants_field ? allocate_array(pixels, sizeof(float)) : NULL;
     echoes->seabed_imaginary = wants_field ? allocate_array(pixels, sizeof(float)) : NULL;
+    echoes->coherent_real = request->wants_coherent ? allocate_array(pixels, sizeof(float)) : NULL;
+    echoes->coherent_imaginary =
+        request->wants_coherent ? allocate_array(pixels, sizeof(float)) : NULL;
     if (!echoes->objects || !echoes->seabed_energy || !echoes->lost_energy ||
         !echoes->target_energy || !echoes->energy || !echoes->target_real ||
         !echoes->target_imaginary ||
+        (request->wants_coherent && (!echoes->coherent_real || !echoes->coherent_imaginary)) ||
         (wants_field && (!echoes->seabed_real || !echoes->seabed_imaginary)))
         return report_out_of_memory(tracer->report, "the patch");
     return allocate_orders(echoes, tracer);
@@ -75,6 +79,8 @@ void echoes_clear(struct echoes *echoes)
         free(echoes->order_energy[i]);
     free(echoes->target_real);
     free(echoes->target_imaginary);
+    free(echoes->coherent_real);
+    free(echoes->coherent_imaginary);
     free(echoes->seabed_real);
     free(echoes->seabed_imaginary);
     memset(echoes, 0, sizeof *echoes);

@@ -23,7 +23,9 @@ struct echoes {
     float *level_energy;  /* expected without objects and relief; NULL: there is no relief */
     float *lost_energy;   /* of it, hidden by objects */
     float *target_energy; /* expected from all objects */
-    float *target_real, *target_imaginary; /* one realisation, m */
+    float *target_real, *target_imaginary;     /* one realisation, m */
+    float *coherent_real, *coherent_imaginary; /* the part of it that is the same in every look:
+                                                  glints; NULL if unwanted */
     float *seabed_real,
         *seabed_imaginary; /* one realisation of what is in view; NULL if unwanted */
     float *energy;         /* expected from everything that was traced */
@@ -49,6 +51,7 @@ struct echo_request {
     const float *reflectivity_real, *reflectivity_imaginary; /* COHERENT: unit mean square */
     sonject_progress_function progress;                      /* may be NULL */
     void *user;
+    bool wants_coherent; /* keep the coherent part of the targets' echoes */
 };
 
 /* Progress of the stages, as fractions of a run: the seabed, the objects, several interactions. */

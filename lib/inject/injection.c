@@ -10,7 +10,9 @@
 #include "inject/compose.h"
 #include "inject/echoes.h"
 #include "inject/injection_setup.h"
+#include "inject/match.h"
 #include "inject/patch_level.h"
+#include "inject/target_level.h"
 #include "inject/traced_impulses.h"
 #include "inject/truth.h"
 
@@ -179,18 +181,25 @@ static sonject_status form_and_compose(struct tracer *tracer, const float *pixel
 {
     const bool resynthesises = tracer->scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
     struct patch_request patch;
+    struct image_match match;
     struct echoes echoes;
-    sonject_status status = patch_request_init(&patch, tracer, pixels, is_complex, progress, user);
+    sonject_status status = match_image(tracer, pixels, is_complex, &match);
+    if (status == SONJECT_OK)
+        status = patch_request_init(&patch, tracer, pixels, is_complex, progress, user);
     if (status != SONJECT_OK)
         return status;
+    patch.request.wants_coherent = match.looks > 1.0;
     status = echoes_form(&echoes, tracer, &patch.request, source);
     if (status == SONJECT_OK) {
         const double start = clock_seconds();
-        status = compose(tracer, &patch.level, &echoes, pixels, is_complex, result);
+        status = set_target_levels(tracer, &patch.level, &echoes, result);
+        if (status == SONJECT_OK)
+            status = compose(tracer, &match, &patch.level, &echoes, pixels, is_complex, result);
         if (status == SONJECT_OK && resynthesises)
             status = compare_seabed(tracer->report, &echoes, &patch.level, result);
         if (status == SONJECT_OK) {
             find_truth(tracer, &patch.level, &echoes, result);
+            tell_match(&match, &tracer->response, &result->statistics);
             fill_statistics(tracer, &patch.level, &echoes, clock_seconds() - start, result);
             hand_over_orders(&echoes, result);
         }
@@ -237,8 +246,11 @@ sonject_status injection_trace(struct report *report, struct device *device,
                                void *user, struct trace_counts *counts)
 {
     struct injection_setup setup;
+    struct image_match match;
     struct patch_request patch;
     sonject_status status = injection_setup_init(&setup, report, device, scene, input);
+    if (status == SONJECT_OK) /* the grid follows the response */
+        status = match_image(&setup.tracer, setup.pixels, input->is_complex, &match);
     if (status == SONJECT_OK)
         status = patch_request_init(&patch, &setup.tracer, setup.pixels, input->is_complex,
                                     progress, user);

@@ -77,6 +77,13 @@ static sonject_status check_combination(struct report *report, const struct scen
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "the brute force estimator needs mode: resynthesise and a transducer "
                               "that rays can hit: give its side");
+    for (uint32_t i = 0; i < scene->object_count; i++)
+        if (scene->objects[i].level_kind != SONJECT_LEVEL_PHYSICAL &&
+            scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE)
+            return report_failure(report, SONJECT_ERROR_INPUT,
+                                  "objects[%u].level needs the estimator connect: brute force does "
+                                  "not tell objects and seabed apart",
+                                  (unsigned)i);
     return SONJECT_OK;
 }
 

@@ -140,6 +140,12 @@ static sonject_status finish_field(struct echoes *echoes, struct form_lines *lin
                    lines->first_column, lines->columns);
         if (glint)
             add_glint(glint, echoes, lines, real_part, imaginary_part);
+        if (glint && echoes->coherent_real) {
+            add_window(echoes->coherent_real, echoes->columns, real_part, echoes->rows,
+                       lines->first_column, lines->columns);
+            add_window(echoes->coherent_imaginary, echoes->columns, imaginary_part, echoes->rows,
+                       lines->first_column, lines->columns);
+        }
     }
     free(real_part);
     free(imaginary_part);

@@ -63,6 +63,25 @@ static const struct field burial_fields[] = {
 };
 static const struct section burial_section = {burial_fields, COUNT(burial_fields), finish_burial};
 
+static sonject_status finish_level(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    sonject_object_params *object = structure;
+    if (is_given(node, "target_strength") + is_given(node, "over_seabed") != 1)
+        return refuse_value(reader, node, "needs target_strength or over_seabed; give one");
+    object->level_kind =
+        is_given(node, "over_seabed") ? SONJECT_LEVEL_OVER_SEABED : SONJECT_LEVEL_TARGET_STRENGTH;
+    return SONJECT_OK;
+}
+
+static const struct field level_fields[] = {
+    {"target_strength", "of its brightest pixel, speckle averaged out, re 1 m^2",
+     QUANTITY(STRUCTURE, level_db, QUANTITY_DECIBEL)},
+    {"over_seabed", "its brightest pixel over the local mean seabed",
+     QUANTITY(STRUCTURE, level_db, QUANTITY_DECIBEL)},
+};
+static const struct section level_section = {level_fields, COUNT(level_fields), finish_level};
+
 /* Objects on their way into the scene begin as the target that their file describes, which their
  * own keys then change. */
 static sonject_status read_object_target(struct reader *reader, const struct tree_node *node,
@@ -95,6 +114,11 @@ static const struct field object_fields[] = {
     {"burial", "depth of the lowest point below the seabed, or {fraction: } or {proud: }",
      .kind = FIELD_NAMED, .offset = 0, .unit = "m, km, cm, mm", .section = &burial_section,
      .read = read_burial},
+    {"level",
+     "scales the echo to {target_strength: } or {over_seabed: }; by default shape, material "
+     "and seabed.lambert alone set it",
+     .kind = FIELD_WORD, .offset = offsetof(STRUCTURE, level_kind), .words = {"physical"},
+     .section = &level_section},
     SURFACE_FIELD("surface of the object: a material's name, or a section"),
     {"parts", "instead of one shape: the object is their union", .kind = FIELD_SPECIAL,
      .unit = "list", .section = &part_section, .is_list = true, .read = read_object_parts},

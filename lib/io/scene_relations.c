@@ -29,6 +29,19 @@ sonject_status read_noise_floor(struct reader *reader, const struct tree_node *n
     return read_quantity(reader, node, QUANTITY_DECIBEL, &injection->noise_floor_db);
 }
 
+sonject_status read_match_looks(struct reader *reader, const struct tree_node *node,
+                                void *structure)
+{
+    sonject_injection_params *injection = structure;
+    injection->match_looks = 0.0;
+    if (node->kind == TREE_TEXT && node->text && strcmp(node->text, "image") == 0)
+        return SONJECT_OK;
+    sonject_status status = read_quantity(reader, node, QUANTITY_NUMBER, &injection->match_looks);
+    if (status == SONJECT_OK && injection->match_looks == 0.0)
+        status = refuse_value(reader, node, "must be image, or a number from 1 to 64");
+    return status;
+}
+
 sonject_status finish_scene(struct reader *reader, const struct tree_node *node, void *structure)
 {
     const struct scene *scene = structure;

@@ -185,6 +185,18 @@ static const struct section surface_section = {surface_fields, COUNT(surface_fie
 #undef STRUCTURE
 
 #define STRUCTURE sonject_injection_params
+static const struct field match_fields[] = {
+    {"response", "widths of the point response: the image's around the targets, or the sonar's",
+     WORD(STRUCTURE,
+          match_response) = {[SONJECT_MATCH_NOMINAL] = "nominal", [SONJECT_MATCH_IMAGE] = "image"}},
+    {"looks", "averaged in a magnitude pixel: image, or 1 to 64", .kind = FIELD_SPECIAL,
+     .read = read_match_looks, .unit = "number, or image"},
+    {"saturation", "amplitude that cuts highlights: the image's own, or the file's full scale",
+     WORD(STRUCTURE, match_saturation) =
+         {[SONJECT_MATCH_NOMINAL] = "full_scale", [SONJECT_MATCH_IMAGE] = "image"}},
+};
+static const struct section match_section = {match_fields, COUNT(match_fields), NULL};
+
 static const struct field injection_fields[] = {
     {"mode", "keep the measured pixels around the target, or trace the patch anew",
      WORD(STRUCTURE, mode) =
@@ -206,6 +218,7 @@ static const struct field injection_fields[] = {
                                    [SONJECT_ESTIMATOR_BRUTE_FORCE] = "brute_force"}},
     {"order_energies", "also keep the energy of each number of interactions", .kind = FIELD_FLAG32,
      .offset = offsetof(STRUCTURE, order_energies)},
+    {"match", "what targets take over from a measured magnitude image", SAME(match_section)},
 };
 static const struct section injection_section = {injection_fields, COUNT(injection_fields),
                                                  finish_injection};

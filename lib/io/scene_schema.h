@@ -118,6 +118,8 @@ const char *nearest_word(const char *typed, const char *const *words, size_t cou
 sonject_status read_version(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status read_noise_floor(struct reader *reader, const struct tree_node *node,
                                 void *structure);
+sonject_status read_match_looks(struct reader *reader, const struct tree_node *node,
+                                void *structure);
 sonject_status read_objects(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status finish_scene(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status finish_input(struct reader *reader, const struct tree_node *node, void *structure);

@@ -155,6 +155,11 @@ sonject_status check_injection(const sonject_injection_params *injection, struct
                  " surfaces");
     check_choice(&check, "estimator", injection->estimator, SONJECT_ESTIMATOR_BRUTE_FORCE + 1);
     check_choice(&check, "order_energies", injection->order_energies, 2);
+    check_choice(&check, "match.response", injection->match_response, SONJECT_MATCH_IMAGE + 1);
+    check_choice(&check, "match.saturation", injection->match_saturation, SONJECT_MATCH_IMAGE + 1);
+    check_finite(&check, "match.looks", injection->match_looks);
+    if (injection->match_looks != 0.0)
+        check_within(&check, "match.looks", injection->match_looks, 1.0, 64.0, " looks");
     if (injection->estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
         injection->mode != SONJECT_MODE_RESYNTHESISE)
         check_failure(&check, "estimator",
@@ -268,6 +273,9 @@ sonject_status check_object(const sonject_object_params *object, struct report *
     check_finite(&check, "pitch", object->pitch_rad);
     check_finite(&check, "roll", object->roll_rad);
     check_burial(&check, object);
+    check_choice(&check, "level", object->level_kind, SONJECT_LEVEL_OVER_SEABED + 1);
+    check_finite(&check, "level", object->level_db);
+    check_within(&check, "level", object->level_db, -200.0, 200.0, " dB");
     check_material(&check, &material_keys, &object->material, NAN);
     return check.status;
 }

@@ -104,6 +104,8 @@ void sonject_injection_params_init(sonject_injection_params *injection)
     injection->ray_scale = 1.0;
     injection->seed = 1;
     injection->interactions = 1;
+    injection->match_response = SONJECT_MATCH_IMAGE;
+    injection->match_saturation = SONJECT_MATCH_IMAGE;
 }
 
 void sonject_material_params_init(sonject_material_params *material)

@@ -22,6 +22,7 @@ RESULTS = {
     "highlight.png",
     "shadow.png",
     "labels.png",
+    "influence.png",
     "truth.json",
     "coco.json",
     "quicklook.png",

@@ -14,7 +14,7 @@ rows (track positions) x columns (slant ranges).
 
 from ._callbacks import Progress
 from ._library import load as _load
-from .actions import check, form, inject, quicklook, run, trace, write_seabed
+from .actions import check, form, inject, measure, quicklook, run, trace, write_seabed
 from .context import Context, Device, default_context, devices
 from .elements import ElementLayout, Elements, element_layout, element_series, run_elements
 from .enumerations import (
@@ -22,6 +22,8 @@ from .enumerations import (
     End,
     Estimator,
     ForwardRule,
+    LevelKind,
+    Match,
     Mode,
     RangeAxis,
     ReflectionKind,
@@ -72,7 +74,7 @@ from .parameters import (
     absorption,
     from_degrees,
 )
-from .result import Box, ObjectTruth, Result, Statistics
+from .result import Box, Measurement, ObjectTruth, Result, Statistics
 from .scene import Scene
 
 
@@ -101,7 +103,10 @@ __all__ = [
     "ForwardRule",
     "Geometry",
     "Injection",
+    "LevelKind",
+    "Match",
     "Material",
+    "Measurement",
     "Medium",
     "Metres",
     "Mode",
@@ -149,6 +154,7 @@ __all__ = [
     "form",
     "from_degrees",
     "inject",
+    "measure",
     "quicklook",
     "run",
     "run_elements",

@@ -3,7 +3,19 @@
 from __future__ import annotations
 
 import ctypes
-from ctypes import POINTER, c_char_p, c_double, c_float, c_int, c_int32, c_size_t, c_uint32, c_uint64, c_void_p
+from ctypes import (
+    POINTER,
+    c_char_p,
+    c_double,
+    c_float,
+    c_int,
+    c_int32,
+    c_size_t,
+    c_uint8,
+    c_uint32,
+    c_uint64,
+    c_void_p,
+)
 from typing import Any
 
 from . import _structures as s
@@ -190,6 +202,21 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sonject_quicklook_params_init": (None, [POINTER(s.sonject_quicklook_params)]),
     "sonject_quicklook": (_status, [_context, POINTER(s.sonject_quicklook_params)]),
     "sonject_seabed_file_params_init": (None, [POINTER(s.sonject_seabed_file_params)]),
+    "sonject_measure_params_init": (None, [POINTER(s.sonject_measure_params)]),
+    "sonject_measure": (
+        _status,
+        [_context, POINTER(s.sonject_measure_params), POINTER(s.sonject_measurement)],
+    ),
+    "sonject_measure_pixels": (
+        _status,
+        [
+            _context,
+            POINTER(s.sonject_pixels),
+            POINTER(c_uint8),
+            POINTER(c_uint8),
+            POINTER(s.sonject_measurement),
+        ],
+    ),
     "sonject_seabed_write": (_status, [_context, POINTER(s.sonject_seabed_file_params)]),
 }
 

@@ -117,6 +117,9 @@ class sonject_injection_params(Structure):
         ("interactions", c_uint32),
         ("estimator", c_uint32),
         ("order_energies", c_uint32),
+        ("match_response", c_uint32),
+        ("match_looks", c_double),
+        ("match_saturation", c_uint32),
         ("reserved", c_uint32),
     ]
 
@@ -176,7 +179,8 @@ class sonject_object_params(Structure):
         ("mesh", c_uint32),
         ("cuts", sonject_cut * CUTS_CAPACITY),
         ("user_shape", c_uint32),
-        ("reserved", c_uint32),
+        ("level_kind", c_uint32),
+        ("level_db", c_double),
     ]
 
 
@@ -283,6 +287,11 @@ class sonject_object_truth(Structure):
         ("burial_m", c_double),
         ("grazing_rad", c_double),
         ("transmission_loss_db", c_double),
+        ("level_kind", c_uint32),
+        ("reserved", c_uint32),
+        ("level_gain_db", c_double),
+        ("over_seabed_db", c_double),
+        ("seabed_strength_db", c_double),
     ]
 
 
@@ -306,6 +315,15 @@ class sonject_statistics(Structure):
         ("output_contrast", c_double),
         ("histogram_distance", c_double),
         ("correlation", c_double),
+        ("seabed_amplitude_contrast", c_double),
+        ("seabed_shape", c_double),
+        ("seabed_looks", c_double),
+        ("seabed_row_correlation", c_double),
+        ("seabed_column_correlation", c_double),
+        ("along_track_resolution_m", c_double),
+        ("range_resolution_m", c_double),
+        ("looks", c_double),
+        ("saturation_amplitude", c_double),
     ]
 
 
@@ -444,6 +462,38 @@ class sonject_quicklook_params(Structure):
         ("transfer", sonject_transfer_params),
         ("channel", c_int32),
         ("reserved", c_uint32),
+    ]
+
+
+class sonject_measure_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("has_transfer", c_uint32),
+        ("image", c_char_p),
+        ("before", c_char_p),
+        ("influence", c_char_p),
+        ("labels", c_char_p),
+        ("transfer", sonject_transfer_params),
+    ]
+
+
+class sonject_measurement(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("amplitude_contrast", c_double),
+        ("intensity_contrast", c_double),
+        ("looks", c_double),
+        ("shape", c_double),
+        ("row_correlation", c_double),
+        ("column_correlation", c_double),
+        ("row_length_pixels", c_double),
+        ("column_length_pixels", c_double),
+        ("seam", c_double),
+        ("seam_error", c_double),
+        ("seam_before", c_double),
+        ("seam_patches", c_uint64),
+        ("background_patches", c_uint64),
     ]
 
 

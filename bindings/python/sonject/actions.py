@@ -5,6 +5,8 @@ from __future__ import annotations
 import ctypes
 from typing import Any, Optional, Union
 
+import numpy
+
 from . import _structures as s
 from ._callbacks import Progress, ProgressBridge, text
 from ._library import load
@@ -17,11 +19,12 @@ from ._values import (
     initialised,
     override_texts,
     real_number,
+    sized,
 )
 from .context import Context, default_context
 from .enumerations import RangeAxis
 from .parameters import Geometry, Recording, Sonar, Synthetic, Transfer
-from .result import Result
+from .result import Measurement, Result, _copied
 from .scene import Scene
 
 
@@ -206,3 +209,43 @@ def write_seabed(
     if sonar is not None:
         params.sonar = sonar.to_structure()
     context.call("sonject_seabed_write", context, ctypes.byref(params))
+
+
+def _mask(name: str, mask: Any, shape: tuple[int, ...]) -> Any:
+    array = numpy.ascontiguousarray(numpy.asarray(mask) != 0, dtype=numpy.uint8)
+    if array.shape != shape:
+        raise ValueError(f"{name} must have the image's shape {shape}, not {array.shape}")
+    return array
+
+
+def measure(
+    image: Any,
+    influence: Optional[Any] = None,
+    labels: Optional[Any] = None,
+    context: Optional[Context] = None,
+) -> Measurement:
+    """What an image, as inject takes it, says about its seabed, and the seam of an injection.
+
+    influence: where the image was changed; labels: where highlights and shadows are (Result.influence
+    and Result.labels); both of the image's shape, None: not told.
+    """
+    context = default_context() if context is None else context
+    pixels, array = library_pixels(image)
+    masks = [
+        None if mask is None else _mask(name, mask, array.shape)
+        for name, mask in (("influence", influence), ("labels", labels))
+    ]
+    pointers = [
+        None if mask is None else mask.ctypes.data_as(ctypes.POINTER(ctypes.c_uint8))
+        for mask in masks
+    ]
+    measurement = sized(s.sonject_measurement)
+    context.call(
+        "sonject_measure_pixels",
+        context,
+        ctypes.byref(pixels),
+        *pointers,
+        ctypes.byref(measurement),
+    )
+    del array, masks
+    return Measurement(**_copied(Measurement, measurement))

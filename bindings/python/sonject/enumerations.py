@@ -35,6 +35,21 @@ class TransferKind(enum.IntEnum):
     SCHLICK = 4
 
 
+class Match(enum.IntEnum):
+    """sonject_match: taken from the sonar's parameters, or from the image around the objects."""
+
+    NOMINAL = 0
+    IMAGE = 1
+
+
+class LevelKind(enum.IntEnum):
+    """sonject_level_kind: what sets the level of an object's echo."""
+
+    PHYSICAL = 0
+    TARGET_STRENGTH = 1
+    OVER_SEABED = 2
+
+
 class Mode(enum.IntEnum):
     """sonject_injection_mode: compose into the patch, or trace the whole patch anew."""
 

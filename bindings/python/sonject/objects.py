@@ -7,7 +7,7 @@ from typing import Any, ClassVar, Optional, Sequence, Union
 
 from . import _structures as s
 from ._values import choice, fill, initialised
-from .enumerations import BurialKind, End, PositionKind, Shape
+from .enumerations import BurialKind, End, LevelKind, PositionKind, Shape
 from .material import Material
 
 
@@ -75,7 +75,9 @@ class Object:
     towards range; pitch_rad: raises the nose; roll_rad: about the nose direction; burial_m: depth
     of the lowest point below the seabed, negative above it, or one of burial_fraction (of the
     height in that pose, 0 to 1) and proud_height_m (of the highest point above the seabed); cuts:
-    at most two; name, class_name: for truth and labels, "" for "object N" and the shape's name.
+    at most two; target_strength_db or over_seabed_db: scales the echo so that its brightest pixel,
+    speckle averaged out, has that level re 1 m^2 or over the seabed (None: as shape and material
+    say); name, class_name: for truth and labels, "" for "object N" and the shape's name.
     """
 
     _shape: ClassVar[Shape]
@@ -89,6 +91,8 @@ class Object:
     proud_height_m: Optional[float] = None
     cuts: Sequence[Cut] = ()
     material: Material = field(default_factory=Material)
+    target_strength_db: Optional[float] = None
+    over_seabed_db: Optional[float] = None
     name: str = ""
     class_name: str = ""
 
@@ -103,6 +107,15 @@ class Object:
             return {"burial_kind": BurialKind.FRACTION, "burial_fraction": self.burial_fraction}
         return {"burial_kind": BurialKind.PROUD, "proud_height_m": self.proud_height_m}
 
+    def _level_values(self) -> dict[str, Any]:
+        if self.target_strength_db is not None and self.over_seabed_db is not None:
+            raise ValueError("target_strength_db and over_seabed_db exclude each other")
+        if self.target_strength_db is not None:
+            return {"level_kind": LevelKind.TARGET_STRENGTH, "level_db": self.target_strength_db}
+        if self.over_seabed_db is not None:
+            return {"level_kind": LevelKind.OVER_SEABED, "level_db": self.over_seabed_db}
+        return {}
+
     def to_structure(self) -> s.sonject_object_params:
         """The C structure. Raises TypeError or ValueError where a value does not fit into it."""
         if not isinstance(self.material, Material):
@@ -112,6 +125,8 @@ class Object:
         for name in ("burial_m", "burial_fraction", "proud_height_m"):
             del values[name]
         values.update(self._burial_values())
+        del values["target_strength_db"], values["over_seabed_db"]
+        values.update(self._level_values())
         cuts = [_cut_structure(cut) for cut in values.pop("cuts")]
         if len(cuts) > s.CUTS_CAPACITY:
             raise ValueError(f"cuts must be at most {s.CUTS_CAPACITY}, not {len(cuts)}")

@@ -20,6 +20,7 @@ from .enumerations import (
     ColumnRule,
     Estimator,
     ForwardRule,
+    Match,
     Mode,
     ResponseWindow,
     SeabedMap,
@@ -205,7 +206,9 @@ class Injection(Parameters):
     influence_db: level of change over the seabed from which a pixel is the objects'; ray_scale:
     factor on the number of rays; seed: of all random numbers; interactions: surfaces that a path
     may meet, 1...8; estimator: how paths to the source are found; order_energies: whether the
-    result keeps the energy of each number of interactions.
+    result keeps the energy of each number of interactions; match_response, match_saturation:
+    whether magnitude images lend objects their point response's widths and the amplitude that cuts
+    highlights; match_looks: looks averaged in a pixel, 0: estimated.
     """
 
     _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_injection_params
@@ -213,6 +216,8 @@ class Injection(Parameters):
         "mode": Mode,
         "column_rule": ColumnRule,
         "estimator": Estimator,
+        "match_response": Match,
+        "match_saturation": Match,
     }
 
     mode: Mode = library_default()
@@ -223,6 +228,9 @@ class Injection(Parameters):
     interactions: int = library_default()
     estimator: Estimator = library_default()
     order_energies: bool = library_default()
+    match_response: Match = library_default()
+    match_looks: float = library_default()
+    match_saturation: Match = library_default()
     noise_floor_db: Optional[float] = None
 
     def __post_init__(self) -> None:

@@ -57,7 +57,9 @@ class ObjectTruth:
     over the seabed; target_strength_db: of its brightest pixel, re 1 m^2, -inf where nothing of it
     is in view; contrasts: mean energy over the local seabed level; burial_m: depth of the lowest
     point; grazing_rad: of the sound that comes straight to the centre; transmission_loss_db: one
-    way, from 1 m off the sonar.
+    way, from 1 m off the sonar; level_kind: LevelKind that was asked for; level_gain_db: by which
+    its echo was scaled; over_seabed_db: its brightest pixel over the seabed there;
+    seabed_strength_db: assumed, of an m^2 at the centre's grazing angle.
     """
 
     is_visible: bool
@@ -80,6 +82,10 @@ class ObjectTruth:
     burial_m: float
     grazing_rad: float
     transmission_loss_db: float
+    level_kind: int
+    level_gain_db: float
+    over_seabed_db: float
+    seabed_strength_db: float
 
 
 @dataclass(frozen=True)
@@ -87,7 +93,10 @@ class Statistics:
     """Counts, times in seconds, and (resynthesise only, otherwise NaN) output against input.
 
     noise_floor_db: that was used, over the local mean seabed energy; contrasts: intensity standard
-    deviation over mean; histogram_distance: Kolmogorov-Smirnov; correlation: of the intensities.
+    deviation over mean; histogram_distance: Kolmogorov-Smirnov; correlation: of the intensities;
+    seabed_...: of the measured image around the objects, NaN where it says nothing, shape of the K
+    distribution; then what was used for what was put in: resolutions, looks, and the amplitude that
+    cuts highlights.
     """
 
     pings: int
@@ -106,6 +115,40 @@ class Statistics:
     output_contrast: float
     histogram_distance: float
     correlation: float
+    seabed_amplitude_contrast: float
+    seabed_shape: float
+    seabed_looks: float
+    seabed_row_correlation: float
+    seabed_column_correlation: float
+    along_track_resolution_m: float
+    range_resolution_m: float
+    looks: float
+    saturation_amplitude: float
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """What an image says: untouched seabed (NaN: nothing), and the seam of an injection.
+
+    Contrasts: standard deviation over mean; looks: averaged in a pixel; shape: of the K
+    distribution; correlations: of speckle's intensity between neighbours; lengths: where the
+    intensity's correlation falls to 1/e; seam: how well a classifier tells background that the
+    injection changed from untouched, 0.5: not at all, 1: always (NaN: not asked, or too little was
+    changed), with its standard error and the number of patches of either kind.
+    """
+
+    amplitude_contrast: float
+    intensity_contrast: float
+    looks: float
+    shape: float
+    row_correlation: float
+    column_correlation: float
+    row_length_pixels: float
+    column_length_pixels: float
+    seam: float
+    seam_error: float
+    seam_patches: int
+    background_patches: int
 
 
 def _copied(kind: Any, structure: ctypes.Structure) -> dict[str, Any]:

@@ -23,6 +23,7 @@ POINTERS = {
     "const char *const *": ctypes.POINTER(ctypes.c_char_p),
     "void *": ctypes.c_void_p,
     "const void *": ctypes.c_void_p,
+    "const uint8_t *": ctypes.POINTER(ctypes.c_uint8),
 }
 
 

@@ -1,0 +1,307 @@
+#include <sonject/measure.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "api/handles.h"
+#include "base/memory.h"
+#include "image/seam.h"
+#include "image/speckle_statistics.h"
+#include "image/transfer.h"
+#include "io/raster_file.h"
+
+#define NEAR 2 /* pixels around changed ones: rounding hides small changes */
+
+void sonject_measure_params_init(sonject_measure_params *params)
+{
+    memset(params, 0, sizeof *params);
+    params->struct_size = sizeof *params;
+    sonject_transfer_params_init(&params->transfer);
+}
+
+/* Planes of rows x columns; owned. */
+struct measured {
+    size_t rows, columns;
+    float *amplitudes;
+    float *before;               /* amplitudes; NULL: not told */
+    uint8_t *influence, *labels; /* NULL: not told */
+};
+
+static void measured_clear(struct measured *measured)
+{
+    free(measured->amplitudes);
+    free(measured->before);
+    free(measured->influence);
+    free(measured->labels);
+}
+
+static void fill_seabed(const struct speckle_statistics *seabed, sonject_measurement *measurement)
+{
+    const bool is_known = seabed->blocks > 0;
+    measurement->amplitude_contrast = is_known ? seabed->amplitude_contrast : NAN;
+    measurement->intensity_contrast = is_known ? seabed->intensity_contrast : NAN;
+    measurement->looks = is_known ? seabed->looks : NAN;
+    measurement->shape = is_known ? seabed->shape : NAN;
+    measurement->row_correlation = is_known ? seabed->along_track.correlation[1] : NAN;
+    measurement->column_correlation = is_known ? seabed->range.correlation[1] : NAN;
+    measurement->row_length_pixels = is_known ? seabed->along_track.length_pixels : NAN;
+    measurement->column_length_pixels = is_known ? seabed->range.length_pixels : NAN;
+}
+
+/* Changes the amplitudes to intensities. */
+static sonject_status measure(struct report *report, struct measured *measured,
+                              sonject_measurement *to)
+{
+    struct speckle_statistics seabed;
+    struct seam seam = {NAN, NAN, 0, 0};
+    struct seam before = {NAN, NAN, 0, 0};
+    sonject_measurement measurement;
+    memset(&measurement, 0, sizeof measurement);
+    measurement.struct_size = sizeof measurement;
+    sonject_status status = SONJECT_OK;
+    if (measured->influence)
+        status = measure_seam(report, measured->amplitudes, measured->influence, measured->labels,
+                              measured->rows, measured->columns, &seam);
+    if (status == SONJECT_OK && measured->influence && measured->before)
+        status = measure_seam(report, measured->before, measured->influence, measured->labels,
+                              measured->rows, measured->columns, &before);
+    for (size_t i = 0; i < measured->rows * measured->columns; i++) {
+        measured->amplitudes[i] *= measured->amplitudes[i];
+        if (measured->influence && measured->labels && measured->labels[i])
+            measured->influence[i] = 255;
+    }
+    if (status == SONJECT_OK)
+        status = measure_speckle(report, measured->amplitudes,
+                                 measured->influence ? measured->influence : measured->labels,
+                                 measured->rows, measured->columns, measured->columns, &seabed);
+    if (status != SONJECT_OK)
+        return status;
+    fill_seabed(&seabed, &measurement);
+    measurement.seam = seam.auc;
+    measurement.seam_error = seam.error;
+    measurement.seam_before = before.auc;
+    measurement.seam_patches = seam.patches;
+    measurement.background_patches = seam.background;
+    return params_give(report, to, &measurement, sizeof measurement, sizeof measurement,
+                       "measurement");
+}
+
+/* A whole file; *stored is for free(). */
+static sonject_status read_stored(struct report *report, const char *path,
+                                  struct raster_layout *layout, void **stored)
+{
+    struct raster_file *file = NULL;
+    size_t bytes = 0;
+    *stored = NULL;
+    sonject_status status = raster_file_open(report, path, &file);
+    if (status != SONJECT_OK)
+        return status;
+    raster_file_layout(file, layout);
+    const struct region whole = {0, 0, layout->rows, layout->columns};
+    if (layout->rows * layout->columns <= (uint64_t)1 << 31 && region_bytes(layout, &whole, &bytes))
+        *stored = allocate_array(bytes, 1);
+    status = *stored ? raster_file_read(report, file, &whole, *stored)
+                     : report_out_of_memory(report, path);
+    raster_file_close(&file);
+    return status;
+}
+
+static sonject_status read_image(struct report *report, const char *path,
+                                 const sonject_transfer_params *transfer, struct measured *measured)
+{
+    struct raster_layout layout;
+    void *stored = NULL;
+    size_t bad = 0;
+    uint64_t clipped = 0;
+    sonject_status status = read_stored(report, path, &layout, &stored);
+    if (status != SONJECT_OK) {
+        free(stored);
+        return status;
+    }
+    measured->rows = (size_t)layout.rows;
+    measured->columns = (size_t)layout.columns;
+    const size_t count = measured->rows * measured->columns;
+    float *linear = allocate_array(count, layout.channels * sizeof *linear);
+    if (!linear)
+        status = report_out_of_memory(report, path);
+    else if (transfer_to_amplitude(transfer, layout.type, stored, count * layout.channels, linear,
+                                   &bad, &clipped) != SONJECT_OK)
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "%s: the pixel at row %zu, column %zu is not a finite number", path,
+                                bad / layout.channels / measured->columns,
+                                bad / layout.channels % measured->columns);
+    free(stored);
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
+        linear[i] =
+            layout.channels == 2 ? hypotf(linear[2 * i], linear[2 * i + 1]) : fabsf(linear[i]);
+    measured->amplitudes = linear;
+    return status;
+}
+
+static sonject_status refuse_size(struct report *report, const char *path,
+                                  const struct raster_layout *layout,
+                                  const struct measured *measured)
+{
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "%s has %llu x %llu pixels, the image %zu x %zu: give masks of its size",
+                          path, (unsigned long long)layout->rows,
+                          (unsigned long long)layout->columns, measured->rows, measured->columns);
+}
+
+/* path NULL: no mask. */
+static sonject_status read_mask(struct report *report, const char *path,
+                                const struct measured *measured, uint8_t **mask)
+{
+    struct raster_layout layout;
+    void *stored = NULL;
+    if (!path)
+        return SONJECT_OK;
+    sonject_status status = read_stored(report, path, &layout, &stored);
+    if (status == SONJECT_OK &&
+        (layout.rows != measured->rows || layout.columns != measured->columns))
+        status = refuse_size(report, path, &layout, measured);
+    if (status == SONJECT_OK) {
+        const size_t bytes = layout.channels * pixel_bytes(layout.type);
+        const size_t count = measured->rows * measured->columns;
+        *mask = allocate_array(count, 1);
+        if (!*mask)
+            status = report_out_of_memory(report, path);
+        for (size_t i = 0; *mask && i < count * bytes; i++)
+            if (((const uint8_t *)stored)[i])
+                (*mask)[i / bytes] = 255;
+    }
+    free(stored);
+    return status;
+}
+
+static void mark_near(struct measured *measured, size_t i)
+{
+    const size_t row = i / measured->columns;
+    const size_t column = i % measured->columns;
+    for (size_t r = row > NEAR ? row - NEAR : 0; r <= row + NEAR && r < measured->rows; r++)
+        for (size_t c = column > NEAR ? column - NEAR : 0;
+             c <= column + NEAR && c < measured->columns; c++)
+            measured->influence[r * measured->columns + c] = 255;
+}
+
+/* The image before, and where no mask tells it, what changed since. */
+static sonject_status read_before(struct report *report, const char *path,
+                                  const sonject_transfer_params *transfer,
+                                  struct measured *measured)
+{
+    struct measured before;
+    if (!path)
+        return SONJECT_OK;
+    memset(&before, 0, sizeof before);
+    sonject_status status = read_image(report, path, transfer, &before);
+    measured->before = before.amplitudes;
+    if (status == SONJECT_OK &&
+        (before.rows != measured->rows || before.columns != measured->columns)) {
+        const struct raster_layout layout = {before.rows, before.columns, 1, PIXEL_UINT8};
+        status = refuse_size(report, path, &layout, measured);
+    }
+    if (status != SONJECT_OK || measured->influence)
+        return status;
+    const size_t count = measured->rows * measured->columns;
+    measured->influence = allocate_array(count, 1);
+    if (!measured->influence)
+        return report_out_of_memory(report, path);
+    for (size_t i = 0; i < count; i++)
+        if (measured->before[i] < measured->amplitudes[i] ||
+            measured->before[i] > measured->amplitudes[i])
+            mark_near(measured, i);
+    return SONJECT_OK;
+}
+
+sonject_status sonject_measure(sonject_context *context, const sonject_measure_params *params,
+                               sonject_measurement *measurement)
+{
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    struct report *report = &context->report;
+    sonject_measure_params taken;
+    struct measured measured;
+    memset(&measured, 0, sizeof measured);
+    sonject_measure_params_init(&taken);
+    sonject_status status =
+        params_take(report, &taken, sizeof taken, params, sizeof taken, "measure parameters");
+    if (status != SONJECT_OK)
+        return status;
+    if (!taken.image || !measurement)
+        return null_argument(report, "image and measurement");
+    if (taken.has_transfer)
+        status = check_transfer(&taken.transfer, report, NULL);
+    if (status == SONJECT_OK)
+        status = read_image(report, taken.image, &taken.transfer, &measured);
+    if (status == SONJECT_OK)
+        status = read_mask(report, taken.labels, &measured, &measured.labels);
+    if (status == SONJECT_OK)
+        status = read_mask(report, taken.influence, &measured, &measured.influence);
+    if (status == SONJECT_OK)
+        status = read_before(report, taken.before, &taken.transfer, &measured);
+    if (status == SONJECT_OK)
+        status = measure(report, &measured, measurement);
+    measured_clear(&measured);
+    return status;
+}
+
+static sonject_status copy_mask(struct report *report, const uint8_t *mask, size_t count,
+                                uint8_t **copy)
+{
+    if (!mask)
+        return SONJECT_OK;
+    *copy = allocate_array(count, 1);
+    if (!*copy)
+        return report_out_of_memory(report, "a mask");
+    memcpy(*copy, mask, count);
+    return SONJECT_OK;
+}
+
+/* Amplitudes of a caller's pixels. */
+static sonject_status take_amplitudes(struct report *report, const sonject_pixels *pixels,
+                                      struct measured *measured)
+{
+    struct injection_input input;
+    float *packed = NULL;
+    sonject_status status = take_pixels(report, pixels, &input, &packed);
+    if (status != SONJECT_OK)
+        return status;
+    measured->rows = input.rows;
+    measured->columns = input.columns;
+    measured->amplitudes = packed;
+    for (size_t i = 0; i < input.rows * input.columns; i++) {
+        const float a = input.is_complex ? packed[2 * i] : packed[i];
+        packed[i] = input.is_complex ? hypotf(a, packed[2 * i + 1]) : fabsf(a);
+        if (!isfinite(packed[i]))
+            return report_failure(report, SONJECT_ERROR_INPUT,
+                                  "the pixel at row %zu, column %zu is not a finite number",
+                                  i / input.columns, i % input.columns);
+    }
+    return SONJECT_OK;
+}
+
+sonject_status sonject_measure_pixels(sonject_context *context, const sonject_pixels *pixels,
+                                      const uint8_t *influence, const uint8_t *labels,
+                                      sonject_measurement *measurement)
+{
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    struct report *report = &context->report;
+    struct measured measured;
+    memset(&measured, 0, sizeof measured);
+    if (!pixels || !measurement)
+        return null_argument(report, "pixels and measurement");
+    sonject_status status = take_amplitudes(report, pixels, &measured);
+    const size_t count = measured.rows * measured.columns;
+    if (status == SONJECT_OK)
+        status = copy_mask(report, influence, count, &measured.influence);
+    if (status == SONJECT_OK)
+        status = copy_mask(report, labels, count, &measured.labels);
+    if (status == SONJECT_OK)
+        status = measure(report, &measured, measurement);
+    measured_clear(&measured);
+    return status;
+}

@@ -1,0 +1,29 @@
+/* What is put into a measured magnitude image takes that image's own widths, looks and saturation.
+ * Formulas: kernels/MATH.md, "Blending". */
+#ifndef SONJECT_INJECT_MATCH_H
+#define SONJECT_INJECT_MATCH_H
+
+#include "image/speckle_statistics.h"
+#include "inject/injection.h"
+#include "trace/tracer.h"
+
+struct image_match {
+    struct speckle_statistics seabed; /* measured around the objects */
+    double looks;                     /* of speckle that is put in; 1: single-look */
+    double saturation;                /* amplitude that cuts highlights, or INFINITY */
+};
+
+/* Measures the patch's pixels (the view's row order) around the placed objects, and widens or
+ * narrows the tracer's response where the scene asks for it and the image clearly differs. Errors:
+ * MEMORY. */
+sonject_status match_image(struct tracer *tracer, const float *pixels, bool is_complex,
+                           struct image_match *match);
+
+/* Intensity correlation of single-look speckle formed by the response, at a distance in m. */
+double along_track_speckle_correlation(const struct point_response *response, double distance_m);
+double range_speckle_correlation(const struct point_response *response, double distance_m);
+
+void tell_match(const struct image_match *match, const struct point_response *response,
+                sonject_statistics *statistics);
+
+#endif
