@@ -7,7 +7,9 @@
 #include <sonject/injection.h>
 #include <sonject/material.h>
 #include <sonject/medium.h>
+#include <sonject/motion.h>
 #include <sonject/object.h>
+#include <sonject/pulse.h>
 #include <sonject/relief.h>
 #include <sonject/result.h>
 #include <sonject/run.h>

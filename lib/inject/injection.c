@@ -11,6 +11,7 @@
 #include "inject/echoes.h"
 #include "inject/patch_level.h"
 #include "inject/truth.h"
+#include "scene/cross_range.h"
 
 sonject_status injection_check(struct report *report, const struct scene *scene, double first_row,
                                double first_column, size_t rows, size_t columns,
@@ -251,6 +252,18 @@ static sonject_status check_combination(struct report *report, const struct scen
     return SONJECT_OK;
 }
 
+/* The coherent map's scale is known for one real cross-range response. */
+static sonject_status check_coherent_map(const struct tracer *tracer)
+{
+    const struct scene *scene = tracer->scene;
+    if (scene->injection.mode != SONJECT_MODE_RESYNTHESISE ||
+        scene->seabed.map != SONJECT_MAP_COHERENT || cross_range_is_plain(&tracer->response))
+        return SONJECT_OK;
+    return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                          "the coherent seabed map needs a synthetic aperture without motion or a "
+                          "measured cross-range response: use map: intensity or despeckled");
+}
+
 sonject_status injection_run(struct report *report, struct device *device,
                              const struct scene *scene, const struct injection_input *input,
                              sonject_progress_function progress, void *user,
@@ -285,14 +298,17 @@ sonject_status injection_run(struct report *report, struct device *device,
         /* a row of the widest layer, the field */
         char *scratch = allocate_array(input->columns, 2 * sizeof(float));
         float *pixels = allocate_array(input->rows, row_bytes);
-        point_response_init(&tracer.response, &scene->sonar, reference, tracer.view.row_spacing_m);
         result->statistics.level_change_db = NAN;
         result->statistics.input_contrast = NAN;
         result->statistics.output_contrast = NAN;
         result->statistics.histogram_distance = NAN;
         result->statistics.correlation = NAN;
         result->statistics.struct_size = sizeof result->statistics;
-        status = scratch && pixels ? SONJECT_OK : report_out_of_memory(report, "the patch");
+        status = scratch && pixels ? point_response_of_scene(&tracer.response, report, scene,
+                                                             &tracer.view, reference)
+                                   : report_out_of_memory(report, "the patch");
+        if (status == SONJECT_OK)
+            status = check_coherent_map(&tracer);
         if (status == SONJECT_OK) {
             memcpy(pixels, input->pixels, input->rows * row_bytes);
             if (tracer.view.is_mirrored)

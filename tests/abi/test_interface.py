@@ -53,6 +53,8 @@ SIZES = {
     "sonject_context_params": 56,
     "sonject_device_info": 400,
     "sonject_sonar_params": 64,
+    "sonject_pulse_params": 24,
+    "sonject_motion_params": 224,
     "sonject_medium_params": 32,
     "sonject_seabed_params": 120,
     "sonject_material_params": 80,
