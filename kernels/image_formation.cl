@@ -56,8 +56,8 @@ __kernel void compress_range_complex(__global const float *lines_real,
 __kernel void combine_aspects(int first_strip, int strips, int strips_per_row, int reach,
                               __global const float *lines_real,
                               __global const float *lines_imaginary, int stride,
-                              __global const float *response, int rows,
-                              __global float *out_real, __global float *out_imaginary)
+                              __global const float *response, int rows, __global float *out_real,
+                              __global float *out_imaginary)
 {
     const struct aspects aspects = {first_strip, strips, strips_per_row, reach};
     combine_aspects_of(aspects, lines_real, lines_imaginary, stride, response,

@@ -53,12 +53,11 @@ sonject_status sonject_scene_set_pulse_table(sonject_scene *scene, uint32_t axis
         scene->scene.pulse.kind = SONJECT_PULSE_GAUSSIAN;
         return SONJECT_OK;
     }
-    sonject_status status = check_samples(scene->report, "pulse table", positions, real_part,
-                                          imaginary_part, count);
+    sonject_status status =
+        check_samples(scene->report, "pulse table", positions, real_part, imaginary_part, count);
     if (status == SONJECT_OK)
-        status =
-            response_table_set(&scene->scene.pulse_table, scene->report, positions, real_part,
-                               imaginary_part, count, axis == SONJECT_PULSE_AXIS_TIME);
+        status = response_table_set(&scene->scene.pulse_table, scene->report, positions, real_part,
+                                    imaginary_part, count, axis == SONJECT_PULSE_AXIS_TIME);
     if (status == SONJECT_OK)
         scene->scene.pulse.kind = SONJECT_PULSE_TABLE;
     return status;

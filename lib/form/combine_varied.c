@@ -8,9 +8,9 @@
 #include "scene/cross_range.h"
 #include "scene/motion_response.h"
 
-#define BLOCK_COLUMNS  16 /* that share a response; holds whole groups of any width */
-#define ROWS_PER_ITEM  4  /* FORM_ROWS of kernels/image_formation.h */
-#define TAPS_OF_A_RUN  ((size_t)1 << 22)
+#define BLOCK_COLUMNS 16 /* that share a response; holds whole groups of any width */
+#define ROWS_PER_ITEM 4  /* FORM_ROWS of kernels/image_formation.h */
+#define TAPS_OF_A_RUN ((size_t)1 << 22)
 
 /* The taps of a run of rows. */
 struct taps {
@@ -84,9 +84,8 @@ static void fill_blocks(struct taps *taps, const struct form_lines *lines)
             (double)lines->first_column + ((double)block + 0.5) * BLOCK_COLUMNS - 0.5;
         const double range = view_apparent_range(lines->view, column);
         for (size_t i = 0; i < taps->each; i++) {
-            const struct complex_number w =
-                cross_range_response(&lines->response, range,
-                                     ((double)i - lines->reach) * strip + offset_of(lines));
+            const struct complex_number w = cross_range_response(
+                &lines->response, range, ((double)i - lines->reach) * strip + offset_of(lines));
             taps->row_real[i] = w.real_part;
             taps->row_imaginary[i] = w.imaginary_part;
         }
@@ -119,15 +118,22 @@ static sonject_status run_rows(struct form_lines *lines, cl_kernel kernel, const
         const cl_int block_step = taps->blocks > 1 ? (cl_int)taps->each : 0;
         const cl_int stride = (cl_int)lines->stride;
         const cl_int rows = (cl_int)(first_row + some);
-        const struct kernel_argument arguments[] = {
-            ARGUMENT(first_strip),   ARGUMENT(strips),
-            ARGUMENT(per_row),       ARGUMENT(reach),
-            ARGUMENT(row),           ARGUMENT(row_step),
-            ARGUMENT(block_columns), ARGUMENT(block_step),
-            ARGUMENT(lines->real_lines), ARGUMENT(lines->imaginary_lines),
-            ARGUMENT(stride),        ARGUMENT(real_taps),
-            ARGUMENT(imaginary_taps), ARGUMENT(rows),
-            ARGUMENT(real_out),      ARGUMENT(imaginary_out)};
+        const struct kernel_argument arguments[] = {ARGUMENT(first_strip),
+                                                    ARGUMENT(strips),
+                                                    ARGUMENT(per_row),
+                                                    ARGUMENT(reach),
+                                                    ARGUMENT(row),
+                                                    ARGUMENT(row_step),
+                                                    ARGUMENT(block_columns),
+                                                    ARGUMENT(block_step),
+                                                    ARGUMENT(lines->real_lines),
+                                                    ARGUMENT(lines->imaginary_lines),
+                                                    ARGUMENT(stride),
+                                                    ARGUMENT(real_taps),
+                                                    ARGUMENT(imaginary_taps),
+                                                    ARGUMENT(rows),
+                                                    ARGUMENT(real_out),
+                                                    ARGUMENT(imaginary_out)};
         const size_t global[2] = {lines->stride / lines->device->width,
                                   (some + ROWS_PER_ITEM - 1) / ROWS_PER_ITEM};
         status = kernel_run(lines->report, lines->device, kernel, arguments,
@@ -144,9 +150,9 @@ static sonject_status run_moved(struct form_lines *lines, cl_kernel kernel, stru
 {
     const double strip = lines->row_spacing_m / lines->grid.strips_per_row;
     struct motion_response motion;
-    sonject_status status = motion_response_begin(&motion, lines->report, &lines->response,
-                                                  lines->view, strip, offset_of(lines),
-                                                  lines->reach);
+    sonject_status status =
+        motion_response_begin(&motion, lines->report, &lines->response, lines->view, strip,
+                              offset_of(lines), lines->reach);
     if (status != SONJECT_OK)
         return status;
     for (size_t first = 0; status == SONJECT_OK && first < lines->rows; first += taps->rows) {

@@ -51,8 +51,7 @@ static sonject_status make_pulse(struct form_lines *lines, const struct patch_vi
     for (int32_t tap = 0; status == SONJECT_OK && tap < lines->pulse_taps; tap++) {
         const struct complex_number g =
             range_response_complex(&lines->response, (tap - taps_each_side) * bin);
-        const double energy =
-            g.real_part * g.real_part + g.imaginary_part * g.imaginary_part;
+        const double energy = g.real_part * g.real_part + g.imaginary_part * g.imaginary_part;
         taps[tap] = (float)(lines->kind == FORM_ENERGY ? energy : g.real_part);
         imaginary_taps[tap] = (float)g.imaginary_part;
     }

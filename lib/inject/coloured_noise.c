@@ -52,12 +52,12 @@ static void fill_energies(const struct line_grid *grid, const struct tracer *tra
                           float *energies)
 {
     const struct patch_view *view = &tracer->view;
-    const double cell = view->row_spacing_m / grid->strips_per_row * view->column_spacing_m /
-                        grid->bins_per_pixel;
+    const double cell =
+        view->row_spacing_m / grid->strips_per_row * view->column_spacing_m / grid->bins_per_pixel;
     const size_t bins = (size_t)grid->bins.count;
     for (size_t bin = 0; bin < bins; bin++) {
-        const double range = view_apparent_range(
-            view, ((double)grid->bins.first + (double)bin) / grid->bins_per_pixel);
+        const double range = view_apparent_range(view, ((double)grid->bins.first + (double)bin) /
+                                                           grid->bins_per_pixel);
         energies[bin] = (float)(cell / (cross_range_energy_width(&tracer->response, range) *
                                         range_energy_width(&tracer->response)));
     }

@@ -19,8 +19,7 @@ double seabed_cell_energy(const struct patch_view *view, const struct point_resp
     const double sine = sin(grazing);
     const double cosine = fmax(1e-6, cos(grazing));
     const double area = cross_range_energy_width(response, apparent_range_m) *
-                        range_energy_width(response) /
-                        (view->range_ratio * cosine);
+                        range_energy_width(response) / (view->range_ratio * cosine);
     return mu * sine * sine * area * view_energy_scale(view) *
            view_refraction_gain(view, apparent_range_m);
 }

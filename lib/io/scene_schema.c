@@ -147,6 +147,12 @@ static const struct field sonar_fields[] = {
     {"aperture", "full angle of the aspects that shadows and rough highlights take, auto or none",
      .kind = FIELD_SPECIAL, .read = read_aperture, .unit = "deg, auto or none"},
     {"array", "of a real aperture", SAME(array_section)},
+    {"pulse", "what a point looks like in range; by default Gaussian", .kind = FIELD_SPECIAL,
+     .section = &pulse_section, .read = read_pulse},
+    {"measured_response", "along-track, a table with columns along_track_m, real, and imaginary",
+     .kind = FIELD_SPECIAL, .read = read_cross_range, .unit = "file name"},
+    {"motion", "residual motion of a synthetic aperture's sonar", .kind = FIELD_SPECIAL,
+     .section = &motion_section, .read = read_motion},
 };
 static const struct section sonar_section = {sonar_fields, COUNT(sonar_fields), finish_sonar};
 #undef STRUCTURE

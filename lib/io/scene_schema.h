@@ -142,6 +142,14 @@ sonject_status read_medium(struct reader *reader, const struct tree_node *node, 
 extern const struct section relief_section;
 sonject_status read_relief(struct reader *reader, const struct tree_node *node, void *structure);
 
+/* Pulse, measured cross-range response and residual motion, in scene_response.c. */
+extern const struct section pulse_section;
+extern const struct section motion_section;
+sonject_status read_pulse(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status read_cross_range(struct reader *reader, const struct tree_node *node,
+                                void *structure);
+sonject_status read_motion(struct reader *reader, const struct tree_node *node, void *structure);
+
 /* The objects' table, for read_objects, in scene_object.c. */
 extern const struct section object_section;
 

@@ -11,7 +11,7 @@
 
 #define PI           3.14159265358979323846
 #define SWAY_MAX_M   1e3
-#define SCALE_MIN_M  0.01 /* sway from one centimetre to the next is no motion of a sonar */
+#define SCALE_MIN_M  0.01       /* sway from one centimetre to the next is no motion of a sonar */
 #define RANDOM_WAVES 256        /* whose sum is as good as Gaussian */
 #define RANDOM_WAVE  0x73776179 /* stream of random numbers that no other part uses */
 
@@ -162,8 +162,7 @@ void aperture_motion_sway(const struct aperture_motion *motion, double start_m, 
 {
     const sonject_motion_params *params = &motion->params;
     for (size_t i = 0; i < count; i++)
-        sway_m[i] =
-            motion->count > 0 ? sway_of_table(motion, start_m + (double)i * step_m) : 0.0;
+        sway_m[i] = motion->count > 0 ? sway_of_table(motion, start_m + (double)i * step_m) : 0.0;
     for (uint32_t i = 0; i < params->sway_count; i++)
         add_wave(params->sways[i].amplitude_m, 2.0 * PI / params->sways[i].wavelength_m,
                  params->sways[i].phase_rad, start_m, step_m, count, sway_m);

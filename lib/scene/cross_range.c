@@ -39,7 +39,8 @@ void point_response_set_array(struct point_response *response, double array_leng
     response->array_length_m = array_length_m;
     response->wavelength_m = wavelength_m;
     response->range_ratio = range_ratio;
-    /* its band of spatial frequencies, 2 sin(aspect) / wavelength, is 4 / length wide at the foot */
+    /* its band of spatial frequencies, 2 sin(aspect) / wavelength, is 4 / length wide at the foot
+     */
     response->strip_m = 0.25 * array_length_m;
     const double step = tangent_at(response, BEAM_LOBES) / BEAM_STEPS;
     response->beam_energy = 0.0;

@@ -4,8 +4,8 @@
 
 #include "scene/cross_range.h"
 
-#define BINS_PER_RESOLUTION 4     /* deviates are drawn for cells of a quarter of the resolution */
-#define ROUNDING            1e-9  /* 2.5 cm over 2.5 cm is one strip, not two */
+#define BINS_PER_RESOLUTION 4    /* deviates are drawn for cells of a quarter of the resolution */
+#define ROUNDING            1e-9 /* 2.5 cm over 2.5 cm is one strip, not two */
 
 static int32_t bins_of(const struct patch_view *view, double length_m, uint32_t bins_per_pixel)
 {

@@ -24,9 +24,9 @@ static double steepest(const struct motion_response *motion)
 static size_t aspects_needed(const struct motion_response *motion)
 {
     const double wavelength = motion->view->wavelength_m;
-    const double swing = motion->response->motion_range_m * wavelength /
-                         (2.0 * motion->strip_m *
-                          aperture_motion_step(motion->response->motion) * 100.0);
+    const double swing =
+        motion->response->motion_range_m * wavelength /
+        (2.0 * motion->strip_m * aperture_motion_step(motion->response->motion) * 100.0);
     size_t count = 64;
     while (count < ASPECTS_MAX &&
            ((double)count < 8.0 * (motion->reach + 1.0) || (double)count < 16.0 * swing))
@@ -131,8 +131,8 @@ void motion_response_row(struct motion_response *motion, double row, double *rea
     for (int m = -last; m <= last; m++) {
         const double sine = fmin(fmax(m * step, -0.999), 0.999);
         const double v = fmin(fmax(0.5 * m / half_band, -0.5), 0.5);
-        const double weight = weight_at(response, v) * share_in_band(m, half_band) /
-                              (2.0 * half_band);
+        const double weight =
+            weight_at(response, v) * share_in_band(m, half_band) / (2.0 * half_band);
         const double place = x + response->motion_range_m * sine / sqrt(1.0 - sine * sine);
         const double error = response->motion_phase_per_m * sway_at(motion, place);
         const double shift = 2.0 * PI * m * motion->offset_m / (count * motion->strip_m);
@@ -141,8 +141,8 @@ void motion_response_row(struct motion_response *motion, double row, double *rea
         motion->real_part[at] += weight * (cos(shift + error) - cos(shift));
         motion->imaginary_part[at] += weight * (sin(shift + error) - sin(shift));
     }
-    fourier_transform(motion->real_part, motion->imaginary_part, motion->aspects,
-                      motion->root_real, motion->root_imaginary);
+    fourier_transform(motion->real_part, motion->imaginary_part, motion->aspects, motion->root_real,
+                      motion->root_imaginary);
     for (int j = -motion->reach; j <= motion->reach; j++) {
         const size_t at = (size_t)(j + (int)motion->aspects) % motion->aspects;
         const double distance = j * motion->strip_m + motion->offset_m;
@@ -187,8 +187,9 @@ sonject_status motion_response_spread(struct report *report, const struct point_
         motion_response_row(&motion, (double)(view->rows - 1) * i / (SPREAD_ROWS - 1), real_part,
                             imaginary_part);
         for (int s = 0; s < 2; s++)
-            *spread_m = fmax(*spread_m, reach_of_row(&motion, real_part, imaginary_part, shares[s]) -
-                                            along_track_energy_reach(response, shares[s]));
+            *spread_m =
+                fmax(*spread_m, reach_of_row(&motion, real_part, imaginary_part, shares[s]) -
+                                    along_track_energy_reach(response, shares[s]));
     }
     free(real_part);
     free(imaginary_part);

@@ -11,12 +11,12 @@
 
 #define PI 3.14159265358979323846
 
-#define GAUSSIAN_REACH     5.0   /* deviations of the envelope: -108 dB */
-#define TAIL_LEVEL         1e-3  /* amplitude below which a glint's side lobes in range are cut */
-#define TAIL_MAX           512.0 /* resolutions */
+#define GAUSSIAN_REACH         5.0  /* deviations of the envelope: -108 dB */
+#define TAIL_LEVEL             1e-3 /* amplitude below which a glint's side lobes in range are cut */
+#define TAIL_MAX               512.0 /* resolutions */
 #define SPACING_OVER_WIDTH_MAX 64
 #define STRIPS_OF_REACH_MAX    4096
-#define PULSE_ENERGY_SHARE 0.001 /* of |G|^2 that is cut off from speckle and energies */
+#define PULSE_ENERGY_SHARE     0.001 /* of |G|^2 that is cut off from speckle and energies */
 
 static double sinc(double x)
 {
@@ -93,8 +93,8 @@ void point_response_init(struct point_response *response, const sonject_sonar_pa
         response->terms = 1;
         response->weights[0] = 0.5 * 0.46 / 0.54;
     } else if (sonar->response_window == SONJECT_WINDOW_TAYLOR) {
-        response->terms = taylor_weights(response->weights, sonar->taylor_sidelobe_db,
-                                         (int)sonar->taylor_terms);
+        response->terms =
+            taylor_weights(response->weights, sonar->taylor_sidelobe_db, (int)sonar->taylor_terms);
     }
 }
 
@@ -285,8 +285,7 @@ static sonject_status set_motion(struct point_response *response, struct report 
     const double middle = view_apparent_range(view, 0.5 * (double)(view->columns - 1));
     response->motion = &scene->motion;
     response->motion_range_m = middle / view->range_ratio;
-    response->motion_phase_per_m =
-        -4.0 * PI / view->wavelength_m * cos(view_grazing(view, middle));
+    response->motion_phase_per_m = -4.0 * PI / view->wavelength_m * cos(view_grazing(view, middle));
     return motion_response_spread(report, response, view, &response->motion_spread_m);
 }
 
@@ -305,8 +304,8 @@ sonject_status point_response_of_scene(struct point_response *response, struct r
     if (is_real_aperture && (has_table || has_motion))
         return refuse_pair(report, "a real aperture",
                            has_table ? "a measured cross-range response" : "residual motion");
-    if (is_real_aperture && (scene->sonar.array_heading_rad != 0.0 ||
-                             scene->sonar.array_pitch_rad != 0.0))
+    if (is_real_aperture &&
+        (scene->sonar.array_heading_rad != 0.0 || scene->sonar.array_pitch_rad != 0.0))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "images of an array that is turned from the track are not formed: "
                               "set its heading and pitch to 0");

@@ -126,9 +126,9 @@ static struct complex_number slope_at(const struct response_table *table, size_t
     const struct complex_number after = secant(table, i);
     const double all = table->positions[i + 1] - table->positions[i - 1];
     const double share = (table->positions[i] - table->positions[i - 1]) / all;
-    const struct complex_number slope = {
-        (1.0 - share) * before.real_part + share * after.real_part,
-        (1.0 - share) * before.imaginary_part + share * after.imaginary_part};
+    const struct complex_number slope = {(1.0 - share) * before.real_part + share * after.real_part,
+                                         (1.0 - share) * before.imaginary_part +
+                                             share * after.imaginary_part};
     return slope;
 }
 
