@@ -69,6 +69,44 @@ static void add_sonar(struct hash *hash, const struct scene *scene)
     add_material(hash, &scene->surface.material);
 }
 
+static void add_response_table(struct hash *hash, const struct response_table *table)
+{
+    const uint64_t count = table->count;
+    ADD(hash, count);
+    ADD(hash, table->is_time);
+    hash_add(hash, table->positions, table->count * sizeof *table->positions);
+    hash_add(hash, table->values, table->count * sizeof *table->values);
+}
+
+static void add_motion(struct hash *hash, const struct aperture_motion *motion)
+{
+    const sonject_motion_params *params = &motion->params;
+    const uint64_t count = motion->count;
+    ADD(hash, params->sway_count);
+    for (uint32_t i = 0; i < params->sway_count && i < SONJECT_SWAYS_CAPACITY; i++) {
+        ADD(hash, params->sways[i].amplitude_m);
+        ADD(hash, params->sways[i].wavelength_m);
+        ADD(hash, params->sways[i].phase_rad);
+    }
+    ADD(hash, params->random_rms_m);
+    ADD(hash, params->random_correlation_m);
+    ADD(hash, params->seed);
+    ADD(hash, count);
+    hash_add(hash, motion->along_track_m, motion->count * sizeof *motion->along_track_m);
+    hash_add(hash, motion->sway_m, motion->count * sizeof *motion->sway_m);
+}
+
+static void add_responses(struct hash *hash, const struct scene *scene)
+{
+    ADD(hash, scene->pulse.kind);
+    ADD(hash, scene->pulse.window);
+    ADD(hash, scene->pulse.taylor_terms);
+    ADD(hash, scene->pulse.taylor_sidelobe_db);
+    add_response_table(hash, &scene->pulse_table);
+    add_response_table(hash, &scene->cross_range_table);
+    add_motion(hash, &scene->motion);
+}
+
 /* Only where there is some: scenes that know of none keep their hashes. */
 static void add_relief(struct hash *hash, const struct relief_features *relief)
 {
@@ -204,6 +242,7 @@ sonject_status scene_hash(struct report *report, const struct scene *scene,
         return report_out_of_memory(report, "a hash");
     hash_add_text(hash, sonject_version());
     add_sonar(hash, scene);
+    add_responses(hash, scene);
     add_water_layers(hash, scene);
     add_relief(hash, &scene->relief);
     add_image(hash, scene);

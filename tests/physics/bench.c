@@ -118,9 +118,10 @@ void bench_ready(struct bench *bench)
     tracer->part_count = bench->placed.part_count;
     tracer->objects = bench->placed.objects;
     tracer->relief = bench->placed.relief;
-    point_response_init(&tracer->response, &bench->scene.sonar,
-                        tracer->view.range_ratio * bench->water.straight_speed_mps,
-                        tracer->view.row_spacing_m);
+    expect_ok(bench,
+              point_response_of_scene(&tracer->response, &bench->report, &bench->scene,
+                                      &tracer->view,
+                                      tracer->view.range_ratio * bench->water.straight_speed_mps));
 }
 
 double bench_wavenumber(const struct bench *bench)
