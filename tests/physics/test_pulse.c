@@ -207,7 +207,7 @@ static void test_image_of_a_point(void **unused)
                 const size_t i = (size_t)(10 * COLUMNS + column);
                 const double complex pixel =
                     echoes.target_real[i] + I * (double)echoes.target_imaginary[i];
-                const double complex g = response_at(&bench, (column - 60.0) * 0.003);
+                const double complex g = response_at(&bench, (column - 60.0) * 0.003 + 0.001);
                 if (pass == 0) { /* the echo's own amplitude and phase, by least squares */
                     scale += conj(g) * pixel;
                     norm += cabs(g) * cabs(g);
@@ -217,7 +217,7 @@ static void test_image_of_a_point(void **unused)
             }
         print_message("pulse %d\n", (int)pulse);
         assert_true(cabs(scale) > 0.0);
-        /* a millimetre of the ball, 5e-4 of bins */
+        /* the glint is a radius before the ball's middle; bins err by 5e-4, its depth by more */
         expect_below("range cut less G", worst, 0.02);
         echoes_clear(&echoes);
         bench_close(&bench);
