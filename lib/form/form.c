@@ -49,8 +49,9 @@ static sonject_status make_pulse(struct form_lines *lines, const struct patch_vi
     sonject_status status =
         taps && imaginary_taps ? SONJECT_OK : report_out_of_memory(lines->report, "the pulse");
     for (int32_t tap = 0; status == SONJECT_OK && tap < lines->pulse_taps; tap++) {
+        /* at the pixel's range less the bin's */
         const struct complex_number g =
-            range_response_complex(&lines->response, (tap - taps_each_side) * bin);
+            range_response_complex(&lines->response, (taps_each_side - tap) * bin);
         const double energy = g.real_part * g.real_part + g.imaginary_part * g.imaginary_part;
         taps[tap] = (float)(lines->kind == FORM_ENERGY ? energy : g.real_part);
         imaginary_taps[tap] = (float)g.imaginary_part;
