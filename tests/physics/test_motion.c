@@ -127,7 +127,7 @@ static void test_paired_echoes(void **unused)
             peak_between(cut, (size_t)(expected - 3.0), (size_t)(expected + 3.0), &row);
         /* the tangent of an aspect is up to 0.3 % above the sine */
         expect_close("place of the echo, resolutions", (row - expected) * SPACING / RESOLUTION, 0.0,
-                     0.1);
+                     0.02);
         expect_close("level of the echo over J1, dB", decibels_of_amplitude(peak / 0.09950083), 0.0,
                      LEVEL_DB);
     }
