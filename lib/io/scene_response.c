@@ -167,6 +167,20 @@ sonject_status read_cross_range(struct reader *reader, const struct tree_node *n
     return status;
 }
 
+static sonject_status finish_sway(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    struct report report = {{0}, NULL, NULL};
+    sonject_motion_params motion;
+    const char *key = "";
+    sonject_motion_params_init(&motion);
+    motion.sways[0] = *(const sonject_sway *)structure;
+    motion.sway_count = 1;
+    if (check_motion(&motion, &report, &key) != SONJECT_OK)
+        return place_check(reader, node, key, &report);
+    return SONJECT_OK;
+}
+
 #define STRUCTURE sonject_sway
 static const struct field sway_fields[] = {
     {"amplitude", "of the sine", QUANTITY(STRUCTURE, amplitude_m, QUANTITY_LENGTH), REQUIRED},
@@ -174,7 +188,7 @@ static const struct field sway_fields[] = {
      REQUIRED},
     {"phase", "of the sine at along-track 0", QUANTITY(STRUCTURE, phase_rad, QUANTITY_ANGLE)},
 };
-static const struct section sway_section = {sway_fields, COUNT(sway_fields), NULL};
+static const struct section sway_section = {sway_fields, COUNT(sway_fields), finish_sway};
 #undef STRUCTURE
 
 static sonject_status read_sways(struct reader *reader, const struct tree_node *node,

@@ -31,6 +31,9 @@ ENUMERATIONS = {
     "sonject_input_kind": (enumerations.InputKind, "SONJECT_INPUT_"),
     "sonject_seabed_map": (enumerations.SeabedMap, "SONJECT_MAP_"),
     "sonject_response_window": (enumerations.ResponseWindow, "SONJECT_WINDOW_"),
+    "sonject_pulse_kind": (enumerations.PulseKind, "SONJECT_PULSE_"),
+    "sonject_pulse_window": (enumerations.PulseWindow, "SONJECT_PULSE_"),
+    "sonject_pulse_axis": (enumerations.PulseAxis, "SONJECT_PULSE_AXIS_"),
     "sonject_sonar_kind": (enumerations.SonarKind, "SONJECT_SONAR_"),
 }
 
@@ -80,6 +83,7 @@ def test_name_capacity_and_version_are_the_headers():
     numbers = dict(re.findall(r"#define SONJECT_(VERSION_\w+|\w+_CAPACITY) (\d+)", text))
     assert int(numbers["NAME_CAPACITY"]) == _structures.NAME_CAPACITY
     assert int(numbers["CUTS_CAPACITY"]) == _structures.CUTS_CAPACITY
+    assert int(numbers["SWAYS_CAPACITY"]) == _structures.SWAYS_CAPACITY
     version = tuple(int(numbers["VERSION_" + part]) for part in ("MAJOR", "MINOR", "PATCH"))
     assert version == _library.VERSION
 
