@@ -13,7 +13,7 @@ SONJECT_BEGIN_DECLARATIONS
 /* amplitude_m * sin(2 pi x / wavelength_m + phase_rad), x along-track. */
 typedef struct sonject_sway {
     double amplitude_m;
-    double wavelength_m; /* from 1 cm */
+    double wavelength_m; /* from 10 cm */
     double phase_rad;
 } sonject_sway;
 
@@ -24,7 +24,7 @@ typedef struct sonject_motion_params {
     uint32_t sway_count; /* of sways, at most 8 */
     sonject_sway sways[SONJECT_SWAYS_CAPACITY];
     double random_rms_m;         /* of a Gaussian random sway; 0: none */
-    double random_correlation_m; /* from 1 cm; autocorrelation exp(-(x / this)^2 / 2) */
+    double random_correlation_m; /* from 10 cm; autocorrelation exp(-(x / this)^2 / 2) */
     uint64_t seed;
 } sonject_motion_params;
 

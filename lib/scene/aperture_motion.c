@@ -109,7 +109,7 @@ double aperture_motion_step(const struct aperture_motion *motion)
         step = fmin(step, motion->params.random_correlation_m / 100.0);
     for (size_t i = 0; i + 1 < motion->count; i++)
         step = fmin(step, (motion->along_track_m[i + 1] - motion->along_track_m[i]) / 4.0);
-    return step;
+    return fmax(step, SCALE_MIN_M / 200.0);
 }
 
 static double sway_of_table(const struct aperture_motion *motion, double x)

@@ -29,7 +29,7 @@ static size_t aspects_needed(const struct motion_response *motion)
         (2.0 * motion->strip_m * aperture_motion_step(motion->response->motion) * 100.0);
     size_t count = 64;
     while (count < ASPECTS_MAX &&
-           ((double)count < 8.0 * (motion->reach + 1.0) || (double)count < 16.0 * swing))
+           ((double)count < 8.0 * (motion->reach + 1.0) || (double)count < 8.0 * swing))
         count *= 2;
     return count;
 }

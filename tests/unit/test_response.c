@@ -114,7 +114,7 @@ static void test_hostile_keys(void **state)
         {"motion: {sway: 3}",
          ":9:18: sonar.motion.sway: must be a list; start each sine with '- '"},
         {"motion: {sway: [{amplitude: 1, wavelength: 0}]}",
-         "sonar.motion.sway[0].wavelength: must be 0.01...1e+06 m, not 0"},
+         "sonar.motion.sway[0].wavelength: must be 0.1...1e+06 m, not 0"},
         {"motion: {random: {rms: -1, correlation: 1}}",
          "sonar.motion.random.rms: must be 0...1000 m, not -1"},
         {"motion: {file: nothing.csv}", "there is no file"},
