@@ -32,6 +32,19 @@ FUNCTION real load_tap(GLOBAL const float *line, int bins, int start, int bins_p
     return LOAD_REAL(lanes);
 }
 
+/* The taps that meet bins of the line, for WIDTH pixels of which the first begins at `start`: the
+ * others would add zeros. */
+FUNCTION int first_tap_of(int start, int bins_per_pixel)
+{
+    const int outside = -start - (WIDTH - 1) * bins_per_pixel;
+    return outside > 0 ? outside : 0;
+}
+
+FUNCTION int end_of_taps(int start, int bins, int taps)
+{
+    return bins - start < taps ? bins - start : taps;
+}
+
 /* Range compression of the WIDTH pixels from `column` on: pixel j is the sum over taps of
  * line[j * bins_per_pixel + first + tap] * pulse[tap]. Lanes are pixels, so that each sum keeps its
  * order whatever a compiler makes of the loop. `out` must have room for whole groups of WIDTH. */
@@ -40,7 +53,8 @@ FUNCTION void compress_range_of(GLOBAL const float *line, int bins, int first, i
 {
     const int start = column * bins_per_pixel + first;
     real sum = SPLAT(0.0f);
-    for (int tap = 0; tap < taps; tap++)
+    const int end = end_of_taps(start, bins, taps);
+    for (int tap = first_tap_of(start, bins_per_pixel); tap < end; tap++)
         sum += load_tap(line, bins, start + tap, bins_per_pixel) * pulse[tap];
     STORE_REAL(sum, out + column);
 }
@@ -55,7 +69,8 @@ FUNCTION void compress_complex_of(GLOBAL const float *line_real, GLOBAL const fl
     const int start = column * bins_per_pixel + first;
     real sum_real = SPLAT(0.0f);
     real sum_imaginary = SPLAT(0.0f);
-    for (int tap = 0; tap < taps; tap++) {
+    const int end = end_of_taps(start, bins, taps);
+    for (int tap = first_tap_of(start, bins_per_pixel); tap < end; tap++) {
         const real a = load_tap(line_real, bins, start + tap, bins_per_pixel);
         const real b = load_tap(line_imaginary, bins, start + tap, bins_per_pixel);
         sum_real += a * pulse_real[tap] - b * pulse_imaginary[tap];

@@ -11,7 +11,7 @@
 
 #define PI           3.14159265358979323846
 #define SWAY_MAX_M   1e3
-#define SCALE_MIN_M  0.01       /* sway from one centimetre to the next is no motion of a sonar */
+#define SCALE_MIN_M  0.1        /* sway from one centimetre to the next is no motion of a sonar */
 #define RANDOM_WAVES 256        /* whose sum is as good as Gaussian */
 #define RANDOM_WAVE  0x73776179 /* stream of random numbers that no other part uses */
 
