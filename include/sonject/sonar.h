@@ -26,7 +26,7 @@ typedef struct sonject_sonar_params {
     uint32_t response_window;        /* sonject_response_window */
     double centre_frequency_hz;      /* > 0 */
     double bandwidth_hz;             /* > 0, below twice the centre frequency; -3 dB range width is
-                                        c/(2 bandwidth) */
+                                        c/(2 bandwidth); of other pulses: pulse.h */
     double altitude_m;               /* > 0, height of the track over the mean seabed */
     double along_track_resolution_m; /* the aspects integrated are sin(aspect) within
                                         +-wavelength/(4 resolution); 0: the image's row spacing */
