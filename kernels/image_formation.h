@@ -32,6 +32,19 @@ FUNCTION real load_tap(GLOBAL const float *line, int bins, int start, int bins_p
     return LOAD_REAL(lanes);
 }
 
+/* The taps that meet bins of the line, for WIDTH pixels of which the first begins at `start`: the
+ * others would add zeros. */
+FUNCTION int first_tap_of(int start, int bins_per_pixel)
+{
+    const int outside = -start - (WIDTH - 1) * bins_per_pixel;
+    return outside > 0 ? outside : 0;
+}
+
+FUNCTION int end_of_taps(int start, int bins, int taps)
+{
+    return bins - start < taps ? bins - start : taps;
+}
+
 /* Range compression of the WIDTH pixels from `column` on: pixel j is the sum over taps of
  * line[j * bins_per_pixel + first + tap] * pulse[tap]. Lanes are pixels, so that each sum keeps its
  * order whatever a compiler makes of the loop. `out` must have room for whole groups of WIDTH. */
@@ -40,9 +53,31 @@ FUNCTION void compress_range_of(GLOBAL const float *line, int bins, int first, i
 {
     const int start = column * bins_per_pixel + first;
     real sum = SPLAT(0.0f);
-    for (int tap = 0; tap < taps; tap++)
+    const int end = end_of_taps(start, bins, taps);
+    for (int tap = first_tap_of(start, bins_per_pixel); tap < end; tap++)
         sum += load_tap(line, bins, start + tap, bins_per_pixel) * pulse[tap];
     STORE_REAL(sum, out + column);
+}
+
+/* The same with a complex pulse, both parts of the line at once. */
+FUNCTION void compress_complex_of(GLOBAL const float *line_real, GLOBAL const float *line_imaginary,
+                                  int bins, int first, int bins_per_pixel,
+                                  GLOBAL const float *pulse_real,
+                                  GLOBAL const float *pulse_imaginary, int taps, int column,
+                                  GLOBAL float *out_real, GLOBAL float *out_imaginary)
+{
+    const int start = column * bins_per_pixel + first;
+    real sum_real = SPLAT(0.0f);
+    real sum_imaginary = SPLAT(0.0f);
+    const int end = end_of_taps(start, bins, taps);
+    for (int tap = first_tap_of(start, bins_per_pixel); tap < end; tap++) {
+        const real a = load_tap(line_real, bins, start + tap, bins_per_pixel);
+        const real b = load_tap(line_imaginary, bins, start + tap, bins_per_pixel);
+        sum_real += a * pulse_real[tap] - b * pulse_imaginary[tap];
+        sum_imaginary += a * pulse_imaginary[tap] + b * pulse_real[tap];
+    }
+    STORE_REAL(sum_real, out_real + column);
+    STORE_REAL(sum_imaginary, out_imaginary + column);
 }
 
 /* Where a row takes its aspects from. */
@@ -89,6 +124,49 @@ FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lin
         const long at = (long)(first_row + r) * stride + column;
         STORE_REAL(sum_real[r], out_real + at);
         STORE_REAL(sum_imaginary[r], out_imaginary + at);
+    }
+}
+
+/* Responses of a set of rows and blocks of columns, each with the taps of struct aspects. */
+struct response_set {
+    int first_row;         /* that the set begins with */
+    int row_step;          /* floats from a row's taps to the next row's; 0: one for all */
+    int columns_per_block; /* a multiple of WIDTH */
+    int block_step;        /* floats from a block's taps to the next block's */
+};
+
+/* The same as combine_aspects_of with a complex response that may differ from row to row and from
+ * block to block. */
+FUNCTION void combine_varied_of(struct aspects aspects, struct response_set set,
+                                GLOBAL const float *lines_real, GLOBAL const float *lines_imaginary,
+                                int stride, GLOBAL const float *response_real,
+                                GLOBAL const float *response_imaginary, int first_row, int rows,
+                                int column, GLOBAL float *out_real, GLOBAL float *out_imaginary)
+{
+    const int taps = 2 * aspects.reach + 1;
+    const long block = (long)(column / set.columns_per_block) * set.block_step;
+    const int end = aspects.first_strip + aspects.strips;
+    for (int row = first_row; row < first_row + FORM_ROWS && row < rows; row++) {
+        const long first_tap = (long)(row - set.first_row) * set.row_step + block;
+        const int last = row * aspects.strips_per_row + aspects.reach; /* strip of tap 0 */
+        int low = last - taps + 1;
+        int high = last + 1;
+        low = low < aspects.first_strip ? aspects.first_strip : low;
+        high = high > end ? end : high;
+        real sum_real = SPLAT(0.0f);
+        real sum_imaginary = SPLAT(0.0f);
+        for (int strip = low; strip < high; strip++) {
+            const long at = (long)(strip - aspects.first_strip) * stride + column;
+            const real a = LOAD_REAL(lines_real + at);
+            const real b = LOAD_REAL(lines_imaginary + at);
+            const float w = response_real[first_tap + last - strip];
+            const float v = response_imaginary[first_tap + last - strip];
+            sum_real += a * w - b * v;
+            sum_imaginary += a * v + b * w;
+        }
+        const long at = (long)row * stride + column;
+        STORE_REAL(sum_real, out_real + at);
+        STORE_REAL(sum_imaginary, out_imaginary + at);
     }
 }
 

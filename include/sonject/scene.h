@@ -10,7 +10,9 @@
 #include <sonject/image.h>
 #include <sonject/injection.h>
 #include <sonject/medium.h>
+#include <sonject/motion.h>
 #include <sonject/object.h>
+#include <sonject/pulse.h>
 #include <sonject/relief.h>
 #include <sonject/seabed.h>
 #include <sonject/sonar.h>
@@ -77,6 +79,37 @@ SONJECT_API void sonject_scene_release(sonject_scene **scene);
  * GHz. Errors: ARGUMENT, INPUT (a value out of range), MEMORY. */
 SONJECT_API sonject_status sonject_scene_set_sonar(sonject_scene *scene,
                                                    const sonject_sonar_params *sonar);
+/* The kind TABLE needs the table first; GAUSSIAN and CHIRP take it away. */
+SONJECT_API sonject_status sonject_scene_set_pulse(sonject_scene *scene,
+                                                   const sonject_pulse_params *pulse);
+/* Makes the pulse a table of complex baseband samples, copied: of the compressed envelope, phase
+ * that of a target whose echo has phase 0. positions: count of them, 4...65536, rising through 0,
+ * the target's own place; axis says what they are (sonject_pulse_axis). imaginary_part: NULL where
+ * it is 0. All samples are divided by the largest one, so that G's peak is 1; between them G is
+ * cubic (off by 0.2 % with four samples a resolution cell, 0.02 % with eight), outside 0. count 0:
+ * the Gaussian pulse again. Errors: ARGUMENT, INPUT (what is wrong with which sample), MEMORY. */
+SONJECT_API sonject_status sonject_scene_set_pulse_table(sonject_scene *scene, uint32_t axis,
+                                                         const double *positions,
+                                                         const double *real_part,
+                                                         const double *imaginary_part,
+                                                         size_t count);
+/* The same along-track, at all ranges alike, in place of the sonar's window: W at distances in m
+ * of the pixel beyond the target. Only for synthetic apertures without residual motion. count 0:
+ * the window again. Errors: as above. */
+SONJECT_API sonject_status sonject_scene_set_cross_range_table(sonject_scene *scene,
+                                                               const double *distances_m,
+                                                               const double *real_part,
+                                                               const double *imaginary_part,
+                                                               size_t count);
+/* Residual motion of a synthetic aperture's sonar. */
+SONJECT_API sonject_status sonject_scene_set_motion(sonject_scene *scene,
+                                                    const sonject_motion_params *motion);
+/* Adds measured sway (sonject_sway tells its sign) at positions along-track of the image, rising,
+ * 2...65536 of them, copied; linear in between, constant beyond. count 0 takes it away. Errors:
+ * ARGUMENT, INPUT, MEMORY. */
+SONJECT_API sonject_status sonject_scene_set_motion_table(sonject_scene *scene,
+                                                          const double *along_track_m,
+                                                          const double *sway_m, size_t count);
 SONJECT_API sonject_status sonject_scene_set_medium(sonject_scene *scene,
                                                     const sonject_medium_params *medium);
 /* Replaces the water by level layers with refraction at the planes between them. bottoms_m: height

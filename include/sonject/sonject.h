@@ -9,7 +9,9 @@
 #include <sonject/material.h>
 #include <sonject/measure.h>
 #include <sonject/medium.h>
+#include <sonject/motion.h>
 #include <sonject/object.h>
+#include <sonject/pulse.h>
 #include <sonject/relief.h>
 #include <sonject/result.h>
 #include <sonject/run.h>

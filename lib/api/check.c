@@ -12,6 +12,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "scene/placement.h"
+#include "scene/point_response.h"
 #include "user/shape_check.h"
 
 #define DEGREES_PER_RADIAN 57.29577951308232
@@ -252,6 +253,10 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
         status = injection_check(report, scene, (double)swath.patch.first_row,
                                  (double)swath.patch.first_column, (size_t)swath.patch.rows,
                                  (size_t)swath.patch.columns, &water, &view, &placements);
+    struct point_response response;
+    if (status == SONJECT_OK)
+        status = point_response_of_scene(&response, report, scene, &view,
+                                         view.range_ratio * water.straight_speed_mps);
     if (status == SONJECT_OK) {
         struct text text = {NULL, 0, 0, false};
         describe_patch(&text, scene, &swath, &view);

@@ -63,8 +63,7 @@ static void energies_to_amplitudes(struct view_image *image, const struct raster
     }
 }
 
-static sonject_status read_reduced(struct report *report, const char *path,
-                                   struct swath_file *file,
+static sonject_status read_reduced(struct report *report, const char *path, struct swath_file *file,
                                    const sonject_transfer_params *transfer,
                                    struct view_image *image)
 {

@@ -51,6 +51,13 @@ static void add_sonar(struct hash *hash, const struct scene *scene)
     ADD(hash, sonar->transducer_side_m);
     ADD(hash, sonar->taylor_sidelobe_db);
     ADD(hash, sonar->taylor_terms);
+    ADD(hash, sonar->kind);
+    ADD(hash, sonar->aperture_rad);
+    ADD(hash, sonar->array_length_m);
+    ADD(hash, sonar->array_height_m);
+    ADD(hash, sonar->array_heading_rad);
+    ADD(hash, sonar->array_pitch_rad);
+    ADD(hash, sonar->array_depression_rad);
     ADD(hash, scene->medium.sound_speed_mps);
     ADD(hash, scene->medium.reference_sound_speed_mps);
     ADD(hash, scene->medium.absorption_db_per_m);
@@ -62,6 +69,44 @@ static void add_sonar(struct hash *hash, const struct scene *scene)
     add_material(hash, &scene->seabed.forward);
     ADD(hash, scene->surface.water_depth_m);
     add_material(hash, &scene->surface.material);
+}
+
+static void add_response_table(struct hash *hash, const struct response_table *table)
+{
+    const uint64_t count = table->count;
+    ADD(hash, count);
+    ADD(hash, table->is_time);
+    hash_add(hash, table->positions, table->count * sizeof *table->positions);
+    hash_add(hash, table->values, table->count * sizeof *table->values);
+}
+
+static void add_motion(struct hash *hash, const struct aperture_motion *motion)
+{
+    const sonject_motion_params *params = &motion->params;
+    const uint64_t count = motion->count;
+    ADD(hash, params->sway_count);
+    for (uint32_t i = 0; i < params->sway_count && i < SONJECT_SWAYS_CAPACITY; i++) {
+        ADD(hash, params->sways[i].amplitude_m);
+        ADD(hash, params->sways[i].wavelength_m);
+        ADD(hash, params->sways[i].phase_rad);
+    }
+    ADD(hash, params->random_rms_m);
+    ADD(hash, params->random_correlation_m);
+    ADD(hash, params->seed);
+    ADD(hash, count);
+    hash_add(hash, motion->along_track_m, motion->count * sizeof *motion->along_track_m);
+    hash_add(hash, motion->sway_m, motion->count * sizeof *motion->sway_m);
+}
+
+static void add_responses(struct hash *hash, const struct scene *scene)
+{
+    ADD(hash, scene->pulse.kind);
+    ADD(hash, scene->pulse.window);
+    ADD(hash, scene->pulse.taylor_terms);
+    ADD(hash, scene->pulse.taylor_sidelobe_db);
+    add_response_table(hash, &scene->pulse_table);
+    add_response_table(hash, &scene->cross_range_table);
+    add_motion(hash, &scene->motion);
 }
 
 /* Only where there is some: scenes that know of none keep their hashes. */
@@ -206,6 +251,7 @@ sonject_status scene_hash(struct report *report, const struct scene *scene,
         return report_out_of_memory(report, "a hash");
     hash_add_text(hash, sonject_version());
     add_sonar(hash, scene);
+    add_responses(hash, scene);
     add_water_layers(hash, scene);
     add_relief(hash, &scene->relief);
     add_image(hash, scene);
@@ -233,6 +279,10 @@ sonject_status traced_scene_hash(struct report *report, const struct scene *scen
     static const struct impulse_head none;
     struct scene traced = *scene;
     impulse_head_take_sonar(&none, &traced.sonar);
+    sonject_pulse_params_init(&traced.pulse);
+    memset(&traced.pulse_table, 0, sizeof traced.pulse_table);
+    memset(&traced.cross_range_table, 0, sizeof traced.cross_range_table);
+    memset(&traced.motion, 0, sizeof traced.motion);
     traced.input_path = NULL;
     return scene_hash(report, &traced, input_identity, text);
 }

@@ -137,8 +137,9 @@ sonject_status sonject_trace(sonject_context *context, const sonject_scene *scen
 }
 
 /* Keys that image formation alone depends on, and where the image lies. */
-static const char *const formed_keys[] = {"sonar.bandwidth", "sonar.resolution", "sonar.response",
-                                          "input.path"};
+static const char *const formed_keys[] = {
+    "sonar.bandwidth",         "sonar.pulse",  "sonar.resolution", "sonar.response",
+    "sonar.measured_response", "sonar.motion", "input.path"};
 
 static bool names_formed_key(const char *override)
 {
@@ -168,7 +169,8 @@ static sonject_status check_overrides(struct report *report, const sonject_scene
             return report_failure(
                 report, SONJECT_ERROR_INPUT,
                 "--set %.*s: needs a new trace; image formation takes "
-                "sonar.bandwidth, sonar.resolution, sonar.response and "
+                "sonar.bandwidth, sonar.pulse, sonar.resolution, sonar.response, "
+                "sonar.measured_response, sonar.motion and "
                 "input.path",
                 (int)(strcspn(override, "=") < 200 ? strcspn(override, "=") : 200), override);
     }

@@ -17,14 +17,15 @@ void fine_pulse_clear(struct fine_pulse *pulse)
     memset(pulse, 0, sizeof *pulse);
 }
 
-/* The image's pulse, even about the echo. */
+/* The image's pulse. */
 static void fill_compressed(struct fine_pulse *pulse, uint32_t lead, double metres_per_sample,
                             const struct point_response *response)
 {
     for (uint32_t tap = 0; tap < pulse->taps; tap++) {
         const double distance = ((double)lead - (double)tap) * metres_per_sample;
-        pulse->real_part[tap] = (float)range_response(response, distance);
-        pulse->imaginary_part[tap] = 0.0f;
+        const struct complex_number value = range_response_complex(response, distance);
+        pulse->real_part[tap] = (float)value.real_part;
+        pulse->imaginary_part[tap] = (float)value.imaginary_part;
     }
 }
 
@@ -49,7 +50,7 @@ static void fill_chirp(struct fine_pulse *pulse, const sonject_element_layout *l
 }
 
 sonject_status fine_pulse_init(struct fine_pulse *pulse, struct report *report,
-                               const sonject_element_layout *layout, const struct patch_view *view,
+                               const sonject_element_layout *layout,
                                const struct point_response *response)
 {
     const sonject_elements_params *elements = &layout->elements;
@@ -60,8 +61,8 @@ sonject_status fine_pulse_init(struct fine_pulse *pulse, struct report *report,
         1.0, ceil(SAMPLES_PER_DEVIATION / (deviation_s * elements->sampling_rate_hz) - 1e-9));
     const double fine_rate = elements->sampling_rate_hz * pulse->fine;
     const double metres = 0.5 * layout->sound_speed_mps / fine_rate;
-    const double lead = ceil(is_chirp ? elements->chirp_duration_s * fine_rate
-                                      : pulse_reach_m(view, response) / metres);
+    const double lead =
+        ceil(is_chirp ? elements->chirp_duration_s * fine_rate : response->pulse_tail_m / metres);
     const double taps = is_chirp ? lead + 1.0 : 2.0 * lead + 1.0;
     const double samples = ((double)layout->samples - 1.0) * pulse->fine + taps;
     if (samples > FINE_SAMPLES_MAX)

@@ -15,7 +15,7 @@ struct fine_pulse {
 
 /* On success to be given to fine_pulse_clear. Errors: MEMORY, INPUT (too many fine samples). */
 sonject_status fine_pulse_init(struct fine_pulse *pulse, struct report *report,
-                               const sonject_element_layout *layout, const struct patch_view *view,
+                               const sonject_element_layout *layout,
                                const struct point_response *response);
 void fine_pulse_clear(struct fine_pulse *pulse);
 

@@ -78,7 +78,7 @@ static sonject_status work_init(struct series_work *work, const struct series_re
     work->report = report;
     work->device = device;
     sonject_status status =
-        fine_pulse_init(&work->pulse, report, request->layout, request->view, request->response);
+        fine_pulse_init(&work->pulse, report, request->layout, request->response);
     if (status != SONJECT_OK)
         return status;
     choose_chunk(work);

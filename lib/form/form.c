@@ -7,6 +7,8 @@
 #include "base/memory.h"
 #include "cl/launch.h"
 #include "cl/program.h"
+#include "form/combine_varied.h"
+#include "scene/cross_range.h"
 
 #define SPECKLE_ENERGY_SHARE 0.001 /* of |W|^2 that is cut off from speckle and energies */
 #define COLUMN_STEP          16    /* lines are padded to whole groups of any width */
@@ -27,23 +29,39 @@ static void choose_window(struct form_lines *lines, const struct patch_view *vie
     lines->stride = (lines->columns + COLUMN_STEP - 1) / COLUMN_STEP * COLUMN_STEP;
 }
 
+static sonject_status send_taps(struct form_lines *lines, const float *taps, size_t count,
+                                cl_mem *buffer)
+{
+    return buffer_create(lines->report, lines->device, count * sizeof *taps, taps, buffer);
+}
+
+/* G, or |G|^2; both parts where it is complex. */
 static sonject_status make_pulse(struct form_lines *lines, const struct patch_view *view,
                                  int32_t taps_each_side)
 {
     const double bin = view->column_spacing_m / lines->grid.bins_per_pixel;
+    const bool is_real = lines->kind == FORM_ENERGY || range_response_is_real(&lines->response);
     lines->pulse_taps = 2 * taps_each_side + 1;
     lines->pulse_first = -taps_each_side - lines->grid.bins.first;
-    float *taps = allocate_array((size_t)lines->pulse_taps, sizeof *taps);
-    if (!taps)
-        return report_out_of_memory(lines->report, "the pulse");
-    for (int32_t tap = 0; tap < lines->pulse_taps; tap++) {
-        const double g = range_response(&lines->response, (tap - taps_each_side) * bin);
-        taps[tap] = (float)(lines->kind == FORM_ENERGY ? g * g : g);
+    const size_t count = (size_t)lines->pulse_taps;
+    float *taps = allocate_array(count, sizeof *taps);
+    float *imaginary_taps = allocate_array(count, sizeof *taps);
+    sonject_status status =
+        taps && imaginary_taps ? SONJECT_OK : report_out_of_memory(lines->report, "the pulse");
+    for (int32_t tap = 0; status == SONJECT_OK && tap < lines->pulse_taps; tap++) {
+        /* at the pixel's range less the bin's */
+        const struct complex_number g =
+            range_response_complex(&lines->response, (taps_each_side - tap) * bin);
+        const double energy = g.real_part * g.real_part + g.imaginary_part * g.imaginary_part;
+        taps[tap] = (float)(lines->kind == FORM_ENERGY ? energy : g.real_part);
+        imaginary_taps[tap] = (float)g.imaginary_part;
     }
-    const sonject_status status =
-        buffer_create(lines->report, lines->device, (size_t)lines->pulse_taps * sizeof *taps, taps,
-                      &lines->pulse);
+    if (status == SONJECT_OK)
+        status = send_taps(lines, taps, count, &lines->pulse);
+    if (status == SONJECT_OK && !is_real)
+        status = send_taps(lines, imaginary_taps, count, &lines->imaginary_pulse);
     free(taps);
+    free(imaginary_taps);
     return status;
 }
 
@@ -54,8 +72,9 @@ int32_t form_reach(const struct patch_view *view, const struct point_response *r
     if (kind == FORM_GLINT)
         return (int32_t)whole;
     const double strip = view->row_spacing_m / strips_per_row;
-    return (int32_t)fmin(whole,
-                         ceil(along_track_energy_reach(response, SPECKLE_ENERGY_SHARE) / strip));
+    const double farthest = view_apparent_range(view, (double)(view->columns - 1));
+    return (int32_t)fmin(
+        whole, ceil(cross_range_energy_reach(response, farthest, SPECKLE_ENERGY_SHARE) / strip));
 }
 
 sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
@@ -70,9 +89,12 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
     lines->kind = kind;
     lines->rows = view->rows;
     lines->row_spacing_m = view->row_spacing_m;
+    lines->view = view;
     lines->response = *response;
     lines->reach = form_reach(view, response, kind, grid->strips_per_row);
-    const int32_t taps_each_side = pulse_reach_bins(view, response, grid->bins_per_pixel);
+    const int32_t taps_each_side = kind == FORM_GLINT
+                                       ? pulse_tail_bins(view, response, grid->bins_per_pixel)
+                                       : pulse_reach_bins(view, response, grid->bins_per_pixel);
     choose_window(lines, view, taps_each_side);
     if (lines->columns == 0)
         return SONJECT_OK;
@@ -83,7 +105,8 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
     if (status == SONJECT_OK)
         status = buffer_create(report, device, bytes, NULL, &lines->imaginary_lines);
     if (status == SONJECT_OK)
-        status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "compress_range",
+        status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0,
+                               lines->imaginary_pulse ? "compress_range_complex" : "compress_range",
                                &lines->compress);
     if (status == SONJECT_OK)
         status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "combine_aspects",
@@ -110,11 +133,40 @@ void form_lines_end(struct form_lines *lines)
     buffer_release(&lines->real_lines);
     buffer_release(&lines->imaginary_lines);
     buffer_release(&lines->pulse);
+    buffer_release(&lines->imaginary_pulse);
+}
+
+static sonject_status compress_complex(struct form_lines *lines, int32_t strip, int32_t count,
+                                       cl_mem real_bins, cl_mem imaginary_bins)
+{
+    const cl_int bins = lines->grid.bins.count;
+    const cl_int per_pixel = (cl_int)lines->grid.bins_per_pixel;
+    const cl_int first = lines->pulse_first + (cl_int)lines->first_column * per_pixel;
+    const cl_int taps = lines->pulse_taps;
+    const cl_int stride = (cl_int)lines->stride;
+    const cl_int out_strip = strip - lines->grid.strips.first;
+    const struct kernel_argument arguments[] = {ARGUMENT(real_bins),
+                                                ARGUMENT(imaginary_bins),
+                                                ARGUMENT(bins),
+                                                ARGUMENT(first),
+                                                ARGUMENT(per_pixel),
+                                                ARGUMENT(lines->pulse),
+                                                ARGUMENT(lines->imaginary_pulse),
+                                                ARGUMENT(taps),
+                                                ARGUMENT(stride),
+                                                ARGUMENT(out_strip),
+                                                ARGUMENT(lines->real_lines),
+                                                ARGUMENT(lines->imaginary_lines)};
+    const size_t global[2] = {lines->stride / lines->device->width, (size_t)count};
+    return kernel_run(lines->report, lines->device, lines->compress, arguments,
+                      sizeof arguments / sizeof *arguments, 2, global);
 }
 
 static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t count,
                                cl_mem real_bins, cl_mem imaginary_bins)
 {
+    if (lines->imaginary_pulse)
+        return compress_complex(lines, strip, count, real_bins, imaginary_bins);
     const cl_int bins = lines->grid.bins.count;
     const cl_int per_pixel = (cl_int)lines->grid.bins_per_pixel;
     const cl_int first = lines->pulse_first + (cl_int)lines->first_column * per_pixel;
@@ -215,6 +267,8 @@ static float *response_taps(const struct form_lines *lines, size_t *count)
 static sonject_status combine(struct form_lines *lines, cl_mem taps, cl_mem real_out,
                               cl_mem imaginary_out)
 {
+    if (!cross_range_is_plain(&lines->response))
+        return combine_varied(lines, real_out, imaginary_out);
     const cl_int first_strip = lines->grid.strips.first;
     const cl_int strips = lines->grid.strips.count;
     const cl_int per_row = (cl_int)lines->grid.strips_per_row;

@@ -14,7 +14,7 @@
 #include "scene/point_response.h"
 
 /* What is formed: complex amplitudes, by G and W; or two energies side by side (the real plane and
- * the imaginary plane), by G^2 and |W|^2. Glints are kept over the whole patch, since their side
+ * the imaginary plane), by |G|^2 and |W|^2. Glints are kept over the whole patch, since their side
  * lobes stand out of the seabed that far; speckle and energies where 99.9 % of |W|^2 lies. */
 enum form_kind {
     FORM_GLINT,
@@ -25,6 +25,7 @@ enum form_kind {
 struct form_lines {
     struct report *report;
     struct device *device;
+    const struct patch_view *view; /* borrowed */
     struct line_grid grid;
     enum form_kind kind;
     size_t rows, columns, stride; /* pixels; stride: floats from a line to the next */
@@ -34,6 +35,7 @@ struct form_lines {
     double row_spacing_m;
     struct point_response response;
     cl_mem real_lines, imaginary_lines, pulse;
+    cl_mem imaginary_pulse; /* NULL where G is real */
     cl_kernel compress, combine, speckle;
 };
 

@@ -6,7 +6,7 @@
 /* One direction of the fine grid: a pixel's value is spread over its cells, and the image takes
  * the response's value at each cell's distance. */
 struct direction {
-    double (*response)(const struct point_response *, double);
+    struct complex_number (*response)(const struct point_response *, double);
     const struct point_response *of;
     double pixel_m;
     int per_pixel;  /* cells */
@@ -22,26 +22,36 @@ static double cell_distance(const struct direction *d, int cell)
 }
 
 /* What the formed pixel takes of the measured pixel `lag` pixels away. */
-static double pixel_weight(const struct direction *d, int lag)
+static struct complex_number pixel_weight(const struct direction *d, int lag)
 {
     const int first = d->is_linear ? (lag - 1) * d->per_pixel : lag * d->per_pixel;
     const int count = d->is_linear ? 2 * d->per_pixel : d->per_pixel;
-    double sum = 0.0;
+    struct complex_number sum = {0.0, 0.0};
     for (int cell = first; cell < first + count; cell++) {
         const double share =
             d->is_linear ? 1.0 - fabs((double)cell / d->per_pixel - (double)lag) : 1.0;
-        sum += share * d->response(d->of, cell_distance(d, cell));
+        const struct complex_number value = d->response(d->of, cell_distance(d, cell));
+        sum.real_part += share * value.real_part;
+        sum.imaginary_part += share * value.imaginary_part;
     }
     return sum;
 }
 
-/* Sum over the cells of response times response `lag` pixels away. */
-static double autocorrelation(const struct direction *d, int lag)
+/* Adds conj(a) b. */
+static void add_product(struct complex_number *sum, struct complex_number a,
+                        struct complex_number b)
 {
-    double sum = 0.0;
+    sum->real_part += a.real_part * b.real_part + a.imaginary_part * b.imaginary_part;
+    sum->imaginary_part += a.real_part * b.imaginary_part - a.imaginary_part * b.real_part;
+}
+
+/* Sum over the cells of conj(response) times response `lag` pixels away. */
+static struct complex_number autocorrelation(const struct direction *d, int lag)
+{
+    struct complex_number sum = {0.0, 0.0};
     for (int cell = -d->reach * d->per_pixel; cell <= d->reach * d->per_pixel; cell++)
-        sum += d->response(d->of, cell_distance(d, cell)) *
-               d->response(d->of, cell_distance(d, cell + lag * d->per_pixel));
+        add_product(&sum, d->response(d->of, cell_distance(d, cell)),
+                    d->response(d->of, cell_distance(d, cell + lag * d->per_pixel)));
     return sum;
 }
 
@@ -50,22 +60,33 @@ static double autocorrelation(const struct direction *d, int lag)
  * autocorrelation. */
 static double energy_gain(const struct direction *d)
 {
-    const double white = autocorrelation(d, 0);
+    const double white = autocorrelation(d, 0).real_part;
     double sum = 0.0;
     for (int lag = 0; lag <= 2 * d->reach; lag++) {
-        double pairs = 0.0;
+        const struct complex_number correlation = autocorrelation(d, lag);
+        struct complex_number pairs = {0.0, 0.0};
         for (int i = -d->reach; i + lag <= d->reach; i++)
-            pairs += pixel_weight(d, i) * pixel_weight(d, i + lag);
-        sum += (lag == 0 ? 1.0 : 2.0) * pairs * autocorrelation(d, lag) / white;
+            add_product(&pairs, pixel_weight(d, i), pixel_weight(d, i + lag));
+        sum += (lag == 0 ? 1.0 : 2.0) *
+               (pairs.real_part * correlation.real_part +
+                pairs.imaginary_part * correlation.imaginary_part) /
+               white;
     }
     return sum / white;
+}
+
+static struct complex_number response_along_track(const struct point_response *response,
+                                                  double distance_m)
+{
+    const struct complex_number w = {along_track_response(response, distance_m), 0.0};
+    return w;
 }
 
 static double scale_of(const struct line_grid *grid, const struct tracer *tracer)
 {
     const struct patch_view *view = &tracer->view;
     const struct direction columns = {
-        range_response,
+        range_response_complex,
         &tracer->response,
         view->column_spacing_m,
         (int)grid->bins_per_pixel,
@@ -73,7 +94,7 @@ static double scale_of(const struct line_grid *grid, const struct tracer *tracer
         true,
     };
     const struct direction rows = {
-        along_track_response,
+        response_along_track,
         &tracer->response,
         view->row_spacing_m,
         (int)grid->strips_per_row,

@@ -5,6 +5,7 @@
 
 #include "base/memory.h"
 #include "form/form.h"
+#include "scene/cross_range.h"
 
 #define CHUNK 256 /* strips drawn at a time */
 
@@ -46,19 +47,31 @@ static void copy_window(const struct form_lines *lines, const struct window *win
                window->columns * sizeof *plane);
 }
 
+/* Energies of cells that make the formed noise's mean energy 1 at every range. */
+static void fill_energies(const struct line_grid *grid, const struct tracer *tracer,
+                          float *energies)
+{
+    const struct patch_view *view = &tracer->view;
+    const double cell =
+        view->row_spacing_m / grid->strips_per_row * view->column_spacing_m / grid->bins_per_pixel;
+    const size_t bins = (size_t)grid->bins.count;
+    for (size_t bin = 0; bin < bins; bin++) {
+        const double range = view_apparent_range(view, ((double)grid->bins.first + (double)bin) /
+                                                           grid->bins_per_pixel);
+        energies[bin] = (float)(cell / (cross_range_energy_width(&tracer->response, range) *
+                                        range_energy_width(&tracer->response)));
+    }
+    for (size_t i = bins; i < CHUNK * bins; i++)
+        energies[i] = energies[i - bins];
+}
+
 static sonject_status draw(struct form_lines *lines, const struct tracer *tracer, uint32_t stream)
 {
     const struct line_grid *grid = &lines->grid;
-    const double cell = tracer->view.row_spacing_m / grid->strips_per_row *
-                        tracer->view.column_spacing_m / grid->bins_per_pixel;
-    const float energy = (float)(cell / (along_track_energy_width(&tracer->response) *
-                                         range_energy_width(&tracer->response)));
-    const size_t count = (size_t)CHUNK * (size_t)grid->bins.count;
-    float *energies = allocate_array(count, sizeof *energies);
+    float *energies = allocate_array((size_t)CHUNK * (size_t)grid->bins.count, sizeof *energies);
     if (!energies)
         return report_out_of_memory(tracer->report, "noise");
-    for (size_t i = 0; i < count; i++)
-        energies[i] = energy;
+    fill_energies(grid, tracer, energies);
     sonject_status status = SONJECT_OK;
     for (int32_t done = 0; status == SONJECT_OK && done < grid->strips.count; done += CHUNK) {
         const int32_t left = grid->strips.count - done;

@@ -356,13 +356,13 @@ static sonject_status hand_out(struct set_reading *set, const struct impulse_sin
     return status;
 }
 
-/* What is read for, and the grids that tracing lays for it. */
+/* What is read for, and the grid of the seabed's lines, which others share. */
 struct delivery {
     struct impulse_file *file;
     struct tracer *tracer;
     const struct echo_request *request;
     const struct impulse_sink *sink;
-    struct traced_grids grids;
+    struct line_grid seabed;
 };
 
 static bool span_is_inside(struct span inner, struct span outer)
@@ -370,23 +370,38 @@ static bool span_is_inside(struct span inner, struct span outer)
     return inner.first >= outer.first && inner.first + inner.count <= outer.first + outer.count;
 }
 
-/* Whether tracing could have laid that grid. */
-static bool grid_is_possible(const struct traced_grids *grids, enum impulse_kind kind,
-                             const struct line_grid *grid)
+/* Whether tracing could have laid a set's grid, and the tracer's response can be formed on it. */
+static sonject_status check_grid(const struct delivery *delivery, const struct set_reading *set)
 {
-    const struct line_grid *of = kind == IMPULSES_GLINT ? &grids->glints : &grids->patch;
-    if (grid->strips_per_row != of->strips_per_row || grid->bins_per_pixel != of->bins_per_pixel)
-        return false;
-    if (kind == IMPULSES_GLINT)
-        return line_grid_cells(grid) > 0;
-    if (kind == IMPULSES_OBJECT)
-        return line_grid_cells(grid) == 0 ||
-               (span_is_inside(grid->strips, of->strips) && span_is_inside(grid->bins, of->bins));
-    return grid->strips.first == of->strips.first && grid->strips.count == of->strips.count &&
-           grid->bins.first == of->bins.first && grid->bins.count == of->bins.count;
+    const struct line_grid *grid = &set->lines.grid;
+    const struct line_grid *of = &delivery->seabed;
+    const char *path = delivery->file->path;
+    bool is_possible =
+        grid->strips_per_row == of->strips_per_row && grid->bins_per_pixel == of->bins_per_pixel;
+    switch (set->lines.kind) {
+    case IMPULSES_SEABED:
+        return reimaging_check_patch(grid, delivery->tracer, path);
+    case IMPULSES_GLINT:
+        if (line_grid_cells(grid) > 0)
+            return reimaging_check_glints(grid, delivery->tracer, path);
+        is_possible = false;
+        break;
+    case IMPULSES_OBJECT:
+        is_possible = is_possible &&
+                      (line_grid_cells(grid) == 0 || (span_is_inside(grid->strips, of->strips) &&
+                                                      span_is_inside(grid->bins, of->bins)));
+        break;
+    case IMPULSES_LEVEL:
+    case IMPULSES_CHAINS:
+        is_possible = is_possible && grid->strips.first == of->strips.first &&
+                      grid->strips.count == of->strips.count &&
+                      grid->bins.first == of->bins.first && grid->bins.count == of->bins.count;
+    }
+    return is_possible ? SONJECT_OK
+                       : refuse(delivery->file, " has a grid that is not this scene's", set->name);
 }
 
-static sonject_status deliver_set(const struct delivery *delivery, enum impulse_kind kind,
+static sonject_status deliver_set(struct delivery *delivery, enum impulse_kind kind,
                                   uint32_t number, uint32_t planes, bool is_required)
 {
     struct hdf5_session session;
@@ -396,16 +411,18 @@ static sonject_status deliver_set(const struct delivery *delivery, enum impulse_
     sonject_status status = open_set(&set, delivery->file, kind, number, planes, &is_there);
     if (status == SONJECT_OK && !is_there && is_required)
         status = refuse(delivery->file, " is missing", set.name);
-    if (status == SONJECT_OK && is_there &&
-        !grid_is_possible(&delivery->grids, kind, &set.lines.grid)) {
-        status = refuse(delivery->file, " has a grid that is not this scene's", set.name);
-        close_set(&set);
+    if (status == SONJECT_OK && is_there) {
+        status = check_grid(delivery, &set);
+        if (status != SONJECT_OK)
+            close_set(&set);
+        else if (kind == IMPULSES_SEABED)
+            delivery->seabed = set.lines.grid;
     }
     hdf5_leave(&session);
     return status == SONJECT_OK && is_there ? hand_out(&set, delivery->sink) : status;
 }
 
-static sonject_status deliver_objects(const struct delivery *delivery)
+static sonject_status deliver_objects(struct delivery *delivery)
 {
     const uint32_t count = delivery->tracer->scene->object_count;
     sonject_status status = SONJECT_OK;
@@ -422,7 +439,7 @@ static sonject_status deliver_objects(const struct delivery *delivery)
     return status;
 }
 
-static sonject_status deliver_chains(const struct delivery *delivery)
+static sonject_status deliver_chains(struct delivery *delivery)
 {
     sonject_status status = SONJECT_OK;
     for (uint32_t order = 1; status == SONJECT_OK && order <= SCENE_INTERACTIONS_MAX; order++)
@@ -433,17 +450,14 @@ static sonject_status deliver_chains(const struct delivery *delivery)
 static sonject_status deliver(void *giver, struct tracer *tracer,
                               const struct echo_request *request, const struct impulse_sink *sink)
 {
-    struct delivery delivery = {giver, tracer, request, sink, {{0}, {0}}};
     const uint32_t planes = request->field == SEABED_FIELD_NONE ? 1 : 2;
-    sonject_sonar_params traced = tracer->scene->sonar;
-    impulse_head_take_sonar(&delivery.file->head, &traced);
-    sonject_status status = check_sonar(&traced, tracer->report, NULL) == SONJECT_OK
-                                ? SONJECT_OK
-                                : refuse(delivery.file, " is damaged", "/sonar");
-    if (status == SONJECT_OK)
-        status = reimaging_check(&delivery.grids, tracer, &traced, delivery.file->path);
-    if (status == SONJECT_OK)
-        status = deliver_set(&delivery, IMPULSES_SEABED, 0, planes, true);
+    struct delivery delivery;
+    memset(&delivery, 0, sizeof delivery);
+    delivery.file = giver;
+    delivery.tracer = tracer;
+    delivery.request = request;
+    delivery.sink = sink;
+    sonject_status status = deliver_set(&delivery, IMPULSES_SEABED, 0, planes, true);
     if (status == SONJECT_OK)
         status = echo_request_tell(request, tracer->report, ROUGH_SHARE, "forming the seabed");
     if (status == SONJECT_OK)

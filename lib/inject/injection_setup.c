@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "scene/cross_range.h"
 
 void flip_rows(void *plane, size_t rows, size_t row_bytes, char *scratch)
 {
@@ -87,6 +88,18 @@ static sonject_status check_combination(struct report *report, const struct scen
     return SONJECT_OK;
 }
 
+/* The coherent map's scale is known for one real cross-range response. */
+static sonject_status check_coherent_map(const struct tracer *tracer)
+{
+    const struct scene *scene = tracer->scene;
+    if (scene->injection.mode != SONJECT_MODE_RESYNTHESISE ||
+        scene->seabed.map != SONJECT_MAP_COHERENT || cross_range_is_plain(&tracer->response))
+        return SONJECT_OK;
+    return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                          "the coherent seabed map needs a synthetic aperture without motion or a "
+                          "measured cross-range response: use map: intensity or despeckled");
+}
+
 void injection_setup_clear(struct injection_setup *setup)
 {
     placements_clear(&setup->placements);
@@ -133,10 +146,9 @@ sonject_status injection_setup_lay(struct injection_setup *setup, struct report 
                                 "where layers of water bend them");
     if (status != SONJECT_OK)
         return status;
-    point_response_init(&tracer->response, &scene->sonar,
-                        tracer->view.range_ratio * setup->water.straight_speed_mps,
-                        tracer->view.row_spacing_m);
-    return SONJECT_OK;
+    status = point_response_of_scene(&tracer->response, report, scene, &tracer->view,
+                                     tracer->view.range_ratio * setup->water.straight_speed_mps);
+    return status == SONJECT_OK ? check_coherent_map(tracer) : status;
 }
 
 sonject_status injection_setup_init(struct injection_setup *setup, struct report *report,

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "scene/cross_range.h"
 
 #define PI            3.14159265358979323846
 #define REACH         160  /* pixels around the objects: ten blocks across */
@@ -49,18 +50,20 @@ static bool clearly_differs(double measured, double error, double nominal)
 static void match_along_track(struct point_response *response, const struct speckle_axis *axis,
                               double spacing_m)
 {
+    struct point_response trial = *response;
     if (!clearly_differs(axis->correlation[1], axis->lag_one_error,
                          along_track_speckle_correlation(response, spacing_m)))
         return;
     double low = spacing_m;
     double high = WIDEST * spacing_m;
     for (int i = 0; i < HALVINGS; i++) {
-        response->resolution_m = 0.5 * (low + high);
-        if (along_track_speckle_correlation(response, spacing_m) < axis->correlation[1])
-            low = response->resolution_m;
+        trial.resolution_m = 0.5 * (low + high);
+        if (along_track_speckle_correlation(&trial, spacing_m) < axis->correlation[1])
+            low = trial.resolution_m;
         else
-            high = response->resolution_m;
+            high = trial.resolution_m;
     }
+    point_response_set_widths(response, trial.resolution_m, response->range_resolution_m);
 }
 
 static void match_range(struct point_response *response, const struct speckle_axis *axis,
@@ -71,7 +74,14 @@ static void match_range(struct point_response *response, const struct speckle_ax
         return;
     const double widest = exp(-0.5 / (WIDEST * WIDEST));
     const double correlation = fmin(widest, fmax(FAINTEST, axis->correlation[1]));
-    response->range_deviation_m = spacing_m / sqrt(-2.0 * log(correlation));
+    point_response_set_widths(response, response->resolution_m,
+                              2.0 * sqrt(log(2.0)) * spacing_m / sqrt(-2.0 * log(correlation)));
+}
+
+/* Widths are matched where the scene has no other pulse or response than the image's own kind. */
+static bool has_widths(const struct point_response *response)
+{
+    return response->pulse_kind == SONJECT_PULSE_GAUSSIAN && cross_range_is_plain(response);
 }
 
 struct span_of_pixels {
@@ -157,7 +167,8 @@ sonject_status match_image(struct tracer *tracer, const float *pixels, bool is_c
     else if (seabed->blocks > 0 && seabed->looks > LOOKS_CLEARLY &&
              seabed->looks - 1.0 > CLEARLY * seabed->looks_error)
         match->looks = fmin(LOOKS_MOST, seabed->looks);
-    if (asked->match_response == SONJECT_MATCH_IMAGE && seabed->blocks > 0) {
+    if (asked->match_response == SONJECT_MATCH_IMAGE && seabed->blocks > 0 &&
+        has_widths(&tracer->response)) {
         match_along_track(&tracer->response, &seabed->along_track, tracer->view.row_spacing_m);
         match_range(&tracer->response, &seabed->range, tracer->view.column_spacing_m);
     }
@@ -177,7 +188,7 @@ void tell_match(const struct image_match *match, const struct point_response *re
     statistics->seabed_row_correlation = is_known ? seabed->along_track.correlation[1] : NAN;
     statistics->seabed_column_correlation = is_known ? seabed->range.correlation[1] : NAN;
     statistics->along_track_resolution_m = response->resolution_m;
-    statistics->range_resolution_m = 2.0 * sqrt(log(2.0)) * response->range_deviation_m;
+    statistics->range_resolution_m = response->range_resolution_m;
     statistics->looks = match->looks;
     statistics->saturation_amplitude = match->saturation;
 }

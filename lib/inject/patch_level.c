@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "image/statistics.h"
+#include "scene/cross_range.h"
 
 #define LEVEL_FLOOR                                                                                \
     1e-6 /* of the patch's mean intensity: blank corners of a swath have no level                  \
@@ -17,8 +18,8 @@ double seabed_cell_energy(const struct patch_view *view, const struct point_resp
     const double grazing = view_grazing(view, apparent_range_m);
     const double sine = sin(grazing);
     const double cosine = fmax(1e-6, cos(grazing));
-    const double area = along_track_energy_width(response) * range_energy_width(response) /
-                        (view->range_ratio * cosine);
+    const double area = cross_range_energy_width(response, apparent_range_m) *
+                        range_energy_width(response) / (view->range_ratio * cosine);
     return mu * sine * sine * area * view_energy_scale(view) *
            view_refraction_gain(view, apparent_range_m);
 }

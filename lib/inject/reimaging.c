@@ -2,49 +2,58 @@
 
 #include <math.h>
 
+#include "scene/cross_range.h"
 #include "trace/smooth.h"
 
-#define EDGE_LOSS       0.02   /* of an edge pixel's energy */
-#define EDGE_DEVIATIONS 1.4522 /* erfc(x) / 2 = EDGE_LOSS, G^2 being exp(-(r / sigma)^2) */
-#define ROUNDING        1e-6
+#define EDGE_LOSS         0.02   /* of an edge pixel's energy */
+#define EDGE_DEVIATIONS   1.4522 /* erfc(x) / 2 = EDGE_LOSS, G^2 being exp(-(r / sigma)^2) */
+#define ROUNDING          1e-6
+#define CELLS_A_PIXEL_MAX 4096
+
+/* Half of what is not within the margin lies beyond it. */
+static double pulse_reach(const struct point_response *response)
+{
+    return response->pulse_kind == SONJECT_PULSE_GAUSSIAN
+               ? EDGE_DEVIATIONS * response->range_deviation_m
+               : range_energy_reach(response, 2.0 * EDGE_LOSS);
+}
 
 /* The pulse's range resolution is inverse to the bandwidth. */
-static double bandwidth_for(const struct tracer *tracer, double deviation_m)
+static double bandwidth_for(const struct tracer *tracer, double share)
 {
-    return tracer->scene->sonar.bandwidth_hz * tracer->response.range_deviation_m / deviation_m;
+    return 1e-3 * tracer->scene->sonar.bandwidth_hz * share;
 }
 
-static sonject_status check_pulse(const struct traced_grids *grids, const struct tracer *tracer,
-                                  const char *file)
+static sonject_status check_bins(const struct line_grid *grid, const struct tracer *tracer,
+                                 double shortest_deviation, const char *file)
 {
+    const struct point_response *response = &tracer->response;
     const double spacing = tracer->view.column_spacing_m;
-    const double shortest = fmax(line_grid_shortest_deviation(&grids->patch, spacing),
-                                 glint_shortest_deviation(&grids->glints, spacing));
-    const double margin = -grids->patch.bins.first * spacing / grids->patch.bins_per_pixel;
-    const double longest = margin / EDGE_DEVIATIONS;
-    const double deviation = tracer->response.range_deviation_m;
-    if (deviation >= shortest * (1.0 - ROUNDING) && deviation <= longest * (1.0 + ROUNDING))
+    const double margin = -grid->bins.first * spacing / grid->bins_per_pixel;
+    const double fine = response->range_deviation_m / shortest_deviation;
+    const double wide = margin / pulse_reach(response);
+    if (fine >= 1.0 - ROUNDING && wide >= 1.0 - ROUNDING)
         return SONJECT_OK;
     return report_failure(tracer->report, SONJECT_ERROR_INPUT,
-                          "sonar.bandwidth: %g kHz, but %s was traced for %.4g to %.4g kHz: trace "
-                          "again with another bandwidth",
-                          1e-3 * tracer->scene->sonar.bandwidth_hz, file,
-                          1e-3 * bandwidth_for(tracer, longest),
-                          1e-3 * bandwidth_for(tracer, shortest));
+                          "sonar.bandwidth: %g kHz, but with that pulse %s was traced for %.4g to "
+                          "%.4g kHz: trace again with another bandwidth",
+                          bandwidth_for(tracer, 1.0), file, bandwidth_for(tracer, 1.0 / wide),
+                          bandwidth_for(tracer, fine));
 }
 
-static sonject_status check_cross_range(const struct traced_grids *grids,
-                                        const struct tracer *tracer, const char *file)
+static sonject_status check_strips(const struct line_grid *grid, const struct tracer *tracer,
+                                   const char *file)
 {
-    const double strip = tracer->view.row_spacing_m / grids->patch.strips_per_row;
-    const double margin = -grids->patch.strips.first * strip;
-    if (tracer->response.resolution_m < strip * (1.0 - ROUNDING))
+    const double strip = tracer->view.row_spacing_m / grid->strips_per_row;
+    const double margin = -grid->strips.first * strip;
+    if (tracer->response.strip_m < strip * (1.0 - ROUNDING))
         return report_failure(tracer->report, SONJECT_ERROR_INPUT,
                               "sonar.resolution: %g cm, but %s was traced in strips of %.4g cm: "
                               "trace again with a finer one",
-                              1e2 * tracer->response.resolution_m, file, 1e2 * strip);
+                              1e2 * tracer->response.strip_m, file, 1e2 * strip);
     /* half of what is not within the margin lies beyond it */
-    const double reach = along_track_energy_reach(&tracer->response, 2.0 * EDGE_LOSS);
+    const double farthest = view_apparent_range(&tracer->view, (double)tracer->view.columns - 1.0);
+    const double reach = cross_range_energy_reach(&tracer->response, farthest, 2.0 * EDGE_LOSS);
     if (reach <= margin)
         return SONJECT_OK;
     return report_failure(tracer->report, SONJECT_ERROR_INPUT,
@@ -53,15 +62,48 @@ static sonject_status check_cross_range(const struct traced_grids *grids,
                           reach, file, margin);
 }
 
-sonject_status reimaging_check(struct traced_grids *grids, const struct tracer *tracer,
-                               const sonject_sonar_params *traced, const char *file)
+/* A span that begins at or before the first of `count` and ends at or behind the last. */
+static bool holds(struct span span, double count)
 {
-    const double reference =
-        tracer->view.range_ratio * tracer->view.water.water->straight_speed_mps;
-    struct tracer before = *tracer;
-    point_response_init(&before.response, traced, reference, tracer->view.row_spacing_m);
-    line_grid_for_patch(&grids->patch, &before.view, &before.response);
-    glint_cells_lay(&grids->glints, &before);
-    const sonject_status status = check_pulse(grids, tracer, file);
-    return status == SONJECT_OK ? check_cross_range(grids, tracer, file) : status;
+    return span.first <= 0 && (double)span.first + span.count >= count;
+}
+
+static sonject_status check_sizes(const struct line_grid *grid, const struct tracer *tracer,
+                                  const char *file)
+{
+    if (grid->strips_per_row <= CELLS_A_PIXEL_MAX && grid->bins_per_pixel <= CELLS_A_PIXEL_MAX)
+        return SONJECT_OK;
+    return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                          "%s: is damaged: its grids are finer than tracing lays them", file);
+}
+
+sonject_status reimaging_check_patch(const struct line_grid *grid, const struct tracer *tracer,
+                                     const char *file)
+{
+    const struct patch_view *view = &tracer->view;
+    const double rows = (double)view->rows * grid->strips_per_row;
+    const double columns = (double)(view->columns - 1) * grid->bins_per_pixel + 1.0;
+    sonject_status status = check_sizes(grid, tracer, file);
+    if (status == SONJECT_OK && (!holds(grid->strips, rows) || !holds(grid->bins, columns)))
+        status = report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                                "%s: is damaged: its seabed is not that of the patch", file);
+    if (status == SONJECT_OK)
+        status = check_bins(grid, tracer,
+                            line_grid_shortest_deviation(grid, view->column_spacing_m), file);
+    return status == SONJECT_OK ? check_strips(grid, tracer, file) : status;
+}
+
+sonject_status reimaging_check_glints(const struct line_grid *grid, const struct tracer *tracer,
+                                      const char *file)
+{
+    const double spacing = tracer->view.column_spacing_m;
+    const double shortest = glint_shortest_deviation(grid, spacing);
+    const sonject_status status = check_sizes(grid, tracer, file);
+    if (status != SONJECT_OK || tracer->response.range_deviation_m >= shortest * (1.0 - ROUNDING))
+        return status;
+    return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                          "sonar.bandwidth: %g kHz, but the glints of %s were traced for at most "
+                          "%.4g kHz: trace again with another bandwidth",
+                          bandwidth_for(tracer, 1.0), file,
+                          bandwidth_for(tracer, tracer->response.range_deviation_m / shortest));
 }

@@ -6,17 +6,15 @@
 #include "scene/line_grid.h"
 #include "trace/tracer.h"
 
-/* The grids that tracing lays. */
-struct traced_grids {
-    struct line_grid patch;
-    struct line_grid glints; /* of which only strips_per_row and bins_per_pixel hold for all */
-};
+/* Whether the tracer's response can be formed on the seabed's grid of a file: strips and bins fine
+ * enough, and margins wide enough that a pixel at the patch's edge lacks at most 2 % of its energy.
+ * file: for the message. Errors: INPUT (names the smallest and the largest that will do; a grid
+ * that does not hold the patch). */
+sonject_status reimaging_check_patch(const struct line_grid *grid, const struct tracer *tracer,
+                                     const char *file);
 
-/* Gives the grids that were laid for the response of `traced` (members as in a trace's /sonar) and
- * says whether the tracer's own response can be formed on them: bins and strips fine enough, and
- * margins wide enough that a pixel at the patch's edge lacks at most 2 % of its energy. file: for
- * the message. Errors: INPUT (names the smallest and the largest that will do). */
-sonject_status reimaging_check(struct traced_grids *grids, const struct tracer *tracer,
-                               const sonject_sonar_params *traced, const char *file);
+/* The same of a part's glints, whose bins are finer. */
+sonject_status reimaging_check_glints(const struct line_grid *grid, const struct tracer *tracer,
+                                      const char *file);
 
 #endif

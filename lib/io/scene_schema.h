@@ -121,6 +121,7 @@ sonject_status read_noise_floor(struct reader *reader, const struct tree_node *n
 sonject_status read_match_looks(struct reader *reader, const struct tree_node *node,
                                 void *structure);
 sonject_status read_objects(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status read_aperture(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status finish_scene(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status finish_input(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status finish_uniform(struct reader *reader, const struct tree_node *node, void *structure);
@@ -168,6 +169,13 @@ sonject_status read_relief_heights(struct reader *reader, const struct tree_node
 
 /* The array of the element level, in scene_elements.c. */
 extern const struct section elements_section;
+/* Pulse, measured cross-range response and residual motion, in scene_response.c. */
+extern const struct section pulse_section;
+extern const struct section motion_section;
+sonject_status read_pulse(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status read_cross_range(struct reader *reader, const struct tree_node *node,
+                                void *structure);
+sonject_status read_motion(struct reader *reader, const struct tree_node *node, void *structure);
 
 /* The objects' table, for read_objects, in scene_object.c. */
 extern const struct section object_section;

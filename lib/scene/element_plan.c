@@ -2,16 +2,8 @@
 
 #include <math.h>
 
-#include "scene/line_grid.h"
-
 #define SAMPLES_MAX 16777216.0
 #define VALUES_MAX  70368744177664.0 /* 2^46 */
-
-double pulse_reach_m(const struct patch_view *view, const struct point_response *response)
-{
-    const uint32_t fine = 64;
-    return pulse_reach_bins(view, response, fine) * view->column_spacing_m / fine;
-}
 
 /* Half of the track that a point at the range is seen from under the aspects of the image. */
 static double half_aperture(const sonject_element_layout *layout, double range_m)
@@ -105,7 +97,7 @@ static sonject_status plan_times(sonject_element_layout *layout, struct report *
 {
     sonject_elements_params *elements = &layout->elements;
     const double c = layout->sound_speed_mps;
-    const double reach = pulse_reach_m(view, response);
+    const double reach = response->pulse_tail_m;
     const double first_range = view_apparent_range(view, 0.0) - reach;
     const double last_range = view_apparent_range(view, (double)view->columns - 1.0) + reach;
     const double aside = half_aperture(layout, last_range) + 0.5 * array_length(elements) +

@@ -13,9 +13,6 @@ sonject_status element_plan(sonject_element_layout *layout, struct report *repor
                             const struct scene *scene, const struct patch_view *view,
                             const struct point_response *response);
 
-/* Slant range on each side of an echo that the image's pulse reaches. */
-double pulse_reach_m(const struct patch_view *view, const struct point_response *response);
-
 /* The lowest sampling rate, Hz, for a band. */
 double element_least_rate(const sonject_elements_params *elements, double frequency_hz,
                           double bandwidth_hz);

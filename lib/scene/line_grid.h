@@ -20,14 +20,19 @@ struct line_grid {
 };
 
 /* The grid for energies and speckle: cells of at most the along-track resolution by a quarter of
- * the range resolution, with margins that hold all but 0.5 % of the cross-range response's energy
- * and the whole pulse. */
+ * the range resolution, with margins that hold all but 0.5 % of the energies of cross-range
+ * response and pulse. */
 void line_grid_for_patch(struct line_grid *grid, const struct patch_view *view,
                          const struct point_response *response);
 
-/* Bins on each side of a pixel that the pulse's envelope reaches (5 deviations, -108 dB). */
+/* Bins on each side of a pixel that hold all but 0.1 % of the pulse's energy, and those that glints
+ * are spread over: to where its side lobes are below -60 dB. A Gaussian's are both 5 deviations
+ * (-108 dB). */
 int32_t pulse_reach_bins(const struct patch_view *view, const struct point_response *response,
                          uint32_t bins_per_pixel);
+
+int32_t pulse_tail_bins(const struct patch_view *view, const struct point_response *response,
+                        uint32_t bins_per_pixel);
 
 /* Standard deviation in m of the shortest pulse that the bins of line_grid_for_patch are fine
  * enough for. */

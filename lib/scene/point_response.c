@@ -5,6 +5,11 @@
 
 #define PI 3.14159265358979323846
 
+#define GAUSSIAN_REACH     5.0   /* deviations of the envelope: -108 dB */
+#define TAIL_LEVEL         1e-3  /* amplitude below which a glint's side lobes in range are cut */
+#define TAIL_MAX           512.0 /* resolutions */
+#define PULSE_ENERGY_SHARE 0.001 /* of |G|^2 that is cut off from speckle and energies */
+
 static double sinc(double x)
 {
     return x == 0.0 ? 1.0 : sin(PI * x) / (PI * x);
@@ -13,12 +18,11 @@ static double sinc(double x)
 /* Cosine weights of Taylor's window, from T. T. Taylor, "Design of line-source antennas for narrow
  * beamwidth and low side lobes", IRE Trans. AP-3 (1955): side lobes of equal height out to the
  * terms-th zero. */
-static void taylor_weights(struct point_response *response, double sidelobe_db, int terms)
+static int taylor_weights(double *weights, double sidelobe_db, int terms)
 {
     const double a = acosh(pow(10.0, sidelobe_db / 20.0)) / PI;
     const double n = terms;
     const double stretch = n * n / (a * a + (n - 0.5) * (n - 0.5));
-    response->terms = terms - 1;
     for (int m = 1; m < terms; m++) {
         double numerator = 1.0;
         double denominator = 1.0;
@@ -27,66 +31,213 @@ static void taylor_weights(struct point_response *response, double sidelobe_db, 
             if (i != m)
                 denominator *= 1.0 - (double)(m * m) / (i * i);
         }
-        response->weights[m - 1] = (m % 2 ? 0.5 : -0.5) * numerator / denominator;
+        weights[m - 1] = (m % 2 ? 0.5 : -0.5) * numerator / denominator;
     }
+    return terms - 1;
+}
+
+/* Transform of the weighting 1 + sum of 2 w cos(2 pi m u), u from -1/2 to 1/2, over its mean. */
+static double transform_at(const double *weights, int terms, double x)
+{
+    double sum = sinc(x);
+    for (int m = 1; m <= terms; m++)
+        sum += weights[m - 1] * (sinc(x - m) + sinc(x + m));
+    return sum;
+}
+
+/* Integral of its square over x: Parseval. */
+static double transform_energy(const double *weights, int terms)
+{
+    double sum = 1.0;
+    for (int m = 0; m < terms; m++)
+        sum += 2.0 * weights[m] * weights[m];
+    return sum;
+}
+
+/* Beyond x = terms the transform is sin(pi x) / (pi x) times a function without zeros. Where that
+ * has fallen below `level` for good. */
+static double transform_tail(const double *weights, int terms, double level)
+{
+    double x = terms + 1.0;
+    for (; x < TAIL_MAX; x += 0.5) {
+        double sum = 1.0;
+        for (int m = 1; m <= terms; m++)
+            sum += (m % 2 ? -2.0 : 2.0) * weights[m - 1] * x * x / (x * x - m * m);
+        if (fabs(sum) / (PI * x) < level)
+            break;
+    }
+    return x;
+}
+
+void point_response_set_widths(struct point_response *response, double resolution_m,
+                               double range_resolution_m)
+{
+    response->resolution_m = resolution_m;
+    response->strip_m = resolution_m;
+    response->range_resolution_m = range_resolution_m;
+    response->range_deviation_m = range_resolution_m / (2.0 * sqrt(log(2.0)));
+    response->pulse_reach_m = GAUSSIAN_REACH * response->range_deviation_m;
+    response->pulse_tail_m = response->pulse_reach_m;
+    response->pulse_margin_m = response->pulse_reach_m;
 }
 
 void point_response_init(struct point_response *response, const sonject_sonar_params *sonar,
                          double reference_sound_speed_mps, double row_spacing_m)
 {
     memset(response, 0, sizeof *response);
-    response->resolution_m =
-        sonar->along_track_resolution_m > 0.0 ? sonar->along_track_resolution_m : row_spacing_m;
-    const double range_resolution = reference_sound_speed_mps / (2.0 * sonar->bandwidth_hz);
-    response->range_deviation_m = range_resolution / (2.0 * sqrt(log(2.0)));
+    point_response_set_widths(
+        response,
+        sonar->along_track_resolution_m > 0.0 ? sonar->along_track_resolution_m : row_spacing_m,
+        reference_sound_speed_mps / (2.0 * sonar->bandwidth_hz));
     if (sonar->response_window == SONJECT_WINDOW_HAMMING) {
         response->terms = 1;
         response->weights[0] = 0.5 * 0.46 / 0.54;
     } else if (sonar->response_window == SONJECT_WINDOW_TAYLOR) {
-        taylor_weights(response, sonar->taylor_sidelobe_db, (int)sonar->taylor_terms);
+        response->terms =
+            taylor_weights(response->weights, sonar->taylor_sidelobe_db, (int)sonar->taylor_terms);
     }
+}
+
+static void set_chirp(struct point_response *response, const sonject_pulse_params *pulse)
+{
+    const double cell = response->range_resolution_m;
+    response->pulse_kind = SONJECT_PULSE_CHIRP;
+    if (pulse->window == SONJECT_PULSE_HANN) {
+        response->pulse_terms = 1;
+        response->pulse_weights[0] = 0.5;
+    } else if (pulse->window == SONJECT_PULSE_TAYLOR) {
+        response->pulse_terms = taylor_weights(response->pulse_weights, pulse->taylor_sidelobe_db,
+                                               (int)pulse->taylor_terms);
+    }
+    response->pulse_tail_m =
+        cell * transform_tail(response->pulse_weights, response->pulse_terms, TAIL_LEVEL);
+    response->pulse_reach_m = range_energy_reach(response, PULSE_ENERGY_SHARE);
+    response->pulse_margin_m = range_energy_reach(response, MARGIN_ENERGY_SHARE);
+}
+
+static void set_pulse_table(struct point_response *response, const struct response_table *table,
+                            double reference_sound_speed_mps)
+{
+    const double length = fmax(-table->positions[0], table->positions[table->count - 1]);
+    response->pulse_kind = SONJECT_PULSE_TABLE;
+    response->pulse_table = table;
+    response->metres_per_position = table->is_time ? 0.5 * reference_sound_speed_mps : 1.0;
+    const double width = response_table_width(table) * response->metres_per_position;
+    response->range_resolution_m = fmin(response->range_resolution_m, width);
+    response->range_deviation_m = response->range_resolution_m / (2.0 * sqrt(log(2.0)));
+    response->pulse_energy_m =
+        response_table_energy(table, -HUGE_VAL, HUGE_VAL) * response->metres_per_position;
+    response->pulse_tail_m = length * response->metres_per_position;
+    response->pulse_reach_m = range_energy_reach(response, PULSE_ENERGY_SHARE);
+    response->pulse_margin_m = range_energy_reach(response, MARGIN_ENERGY_SHARE);
+}
+
+void point_response_set_pulse(struct point_response *response, const sonject_pulse_params *pulse,
+                              const struct response_table *table, double reference_sound_speed_mps)
+{
+    if (pulse->kind == SONJECT_PULSE_CHIRP)
+        set_chirp(response, pulse);
+    else if (pulse->kind == SONJECT_PULSE_TABLE)
+        set_pulse_table(response, table, reference_sound_speed_mps);
+}
+
+void point_response_set_cross_range_table(struct point_response *response,
+                                          const struct response_table *table)
+{
+    response->cross_range_table = table;
+    response->cross_range_energy_m = response_table_energy(table, -HUGE_VAL, HUGE_VAL);
+    response->strip_m = fmin(response->strip_m, response_table_width(table));
 }
 
 double along_track_response(const struct point_response *response, double distance_m)
 {
-    const double x = distance_m / response->resolution_m;
-    double sum = sinc(x);
-    for (int m = 1; m <= response->terms; m++)
-        sum += response->weights[m - 1] * (sinc(x - m) + sinc(x + m));
-    return sum;
-}
-
-double range_response(const struct point_response *response, double distance_m)
-{
-    const double x = distance_m / response->range_deviation_m;
-    return exp(-0.5 * x * x);
+    return transform_at(response->weights, response->terms, distance_m / response->resolution_m);
 }
 
 double along_track_energy_width(const struct point_response *response)
 {
-    /* Parseval on the aspect weighting 1 + sum 2 w cos */
-    double sum = 1.0;
-    for (int m = 0; m < response->terms; m++)
-        sum += 2.0 * response->weights[m] * response->weights[m];
-    return response->resolution_m * sum;
+    return response->resolution_m * transform_energy(response->weights, response->terms);
 }
 
-double range_energy_width(const struct point_response *response)
+/* Half width, in units of step, within which midpoints of a response's energy make up all but
+ * `share` of the total. */
+static double reach_of(const struct point_response *response, double total, double step,
+                       double longest, double share,
+                       double (*energy_at)(const struct point_response *, double))
 {
-    return sqrt(PI) * response->range_deviation_m;
+    double inside = 0.0;
+    double x = 0.0;
+    while (x < longest && inside < (1.0 - share) * total) {
+        inside += energy_at(response, x + 0.5 * step) * step;
+        x += step;
+    }
+    return x;
+}
+
+static double window_energy_at(const struct point_response *response, double distance_m)
+{
+    const double w = along_track_response(response, distance_m);
+    return 2.0 * w * w;
 }
 
 double along_track_energy_reach(const struct point_response *response, double share)
 {
-    const double total = along_track_energy_width(response);
-    const double step = response->resolution_m / 8.0;
-    double inside = 0.0;
-    double x = 0.0;
-    /* midpoints; a sinc keeps 1 / (pi^2 x) of its energy beyond x resolutions, so this ends */
-    while (x < 4096.0 * response->resolution_m && inside < (1.0 - share) * total) {
-        const double w = along_track_response(response, x + 0.5 * step);
-        inside += 2.0 * w * w * step;
-        x += step;
-    }
-    return x;
+    /* a sinc keeps 1 / (pi^2 x) of its energy beyond x resolutions, so this ends */
+    return reach_of(response, along_track_energy_width(response), response->resolution_m / 8.0,
+                    4096.0 * response->resolution_m, share, window_energy_at);
+}
+
+double range_response(const struct point_response *response, double distance_m)
+{
+    if (response->pulse_kind == SONJECT_PULSE_CHIRP)
+        return transform_at(response->pulse_weights, response->pulse_terms,
+                            distance_m / response->range_resolution_m);
+    if (response->pulse_kind == SONJECT_PULSE_TABLE)
+        return response_table_at(response->pulse_table, distance_m / response->metres_per_position)
+            .real_part;
+    const double x = distance_m / response->range_deviation_m;
+    return exp(-0.5 * x * x);
+}
+
+bool range_response_is_real(const struct point_response *response)
+{
+    return response->pulse_kind != SONJECT_PULSE_TABLE;
+}
+
+struct complex_number range_response_complex(const struct point_response *response,
+                                             double distance_m)
+{
+    if (response->pulse_kind == SONJECT_PULSE_TABLE)
+        return response_table_at(response->pulse_table, distance_m / response->metres_per_position);
+    const struct complex_number g = {range_response(response, distance_m), 0.0};
+    return g;
+}
+
+double range_energy_width(const struct point_response *response)
+{
+    if (response->pulse_kind == SONJECT_PULSE_CHIRP)
+        return response->range_resolution_m *
+               transform_energy(response->pulse_weights, response->pulse_terms);
+    if (response->pulse_kind == SONJECT_PULSE_TABLE)
+        return response->pulse_energy_m;
+    return sqrt(PI) * response->range_deviation_m;
+}
+
+static double chirp_energy_at(const struct point_response *response, double distance_m)
+{
+    const double g = range_response(response, distance_m);
+    return 2.0 * g * g;
+}
+
+double range_energy_reach(const struct point_response *response, double share)
+{
+    const double cell = response->range_resolution_m;
+    if (response->pulse_kind == SONJECT_PULSE_CHIRP)
+        return fmax(3.0 * cell, reach_of(response, range_energy_width(response), cell / 8.0,
+                                         TAIL_MAX * cell, share, chirp_energy_at));
+    if (response->pulse_kind == SONJECT_PULSE_TABLE)
+        return fmin(response->pulse_tail_m,
+                    fmax(3.0 * cell, response_table_reach(response->pulse_table, share) *
+                                         response->metres_per_position));
+    return GAUSSIAN_REACH * response->range_deviation_m;
 }

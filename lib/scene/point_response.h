@@ -1,36 +1,99 @@
 /* The point response of the formed image, along-track (W) and in range (G): pure functions of the
- * sonar. Distances in m; both are 1 at 0. Formulas: kernels/MATH.md, "Point response". */
+ * sonar. Distances in m; both are 1 at 0, measured ones 1 at their largest sample. Formulas:
+ * kernels/MATH.md, "Point response". */
 #ifndef SONJECT_SCENE_POINT_RESPONSE_H
 #define SONJECT_SCENE_POINT_RESPONSE_H
 
 #include <stdbool.h>
 
+#include <sonject/pulse.h>
 #include <sonject/sonar.h>
 
+#include "base/report.h"
+#include "scene/response_table.h"
+
+#define MARGIN_ENERGY_SHARE 0.005 /* of |W|^2 and |G|^2 that lies beyond a grid's margins */
+
 struct point_response {
-    double resolution_m;      /* delta: the aspects integrated are within +-wavelength/(4 delta) */
-    int terms;                /* cosine terms of the aspect weighting */
-    double weights[16];       /* of term m = 1..., relative to the constant one */
-    double range_deviation_m; /* sigma of the Gaussian envelope, in apparent range */
+    double resolution_m; /* delta: the aspects integrated are within +-wavelength/(4 delta) */
+    double strip_m;      /* longest strip of independent deviates that W does not alias */
+    int terms;           /* cosine terms of the aspect weighting */
+    double weights[16];  /* of term m = 1..., relative to the constant one */
+
+    sonject_pulse_kind pulse_kind;
+    double range_resolution_m; /* c / 2B, or a table's half-power width where that is less */
+    double range_deviation_m;  /* sigma of the Gaussian of that half-power width */
+    int pulse_terms;           /* as terms and weights, of a chirp's spectrum */
+    double pulse_weights[16];
+    const struct response_table *pulse_table; /* borrowed */
+    double metres_per_position;               /* of its positions */
+    double pulse_energy_m;                    /* of the table: integral of |G|^2 */
+    double pulse_margin_m, pulse_reach_m;     /* where |G|^2 has all but 0.5 %, 0.1 % within */
+    double pulse_tail_m;                      /* where glints' side lobes are cut, at -60 dB */
+
+    const struct response_table *cross_range_table; /* a measured W; borrowed; NULL: none */
+    double cross_range_energy_m;
+
+    double array_length_m; /* of a real aperture; 0: synthetic */
+    double wavelength_m, range_ratio;
+    double beam_energy; /* integral of |W|^2 over x / range */
+
+    const struct aperture_motion *motion; /* residual; borrowed; NULL: none */
+    double motion_range_m;                /* straight range that it is worked out for */
+    double motion_phase_per_m;            /* of the echo, rad per m of sway */
+    double motion_spread_m;               /* how much farther the energy of W reaches */
 };
 
-/* row_spacing_m stands in for the resolution where the sonar does not give one. */
+struct scene;
+struct patch_view;
+
+/* All that the scene says about it, for a patch. Errors: INPUT (a beam so wide that echoes move
+ * through range cells; responses that exclude each other), MEMORY. */
+sonject_status point_response_of_scene(struct point_response *response, struct report *report,
+                                       const struct scene *scene, const struct patch_view *view,
+                                       double reference_sound_speed_mps);
+
+/* row_spacing_m stands in for the resolution where the sonar does not give one. The pulse is
+ * Gaussian, W the sonar's window, the track straight. */
 void point_response_init(struct point_response *response, const sonject_sonar_params *sonar,
                          double reference_sound_speed_mps, double row_spacing_m);
 
-/* W(x). Real, because the weighting is symmetric and the track straight. */
+/* The widths of the window's W (delta) and of a Gaussian pulse (half-power, in range). */
+void point_response_set_widths(struct point_response *response, double resolution_m,
+                               double range_resolution_m);
+
+/* After point_response_init. table: for the kind TABLE; borrowed. */
+void point_response_set_pulse(struct point_response *response, const sonject_pulse_params *pulse,
+                              const struct response_table *table, double reference_sound_speed_mps);
+
+/* The beam of a real aperture of uniform weighting in place of the window; range_ratio: apparent
+ * over true range. */
+void point_response_set_array(struct point_response *response, double array_length_m,
+                              double wavelength_m, double range_ratio);
+
+/* A measured W in place of the window's; borrowed. */
+void point_response_set_cross_range_table(struct point_response *response,
+                                          const struct response_table *table);
+
+/* The window's W(x). Real, because the weighting is symmetric and the track straight. */
 double along_track_response(const struct point_response *response, double distance_m);
 
-/* G(r) = exp(-r^2 / 2 sigma^2). */
-double range_response(const struct point_response *response, double distance_m);
-
-/* Integral of |W|^2 over x, m (delta for the rectangular window). */
+/* Integral of its square over x, m (delta for the rectangular window). */
 double along_track_energy_width(const struct point_response *response);
 
-/* Integral of G^2 over r, m: sqrt(pi) sigma = 1.0645 c / 2B. */
+/* Half width in m beyond which less than `share` of that integral lies. */
+double along_track_energy_reach(const struct point_response *response, double share);
+
+/* G(r): exp(-r^2 / 2 sigma^2), or the compressed sweep's; of a table the real part. */
+double range_response(const struct point_response *response, double distance_m);
+struct complex_number range_response_complex(const struct point_response *response,
+                                             double distance_m);
+bool range_response_is_real(const struct point_response *response);
+
+/* Integral of |G|^2 over r, m: sqrt(pi) sigma = 1.0645 c / 2B for the Gaussian. */
 double range_energy_width(const struct point_response *response);
 
-/* Half width in m beyond which less than `share` of the integral of |W|^2 lies. */
-double along_track_energy_reach(const struct point_response *response, double share);
+/* Half width in m beyond which less than `share` of that lies, at least 3 resolutions. */
+double range_energy_reach(const struct point_response *response, double share);
 
 #endif

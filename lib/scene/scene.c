@@ -9,6 +9,8 @@ void scene_init(struct scene *scene)
 {
     memset(scene, 0, sizeof *scene);
     sonject_sonar_params_init(&scene->sonar);
+    sonject_pulse_params_init(&scene->pulse);
+    sonject_motion_params_init(&scene->motion.params);
     sonject_medium_params_init(&scene->medium);
     sonject_seabed_params_init(&scene->seabed);
     sonject_surface_params_init(&scene->surface);
@@ -33,6 +35,9 @@ void scene_clear(struct scene *scene)
     free(scene->meshes);
     user_shapes_clear(&scene->user_shapes);
     free(scene->water_layers);
+    response_table_clear(&scene->pulse_table);
+    response_table_clear(&scene->cross_range_table);
+    aperture_motion_clear(&scene->motion);
     relief_features_clear(&scene->relief);
     scene_init(scene);
 }

@@ -12,7 +12,9 @@
 #include "base/report.h"
 #include "medium/water_layer.h"
 #include "mesh/mesh.h"
+#include "scene/aperture_motion.h"
 #include "scene/relief_features.h"
+#include "scene/response_table.h"
 #include "scene/user_shapes.h"
 
 #define SCENE_OBJECTS_MAX      250 /* ids must fit the 8-bit label image */
@@ -31,6 +33,10 @@ struct scene_part {
 
 struct scene {
     sonject_sonar_params sonar;
+    sonject_pulse_params pulse;
+    struct response_table pulse_table;       /* of the kind TABLE */
+    struct response_table cross_range_table; /* of a measured W; count 0: the sonar's window */
+    struct aperture_motion motion;
     sonject_medium_params medium;
     struct water_layer *water_layers; /* owned; NULL: isovelocity water at medium's sound speed */
     size_t water_layer_count;
@@ -88,6 +94,10 @@ sonject_status scene_share_mesh(struct scene *scene, struct report *report, cons
  */
 sonject_status check_sonar(const sonject_sonar_params *sonar, struct report *report,
                            const char **key);
+sonject_status check_pulse(const sonject_pulse_params *pulse, struct report *report,
+                           const char **key);
+sonject_status check_motion(const sonject_motion_params *motion, struct report *report,
+                            const char **key);
 sonject_status check_medium(const sonject_medium_params *medium, struct report *report,
                             const char **key);
 sonject_status check_seabed(const sonject_seabed_params *seabed, struct report *report,

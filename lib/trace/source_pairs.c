@@ -65,7 +65,7 @@ struct span source_pair_bins_in_patch(const struct tracer *tracer, uint32_t obje
 struct span bins_in_patch(const struct tracer *tracer, const struct line_grid *grid,
                           struct span bins)
 {
-    const int32_t pulse = pulse_reach_bins(&tracer->view, &tracer->response, grid->bins_per_pixel);
+    const int32_t pulse = pulse_tail_bins(&tracer->view, &tracer->response, grid->bins_per_pixel);
     const int32_t end_of_patch =
         (int32_t)((tracer->view.columns - 1) * grid->bins_per_pixel) + 1 + pulse;
     const int32_t end = bins.first + bins.count;

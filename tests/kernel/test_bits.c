@@ -17,6 +17,8 @@
 
 #include "cl/launch.h"
 #include "physics/bench.h"
+#include "scene/cross_range.h"
+#include "scene/motion_response.h"
 #include "trace/rough_mirrored.h"
 
 #define ROWS    96
@@ -541,12 +543,96 @@ static void expect_same_planes(const struct planes *a, const struct planes *b)
                          (double)a->part[part][i], (double)b->part[part][i]);
 }
 
-static struct planes form_as_c(struct bench *bench, const struct form_lines *lines,
-                               const struct planes *bins)
+static void compress_as_c(struct bench *bench, const struct form_lines *lines,
+                          const struct planes *bins, const float *pulse, struct planes *compressed)
 {
     const size_t strips = (size_t)lines->grid.strips.count;
     const int count = lines->grid.bins.count;
     const int per_pixel = (int)lines->grid.bins_per_pixel;
+    const int first = lines->pulse_first + (int)lines->first_column * per_pixel;
+    float *imaginary = calloc((size_t)lines->pulse_taps, sizeof *imaginary);
+    assert_non_null(imaginary);
+    if (lines->imaginary_pulse)
+        assert_int_equal(buffer_read(&bench->report, bench->tracer.device, lines->imaginary_pulse,
+                                     0, (size_t)lines->pulse_taps * sizeof *imaginary, imaginary),
+                         SONJECT_OK);
+    for (size_t s = 0; s < strips; s++)
+        for (int column = 0; column < (int)lines->columns; column++) {
+            const size_t in = s * (size_t)count;
+            const size_t out = s * lines->stride;
+            if (lines->imaginary_pulse)
+                compress_complex_of(bins->part[0] + in, bins->part[1] + in, count, first, per_pixel,
+                                    pulse, imaginary, lines->pulse_taps, column,
+                                    compressed->part[0] + out, compressed->part[1] + out);
+            for (int part = 0; part < 2 && !lines->imaginary_pulse; part++)
+                compress_range_of(bins->part[part] + in, count, first, per_pixel, pulse,
+                                  lines->pulse_taps, column, compressed->part[part] + out);
+        }
+    free(imaginary);
+}
+
+/* The response of a row and column, from its definition. */
+static void response_as_c(struct bench *bench, const struct form_lines *lines, int row, int column,
+                          float *real_part, float *imaginary_part)
+{
+    const int taps = 2 * lines->reach + 1;
+    const double strip = lines->row_spacing_m / lines->grid.strips_per_row;
+    const double offset = (0.5 - 0.5 / lines->grid.strips_per_row) * lines->row_spacing_m;
+    double *a = calloc((size_t)taps, sizeof *a);
+    double *b = calloc((size_t)taps, sizeof *b);
+    assert_true(a && b);
+    if (lines->response.motion) {
+        struct motion_response motion;
+        assert_int_equal(motion_response_begin(&motion, &bench->report, &lines->response,
+                                               lines->view, strip, offset, lines->reach),
+                         SONJECT_OK);
+        motion_response_row(&motion, row, a, b);
+        motion_response_end(&motion);
+    } else {
+        const double middle = (double)lines->first_column + column / 16 * 16 + 7.5;
+        for (int i = 0; i < taps; i++) {
+            const struct complex_number w =
+                cross_range_response(&lines->response, view_apparent_range(lines->view, middle),
+                                     (i - lines->reach) * strip + offset);
+            a[i] = w.real_part;
+            b[i] = w.imaginary_part;
+        }
+    }
+    for (int i = 0; i < taps; i++) {
+        const bool is_energy = lines->kind == FORM_ENERGY;
+        real_part[i] = (float)(is_energy ? a[i] * a[i] + b[i] * b[i] : a[i]);
+        imaginary_part[i] = is_energy ? 0.0f : (float)b[i];
+    }
+    free(a);
+    free(b);
+}
+
+static void combine_varied_as_c(struct bench *bench, const struct form_lines *lines,
+                                const struct planes *compressed, struct planes *padded)
+{
+    const struct aspects aspects = {lines->grid.strips.first, lines->grid.strips.count,
+                                    (int)lines->grid.strips_per_row, lines->reach};
+    const size_t taps = 2 * (size_t)lines->reach + 1;
+    float *real_part = calloc(taps, sizeof *real_part);
+    float *imaginary_part = calloc(taps, sizeof *imaginary_part);
+    assert_true(real_part && imaginary_part);
+    for (int row = 0; row < (int)lines->rows; row++)
+        for (int column = 0; column < (int)lines->columns; column++) {
+            const struct response_set one = {row, 0, 1 << 30, 0};
+            if (lines->response.motion ? column == 0 : column % 16 == 0)
+                response_as_c(bench, lines, row, column, real_part, imaginary_part);
+            combine_varied_of(aspects, one, compressed->part[0], compressed->part[1],
+                              (int)lines->stride, real_part, imaginary_part, row, row + 1, column,
+                              padded->part[0], padded->part[1]);
+        }
+    free(real_part);
+    free(imaginary_part);
+}
+
+static struct planes form_as_c(struct bench *bench, const struct form_lines *lines,
+                               const struct planes *bins)
+{
+    const size_t strips = (size_t)lines->grid.strips.count;
     const int taps = 2 * lines->reach + 1;
     struct planes compressed = planes_of(strips * lines->stride);
     struct planes padded = planes_of(lines->rows * lines->stride);
@@ -568,20 +654,17 @@ static struct planes form_as_c(struct bench *bench, const struct form_lines *lin
         const double w = along_track_response(&lines->response, rows * lines->row_spacing_m);
         response[i] = (float)(lines->kind == FORM_ENERGY ? w * w : w);
     }
-    for (int part = 0; part < 2; part++)
-        for (size_t s = 0; s < strips; s++)
-            for (int column = 0; column < (int)lines->columns; column++)
-                compress_range_of(bins->part[part] + s * (size_t)count, count,
-                                  lines->pulse_first + (int)lines->first_column * per_pixel,
-                                  per_pixel, pulse, lines->pulse_taps, column,
-                                  compressed.part[part] + s * lines->stride);
+    compress_as_c(bench, lines, bins, pulse, &compressed);
     const struct aspects aspects = {lines->grid.strips.first, lines->grid.strips.count,
                                     (int)lines->grid.strips_per_row, lines->reach};
-    for (int row = 0; row < (int)lines->rows; row += FORM_ROWS)
-        for (int column = 0; column < (int)lines->columns; column++)
-            combine_aspects_of(aspects, compressed.part[0], compressed.part[1], (int)lines->stride,
-                               response, row, (int)lines->rows, column, padded.part[0],
-                               padded.part[1]);
+    if (!cross_range_is_plain(&lines->response))
+        combine_varied_as_c(bench, lines, &compressed, &padded);
+    else
+        for (int row = 0; row < (int)lines->rows; row += FORM_ROWS)
+            for (int column = 0; column < (int)lines->columns; column++)
+                combine_aspects_of(aspects, compressed.part[0], compressed.part[1],
+                                   (int)lines->stride, response, row, (int)lines->rows, column,
+                                   padded.part[0], padded.part[1]);
     for (int part = 0; part < 2; part++)
         for (size_t row = 0; row < lines->rows; row++)
             memcpy(pixels.part[part] + row * lines->columns,
@@ -680,6 +763,41 @@ static void compare_formation(struct bench *bench, enum scene_kind kind)
     compare_forming(bench, FORM_GLINT, &far_corner, 0);
 }
 
+/* A pulse that is complex; a beam that differs from range to range, motion from row to row. */
+static void compare_varied_formation(struct bench *bench, enum scene_kind kind)
+{
+    static const double x[] = {-0.06, -0.03, -0.01, 0.0, 0.02, 0.05};
+    static const double a[] = {0.0, 0.3, 0.9, 1.0, 0.5, 0.0};
+    static const double b[] = {0.0, 0.2, 0.1, 0.0, -0.3, 0.0};
+    const struct line_grid corner = {7, 26, {-20, 150}, {-40, 333}};
+    if (kind != SCENE_EMPTY)
+        return;
+    for (int i = 0; i < 3; i++) {
+        sonject_motion_params_init(&bench->scene.motion.params);
+        bench->scene.sonar.kind = i == 1 ? SONJECT_SONAR_REAL : SONJECT_SONAR_SYNTHETIC;
+        bench->scene.sonar.array_length_m = 0.6;
+        bench->scene.motion.params.random_rms_m = i == 2 ? 1e-3 : 0.0;
+        assert_int_equal(
+            response_table_set(&bench->scene.pulse_table, &bench->report, x, a, b, 6, false),
+            SONJECT_OK);
+        bench->scene.pulse.kind = SONJECT_PULSE_TABLE;
+        make_scene(bench, kind);
+        struct line_grid patch;
+        line_grid_for_patch(&patch, &bench->tracer.view, &bench->tracer.response);
+        compare_forming(bench, FORM_SPECKLE, &patch, 1);
+        compare_forming(bench, FORM_ENERGY, &patch, 0);
+        compare_forming(bench, FORM_GLINT, &corner, 0);
+    }
+    sonject_motion_params_init(&bench->scene.motion.params);
+    bench->scene.sonar.kind = SONJECT_SONAR_SYNTHETIC;
+}
+
+static void test_varied_image_formation(void **unused)
+{
+    (void)unused;
+    at_every_width(compare_varied_formation, 4);
+}
+
 static void test_image_formation(void **unused)
 {
     (void)unused;
@@ -736,7 +854,8 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_rough_tallies),    cmocka_unit_test(test_smooth_tallies),
         cmocka_unit_test(test_mirrored_tallies), cmocka_unit_test(test_rough_mirrored_tallies),
-        cmocka_unit_test(test_image_formation),  cmocka_unit_test(test_one_core),
+        cmocka_unit_test(test_image_formation),  cmocka_unit_test(test_varied_image_formation),
+        cmocka_unit_test(test_one_core),
     };
     return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

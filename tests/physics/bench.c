@@ -31,6 +31,7 @@ void bench_open(struct bench *bench, size_t rows, size_t columns, double middle_
     context.device_name = bench_device;
     context.cache_folder = "";
     scene_init(&bench->scene);
+    bench->scene.sonar.aperture_rad = 0.0; /* closed forms are of one aspect */
     bench->rows = rows;
     bench->columns = columns;
     bench->tracer.report = &bench->report;
@@ -131,9 +132,10 @@ void bench_ready(struct bench *bench)
     tracer->part_count = bench->placed.part_count;
     tracer->objects = bench->placed.objects;
     tracer->relief = bench->placed.relief;
-    point_response_init(&tracer->response, &bench->scene.sonar,
-                        tracer->view.range_ratio * bench->water.straight_speed_mps,
-                        tracer->view.row_spacing_m);
+    expect_ok(bench,
+              point_response_of_scene(&tracer->response, &bench->report, &bench->scene,
+                                      &tracer->view,
+                                      tracer->view.range_ratio * bench->water.straight_speed_mps));
 }
 
 double bench_wavenumber(const struct bench *bench)

@@ -39,6 +39,14 @@ static const char synthetic[] = "sonject: 1\n"
                                 "first_slant_range: 40}\n"
                                 "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n";
 
+static const char sidescan[] = "sonject: 1\n"
+                               "input:\n"
+                               "  uniform: {rows: 4, columns: 5}\n"
+                               "  geometry: {row_spacing: 1, column_spacing: 1, "
+                               "first_slant_range: 40}\n"
+                               "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10, "
+                               "kind: real, array: {length: 1 m}}\n";
+
 static const char file[] = "sonject: 1\n"
                            "input:\n"
                            "  path: swath.tif\n"
@@ -154,6 +162,50 @@ static const struct key_case {
      SCENE(sonar.taylor_sidelobe_db), 40.0, NULL, "sonar.response={taylor: {terms: 5}}"},
     {"sonar.response.taylor.terms", small, "7", TYPE_U32, SCENE(sonar.taylor_terms), 7.0, NULL,
      "sonar.response={taylor: {sidelobes: 35 dB}}"},
+    {"sonar.kind", small, "real", TYPE_U32, SCENE(sonar.kind), SONJECT_SONAR_REAL, NULL,
+     "sonar.array={length: 1 m}"},
+    {"sonar.aperture", small, "18 deg", TYPE_DOUBLE, SCENE(sonar.aperture_rad), PI / 10.0, NULL,
+     NULL},
+    {"sonar.array.length", small, "40 cm", TYPE_DOUBLE, SCENE(sonar.array_length_m), 0.4, NULL,
+     "sonar.kind=real"},
+    {"sonar.array.height", sidescan, "5 cm", TYPE_DOUBLE, SCENE(sonar.array_height_m), 0.05, NULL,
+     NULL},
+    {"sonar.array.heading", sidescan, "-9 deg", TYPE_DOUBLE, SCENE(sonar.array_heading_rad),
+     -PI / 20.0, NULL, NULL},
+    {"sonar.array.pitch", sidescan, "9 deg", TYPE_DOUBLE, SCENE(sonar.array_pitch_rad), PI / 20.0,
+     NULL, NULL},
+    {"sonar.array.depression", sidescan, "30 deg", TYPE_DOUBLE, SCENE(sonar.array_depression_rad),
+     PI / 6.0, NULL, NULL},
+    {"sonar.pulse.kind", small, "chirp", TYPE_U32, SCENE(pulse.kind), SONJECT_PULSE_CHIRP, NULL,
+     NULL},
+    {"sonar.pulse.window", small, "hann", TYPE_U32, SCENE(pulse.window), SONJECT_PULSE_HANN, NULL,
+     "sonar.pulse={kind: chirp}"},
+    {"sonar.pulse.window.taylor.sidelobes", small, "40 dB", TYPE_DOUBLE,
+     SCENE(pulse.taylor_sidelobe_db), 40.0, NULL,
+     "sonar.pulse={kind: chirp, window: {taylor: {terms: 5}}}"},
+    {"sonar.pulse.window.taylor.terms", small, "7", TYPE_U32, SCENE(pulse.taylor_terms), 7.0, NULL,
+     "sonar.pulse={kind: chirp, window: {taylor: {sidelobes: 35 dB}}}"},
+    {"sonar.pulse.file", small, SOURCE_ROOT "/tests/unit/pulse.csv", TYPE_U64,
+     SCENE(pulse_table.count), 5.0, NULL, "sonar.pulse={kind: table}"},
+    {"sonar.measured_response", small, SOURCE_ROOT "/tests/unit/cross_range.csv", TYPE_U64,
+     SCENE(cross_range_table.count), 6.0, NULL, NULL},
+    {"sonar.motion.sway[].amplitude", small, "2 mm", TYPE_DOUBLE,
+     SCENE(motion.params.sways[0].amplitude_m), 0.002, NULL,
+     "sonar.motion={sway: [{wavelength: 3 m}]}"},
+    {"sonar.motion.sway[].wavelength", small, "3 m", TYPE_DOUBLE,
+     SCENE(motion.params.sways[0].wavelength_m), 3.0, NULL,
+     "sonar.motion={sway: [{amplitude: 2 mm}]}"},
+    {"sonar.motion.sway[].phase", small, "2 rad", TYPE_DOUBLE,
+     SCENE(motion.params.sways[0].phase_rad), 2.0, NULL,
+     "sonar.motion={sway: [{amplitude: 2 mm, wavelength: 3 m}]}"},
+    {"sonar.motion.random.rms", small, "1 mm", TYPE_DOUBLE, SCENE(motion.params.random_rms_m),
+     0.001, NULL, "sonar.motion={random: {correlation: 2 m}}"},
+    {"sonar.motion.random.correlation", small, "2 m", TYPE_DOUBLE,
+     SCENE(motion.params.random_correlation_m), 2.0, NULL, "sonar.motion={random: {rms: 1 mm}}"},
+    {"sonar.motion.random.seed", small, "9", TYPE_U64, SCENE(motion.params.seed), 9.0, NULL,
+     "sonar.motion={random: {rms: 1 mm, correlation: 2 m}}"},
+    {"sonar.motion.file", small, SOURCE_ROOT "/tests/unit/sway.csv", TYPE_U64, SCENE(motion.count),
+     3.0, NULL, NULL},
     {"medium.sound_speed", small, "1.48 km/s", TYPE_DOUBLE, SCENE(medium.sound_speed_mps), 1480.0,
      NULL, NULL},
     {"medium.reference_sound_speed", small, "1490 m/s", TYPE_DOUBLE,

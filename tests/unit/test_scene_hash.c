@@ -58,7 +58,22 @@ static const struct member of_scene[] = {
     SCENE(sonar.along_track_resolution_m),
     SCENE(sonar.transducer_side_m),
     SCENE(sonar.taylor_sidelobe_db),
+    SCENE(pulse.kind),
+    SCENE(pulse.window),
+    SCENE(pulse.taylor_terms),
+    SCENE(pulse.taylor_sidelobe_db),
+    SCENE(motion.params.sway_count),
+    SCENE(motion.params.random_rms_m),
+    SCENE(motion.params.random_correlation_m),
+    SCENE(motion.params.seed),
     SCENE(sonar.taylor_terms),
+    SCENE(sonar.kind),
+    SCENE(sonar.aperture_rad),
+    SCENE(sonar.array_length_m),
+    SCENE(sonar.array_height_m),
+    SCENE(sonar.array_heading_rad),
+    SCENE(sonar.array_pitch_rad),
+    SCENE(sonar.array_depression_rad),
     SCENE(medium.sound_speed_mps),
     SCENE(medium.reference_sound_speed_mps),
     SCENE(medium.absorption_db_per_m),
@@ -191,6 +206,51 @@ static void test_layers_of_water_count(void **state)
     scene_clear(&scene);
 }
 
+static void test_measured_responses_and_motion_count(void **state)
+{
+    const double positions[] = {-2.0, -1.0, 1.0, 2.0};
+    const double values[] = {0.0, 1.0, 0.5, 0.0};
+    static const struct member of_sway[] = {
+        {"amplitude_m", offsetof(sonject_sway, amplitude_m), sizeof(double)},
+        {"wavelength_m", offsetof(sonject_sway, wavelength_m), sizeof(double)},
+        {"phase_rad", offsetof(sonject_sway, phase_rad), sizeof(double)},
+    };
+    struct report report = {{0}, NULL, NULL};
+    struct scene scene;
+    char one[HASH_TEXT_CAPACITY], other[HASH_TEXT_CAPACITY];
+    (void)state;
+    make_scene(&scene);
+    struct response_table *const tables[] = {&scene.pulse_table, &scene.cross_range_table};
+    for (size_t i = 0; i < COUNT(tables); i++) {
+        hash_of(&scene, NULL, one);
+        assert_int_equal(
+            response_table_set(tables[i], &report, positions, values, values, 4, false),
+            SONJECT_OK);
+        hash_of(&scene, NULL, other);
+        assert_string_not_equal(one, other);
+        tables[i]->is_time = true;
+        hash_of(&scene, NULL, one);
+        assert_string_not_equal(one, other);
+        static const struct member of_value[] = {
+            {"real_part", offsetof(struct complex_number, real_part), sizeof(double)},
+            {"imaginary_part", offsetof(struct complex_number, imaginary_part), sizeof(double)},
+        };
+        const struct member position = {"position", 0, sizeof(double)};
+        expect_counted(&scene, &tables[i]->positions[3], &position);
+        for (size_t j = 0; j < COUNT(of_value); j++)
+            expect_counted(&scene, &tables[i]->values[3], &of_value[j]);
+    }
+    assert_int_equal(aperture_motion_set_table(&scene.motion, &report, positions, values, 4),
+                     SONJECT_OK);
+    hash_of(&scene, NULL, other);
+    assert_string_not_equal(one, other);
+    scene.motion.params.sway_count = SONJECT_SWAYS_CAPACITY;
+    for (size_t i = 0; i < SONJECT_SWAYS_CAPACITY * COUNT(of_sway); i++)
+        expect_counted(&scene, &scene.motion.params.sways[i / COUNT(of_sway)],
+                       &of_sway[i % COUNT(of_sway)]);
+    scene_clear(&scene);
+}
+
 static void test_parts_count(void **state)
 {
     static const struct member of_part[] = {
@@ -266,6 +326,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_every_member_counts),
         cmocka_unit_test(test_layers_of_water_count),
+        cmocka_unit_test(test_measured_responses_and_motion_count),
         cmocka_unit_test(test_parts_count),
         cmocka_unit_test(test_input_and_number_of_objects_count),
         cmocka_unit_test(test_nan_is_one_value_and_padding_none),

@@ -22,6 +22,7 @@ from ctypes import (
 
 NAME_CAPACITY = 64
 CUTS_CAPACITY = 2
+SWAYS_CAPACITY = 8
 USER_PARAMETERS_CAPACITY = 16
 
 sonject_log_function = CFUNCTYPE(None, c_void_p, c_char_p)
@@ -218,6 +219,35 @@ class sonject_scene_read_params(Structure):
     ]
 
 
+class sonject_pulse_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("kind", c_uint32),
+        ("window", c_uint32),
+        ("taylor_terms", c_uint32),
+        ("taylor_sidelobe_db", c_double),
+    ]
+
+
+class sonject_sway(Structure):
+    _fields_ = [
+        ("amplitude_m", c_double),
+        ("wavelength_m", c_double),
+        ("phase_rad", c_double),
+    ]
+
+
+class sonject_motion_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("sway_count", c_uint32),
+        ("sways", sonject_sway * SWAYS_CAPACITY),
+        ("random_rms_m", c_double),
+        ("random_correlation_m", c_double),
+        ("seed", c_uint64),
+    ]
+
+
 class sonject_relief_params(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -400,7 +430,13 @@ class sonject_sonar_params(Structure):
         ("transducer_side_m", c_double),
         ("taylor_sidelobe_db", c_double),
         ("taylor_terms", c_uint32),
-        ("reserved", c_uint32),
+        ("kind", c_uint32),
+        ("aperture_rad", c_double),
+        ("array_length_m", c_double),
+        ("array_height_m", c_double),
+        ("array_heading_rad", c_double),
+        ("array_pitch_rad", c_double),
+        ("array_depression_rad", c_double),
     ]
 
 

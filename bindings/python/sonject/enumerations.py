@@ -71,6 +71,29 @@ class Estimator(enum.IntEnum):
     BRUTE_FORCE = 1
 
 
+class PulseKind(enum.IntEnum):
+    """sonject_pulse_kind: what a point looks like in range."""
+
+    GAUSSIAN = 0
+    CHIRP = 1
+    TABLE = 2
+
+
+class PulseWindow(enum.IntEnum):
+    """sonject_pulse_window: weighting of a chirp's spectrum."""
+
+    RECTANGULAR = 0
+    HANN = 1
+    TAYLOR = 2
+
+
+class PulseAxis(enum.IntEnum):
+    """sonject_pulse_axis: what the positions of a pulse's samples are."""
+
+    RANGE = 0
+    TIME = 1
+
+
 class ReflectionKind(enum.IntEnum):
     """sonject_reflection_kind: how the reflection coefficient depends on the angle."""
 
@@ -192,3 +215,10 @@ class ResponseWindow(enum.IntEnum):
     RECTANGULAR = 0
     HAMMING = 1
     TAYLOR = 2
+
+
+class SonarKind(enum.IntEnum):
+    """sonject_sonar_kind: how the image gets its resolution along the track."""
+
+    SYNTHETIC = 0
+    REAL = 1

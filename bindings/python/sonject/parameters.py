@@ -10,21 +10,24 @@ import ctypes
 import enum
 import math
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar, Mapping, Optional, Type, Union
+from typing import Any, ClassVar, Mapping, Optional, Sequence, Type, Union
 
 from . import _structures as s
 from ._library import load
 from ._parameters import Parameters, library_default
-from ._values import PathLike, fill, real_number, sized, whole_number
+from ._values import PathLike, fill, initialised, real_number, sized, whole_number
 from .enumerations import (
     ColumnRule,
     Estimator,
     ForwardRule,
     Match,
     Mode,
+    PulseKind,
+    PulseWindow,
     ResponseWindow,
     SeabedMap,
     Side,
+    SonarKind,
     TransferKind,
 )
 from .material import Material
@@ -65,11 +68,17 @@ class Sonar(Parameters):
     response_window: weighting of the aspects that form a pixel; centre_frequency_hz, bandwidth_hz:
     the range width at -3 dB is c / (2 bandwidth); altitude_m: height of the track over the mean
     seabed; along_track_resolution_m: 0 takes the image's row spacing; transducer_side_m: side of
-    the source, 0 for a point; taylor_sidelobe_db, taylor_terms: for the Taylor window only.
+    the source, 0 for a point; taylor_sidelobe_db, taylor_terms: for the Taylor window only; kind:
+    synthetic or real aperture; aperture_rad: synthetic: full angle of the aspects that shadows and
+    rough highlights are integrated over, 0 for broadside alone, negative for the response's own;
+    array_*: real: size and pose of the array.
     """
 
     _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_sonar_params
-    _choices: ClassVar[Mapping[str, Type[enum.IntEnum]]] = {"response_window": ResponseWindow}
+    _choices: ClassVar[Mapping[str, Type[enum.IntEnum]]] = {
+        "response_window": ResponseWindow,
+        "kind": SonarKind,
+    }
 
     response_window: ResponseWindow = library_default()
     centre_frequency_hz: float = library_default()
@@ -79,6 +88,65 @@ class Sonar(Parameters):
     transducer_side_m: float = library_default()
     taylor_sidelobe_db: float = library_default()
     taylor_terms: int = library_default()
+    kind: SonarKind = library_default()
+    aperture_rad: float = library_default()
+    array_length_m: float = library_default()
+    array_height_m: float = library_default()
+    array_heading_rad: float = library_default()
+    array_pitch_rad: float = library_default()
+    array_depression_rad: float = library_default()
+
+
+@dataclass(kw_only=True)
+class Pulse(Parameters):
+    """The compressed pulse.
+
+    kind: gaussian, or chirp, a linear sweep over the sonar's bandwidth (Scene.set_pulse_table takes
+    samples); window: weighting of the chirp's spectrum; taylor_sidelobe_db, taylor_terms: for the
+    Taylor window only.
+    """
+
+    _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_pulse_params
+    _choices: ClassVar[Mapping[str, Type[enum.IntEnum]]] = {
+        "kind": PulseKind,
+        "window": PulseWindow,
+    }
+
+    kind: PulseKind = library_default()
+    window: PulseWindow = library_default()
+    taylor_terms: int = library_default()
+    taylor_sidelobe_db: float = library_default()
+
+
+@dataclass(kw_only=True)
+class Motion(Parameters):
+    """Residual motion of a synthetic aperture's sonar: sway, which defocuses.
+
+    sways: up to 8 sines of amplitude_m, wavelength_m (along-track) and phase_rad, added together;
+    random_rms_m, random_correlation_m: of a Gaussian random sway; seed: of that one.
+    """
+
+    _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_motion_params
+
+    sways: Sequence[tuple[float, float, float]] = ()
+    random_rms_m: float = library_default()
+    random_correlation_m: float = library_default()
+    seed: int = library_default()
+
+    def to_structure(self) -> Any:
+        values = self._values()
+        sways = [tuple(sway) for sway in values.pop("sways")]
+        if len(sways) > s.SWAYS_CAPACITY:
+            raise ValueError(f"sways must be at most {s.SWAYS_CAPACITY}, not {len(sways)}")
+        structure = initialised(self._structure)
+        values["sway_count"] = len(sways)
+        fill(structure, values)
+        for i, sway in enumerate(sways):
+            if len(sway) != 3:
+                raise ValueError("a sway has amplitude_m, wavelength_m and phase_rad")
+            for name, value in zip(("amplitude_m", "wavelength_m", "phase_rad"), sway):
+                setattr(structure.sways[i], name, real_number(name, value))
+        return structure
 
 
 @dataclass(kw_only=True)

@@ -21,12 +21,15 @@ from ._values import (
 )
 from .context import Context, default_context
 from ._elements import Elements
+from .enumerations import PulseAxis
 from .objects import Object, Parts
 from .parameters import (
     Geometry,
     Injection,
     Medium,
+    Motion,
     Patch,
+    Pulse,
     Recording,
     Seabed,
     Surface,
@@ -42,8 +45,8 @@ Input = Union[PathLike, Recording, Uniform, Synthetic]
 class Scene(Handle):
     """What the sonar sees. Each setting is checked, and copied, when it is made.
 
-    sonar, medium, seabed, surface, geometry, injection: None for the defaults (but geometry needs at least
-    the first slant range before anything can be injected); objects: up to 250; input: an image
+    sonar, pulse, motion, medium, seabed, surface, geometry, injection: None for the defaults (but
+    geometry needs at least the first slant range before anything can be injected); objects: up to 250; input: an image
     file, Uniform or Synthetic, None where inject is given an array; transfer, patch: of an image
     file; context: None for the thread's own one.
     """
@@ -54,6 +57,8 @@ class Scene(Handle):
         self,
         *,
         sonar: Optional[Sonar] = None,
+        pulse: Optional[Pulse] = None,
+        motion: Optional[Motion] = None,
         medium: Optional[Medium] = None,
         seabed: Optional[Seabed] = None,
         surface: Optional[Surface] = None,
@@ -69,6 +74,8 @@ class Scene(Handle):
         super().__init__(context, context.make(s.sonject_scene, "sonject_scene_create", context))
         settings: list[tuple[str, Any, Type[Any]]] = [
             ("sonar", sonar, Sonar),
+            ("pulse", pulse, Pulse),
+            ("motion", motion, Motion),
             ("medium", medium, Medium),
             ("seabed", seabed, Seabed),
             ("surface", surface, Surface),
@@ -127,11 +134,62 @@ class Scene(Handle):
     def set_sonar(self, sonar: Sonar) -> None:
         self._set("sonar", sonar, Sonar)
 
+    def set_pulse(self, pulse: Pulse) -> None:
+        self._set("pulse", pulse, Pulse)
+
+    @staticmethod
+    def _parts_of(samples: Any) -> dict[str, Any]:
+        """Real and imaginary part of samples, the latter None where they are real."""
+        given = numpy.asarray(samples)
+        if given.dtype.kind != "c":
+            return {"real part of samples": given, "imaginary part of samples": None}
+        return {"real part of samples": given.real, "imaginary part of samples": given.imag}
+
+    def set_pulse_table(
+        self, samples: Any, *, ranges_m: Any = None, times_s: Any = None
+    ) -> None:
+        """Measured pulse: real or complex baseband samples of the compressed envelope.
+
+        ranges_m: slant range beyond the target, or times_s: after its echo; at least four, rising
+        through 0. The largest sample becomes 1; samples in between are cubic.
+        """
+        if (ranges_m is None) == (times_s is None):
+            raise ValueError("give either ranges_m or times_s")
+        axis = PulseAxis.RANGE if times_s is None else PulseAxis.TIME
+        name, positions = ("ranges_m", ranges_m) if times_s is None else ("times_s", times_s)
+        self._set_samples(
+            "pulse_table", {name: positions, **self._parts_of(samples)}, int(axis)
+        )
+
+    def set_cross_range_table(self, distances_m: Any, samples: Any) -> None:
+        """Measured cross-range response of a synthetic aperture, in place of the sonar's window.
+
+        samples: real or complex, at distances_m of the pixel beyond the target, along the track;
+        without any the window counts again.
+        """
+        self._set_samples(
+            "cross_range_table", {"distances_m": distances_m, **self._parts_of(samples)}
+        )
+
+    def set_motion(self, motion: Motion) -> None:
+        self._set("motion", motion, Motion)
+
+    def set_motion_table(self, along_track_m: Any, sway_m: Any) -> None:
+        """Measured residual sway along the track, positive towards the imaged side.
+
+        Linear in between, constant beyond; added to that of set_motion; without any it is taken
+        away.
+        """
+        self._set_samples("motion_table", {"along_track_m": along_track_m, "sway_m": sway_m})
+
     def set_medium(self, medium: Medium) -> None:
         self._set("medium", medium, Medium)
 
-    def _set_samples(self, name: str, columns: Mapping[str, Any]) -> None:
-        """Calls a function of columns of doubles, None for NULL, and their common length."""
+    def _set_samples(self, name: str, columns: Mapping[str, Any], *before: Any) -> None:
+        """Calls a function of columns of doubles, None for NULL, and their common length.
+
+        before: its arguments that come first.
+        """
         arrays = {
             key: None if values is None else real_numbers(key, values)
             for key, values in columns.items()
@@ -144,7 +202,7 @@ class Scene(Handle):
         pointers = [
             None if array is None else array.ctypes.data_as(double) for array in arrays.values()
         ]
-        self._context.call("sonject_scene_set_" + name, self, *pointers, leading.size)
+        self._context.call("sonject_scene_set_" + name, self, *before, *pointers, leading.size)
 
     def set_water_layers(
         self, bottoms_m: Any, sound_speeds_mps: Any, densities: Any = None

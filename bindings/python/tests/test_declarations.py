@@ -35,6 +35,10 @@ ENUMERATIONS = {
     "sonject_response_window": (enumerations.ResponseWindow, "SONJECT_WINDOW_"),
     "sonject_series_form": (enumerations.SeriesForm, "SONJECT_SERIES_"),
     "sonject_series_pulse": (enumerations.SeriesPulse, "SONJECT_SERIES_"),
+    "sonject_pulse_kind": (enumerations.PulseKind, "SONJECT_PULSE_"),
+    "sonject_pulse_window": (enumerations.PulseWindow, "SONJECT_PULSE_"),
+    "sonject_pulse_axis": (enumerations.PulseAxis, "SONJECT_PULSE_AXIS_"),
+    "sonject_sonar_kind": (enumerations.SonarKind, "SONJECT_SONAR_"),
 }
 
 
@@ -83,6 +87,7 @@ def test_name_capacity_and_version_are_the_headers():
     numbers = dict(re.findall(r"#define SONJECT_(VERSION_\w+|\w+_CAPACITY) (\d+)", text))
     assert int(numbers["NAME_CAPACITY"]) == _structures.NAME_CAPACITY
     assert int(numbers["CUTS_CAPACITY"]) == _structures.CUTS_CAPACITY
+    assert int(numbers["SWAYS_CAPACITY"]) == _structures.SWAYS_CAPACITY
     version = tuple(int(numbers["VERSION_" + part]) for part in ("MAJOR", "MINOR", "PATCH"))
     assert version == _library.VERSION
 

@@ -1,0 +1,276 @@
+/* What shapes the point response beside the sonar's own numbers: pulse, measured cross-range
+ * response, residual motion. Their tables are files of text with named columns. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "io/number_table.h"
+#include "io/scene_fields.h"
+
+#define TABLE_BYTES_MAX (16 * 1024 * 1024)
+
+static bool is_given(const struct tree_node *node, const char *key)
+{
+    return tree_find(node, key) != NULL;
+}
+
+/* The table of a file that the section's `key` names. */
+static sonject_status read_table(struct reader *reader, const struct tree_node *node,
+                                 const char *key, const char *path,
+                                 const struct table_format *format, struct number_table *table)
+{
+    char excerpt[400];
+    if (!file_exists(path))
+        return refuse_key(reader, node, key, "there is no file %s; check its name",
+                          text_excerpt(excerpt, sizeof excerpt, path));
+    return number_table_read(reader->report, path, format, table);
+}
+
+enum {
+    POSITION,
+    TIME,
+    REAL_PART,
+    IMAGINARY_PART
+};
+
+/* Samples of a response, checked, into the scene. */
+static sonject_status take_response(struct reader *reader, struct number_table *table,
+                                    struct response_table *response)
+{
+    const int position = table->values[TIME] ? TIME : POSITION;
+    struct response_fault fault;
+    if (!response_samples_are_good(table->values[position], table->values[REAL_PART],
+                                   table->values[IMAGINARY_PART], table->count, &fault))
+        return number_table_refuse(table, reader->report, fault.sample, (size_t)position,
+                                   fault.what);
+    return response_table_set(response, reader->report, table->values[position],
+                              table->values[REAL_PART], table->values[IMAGINARY_PART], table->count,
+                              position == TIME);
+}
+
+static sonject_status read_response_file(struct reader *reader, const struct tree_node *node,
+                                         const char *key, const char *path,
+                                         const struct table_format *format,
+                                         struct response_table *response)
+{
+    struct number_table table;
+    sonject_status status = read_table(reader, node, key, path, format, &table);
+    if (status != SONJECT_OK)
+        return status;
+    status = take_response(reader, &table, response);
+    number_table_clear(&table);
+    return status;
+}
+
+/* A pulse as its section is read. */
+struct pulse_text {
+    sonject_pulse_params params;
+    char *file; /* owned */
+};
+
+static sonject_status finish_pulse_taylor(struct reader *reader, const struct tree_node *node,
+                                          void *structure)
+{
+    struct pulse_text *text = structure;
+    (void)reader;
+    (void)node;
+    text->params.window = SONJECT_PULSE_TAYLOR;
+    return SONJECT_OK;
+}
+
+static sonject_status finish_pulse(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    static const struct table_format format = {
+        {"range_m", "time_s", "real", "imaginary"}, 1, RESPONSE_SAMPLES_MAX, TABLE_BYTES_MAX};
+    struct pulse_text *text = structure;
+    struct report report = {{0}, NULL, NULL};
+    const char *key = "";
+    const bool is_table = text->params.kind == SONJECT_PULSE_TABLE;
+    if (is_given(node, "window") && text->params.kind != SONJECT_PULSE_CHIRP)
+        return refuse_key(reader, node, "window", "only a chirp has one; set kind: chirp");
+    if (is_table != is_given(node, "file"))
+        return refuse_key(reader, node, "file",
+                          is_table ? "missing; the table is read from it"
+                                   : "belongs to kind: table; remove it");
+    if (check_pulse(&text->params, &report, &key) != SONJECT_OK)
+        return place_check(reader, node, key, &report);
+    if (!is_table)
+        return SONJECT_OK;
+    return read_response_file(reader, node, "file", text->file, &format,
+                              &reader->scene->pulse_table);
+}
+
+#define STRUCTURE struct pulse_text
+static const struct field pulse_taylor_fields[] = {
+    {"sidelobes", "depth of the side lobes",
+     QUANTITY(STRUCTURE, params.taylor_sidelobe_db, QUANTITY_DECIBEL), REQUIRED},
+    {"terms", "side lobes of equal height", COUNT32(STRUCTURE, params.taylor_terms, UINT32_MAX),
+     REQUIRED},
+};
+static const struct section pulse_taylor_section = {pulse_taylor_fields, COUNT(pulse_taylor_fields),
+                                                    finish_pulse_taylor};
+
+static const struct field pulse_window_fields[] = {
+    {"taylor", "sidelobes and terms of a Taylor window", SAME(pulse_taylor_section), REQUIRED},
+};
+static const struct section pulse_window_section = {pulse_window_fields, COUNT(pulse_window_fields),
+                                                    NULL};
+
+static const struct field pulse_fields[] = {
+    {"kind", "gaussian, a compressed linear sweep, or a table",
+     WORD(STRUCTURE, params.kind) = {[SONJECT_PULSE_GAUSSIAN] = "gaussian",
+                                     [SONJECT_PULSE_CHIRP] = "chirp",
+                                     [SONJECT_PULSE_TABLE] = "table"},
+     REQUIRED},
+    {"window", "of a chirp's spectrum: rectangular, hann or {taylor: {sidelobes: , terms: }}",
+     WORD(STRUCTURE, params.window) =
+         {[SONJECT_PULSE_RECTANGULAR] = "rectangular", [SONJECT_PULSE_HANN] = "hann"},
+     .section = &pulse_window_section},
+    {"file", "table with columns range_m (beyond the target) or time_s, real, and imaginary",
+     .kind = FIELD_PATH, .offset = offsetof(STRUCTURE, file)},
+};
+const struct section pulse_section = {pulse_fields, COUNT(pulse_fields), finish_pulse};
+#undef STRUCTURE
+
+sonject_status read_pulse(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    struct pulse_text text;
+    (void)structure;
+    memset(&text, 0, sizeof text);
+    sonject_pulse_params_init(&text.params);
+    const sonject_status status = read_section(reader, &pulse_section, node, &text);
+    free(text.file);
+    if (status == SONJECT_OK)
+        reader->scene->pulse = text.params;
+    return status;
+}
+
+sonject_status read_cross_range(struct reader *reader, const struct tree_node *node,
+                                void *structure)
+{
+    static const struct table_format format = {
+        {"along_track_m", NULL, "real", "imaginary"}, 1, RESPONSE_SAMPLES_MAX, TABLE_BYTES_MAX};
+    char *path = NULL;
+    (void)structure;
+    sonject_status status = read_path(reader, node, &path);
+    if (status == SONJECT_OK && !file_exists(path)) {
+        char excerpt[400];
+        status = refuse_value(reader, node, "there is no file %s; check its name",
+                              text_excerpt(excerpt, sizeof excerpt, path));
+    } else if (status == SONJECT_OK) {
+        status =
+            read_response_file(reader, node, "", path, &format, &reader->scene->cross_range_table);
+    }
+    free(path);
+    return status;
+}
+
+static sonject_status finish_sway(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    struct report report = {{0}, NULL, NULL};
+    sonject_motion_params motion;
+    const char *key = "";
+    sonject_motion_params_init(&motion);
+    motion.sways[0] = *(const sonject_sway *)structure;
+    motion.sway_count = 1;
+    if (check_motion(&motion, &report, &key) != SONJECT_OK)
+        return place_check(reader, node, key, &report);
+    return SONJECT_OK;
+}
+
+#define STRUCTURE sonject_sway
+static const struct field sway_fields[] = {
+    {"amplitude", "of the sine", QUANTITY(STRUCTURE, amplitude_m, QUANTITY_LENGTH), REQUIRED},
+    {"wavelength", "of the sine, along-track", QUANTITY(STRUCTURE, wavelength_m, QUANTITY_LENGTH),
+     REQUIRED},
+    {"phase", "of the sine at along-track 0", QUANTITY(STRUCTURE, phase_rad, QUANTITY_ANGLE)},
+};
+static const struct section sway_section = {sway_fields, COUNT(sway_fields), finish_sway};
+#undef STRUCTURE
+
+static sonject_status read_sways(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    sonject_motion_params *motion = structure;
+    sonject_status status = SONJECT_OK;
+    if (node->kind != TREE_LIST)
+        return refuse_value(reader, node, "must be a list; start each sine with '- '");
+    if (node->count > SONJECT_SWAYS_CAPACITY)
+        return refuse_value(reader, node, "has %zu entries; at most %d are possible", node->count,
+                            SONJECT_SWAYS_CAPACITY);
+    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
+        const size_t before = key_path_add_index(&reader->path, i);
+        status = read_section(reader, &sway_section, &node->entries[i].value, &motion->sways[i]);
+        if (status == SONJECT_OK)
+            motion->sway_count = (uint32_t)i + 1;
+        key_path_shorten(&reader->path, before);
+    }
+    return status;
+}
+
+static sonject_status read_motion_file(struct reader *reader, const struct tree_node *node,
+                                       void *structure)
+{
+    static const struct table_format format = {
+        {"along_track_m", NULL, "sway_m", NULL}, 1, MOTION_SAMPLES_MAX, TABLE_BYTES_MAX};
+    struct number_table table;
+    char *path = NULL;
+    char excerpt[400];
+    size_t sample;
+    const char *what;
+    (void)structure;
+    sonject_status status = read_path(reader, node, &path);
+    if (status == SONJECT_OK && !file_exists(path))
+        status = refuse_value(reader, node, "there is no file %s; check its name",
+                              text_excerpt(excerpt, sizeof excerpt, path));
+    if (status == SONJECT_OK)
+        status = number_table_read(reader->report, path, &format, &table);
+    free(path);
+    if (status != SONJECT_OK)
+        return status;
+    if (!motion_samples_are_good(table.values[0], table.values[2], table.count, &sample, &what))
+        status = number_table_refuse(&table, reader->report, sample, 0, what);
+    else
+        status = aperture_motion_set_table(&reader->scene->motion, reader->report, table.values[0],
+                                           table.values[2], table.count);
+    number_table_clear(&table);
+    return status;
+}
+
+static sonject_status finish_motion(struct reader *reader, const struct tree_node *node,
+                                    void *structure)
+{
+    struct report report = {{0}, NULL, NULL};
+    const char *key = "";
+    if (check_motion(structure, &report, &key) != SONJECT_OK)
+        return place_check(reader, node, key, &report);
+    return SONJECT_OK;
+}
+
+#define STRUCTURE sonject_motion_params
+static const struct field random_fields[] = {
+    {"rms", "of the sway", QUANTITY(STRUCTURE, random_rms_m, QUANTITY_LENGTH), REQUIRED},
+    {"correlation", "length, along-track",
+     QUANTITY(STRUCTURE, random_correlation_m, QUANTITY_LENGTH), REQUIRED},
+    {"seed", "of the random sway", COUNT64(STRUCTURE, seed, UINT64_MAX)},
+};
+static const struct section random_section = {random_fields, COUNT(random_fields), NULL};
+
+static const struct field motion_fields[] = {
+    {"sway", "list of sines, across the track", .kind = FIELD_SPECIAL, .section = &sway_section,
+     .is_list = true, .read = read_sways},
+    {"random", "sway of Gaussian autocorrelation", SAME(random_section)},
+    {"file", "table with columns along_track_m and sway_m", .kind = FIELD_SPECIAL,
+     .read = read_motion_file, .unit = "file name"},
+};
+const struct section motion_section = {motion_fields, COUNT(motion_fields), finish_motion};
+#undef STRUCTURE
+
+sonject_status read_motion(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    (void)structure;
+    return read_section(reader, &motion_section, node, &reader->scene->motion.params);
+}

@@ -1,0 +1,32 @@
+/* The cross-range response W as the image has it: of a synthetic aperture the window's, or a
+ * measured one, alike at all ranges; of a real one the array's two-way beam. Residual motion, which
+ * makes it differ from row to row: scene/motion_response.h. */
+#ifndef SONJECT_SCENE_CROSS_RANGE_H
+#define SONJECT_SCENE_CROSS_RANGE_H
+
+#include <stdbool.h>
+
+#include "scene/patch_view.h"
+#include "scene/point_response.h"
+
+/* Whether W is one real function at all ranges and rows: along_track_response. */
+bool cross_range_is_plain(const struct point_response *response);
+
+/* W of a pixel `distance_m` farther along the track than the point, at an apparent slant range;
+ * without residual motion. */
+struct complex_number cross_range_response(const struct point_response *response, double range_m,
+                                           double distance_m);
+
+/* Integral of |W|^2 over distance, m. Motion leaves it as it is (Parseval). */
+double cross_range_energy_width(const struct point_response *response, double range_m);
+
+/* Half width in m beyond which less than `share` of that lies. */
+double cross_range_energy_reach(const struct point_response *response, double range_m,
+                                double share);
+
+/* Whether echoes stay within their range cell over a real aperture's beam, out to the patch's last
+ * column. Errors: INPUT. */
+sonject_status cross_range_check(const struct point_response *response, struct report *report,
+                                 const struct patch_view *view);
+
+#endif

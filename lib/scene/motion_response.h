@@ -1,0 +1,40 @@
+/* The cross-range response of a synthetic aperture whose sonar did not keep to the track: complex,
+ * and another one for each track position. Formulas: kernels/MATH.md, "Point response". */
+#ifndef SONJECT_SCENE_MOTION_RESPONSE_H
+#define SONJECT_SCENE_MOTION_RESPONSE_H
+
+#include "base/report.h"
+#include "scene/patch_view.h"
+#include "scene/point_response.h"
+
+/* Work of one grid of distances. */
+struct motion_response {
+    const struct point_response *response; /* borrowed */
+    const struct patch_view *view;         /* borrowed */
+    double strip_m, offset_m;              /* distances are j strip_m + offset_m */
+    int reach;                             /* j from -reach to reach */
+    size_t aspects;                        /* of the transform, a power of two */
+    double *root_real, *root_imaginary, *real_part, *imaginary_part; /* owned */
+    double first_sway_m, sway_step_m; /* along-track positions of the table that follows */
+    double *sway_m;                   /* owned */
+    size_t sways;
+};
+
+/* Prepares responses of rows of the view at the distances. To be given to motion_response_end on
+ * success. Errors: MEMORY. */
+sonject_status motion_response_begin(struct motion_response *motion, struct report *report,
+                                     const struct point_response *response,
+                                     const struct patch_view *view, double strip_m, double offset_m,
+                                     int reach);
+void motion_response_end(struct motion_response *motion);
+
+/* W of pixels of a row, at the 2 reach + 1 distances. */
+void motion_response_row(struct motion_response *motion, double row, double *real_part,
+                         double *imaginary_part);
+
+/* How much farther than the window's response the energy of the moved one reaches, m: over nine
+ * rows of the view, to the shares that margins and taps leave out. Errors: MEMORY. */
+sonject_status motion_response_spread(struct report *report, const struct point_response *response,
+                                      const struct patch_view *view, double *spread_m);
+
+#endif

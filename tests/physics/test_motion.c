@@ -1,0 +1,361 @@
+/* Images of a synthetic aperture whose sonar left its track, and those of a measured cross-range
+ * response. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <complex.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "bench.h"
+#include "scene/cross_range.h"
+#include "scene/motion_response.h"
+
+#define ROWS       161
+#define COLUMNS    41
+#define SPACING    0.0125
+#define RESOLUTION 0.05
+#define RANGE      50.0
+#define MIDDLE     80
+#define LEVEL_DB   0.2
+
+static void open_aperture(struct bench *bench)
+{
+    bench_open(bench, ROWS, COLUMNS, RANGE);
+    bench->scene.geometry.row_spacing_m = SPACING;
+    bench->scene.sonar.along_track_resolution_m = RESOLUTION;
+    bench->scene.sonar.response_window = SONJECT_WINDOW_HAMMING; /* lobes at -43 dB */
+    bench_move(bench, RANGE);
+    sonject_object_params *object = bench_add(bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.002);
+    object->burial_m = -0.1;
+    object->position_kind = SONJECT_POSITION_METRES;
+    object->position_along = MIDDLE * SPACING;
+    object->position_range = RANGE;
+    bench->scene.injection.ray_scale = 4.0;
+    bench_ready(bench);
+}
+
+/* The along-track cut through the ball over its value on the straight track. */
+static void cut_of(struct bench *bench, double complex *cut)
+{
+    static double complex straight;
+    struct echoes echoes;
+    bench_ready(bench);
+    bench_echoes(bench, NULL, SEABED_FIELD_NONE, &echoes);
+    size_t brightest = 0;
+    for (size_t column = 0; column < COLUMNS; column++) {
+        double here = 0.0;
+        double best = 0.0;
+        for (size_t row = 0; row < ROWS; row++) {
+            here += pow(echoes.target_real[row * COLUMNS + column], 2.0) +
+                    pow(echoes.target_imaginary[row * COLUMNS + column], 2.0);
+            best += pow(echoes.target_real[row * COLUMNS + brightest], 2.0) +
+                    pow(echoes.target_imaginary[row * COLUMNS + brightest], 2.0);
+        }
+        if (here > best)
+            brightest = column;
+    }
+    for (size_t row = 0; row < ROWS; row++) {
+        const size_t i = row * COLUMNS + brightest;
+        cut[row] = echoes.target_real[i] + I * (double)echoes.target_imaginary[i];
+    }
+    if (aperture_motion_is_still(&bench->scene.motion) && bench->scene.cross_range_table.count == 0)
+        straight = cut[MIDDLE];
+    assert_true(cabs(straight) > 0.0);
+    for (size_t row = 0; row < ROWS; row++)
+        cut[row] /= straight;
+    echoes_clear(&echoes);
+}
+
+static double cosine_of_grazing(const struct bench *bench)
+{
+    const struct patch_view *view = &bench->tracer.view;
+    return cos(view_grazing(view, view_apparent_range(view, 0.5 * (COLUMNS - 1))));
+}
+
+/* Height and place of the highest point of a parabola through the largest of some rows. */
+static double peak_between(const double complex *cut, size_t first, size_t last, double *row)
+{
+    size_t top = first;
+    for (size_t i = first; i <= last; i++)
+        if (cabs(cut[i]) > cabs(cut[top]))
+            top = i;
+    const double a = cabs(cut[top - 1]);
+    const double b = cabs(cut[top]);
+    const double c = cabs(cut[top + 1]);
+    const double shift = 0.5 * (a - c) / (a - 2.0 * b + c);
+    *row = (double)top + shift;
+    return b - 0.25 * (a - c) * shift;
+}
+
+/* exp(i beta sin) is the sum of Bessel functions J_m(beta) of its harmonics; each moves W by
+ * wavelength range / (2 wavelength of the sway). */
+static void test_paired_echoes(void **unused)
+{
+    struct bench bench;
+    double complex cut[ROWS];
+    (void)unused;
+    open_aperture(&bench);
+    /* lobes at -43 dB would move an echo at -20 dB by 0.13 resolutions, at -70 dB by 0.006 */
+    bench.scene.sonar.response_window = SONJECT_WINDOW_TAYLOR;
+    bench.scene.sonar.taylor_sidelobe_db = 70.0;
+    bench.scene.sonar.taylor_terms = 10;
+    cut_of(&bench, cut);
+    const double beta = 0.2; /* J0 0.99002497, J1 0.09950083 */
+    const double away = 1.5;
+    const double amplitude = beta / (2.0 * bench_wavenumber(&bench) * cosine_of_grazing(&bench));
+    print_message("amplitude of the sway: %.3g m\n", amplitude);
+    bench.scene.motion.params.sway_count = 1;
+    bench.scene.motion.params.sways[0].amplitude_m = amplitude;
+    bench.scene.motion.params.sways[0].wavelength_m = away;
+    bench.scene.motion.params.sways[0].phase_rad = 0.7;
+    cut_of(&bench, cut);
+    const double shift =
+        bench.tracer.view.wavelength_m * bench.tracer.response.motion_range_m / (2.0 * away);
+    double row;
+    const double main_peak = peak_between(cut, MIDDLE - 4, MIDDLE + 4, &row);
+    expect_close("main lobe over J0, dB", decibels_of_amplitude(main_peak / 0.99002497), 0.0,
+                 LEVEL_DB);
+    for (int side = -1; side <= 1; side += 2) {
+        const double expected = MIDDLE + side * shift / SPACING;
+        const double peak =
+            peak_between(cut, (size_t)(expected - 3.0), (size_t)(expected + 3.0), &row);
+        /* the tangent of an aspect is up to 0.3 % above the sine */
+        expect_close("place of the echo, resolutions", (row - expected) * SPACING / RESOLUTION, 0.0,
+                     0.02);
+        expect_close("level of the echo over J1, dB", decibels_of_amplitude(peak / 0.09950083), 0.0,
+                     LEVEL_DB);
+    }
+    bench_close(&bench);
+}
+
+/* W of a row by its definition, over the straight one's peak: the mean over aspects. */
+static double complex moved_response(const struct bench *bench, double row, double distance,
+                                     double (*sway)(double))
+{
+    enum {
+        STEPS = 4000
+    };
+    const double k = bench_wavenumber(bench);
+    const double steepest = PI / k / (2.0 * RESOLUTION); /* wavelength / 4 resolution */
+    const double range = bench->tracer.response.motion_range_m;
+    double complex sum = 0.0;
+    double total = 0.0;
+    for (int i = 0; i < STEPS; i++) {
+        const double v = (i + 0.5) / STEPS - 0.5;
+        const double sine = 2.0 * v * steepest;
+        const double weight = 0.54 + 0.46 * cos(2.0 * PI * v);
+        const double place = row * SPACING + range * tan(asin(sine));
+        const double error = -2.0 * k * cosine_of_grazing(bench) * sway(place);
+        sum += weight * cexp(I * (error + 2.0 * k * sine * distance));
+        total += weight;
+    }
+    return sum / total;
+}
+
+static double parabola(double x)
+{
+    return 0.6e-3 * (x - 1.3) * (x - 1.3);
+}
+
+static void give_sway(struct bench *bench, double (*sway)(double))
+{
+    enum {
+        COUNT = 2001
+    };
+    static double x[COUNT], y[COUNT];
+    for (int i = 0; i < COUNT; i++) {
+        x[i] = -8.0 + 0.01 * i;
+        y[i] = sway(x[i]);
+    }
+    assert_int_equal(aperture_motion_set_table(&bench->scene.motion, &bench->report, x, y, COUNT),
+                     SONJECT_OK);
+}
+
+static void test_quadratic_error(void **unused)
+{
+    struct bench bench;
+    double complex cut[ROWS];
+    (void)unused;
+    open_aperture(&bench);
+    cut_of(&bench, cut);
+    give_sway(&bench, parabola);
+    cut_of(&bench, cut);
+    double worst = 0.0;
+    double brightest = 0.0;
+    for (int row = 0; row < ROWS; row++) {
+        const double complex expected =
+            moved_response(&bench, row, (row - MIDDLE) * SPACING, parabola);
+        worst = fmax(worst, cabs(cut[row] - expected));
+        brightest = fmax(brightest, cabs(cut[row]));
+    }
+    print_message("largest amplitude %.3f of the straight track's\n", brightest);
+    assert_true(brightest < 0.7);
+    expect_below("cut less the transform", worst, 0.01); /* two strips of 3 mm hold the ball */
+    bench_close(&bench);
+}
+
+static double wander(double x)
+{
+    return 1e-3 * sin(1.7 * x) + 4e-4 * cos(5.1 * x + 0.3);
+}
+
+/* Neither the energy of a row's response nor the seabed's level changes; starboard is port,
+ * reversed. */
+static void test_energy_stays(void **unused)
+{
+    struct bench bench;
+    struct motion_response motion;
+    struct echoes echoes;
+    enum {
+        REACH = 3000
+    };
+    static double real_part[2 * REACH + 1], imaginary_part[2 * REACH + 1];
+    (void)unused;
+    open_aperture(&bench);
+    give_sway(&bench, wander);
+    bench.scene.motion.params.random_rms_m = 1e-3;
+    bench_ready(&bench);
+    print_message("energy reaches %.3g m farther\n", bench.tracer.response.motion_spread_m);
+    assert_int_equal(motion_response_begin(&motion, &bench.report, &bench.tracer.response,
+                                           &bench.tracer.view, SPACING, 0.0, REACH),
+                     SONJECT_OK);
+    for (int row = 0; row < ROWS; row += 40) {
+        double energy = 0.0;
+        motion_response_row(&motion, row, real_part, imaginary_part);
+        for (int i = 0; i < 2 * REACH + 1; i++)
+            energy +=
+                SPACING * (real_part[i] * real_part[i] + imaginary_part[i] * imaginary_part[i]);
+        expect_close("energy of a row's response",
+                     energy / along_track_energy_width(&bench.tracer.response), 1.0, 1e-3);
+    }
+    motion_response_end(&motion);
+    bench_echoes(&bench, NULL, SEABED_FIELD_SPECKLE, &echoes);
+    double ratio = 0.0;
+    for (size_t i = 0; i < ROWS * COLUMNS; i++)
+        ratio += echoes.seabed_energy[i] /
+                 seabed_cell_energy(&bench.tracer.view, &bench.tracer.response,
+                                    bench.scene.seabed.lambert,
+                                    view_apparent_range(&bench.tracer.view, (double)(i % COLUMNS)));
+    /* taps and margins leave out 0.6 % */
+    expect_close("mean energy of the seabed, dB", decibels_of_energy(ratio / (ROWS * COLUMNS)), 0.0,
+                 0.04);
+    echoes_clear(&echoes);
+    bench_close(&bench);
+}
+
+static double wander_of_starboard(double x)
+{
+    return wander(160 * SPACING - x);
+}
+
+static void test_starboard(void **unused)
+{
+    double complex cuts[2][ROWS];
+    (void)unused;
+    for (int side = 0; side < 2; side++) {
+        struct bench bench;
+        open_aperture(&bench);
+        bench.scene.geometry.side = side ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
+        cut_of(&bench, cuts[side]);
+        give_sway(&bench, side ? wander_of_starboard : wander);
+        cut_of(&bench, cuts[side]);
+        bench_close(&bench);
+    }
+    double worst = 0.0;
+    for (int row = 0; row < ROWS; row++)
+        worst = fmax(worst, cabs(cuts[0][row] - cuts[1][row]));
+    expect_below("port less starboard", worst, 1e-3);
+}
+
+/* The random sway's autocorrelation, by an average over seeds. */
+static void test_random_sway(void **unused)
+{
+    enum {
+        SEEDS = 4000
+    };
+    double sums[3] = {0.0, 0.0, 0.0};
+    struct aperture_motion motion;
+    (void)unused;
+    memset(&motion, 0, sizeof motion);
+    sonject_motion_params_init(&motion.params);
+    motion.params.random_rms_m = 2.0;
+    motion.params.random_correlation_m = 3.0;
+    for (uint64_t seed = 0; seed < SEEDS; seed++) {
+        double sway[3];
+        motion.params.seed = seed;
+        aperture_motion_sway(&motion, 10.0, 3.0, 3, sway);
+        for (int i = 0; i < 3; i++)
+            sums[i] += sway[0] * sway[i] / 4.0 / SEEDS;
+    }
+    /* a product of unit normal deviates has variance 1 + correlation^2 */
+    for (int i = 0; i < 3; i++) {
+        const double expected = exp(-0.5 * i * i);
+        expect_close("autocorrelation", sums[i], expected,
+                     4.0 * sqrt((1.0 + expected * expected) / SEEDS));
+    }
+}
+
+/* A response that is neither even nor real, as a table. */
+static double complex measured(double x)
+{
+    const double y = x / RESOLUTION;
+    return exp(-0.5 * (y - 0.2) * (y - 0.2)) * cexp(I * (1.0 + 0.8 * y + 0.3 * y * y));
+}
+
+static void test_measured_response(void **unused)
+{
+    enum {
+        SIDE = 60
+    };
+    struct bench bench;
+    struct echoes echoes;
+    double complex cut[ROWS];
+    double x[2 * SIDE + 1], real_part[2 * SIDE + 1], imaginary_part[2 * SIDE + 1];
+    (void)unused;
+    for (int i = -SIDE; i <= SIDE; i++) {
+        x[i + SIDE] = i * RESOLUTION / 10.0;
+        real_part[i + SIDE] = 5.0 * creal(measured(x[i + SIDE]));
+        imaginary_part[i + SIDE] = 5.0 * cimag(measured(x[i + SIDE]));
+    }
+    open_aperture(&bench);
+    cut_of(&bench, cut);
+    assert_int_equal(response_table_set(&bench.scene.cross_range_table, &bench.report, x, real_part,
+                                        imaginary_part, 2 * SIDE + 1, false),
+                     SONJECT_OK);
+    cut_of(&bench, cut);
+    double worst = 0.0;
+    const double complex peak = measured(0.2 * RESOLUTION);
+    for (int row = 0; row < ROWS; row++)
+        worst = fmax(worst, cabs(cut[row] - measured((row - MIDDLE) * SPACING) / peak));
+    expect_below("cut less the table", worst, 0.02); /* strips of 3 mm, a cubic of ten samples */
+    expect_close("energy width, resolutions",
+                 cross_range_energy_width(&bench.tracer.response, RANGE) / RESOLUTION, sqrt(PI),
+                 1e-3);
+    bench_echoes(&bench, NULL, SEABED_FIELD_SPECKLE, &echoes);
+    double ratio = 0.0;
+    for (size_t i = 0; i < ROWS * COLUMNS; i++)
+        ratio += echoes.seabed_energy[i] /
+                 seabed_cell_energy(&bench.tracer.view, &bench.tracer.response,
+                                    bench.scene.seabed.lambert,
+                                    view_apparent_range(&bench.tracer.view, (double)(i % COLUMNS)));
+    expect_close("mean energy of the seabed, dB", decibels_of_energy(ratio / (ROWS * COLUMNS)), 0.0,
+                 0.04);
+    echoes_clear(&echoes);
+    bench_close(&bench);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_paired_echoes), cmocka_unit_test(test_quadratic_error),
+        cmocka_unit_test(test_energy_stays),  cmocka_unit_test(test_starboard),
+        cmocka_unit_test(test_random_sway),   cmocka_unit_test(test_measured_response),
+    };
+    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
+}

@@ -1,0 +1,248 @@
+/* Measured responses and motion from callers and files: what is taken, and what is refused in one
+ * line. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <string.h>
+
+#include <sonject/sonject.h>
+
+#include "scene_folder.h"
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+#define BASE                                                                                       \
+    "sonject: 1\n"                                                                                 \
+    "input:\n"                                                                                     \
+    "  uniform: {rows: 4, columns: 5}\n"                                                           \
+    "  geometry: {row_spacing: 2.5 cm, column_spacing: 2.5 cm, first_slant_range: 40}\n"           \
+    "sonar:\n"                                                                                     \
+    "  frequency: 100e3\n"                                                                         \
+    "  bandwidth: 30e3\n"                                                                          \
+    "  altitude: 10\n"
+
+/* The table of a file next to the scene's; gives its path. */
+static void write_table(struct scene_folder *folder, const char *text, char *path, size_t capacity)
+{
+    snprintf(path, capacity, "%s/table.csv", folder->folder);
+    FILE *file = fopen(path, "wb");
+    assert_non_null(file);
+    assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
+    assert_int_equal(fclose(file), 0);
+}
+
+static void expect_refused_table(struct scene_folder *folder, const char *key, const char *table,
+                                 const char *message)
+{
+    char scene[1200], path[SCENE_FOLDER_CAPACITY + 16], expected[SCENE_FOLDER_CAPACITY + 300];
+    write_table(folder, table, path, sizeof path);
+    snprintf(scene, sizeof scene, BASE "  %s\n", key);
+    write_scene(folder, scene, strlen(scene));
+    const sonject_status status = read_scene(folder, NULL, 0);
+    (void)unlink(path);
+    assert_int_equal(status, SONJECT_ERROR_INPUT);
+    snprintf(expected, sizeof expected, "%s%s", path, message);
+    assert_string_equal(folder->report.message, expected);
+}
+
+#define PULSE  "pulse: {kind: table, file: table.csv}"
+#define CROSS  "measured_response: table.csv"
+#define MOTION "motion: {file: table.csv}"
+
+static void test_hostile_tables(void **state)
+{
+    static const struct {
+        const char *key, *table, *message;
+    } cases[] = {
+        {PULSE, "", ": there is nothing in it"},
+        {PULSE, "range_m,time_s,real\n", ":1: both range_m and time_s are there; rename one"},
+        {PULSE, "range,real\n",
+         ":1: this line must name the columns, among them range_m or time_s, and real"},
+        {PULSE, "range_m,real\n-1,0\n0,1\n1,0\n",
+         ":4: range_m: must have 4...65536 samples, not 3"},
+        {PULSE, "range_m,real\n-1,0\n0,one\n", ":3: real: 'one' is not a number"},
+        {PULSE, "range_m,real\n-1,0\n0,nan\n", ":3: real: 'nan' is not a number"},
+        {PULSE, "range_m,real\n-1,0\n0,1\n0,1\n1,0\n",
+         ":4: range_m: its position must be above that of the sample before"},
+        {PULSE, "range_m,real\n-1,0\n0,inf\n1,1\n2,0\n",
+         ":3: range_m: its value must be a number of at most 1e15"},
+        {PULSE, "time_s,real,imaginary\n-1,0,0\n0,1,-1e300\n1,1,0\n2,0,0\n",
+         ":3: time_s: its value must be a number of at most 1e15"},
+        {PULSE, "range_m,real\n-1,0\n0,0\n1,0\n2,0\n",
+         ":5: range_m: must have a sample whose value is not 0"},
+        {PULSE, "range_m,real\n0,0\n1,1\n2,0\n3,0\n",
+         ":5: range_m: must reach from below position 0, the target's, to above it"},
+        {PULSE, "range_m,real\n-1e7,0\n1,1\n2,0\n3,0\n",
+         ":2: range_m: its position must be within +-1000000"},
+        {PULSE, "range_m,real\n-1,0,3\n", ":2: has 3 columns, but 2 have names"},
+        {CROSS, "range_m,real\n",
+         ":1: this line must name the columns, among them along_track_m, and real"},
+        {CROSS, "along_track_m,real\n-1,0\n1,0\n0,1\n2,0\n",
+         ":4: along_track_m: its position must be above that of the sample before"},
+        {MOTION, "along_track_m\n",
+         ":1: this line must name the columns, among them along_track_m, and sway_m"},
+        {MOTION, "along_track_m,sway_m\n1,2\n", ":2: along_track_m: must have 2...65536 samples"},
+        {MOTION, "along_track_m,sway_m\n1,0\n2,2000\n",
+         ":3: along_track_m: its sway must be within +-1000 m"},
+        {MOTION, "along_track_m,sway_m\n1,0\n1,0\n",
+         ":3: along_track_m: its position must be above that of the sample before"},
+    };
+    for (size_t i = 0; i < COUNT(cases); i++)
+        expect_refused_table(*state, cases[i].key, cases[i].table, cases[i].message);
+}
+
+static void test_hostile_keys(void **state)
+{
+    static const struct {
+        const char *key, *message;
+    } cases[] = {
+        {"pulse: chirp", ":9:10: sonar.pulse: must be a section of 'key: value' lines"},
+        {"pulse: {window: hann}", ":9:10: sonar.pulse.kind: missing; add it"},
+        {"pulse: {kind: gaussian, window: hann}",
+         ":9:35: sonar.pulse.window: only a chirp has one; set kind: chirp"},
+        {"pulse: {kind: table}", ":9:10: sonar.pulse.file: missing; the table is read from it"},
+        {"pulse: {kind: chirp, file: a.csv}",
+         ":9:30: sonar.pulse.file: belongs to kind: table; remove it"},
+        {"pulse: {kind: chirp, window: {taylor: {sidelobes: 0, terms: 5}}}",
+         "sonar.pulse.window.taylor.sidelobes: must be 1...120 dB, not 0"},
+        {"motion: {sway: 3}",
+         ":9:18: sonar.motion.sway: must be a list; start each sine with '- '"},
+        {"motion: {sway: [{amplitude: 1, wavelength: 0}]}",
+         "sonar.motion.sway[0].wavelength: must be 0.1...1e+06 m, not 0"},
+        {"motion: {random: {rms: -1, correlation: 1}}",
+         "sonar.motion.random.rms: must be 0...1000 m, not -1"},
+        {"motion: {file: nothing.csv}", "there is no file"},
+    };
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        struct scene_folder *folder = *state;
+        char scene[1200];
+        snprintf(scene, sizeof scene, BASE "  %s\n", cases[i].key);
+        write_scene(folder, scene, strlen(scene));
+        assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+        if (!strstr(folder->report.message, cases[i].message))
+            fail_msg("%s\nnot: %s", folder->report.message, cases[i].message);
+    }
+}
+
+/* The cubic goes through the samples, is exact for parabolas, and the largest sample is 1. */
+static void test_interpolation(void **state)
+{
+    double x[9], real_part[9], imaginary_part[9];
+    struct report report = {{0}, NULL, NULL};
+    struct response_table table;
+    (void)state;
+    memset(&table, 0, sizeof table);
+    for (int i = 0; i < 9; i++) {
+        x[i] = 0.3 * (i - 4) + 0.02 * (i - 4) * (i - 4) - 0.1; /* uneven */
+        real_part[i] = 2.0 - x[i] * x[i];
+        imaginary_part[i] = 0.0;
+    }
+    assert_int_equal(response_table_set(&table, &report, x, real_part, imaginary_part, 9, false),
+                     SONJECT_OK);
+    double peak = 0.0;
+    for (int i = 0; i < 9; i++)
+        peak = fmax(peak, real_part[i]);
+    double energy = 0.0;
+    for (int i = 0; i < 1000; i++) {
+        const double at = x[1] + (x[7] - x[1]) * (i + 0.5) / 1000.0;
+        const struct complex_number value = response_table_at(&table, at);
+        assert_true(fabs(value.real_part - (2.0 - at * at) / peak) < 1e-12); /* rounding */
+        assert_true(fabs(value.imaginary_part) < 1e-15);
+        energy += pow((2.0 - at * at) / peak, 2.0) * (x[7] - x[1]) / 1000.0;
+    }
+    /* midpoints of 1000 steps */
+    assert_true(fabs(response_table_energy(&table, x[1], x[7]) / energy - 1.0) < 1e-5);
+    assert_true(response_table_at(&table, x[0] - 0.01).real_part == 0.0);
+    assert_true(response_table_at(&table, x[8] + 0.01).real_part == 0.0);
+    const double reach = response_table_reach(&table, 0.1);
+    assert_true(fabs(response_table_energy(&table, -reach, reach) /
+                         response_table_energy(&table, -9.0, 9.0) -
+                     0.9) < 1e-9);
+    response_table_clear(&table);
+}
+
+/* A peak of any phase becomes 1. */
+static void test_normalisation(void **state)
+{
+    const double x[] = {-1.0, 0.0, 0.5, 1.0};
+    const double real_part[] = {1.0, 3.0, 0.0, 0.0};
+    const double imaginary_part[] = {0.0, -4.0, 2.5, 0.0};
+    struct report report = {{0}, NULL, NULL};
+    struct response_table table;
+    (void)state;
+    memset(&table, 0, sizeof table);
+    assert_int_equal(response_table_set(&table, &report, x, real_part, imaginary_part, 4, false),
+                     SONJECT_OK);
+    const struct complex_number peak = response_table_at(&table, 0.0);
+    const struct complex_number side = response_table_at(&table, 0.5);
+    assert_true(fabs(peak.real_part - 1.0) < 1e-15 && fabs(peak.imaginary_part) < 1e-15);
+    /* 2.5 i / (3 - 4 i) = (-10 + 7.5 i) / 25 */
+    assert_true(fabs(side.real_part + 0.4) < 1e-15 && fabs(side.imaginary_part - 0.3) < 1e-15);
+    response_table_clear(&table);
+}
+
+static void expect_message(sonject_context *context, sonject_status status, const char *message)
+{
+    assert_int_equal(status, SONJECT_ERROR_INPUT);
+    assert_string_equal(sonject_context_message(context), message);
+}
+
+static void test_public_functions(void **state)
+{
+    const double x[] = {-1.0, 0.0, 0.5, 1.0};
+    const double y[] = {0.0, 1.0, 0.5, 0.0};
+    sonject_context *context = NULL;
+    sonject_scene *scene = NULL;
+    sonject_pulse_params pulse;
+    sonject_motion_params motion;
+    (void)state;
+    assert_int_equal(sonject_context_create(NULL, &context), SONJECT_OK);
+    assert_int_equal(sonject_scene_create(context, &scene), SONJECT_OK);
+    sonject_pulse_params_init(&pulse);
+    pulse.kind = SONJECT_PULSE_TABLE;
+    expect_message(context, sonject_scene_set_pulse(scene, &pulse),
+                   "kind of the pulse is a table, but the scene has none: set it first");
+    expect_message(context, sonject_scene_set_pulse_table(scene, 2, x, y, NULL, 4),
+                   "axis of the pulse table must be 0 or 1, not 2");
+    expect_message(context, sonject_scene_set_pulse_table(scene, 0, x, y, NULL, 3),
+                   "pulse table must have 4...65536 samples, not 3");
+    expect_message(context, sonject_scene_set_cross_range_table(scene, y, y, NULL, 4),
+                   "cross-range table: sample 2: its position must be above that of the sample "
+                   "before");
+    expect_message(context, sonject_scene_set_motion_table(scene, x, y, 1),
+                   "motion table: sample 1: must have 2...65536 samples");
+    assert_int_equal(sonject_scene_set_pulse_table(scene, 0, x, NULL, NULL, 4),
+                     SONJECT_ERROR_ARGUMENT);
+    assert_int_equal(sonject_scene_set_pulse_table(NULL, 0, x, y, NULL, 4), SONJECT_ERROR_ARGUMENT);
+    assert_int_equal(sonject_scene_set_pulse_table(scene, 0, x, y, NULL, 4), SONJECT_OK);
+    assert_int_equal(sonject_scene_set_pulse(scene, &pulse), SONJECT_OK);
+    assert_int_equal(sonject_scene_set_pulse_table(scene, 0, NULL, NULL, NULL, 0), SONJECT_OK);
+    assert_int_equal(sonject_scene_set_pulse(scene, &pulse), SONJECT_ERROR_INPUT);
+    assert_int_equal(sonject_scene_set_cross_range_table(scene, x, y, y, 4), SONJECT_OK);
+    assert_int_equal(sonject_scene_set_cross_range_table(scene, NULL, NULL, NULL, 0), SONJECT_OK);
+    sonject_motion_params_init(&motion);
+    motion.sway_count = 9;
+    assert_int_equal(sonject_scene_set_motion(scene, &motion), SONJECT_ERROR_INPUT);
+    motion.sway_count = 8;
+    assert_int_equal(sonject_scene_set_motion(scene, &motion), SONJECT_OK);
+    assert_int_equal(sonject_scene_set_motion_table(scene, x, y, 4), SONJECT_OK);
+    assert_int_equal(sonject_scene_set_motion_table(scene, NULL, NULL, 0), SONJECT_OK);
+    sonject_scene_release(&scene);
+    sonject_context_release(&context);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_hostile_tables),   cmocka_unit_test(test_hostile_keys),
+        cmocka_unit_test(test_interpolation),    cmocka_unit_test(test_normalisation),
+        cmocka_unit_test(test_public_functions),
+    };
+    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
+}
