@@ -282,9 +282,13 @@ sonject_status check_gltf_text(const struct suspect *file, const char *text, siz
                               error.line, error.text);
     sonject_status status = check_document(file, document);
     if (status == SONJECT_OK) {
-        *left = json_dumps(document, JSON_COMPACT | JSON_REAL_PRECISION(17));
+        const size_t flags = JSON_COMPACT | JSON_REAL_PRECISION(17);
+        const size_t length = json_dumpb(document, NULL, 0, flags);
+        *left = allocate_array(length + 1, 1);
         if (!*left)
             status = report_out_of_memory(file->report, file->path);
+        else
+            json_dumpb(document, *left, length, flags);
     }
     json_decref(document);
     return status;
