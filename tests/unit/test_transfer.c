@@ -224,12 +224,12 @@ static void test_the_recorders_full_scale(void **state)
         SONJECT_OK);
     assert_true(amplitude[0] == 1.0f && amplitude[2] == 2.0f);
     assert_int_equal(clipped, 2);
-    transfer_to_stored(&plain, PIXEL_UINT16, amplitude, 3, back, &clipped);
+    transfer_to_stored(&plain, PIXEL_UINT16, 1, amplitude, 3, back, &clipped);
     assert_int_equal(back[1], 4094);
     assert_int_equal(back[2], 4095);
     assert_int_equal(clipped, 3);
     uint8_t narrow;
-    transfer_to_stored(&plain, PIXEL_UINT8, amplitude, 1, &narrow, &clipped);
+    transfer_to_stored(&plain, PIXEL_UINT8, 1, amplitude, 1, &narrow, &clipped);
     assert_int_equal(narrow, 255);
 }
 

@@ -1,0 +1,59 @@
+"""Tracing and image formation apart."""
+
+import os
+
+import pytest
+import sonject
+
+pytestmark = pytest.mark.skipif(
+    os.environ.get("SONJECT_HAS_HDF5") != "1", reason="built without HDF5 or image files"
+)
+
+
+def make_scene(bandwidth_hz=30e3):
+    scene = sonject.Scene(
+        sonar=sonject.Sonar(bandwidth_hz=bandwidth_hz),
+        geometry=sonject.Geometry(
+            row_spacing_m=0.025, column_spacing_m=0.025, first_slant_range_m=25.0
+        ),
+        input=sonject.Uniform(40, 50),
+        objects=[sonject.Sphere(diameter_m=0.3)],
+    )
+    return scene
+
+
+def contents(folder):
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.name != "run.json"}
+
+
+def test_a_scene_in_memory_is_formed_with_the_scene_at_hand(tmp_path):
+    impulses = tmp_path / "impulses.h5"
+    sonject.trace(make_scene(), impulses)
+    with pytest.raises(sonject.SonjectError, match="give the scene"):
+        sonject.form(impulses, tmp_path / "none")
+    for bandwidth_hz in (30e3, 29.9e3):  # the fine grids of both are the same
+        scene = make_scene(bandwidth_hz)
+        formed = tmp_path / f"formed {bandwidth_hz}"
+        assert sonject.form(impulses, formed, scene=scene)
+        assert not sonject.form(impulses, formed, scene=scene)
+        assert sonject.run(scene, tmp_path / f"run {bandwidth_hz}")
+        assert contents(formed) == contents(tmp_path / f"run {bandwidth_hz}")
+    other = make_scene()
+    other.add(sonject.Sphere(diameter_m=0.2))
+    with pytest.raises(sonject.SonjectError, match="not what was traced"):
+        sonject.form(impulses, tmp_path / "other", scene=other)
+    with pytest.raises(sonject.SonjectError, match="takes no overrides"):
+        sonject.form(impulses, tmp_path / "other", {"sonar.bandwidth": "29 kHz"}, make_scene())
+
+
+def test_progress_cancels_both_stages(tmp_path):
+    impulses = tmp_path / "impulses.h5"
+    with pytest.raises(sonject.Cancelled):
+        sonject.trace(make_scene(), impulses, progress=lambda fraction, stage: True)
+    assert not list(tmp_path.iterdir())
+    sonject.trace(make_scene(), impulses)
+    with pytest.raises(sonject.Cancelled):
+        sonject.form(
+            impulses, tmp_path / "a", scene=make_scene(), progress=lambda fraction, stage: True
+        )
+    assert not (tmp_path / "a" / "run.json").exists()
