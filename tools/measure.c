@@ -29,7 +29,7 @@ static const struct argument arguments[] = {
      MEMBER(before)},
     {"--influence", NULL, "MASK", "what the injection changed, such as a run's influence.png",
      ARGUMENT_TEXT, false, MEMBER(influence)},
-    {"--labels", NULL, "MASK", "highlights and shadows, such as a run's labels.png", ARGUMENT_TEXT,
+    {"--targets", NULL, "MASK", "highlights and shadows, such as a run's labels.png", ARGUMENT_TEXT,
      false, MEMBER(labels)},
     {"--transfer", NULL, "KIND[:P[:OFFSET]]", "how stored numbers came from amplitudes, see below",
      ARGUMENT_TEXT, false, MEMBER(transfer)},

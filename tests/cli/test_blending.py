@@ -91,7 +91,7 @@ def judge(before, after, folder, patch):
 
 def measure(sonject, folder, before, transfer):
     answer = sonject("measure", "--seam", folder / f"image{before.suffix}", "--before", before,
-                     "--influence", folder / "influence.png", "--labels", folder / "labels.png",
+                     "--influence", folder / "influence.png", "--targets", folder / "labels.png",
                      "--transfer", transfer)
     assert answer.returncode == 0, answer.stderr
     return json.loads(answer.stdout)

@@ -9,8 +9,8 @@ import pytest
 
 from conftest import COMMAND, assert_refused
 
-VERBS = {"run", "elements", "check", "quicklook", "seabed", "devices"}
-NOT_THERE = r"\b(merge|trace|form|measure|campaign|convert)\b|--(shard|labels)"
+VERBS = {"run", "elements", "check", "measure", "quicklook", "seabed", "devices"}
+NOT_THERE = r"\b(merge|campaign|convert)\b|--(shard|labels)"
 
 
 def test_version(sonject):
@@ -82,6 +82,10 @@ def test_nothing_asked_is_a_usage_error(sonject):
         (["seabed", "-o", "x.tif", "--altitude", "1e999"], ["--altitude"]),
         (["seabed", "-o", "x.tif", "--altitude", "1,5"], ["--altitude"]),
         (["seabed", "-o", "x.tif", "--altitude", ""], ["--altitude"]),
+        (["measure"], ["IMAGE is missing"]),
+        (["measure", "x.tif", "--seam"], ["--before or --influence"]),
+        (["measure", "x.tif", "--before", "y.tif"], ["--seam"]),
+        (["measure", "x.tif", "--transfer", "sqrt"], ["measure: --transfer", "sqrt"]),
         (["quicklook", "x.tif", "-o", "x.png", "--db", "0:-40"], ["--db", "MIN below MAX"]),
         (["quicklook", "x.tif", "-o", "x.png", "--db", "-40"], ["--db"]),
         (["quicklook", "x.tif", "-o", "x.png", "--range-axis", "time"], ["slant or ground"]),

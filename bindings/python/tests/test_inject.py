@@ -260,3 +260,24 @@ def test_other_threads_run_meanwhile(amplitude_patch, make_scene):
     for thread in threads:
         thread.join()
     assert images == [expected, expected]
+
+
+def test_levels_are_those_asked_for(amplitude_patch, make_scene):
+    for name, value in (("target_strength_db", -40.0), ("over_seabed_db", 11.0)):
+        scene = make_scene(objects=[sonject.Sphere(diameter_m=0.5, **{name: value})])
+        truth = sonject.inject(amplitude_patch, scene).objects[0]
+        assert getattr(truth, name) == pytest.approx(value, abs=1e-4)
+        assert truth.level_kind == sonject.LevelKind[name[:-3].upper()]
+    with pytest.raises(ValueError, match="exclude each other"):
+        sonject.Sphere(diameter_m=0.5, over_seabed_db=1.0, target_strength_db=1.0).to_structure()
+
+
+def test_measure_takes_what_inject_gives(amplitude_patch, make_scene):
+    result = sonject.inject(amplitude_patch, make_scene())
+    told = sonject.measure(result.image, result.influence, result.labels)
+    assert 0.4 < told.amplitude_contrast < 0.7
+    assert told.looks >= 1.0
+    assert math.isnan(told.seam) == math.isnan(told.seam_error)
+    assert math.isnan(sonject.measure(amplitude_patch).seam)
+    with pytest.raises(ValueError, match="influence"):
+        sonject.measure(amplitude_patch, result.influence[1:])
