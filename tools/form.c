@@ -40,7 +40,7 @@ static sonject_status form(sonject_context *context, const struct form_options *
     params.folder = options->folder;
     params.overrides = (const char *const *)options->overrides.texts;
     params.override_count = (uint32_t)options->overrides.count;
-    return sonject_form(context, &params, progress_update, progress, was_finished);
+    return sonject_form(context, NULL, &params, progress_update, progress, was_finished);
 }
 
 static int work(const void *verb_options)

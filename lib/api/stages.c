@@ -152,11 +152,12 @@ static bool names_formed_key(const char *override)
     return false;
 }
 
-static sonject_status check_overrides(struct report *report, const sonject_form_params *params)
+static sonject_status check_overrides(struct report *report, const sonject_scene *scene,
+                                      const sonject_form_params *params)
 {
     if (params->override_count > 0 && !params->overrides)
         return null_argument(report, "overrides");
-    if (params->override_count > 0 && params->scene)
+    if (params->override_count > 0 && scene)
         return report_failure(report, SONJECT_ERROR_ARGUMENT,
                               "a scene that is given takes no overrides");
     for (uint32_t i = 0; i < params->override_count; i++) {
@@ -251,9 +252,9 @@ static sonject_status read_traced_scene(struct report *report, const struct impu
     return status;
 }
 
-static sonject_status form_file(struct sonject_context *context, const sonject_form_params *params,
-                                struct impulse_file *impulses, sonject_progress_function progress,
-                                void *user, int *was_finished)
+static sonject_status form_file(struct sonject_context *context, const sonject_scene *scene,
+                                const sonject_form_params *params, struct impulse_file *impulses,
+                                sonject_progress_function progress, void *user, int *was_finished)
 {
     struct report *report = &context->report;
     const struct impulse_head *head = impulse_file_head(impulses);
@@ -261,18 +262,19 @@ static sonject_status form_file(struct sonject_context *context, const sonject_f
     struct scene read;
     scene_init(&read);
     sonject_status status = check_version(report, params->file, head);
-    if (status == SONJECT_OK && !params->scene)
+    if (status == SONJECT_OK && !scene)
         status = read_traced_scene(report, head, params, &read);
-    request.scene = params->scene ? &params->scene->scene : &read;
+    request.scene = scene ? &scene->scene : &read;
     if (status == SONJECT_OK)
         status = run_scene(context, &request, was_finished);
-    if (!params->scene)
+    if (!scene)
         scene_clear(&read);
     return status;
 }
 
-sonject_status sonject_form(sonject_context *context, const sonject_form_params *params,
-                            sonject_progress_function progress, void *user, int *was_finished)
+sonject_status sonject_form(sonject_context *context, const sonject_scene *scene,
+                            const sonject_form_params *params, sonject_progress_function progress,
+                            void *user, int *was_finished)
 {
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
@@ -286,12 +288,12 @@ sonject_status sonject_form(sonject_context *context, const sonject_form_params 
         return status;
     if (!taken.file || !taken.file[0] || !taken.folder || !taken.folder[0])
         return null_argument(&context->report, "file and folder");
-    status = check_overrides(&context->report, &taken);
+    status = check_overrides(&context->report, scene, &taken);
     if (status == SONJECT_OK)
         status = impulse_file_open(&context->report, taken.file, &impulses);
     if (status != SONJECT_OK)
         return status;
-    status = form_file(context, &taken, impulses, progress, user, was_finished);
+    status = form_file(context, scene, &taken, impulses, progress, user, was_finished);
     impulse_file_close(&impulses);
     return status;
 }

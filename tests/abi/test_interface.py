@@ -76,6 +76,8 @@ SIZES = {
     "sonject_object_truth": 224,
     "sonject_statistics": 136,
     "sonject_run_params": 16,
+    "sonject_trace_params": 16,
+    "sonject_form_params": 32,
     "sonject_quicklook_params": 120,
     "sonject_seabed_file_params": 208,
 }
@@ -97,7 +99,8 @@ def test_core_loads_no_cxx_runtime(tmp_path):
     meson = shutil.which("meson")
     assert meson, "meson is needed to build the core"
     build = tmp_path / "core"
-    subprocess.run([meson, "setup", build, SOURCE, "-Dopenimageio=disabled", "-Dtests=disabled", "--buildtype=debug",
+    subprocess.run([meson, "setup", build, SOURCE, "-Dopenimageio=disabled", "-Dhdf5=disabled",
+                    "-Dtests=disabled", "--buildtype=debug",
                     "-Db_sanitize=none"], check=True, capture_output=True)
     subprocess.run([meson, "compile", "-C", build, "sonject:shared_library"], check=True,
                    capture_output=True)
@@ -105,4 +108,5 @@ def test_core_loads_no_cxx_runtime(tmp_path):
     needed = subprocess.run(["readelf", "-d", library], check=True, capture_output=True,
                             text=True).stdout
     assert "NEEDED" in needed and "libstdc++" not in needed and "OpenImageIO" not in needed
+    assert "hdf5" not in needed
     assert exported_symbols(library) == exported_symbols(LIBRARY)

@@ -55,14 +55,14 @@ def environment(tmp_path_factory):
 def sonject(tmp_path, environment):
     """Runs the command in a fresh folder; changes: of the environment, None removes."""
 
-    def run(*arguments, changes=None, timeout=300, **options):
+    def run(*arguments, changes=None, timeout=300, folder=".", **options):
         variables = {**environment, **(changes or {})}
         variables = {name: value for name, value in variables.items() if value is not None}
         options.setdefault("stdout", subprocess.PIPE)
         options.setdefault("stderr", subprocess.PIPE)
         return subprocess.run(
             [COMMAND, *map(str, arguments)],
-            cwd=tmp_path,
+            cwd=tmp_path / folder,
             env=variables,
             text=True,
             timeout=timeout,

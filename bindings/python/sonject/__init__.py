@@ -14,7 +14,7 @@ rows (track positions) x columns (slant ranges).
 
 from ._callbacks import Progress
 from ._library import load as _load
-from .actions import check, inject, quicklook, run, write_seabed
+from .actions import check, form, inject, quicklook, run, trace, write_seabed
 from .context import Context, Device, default_context, devices
 from .elements import ElementLayout, Elements, element_layout, element_series, run_elements
 from .enumerations import (
@@ -144,11 +144,13 @@ __all__ = [
     "devices",
     "element_layout",
     "element_series",
+    "form",
     "from_degrees",
     "inject",
     "quicklook",
     "run",
     "run_elements",
+    "trace",
     "version",
     "write_seabed",
 ]

@@ -132,6 +132,29 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
             POINTER(c_int),
         ],
     ),
+    "sonject_trace_params_init": (None, [POINTER(s.sonject_trace_params)]),
+    "sonject_trace": (
+        _status,
+        [
+            _context,
+            _scene,
+            POINTER(s.sonject_trace_params),
+            s.sonject_progress_function,
+            c_void_p,
+        ],
+    ),
+    "sonject_form_params_init": (None, [POINTER(s.sonject_form_params)]),
+    "sonject_form": (
+        _status,
+        [
+            _context,
+            _scene,
+            POINTER(s.sonject_form_params),
+            s.sonject_progress_function,
+            c_void_p,
+            POINTER(c_int),
+        ],
+    ),
     "sonject_elements_params_init": (None, [POINTER(s.sonject_elements_params)]),
     "sonject_scene_set_elements": (_status, [_scene, POINTER(s.sonject_elements_params)]),
     "sonject_elements_describe": (

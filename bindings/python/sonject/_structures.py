@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from ctypes import (
     CFUNCTYPE,
+    POINTER,
     Structure,
     c_char,
     c_char_p,
@@ -348,6 +349,24 @@ class sonject_run_params(Structure):
         ("struct_size", c_uint32),
         ("reserved", c_uint32),
         ("folder", c_char_p),
+    ]
+
+
+class sonject_trace_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("file", c_char_p),
+    ]
+
+
+class sonject_form_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("override_count", c_uint32),
+        ("file", c_char_p),
+        ("folder", c_char_p),
+        ("overrides", POINTER(c_char_p)),
     ]
 
 

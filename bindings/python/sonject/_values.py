@@ -7,13 +7,14 @@ import enum
 import numbers
 import operator
 import os
-from typing import Any, Mapping, Optional, Type, TypeVar, Union
+from typing import Any, Iterable, Mapping, Optional, Type, TypeVar, Union
 
 import numpy
 
 from ._library import load
 
 PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
+Overrides = Union[Iterable[str], Mapping[str, Any]]
 AnyStructure = TypeVar("AnyStructure", bound=ctypes.Structure)
 AnyEnum = TypeVar("AnyEnum", bound=enum.IntEnum)
 
@@ -113,3 +114,12 @@ def fill(structure: ctypes.Structure, values: Mapping[str, Any]) -> None:
             setattr(structure, name, short_text(name, value, ctypes.sizeof(kind)))
         else:
             setattr(structure, name, value)
+
+
+def override_texts(overrides: Overrides) -> list[bytes]:
+    """ "key.path=value" texts, of these or of a mapping of key paths to values."""
+    if isinstance(overrides, str):
+        raise TypeError("overrides must be a list of texts or a mapping, not one text")
+    if isinstance(overrides, Mapping):
+        overrides = [f"{key}={value}" for key, value in overrides.items()]
+    return [file_name("override", text) for text in overrides]

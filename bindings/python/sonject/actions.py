@@ -9,7 +9,15 @@ from . import _structures as s
 from ._callbacks import Progress, ProgressBridge, text
 from ._library import load
 from ._pixels import library_pixels
-from ._values import PathLike, choice, file_name, initialised, real_number
+from ._values import (
+    Overrides,
+    PathLike,
+    choice,
+    file_name,
+    initialised,
+    override_texts,
+    real_number,
+)
 from .context import Context, default_context
 from .enumerations import RangeAxis
 from .parameters import Geometry, Sonar, Synthetic, Transfer
@@ -64,6 +72,62 @@ def run(scene: Scene, folder: PathLike, progress: Optional[Progress] = None) -> 
     was_finished = ctypes.c_int()
     context.call(
         "sonject_run",
+        context,
+        scene,
+        ctypes.byref(params),
+        bridge.callback,
+        None,
+        ctypes.byref(was_finished),
+        bridge=bridge,
+    )
+    return not was_finished.value
+
+
+def trace(scene: Scene, file: PathLike, progress: Optional[Progress] = None) -> None:
+    """Traces the scene and writes its impulses to a file, which form makes images of."""
+    context = scene.context
+    params = initialised(s.sonject_trace_params)
+    params.file = file_name("file", file)
+    bridge = ProgressBridge(progress)
+    context.call(
+        "sonject_trace",
+        context,
+        scene,
+        ctypes.byref(params),
+        bridge.callback,
+        None,
+        bridge=bridge,
+    )
+
+
+def form(
+    file: PathLike,
+    folder: PathLike,
+    overrides: Overrides = (),
+    scene: Optional[Scene] = None,
+    progress: Optional[Progress] = None,
+    context: Optional[Context] = None,
+) -> bool:
+    """Forms the image of what trace wrote into file, and writes what run would into folder.
+
+    overrides: as of Scene.read, of bandwidth, resolution and response of the sonar and of
+    input.path; scene: where it was traced from no scene file, or instead of overrides.
+    False, with nothing done, if folder already held the finished result of the same inputs.
+    """
+    if scene is not None:
+        context = scene.context
+    context = default_context() if context is None else context
+    texts = override_texts(overrides)
+    array = (ctypes.c_char_p * len(texts))(*texts)
+    params = initialised(s.sonject_form_params)
+    params.file = file_name("file", file)
+    params.folder = file_name("folder", folder)
+    params.overrides = ctypes.cast(array, ctypes.POINTER(ctypes.c_char_p))
+    params.override_count = len(texts)
+    bridge = ProgressBridge(progress)
+    was_finished = ctypes.c_int()
+    context.call(
+        "sonject_form",
         context,
         scene,
         ctypes.byref(params),

@@ -9,7 +9,16 @@ import numpy
 
 from . import _structures as s
 from ._handle import Handle
-from ._values import PathLike, file_name, fill, initialised, real_numbers, whole_number
+from ._values import (
+    Overrides,
+    PathLike,
+    file_name,
+    fill,
+    initialised,
+    override_texts,
+    real_numbers,
+    whole_number,
+)
 from .context import Context, default_context
 from ._elements import Elements
 from .objects import Object, Parts
@@ -79,7 +88,7 @@ class Scene(Handle):
     def read(
         cls,
         path: PathLike,
-        overrides: Union[Iterable[str], Mapping[str, Any]] = (),
+        overrides: Overrides = (),
         context: Optional[Context] = None,
         *,
         allows_user_shapes: bool = False,
@@ -91,11 +100,7 @@ class Scene(Handle):
         allows_user_shapes: shapes may be code in the file or beside it, which then can do what the
         process can: only for files that you trust.
         """
-        if isinstance(overrides, str):
-            raise TypeError("overrides must be a list of texts or a mapping, not one text")
-        if isinstance(overrides, Mapping):
-            overrides = [f"{key}={value}" for key, value in overrides.items()]
-        texts = [file_name("override", text) for text in overrides]
+        texts = override_texts(overrides)
         context = default_context() if context is None else context
         params = initialised(s.sonject_scene_read_params)
         params.allows_user_shapes = int(bool(allows_user_shapes))

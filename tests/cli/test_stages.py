@@ -1,0 +1,253 @@
+"""Tracing and image formation apart: the same files as a run leaves, and images of other responses."""
+
+import os
+import signal
+
+import numpy
+import pytest
+
+import images
+from conftest import assert_refused, files_below
+from test_run import contents, limit_file_size, read_rest, small_disk, start_and_wait_for_the_bar
+
+HAS_HDF5 = os.environ.get("SONJECT_HAS_HDF5") == "1"
+needs_hdf5 = pytest.mark.skipif(not HAS_HDF5, reason="built without HDF5")
+
+# More of all that makes impulses: a rough and smooth object of two parts, mirrors, relief.
+EVERYTHING = """\
+  - name: buoy
+    material: {reflection: 0.5, lambert: 0.05}
+    position: {along_track: 1.8 m, slant_range: 26.5 m}
+    parts:
+      - {shape: cylinder, length: 0.4 m, diameter: 0.1 m}
+      - {shape: sphere, diameter: 0.2 m, at: {up: 0.2 m}}
+seabed:
+  relief:
+    - ripples: {height: 2 cm, wavelength: 40 cm}
+surface: {depth: 30 m}
+"""
+
+
+def command(sonject, *arguments):
+    answer = sonject(*arguments, "--quiet")
+    assert (answer.returncode, answer.stdout, answer.stderr) == (0, "", "")
+
+
+def compare_with_run(sonject, folder, scene, *options):
+    command(sonject, "run", scene, "-o", "run", *options)
+    command(sonject, "trace", scene, "-o", "impulses.h5", *options)
+    command(sonject, "form", "impulses.h5", "-o", "formed")
+    assert contents(folder / "formed") == contents(folder / "run")
+
+
+@needs_hdf5
+@pytest.mark.parametrize("interactions", [1, 2])
+@pytest.mark.parametrize("mode", ["composite", "resynthesise"])
+def test_the_stages_leave_what_a_run_leaves(sonject, scene, tmp_path, interactions, mode):
+    chosen = ["--set", f"injection.interactions={interactions}", "--set", f"injection.mode={mode}"]
+    compare_with_run(sonject, tmp_path, scene, *chosen, "--set", "injection.order_energies=true")
+    assert len(list((tmp_path / "formed").glob("energy_order_*.tif"))) == interactions
+
+
+@needs_hdf5
+def test_the_stages_of_a_scene_with_all_there_is(sonject, scene, tmp_path):
+    scene.write_text(scene.read_text() + EVERYTHING)
+    compare_with_run(sonject, tmp_path, scene, "--set", "injection.interactions=2", "--seed", "5")
+
+
+@needs_hdf5
+@pytest.mark.parametrize("starboard", [False, True])
+def test_the_stages_of_a_complex_image(sonject, scene, tmp_path, swath, starboard):
+    pixels = numpy.stack([swath, swath[::-1]], axis=2)
+    (tmp_path / "swath.tif").write_bytes(images.tiff_bytes(pixels))
+    chosen = ["input.complex=true", "seabed.map=coherent", "injection.mode=resynthesise"]
+    if starboard:
+        chosen.append("input.geometry.side=starboard")
+    options = [word for each in chosen for word in ("--set", each)]
+    compare_with_run(sonject, tmp_path, scene, *options)
+
+
+@needs_hdf5
+def test_the_same_trace_is_the_same_file(sonject, scene, tmp_path):
+    command(sonject, "trace", scene, "-o", "a.h5")
+    command(sonject, "trace", scene, "-o", "b.h5")
+    assert (tmp_path / "a.h5").read_bytes() == (tmp_path / "b.h5").read_bytes()
+    command(sonject, "form", "a.h5", "-o", "result")
+    answer = sonject("form", "a.h5", "-o", "result")
+    assert answer.returncode == 0 and "already" in answer.stderr
+    answer = sonject("run", scene, "-o", "result")  # the same inputs, so finished too
+    assert answer.returncode == 0 and "already" in answer.stderr
+
+
+@needs_hdf5
+def test_where_the_fine_grid_is_the_same_another_bandwidth_gives_a_runs_bits(
+    sonject, scene, tmp_path
+):
+    # 4 bins a pixel, 13 bins of margin and 27 glint bins a pixel for both
+    command(sonject, "trace", scene, "-o", "impulses.h5")
+    other = ["--set", "sonar.bandwidth=29.9 kHz"]
+    command(sonject, "form", "impulses.h5", "-o", "formed", *other)
+    command(sonject, "run", scene, "-o", "run", *other)
+    command(sonject, "run", scene, "-o", "as traced")
+    assert contents(tmp_path / "formed") == contents(tmp_path / "run")
+    assert contents(tmp_path / "formed")["patch.tif"] != contents(tmp_path / "as traced")["patch.tif"]
+
+
+@needs_hdf5
+@pytest.mark.parametrize(
+    "change", ["sonar.bandwidth=15 kHz", "sonar.response=hamming", "sonar.resolution=7 cm"]
+)
+def test_other_responses_give_a_runs_image_but_for_the_noise_of_rays(
+    sonject, scene, tmp_path, change
+):
+    command(sonject, "trace", scene, "-o", "impulses.h5")
+    command(sonject, "form", "impulses.h5", "-o", "formed", "--set", change)
+    energies = [images.read_tiff(tmp_path / "formed" / "energy.tif")]
+    for seed in (1, 2):
+        command(sonject, "run", scene, "-o", str(seed), "--set", change, "--seed", str(seed))
+        energies.append(images.read_tiff(tmp_path / str(seed) / "energy.tif"))
+    formed, first, second = (energy.astype(float) for energy in energies)
+    bright = first > 1e-3 * first.max()
+    by_seed = numpy.median(abs(second[bright] / first[bright] - 1))
+    by_stages = numpy.median(abs(formed[bright] / first[bright] - 1))
+    # The rays of a finer grid are no coarser, so they differ no more than those of two seeds; half
+    # as much again leaves room for the spread of two medians of thousands of pixels.
+    assert 0 < by_seed < 0.2 and by_stages < 1.5 * by_seed
+    assert abs(formed.sum() / first.sum() - 1) < 0.02
+
+
+@needs_hdf5
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ("sonar.bandwidth=31 kHz", ["sonar.bandwidth", "31 kHz", "to 30 kHz", "trace again"]),
+        ("sonar.bandwidth=5 kHz", ["sonar.bandwidth", "5 kHz", "trace again"]),
+        ("sonar.resolution=2 cm", ["sonar.resolution", "2 cm", "2.5 cm", "trace again"]),
+        ("sonar.resolution=2 m", ["sonar.resolution", "trace again"]),
+        ("injection.seed=4", ["injection.seed", "needs a new trace"]),
+        ("sonar.frequency=90 kHz", ["sonar.frequency", "needs a new trace"]),
+        ("sonar.responses=hamming", ["sonar.responses", "needs a new trace"]),
+        ("sonar={}", ["--set sonar:", "needs a new trace"]),
+        ("sonar.bandwidth=broad", ["sonar.bandwidth", "broad"]),
+    ],
+)
+def test_what_needs_a_new_trace_is_refused(sonject, scene, tmp_path, change, words):
+    command(sonject, "trace", scene, "-o", "impulses.h5")
+    assert_refused(sonject("form", "impulses.h5", "-o", "result", "--set", change), 3, *words)
+    assert not files_below(tmp_path / "result")
+
+
+@needs_hdf5
+def test_names_of_files_are_meant_from_where_the_scene_was_traced(sonject, scene, tmp_path):
+    folder = tmp_path / "scenes"
+    folder.mkdir()
+    scene.rename(folder / "scene.yaml")
+    (tmp_path / "swath.tif").rename(folder / "swath.tif")
+    command(sonject, "trace", "scenes/scene.yaml", "-o", "a.h5")
+    command(sonject, "trace", "scenes/scene.yaml", "-o", "b.h5", "--set",
+            "input.path=scenes/swath.tif")
+    command(sonject, "form", "a.h5", "-o", "near")
+    (tmp_path / "elsewhere").mkdir()
+    for name in ("a.h5", "b.h5"):
+        answer = sonject("form", f"../{name}", "-o", f"result {name}", folder="elsewhere")
+        assert answer.returncode == 0, answer.stderr
+        assert contents(tmp_path / "elsewhere" / f"result {name}") == contents(tmp_path / "near")
+
+
+@needs_hdf5
+def test_another_image_or_scene_is_refused(sonject, scene, tmp_path, swath):
+    command(sonject, "trace", scene, "-o", "impulses.h5")
+    command(sonject, "form", "impulses.h5", "-o", "first")
+    moved = tmp_path / "moved.tif"
+    (tmp_path / "swath.tif").rename(moved)
+    assert_refused(sonject("form", "impulses.h5", "-o", "result"), 3, "swath.tif")
+    command(sonject, "form", "impulses.h5", "-o", "result", "--set", "input.path=moved.tif")
+    assert contents(tmp_path / "result") == contents(tmp_path / "first")
+    swath[3, 4] *= 2
+    moved.write_bytes(images.tiff_bytes(swath))
+    answer = sonject("form", "impulses.h5", "-o", "other", "--set", "input.path=moved.tif")
+    assert_refused(answer, 3, "moved.tif", "swath.tif", "96 x 128", "XXH3")
+    assert not files_below(tmp_path / "other")
+
+
+@needs_hdf5
+def test_a_changed_target_file_is_refused(sonject, scene, tmp_path):
+    target = tmp_path / "target.yaml"
+    target.write_text("sonject_target: 1\nshape: sphere\ndiameter: 0.3 m\n")
+    scene.write_text(scene.read_text().split("objects:")[0] +
+                     "objects: [{target: target.yaml, position: centre}]\n")
+    command(sonject, "trace", scene, "-o", "impulses.h5")
+    command(sonject, "form", "impulses.h5", "-o", "result")
+    target.write_text(target.read_text().replace("0.3", "0.4"))
+    answer = sonject("form", "impulses.h5", "-o", "other")
+    assert_refused(answer, 3, "not what was traced", "trace again")
+
+
+@needs_hdf5
+def test_damaged_files_are_refused(sonject, scene, tmp_path):
+    command(sonject, "trace", scene, "-o", "impulses.h5")
+    whole = (tmp_path / "impulses.h5").read_bytes()
+    changed = bytearray(whole)
+    changed[len(whole) // 2] ^= 4
+    for name, content in {
+        "empty": b"",
+        "cut": whole[: len(whole) // 2],
+        "short": whole[:-1],
+        "long": whole + b"\0",
+        "head": whole[:600],
+        "changed": bytes(changed),
+        "without its seal": whole[512:],
+        "another": b"sonject impulses, XXH3 " + b"0" * 32 + b"\n" + whole[56:],
+        "text": b"sonject: 1\n" * 100,
+    }.items():
+        (tmp_path / "damaged.h5").write_bytes(content)
+        answer = sonject("form", "damaged.h5", "-o", "result")
+        assert_refused(answer, 3, "damaged.h5")
+        assert not files_below(tmp_path / "result"), name
+    assert_refused(sonject("form", "none.h5", "-o", "result"), 3, "none.h5", "no such")
+    assert_refused(sonject("form", tmp_path, "-o", "result"), 5, str(tmp_path))
+
+
+def left_by_trace(folder):
+    return {path.name for path in folder.iterdir()} - {"home", "scene.yaml", "swath.tif"}
+
+
+@needs_hdf5
+def test_a_limit_on_file_sizes_leaves_no_trace(sonject, scene, tmp_path):
+    command(sonject, "trace", scene, "-o", "first.h5")  # fills the caches too
+    answer = sonject("trace", scene, "-o", "impulses.h5", preexec_fn=limit_file_size)
+    assert_refused(answer, 5, "impulses.h5", "cannot write")
+    assert left_by_trace(tmp_path) == {"first.h5"}
+
+
+@needs_hdf5
+def test_a_full_disk_leaves_no_trace(sonject, scene, small_disk):
+    if small_disk is None:
+        pytest.skip("nothing can be mounted here; the limit on file sizes is tested instead")
+    assert_refused(sonject("trace", scene, "-o", small_disk / "a.h5"), 5, "No space left")
+    assert not files_below(small_disk)
+
+
+@needs_hdf5
+def test_a_folder_that_is_not_there(sonject, scene, tmp_path):
+    assert_refused(sonject("trace", scene, "-o", "none/impulses.h5"), 5, "none/impulses.h5")
+
+
+@needs_hdf5
+@pytest.mark.parametrize("number, code", [(signal.SIGTERM, 85), (signal.SIGKILL, -signal.SIGKILL)])
+def test_a_trace_that_is_stopped_leaves_no_file(sonject, scene, tmp_path, environment, number, code):
+    arguments = ["trace", scene, "-o", "impulses.h5", "--set", "injection.rays=512"]
+    process, terminal = start_and_wait_for_the_bar(arguments, tmp_path, environment)
+    process.send_signal(number)
+    read_rest(terminal)
+    assert process.wait(60) == code
+    assert not (tmp_path / "impulses.h5").exists()
+    if number == signal.SIGTERM:
+        assert not left_by_trace(tmp_path)
+
+
+@pytest.mark.skipif(HAS_HDF5, reason="built with HDF5")
+def test_without_hdf5_the_stages_say_so(sonject, scene):
+    assert_refused(sonject("trace", scene, "-o", "impulses.h5"), 3, "HDF5")
+    scene.with_name("impulses.h5").write_bytes(b"")
+    assert_refused(sonject("form", "impulses.h5", "-o", "result"), 3, "HDF5")
