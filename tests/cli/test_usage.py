@@ -9,7 +9,7 @@ import pytest
 
 from conftest import COMMAND, assert_refused
 
-VERBS = {"run", "elements", "check", "measure", "quicklook", "seabed", "devices"}
+VERBS = {"run", "trace", "form", "elements", "check", "measure", "quicklook", "seabed", "devices"}
 NOT_THERE = r"\b(merge|campaign|convert)\b|--(shard|labels)"
 
 
