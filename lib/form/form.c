@@ -69,12 +69,12 @@ int32_t form_reach(const struct patch_view *view, const struct point_response *r
                    enum form_kind kind, uint32_t strips_per_row)
 {
     const double whole = (double)view->rows * strips_per_row;
-    if (kind == FORM_GLINT)
-        return (int32_t)whole;
     const double strip = view->row_spacing_m / strips_per_row;
     const double farthest = view_apparent_range(view, (double)(view->columns - 1));
-    return (int32_t)fmin(
-        whole, ceil(cross_range_energy_reach(response, farthest, SPECKLE_ENERGY_SHARE) / strip));
+    const double reach = kind == FORM_GLINT
+                             ? cross_range_tail(response, farthest)
+                             : cross_range_energy_reach(response, farthest, SPECKLE_ENERGY_SHARE);
+    return (int32_t)fmin(whole, ceil(reach / strip));
 }
 
 sonject_status form_lines_begin(struct form_lines *lines, struct report *report,

@@ -14,8 +14,9 @@
 #include "scene/point_response.h"
 
 /* What is formed: complex amplitudes, by G and W; or two energies side by side (the real plane and
- * the imaginary plane), by |G|^2 and |W|^2. Glints are kept over the whole patch, since their side
- * lobes stand out of the seabed that far; speckle and energies where 99.9 % of |W|^2 lies. */
+ * the imaginary plane), by |G|^2 and |W|^2. Glints are kept over the whole patch (of a beam, to
+ * -60 dB), since their side lobes stand out of the seabed that far; speckle and energies where 99.9
+ * % of |W|^2 lies. */
 enum form_kind {
     FORM_GLINT,
     FORM_SPECKLE,

@@ -3,7 +3,8 @@
 #include <math.h>
 
 #define PI               3.14159265358979323846
-#define BEAM_LOBES       8.0 /* of the pattern; 4e-6 of its energy lies beyond */
+#define BEAM_LOBES       8.0  /* of the pattern; 4e-6 of its energy lies beyond */
+#define TAIL_LOBES       10.0 /* beyond which the two-way amplitude is below 1e-3 */
 #define BEAM_STEPS       4096
 #define HALF_POWER_POINT 0.31895 /* sinc(z)^4 = 1/2 */
 #define MIGRATION_SHARE  0.25    /* of a range cell, that an echo may move within the beam */
@@ -94,6 +95,13 @@ double cross_range_energy_reach(const struct point_response *response, double ra
     if (response->array_length_m > 0.0)
         return range_m / response->range_ratio * beam_energy_reach(response, share);
     return along_track_energy_reach(response, share) + response->motion_spread_m;
+}
+
+double cross_range_tail(const struct point_response *response, double range_m)
+{
+    if (response->array_length_m == 0.0)
+        return HUGE_VAL;
+    return range_m / response->range_ratio * tangent_at(response, TAIL_LOBES);
 }
 
 sonject_status cross_range_check(const struct point_response *response, struct report *report,

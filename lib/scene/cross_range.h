@@ -24,6 +24,10 @@ double cross_range_energy_width(const struct point_response *response, double ra
 double cross_range_energy_reach(const struct point_response *response, double range_m,
                                 double share);
 
+/* Half width in m that glints are spread over: to where a beam's side lobes are below -60 dB;
+ * infinite for a synthetic aperture. */
+double cross_range_tail(const struct point_response *response, double range_m);
+
 /* Whether echoes stay within their range cell over a real aperture's beam, out to the patch's last
  * column. Errors: INPUT. */
 sonject_status cross_range_check(const struct point_response *response, struct report *report,
