@@ -15,6 +15,12 @@ typedef enum sonject_response_window {
     SONJECT_WINDOW_TAYLOR = 2 /* side lobes at -taylor_sidelobe_db, taylor_terms constant ones */
 } sonject_response_window;
 
+/* How the image gets its resolution along the track. */
+typedef enum sonject_sonar_kind {
+    SONJECT_SONAR_SYNTHETIC = 0, /* of an aperture that the track makes: the same at every range */
+    SONJECT_SONAR_REAL = 1 /* sidescan: of the array's two-way beam, which widens with range */
+} sonject_sonar_kind;
+
 typedef struct sonject_sonar_params {
     uint32_t struct_size;
     uint32_t response_window;        /* sonject_response_window */
@@ -27,10 +33,25 @@ typedef struct sonject_sonar_params {
     double transducer_side_m;        /* side of the source that rays are connected to; 0: a point */
     double taylor_sidelobe_db;       /* 1...120, for the Taylor window */
     uint32_t taylor_terms;           /* 2...16 */
-    uint32_t reserved;
+    uint32_t kind;                   /* sonject_sonar_kind */
+    double aperture_rad; /* synthetic: full angle of the aspects that shadows and rough highlights
+                            are integrated over, at most pi/2; 0: broadside alone; negative: the
+                            response's own, wavelength/(2 resolution). Smooth highlights always
+                            have the response's own */
+    /* Real: the array, a uniform rectangle that sends and receives. Its long side lies along the
+     * track and its beam looks abreast; then it is turned. */
+    double array_length_m;       /* > 0 where kind is real; two-way energy sinc(length u /
+                                    wavelength)^4 with sinc z = sin(pi z)/(pi z) and u the cosine
+                                    between the long side and the way to the echo */
+    double array_height_m;       /* likewise across; 0: all elevations are heard alike */
+    double array_heading_rad;    /* of the long side, from along-track (+x) towards range (+y),
+                                    whichever side that is; within pi/4 */
+    double array_pitch_rad;      /* of the long side over the horizontal; within pi/4 */
+    double array_depression_rad; /* of the beam below the horizontal, 0...pi/2 */
 } sonject_sonar_params;
 
-/* 100 kHz, 30 kHz bandwidth, 10 m altitude, point source, rectangular window. */
+/* 100 kHz, 30 kHz bandwidth, 10 m altitude, point source, rectangular window; synthetic, with the
+ * response's own aspects. */
 SONJECT_API void sonject_sonar_params_init(sonject_sonar_params *sonar);
 
 SONJECT_END_DECLARATIONS

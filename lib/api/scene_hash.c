@@ -49,6 +49,13 @@ static void add_sonar(struct hash *hash, const struct scene *scene)
     ADD(hash, sonar->transducer_side_m);
     ADD(hash, sonar->taylor_sidelobe_db);
     ADD(hash, sonar->taylor_terms);
+    ADD(hash, sonar->kind);
+    ADD(hash, sonar->aperture_rad);
+    ADD(hash, sonar->array_length_m);
+    ADD(hash, sonar->array_height_m);
+    ADD(hash, sonar->array_heading_rad);
+    ADD(hash, sonar->array_pitch_rad);
+    ADD(hash, sonar->array_depression_rad);
     ADD(hash, scene->medium.sound_speed_mps);
     ADD(hash, scene->medium.reference_sound_speed_mps);
     ADD(hash, scene->medium.absorption_db_per_m);

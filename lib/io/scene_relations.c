@@ -28,6 +28,38 @@ sonject_status read_noise_floor(struct reader *reader, const struct tree_node *n
     return read_quantity(reader, node, QUANTITY_DECIBEL, &injection->noise_floor_db);
 }
 
+sonject_status read_aperture(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    sonject_sonar_params *sonar = structure;
+    const char *text = node->kind == TREE_TEXT && node->text ? node->text : "";
+    if (strcmp(text, "auto") == 0 || strcmp(text, "none") == 0) {
+        sonar->aperture_rad = strcmp(text, "auto") == 0 ? -1.0 : 0.0;
+        return SONJECT_OK;
+    }
+    const sonject_status status = read_quantity(reader, node, QUANTITY_ANGLE, &sonar->aperture_rad);
+    if (status == SONJECT_OK && !(sonar->aperture_rad >= 0.0))
+        return refuse_value(reader, node, "must be from 0 to 90 deg, auto or none");
+    return status;
+}
+
+sonject_status finish_sonar(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    const sonject_sonar_params *sonar = structure;
+    struct report report = {{0}, NULL, NULL};
+    const char *key = "";
+    const bool is_real = sonar->kind == SONJECT_SONAR_REAL;
+    if (is_real && !is_given(node, "array"))
+        return refuse_key(reader, node, "array", "missing; a real aperture needs its length");
+    if (!is_real && is_given(node, "array"))
+        return refuse_key(reader, node, "array", "belongs to a real aperture; set kind: real");
+    if (is_real && is_given(node, "aperture"))
+        return refuse_key(reader, node, "aperture",
+                          "belongs to a synthetic aperture; a real one has that of its array");
+    if (check_sonar(sonar, &report, &key) != SONJECT_OK)
+        return place_check(reader, node, key, &report);
+    return SONJECT_OK;
+}
+
 sonject_status finish_scene(struct reader *reader, const struct tree_node *node, void *structure)
 {
     const struct scene *scene = structure;
@@ -95,7 +127,6 @@ sonject_status finish_uniform(struct reader *reader, const struct tree_node *nod
 FINISH(synthetic, sonject_synthetic_params)
 FINISH(geometry, sonject_geometry_params)
 FINISH(patch, sonject_patch_params)
-FINISH(sonar, sonject_sonar_params)
 FINISH(seabed, sonject_seabed_params)
 FINISH(surface, sonject_surface_params)
 FINISH(injection, sonject_injection_params)

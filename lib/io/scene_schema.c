@@ -112,6 +112,20 @@ static const struct field response_fields[] = {
 static const struct section response_section = {response_fields, COUNT(response_fields),
                                                 finish_response};
 
+static const struct field array_fields[] = {
+    {"length", "along the track; sets the beam",
+     QUANTITY(STRUCTURE, array_length_m, QUANTITY_LENGTH), REQUIRED},
+    {"height", "across; 0 hears all elevations alike",
+     QUANTITY(STRUCTURE, array_height_m, QUANTITY_LENGTH)},
+    {"heading", "of the long side, from along-track towards range",
+     QUANTITY(STRUCTURE, array_heading_rad, QUANTITY_ANGLE)},
+    {"pitch", "of the long side over the horizontal",
+     QUANTITY(STRUCTURE, array_pitch_rad, QUANTITY_ANGLE)},
+    {"depression", "of the beam below the horizontal",
+     QUANTITY(STRUCTURE, array_depression_rad, QUANTITY_ANGLE)},
+};
+static const struct section array_section = {array_fields, COUNT(array_fields), NULL};
+
 static const struct field sonar_fields[] = {
     {"frequency", "centre frequency", QUANTITY(STRUCTURE, centre_frequency_hz, QUANTITY_FREQUENCY),
      REQUIRED},
@@ -127,6 +141,12 @@ static const struct field sonar_fields[] = {
      WORD(STRUCTURE, response_window) =
          {[SONJECT_WINDOW_RECTANGULAR] = "rectangular", [SONJECT_WINDOW_HAMMING] = "hamming"},
      .section = &response_section},
+    {"kind", "synthetic aperture, or the real one of a sidescan",
+     WORD(STRUCTURE,
+          kind) = {[SONJECT_SONAR_SYNTHETIC] = "synthetic", [SONJECT_SONAR_REAL] = "real"}},
+    {"aperture", "full angle of the aspects that shadows and rough highlights take, auto or none",
+     .kind = FIELD_SPECIAL, .read = read_aperture, .unit = "deg, auto or none"},
+    {"array", "of a real aperture", SAME(array_section)},
 };
 static const struct section sonar_section = {sonar_fields, COUNT(sonar_fields), finish_sonar};
 #undef STRUCTURE

@@ -111,6 +111,7 @@ sonject_status read_version(struct reader *reader, const struct tree_node *node,
 sonject_status read_noise_floor(struct reader *reader, const struct tree_node *node,
                                 void *structure);
 sonject_status read_objects(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status read_aperture(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status finish_scene(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status finish_input(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status finish_uniform(struct reader *reader, const struct tree_node *node, void *structure);

@@ -36,6 +36,19 @@ static void swath_size(struct check *check, uint32_t rows, uint32_t columns)
                       (unsigned long)rows, (unsigned long)columns);
 }
 
+/* Turns of the array: the beam stays on the imaged side. */
+static void check_array(struct check *check, const sonject_sonar_params *sonar)
+{
+    check_choice(check, "kind", sonar->kind, SONJECT_SONAR_REAL + 1);
+    check_length(check, "array.length", sonar->array_length_m);
+    if (sonar->kind == SONJECT_SONAR_REAL)
+        check_positive_length(check, "array.length", sonar->array_length_m);
+    check_length(check, "array.height", sonar->array_height_m);
+    check_within(check, "array.heading", sonar->array_heading_rad, -0.25 * PI, 0.25 * PI, " rad");
+    check_within(check, "array.pitch", sonar->array_pitch_rad, -0.25 * PI, 0.25 * PI, " rad");
+    check_within(check, "array.depression", sonar->array_depression_rad, 0.0, 0.5 * PI, " rad");
+}
+
 sonject_status check_sonar(const sonject_sonar_params *sonar, struct report *report,
                            const char **key)
 {
@@ -58,6 +71,10 @@ sonject_status check_sonar(const sonject_sonar_params *sonar, struct report *rep
                      " dB");
         check_within(&check, "response.taylor.terms", sonar->taylor_terms, 2.0, 16.0, "");
     }
+    check_finite(&check, "aperture", sonar->aperture_rad);
+    if (sonar->aperture_rad > 0.0)
+        check_within(&check, "aperture", sonar->aperture_rad, 0.0, 0.5 * PI, " rad");
+    check_array(&check, sonar);
     return check.status;
 }
 

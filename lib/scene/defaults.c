@@ -20,6 +20,7 @@ void sonject_sonar_params_init(sonject_sonar_params *sonar)
     sonar->altitude_m = 10.0;
     sonar->taylor_sidelobe_db = 35.0;
     sonar->taylor_terms = 5;
+    sonar->aperture_rad = -1.0;
 }
 
 void sonject_medium_params_init(sonject_medium_params *medium)

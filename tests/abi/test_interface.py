@@ -52,7 +52,7 @@ def test_headers_compile_alone(header, language, tmp_path):
 SIZES = {
     "sonject_context_params": 56,
     "sonject_device_info": 400,
-    "sonject_sonar_params": 64,
+    "sonject_sonar_params": 112,
     "sonject_medium_params": 32,
     "sonject_seabed_params": 120,
     "sonject_material_params": 80,
@@ -75,7 +75,7 @@ SIZES = {
     "sonject_statistics": 136,
     "sonject_run_params": 16,
     "sonject_quicklook_params": 120,
-    "sonject_seabed_file_params": 208,
+    "sonject_seabed_file_params": 256,
 }
 
 

@@ -31,6 +31,7 @@ static void make_good(struct all *all)
 {
     memset(all, 0, sizeof *all);
     sonject_sonar_params_init(&all->sonar);
+    all->sonar.array_length_m = 0.5; /* for the real kind */
     sonject_medium_params_init(&all->medium);
     sonject_seabed_params_init(&all->seabed);
     sonject_geometry_params_init(&all->geometry);
@@ -117,6 +118,7 @@ static void expect_taken(const struct all *all, const char *name, double value)
         fail_msg("%s of %g was refused: %s", name, value, report.message);
 }
 
+#define PI   3.14159265358979323846
 #define NONE NAN /* no such limit */
 
 /* A number, the smallest and largest that are taken, and what lies just beyond. */
@@ -130,6 +132,14 @@ static const struct number {
     {"altitude", offsetof(struct all, sonar.altitude_m), 0.0, 1e-6, 1e6, 2e6},
     {"resolution", offsetof(struct all, sonar.along_track_resolution_m), -0.1, 0.0, 1e6, 2e6},
     {"transducer", offsetof(struct all, sonar.transducer_side_m), -0.1, 0.0, 1e6, 2e6},
+    {"aperture", offsetof(struct all, sonar.aperture_rad), NONE, -1.0, 0.5 * PI, 1.6},
+    {"array.length", offsetof(struct all, sonar.array_length_m), -0.1, 0.0, 1e6, 2e6},
+    {"array.height", offsetof(struct all, sonar.array_height_m), -0.1, 0.0, 1e6, 2e6},
+    {"array.heading", offsetof(struct all, sonar.array_heading_rad), -0.8, -0.25 * PI, 0.25 * PI,
+     0.8},
+    {"array.pitch", offsetof(struct all, sonar.array_pitch_rad), -0.8, -0.25 * PI, 0.25 * PI, 0.8},
+    {"array.depression", offsetof(struct all, sonar.array_depression_rad), -0.1, 0.0, 0.5 * PI,
+     1.6},
     {"sound_speed", offsetof(struct all, medium.sound_speed_mps), 99.0, 100.0, 10000.0, 10001.0},
     {"reference_sound_speed", offsetof(struct all, medium.reference_sound_speed_mps), 99.0, 0.0,
      10000.0, 10001.0},
@@ -276,6 +286,7 @@ static void test_choices(void **state)
         uint32_t last;
     } choices[] = {
         {"response", offsetof(struct all, sonar.response_window), SONJECT_WINDOW_TAYLOR},
+        {"kind", offsetof(struct all, sonar.kind), SONJECT_SONAR_REAL},
         {"map", offsetof(struct all, seabed.map), SONJECT_MAP_COHERENT},
         {"side", offsetof(struct all, geometry.side), SONJECT_SIDE_STARBOARD},
         {"kind", offsetof(struct all, transfer.kind), SONJECT_TRANSFER_SCHLICK},

@@ -39,6 +39,14 @@ static const char synthetic[] = "sonject: 1\n"
                                 "first_slant_range: 40}\n"
                                 "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n";
 
+static const char sidescan[] = "sonject: 1\n"
+                               "input:\n"
+                               "  uniform: {rows: 4, columns: 5}\n"
+                               "  geometry: {row_spacing: 1, column_spacing: 1, "
+                               "first_slant_range: 40}\n"
+                               "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10, "
+                               "kind: real, array: {length: 1 m}}\n";
+
 static const char file[] = "sonject: 1\n"
                            "input:\n"
                            "  path: swath.tif\n"
@@ -149,6 +157,20 @@ static const struct key_case {
      SCENE(sonar.taylor_sidelobe_db), 40.0, NULL, "sonar.response={taylor: {terms: 5}}"},
     {"sonar.response.taylor.terms", small, "7", TYPE_U32, SCENE(sonar.taylor_terms), 7.0, NULL,
      "sonar.response={taylor: {sidelobes: 35 dB}}"},
+    {"sonar.kind", small, "real", TYPE_U32, SCENE(sonar.kind), SONJECT_SONAR_REAL, NULL,
+     "sonar.array={length: 1 m}"},
+    {"sonar.aperture", small, "18 deg", TYPE_DOUBLE, SCENE(sonar.aperture_rad), PI / 10.0, NULL,
+     NULL},
+    {"sonar.array.length", small, "40 cm", TYPE_DOUBLE, SCENE(sonar.array_length_m), 0.4, NULL,
+     "sonar.kind=real"},
+    {"sonar.array.height", sidescan, "5 cm", TYPE_DOUBLE, SCENE(sonar.array_height_m), 0.05, NULL,
+     NULL},
+    {"sonar.array.heading", sidescan, "-9 deg", TYPE_DOUBLE, SCENE(sonar.array_heading_rad),
+     -PI / 20.0, NULL, NULL},
+    {"sonar.array.pitch", sidescan, "9 deg", TYPE_DOUBLE, SCENE(sonar.array_pitch_rad), PI / 20.0,
+     NULL, NULL},
+    {"sonar.array.depression", sidescan, "30 deg", TYPE_DOUBLE, SCENE(sonar.array_depression_rad),
+     PI / 6.0, NULL, NULL},
     {"medium.sound_speed", small, "1.48 km/s", TYPE_DOUBLE, SCENE(medium.sound_speed_mps), 1480.0,
      NULL, NULL},
     {"medium.reference_sound_speed", small, "1490 m/s", TYPE_DOUBLE,

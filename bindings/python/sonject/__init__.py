@@ -27,6 +27,7 @@ from .enumerations import (
     ResponseWindow,
     SeabedMap,
     Side,
+    SonarKind,
     Status,
     TransferKind,
 )
@@ -117,6 +118,7 @@ __all__ = [
     "Seabed",
     "SeabedMap",
     "Side",
+    "SonarKind",
     "Sonar",
     "SonjectError",
     "Sphere",

@@ -326,7 +326,13 @@ class sonject_sonar_params(Structure):
         ("transducer_side_m", c_double),
         ("taylor_sidelobe_db", c_double),
         ("taylor_terms", c_uint32),
-        ("reserved", c_uint32),
+        ("kind", c_uint32),
+        ("aperture_rad", c_double),
+        ("array_length_m", c_double),
+        ("array_height_m", c_double),
+        ("array_heading_rad", c_double),
+        ("array_pitch_rad", c_double),
+        ("array_depression_rad", c_double),
     ]
 
 

@@ -163,3 +163,10 @@ class ResponseWindow(enum.IntEnum):
     RECTANGULAR = 0
     HAMMING = 1
     TAYLOR = 2
+
+
+class SonarKind(enum.IntEnum):
+    """sonject_sonar_kind: how the image gets its resolution along the track."""
+
+    SYNTHETIC = 0
+    REAL = 1

@@ -24,6 +24,7 @@ from .enumerations import (
     ResponseWindow,
     SeabedMap,
     Side,
+    SonarKind,
     TransferKind,
 )
 from .material import Material
@@ -64,11 +65,17 @@ class Sonar(Parameters):
     response_window: weighting of the aspects that form a pixel; centre_frequency_hz, bandwidth_hz:
     the range width at -3 dB is c / (2 bandwidth); altitude_m: height of the track over the mean
     seabed; along_track_resolution_m: 0 takes the image's row spacing; transducer_side_m: side of
-    the source, 0 for a point; taylor_sidelobe_db, taylor_terms: for the Taylor window only.
+    the source, 0 for a point; taylor_sidelobe_db, taylor_terms: for the Taylor window only; kind:
+    synthetic or real aperture; aperture_rad: synthetic: full angle of the aspects that shadows and
+    rough highlights are integrated over, 0 for broadside alone, negative for the response's own;
+    array_*: real: size and pose of the array.
     """
 
     _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_sonar_params
-    _choices: ClassVar[Mapping[str, Type[enum.IntEnum]]] = {"response_window": ResponseWindow}
+    _choices: ClassVar[Mapping[str, Type[enum.IntEnum]]] = {
+        "response_window": ResponseWindow,
+        "kind": SonarKind,
+    }
 
     response_window: ResponseWindow = library_default()
     centre_frequency_hz: float = library_default()
@@ -78,6 +85,13 @@ class Sonar(Parameters):
     transducer_side_m: float = library_default()
     taylor_sidelobe_db: float = library_default()
     taylor_terms: int = library_default()
+    kind: SonarKind = library_default()
+    aperture_rad: float = library_default()
+    array_length_m: float = library_default()
+    array_height_m: float = library_default()
+    array_heading_rad: float = library_default()
+    array_pitch_rad: float = library_default()
+    array_depression_rad: float = library_default()
 
 
 @dataclass(kw_only=True)

@@ -31,6 +31,7 @@ ENUMERATIONS = {
     "sonject_input_kind": (enumerations.InputKind, "SONJECT_INPUT_"),
     "sonject_seabed_map": (enumerations.SeabedMap, "SONJECT_MAP_"),
     "sonject_response_window": (enumerations.ResponseWindow, "SONJECT_WINDOW_"),
+    "sonject_sonar_kind": (enumerations.SonarKind, "SONJECT_SONAR_"),
 }
 
 
