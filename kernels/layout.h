@@ -146,6 +146,20 @@ struct ray_piece_record {
     float spreading, spreading_growth;
 };
 
+#define ASPECT_TERMS 15
+
+/* The aspects of a synthetic aperture, over which seabed and rough surfaces are integrated. */
+struct aspects_record {
+    float sine;  /* of the largest angle off broadside; 0: broadside alone */
+    float end;   /* range where the patch ends, less the reference range, m */
+    float scale; /* 1 / the mean square of the window */
+    RECORD_INT terms;
+    float weights[ASPECT_TERMS]; /* the window is 1 + sum of weights[m-1] * cos(2 pi m offset) */
+    /* Squinted rays meet things in other strips than their own. Strips of the whole track: */
+    RECORD_INT tally_first_strip, tally_strips; /* whose seabed is tallied */
+    RECORD_INT core_first_strip, core_strips;   /* whose rays tally objects */
+};
+
 /* A fan of rays over a track, in a frame that the host centres on what is traced. The sonar moves
  * along y = z = -reference_range * (0, cos, -sin)(depression) of that frame; where layers bend the
  * rays it only seems to. Ranges are travel times times the sound speed around the origin. */
@@ -187,6 +201,7 @@ struct fan_record {
     RECORD_WORD relief_words; /* where the relief_record is, in words from the first object's
                                  record; 0: the seabed is the plane */
     float relief_x, relief_y; /* m, of its first grid point in the frame */
+    struct aspects_record aspects;
 };
 
 /* Sixteen spheres, to be tested at once; radius 0: none. */

@@ -14,6 +14,9 @@ struct rough_trace {
     struct rough_tile tiles[SCENE_OBJECTS_MAX];
     size_t tile_elements;     /* of all tiles and planes */
     double energy_of_quantum; /* m^2 */
+    /* Strips traced besides those whose seabed is wanted, for rays that come from there: on both
+     * sides of a chunk, and beyond the patch's ends. */
+    int32_t relief_halo, object_halo;
     struct fan_record fan;
     struct ray_table rays;
     struct trace_device on_device;
@@ -33,6 +36,9 @@ void rough_tile_describe(const struct rough_trace *trace, uint32_t object,
 
 /* How many strips a call of rough_trace_strips may take. */
 int32_t rough_trace_chunk(const struct rough_trace *trace);
+
+/* Lays the fan for those strips, of which the patch's are a union: rough_trace_strips does so. */
+void rough_trace_aim(struct rough_trace *trace, struct span strips);
 
 /* Traces strips.count <= chunk strips and writes the energies (m^2) that the seabed would return
  * without objects, strips.count x bins.count. The objects' tiles add up on the device. */

@@ -15,7 +15,7 @@
 
 /* Host and device must agree on every byte. */
 typedef char object_record_is_packed[sizeof(struct object_record) == 57 * 4 ? 1 : -1];
-typedef char fan_record_is_packed[sizeof(struct fan_record) == 43 * 4 ? 1 : -1];
+typedef char fan_record_is_packed[sizeof(struct fan_record) == 66 * 4 ? 1 : -1];
 typedef char chain_record_is_packed[sizeof(struct chain_record) == 35 * 4 ? 1 : -1];
 typedef char sphere_group_is_packed[sizeof(struct sphere_group) == 64 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
