@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "trace/aspects.h"
 #include "trace/object_buffer.h"
 #include "trace/object_shape.h"
 #include "user/user_program.h"
@@ -246,9 +247,10 @@ sonject_status trace_device_init(struct trace_device *device, struct tracer *tra
     const size_t fitting = TALLY_BYTES / line_bytes;
     memset(device, 0, sizeof *device);
     device->tally_strips = fitting < 1 ? 1 : fitting < strips ? fitting : strips;
-    sonject_status status =
-        scene_kernel_create(report, tracer->device, tracer->scene, tracer_variant(tracer), program,
-                            kernel_name, &device->kernel);
+    const bool has_aspects = program == PROGRAM_TRACE_ROUGH && aspects_sine(tracer) > 0.0;
+    const uint32_t variant = tracer_variant(tracer) | (has_aspects ? PROGRAM_WITH_ASPECTS : 0u);
+    sonject_status status = scene_kernel_create(report, tracer->device, tracer->scene, variant,
+                                                program, kernel_name, &device->kernel);
     if (status == SONJECT_OK)
         status = object_buffer_create(tracer, records, parts, &device->objects);
     if (status == SONJECT_OK)
