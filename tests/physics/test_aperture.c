@@ -263,22 +263,27 @@ static void test_seabed_level(void **unused)
 }
 
 /* A rough sphere of 1 cm keeps to its own strip at every height, and has the energy that it has
- * from abreast: only rays that meet it count, wherever they come from. */
+ * from abreast: only rays that meet it count, wherever they come from, beyond the patch's ends
+ * too. */
 static void test_highlight_stays(void **unused)
 {
     (void)unused;
-    static const double heights[] = {0.0, 0.5, 1.5};
-    for (size_t i = 0; i < 3; i++) {
+    static const double heights[] = {0.0, 0.5, 1.5, 1.5};
+    static const double rows[] = {MIDDLE_ROW, MIDDLE_ROW, MIDDLE_ROW, 1.0};
+    for (size_t i = 0; i < 4; i++) {
         double sums[2] = {0.0, 0.0};
         for (int is_on = 0; is_on < 2; is_on++) {
             struct bench bench;
             struct rough_trace trace;
-            open_sas(&bench, SONJECT_WINDOW_RECTANGULAR, 16.0);
+            open_sas(&bench, SONJECT_WINDOW_RECTANGULAR, 64.0);
             bench.scene.sonar.aperture_rad = is_on ? -1.0 : 0.0;
             sonject_object_params *sphere = bench_add(&bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.02);
             sphere->material.lambert = 0.2;
             sphere->material.reflection = 0.0;
             sphere->burial_m = -heights[i];
+            sphere->position_kind = SONJECT_POSITION_PIXELS;
+            sphere->position_along = rows[i];
+            sphere->position_range = 200.0;
             bench_ready(&bench);
             const float *energy = trace_tiles(&bench, &trace);
             const struct line_grid *grid = &trace.tiles[0].grid;
@@ -298,9 +303,46 @@ static void test_highlight_stays(void **unused)
             bench_close(&bench);
         }
         print_message("%.1f m over the seabed: ", heights[i]);
-        /* some 10^3 rays, one a stratum of elevation, at chance along the track */
-        expect_close("energy over that from abreast", sums[1] / sums[0], 1.0, 0.15);
+        /* some 160 strata of elevation, whose rays meet the sphere at chance along the track, with
+         * 0.6 on the mean: 0.065 each, four standard errors of their ratio */
+        expect_close("energy over that from abreast", sums[1] / sums[0], 1.0, 0.37);
     }
+}
+
+/* A steep mound, a quarter of a metre high: rays meet it well before the mean seabed, in
+ * other strips than their own, and the image must show it where it is. */
+static void test_relief_stays(void **unused)
+{
+    (void)unused;
+    double lines[2][ROWS];
+    for (int is_on = 0; is_on < 2; is_on++) {
+        struct bench bench;
+        struct echoes echoes;
+        open_sas(&bench, SONJECT_WINDOW_RECTANGULAR, 2.0);
+        bench.scene.sonar.aperture_rad = is_on ? -1.0 : 0.0;
+        struct relief_feature *mound = bench_add_relief(&bench, RELIEF_MOUND);
+        mound->radius_m = 0.25;
+        mound->height_m = 0.25;
+        bench_ready(&bench);
+        bench_echoes(&bench, NULL, SEABED_FIELD_NONE, &echoes);
+        for (size_t row = 0; row < ROWS; row++) {
+            lines[is_on][row] = 0.0;
+            /* the side towards the sonar, bright, without the shadow behind */
+            for (size_t column = 150; column < 198; column++)
+                lines[is_on][row] += echoes.seabed_energy[row * COLUMNS + column];
+        }
+        echoes_clear(&echoes);
+        bench_close(&bench);
+    }
+    double difference = 0.0, brightness = 0.0;
+    for (size_t row = 0; row < ROWS; row++) {
+        const double level = lines[0][0];
+        difference += fabs(lines[1][row] - lines[0][row]);
+        brightness += fabs(lines[0][row] - level);
+    }
+    /* aspects light its flanks a little otherwise: 0.07; tallied in the rays' own strips, up to
+     * 17 cm to each side, it would differ by 0.22 */
+    expect_below("difference over the mound's own brightness", difference / brightness, 0.1);
 }
 
 int main(void)
@@ -309,6 +351,7 @@ int main(void)
         cmocka_unit_test(test_penumbra),     cmocka_unit_test(test_penumbra_of_weighted_aspects),
         cmocka_unit_test(test_core_closes),  cmocka_unit_test(test_noise_in_penumbra),
         cmocka_unit_test(test_seabed_level), cmocka_unit_test(test_highlight_stays),
+        cmocka_unit_test(test_relief_stays),
     };
     return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }
