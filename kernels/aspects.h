@@ -13,7 +13,7 @@ struct aspect_ray {
     struct vector3 direction; /* unit */
     real sine, cosine;        /* of the angle off broadside; a distance along the fan's ray is
                                  cosine times that along this one */
-    real weight;              /* of the aspect, 1 on the mean */
+    real weight;              /* of the aspect: 1 on the mean; within a beam: see there */
 };
 
 /* A device builds without them where a scene has broadside rays alone; plain C has them unless it
@@ -24,10 +24,16 @@ struct aspect_ray {
 #define HAS_ASPECTS 0
 #endif
 
-/* Whether the launch's rays have aspects of their own. */
+/* Whether the launch's rays have aspects of a synthetic aperture. */
 FUNCTION int has_aspects(const struct fan_record *fan)
 {
     return HAS_ASPECTS && fan->aspects.sine > 0.0f;
+}
+
+/* Whether they go out within the beam of a real one. */
+FUNCTION int has_beam(const struct fan_record *fan)
+{
+    return HAS_ASPECTS && fan->beam.reach > 0.0f;
 }
 
 /* The share 0...1 of the aperture that a ray looks from: the lattice of the plastic number, even
@@ -61,6 +67,49 @@ FUNCTION real aspect_weight(const struct fan_record *fan, real offset)
     return amplitude * amplitude * fan->aspects.scale;
 }
 
+/* Power pattern of one side of the array at a direction cosine along it: sinc^2 one way, squared
+ * for there and back. */
+FUNCTION real two_way_pattern(float wavelengths, real cosine)
+{
+    const real amplitude = sinc_of_cycles(0.5f * wavelengths * cosine);
+    const real one_way = amplitude * amplitude;
+    return one_way * one_way;
+}
+
+#define STEEPEST_SINE 0.95f /* off broadside; a beam's rays go no further */
+
+/* A ray within the beam, from the middle of its ping; direction cosines off the beam's middle are
+ * even over +-reach. weight: the two-way pattern times the sine's range, which stands for a strip's
+ * width over range. share: 0...1. */
+FUNCTION struct aspect_ray beam_ray_of(const struct fan_record *fan, const struct fan_ray *ray,
+                                       real share)
+{
+    const struct beam_record *beam = &fan->beam;
+    struct aspect_ray squinted;
+    /* the middle: where the way is square to the long side */
+    const real slope =
+        -(ray->direction.y * beam->along[1] + ray->direction.z * beam->along[2]) / beam->along[0];
+    const real square = 1.0f + slope * slope;
+    const real middle = slope / SQUARE_ROOT(square);
+    const real reach = beam->reach / (beam->along[0] * square);
+    const real lowest = larger(middle - reach, SPLAT(-STEEPEST_SINE));
+    const real range = smaller(middle + reach, SPLAT(STEEPEST_SINE)) - lowest;
+    squinted.sine = lowest + range * share;
+    squinted.cosine = SQUARE_ROOT(1.0f - squinted.sine * squinted.sine);
+    squinted.direction.x = squinted.sine;
+    squinted.direction.y = ray->direction.y * squinted.cosine;
+    squinted.direction.z = ray->direction.z * squinted.cosine;
+    squinted.start = ray->closest;
+    squinted.start.x = ray->closest.x + (fan->reference_range + ray->range_at_closest) *
+                                            (squinted.sine / squinted.cosine);
+    const real u = squinted.direction.x * beam->along[0] + squinted.direction.y * beam->along[1] +
+                   squinted.direction.z * beam->along[2];
+    const real v = squinted.direction.x * beam->across[0] + squinted.direction.y * beam->across[1] +
+                   squinted.direction.z * beam->across[2];
+    squinted.weight = range * two_way_pattern(beam->length, u) * two_way_pattern(beam->height, v);
+    return squinted;
+}
+
 /* The ray of the fan itself where the launch has one aspect only. track_strip: the ray's strip,
  * counted over the whole track; jitter: uniform in 0...1. */
 FUNCTION struct aspect_ray aspect_ray_of(const struct fan_record *fan, const struct fan_ray *ray,
@@ -72,9 +121,12 @@ FUNCTION struct aspect_ray aspect_ray_of(const struct fan_record *fan, const str
     squinted.sine = SPLAT(0.0f);
     squinted.cosine = SPLAT(1.0f);
     squinted.weight = SPLAT(1.0f);
-    if (!has_aspects(fan))
+    if (!has_aspects(fan) && !has_beam(fan))
         return squinted;
-    const real offset = aspect_share(fan, track_strip, number, jitter) - 0.5f;
+    const real share = aspect_share(fan, track_strip, number, jitter);
+    if (has_beam(fan))
+        return beam_ray_of(fan, ray, share);
+    const real offset = share - 0.5f;
     squinted.sine = 2.0f * fan->aspects.sine * offset;
     squinted.cosine = SQUARE_ROOT(1.0f - squinted.sine * squinted.sine);
     squinted.weight = aspect_weight(fan, offset);
@@ -86,6 +138,23 @@ FUNCTION struct aspect_ray aspect_ray_of(const struct fan_record *fan, const str
     squinted.direction.y = ray->direction.y * squinted.cosine;
     squinted.direction.z = ray->direction.z * squinted.cosine;
     return squinted;
+}
+
+/* What a beam's ray at a range abreast (less the reference range) is over one that stands for a
+ * strip: dA across the ray is range^2 d(sine) d(elevation), the range being the whole one. */
+FUNCTION real beam_spread(const struct fan_record *fan, const struct aspect_ray *squinted,
+                          real range_abreast)
+{
+    return (fan->reference_range + range_abreast) /
+           (squinted->cosine * squinted->cosine * squinted->cosine * fan->strip_width);
+}
+
+/* The whole range of a range abreast, each less the reference range. */
+FUNCTION real whole_range(const struct fan_record *fan, const struct aspect_ray *squinted,
+                          real range_abreast)
+{
+    const real lack = squinted->sine * squinted->sine / (1.0f + squinted->cosine);
+    return (range_abreast + fan->reference_range * lack) / squinted->cosine;
 }
 
 /* The strip of the whole track that a position along it lies in. */

@@ -160,6 +160,16 @@ struct aspects_record {
     RECORD_INT core_first_strip, core_strips;   /* whose rays tally objects */
 };
 
+/* The two-way beam of a real aperture: rays leave from where each ping is. */
+struct beam_record {
+    float reach;  /* direction cosine off the beam's middle, along the array's long side, that
+                     rays go out to; 0: no beam */
+    float length; /* of the array's sides, in wavelengths */
+    float height;
+    float along[3];  /* unit, of the long side, in the frame */
+    float across[3]; /* unit, of the other side */
+};
+
 /* A fan of rays over a track, in a frame that the host centres on what is traced. The sonar moves
  * along y = z = -reference_range * (0, cos, -sin)(depression) of that frame; where layers bend the
  * rays it only seems to. Ranges are travel times times the sound speed around the origin. */
@@ -202,6 +212,7 @@ struct fan_record {
                                  record; 0: the seabed is the plane */
     float relief_x, relief_y; /* m, of its first grid point in the frame */
     struct aspects_record aspects;
+    struct beam_record beam;
 };
 
 /* Sixteen spheres, to be tested at once; radius 0: none. */

@@ -168,7 +168,8 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     const int own_strip = fan->first_strip + strip;
     real along, across, jitter;
     three_uniforms(key, number, 0, &along, &across, &jitter);
-    const real x = strip_position(fan, strip) + (along - 0.5f) * fan->strip_width;
+    const float spread = has_beam(fan) ? 0.0f : fan->strip_width; /* pings are points */
+    const real x = strip_position(fan, strip) + (along - 0.5f) * spread;
     const struct fan_ray ray = fan_ray_at(
         fan, pieces, x, fan->first_elevation + (REAL_OF(number) + across) * fan->elevation_step);
     /* distances along the squinted ray times its cosine are those along the fan's */
@@ -203,10 +204,14 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
         bed_cosine = way.cosine;
         bed_open = bed_open & (way.is_open | on_object);
     }
+    real bed_weight = squinted.weight * fan->quanta;
+    if (has_beam(fan)) {
+        bed_weight = bed_weight * beam_spread(fan, &squinted, seabed_range);
+        bed_range = whole_range(fan, &squinted, bed_range);
+    }
     const real bed_gain = refraction_gain(fan, &ray, bed_distance);
     const real bed_energy = fan->seabed_lambert * bed_cosine * strip_of_cell *
-                            (ray.wavefront + bed_distance) * (bed_gain * bed_gain) *
-                            (squinted.weight * fan->quanta);
+                            (ray.wavefront + bed_distance) * (bed_gain * bed_gain) * bed_weight;
     const real bed_bin =
         CHOOSE(bed_open, bed_range * fan->bins_per_metre + fan->first_bin, SPLAT(-9.0f));
 
@@ -215,8 +220,11 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     const real target_distance = to_target * squinted.cosine;
     real target_range = ray.range_at_closest + target_distance;
     const real target_gain = refraction_gain(fan, &ray, target_distance);
+    real target_weight = squinted.weight * fan->quanta;
+    if (has_beam(fan))
+        target_weight = target_weight * beam_spread(fan, &squinted, target_range);
     const real target_area = strip_of_cell * (ray.wavefront + target_distance) *
-                             (target_gain * target_gain) * (squinted.weight * fan->quanta);
+                             (target_gain * target_gain) * target_weight;
     const int objects_end = ANY(on_object) ? fan->objects : 0;
     for (int i = surface_after(-1, objects_end, nearest.object, on_object); i < objects_end;
          i = surface_after(i, objects_end, nearest.object, on_object)) {
@@ -245,11 +253,13 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
                             dot3(normal, out) * target_area,
                         energy);
     }
+    if (has_beam(fan))
+        target_range = whole_range(fan, &squinted, target_range);
     const whole seabed_bins = nearest_bin(bed_bin);
     const whole target_bins = nearest_bin(target_range * fan->bins_per_metre + fan->first_bin);
     const whole object_numbers = CHOOSE(on_object, nearest.object, WHOLE_OF(SPLAT(-1.0f)));
     const real kept = CHOOSE(bed_open, bed_energy, SPLAT(0.0f));
-    const real bed_x = has_relief(fan) ? bed.x : x;
+    const real bed_x = has_relief(fan) || has_beam(fan) ? bed.x : x;
     const real row = fan->map_row_at_origin + bed_x * fan->map_rows_per_metre;
     const real map_range = has_relief(fan) ? range_in_plan(fan, pieces, bed) : seabed_range;
     const real column = fan->map_first_column + map_range * fan->map_columns_per_metre;

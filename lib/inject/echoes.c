@@ -7,6 +7,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "form/form.h"
+#include "inject/beam_shadows.h"
 #include "inject/chain_echoes.h"
 #include "inject/coherent_seabed.h"
 #include "inject/level_seabed.h"
@@ -438,6 +439,8 @@ sonject_status echoes_compute(struct echoes *echoes, struct tracer *tracer,
             status = compute_seabed(echoes, tracer, request, &trace, tiles);
         if (status == SONJECT_OK)
             status = compute_objects(echoes, tracer, request, &trace, tiles);
+        if (status == SONJECT_OK)
+            status = beam_shadows_compute(echoes, tracer, request, seabed_map(tracer, request));
         if (status == SONJECT_OK && tracer->relief)
             status = level_seabed_compute(echoes, tracer, request, &trace);
         if (status == SONJECT_OK)

@@ -7,16 +7,23 @@
 #include "base/memory.h"
 #include "cl/launch.h"
 #include "trace/aspects.h"
+#include "trace/beam.h"
 #include "trace/corners.h"
 #include "trace/patch_fan.h"
 #include "trace/source_pairs.h"
 
-#define RAYS_PER_BIN 2.0
+#define RAYS_PER_BIN         2.0
+#define RAYS_PER_BIN_OF_BEAM 6.0 /* a third of its rays carry most of the energy */
 
 static double bin_of_apparent_range(const struct rough_trace *trace, const struct tracer *tracer,
                                     double range)
 {
     return view_column_of_range(&tracer->view, range) * trace->grid.bins_per_pixel;
+}
+
+static bool has_beam(const struct rough_trace *trace)
+{
+    return trace->fan.beam.reach > 0.0f;
 }
 
 /* Ranges, m, from a part's nearest point to where the ray over its top meets the seabed. */
@@ -48,7 +55,10 @@ static struct span part_bins(const struct rough_trace *trace, const struct trace
     const double ratio = tracer->view.range_ratio;
     const double first = floor(bin_of_apparent_range(trace, tracer, ranges.first * ratio)) - 2.0;
     const struct span mirrored = mirrored_bins(tracer, number, &trace->grid);
-    const double last = fmax(ceil(bin_of_apparent_range(trace, tracer, ranges.last * ratio)) + 2.0,
+    /* a beam sees what is off broadside farther away */
+    const double sine = has_beam(trace) ? beam_largest_sine(tracer) : 0.0;
+    const double farthest = ranges.last / sqrt(1.0 - sine * sine);
+    const double last = fmax(ceil(bin_of_apparent_range(trace, tracer, farthest * ratio)) + 2.0,
                              mirrored.first + mirrored.count);
     const double limit = trace->grid.bins.first + trace->grid.bins.count;
     struct span bins;
@@ -64,6 +74,9 @@ static double part_slide(const struct rough_trace *trace, const struct tracer *t
                          const struct placement *placement)
 {
     const struct part_ranges ranges = ranges_of_part(tracer, placement);
+    const double sine = has_beam(trace) ? beam_largest_sine(tracer) : 0.0;
+    if (has_beam(trace)) /* rays belong to the ping that they leave from */
+        return ranges.last * sine / sqrt(1.0 - sine * sine);
     const double bins = trace->grid.bins.first + trace->grid.bins.count;
     const double patch_end = view_apparent_range(&tracer->view, bins / trace->grid.bins_per_pixel) /
                              tracer->view.range_ratio;
@@ -157,8 +170,10 @@ static void choose_quanta(struct rough_trace *trace, const struct tracer *tracer
             brightest = fmax(brightest, map[i]);
     const double wavefront = (double)trace->fan.strip_width * trace->fan.elevation_step * 2.0 *
                              trace->fan.reference_range;
+    const double beam = has_beam(trace) ? beam_largest_weight(tracer, &trace->fan) : 1.0;
     const double most =
-        wavefront * fmax(brightest_scattering(tracer), tracer->scene->seabed.lambert * brightest);
+        beam * wavefront *
+        fmax(brightest_scattering(tracer), tracer->scene->seabed.lambert * brightest);
     trace->fan.quanta = power_of_two_below(ldexp(1.0, 44) / most);
     trace->energy_of_quantum = view_energy_scale(&tracer->view) / trace->fan.quanta;
 }
@@ -179,27 +194,39 @@ static sonject_status make_buffers(struct rough_trace *trace, struct tracer *tra
     return status;
 }
 
-sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *tracer, const float *map)
+/* Strips of a fan, or a beam's rays on a grid of one strip a ping. */
+static sonject_status lay_fan(struct rough_trace *trace, struct tracer *tracer, bool has_map,
+                              bool is_beam)
+{
+    const double rays_per_bin = is_beam ? RAYS_PER_BIN_OF_BEAM : RAYS_PER_BIN;
+    sonject_status status =
+        patch_fan_init(&trace->fan, tracer, &trace->grid, has_map, rays_per_bin);
+    if (status == SONJECT_OK && is_beam)
+        status = beam_record_init(&trace->fan, tracer, &trace->grid);
+    if (status == SONJECT_OK)
+        status = patch_rays_init(&trace->rays, &trace->fan.table, tracer, &trace->grid);
+    trace->fan.stream = STREAM_ROUGH_RAYS;
+    aspects_record_init(&trace->fan, tracer, &trace->grid);
+    trace->fan.seabed_lambert = (float)tracer->scene->seabed.lambert;
+    return status;
+}
+
+static sonject_status begin(struct rough_trace *trace, struct tracer *tracer, const float *map,
+                            const struct point_response *response, bool is_beam)
 {
     memset(trace, 0, sizeof *trace);
     const struct patch_view *view = &tracer->view;
-    line_grid_for_patch(&trace->grid, view, &tracer->response);
+    line_grid_for_patch(&trace->grid, view, response);
     double origin[3];
     patch_fan_origin(origin, view);
     struct object_record *records = allocate_array(tracer->part_count, sizeof *records);
     if (!records)
         return report_out_of_memory(tracer->report, "objects");
     object_records_init(records, tracer, origin);
-    sonject_status status =
-        patch_fan_init(&trace->fan, tracer, &trace->grid, map != NULL, RAYS_PER_BIN);
-    if (status == SONJECT_OK)
-        status = patch_rays_init(&trace->rays, &trace->fan.table, tracer, &trace->grid);
-    trace->fan.stream = STREAM_ROUGH_RAYS;
-    aspects_record_init(&trace->fan, tracer, &trace->grid);
+    sonject_status status = lay_fan(trace, tracer, map != NULL, is_beam);
     trace->relief_halo = aspects_relief_halo(tracer, &trace->grid);
     trace->object_halo = object_halo(trace, tracer);
     rough_trace_aim(trace, trace->grid.strips);
-    trace->fan.seabed_lambert = (float)tracer->scene->seabed.lambert;
     if (status == SONJECT_OK)
         status = lay_tiles(trace, tracer, records);
     if (status == SONJECT_OK) {
@@ -210,6 +237,17 @@ sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *trace
     if (status != SONJECT_OK)
         rough_trace_end(trace);
     return status;
+}
+
+sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *tracer, const float *map)
+{
+    return begin(trace, tracer, map, &tracer->response, false);
+}
+
+sonject_status rough_trace_begin_beam(struct rough_trace *trace, struct tracer *tracer,
+                                      const struct point_response *response, const float *map)
+{
+    return begin(trace, tracer, map, response, true);
 }
 
 void rough_trace_end(struct rough_trace *trace)

@@ -33,6 +33,7 @@ enum scene_kind {
     SCENE_WIDE_RELIEF,  /* the same, source rectangle and map */
     SCENE_ASPECTS,      /* the first one's objects, seen by a weighted synthetic aperture */
     SCENE_WIDE_ASPECTS, /* the same among relief, source rectangle and map */
+    SCENE_BEAM,         /* the first one's objects, seen by the beam of a turned real aperture */
     SCENE_KINDS
 };
 
@@ -130,6 +131,15 @@ static void make_scene(struct bench *bench, enum scene_kind kind)
     }
     bench->scene.sonar.aperture_rad = 0.0;
     bench->scene.sonar.response_window = SONJECT_WINDOW_RECTANGULAR;
+    bench->scene.sonar.kind = SONJECT_SONAR_SYNTHETIC;
+    if (kind == SCENE_BEAM) {
+        bench->scene.sonar.kind = SONJECT_SONAR_REAL;
+        bench->scene.sonar.array_length_m = 0.4;
+        bench->scene.sonar.array_height_m = 0.05;
+        bench->scene.sonar.array_heading_rad = 0.05;
+        bench->scene.sonar.array_pitch_rad = -0.03;
+        bench->scene.sonar.array_depression_rad = 0.4;
+    }
     if (kind == SCENE_ASPECTS || kind == SCENE_WIDE_ASPECTS) {
         bench->scene.sonar.aperture_rad = 0.3;
         bench->scene.sonar.response_window = SONJECT_WINDOW_TAYLOR;
@@ -201,13 +211,23 @@ static void expect_alive(const struct tallies *tallies)
     assert_true(is_alive(tallies));
 }
 
+static void begin_rough(struct rough_trace *trace, struct bench *bench, const float *map)
+{
+    struct tracer *tracer = &bench->tracer;
+    const sonject_status status =
+        bench->scene.sonar.kind == SONJECT_SONAR_REAL
+            ? rough_trace_begin_beam(trace, tracer, &tracer->response, map)
+            : rough_trace_begin(trace, tracer, map);
+    if (status != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+}
+
 static struct tallies trace_rough_on_device(struct bench *bench, const float *map, int32_t chunk)
 {
     struct rough_trace trace;
     struct tallies tallies = {0, 0, NULL, NULL, {0, 0, 0, 0}};
     memset(&bench->tracer.counts, 0, sizeof bench->tracer.counts);
-    if (rough_trace_begin(&trace, &bench->tracer, map) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    begin_rough(&trace, bench, map);
     const size_t bins = (size_t)trace.grid.bins.count;
     const int32_t count = trace.grid.strips.count;
     tallies.lines = line_grid_cells(&trace.grid);
@@ -250,8 +270,7 @@ static struct tallies trace_rough_as_c(struct bench *bench, const float *map)
 {
     struct rough_trace trace;
     struct tallies tallies = {0, 0, NULL, NULL, {0, 0, 0, 0}};
-    if (rough_trace_begin(&trace, &bench->tracer, map) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    begin_rough(&trace, bench, map);
     struct object_record *objects = bench_copy_buffer(bench, trace.on_device.objects);
     tallies.lines = line_grid_cells(&trace.grid);
     tallies.tiles = trace.tile_elements;
