@@ -125,7 +125,7 @@ static void test_heading_moves_shadows(void **unused)
     double width, middle, line[ROWS];
     struct bench bench;
     open_sidescan(&bench, 40.0);
-    bench.scene.sonar.array_heading_rad = 0.04;
+    bench.scene.sonar.array_heading_rad = 0.08;
     add_screen(&bench, 40.0);
     line_behind(&bench, line);
     hidden(line, &width, &middle);
@@ -134,7 +134,7 @@ static void test_heading_moves_shadows(void **unused)
      * screen are ahead of it. The long side has a cosine off the slant plane as well: x at the
      * array's ground range. The patch's columns lie 1 m behind the screen */
     const double ground = sqrt(39.0 * 39.0 - 100.0);
-    expect_close("shadow's middle, m", middle, ground * tan(0.04), 0.03);
+    expect_close("shadow's middle, m", middle, ground * tan(0.08), 0.03);
     bench_close(&bench);
 }
 
