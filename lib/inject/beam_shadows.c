@@ -21,7 +21,8 @@ static void response_of_pings(struct point_response *response, const struct trac
 struct beam_work {
     struct rough_trace trace;
     struct point_response response;
-    float *chunk, *tiles, *plane, *unused; /* plane, unused: of the patch's size */
+    float *chunk, *tiles;
+    float *seabed, *plane, *unused; /* of the patch's size */
 };
 
 static sonject_status trace_pings(struct beam_work *work, struct echoes *echoes,
@@ -51,22 +52,27 @@ static sonject_status trace_pings(struct beam_work *work, struct echoes *echoes,
     }
     tracer->counts.pings = pings; /* the same ones */
     if (status == SONJECT_OK)
-        status = form_lines_finish(&lines, echoes->seabed_energy, work->unused);
+        status = form_lines_finish(&lines, work->seabed, work->unused);
     form_lines_end(&lines);
     return status;
 }
 
-/* What an object hides, formed on `columns` columns from first_column on, in work->plane. */
+/* What an object hides, formed on `columns` columns from first_column on, in work->plane: its share
+ * of what the ping would hear. */
 static void take_lost(const struct beam_work *work, struct echoes *echoes, struct object_echo *echo,
                       size_t first_column, size_t columns)
 {
     for (size_t row = 0; row < echoes->rows; row++)
-        for (size_t column = 0; column < columns; column++) {
-            const float lost = work->plane[row * columns + column];
-            const size_t own = first_column + column - echo->first_column;
-            echoes->lost_energy[row * echoes->columns + first_column + column] += lost;
-            if (echo->lost && first_column + column >= echo->first_column && own < echo->columns)
-                echo->lost[row * echo->columns + own] = lost;
+        for (size_t k = 0; k < columns; k++) {
+            const size_t column = first_column + k;
+            const size_t pixel = row * echoes->columns + column;
+            const float all = work->seabed[pixel];
+            const float share = all > 0.0f ? work->plane[row * columns + k] / all : 0.0f;
+            const float lost = echoes->seabed_energy[pixel] * (share < 1.0f ? share : 1.0f);
+            echoes->lost_energy[pixel] += lost;
+            if (echo->lost && column >= echo->first_column &&
+                column - echo->first_column < echo->columns)
+                echo->lost[row * echo->columns + (column - echo->first_column)] = lost;
         }
 }
 
@@ -103,9 +109,10 @@ static sonject_status compute(struct beam_work *work, struct echoes *echoes, str
                                      (size_t)work->trace.grid.bins.count,
                                  sizeof(float));
     work->tiles = allocate_array(work->trace.tile_elements, sizeof(float));
+    work->seabed = allocate_array(pixels, sizeof(float));
     work->plane = allocate_array(pixels, sizeof(float));
     work->unused = allocate_array(pixels, sizeof(float));
-    if (!work->chunk || !work->tiles || !work->plane || !work->unused)
+    if (!work->chunk || !work->tiles || !work->seabed || !work->plane || !work->unused)
         return report_out_of_memory(tracer->report, "the beam's shadows");
     sonject_status status = trace_pings(work, echoes, tracer, request);
     if (status == SONJECT_OK)
@@ -117,7 +124,7 @@ static sonject_status compute(struct beam_work *work, struct echoes *echoes, str
 }
 
 sonject_status beam_shadows_compute(struct echoes *echoes, struct tracer *tracer,
-                                    const struct echo_request *request, const float *map)
+                                    const struct echo_request *request)
 {
     if (tracer->scene->sonar.kind != SONJECT_SONAR_REAL || tracer->relief)
         return SONJECT_OK;
@@ -125,13 +132,14 @@ sonject_status beam_shadows_compute(struct echoes *echoes, struct tracer *tracer
     if (!work)
         return report_out_of_memory(tracer->report, "the beam's shadows");
     response_of_pings(&work->response, tracer);
-    sonject_status status = rough_trace_begin_beam(&work->trace, tracer, &work->response, map);
+    sonject_status status = rough_trace_begin_beam(&work->trace, tracer, &work->response);
     if (status == SONJECT_OK) {
         status = compute(work, echoes, tracer, request);
         rough_trace_end(&work->trace);
     }
     free(work->chunk);
     free(work->tiles);
+    free(work->seabed);
     free(work->plane);
     free(work->unused);
     free(work);

@@ -440,7 +440,7 @@ sonject_status echoes_compute(struct echoes *echoes, struct tracer *tracer,
         if (status == SONJECT_OK)
             status = compute_objects(echoes, tracer, request, &trace, tiles);
         if (status == SONJECT_OK)
-            status = beam_shadows_compute(echoes, tracer, request, seabed_map(tracer, request));
+            status = beam_shadows_compute(echoes, tracer, request);
         if (status == SONJECT_OK && tracer->relief)
             status = level_seabed_compute(echoes, tracer, request, &trace);
         if (status == SONJECT_OK)

@@ -245,9 +245,9 @@ sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *trace
 }
 
 sonject_status rough_trace_begin_beam(struct rough_trace *trace, struct tracer *tracer,
-                                      const struct point_response *response, const float *map)
+                                      const struct point_response *response)
 {
-    return begin(trace, tracer, map, response, true);
+    return begin(trace, tracer, NULL, response, true);
 }
 
 void rough_trace_end(struct rough_trace *trace)

@@ -30,11 +30,11 @@ sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *trace
                                  const float *map);
 void rough_trace_end(struct rough_trace *trace);
 
-/* The same for the seabed as the beam of a real aperture sees it: one strip a ping, each with all
- * that the ping hears, so the energies of a row are those of its ping as they are. response: whose
- * grid the trace has, as narrow as a row. Tiles are of use for TILE_LOST. */
+/* The same for an even seabed as the beam of a real aperture sees it: one strip a ping, each with
+ * all that the ping hears, so the energies of a row are those of its ping as they are. response:
+ * whose grid the trace has, as narrow as a row. */
 sonject_status rough_trace_begin_beam(struct rough_trace *trace, struct tracer *tracer,
-                                      const struct point_response *response, const float *map);
+                                      const struct point_response *response);
 
 /* Tells the record of a part of an object where the object's tile is. */
 void rough_tile_describe(const struct rough_trace *trace, uint32_t object,

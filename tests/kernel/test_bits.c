@@ -214,10 +214,9 @@ static void expect_alive(const struct tallies *tallies)
 static void begin_rough(struct rough_trace *trace, struct bench *bench, const float *map)
 {
     struct tracer *tracer = &bench->tracer;
-    const sonject_status status =
-        bench->scene.sonar.kind == SONJECT_SONAR_REAL
-            ? rough_trace_begin_beam(trace, tracer, &tracer->response, map)
-            : rough_trace_begin(trace, tracer, map);
+    const sonject_status status = bench->scene.sonar.kind == SONJECT_SONAR_REAL
+                                      ? rough_trace_begin_beam(trace, tracer, &tracer->response)
+                                      : rough_trace_begin(trace, tracer, map);
     if (status != SONJECT_OK)
         fail_msg("%s", bench->report.message);
 }
