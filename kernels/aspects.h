@@ -78,9 +78,9 @@ FUNCTION real two_way_pattern(float wavelengths, real cosine)
 
 #define STEEPEST_SINE 0.95f /* off broadside; a beam's rays go no further */
 
-/* A ray within the beam, from the middle of its ping; direction cosines off the beam's middle are
- * even over +-reach. weight: the two-way pattern times the sine's range, which stands for a strip's
- * width over range. share: 0...1. */
+/* A ray within the beam, from the middle of its ping. weight: the two-way pattern times the range
+ * of sines that the ray stands for with its kind, which takes the place of a strip's width over
+ * range. share: 0...1. */
 FUNCTION struct aspect_ray beam_ray_of(const struct fan_record *fan, const struct fan_ray *ray,
                                        real share)
 {
@@ -92,9 +92,12 @@ FUNCTION struct aspect_ray beam_ray_of(const struct fan_record *fan, const struc
     const real square = 1.0f + slope * slope;
     const real middle = slope / SQUARE_ROOT(square);
     const real reach = beam->reach / (beam->along[0] * square);
-    const real lowest = larger(middle - reach, SPLAT(-STEEPEST_SINE));
-    const real range = smaller(middle + reach, SPLAT(STEEPEST_SINE)) - lowest;
-    squinted.sine = lowest + range * share;
+    /* a cubic puts most rays where the pattern is high */
+    const real side = 2.0f * share - 1.0f;
+    const real sine = middle + reach * side * (0.3f + 0.7f * side * side);
+    const real range = 2.0f * reach * (0.3f + 2.1f * side * side);
+    squinted.sine = smaller(larger(sine, SPLAT(-STEEPEST_SINE)), SPLAT(STEEPEST_SINE));
+    const mask is_near = MASK_OF(squinted.sine == sine);
     squinted.cosine = SQUARE_ROOT(1.0f - squinted.sine * squinted.sine);
     squinted.direction.x = squinted.sine;
     squinted.direction.y = ray->direction.y * squinted.cosine;
@@ -106,7 +109,8 @@ FUNCTION struct aspect_ray beam_ray_of(const struct fan_record *fan, const struc
                    squinted.direction.z * beam->along[2];
     const real v = squinted.direction.x * beam->across[0] + squinted.direction.y * beam->across[1] +
                    squinted.direction.z * beam->across[2];
-    squinted.weight = range * two_way_pattern(beam->length, u) * two_way_pattern(beam->height, v);
+    const real pattern = two_way_pattern(beam->length, u) * two_way_pattern(beam->height, v);
+    squinted.weight = CHOOSE(is_near, range * pattern, SPLAT(0.0f));
     return squinted;
 }
 

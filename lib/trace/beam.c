@@ -32,7 +32,7 @@ double beam_largest_weight(const struct tracer *tracer, const struct fan_record 
 {
     const double sine = beam_largest_sine(tracer);
     const double cosine = sqrt(1.0 - sine * sine);
-    return 2.0 * sine * 2.0 * fan->reference_range / (fan->strip_width * pow(cosine, 3.0));
+    return 6.0 * sine * 2.0 * fan->reference_range / (fan->strip_width * pow(cosine, 3.0));
 }
 
 sonject_status beam_record_init(struct fan_record *fan, const struct tracer *tracer,

@@ -12,8 +12,9 @@
 #include "trace/patch_fan.h"
 #include "trace/source_pairs.h"
 
-#define RAYS_PER_BIN         2.0
-#define RAYS_PER_BIN_OF_BEAM 6.0 /* a third of its rays carry most of the energy */
+#define RAYS_PER_BIN 2.0
+#define RAYS_PER_BIN_OF_BEAM                                                                       \
+    6.0 /* a pixel is one ping's alone, and a beam's rays weigh unequally */
 
 static double bin_of_apparent_range(const struct rough_trace *trace, const struct tracer *tracer,
                                     double range)
