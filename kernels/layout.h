@@ -147,6 +147,30 @@ struct ray_piece_record {
     float spreading, spreading_growth;
 };
 
+#define ASPECT_TERMS 15
+
+/* The aspects of a synthetic aperture, over which seabed and rough surfaces are integrated. */
+struct aspects_record {
+    float sine;  /* of the largest angle off broadside; 0: broadside alone */
+    float end;   /* range where the patch ends, less the reference range, m */
+    float scale; /* 1 / the mean square of the window */
+    RECORD_INT terms;
+    float weights[ASPECT_TERMS]; /* the window is 1 + sum of weights[m-1] * cos(2 pi m offset) */
+    /* Squinted rays meet things in other strips than their own. Strips of the whole track: */
+    RECORD_INT tally_first_strip, tally_strips; /* whose seabed is tallied */
+    RECORD_INT core_first_strip, core_strips;   /* whose rays tally objects */
+};
+
+/* The two-way beam of a real aperture: rays leave from where each ping is. */
+struct beam_record {
+    float reach;  /* direction cosine off the beam's middle, along the array's long side, that
+                     rays go out to; 0: no beam */
+    float length; /* of the array's sides, in wavelengths */
+    float height;
+    float along[3];  /* unit, of the long side, in the frame */
+    float across[3]; /* unit, of the other side */
+};
+
 /* A fan of rays over a track, in a frame that the host centres on what is traced. The sonar moves
  * along y = z = -reference_range * (0, cos, -sin)(depression) of that frame; where layers bend the
  * rays it only seems to. Ranges are travel times times the sound speed around the origin. */
@@ -188,6 +212,8 @@ struct fan_record {
     RECORD_WORD relief_words; /* where the relief_record is, in words from the first object's
                                  record; 0: the seabed is the plane */
     float relief_x, relief_y; /* m, of its first grid point in the frame */
+    struct aspects_record aspects;
+    struct beam_record beam;
 };
 
 /* Sixteen spheres, to be tested at once; radius 0: none. */

@@ -6,29 +6,46 @@
 #include "layout.h"
 #include "width.h"
 
-/* A value this large is a fault of scaling: 2^12 of them would still fit. */
-#ifdef TALLY_IS_SHARED
+#ifdef __OPENCL_C_VERSION__
 #pragma OPENCL EXTENSION cl_khr_int64_base_atomics : enable
 #endif
 
+/* A value this large is a fault of scaling: 2^12 of them would still fit. */
 #define QUANTA_LIMIT 2251799813685248.0f /* 2^51 */
 
-/* Adds quanta to a tally that other work-items may share (TALLY_IS_SHARED) or that is this one's
- * own. Reports what cannot be counted. */
-FUNCTION void tally_add(GLOBAL TALLY *tally, float quanta, RECORD_WORD *faults)
+/* Whether quanta can be counted; reports what cannot. */
+FUNCTION int is_countable(float quanta, RECORD_WORD *faults)
 {
-    if (quanta != quanta) {
+    if (quanta != quanta)
         *faults |= FAULT_NOT_A_NUMBER;
-        return;
-    }
-    if (quanta > QUANTA_LIMIT || quanta < -QUANTA_LIMIT) {
+    else if (quanta > QUANTA_LIMIT || quanta < -QUANTA_LIMIT)
         *faults |= FAULT_OVERFLOW;
+    else
+        return 1;
+    return 0;
+}
+
+/* Adds quanta to a tally that other work-items may add to at the same time. */
+FUNCTION void tally_add_shared(GLOBAL TALLY *tally, float quanta, RECORD_WORD *faults)
+{
+    if (!is_countable(quanta, faults))
         return;
-    }
-#if defined(TALLY_IS_SHARED)
+#ifdef __OPENCL_C_VERSION__
     atom_add((volatile GLOBAL TALLY *)tally, (TALLY)quanta);
 #else
     *tally += (TALLY)quanta;
+#endif
+}
+
+/* Adds quanta to a tally of which this work-item's segments are the only owners: work-items share
+ * a strip where TALLY_IS_SHARED. */
+FUNCTION void tally_add(GLOBAL TALLY *tally, float quanta, RECORD_WORD *faults)
+{
+#if defined(TALLY_IS_SHARED)
+    tally_add_shared(tally, quanta, faults);
+#else
+    if (is_countable(quanta, faults))
+        *tally += (TALLY)quanta;
 #endif
 }
 

@@ -3,6 +3,7 @@
 #ifndef SONJECT_KERNELS_TRACE_ROUGH_H
 #define SONJECT_KERNELS_TRACE_ROUGH_H
 
+#include "aspects.h"
 #include "fan.h"
 #include "intersection.h"
 #include "random.h"
@@ -20,25 +21,27 @@ struct connection {
 };
 
 /* Connects a hit to a random point of the source's rectangle, which spans x and the fan's upward
- * direction about the receiver, and tests whether anything is in between. */
+ * direction about the receiver, and tests whether anything is in between. distance: along the fan's
+ * ray. The image knows where source and receiver are, and focuses their echo at the hit. */
 FUNCTION struct connection connect_to_source(const struct fan_record *fan,
                                              GLOBAL const struct object_record *objects,
-                                             const struct fan_ray *ray, struct vector3 hit,
+                                             const struct fan_ray *ray,
+                                             const struct aspect_ray *squinted, struct vector3 hit,
                                              struct vector3 normal, real distance, real along,
                                              real across)
 {
     /* from the hit back to the receiver (to where it seems to be, if layers bend the ray) is
      * -direction * r; the source point lies an offset beside */
-    const real r = ray->wavefront + distance;
+    const real r = (ray->wavefront + distance) / squinted->cosine;
     const real range = ray->range_at_closest + distance;
     const real offset_x = (along - 0.5f) * fan->source_side;
     const real offset_up = (across - 0.5f) * fan->source_side;
     const real square = offset_x * offset_x + offset_up * offset_up;
-    const real path = SQUARE_ROOT(r * r + square);
+    const real path = SQUARE_ROOT((r * r + square) - 2.0f * r * offset_x * squinted->sine);
     struct vector3 way;
-    way.x = offset_x / path;
-    way.y = (offset_up * ray->upward.y - r * ray->direction.y) / path;
-    way.z = (offset_up * ray->upward.z - r * ray->direction.z) / path;
+    way.x = (offset_x - r * squinted->direction.x) / path;
+    way.y = (offset_up * ray->upward.y - r * squinted->direction.y) / path;
+    way.z = (offset_up * ray->upward.z - r * squinted->direction.z) / path;
     struct connection connection;
     connection.range = range + 0.5f * square / (path + r);
     connection.cosine = dot3(way, normal);
@@ -53,7 +56,8 @@ FUNCTION struct connection connect_to_source(const struct fan_record *fan,
 
 /* Energies of one group of rays, lane by lane, ready to be tallied. */
 struct rough_echo {
-    float seabed[WIDTH], target[WIDTH]; /* quanta; 0: none */
+    float seabed[WIDTH], target[WIDTH];           /* quanta; 0: none */
+    int seabed_strip[WIDTH], target_strip[WIDTH]; /* of the whole track, where they focus */
     int seabed_bin[WIDTH], target_bin[WIDTH], object[WIDTH];
     float row[WIDTH], column[WIDTH]; /* of the reflectivity map */
 };
@@ -69,39 +73,85 @@ FUNCTION GLOBAL TALLY *tile_element(GLOBAL const struct object_record *object, G
            ((long)plane * object->tile_strips + row) * object->tile_bins + column;
 }
 
+/* Where a ray of a strip tallies. */
+struct rough_tallies {
+    GLOBAL TALLY *seabed, *tiles;
+    int first_strip, strips; /* of the seabed's tallies, in the whole track */
+    int has_objects;         /* the strip's rays tally what objects return */
+    int is_shared;           /* other strips' rays do so in the same places */
+};
+
+/* Those of a launch's strip. */
+FUNCTION struct rough_tallies rough_tallies_of(const struct fan_record *fan, int strip,
+                                               GLOBAL TALLY *seabed, GLOBAL TALLY *tiles)
+{
+    const int core = fan->first_strip + strip - fan->aspects.core_first_strip;
+    struct rough_tallies tallies;
+    tallies.seabed = seabed;
+    tallies.tiles = tiles;
+    tallies.is_shared = has_aspects(fan);
+    tallies.first_strip = tallies.is_shared ? fan->aspects.tally_first_strip : fan->first_strip;
+    tallies.strips = tallies.is_shared ? fan->aspects.tally_strips : fan->strips;
+    tallies.has_objects = !tallies.is_shared || (core >= 0 && core < fan->aspects.core_strips);
+    return tallies;
+}
+
+FUNCTION void add_to_rough(const struct rough_tallies *tallies, GLOBAL TALLY *tally, float quanta,
+                           struct outcome_record *outcome)
+{
+    if (tallies->is_shared)
+        tally_add_shared(tally, quanta, &outcome->faults);
+    else
+        tally_add(tally, quanta, &outcome->faults);
+}
+
+/* The seabed's energy, and again where an object hides it. */
+FUNCTION void tally_rough_seabed(const struct fan_record *fan,
+                                 GLOBAL const struct object_record *objects,
+                                 GLOBAL const float *map, const struct rough_tallies *tallies,
+                                 const struct rough_echo *echo, int lane,
+                                 struct outcome_record *outcome)
+{
+    const int object = echo->object[lane];
+    const int bin = echo->seabed_bin[lane];
+    const int track_strip = echo->seabed_strip[lane];
+    const int strip = track_strip - tallies->first_strip;
+    if (!(echo->seabed[lane] > 0.0f) || bin < 0 || bin >= fan->bins || strip < 0 ||
+        strip >= tallies->strips)
+        return;
+    const float quanta =
+        echo->seabed[lane] * map_value(fan, map, echo->row[lane], echo->column[lane]);
+    add_to_rough(tallies, &tallies->seabed[(long)strip * fan->bins + bin], quanta, outcome);
+    outcome->impulses += object < 0;
+    if (object < 0)
+        return;
+    GLOBAL TALLY *lost =
+        tile_element(&objects[object], tallies->tiles, TILE_LOST, track_strip, bin);
+    if (lost)
+        add_to_rough(tallies, lost, quanta, outcome);
+    else
+        outcome->faults |= FAULT_OUTSIDE_TILE;
+}
+
 /* Tallies one lane. */
 FUNCTION void tally_rough_echo(const struct fan_record *fan,
                                GLOBAL const struct object_record *objects, GLOBAL const float *map,
-                               GLOBAL TALLY *seabed, GLOBAL TALLY *tiles, int strip,
-                               const struct rough_echo *echo, int lane,
-                               struct outcome_record *outcome)
+                               const struct rough_tallies *tallies, const struct rough_echo *echo,
+                               int lane, struct outcome_record *outcome)
 {
-    const int track_strip = fan->first_strip + strip;
+    tally_rough_seabed(fan, objects, map, tallies, echo, lane, outcome);
     const int object = echo->object[lane];
-    const int bin = echo->seabed_bin[lane];
-    if (echo->seabed[lane] > 0.0f && bin >= 0 && bin < fan->bins) {
-        const float quanta =
-            echo->seabed[lane] * map_value(fan, map, echo->row[lane], echo->column[lane]);
-        tally_add(&seabed[(long)strip * fan->bins + bin], quanta, &outcome->faults);
-        outcome->impulses += object < 0;
-        if (object >= 0) {
-            GLOBAL TALLY *lost = tile_element(&objects[object], tiles, TILE_LOST, track_strip, bin);
-            if (lost)
-                tally_add(lost, quanta, &outcome->faults);
-            else
-                outcome->faults |= FAULT_OUTSIDE_TILE;
-        }
-    }
-    if (object >= 0) {
-        const int target_bin = echo->target_bin[lane];
+    if (object >= 0 && tallies->has_objects) {
+        const int strip = echo->target_strip[lane];
+        const int bin = echo->target_bin[lane];
         GLOBAL TALLY *energy =
-            tile_element(&objects[object], tiles, TILE_ENERGY, track_strip, target_bin);
+            tile_element(&objects[object], tallies->tiles, TILE_ENERGY, strip, bin);
         GLOBAL TALLY *footprint =
-            tile_element(&objects[object], tiles, TILE_FOOTPRINT, track_strip, target_bin);
+            tile_element(&objects[object], tallies->tiles, TILE_FOOTPRINT, strip, bin);
         if (!energy || !footprint)
-            return; /* beyond the patch's ranges */
-        tally_add(footprint, 1.0f, &outcome->faults);
-        tally_add(energy, echo->target[lane], &outcome->faults);
+            return; /* beyond the patch's ranges, or its ends */
+        add_to_rough(tallies, footprint, 1.0f, outcome);
+        add_to_rough(tallies, energy, echo->target[lane], outcome);
         outcome->impulses += echo->target[lane] > 0.0f;
     }
 }
@@ -115,23 +165,30 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
 {
     const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
     const mask is_ray = MASK_OF(number < fan->rays);
-    real along, across;
-    two_uniforms(key, number, 0, &along, &across);
-    const real x = strip_position(fan, strip) + (along - 0.5f) * fan->strip_width;
+    const int own_strip = fan->first_strip + strip;
+    real along, across, jitter;
+    three_uniforms(key, number, 0, &along, &across, &jitter);
+    const float spread = has_beam(fan) ? 0.0f : fan->strip_width; /* pings are points */
+    const real x = strip_position(fan, strip) + (along - 0.5f) * spread;
     const struct fan_ray ray = fan_ray_at(
         fan, pieces, x, fan->first_elevation + (REAL_OF(number) + across) * fan->elevation_step);
-    const real to_seabed = seabed_distance(fan, objects, ray.closest, ray.direction,
+    /* distances along the squinted ray times its cosine are those along the fan's */
+    const struct aspect_ray squinted =
+        aspect_ray_of(fan, &ray, (RECORD_WORD)own_strip, number, jitter);
+    const real to_seabed = seabed_distance(fan, objects, squinted.start, squinted.direction,
                                            SPLAT(-fan->reference_range), is_ray);
-    const struct nearest_hit nearest =
-        find_nearest_hit(objects, fan->objects, ray.closest, ray.direction, -fan->reference_range);
+    const struct nearest_hit nearest = find_nearest_hit(objects, fan->objects, squinted.start,
+                                                        squinted.direction, -fan->reference_range);
     const mask on_object = is_ray & MASK_OF(nearest.distance < to_seabed);
 
-    const real seabed_range = ray.range_at_closest + to_seabed;
-    const float strip_of_cell = fan->strip_width * fan->elevation_step; /* times wavefront: area */
-    const struct vector3 bed = along3(ray.closest, ray.direction, to_seabed);
-    const struct vector3 bed_normal = seabed_normal(fan, objects, bed, ray.direction);
+    const real bed_distance = to_seabed * squinted.cosine;
+    const real seabed_range = ray.range_at_closest + bed_distance;
+    /* times wavefront: the area across the ray that it stands for */
+    const real strip_of_cell = fan->strip_width * fan->elevation_step * squinted.cosine;
+    const struct vector3 bed = along3(squinted.start, squinted.direction, to_seabed);
+    const struct vector3 bed_normal = seabed_normal(fan, objects, bed, squinted.direction);
     const real seabed_cosine =
-        has_relief(fan) ? -dot3(bed_normal, ray.direction) : -ray.direction.z;
+        has_relief(fan) ? -dot3(bed_normal, squinted.direction) : -squinted.direction.z;
     real bed_range = seabed_range;
     real bed_cosine = seabed_cosine;
     mask bed_open = is_ray & MASK_OF(to_seabed < 0.5f * FAR_AWAY);
@@ -139,25 +196,35 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     if (fan->source_side > 0.0f)
         two_uniforms(key, number, 1, &source_along, &source_across);
     if (fan->source_side > 0.0f && ANY(bed_open)) {
-        const struct connection way = connect_to_source(fan, objects, &ray, bed, bed_normal,
-                                                        to_seabed, source_along, source_across);
+        const struct connection way =
+            connect_to_source(fan, objects, &ray, &squinted, bed, bed_normal, bed_distance,
+                              source_along, source_across);
         outcome->queries += count_lanes(bed_open);
         bed_range = way.range;
         bed_cosine = way.cosine;
         bed_open = bed_open & (way.is_open | on_object);
     }
-    const real bed_gain = refraction_gain(fan, &ray, to_seabed);
+    real bed_weight = squinted.weight * fan->quanta;
+    if (has_beam(fan)) {
+        bed_weight = bed_weight * beam_spread(fan, &squinted, seabed_range);
+        bed_range = whole_range(fan, &squinted, bed_range);
+    }
+    const real bed_gain = refraction_gain(fan, &ray, bed_distance);
     const real bed_energy = fan->seabed_lambert * bed_cosine * strip_of_cell *
-                            (ray.wavefront + to_seabed) * (bed_gain * bed_gain) * fan->quanta;
+                            (ray.wavefront + bed_distance) * (bed_gain * bed_gain) * bed_weight;
     const real bed_bin =
         CHOOSE(bed_open, bed_range * fan->bins_per_metre + fan->first_bin, SPLAT(-9.0f));
 
     real energy = SPLAT(0.0f);
     const real to_target = CHOOSE(on_object, nearest.distance, SPLAT(0.0f));
-    real target_range = ray.range_at_closest + to_target;
-    const real target_gain = refraction_gain(fan, &ray, to_target);
-    const real target_area =
-        strip_of_cell * (ray.wavefront + to_target) * (target_gain * target_gain) * fan->quanta;
+    const real target_distance = to_target * squinted.cosine;
+    real target_range = ray.range_at_closest + target_distance;
+    const real target_gain = refraction_gain(fan, &ray, target_distance);
+    real target_weight = squinted.weight * fan->quanta;
+    if (has_beam(fan))
+        target_weight = target_weight * beam_spread(fan, &squinted, target_range);
+    const real target_area = strip_of_cell * (ray.wavefront + target_distance) *
+                             (target_gain * target_gain) * target_weight;
     const int objects_end = ANY(on_object) ? fan->objects : 0;
     for (int i = surface_after(-1, objects_end, nearest.object, on_object); i < objects_end;
          i = surface_after(i, objects_end, nearest.object, on_object)) {
@@ -165,17 +232,17 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
         if (!ANY(here))
             continue;
         const real distance = CHOOSE(here, nearest.distance, SPLAT(0.0f));
-        const struct surface_face face =
-            object_face(&objects[i], FACE_OF_SCATTERING, ray.closest, ray.direction, distance);
+        const struct surface_face face = object_face(&objects[i], FACE_OF_SCATTERING,
+                                                     squinted.start, squinted.direction, distance);
         const struct vector3 normal = face.normal;
-        const struct vector3 back = reversed3(ray.direction);
+        const struct vector3 back = reversed3(squinted.direction);
         struct vector3 out = back;
         mask is_open = here;
         if (fan->source_side > 0.0f) {
-            const struct connection way =
-                connect_to_source(fan, objects, &ray,
-                                  lifted_point(along3(ray.closest, ray.direction, distance), &face),
-                                  normal, distance, source_along, source_across);
+            const struct connection way = connect_to_source(
+                fan, objects, &ray, &squinted,
+                lifted_point(along3(squinted.start, squinted.direction, distance), &face), normal,
+                distance * squinted.cosine, source_along, source_across);
             outcome->queries += count_lanes(here);
             is_open = is_open & way.is_open;
             out = way.direction;
@@ -186,20 +253,33 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
                             dot3(normal, out) * target_area,
                         energy);
     }
+    if (has_beam(fan))
+        target_range = whole_range(fan, &squinted, target_range);
     const whole seabed_bins = nearest_bin(bed_bin);
     const whole target_bins = nearest_bin(target_range * fan->bins_per_metre + fan->first_bin);
     const whole object_numbers = CHOOSE(on_object, nearest.object, WHOLE_OF(SPLAT(-1.0f)));
     const real kept = CHOOSE(bed_open, bed_energy, SPLAT(0.0f));
-    const real row = fan->map_row_at_origin + x * fan->map_rows_per_metre;
+    const real bed_x = has_relief(fan) || has_beam(fan) ? bed.x : x;
+    const real row = fan->map_row_at_origin + bed_x * fan->map_rows_per_metre;
     const real map_range = has_relief(fan) ? range_in_plan(fan, pieces, bed) : seabed_range;
     const real column = fan->map_first_column + map_range * fan->map_columns_per_metre;
+    const real safe_row = smaller(larger(row, SPLAT(-1.0f)), SPLAT(1.0e8f));
     const real safe_column = smaller(larger(column, SPLAT(-1.0f)), SPLAT(1.0e8f));
+    whole seabed_strips = SPLAT_WHOLE(own_strip);
+    whole target_strips = seabed_strips;
+    if (has_aspects(fan)) {
+        if (has_relief(fan))
+            seabed_strips = track_strip_at(fan, bed.x);
+        target_strips = track_strip_at(fan, squinted.start.x + squinted.direction.x * to_target);
+    }
     STORE_REAL(kept, echo->seabed);
     STORE_REAL(energy, echo->target);
+    STORE_WHOLE(seabed_strips, echo->seabed_strip);
+    STORE_WHOLE(target_strips, echo->target_strip);
     STORE_WHOLE(seabed_bins, echo->seabed_bin);
     STORE_WHOLE(target_bins, echo->target_bin);
     STORE_WHOLE(object_numbers, echo->object);
-    STORE_REAL(row, echo->row);
+    STORE_REAL(safe_row, echo->row);
     STORE_REAL(safe_column, echo->column);
 }
 
@@ -213,6 +293,7 @@ FUNCTION struct outcome_record trace_rough_strip(const struct fan_record *fan,
     struct outcome_record outcome = {0, 0, 0, 0};
     const struct random_key key = random_key_of(fan->seed_low, fan->seed_high, fan->stream,
                                                 (RECORD_WORD)(fan->first_strip + strip));
+    const struct rough_tallies tallies = rough_tallies_of(fan, strip, seabed, tiles);
     const RECORD_WORD groups = (fan->rays + WIDTH - 1u) / WIDTH;
     for (RECORD_WORD group = (RECORD_WORD)segment; group < groups;
          group += (RECORD_WORD)fan->segments) {
@@ -221,9 +302,11 @@ FUNCTION struct outcome_record trace_rough_strip(const struct fan_record *fan,
         outcome.rays += left < WIDTH ? left : WIDTH;
         trace_rough_group(fan, pieces, objects, strip, key, group * WIDTH, &echo, &outcome);
         for (int lane = 0; lane < WIDTH; lane++)
-            tally_rough_echo(fan, objects, map, seabed, tiles, strip, &echo, lane, &outcome);
+            tally_rough_echo(fan, objects, map, &tallies, &echo, lane, &outcome);
     }
-    outcome.queries += outcome.rays;
+    /* strips that another chunk's launch traces for itself are not counted here */
+    outcome.rays = tallies.has_objects ? outcome.rays : 0;
+    outcome.queries = tallies.has_objects ? outcome.queries + outcome.rays : 0;
     return outcome;
 }
 

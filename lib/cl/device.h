@@ -29,7 +29,8 @@ enum device_program {
 enum program_variant {
     PROGRAM_WITH_MESHES = 1,
     PROGRAM_WITH_RELIEF = 2,
-    PROGRAM_VARIANTS = 4
+    PROGRAM_WITH_ASPECTS = 4, /* the rough part's */
+    PROGRAM_VARIANTS = 8
 };
 
 /* Programs that hold code of users: the latest ones are kept. */

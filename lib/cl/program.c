@@ -23,9 +23,10 @@ static bool divides_correctly(const struct device *device)
 void program_options(const struct device *device, uint32_t variant, const char *more,
                      char options[PROGRAM_OPTIONS_CAPACITY])
 {
-    snprintf(options, PROGRAM_OPTIONS_CAPACITY, "-cl-std=CL1.2 -DWIDTH=%u%s%s%s%s%s",
+    snprintf(options, PROGRAM_OPTIONS_CAPACITY, "-cl-std=CL1.2 -DWIDTH=%u%s%s%s%s%s%s",
              (unsigned)device->width, variant & PROGRAM_WITH_MESHES ? " -DWITH_MESHES" : "",
              variant & PROGRAM_WITH_RELIEF ? " -DWITH_RELIEF" : "",
+             variant & PROGRAM_WITH_ASPECTS ? " -DWITH_ASPECTS" : "",
              device->is_cpu ? "" : " -DTALLY_IS_SHARED",
              divides_correctly(device) ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", more);
 }

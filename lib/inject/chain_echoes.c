@@ -19,7 +19,8 @@ static sonject_status form_energies(const struct line_grid *grid, struct tracer 
     struct form_lines energies;
     struct impulse_lines lines = {IMPULSES_CHAINS, 0, *grid, grid->strips, 1, {energy}};
     memset(&energies, 0, sizeof energies);
-    const sonject_status status = form_energies_as_they_come(&energies, tracer, &lines, formed);
+    const sonject_status status =
+        form_energies_as_they_come(&energies, tracer, &tracer->response, &lines, formed);
     form_lines_end(&energies);
     return status;
 }

@@ -95,6 +95,15 @@ static double visibility_of(const struct echoes *echoes, size_t i)
     return level > 0.0 ? left * (echoes->seabed_energy[i] / level) : left;
 }
 
+/* Whether the pixel is to be traced anew, whatever it is. The water column has no seabed to trace,
+ * and keeps its own pixels but for what targets return there. */
+static bool is_traced_anew(const struct scene *scene, const struct patch_level *level,
+                           const struct echoes *echoes, size_t i)
+{
+    return scene->injection.mode == SONJECT_MODE_RESYNTHESISE &&
+           i % echoes->columns >= level->water_columns;
+}
+
 /* Image energy per m^2 of cross-section. */
 static double gain_at(const struct patch_level *level, const struct echoes *echoes, size_t i)
 {
@@ -122,14 +131,14 @@ static struct window mark_influence(const struct scene *scene, const struct patc
                                     const struct echoes *echoes, uint8_t *influence)
 {
     const double threshold = pow(10.0, scene->injection.influence_db / 10.0);
-    const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
     struct window window = {echoes->rows, 0, echoes->columns, 0};
     size_t end_row = 0;
     size_t end_column = 0;
     for (size_t i = 0; i < echoes->rows * echoes->columns; i++) {
         const double change = gain_at(level, echoes, i) * (double)echoes->target_energy[i] +
                               seabed_change(level, echoes, i) * (double)level->level[i];
-        if (!resynthesises && !(change > 0.0 && change >= threshold * level->level[i]))
+        if (!is_traced_anew(scene, level, echoes, i) &&
+            !(change > 0.0 && change >= threshold * level->level[i]))
             continue;
         const size_t row = i / echoes->columns;
         const size_t column = i % echoes->columns;
@@ -151,7 +160,7 @@ static void compose_pixel(const struct scene *scene, const struct patch_level *l
 {
     const double scale = sqrt(gain_at(level, echoes, i));
     const bool is_touched = result->influence[i] != 0;
-    const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
+    const bool resynthesises = is_traced_anew(scene, level, echoes, i);
     struct pixel_parts parts;
     parts.visibility = is_touched ? visibility_of(echoes, i) : 1.0;
     parts.noise_energy = level->noise_ratio * level->level[i];
@@ -201,7 +210,8 @@ sonject_status compose(struct tracer *tracer, const struct image_match *match,
     sonject_status status = SONJECT_OK;
     if (scene->object_count > 0 || echoes->level_energy)
         status = plane_of_noise(tracer, STREAM_NOISE, &touched, &noise);
-    if (status == SONJECT_OK && !is_complex && !resynthesises)
+    const bool has_own_pixels = !resynthesises || level->water_columns > 0;
+    if (status == SONJECT_OK && !is_complex && has_own_pixels)
         status = plane_of_noise(tracer, STREAM_INPUT_PHASE, &whole, &phase);
     if (status == SONJECT_OK) {
         /* pixels that nothing touches must keep every bit, so they are copied, not computed */

@@ -5,6 +5,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
+#include "inject/beam_shadows.h"
 #include "inject/chain_echoes.h"
 #include "inject/level_seabed.h"
 #include "inject/object_echoes.h"
@@ -93,6 +94,7 @@ struct forming {
     const struct echo_request *request;
     struct seabed_former seabed;
     struct object_former object;
+    struct beam_former beam;
     struct chain_former chains;
 };
 
@@ -108,6 +110,9 @@ static sonject_status form_set(struct forming *forming, const struct impulse_lin
     case IMPULSES_OBJECT:
     case IMPULSES_GLINT:
         return object_echoes_take(&forming->object, echoes, tracer, lines);
+    case IMPULSES_BEAM:
+    case IMPULSES_HIDDEN:
+        return beam_shadows_take(&forming->beam, echoes, tracer, lines);
     case IMPULSES_CHAINS:
         return chain_echoes_take(&forming->chains, echoes, tracer, lines);
     }
@@ -152,6 +157,7 @@ sonject_status echoes_form(struct echoes *echoes, struct tracer *tracer,
         status = finish(&forming);
     seabed_former_clear(&forming.seabed);
     object_former_clear(&forming.object);
+    beam_former_clear(&forming.beam);
     chain_former_clear(&forming.chains);
     echoes->trace_s = clock_seconds() - start - echoes->form_s;
     if (status != SONJECT_OK)

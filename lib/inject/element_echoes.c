@@ -89,6 +89,8 @@ static sonject_status take(void *user, const struct impulse_lines *lines)
     case IMPULSES_GLINT:
         return impulse_list_add(&taker->impulses, &lines->grid, lines->strips, lines->plane[0],
                                 lines->plane[1]);
+    case IMPULSES_BEAM:
+    case IMPULSES_HIDDEN:
     case IMPULSES_LEVEL:
         return SONJECT_OK;
     case IMPULSES_CHAINS:

@@ -15,6 +15,8 @@
  *   /seabed            energy; in_view where the patch is resynthesised   (m^2)
  *   /objects/NUMBER    energy (m^2), footprint (rays), lost (m^2); objects count from 0
  *   /glints/PART       real, imaginary (m); parts count from 0 over all objects; only smooth ones
+ *   /beam              energy (m^2) that each ping hears of an even seabed; only of a real aperture
+ *   /hidden/NUMBER     lost (m^2): of that, what an object hides
  *   /level             energy (m^2); only with relief
  *   /chains/ORDER      energy (m^2) of paths of that many interactions, or of all from there on
  *                      where orders are not kept apart; only with several interactions

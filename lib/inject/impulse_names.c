@@ -11,6 +11,8 @@ const char *const *impulse_plane_names(enum impulse_kind kind)
         [IMPULSES_SEABED] = {"energy", "in_view", NULL},
         [IMPULSES_OBJECT] = {"energy", "footprint", "lost"},
         [IMPULSES_GLINT] = {"real", "imaginary", NULL},
+        [IMPULSES_BEAM] = {"energy", NULL, NULL},
+        [IMPULSES_HIDDEN] = {"lost", NULL, NULL},
         [IMPULSES_LEVEL] = {"energy", NULL, NULL},
         [IMPULSES_CHAINS] = {"energy", NULL, NULL},
     };
@@ -21,9 +23,10 @@ void impulse_group_name(enum impulse_kind kind, uint32_t number, char name[IMPUL
 {
     static const char *const folders[IMPULSE_KINDS] = {
         [IMPULSES_SEABED] = "/seabed", [IMPULSES_OBJECT] = "/objects", [IMPULSES_GLINT] = "/glints",
-        [IMPULSES_LEVEL] = "/level",   [IMPULSES_CHAINS] = "/chains",
+        [IMPULSES_BEAM] = "/beam",     [IMPULSES_HIDDEN] = "/hidden",  [IMPULSES_LEVEL] = "/level",
+        [IMPULSES_CHAINS] = "/chains",
     };
-    if (kind == IMPULSES_SEABED || kind == IMPULSES_LEVEL)
+    if (kind == IMPULSES_SEABED || kind == IMPULSES_BEAM || kind == IMPULSES_LEVEL)
         snprintf(name, IMPULSE_GROUP_CAPACITY, "%s", folders[kind]);
     else
         snprintf(name, IMPULSE_GROUP_CAPACITY, "%s/%" PRIu32, folders[kind], number);

@@ -3,6 +3,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "inject/beam_shadows.h"
 #include "inject/echoes.h"
 #include "inject/hdf5_values.h"
 #include "inject/impulse_file.h"
@@ -315,8 +316,8 @@ static sonject_status read_strips(struct set_reading *set)
 static int32_t strips_at_a_time(const struct impulse_lines *lines)
 {
     const size_t most = CELLS_AT_A_TIME / ((size_t)lines->grid.bins.count + 1) + 1;
-    return lines->kind == IMPULSES_OBJECT || lines->kind == IMPULSES_CHAINS ||
-                   (size_t)lines->grid.strips.count < most
+    return lines->kind == IMPULSES_OBJECT || lines->kind == IMPULSES_HIDDEN ||
+                   lines->kind == IMPULSES_CHAINS || (size_t)lines->grid.strips.count < most
                ? lines->grid.strips.count
                : (int32_t)most;
 }
@@ -356,13 +357,13 @@ static sonject_status hand_out(struct set_reading *set, const struct impulse_sin
     return status;
 }
 
-/* What is read for, and the grid of the seabed's lines, which others share. */
+/* What is read for, and the grids of the seabed's and the beam's lines, which others share. */
 struct delivery {
     struct impulse_file *file;
     struct tracer *tracer;
     const struct echo_request *request;
     const struct impulse_sink *sink;
-    struct line_grid seabed;
+    struct line_grid seabed, beam;
 };
 
 static bool span_is_inside(struct span inner, struct span outer)
@@ -374,7 +375,8 @@ static bool span_is_inside(struct span inner, struct span outer)
 static sonject_status check_grid(const struct delivery *delivery, const struct set_reading *set)
 {
     const struct line_grid *grid = &set->lines.grid;
-    const struct line_grid *of = &delivery->seabed;
+    const struct line_grid *of =
+        set->lines.kind == IMPULSES_HIDDEN ? &delivery->beam : &delivery->seabed;
     const char *path = delivery->file->path;
     bool is_possible =
         grid->strips_per_row == of->strips_per_row && grid->bins_per_pixel == of->bins_per_pixel;
@@ -386,7 +388,10 @@ static sonject_status check_grid(const struct delivery *delivery, const struct s
             return reimaging_check_glints(grid, delivery->tracer, path);
         is_possible = false;
         break;
+    case IMPULSES_BEAM:
+        return reimaging_check_beam(grid, delivery->tracer, path);
     case IMPULSES_OBJECT:
+    case IMPULSES_HIDDEN:
         is_possible = is_possible &&
                       (line_grid_cells(grid) == 0 || (span_is_inside(grid->strips, of->strips) &&
                                                       span_is_inside(grid->bins, of->bins)));
@@ -417,6 +422,8 @@ static sonject_status deliver_set(struct delivery *delivery, enum impulse_kind k
             close_set(&set);
         else if (kind == IMPULSES_SEABED)
             delivery->seabed = set.lines.grid;
+        else if (kind == IMPULSES_BEAM)
+            delivery->beam = set.lines.grid;
     }
     hdf5_leave(&session);
     return status == SONJECT_OK && is_there ? hand_out(&set, delivery->sink) : status;
@@ -439,6 +446,14 @@ static sonject_status deliver_objects(struct delivery *delivery)
     return status;
 }
 
+static sonject_status deliver_beam(struct delivery *delivery)
+{
+    sonject_status status = deliver_set(delivery, IMPULSES_BEAM, 0, 1, true);
+    for (uint32_t i = 0; status == SONJECT_OK && i < delivery->tracer->scene->object_count; i++)
+        status = deliver_set(delivery, IMPULSES_HIDDEN, i, 1, true);
+    return status;
+}
+
 static sonject_status deliver_chains(struct delivery *delivery)
 {
     sonject_status status = SONJECT_OK;
@@ -457,11 +472,19 @@ static sonject_status deliver(void *giver, struct tracer *tracer,
     delivery.tracer = tracer;
     delivery.request = request;
     delivery.sink = sink;
-    sonject_status status = deliver_set(&delivery, IMPULSES_SEABED, 0, planes, true);
+    sonject_sonar_params traced = tracer->scene->sonar;
+    impulse_head_take_sonar(&delivery.file->head, &traced);
+    sonject_status status = check_sonar(&traced, tracer->report, NULL) == SONJECT_OK
+                                ? SONJECT_OK
+                                : refuse(delivery.file, " is damaged", "/sonar");
+    if (status == SONJECT_OK)
+        status = deliver_set(&delivery, IMPULSES_SEABED, 0, planes, true);
     if (status == SONJECT_OK)
         status = echo_request_tell(request, tracer->report, ROUGH_SHARE, "forming the seabed");
     if (status == SONJECT_OK)
         status = deliver_objects(&delivery);
+    if (status == SONJECT_OK && has_beam_shadows(tracer))
+        status = deliver_beam(&delivery);
     if (status == SONJECT_OK && tracer->relief)
         status = deliver_set(&delivery, IMPULSES_LEVEL, 0, 1, true);
     if (status == SONJECT_OK)

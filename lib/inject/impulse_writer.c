@@ -103,6 +103,7 @@ static bool make_folder(struct impulse_writer *writer, enum impulse_kind kind)
 {
     static const char *const folders[IMPULSE_KINDS] = {[IMPULSES_OBJECT] = "/objects",
                                                        [IMPULSES_GLINT] = "/glints",
+                                                       [IMPULSES_HIDDEN] = "/hidden",
                                                        [IMPULSES_CHAINS] = "/chains"};
     if (!folders[kind] || writer->has_folder[kind])
         return true;

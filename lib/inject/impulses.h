@@ -16,16 +16,18 @@ enum impulse_kind {
                         and lost energy in m^2, footprint in rays; no cells: none of it is seen */
     IMPULSES_GLINT,  /* after their object, one set for each of its parts that has some: real and
                         imaginary part, m */
+    IMPULSES_BEAM,   /* m^2: what each ping hears of an even seabed; only of a real aperture */
+    IMPULSES_HIDDEN, /* m^2: of that, what an object hides; one set for each after BEAM */
     IMPULSES_LEVEL, /* m^2: as the seabed, without objects and relief; only where there is relief */
     IMPULSES_CHAINS /* m^2: of paths of several interactions; a set for each order, or one for all
                      */
 };
 
-#define IMPULSE_KINDS      5
+#define IMPULSE_KINDS      7
 #define IMPULSE_PLANES_MAX 3
 
-/* Some strips of a set. Sets come strip by strip from their first to their last; those of objects
- * and chains in one piece. */
+/* Some strips of a set. Sets come strip by strip from their first to their last; those of objects,
+ * of what they hide and of chains in one piece. */
 struct impulse_lines {
     enum impulse_kind kind;
     uint32_t number;       /* of object or part; of CHAINS, interactions of the shortest path */

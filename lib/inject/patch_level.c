@@ -15,7 +15,10 @@
 double seabed_cell_energy(const struct patch_view *view, const struct point_response *response,
                           double mu, double apparent_range_m)
 {
-    const double grazing = view_grazing(view, apparent_range_m);
+    /* half a cell beyond the first return: before it there is no seabed, and straight below its
+     * cells would cover any area */
+    const double steepest = view_bottom_range(view) + 0.5 * range_energy_width(response);
+    const double grazing = view_grazing(view, fmax(apparent_range_m, steepest));
     const double sine = sin(grazing);
     const double cosine = fmax(1e-6, cos(grazing));
     const double area = cross_range_energy_width(response, apparent_range_m) *
@@ -32,6 +35,8 @@ void patch_level_clear(struct patch_level *level)
     free(level->cell_energy);
     memset(level, 0, sizeof *level);
 }
+
+#define WATER_SHARE 0.05f /* of seabed around a pixel that tells its level */
 
 static sonject_status take_intensity(struct patch_level *level, struct report *report,
                                      const struct patch_view *view, const float *pixels,
@@ -61,6 +66,36 @@ static sonject_status take_intensity(struct patch_level *level, struct report *r
     return SONJECT_OK;
 }
 
+/* The local mean of the seabed alone; in the water column that of the seabed nearby. */
+static sonject_status level_beside_water(struct patch_level *level, struct report *report,
+                                         const struct scene *scene, const struct patch_view *view)
+{
+    const size_t count = view->rows * view->columns;
+    float *seabed = allocate_array(count, sizeof *seabed);
+    float *share = allocate_array(count, sizeof *share);
+    sonject_status status =
+        seabed && share ? SONJECT_OK : report_out_of_memory(report, "the patch");
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
+        seabed[i] = i % view->columns < level->water_columns ? 0.0f : 1.0f;
+    const double rows = scene->seabed.level_radius_m / view->row_spacing_m;
+    const double columns = scene->seabed.level_radius_m / view->column_spacing_m;
+    if (status == SONJECT_OK)
+        status = local_mean(report, seabed, view->rows, view->columns, rows, columns, share);
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
+        seabed[i] *= level->intensity[i];
+    if (status == SONJECT_OK)
+        status = local_mean(report, seabed, view->rows, view->columns, rows, columns, level->level);
+    for (size_t i = count; status == SONJECT_OK && i-- > 0;) {
+        const bool has_neighbour = (i + 1) % view->columns != 0;
+        level->level[i] = share[i] > WATER_SHARE ? level->level[i] / share[i]
+                          : has_neighbour        ? level->level[i + 1]
+                                                 : 0.0f;
+    }
+    free(seabed);
+    free(share);
+    return status;
+}
+
 /* Intensity (or its local mean) over the level. */
 static sonject_status make_map(struct patch_level *level, struct report *report,
                                const struct scene *scene, const struct patch_view *view)
@@ -88,6 +123,7 @@ sonject_status patch_level_init(struct patch_level *level, struct report *report
     const size_t count = view->rows * view->columns;
     double mean = 0.0;
     memset(level, 0, sizeof *level);
+    level->water_columns = view_water_columns(view);
     level->intensity = allocate_array(count, sizeof(float));
     level->level = allocate_array(count, sizeof(float));
     level->map = allocate_array(count, sizeof(float));
@@ -97,7 +133,9 @@ sonject_status patch_level_init(struct patch_level *level, struct report *report
                                 : report_out_of_memory(report, "the patch");
     if (status == SONJECT_OK)
         status = take_intensity(level, report, view, pixels, is_complex, &mean);
-    if (status == SONJECT_OK)
+    if (status == SONJECT_OK && level->water_columns > 0)
+        status = level_beside_water(level, report, scene, view);
+    else if (status == SONJECT_OK)
         status = local_mean(report, level->intensity, view->rows, view->columns,
                             scene->seabed.level_radius_m / view->row_spacing_m,
                             scene->seabed.level_radius_m / view->column_spacing_m, level->level);

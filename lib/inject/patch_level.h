@@ -9,12 +9,14 @@
 
 /* Owned planes, rows x columns of the view. */
 struct patch_level {
-    float *intensity;   /* measured */
-    float *level;       /* smooth local mean of it, > 0 */
-    float *map;         /* reflectivity over mu0 for the tracer */
-    float *cell_energy; /* expected cross-section of a pixel of plain seabed (mu0), m^2; a column
-                           each */
-    double noise_ratio; /* noise energy over level */
+    float *intensity;     /* measured */
+    float *level;         /* smooth local mean of it, > 0 */
+    float *map;           /* reflectivity over mu0 for the tracer */
+    float *cell_energy;   /* expected cross-section of a pixel of plain seabed (mu0), m^2; a column
+                             each */
+    double noise_ratio;   /* noise energy over level */
+    size_t water_columns; /* before the first return from the bottom; their level is that of the
+                             seabed nearby */
 };
 
 /* pixels: amplitudes or pairs, in the view's row order. Errors: INPUT (nothing but zeros; not a

@@ -77,19 +77,26 @@ static sonject_status check_sizes(const struct line_grid *grid, const struct tra
                           "%s: is damaged: its grids are finer than tracing lays them", file);
 }
 
-sonject_status reimaging_check_patch(const struct line_grid *grid, const struct tracer *tracer,
-                                     const char *file)
+sonject_status reimaging_check_beam(const struct line_grid *grid, const struct tracer *tracer,
+                                    const char *file)
 {
     const struct patch_view *view = &tracer->view;
     const double rows = (double)view->rows * grid->strips_per_row;
     const double columns = (double)(view->columns - 1) * grid->bins_per_pixel + 1.0;
-    sonject_status status = check_sizes(grid, tracer, file);
-    if (status == SONJECT_OK && (!holds(grid->strips, rows) || !holds(grid->bins, columns)))
-        status = report_failure(tracer->report, SONJECT_ERROR_INPUT,
-                                "%s: is damaged: its seabed is not that of the patch", file);
+    const sonject_status status = check_sizes(grid, tracer, file);
+    if (status != SONJECT_OK || (holds(grid->strips, rows) && holds(grid->bins, columns)))
+        return status;
+    return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                          "%s: is damaged: its seabed is not that of the patch", file);
+}
+
+sonject_status reimaging_check_patch(const struct line_grid *grid, const struct tracer *tracer,
+                                     const char *file)
+{
+    sonject_status status = reimaging_check_beam(grid, tracer, file);
     if (status == SONJECT_OK)
-        status = check_bins(grid, tracer,
-                            line_grid_shortest_deviation(grid, view->column_spacing_m), file);
+        status = check_bins(
+            grid, tracer, line_grid_shortest_deviation(grid, tracer->view.column_spacing_m), file);
     return status == SONJECT_OK ? check_strips(grid, tracer, file) : status;
 }
 

@@ -17,4 +17,8 @@ sonject_status reimaging_check_patch(const struct line_grid *grid, const struct 
 sonject_status reimaging_check_glints(const struct line_grid *grid, const struct tracer *tracer,
                                       const char *file);
 
+/* Lines of single pings, which are not spread along the track: whether they hold the patch. */
+sonject_status reimaging_check_beam(const struct line_grid *grid, const struct tracer *tracer,
+                                    const char *file);
+
 #endif

@@ -7,12 +7,13 @@
 #include "inject/coherent_seabed.h"
 
 sonject_status form_energies_as_they_come(struct form_lines *energies, struct tracer *tracer,
+                                          const struct point_response *response,
                                           const struct impulse_lines *lines, float *formed)
 {
     sonject_status status = SONJECT_OK;
     if (impulse_lines_begin(lines))
-        status = form_lines_begin(energies, tracer->report, tracer->device, &tracer->view,
-                                  &tracer->response, FORM_ENERGY, &lines->grid);
+        status = form_lines_begin(energies, tracer->report, tracer->device, &tracer->view, response,
+                                  FORM_ENERGY, &lines->grid);
     if (status == SONJECT_OK)
         status = form_lines_add(energies, lines->strips.first, lines->strips.count, lines->plane[0],
                                 NULL);
@@ -70,8 +71,8 @@ sonject_status seabed_echoes_take(struct seabed_former *former, struct echoes *e
                                   struct tracer *tracer, const struct echo_request *request,
                                   const struct impulse_lines *lines)
 {
-    sonject_status status =
-        form_energies_as_they_come(&former->energies, tracer, lines, echoes->seabed_energy);
+    sonject_status status = form_energies_as_they_come(&former->energies, tracer, &tracer->response,
+                                                       lines, echoes->seabed_energy);
     if (status == SONJECT_OK && request->field != SEABED_FIELD_NONE)
         status = take_field(former, echoes, tracer, request, lines);
     return status;

@@ -18,9 +18,10 @@ sonject_status seabed_echoes_take(struct seabed_former *former, struct echoes *e
                                   struct tracer *tracer, const struct echo_request *request,
                                   const struct impulse_lines *lines);
 
-/* Forms lines of energies, one plane, as they come; with the last ones `formed` (rows x columns of
- * the view) is whole. Errors: DEVICE, MEMORY. */
+/* Forms lines of energies, one plane, by a response, as they come; with the last ones `formed`
+ * (rows x columns of the view) is whole. Errors: DEVICE, MEMORY. */
 sonject_status form_energies_as_they_come(struct form_lines *energies, struct tracer *tracer,
+                                          const struct point_response *response,
                                           const struct impulse_lines *lines, float *formed);
 void seabed_former_clear(struct seabed_former *former);
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "inject/beam_shadows.h"
 #include "inject/level_seabed.h"
 #include "trace/chains.h"
 #include "trace/glints.h"
@@ -201,6 +202,78 @@ static sonject_status trace_level_seabed(struct tracing *tracing)
     return status;
 }
 
+static sonject_status allocate_chunks(struct tracing *tracing)
+{
+    const struct rough_trace *trace = &tracing->rough;
+    const size_t chunk = (size_t)rough_trace_chunk(trace) * (size_t)trace->grid.bins.count;
+    tracing->tiles = allocate_array(trace->tile_elements, sizeof(float));
+    tracing->chunk = allocate_array(chunk, sizeof(float));
+    tracing->second = allocate_array(wants_field(tracing) ? chunk : 0, sizeof(float));
+    return tracing->tiles && tracing->chunk && tracing->second
+               ? SONJECT_OK
+               : report_out_of_memory(tracing->tracer->report, "the seabed");
+}
+
+/* What the pings of a real aperture hear of an even seabed. */
+static sonject_status trace_pings(struct tracing *beam)
+{
+    struct rough_trace *trace = &beam->rough;
+    const float *const planes[] = {beam->chunk};
+    const uint64_t pings = beam->tracer->counts.pings;
+    struct span strips = {trace->grid.strips.first, 0};
+    sonject_status status = SONJECT_OK;
+    while (status == SONJECT_OK &&
+           (strips = next_strips(&trace->grid, strips, rough_trace_chunk(trace))).count > 0) {
+        status = rough_trace_strips(trace, beam->tracer, strips, beam->chunk);
+        if (status == SONJECT_OK)
+            status = hand_out(beam, IMPULSES_BEAM, 0, &trace->grid, strips, 1, planes);
+        if (status == SONJECT_OK)
+            status = echo_request_tell(beam->request, beam->tracer->report,
+                                       ROUGH_SHARE + OBJECT_SHARE, "tracing the beam");
+    }
+    beam->tracer->counts.pings = pings; /* the same ones */
+    return status;
+}
+
+static sonject_status hand_out_hidden(const struct tracing *beam)
+{
+    sonject_status status = SONJECT_OK;
+    for (uint32_t i = 0; status == SONJECT_OK && i < beam->tracer->scene->object_count; i++) {
+        const struct rough_tile *tile = &beam->rough.tiles[i];
+        const float *const planes[] = {beam->tiles + tile->offset +
+                                       TILE_LOST * line_grid_cells(&tile->grid)};
+        status = hand_out(beam, IMPULSES_HIDDEN, i, &tile->grid, tile->grid.strips, 1, planes);
+    }
+    return status;
+}
+
+static sonject_status trace_beam(struct tracer *tracer, const struct echo_request *request,
+                                 const struct impulse_sink *sink)
+{
+    struct point_response response;
+    struct tracing beam;
+    memset(&beam, 0, sizeof beam);
+    beam.tracer = tracer;
+    beam.request = request;
+    beam.sink = sink;
+    response_of_pings(&response, tracer);
+    sonject_status status = rough_trace_begin_beam(&beam.rough, tracer, &response);
+    if (status != SONJECT_OK)
+        return status;
+    status = allocate_chunks(&beam);
+    if (status == SONJECT_OK)
+        status = trace_pings(&beam);
+    if (status == SONJECT_OK)
+        status = rough_trace_tiles(&beam.rough, tracer, beam.tiles);
+    if (status == SONJECT_OK)
+        status = hand_out_hidden(&beam);
+    rough_trace_end(&beam.rough);
+    free(beam.tiles);
+    free(beam.chunk);
+    free(beam.second);
+    return status;
+}
+
 static sonject_status trace_fan(const struct tracing *tracing, struct chain_trace *trace,
                                 uint32_t number)
 {
@@ -256,18 +329,6 @@ static sonject_status trace_chains(const struct tracing *tracing)
     return status;
 }
 
-static sonject_status allocate_chunks(struct tracing *tracing)
-{
-    const struct rough_trace *trace = &tracing->rough;
-    const size_t chunk = (size_t)rough_trace_chunk(trace) * (size_t)trace->grid.bins.count;
-    tracing->tiles = allocate_array(trace->tile_elements, sizeof(float));
-    tracing->chunk = allocate_array(chunk, sizeof(float));
-    tracing->second = allocate_array(wants_field(tracing) ? chunk : 0, sizeof(float));
-    return tracing->tiles && tracing->chunk && tracing->second
-               ? SONJECT_OK
-               : report_out_of_memory(tracing->tracer->report, "the seabed");
-}
-
 sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *request,
                               const struct impulse_sink *sink)
 {
@@ -284,6 +345,8 @@ sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *
         status = trace_seabed(&tracing);
     if (status == SONJECT_OK)
         status = trace_objects(&tracing);
+    if (status == SONJECT_OK && has_beam_shadows(tracer))
+        status = trace_beam(tracer, request, sink);
     if (status == SONJECT_OK && tracer->relief)
         status = trace_level_seabed(&tracing);
     rough_trace_end(&tracing.rough);

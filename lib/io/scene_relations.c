@@ -5,6 +5,8 @@
 #include "io/scene_schema.h"
 #include "scene/element_plan.h"
 
+#define RIGHT_ANGLE 1.5707963267948966
+
 static bool is_given(const struct tree_node *node, const char *key)
 {
     return tree_find(node, key) != NULL;
@@ -51,7 +53,7 @@ sonject_status read_aperture(struct reader *reader, const struct tree_node *node
         return SONJECT_OK;
     }
     const sonject_status status = read_quantity(reader, node, QUANTITY_ANGLE, &sonar->aperture_rad);
-    if (status == SONJECT_OK && !(sonar->aperture_rad >= 0.0))
+    if (status == SONJECT_OK && !(sonar->aperture_rad >= 0.0 && sonar->aperture_rad <= RIGHT_ANGLE))
         return refuse_value(reader, node, "must be from 0 to 90 deg, auto or none");
     return status;
 }

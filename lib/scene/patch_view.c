@@ -58,7 +58,11 @@ sonject_status patch_view_init(struct patch_view *view, struct report *report,
     view->first_x_m =
         view->is_mirrored ? -(along + (double)(rows - 1) * geometry->row_spacing_m) : along;
     view->first_range_m = geometry->first_slant_range_m + first_column * geometry->column_spacing_m;
-    if (!(view_ground_range(view, view->first_range_m) > 0.0))
+    const double last_range = view_apparent_range(view, (double)columns - 1.0);
+    /* near the vertical, layers and heights would need rays that start at the nadir */
+    const bool may_begin_in_water = view->water.is_straight && scene->relief.count == 0;
+    if (!(view_ground_range(view, view->first_range_m) > 0.0) &&
+        !(may_begin_in_water && view_ground_range(view, last_range) > 0.0))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "the patch starts at %.3f m slant range, which is not beyond the "
                               "altitude of %.3f m: move the patch outwards or correct "
@@ -80,6 +84,17 @@ void view_find_pixel(const struct patch_view *view, double first_row, double fir
         *row = view->is_mirrored ? (double)(view->rows - 1) - image_row : image_row;
         *column = range - first_column;
     }
+}
+
+size_t view_water_columns(const struct patch_view *view)
+{
+    const double columns = view_column_of_range(view, view_bottom_range(view));
+    return columns < 0.0 ? 0 : (size_t)floor(columns) + 1;
+}
+
+double view_bottom_range(const struct patch_view *view)
+{
+    return water_way_range(&view->water, 0.0, 0.0) * view->range_ratio;
 }
 
 double view_x_of_row(const struct patch_view *view, double row)

@@ -30,7 +30,8 @@ sonject_status scene_lay_water(const struct scene *scene, struct report *report,
 double scene_reference_speed(const struct scene *scene);
 
 /* The scene's geometry shifted to the region that starts at first_row, first_column of the swath.
- * water is borrowed. Errors: INPUT (patch not beyond the altitude, no pixels, sea surface not above
+ * water is borrowed. The patch may begin in the water column where water and seabed are level and
+ * plain. Errors: INPUT (patch not beyond the altitude, no pixels, sea surface not above
  * the sonar, sonar not above the straight water's targets). */
 sonject_status patch_view_init(struct patch_view *view, struct report *report,
                                const struct scene *scene, const struct water *water,
@@ -40,6 +41,12 @@ sonject_status patch_view_init(struct patch_view *view, struct report *report,
  * first_row, first_column: of the patch in the swath. */
 void view_find_pixel(const struct patch_view *view, double first_row, double first_column,
                      uint32_t kind, double along, double range, double *row, double *column);
+
+/* Apparent range of the first return from the bottom, straight below. */
+double view_bottom_range(const struct patch_view *view);
+
+/* Columns of the view that lie in the water column, before the first return. */
+size_t view_water_columns(const struct patch_view *view);
 
 /* Along-track position (in the view's x) of a row, which may be fractional. */
 double view_x_of_row(const struct patch_view *view, double row);

@@ -11,7 +11,8 @@
 
 void patch_fan_origin(double origin[3], const struct patch_view *view)
 {
-    const double middle = view_apparent_range(view, 0.5 * (double)(view->columns - 1));
+    const double first = fmax(0.0, view_column_of_range(view, view_bottom_range(view)));
+    const double middle = view_apparent_range(view, 0.5 * (first + (double)(view->columns - 1)));
     origin[0] = view_x_of_row(view, 0.5 * (double)(view->rows - 1));
     origin[1] = view_ground_range(view, middle);
     origin[2] = 0.0;

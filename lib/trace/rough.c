@@ -6,11 +6,15 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "trace/aspects.h"
+#include "trace/beam.h"
 #include "trace/corners.h"
 #include "trace/patch_fan.h"
 #include "trace/source_pairs.h"
 
 #define RAYS_PER_BIN 2.0
+#define RAYS_PER_BIN_OF_BEAM                                                                       \
+    6.0 /* a pixel is one ping's alone, and a beam's rays weigh unequally */
 
 static double bin_of_apparent_range(const struct rough_trace *trace, const struct tracer *tracer,
                                     double range)
@@ -18,12 +22,19 @@ static double bin_of_apparent_range(const struct rough_trace *trace, const struc
     return view_column_of_range(&tracer->view, range) * trace->grid.bins_per_pixel;
 }
 
-/* Bins where a part's echoes and shadow can lie: from its nearest point to where the ray over its
- * top meets the seabed, or to its last echo by way of mirrors. */
-static struct span part_bins(const struct rough_trace *trace, const struct tracer *tracer,
-                             uint32_t number)
+static bool has_beam(const struct rough_trace *trace)
 {
-    const struct placement *placement = &tracer->placements[number];
+    return trace->fan.beam.reach > 0.0f;
+}
+
+/* Ranges, m, from a part's nearest point to where the ray over its top meets the seabed. */
+struct part_ranges {
+    double first, last;
+};
+
+static struct part_ranges ranges_of_part(const struct tracer *tracer,
+                                         const struct placement *placement)
+{
     const double lowest = tracer_lowest_seabed(tracer);
     const double shadow_end = placement_shadow_end(placement, &tracer->view, lowest);
     const double first_range =
@@ -33,13 +44,23 @@ static struct span part_bins(const struct rough_trace *trace, const struct trace
              placement_range(placement, &tracer->view) + placement->bounding_radius_m);
     const double slack =
         0.01 * placement->bounding_radius_m + tracer->scene->sonar.transducer_side_m;
+    const struct part_ranges ranges = {first_range - slack, last_range + slack};
+    return ranges;
+}
+
+/* Bins where a part's echoes and shadow can lie, those by way of mirrors too. */
+static struct span part_bins(const struct rough_trace *trace, const struct tracer *tracer,
+                             uint32_t number)
+{
+    const struct part_ranges ranges = ranges_of_part(tracer, &tracer->placements[number]);
     const double ratio = tracer->view.range_ratio;
-    const double first =
-        floor(bin_of_apparent_range(trace, tracer, (first_range - slack) * ratio)) - 2.0;
+    const double first = floor(bin_of_apparent_range(trace, tracer, ranges.first * ratio)) - 2.0;
     const struct span mirrored = mirrored_bins(tracer, number, &trace->grid);
-    const double last =
-        fmax(ceil(bin_of_apparent_range(trace, tracer, (last_range + slack) * ratio)) + 2.0,
-             mirrored.first + mirrored.count);
+    /* a beam sees what is off broadside farther away */
+    const double sine = has_beam(trace) ? beam_largest_sine(tracer) : 0.0;
+    const double farthest = ranges.last / sqrt(1.0 - sine * sine);
+    const double last = fmax(ceil(bin_of_apparent_range(trace, tracer, farthest * ratio)) + 2.0,
+                             mirrored.first + mirrored.count);
     const double limit = trace->grid.bins.first + trace->grid.bins.count;
     struct span bins;
     bins.first = (int32_t)fmin(fmax(first, trace->grid.bins.first), limit);
@@ -48,23 +69,56 @@ static struct span part_bins(const struct rough_trace *trace, const struct trace
                         trace->grid.bins);
 }
 
+/* How far, m along the track, a part's shadow and the strips of rays that meet it reach beyond it:
+ * rays belong where they meet the seabed, or the patch's end. */
+static double part_slide(const struct rough_trace *trace, const struct tracer *tracer,
+                         const struct placement *placement)
+{
+    const struct part_ranges ranges = ranges_of_part(tracer, placement);
+    const double sine = has_beam(trace) ? beam_largest_sine(tracer) : 0.0;
+    if (has_beam(trace)) /* rays belong to the ping that they leave from */
+        return ranges.last * sine / sqrt(1.0 - sine * sine);
+    const double bins = trace->grid.bins.first + trace->grid.bins.count;
+    const double patch_end = view_apparent_range(&tracer->view, bins / trace->grid.bins_per_pixel) /
+                             tracer->view.range_ratio;
+    return aspects_slide(tracer, fmax(fmin(ranges.last, patch_end) - ranges.first, 0.0));
+}
+
+/* Strips where a part's echoes and shadow can lie, in the patch and beyond. */
 static struct span part_strips(const struct rough_trace *trace, const struct tracer *tracer,
                                uint32_t number)
 {
     static const double along[3] = {1.0, 0.0, 0.0};
     const struct placement *placement = &tracer->placements[number];
-    const double extent =
-        placement_half_extent(placement, along) + tracer->scene->sonar.transducer_side_m;
+    const double extent = placement_half_extent(placement, along) +
+                          tracer->scene->sonar.transducer_side_m +
+                          part_slide(trace, tracer, placement);
     const double per_row = trace->grid.strips_per_row;
-    const double limit = trace->grid.strips.first + trace->grid.strips.count;
     const double first =
         floor((view_row_of_x(&tracer->view, placement->centre[0] - extent) + 0.5) * per_row) - 1.0;
     const double last =
         floor((view_row_of_x(&tracer->view, placement->centre[0] + extent) + 0.5) * per_row) + 1.0;
     struct span strips;
-    strips.first = (int32_t)fmax(first, trace->grid.strips.first);
-    strips.count = (int32_t)(fmin(last + 1.0, limit) - strips.first);
+    strips.first = (int32_t)first;
+    strips.count = (int32_t)(last + 1.0 - first);
     return strips;
+}
+
+/* Strips beyond the patch's ends from which rays come to parts in it. */
+static int32_t object_halo(const struct rough_trace *trace, const struct tracer *tracer)
+{
+    const struct span patch = trace->grid.strips;
+    int32_t halo = 0;
+    if (!(aspects_sine(tracer) > 0.0))
+        return 0;
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
+        const struct span strips = part_strips(trace, tracer, i);
+        const int32_t before = patch.first - strips.first;
+        const int32_t after = strips.first + strips.count - (patch.first + patch.count);
+        halo = before > halo ? before : halo;
+        halo = after > halo ? after : halo;
+    }
+    return halo;
 }
 
 void rough_tile_describe(const struct rough_trace *trace, uint32_t object,
@@ -91,7 +145,9 @@ static sonject_status lay_tiles(struct rough_trace *trace, struct tracer *tracer
         tile->offset = elements;
         for (uint32_t k = 0; k < object->part_count; k++) {
             const uint32_t part = object->first_part + k;
-            tile->grid.strips = span_join(tile->grid.strips, part_strips(trace, tracer, part));
+            tile->grid.strips =
+                span_join(tile->grid.strips,
+                          span_overlap(part_strips(trace, tracer, part), trace->grid.strips));
             tile->grid.bins = span_join(tile->grid.bins, part_bins(trace, tracer, part));
         }
         for (uint32_t k = 0; k < object->part_count; k++)
@@ -115,8 +171,10 @@ static void choose_quanta(struct rough_trace *trace, const struct tracer *tracer
             brightest = fmax(brightest, map[i]);
     const double wavefront = (double)trace->fan.strip_width * trace->fan.elevation_step * 2.0 *
                              trace->fan.reference_range;
+    const double beam = has_beam(trace) ? beam_largest_weight(tracer, &trace->fan) : 1.0;
     const double most =
-        wavefront * fmax(brightest_scattering(tracer), tracer->scene->seabed.lambert * brightest);
+        beam * wavefront *
+        fmax(brightest_scattering(tracer), tracer->scene->seabed.lambert * brightest);
     trace->fan.quanta = power_of_two_below(ldexp(1.0, 44) / most);
     trace->energy_of_quantum = view_energy_scale(&tracer->view) / trace->fan.quanta;
 }
@@ -137,23 +195,39 @@ static sonject_status make_buffers(struct rough_trace *trace, struct tracer *tra
     return status;
 }
 
-sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *tracer, const float *map)
+/* Strips of a fan, or a beam's rays on a grid of one strip a ping. */
+static sonject_status lay_fan(struct rough_trace *trace, struct tracer *tracer, bool has_map,
+                              bool is_beam)
+{
+    const double rays_per_bin = is_beam ? RAYS_PER_BIN_OF_BEAM : RAYS_PER_BIN;
+    sonject_status status =
+        patch_fan_init(&trace->fan, tracer, &trace->grid, has_map, rays_per_bin);
+    if (status == SONJECT_OK && is_beam)
+        status = beam_record_init(&trace->fan, tracer, &trace->grid);
+    if (status == SONJECT_OK)
+        status = patch_rays_init(&trace->rays, &trace->fan.table, tracer, &trace->grid);
+    trace->fan.stream = STREAM_ROUGH_RAYS;
+    aspects_record_init(&trace->fan, tracer, &trace->grid);
+    trace->fan.seabed_lambert = (float)tracer->scene->seabed.lambert;
+    return status;
+}
+
+static sonject_status begin(struct rough_trace *trace, struct tracer *tracer, const float *map,
+                            const struct point_response *response, bool is_beam)
 {
     memset(trace, 0, sizeof *trace);
     const struct patch_view *view = &tracer->view;
-    line_grid_for_patch(&trace->grid, view, &tracer->response);
+    line_grid_for_patch(&trace->grid, view, response);
     double origin[3];
     patch_fan_origin(origin, view);
     struct object_record *records = allocate_array(tracer->part_count, sizeof *records);
     if (!records)
         return report_out_of_memory(tracer->report, "objects");
     object_records_init(records, tracer, origin);
-    sonject_status status =
-        patch_fan_init(&trace->fan, tracer, &trace->grid, map != NULL, RAYS_PER_BIN);
-    if (status == SONJECT_OK)
-        status = patch_rays_init(&trace->rays, &trace->fan.table, tracer, &trace->grid);
-    trace->fan.stream = STREAM_ROUGH_RAYS;
-    trace->fan.seabed_lambert = (float)tracer->scene->seabed.lambert;
+    sonject_status status = lay_fan(trace, tracer, map != NULL, is_beam);
+    trace->relief_halo = aspects_relief_halo(tracer, &trace->grid);
+    trace->object_halo = object_halo(trace, tracer);
+    rough_trace_aim(trace, trace->grid.strips);
     if (status == SONJECT_OK)
         status = lay_tiles(trace, tracer, records);
     if (status == SONJECT_OK) {
@@ -164,6 +238,17 @@ sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *trace
     if (status != SONJECT_OK)
         rough_trace_end(trace);
     return status;
+}
+
+sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *tracer, const float *map)
+{
+    return begin(trace, tracer, map, &tracer->response, false);
+}
+
+sonject_status rough_trace_begin_beam(struct rough_trace *trace, struct tracer *tracer,
+                                      const struct point_response *response)
+{
+    return begin(trace, tracer, NULL, response, true);
 }
 
 void rough_trace_end(struct rough_trace *trace)
@@ -183,6 +268,8 @@ void rough_trace_flatten(struct rough_trace *trace)
 {
     trace->fan.relief_words = 0;
     trace->fan.objects = 0;
+    trace->relief_halo = 0;
+    trace->object_halo = 0;
 }
 
 static sonject_status read_tallies(struct tracer *tracer, cl_mem buffer, size_t count, double unit,
@@ -200,14 +287,34 @@ static sonject_status read_tallies(struct tracer *tracer, cl_mem buffer, size_t 
     return SONJECT_OK;
 }
 
+void rough_trace_aim(struct rough_trace *trace, struct span strips)
+{
+    struct fan_record *fan = &trace->fan;
+    const struct span patch = trace->grid.strips;
+    const bool is_first = strips.first == patch.first;
+    const bool is_last = strips.first + strips.count == patch.first + patch.count;
+    const int32_t most =
+        trace->relief_halo > trace->object_halo ? trace->relief_halo : trace->object_halo;
+    const int32_t before = is_first ? most : trace->relief_halo;
+    const int32_t after = is_last ? most : trace->relief_halo;
+    fan->first_strip = strips.first - before;
+    fan->strips = before + strips.count + after;
+    fan->aspects.tally_first_strip = strips.first;
+    fan->aspects.tally_strips = strips.count;
+    /* each ray tallies objects once, whatever the chunks */
+    fan->aspects.core_first_strip = is_first ? fan->first_strip : strips.first;
+    fan->aspects.core_strips =
+        (is_last ? fan->first_strip + fan->strips : strips.first + strips.count) -
+        fan->aspects.core_first_strip;
+}
+
 sonject_status rough_trace_strips(struct rough_trace *trace, struct tracer *tracer,
                                   struct span strips, float *seabed)
 {
     const size_t count = (size_t)strips.count * (size_t)trace->grid.bins.count;
     const cl_mem buffers[] = {trace->on_device.objects, trace->map, trace->on_device.tallies,
                               trace->tile_buffer};
-    trace->fan.first_strip = strips.first;
-    trace->fan.strips = strips.count;
+    rough_trace_aim(trace, strips);
     sonject_status status = buffer_clear(tracer->report, tracer->device, trace->on_device.tallies,
                                          count * sizeof(int64_t));
     if (status == SONJECT_OK)

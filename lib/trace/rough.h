@@ -14,6 +14,9 @@ struct rough_trace {
     struct rough_tile tiles[SCENE_OBJECTS_MAX];
     size_t tile_elements;     /* of all tiles and planes */
     double energy_of_quantum; /* m^2 */
+    /* Strips traced besides those whose seabed is wanted, for rays that come from there: on both
+     * sides of a chunk, and beyond the patch's ends. */
+    int32_t relief_halo, object_halo;
     struct fan_record fan;
     struct ray_table rays;
     struct trace_device on_device;
@@ -27,12 +30,21 @@ sonject_status rough_trace_begin(struct rough_trace *trace, struct tracer *trace
                                  const float *map);
 void rough_trace_end(struct rough_trace *trace);
 
+/* The same for an even seabed as the beam of a real aperture sees it: one strip a ping, each with
+ * all that the ping hears, so the energies of a row are those of its ping as they are. response:
+ * whose grid the trace has, as narrow as a row. */
+sonject_status rough_trace_begin_beam(struct rough_trace *trace, struct tracer *tracer,
+                                      const struct point_response *response);
+
 /* Tells the record of a part of an object where the object's tile is. */
 void rough_tile_describe(const struct rough_trace *trace, uint32_t object,
                          struct object_record *record);
 
 /* How many strips a call of rough_trace_strips may take. */
 int32_t rough_trace_chunk(const struct rough_trace *trace);
+
+/* Lays the fan for those strips, of which the patch's are a union: rough_trace_strips does so. */
+void rough_trace_aim(struct rough_trace *trace, struct span strips);
 
 /* Traces strips.count <= chunk strips and writes the energies (m^2) that the seabed would return
  * without objects, strips.count x bins.count. The objects' tiles add up on the device. */

@@ -6,6 +6,7 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "trace/aspects.h"
 #include "trace/object_buffer.h"
 #include "trace/object_shape.h"
 #include "user/user_program.h"
@@ -15,7 +16,7 @@
 
 /* Host and device must agree on every byte. */
 typedef char object_record_is_packed[sizeof(struct object_record) == 57 * 4 ? 1 : -1];
-typedef char fan_record_is_packed[sizeof(struct fan_record) == 43 * 4 ? 1 : -1];
+typedef char fan_record_is_packed[sizeof(struct fan_record) == 75 * 4 ? 1 : -1];
 typedef char chain_record_is_packed[sizeof(struct chain_record) == 35 * 4 ? 1 : -1];
 typedef char sphere_group_is_packed[sizeof(struct sphere_group) == 64 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
@@ -246,9 +247,12 @@ sonject_status trace_device_init(struct trace_device *device, struct tracer *tra
     const size_t fitting = TALLY_BYTES / line_bytes;
     memset(device, 0, sizeof *device);
     device->tally_strips = fitting < 1 ? 1 : fitting < strips ? fitting : strips;
-    sonject_status status =
-        scene_kernel_create(report, tracer->device, tracer->scene, tracer_variant(tracer), program,
-                            kernel_name, &device->kernel);
+    const bool has_aspects =
+        program == PROGRAM_TRACE_ROUGH &&
+        (aspects_sine(tracer) > 0.0 || tracer->scene->sonar.kind == SONJECT_SONAR_REAL);
+    const uint32_t variant = tracer_variant(tracer) | (has_aspects ? PROGRAM_WITH_ASPECTS : 0u);
+    sonject_status status = scene_kernel_create(report, tracer->device, tracer->scene, variant,
+                                                program, kernel_name, &device->kernel);
     if (status == SONJECT_OK)
         status = object_buffer_create(tracer, records, parts, &device->objects);
     if (status == SONJECT_OK)

@@ -1,6 +1,7 @@
 #define WIDTH          16
 #define WITHOUT_MESHES /* as the device builds them for these scenes */
 #define WITHOUT_RELIEF
+#define WITHOUT_ASPECTS
 #include "kernels/trace_chains.h"
 #include "kernels/trace_rough.h"
 #include "kernels/trace_smooth.h"

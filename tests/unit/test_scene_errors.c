@@ -20,9 +20,10 @@
 #define INPUT                                                                                      \
     "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
     "first_slant_range: 40}}\n"
-#define SONAR  "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
-#define BASE   START INPUT SONAR /* three lines */
-#define OBJECT BASE "objects:\n  - shape: "
+#define SONAR            "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
+#define SONAR_WITH(keys) "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10, " keys "}\n"
+#define BASE             START INPUT SONAR /* three lines */
+#define OBJECT           BASE "objects:\n  - shape: "
 
 struct wrong {
     const char *text;
@@ -55,7 +56,7 @@ static void test_unknown_keys(void **state)
          "user, "
          "length, width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, "
          "cuts, "
-         "position, heading, pitch, roll, burial, material, parts"},
+         "position, heading, pitch, roll, burial, level, material, parts"},
     };
     expect_all(state, wrong, COUNT(wrong));
 }
@@ -146,6 +147,21 @@ static void test_wrong_values(void **state)
         {BASE "seabed: {lambert: 3 dB}\n",
          ":4:19: seabed.lambert: must be above 0 and at most 1/pi (-4.97 dB), or the seabed "
          "returns more than it receives; it is 1.99526"},
+        {START INPUT SONAR_WITH("aperture: wide"),
+         ":3:68: sonar.aperture: 'wide' is not a number with a unit of deg, rad"},
+        {START INPUT SONAR_WITH("aperture: -3 deg"),
+         ":3:68: sonar.aperture: must be from 0 to 90 deg, auto or none"},
+        {START INPUT SONAR_WITH("aperture: 91 deg"),
+         ":3:68: sonar.aperture: must be from 0 to 90 deg, auto or none"},
+        {START INPUT SONAR_WITH("kind: real"),
+         ":3:8: sonar.array: missing; a real aperture needs its length"},
+        {START INPUT SONAR_WITH("array: {length: 1 m}"),
+         ":3:65: sonar.array: belongs to a real aperture; set kind: real"},
+        {START INPUT SONAR_WITH("kind: real, array: {length: 0}"),
+         ":3:86: sonar.array.length: must be 1e-06...1e+06 m, not 0"},
+        {START INPUT SONAR_WITH("kind: real, aperture: none, array: {length: 1 m}"),
+         ":3:80: sonar.aperture: belongs to a synthetic aperture; a real one has that of its "
+         "array"},
         {"sonject: 2\n" INPUT SONAR,
          ":1:10: sonject: must be 1, the version of the format that is read here"},
         {BASE "objects: {shape: sphere}\n",
