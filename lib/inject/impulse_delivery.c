@@ -254,9 +254,9 @@ static sonject_status deliver(void *giver, struct tracer *tracer,
 {
     struct delivery delivery = {giver, tracer, request, sink, {{0}, {0}}};
     const uint32_t planes = request->field == SEABED_FIELD_NONE ? 1 : 2;
-    sonject_sonar_params traced = tracer->scene->sonar;
-    impulse_head_take_sonar(&delivery.file->head, &traced);
-    sonject_status status = check_sonar(&traced, tracer->report, NULL) == SONJECT_OK
+    struct scene traced = *tracer->scene;
+    impulse_head_take_sonar(&delivery.file->head, &traced.sonar);
+    sonject_status status = check_sonar(&traced.sonar, tracer->report, NULL) == SONJECT_OK
                                 ? SONJECT_OK
                                 : impulse_file_refuse(delivery.file, "/sonar", "is damaged");
     if (status == SONJECT_OK)

@@ -54,12 +54,12 @@ static sonject_status check_cross_range(const struct traced_grids *grids,
 }
 
 sonject_status reimaging_check(struct traced_grids *grids, const struct tracer *tracer,
-                               const sonject_sonar_params *traced, const char *file)
+                               const struct scene *traced, const char *file)
 {
     const double reference =
         tracer->view.range_ratio * tracer->view.water.water->straight_speed_mps;
     struct tracer before = *tracer;
-    point_response_init(&before.response, traced, reference, tracer->view.row_spacing_m);
+    point_response_init(&before.response, &traced->sonar, reference, tracer->view.row_spacing_m);
     line_grid_for_patch(&grids->patch, &before.view, &before.response);
     glint_cells_lay(&grids->glints, &before);
     const sonject_status status = check_pulse(grids, tracer, file);
