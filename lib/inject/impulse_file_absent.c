@@ -1,5 +1,5 @@
-/* Stands in for impulse_writer.c and impulse_reader.c in builds without HDF5: everything answers
- * UNSUPPORTED. */
+/* Stands in for impulse_writer.c, impulse_reader.c and impulse_delivery.c in builds without HDF5:
+ * everything answers UNSUPPORTED. */
 #include "inject/impulse_file.h"
 
 static sonject_status refuse(struct report *report, const char *path)

@@ -8,23 +8,19 @@ import pytest
 
 import images
 from conftest import assert_refused, files_below
-from test_run import contents, limit_file_size, read_rest, small_disk, start_and_wait_for_the_bar
+from test_run import contents, limit_file_size, read_rest, small_disk, start_and_wait_for_the_bar  # noqa: F401
 
 HAS_HDF5 = os.environ.get("SONJECT_HAS_HDF5") == "1"
 needs_hdf5 = pytest.mark.skipif(not HAS_HDF5, reason="built without HDF5")
 
-# More of all that makes impulses: a rough and smooth object of two parts, mirrors, relief.
-EVERYTHING = """\
+# A rough and smooth object of two parts.
+PARTS = """\
   - name: buoy
     material: {reflection: 0.5, lambert: 0.05}
     position: {along_track: 1.8 m, slant_range: 26.5 m}
     parts:
       - {shape: cylinder, length: 0.4 m, diameter: 0.1 m}
       - {shape: sphere, diameter: 0.2 m, at: {up: 0.2 m}}
-seabed:
-  relief:
-    - ripples: {height: 2 cm, wavelength: 40 cm}
-surface: {depth: 30 m}
 """
 
 
@@ -41,28 +37,22 @@ def compare_with_run(sonject, folder, scene, *options):
 
 
 @needs_hdf5
-@pytest.mark.parametrize("interactions", [1, 2])
-@pytest.mark.parametrize("mode", ["composite", "resynthesise"])
+@pytest.mark.parametrize("interactions, mode", [(1, "composite"), (2, "resynthesise")])
 def test_the_stages_leave_what_a_run_leaves(sonject, scene, tmp_path, interactions, mode):
-    chosen = ["--set", f"injection.interactions={interactions}", "--set", f"injection.mode={mode}"]
-    compare_with_run(sonject, tmp_path, scene, *chosen, "--set", "injection.order_energies=true")
+    scene.write_text(scene.read_text() + PARTS)
+    chosen = [f"injection.interactions={interactions}", f"injection.mode={mode}",
+              "injection.order_energies=true"]
+    options = [word for each in chosen for word in ("--set", each)]
+    compare_with_run(sonject, tmp_path, scene, *options, "--seed", "5")
     assert len(list((tmp_path / "formed").glob("energy_order_*.tif"))) == interactions
 
 
 @needs_hdf5
-def test_the_stages_of_a_scene_with_all_there_is(sonject, scene, tmp_path):
-    scene.write_text(scene.read_text() + EVERYTHING)
-    compare_with_run(sonject, tmp_path, scene, "--set", "injection.interactions=2", "--seed", "5")
-
-
-@needs_hdf5
-@pytest.mark.parametrize("starboard", [False, True])
-def test_the_stages_of_a_complex_image(sonject, scene, tmp_path, swath, starboard):
+def test_the_stages_of_a_complex_image_to_starboard(sonject, scene, tmp_path, swath):
     pixels = numpy.stack([swath, swath[::-1]], axis=2)
     (tmp_path / "swath.tif").write_bytes(images.tiff_bytes(pixels))
-    chosen = ["input.complex=true", "seabed.map=coherent", "injection.mode=resynthesise"]
-    if starboard:
-        chosen.append("input.geometry.side=starboard")
+    chosen = ["input.complex=true", "seabed.map=coherent", "injection.mode=resynthesise",
+              "input.geometry.side=starboard"]
     options = [word for each in chosen for word in ("--set", each)]
     compare_with_run(sonject, tmp_path, scene, *options)
 
@@ -94,47 +84,40 @@ def test_where_the_fine_grid_is_the_same_another_bandwidth_gives_a_runs_bits(
 
 
 @needs_hdf5
-@pytest.mark.parametrize(
-    "change", ["sonar.bandwidth=15 kHz", "sonar.response=hamming", "sonar.resolution=7 cm"]
-)
-def test_other_responses_give_a_runs_image_but_for_the_noise_of_rays(
-    sonject, scene, tmp_path, change
-):
+def test_other_responses_give_a_runs_image_but_for_the_noise_of_rays(sonject, scene, tmp_path):
     command(sonject, "trace", scene, "-o", "impulses.h5")
-    command(sonject, "form", "impulses.h5", "-o", "formed", "--set", change)
+    changes = ["sonar.bandwidth=15 kHz", "sonar.response=hamming", "sonar.resolution=7 cm"]
+    options = [word for change in changes for word in ("--set", change)]
+    command(sonject, "form", "impulses.h5", "-o", "formed", *options)
     energies = [images.read_tiff(tmp_path / "formed" / "energy.tif")]
     for seed in (1, 2):
-        command(sonject, "run", scene, "-o", str(seed), "--set", change, "--seed", str(seed))
+        command(sonject, "run", scene, "-o", str(seed), *options, "--seed", str(seed))
         energies.append(images.read_tiff(tmp_path / str(seed) / "energy.tif"))
     formed, first, second = (energy.astype(float) for energy in energies)
     bright = first > 1e-3 * first.max()
     by_seed = numpy.median(abs(second[bright] / first[bright] - 1))
     by_stages = numpy.median(abs(formed[bright] / first[bright] - 1))
-    # The rays of a finer grid are no coarser, so they differ no more than those of two seeds; half
-    # as much again leaves room for the spread of two medians of thousands of pixels.
+    # The traced grid is no coarser, so its rays differ no more than those of two seeds do; half as
+    # much again leaves room for the spread of two medians over thousands of pixels.
     assert 0 < by_seed < 0.2 and by_stages < 1.5 * by_seed
     assert abs(formed.sum() / first.sum() - 1) < 0.02
 
 
 @needs_hdf5
-@pytest.mark.parametrize(
-    "change, words",
-    [
-        ("sonar.bandwidth=31 kHz", ["sonar.bandwidth", "31 kHz", "to 30 kHz", "trace again"]),
-        ("sonar.bandwidth=5 kHz", ["sonar.bandwidth", "5 kHz", "trace again"]),
-        ("sonar.resolution=2 cm", ["sonar.resolution", "2 cm", "2.5 cm", "trace again"]),
-        ("sonar.resolution=2 m", ["sonar.resolution", "trace again"]),
-        ("injection.seed=4", ["injection.seed", "needs a new trace"]),
-        ("sonar.frequency=90 kHz", ["sonar.frequency", "needs a new trace"]),
-        ("sonar.responses=hamming", ["sonar.responses", "needs a new trace"]),
-        ("sonar={}", ["--set sonar:", "needs a new trace"]),
-        ("sonar.bandwidth=broad", ["sonar.bandwidth", "broad"]),
-    ],
-)
-def test_what_needs_a_new_trace_is_refused(sonject, scene, tmp_path, change, words):
+def test_what_needs_a_new_trace_is_refused(sonject, scene, tmp_path):
     command(sonject, "trace", scene, "-o", "impulses.h5")
-    assert_refused(sonject("form", "impulses.h5", "-o", "result", "--set", change), 3, *words)
-    assert not files_below(tmp_path / "result")
+    for change, *words in (
+        ("sonar.bandwidth=31 kHz", "sonar.bandwidth", "31 kHz", "to 30 kHz", "trace again"),
+        ("sonar.bandwidth=5 kHz", "sonar.bandwidth", "5 kHz", "trace again"),
+        ("sonar.resolution=2 cm", "sonar.resolution", "2 cm", "2.5 cm", "trace again"),
+        ("sonar.resolution=2 m", "sonar.resolution", "trace again"),
+        ("injection.seed=4", "injection.seed", "needs a new trace"),
+        ("sonar.responses=hamming", "sonar.responses", "needs a new trace"),
+        ("sonar={}", "--set sonar:", "needs a new trace"),
+        ("sonar.bandwidth=broad", "sonar.bandwidth", "broad"),
+    ):
+        assert_refused(sonject("form", "impulses.h5", "-o", "result", "--set", change), 3, *words)
+        assert not files_below(tmp_path / "result")
 
 
 @needs_hdf5
