@@ -22,7 +22,7 @@ typedef struct sonject_geometry_params {
     double row_spacing_m;       /* > 0 */
     double column_spacing_m;    /* > 0 */
     double first_along_track_m; /* finite */
-    double first_slant_range_m; /* of column 0 of the whole image; the patch must lie at ranges
+    double first_slant_range_m; /* of column 0 of the whole image; the patch must reach ranges
                                    above the altitude */
 } sonject_geometry_params;
 
