@@ -308,6 +308,8 @@ sonject_status injection_run(struct report *report, struct device *device,
                                                              &tracer.view, reference)
                                    : report_out_of_memory(report, "the patch");
         if (status == SONJECT_OK)
+            status = cross_range_check(&tracer.response, report, scene, &tracer.view);
+        if (status == SONJECT_OK)
             status = check_coherent_map(&tracer);
         if (status == SONJECT_OK) {
             memcpy(pixels, input->pixels, input->rows * row_bytes);
