@@ -11,6 +11,7 @@
 #include "api/swath.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "scene/cross_range.h"
 #include "scene/placement.h"
 #include "scene/point_response.h"
 #include "user/shape_check.h"
@@ -257,6 +258,8 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
     if (status == SONJECT_OK)
         status = point_response_of_scene(&response, report, scene, &view,
                                          view.range_ratio * water.straight_speed_mps);
+    if (status == SONJECT_OK)
+        status = cross_range_check(&response, report, scene, &view);
     if (status == SONJECT_OK) {
         struct text text = {NULL, 0, 0, false};
         describe_patch(&text, scene, &swath, &view);

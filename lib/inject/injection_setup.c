@@ -148,6 +148,8 @@ sonject_status injection_setup_lay(struct injection_setup *setup, struct report 
         return status;
     status = point_response_of_scene(&tracer->response, report, scene, &tracer->view,
                                      tracer->view.range_ratio * setup->water.straight_speed_mps);
+    if (status == SONJECT_OK)
+        status = cross_range_check(&tracer->response, report, scene, &tracer->view);
     return status == SONJECT_OK ? check_coherent_map(tracer) : status;
 }
 

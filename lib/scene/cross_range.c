@@ -105,10 +105,14 @@ double cross_range_tail(const struct point_response *response, double range_m)
 }
 
 sonject_status cross_range_check(const struct point_response *response, struct report *report,
-                                 const struct patch_view *view)
+                                 const struct scene *scene, const struct patch_view *view)
 {
     if (response->array_length_m == 0.0)
         return SONJECT_OK;
+    if (scene->sonar.array_heading_rad != 0.0 || scene->sonar.array_pitch_rad != 0.0)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "images of an array that is turned from the track are not formed: "
+                              "set its heading and pitch to 0");
     const double range = view_apparent_range(view, (double)view->columns - 1.0);
     const double tangent = tangent_at(response, HALF_POWER_POINT);
     const double migration = range * (sqrt(1.0 + tangent * tangent) - 1.0);

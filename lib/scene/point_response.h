@@ -47,8 +47,9 @@ struct point_response {
 struct scene;
 struct patch_view;
 
-/* All that the scene says about it, for a patch. Errors: INPUT (a beam so wide that echoes move
- * through range cells; responses that exclude each other), MEMORY. */
+/* All that the scene says about it, for a patch; cross_range_check says whether images of a real
+ * aperture can have it. Errors: INPUT (responses that exclude each other, tables that no grid of
+ * the patch could hold), MEMORY. */
 sonject_status point_response_of_scene(struct point_response *response, struct report *report,
                                        const struct scene *scene, const struct patch_view *view,
                                        double reference_sound_speed_mps);

@@ -76,11 +76,6 @@ sonject_status point_response_of_scene(struct point_response *response, struct r
     if (is_real_aperture && (has_table || has_motion))
         return refuse_pair(report, "a real aperture",
                            has_table ? "a measured cross-range response" : "residual motion");
-    if (is_real_aperture &&
-        (scene->sonar.array_heading_rad != 0.0 || scene->sonar.array_pitch_rad != 0.0))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "images of an array that is turned from the track are not formed: "
-                              "set its heading and pitch to 0");
     if (has_table)
         point_response_set_cross_range_table(response, &scene->cross_range_table);
     if (is_real_aperture)
@@ -91,7 +86,5 @@ sonject_status point_response_of_scene(struct point_response *response, struct r
     sonject_status status = check_size(response, report, view);
     if (status == SONJECT_OK && has_motion)
         status = set_motion(response, report, scene, view);
-    if (status == SONJECT_OK)
-        status = cross_range_check(response, report, view);
     return status;
 }

@@ -273,23 +273,27 @@ static void test_seabed_and_noise(void **unused)
     }
 }
 
-static void test_beams_too_wide(void **unused)
+static sonject_status try_array(struct bench *bench, double length, double heading)
+{
+    bench->scene.sonar.array_length_m = length;
+    bench->scene.sonar.array_heading_rad = heading;
+    bench_ready(bench);
+    return cross_range_check(&bench->tracer.response, &bench->report, &bench->scene,
+                             &bench->tracer.view);
+}
+
+static void test_beams_that_are_refused(void **unused)
 {
     struct bench bench;
-    struct point_response response;
     (void)unused;
     bench_open(&bench, ROWS, COLUMNS, 60.0);
     choose_sidescan(&bench, 60.0);
-    bench_ready(&bench);
-    bench.scene.sonar.array_length_m = 0.32; /* 0.0509 r (wavelength / length)^2 > 1/4 cell */
-    assert_int_equal(
-        point_response_of_scene(&response, &bench.report, &bench.scene, &bench.tracer.view, 1500.0),
-        SONJECT_ERROR_INPUT);
+    /* 0.0509 r (wavelength / length)^2 is a quarter of the cell at 0.333 m */
+    assert_int_equal(try_array(&bench, 0.32, 0.0), SONJECT_ERROR_INPUT);
     print_message("%s\n", bench.report.message);
-    bench.scene.sonar.array_length_m = 0.34;
-    assert_int_equal(
-        point_response_of_scene(&response, &bench.report, &bench.scene, &bench.tracer.view, 1500.0),
-        SONJECT_OK);
+    assert_int_equal(try_array(&bench, 0.34, 0.0), SONJECT_OK);
+    assert_int_equal(try_array(&bench, 0.34, 0.01), SONJECT_ERROR_INPUT);
+    print_message("%s\n", bench.report.message);
     bench_close(&bench);
 }
 
@@ -301,7 +305,7 @@ int main(void)
         cmocka_unit_test(test_glint_of_a_sphere),
         cmocka_unit_test(test_autocorrelation_far_away),
         cmocka_unit_test(test_seabed_and_noise),
-        cmocka_unit_test(test_beams_too_wide),
+        cmocka_unit_test(test_beams_that_are_refused),
     };
     return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }
