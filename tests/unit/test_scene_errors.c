@@ -55,7 +55,7 @@ static void test_unknown_keys(void **state)
          "user, "
          "length, width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, "
          "cuts, "
-         "position, heading, pitch, roll, burial, material, parts"},
+         "position, heading, pitch, roll, burial, level, material, parts"},
     };
     expect_all(state, wrong, COUNT(wrong));
 }
@@ -180,6 +180,10 @@ static void test_wrong_values(void **state)
          ":7:11: objects[0].cuts: leave nothing of the object; move one outwards"},
         {OBJECT "sphere\n    diameter: 1\n    burial: {fraction: 0.5, proud: 0.5}\n",
          ":7:13: objects[0].burial: needs fraction or proud; give one, or a depth by itself"},
+        {OBJECT "sphere\n    diameter: 1\n    level: {over_seabed: 9, target_strength: 9}\n",
+         ":7:12: objects[0].level: needs target_strength or over_seabed; give one"},
+        {OBJECT "sphere\n    diameter: 1\n    level: {over_seabed: 300 dB}\n",
+         ":7:12: objects[0].level: must be -200...200 dB, not 300"},
         {OBJECT "sphere\n    diameter: 1\n    burial: {fraction: 30}\n",
          ":7:24: objects[0].burial.fraction: must be 0...1, not 30"},
         {OBJECT "sphere\n    diameter: 1 m\n    material: {lambert: 0.3}\n",
