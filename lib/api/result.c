@@ -7,7 +7,7 @@
 #include "inject/input_patch.h"
 
 sonject_status take_pixels(struct report *report, const sonject_pixels *pixels,
-                                  struct injection_input *input, float **packed)
+                           struct injection_input *input, float **packed)
 {
     const size_t parts = pixels->kind == SONJECT_PIXELS_COMPLEX ? 2 : 1;
     if (pixels->struct_size < sizeof *pixels || !pixels->data ||
