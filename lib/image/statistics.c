@@ -14,9 +14,9 @@
 #define SORT_BITS 11 /* at a time: three times are enough for all 32 */
 #define SORT_BINS ((size_t)1 << SORT_BITS)
 
-#define NOISE_BLOCK   7           /* pixels on a side */
-#define NOISE_LOWEST  1e-3        /* -30 dB */
-#define NOISE_HIGHEST 1e-2        /* -20 dB */
+#define NOISE_BLOCK   7            /* pixels on a side */
+#define NOISE_LOWEST  1e-3         /* -30 dB */
+#define NOISE_HIGHEST 1e-2         /* -20 dB */
 #define NOISE_UNKNOWN 5.6234133e-3 /* -22.5 dB, amid what shadows are measured at */
 
 /* A running mean along a line: full weight up to radius, edge_weight (0...1) one pixel further on
