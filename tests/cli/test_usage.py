@@ -9,8 +9,8 @@ import pytest
 
 from conftest import COMMAND, assert_refused
 
-VERBS = {"run", "elements", "check", "quicklook", "seabed", "devices"}
-NOT_THERE = r"\b(merge|trace|form|measure|campaign|convert)\b|--(shard|labels)"
+VERBS = {"run", "trace", "form", "elements", "check", "quicklook", "seabed", "devices"}
+NOT_THERE = r"\b(merge|measure|campaign|convert)\b|--(shard|labels)"
 
 
 def test_version(sonject):
