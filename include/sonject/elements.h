@@ -51,8 +51,8 @@ typedef struct sonject_elements_params {
     double first_hydrophone_m;   /* offset of its middle; NaN: the array is about its origin */
     double hydrophone_spacing_m; /* 0: the hydrophone's length, or what is its default */
     double hydrophone_length_m;  /* NaN: twice the along-track resolution; 0: hears all alike */
-    double sampling_rate_hz; /* 0: twice the bandwidth, and in pass band twice the frequency more;
-                                at least half of that bandwidth, or as much over the frequency */
+    double sampling_rate_hz; /* at least the bandwidth, in pass band with twice the frequency added;
+                                0: twice the bandwidth, with the same */
     double first_time_s;     /* of each ping's first sample, after transmission; NaN, and */
     double last_time_s;      /* NaN: what the patch's aperture needs */
     double chirp_duration_s; /* of the chirp, above 0 */
@@ -87,8 +87,9 @@ SONJECT_API sonject_status sonject_elements_describe(sonject_context *context,
 
 /* Computes the series: float, pings x hydrophones x samples, in base band pairs of real and
  * imaginary part, into exactly `bytes` bytes of the caller's. pixels, progress: as for
- * sonject_inject. The time it takes grows with impulses x hydrophones x pings. Errors: ARGUMENT,
- * INPUT, DEVICE, MEMORY, CANCELLED; the buffer's contents are then of no meaning. */
+ * sonject_inject; the scene's estimator must be SONJECT_ESTIMATOR_CONNECT. The time it takes grows
+ * with impulses x hydrophones x pings. Errors: ARGUMENT, INPUT, DEVICE, MEMORY, CANCELLED; the
+ * buffer's contents are then of no meaning. */
 SONJECT_API sonject_status sonject_element_series(sonject_context *context,
                                                   const sonject_scene *scene,
                                                   const sonject_pixels *pixels,

@@ -61,7 +61,6 @@ static void piece_fill(struct impulse_piece *piece, const float *real_part,
 {
     const struct span bins = piece->grid.bins;
     int32_t next = 0;
-    piece->first_bin = bins.first + bins.count;
     piece->last_bin = bins.first;
     for (int32_t strip = 0; strip < piece->grid.strips.count; strip++) {
         const size_t line = (size_t)strip * (size_t)bins.count;
@@ -75,7 +74,6 @@ static void piece_fill(struct impulse_piece *piece, const float *real_part,
             piece->bins[next] = number;
             piece->real_part[next] = a;
             piece->imaginary_part[next++] = b;
-            piece->first_bin = number < piece->first_bin ? number : piece->first_bin;
             piece->last_bin = number > piece->last_bin ? number : piece->last_bin;
         }
     }

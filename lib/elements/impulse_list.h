@@ -13,7 +13,7 @@ struct impulse_piece {
     int32_t *bins;                     /* on the grid's numbering, rising within a strip */
     float *real_part, *imaginary_part; /* m */
     size_t count;
-    int32_t first_bin, last_bin;
+    int32_t last_bin;
 };
 
 struct impulse_list {

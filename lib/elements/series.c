@@ -4,24 +4,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "kernels/element_series_records.h"
-
 #include "base/memory.h"
 #include "cl/launch.h"
 #include "cl/program.h"
-#include "elements/fine_pulse.h"
+#include "elements/series_records.h"
 
-#define PI               3.14159265358979323846
-#define WIDTH_MAX        16
-#define LINES_BYTES      67108864.0 /* that pairs are worked on at a time in */
-#define PAIRS_MAX        65536.0
-#define STRIPS_AWAY_MAX  1e9
-#define ANY_SLOPE_SQUARE 1e16
-#define WORK_ITEMS       65536 /* that a GPU wants */
-#define SHARE_SAMPLES    64    /* of a line, for a work-item at least */
-
-typedef char impulse_grid_record_is_packed[sizeof(struct impulse_grid_record) == 14 * 4 ? 1 : -1];
-typedef char element_pair_record_is_packed[sizeof(struct element_pair_record) == 4 * 4 ? 1 : -1];
+#define PI            3.14159265358979323846
+#define WIDTH_MAX     16
+#define LINES_BYTES   67108864.0 /* that pairs are worked on at a time in */
+#define PAIRS_MAX     65536.0
+#define WORK_ITEMS    65536 /* that a GPU wants */
+#define SHARE_SAMPLES 64    /* of a line, for a work-item at least */
 
 /* Device memory for some pairs of transmitter and hydrophone at a time. */
 struct series_work {
@@ -113,71 +106,6 @@ static sonject_status work_init(struct series_work *work, const struct series_re
     return status;
 }
 
-/* A piece's strips and bins as the device counts them: bins from the piece's middle on, so that
- * they keep their digits. */
-static struct impulse_grid_record grid_record_of(const struct series_work *work,
-                                                 const struct impulse_piece *piece)
-{
-    const sonject_element_layout *layout = work->request->layout;
-    const struct patch_view *view = work->request->view;
-    const sonject_elements_params *elements = &layout->elements;
-    const double c = layout->sound_speed_mps;
-    const double wavelength = c / layout->centre_frequency_hz;
-    const double bin_width = view->column_spacing_m / piece->grid.bins_per_pixel;
-    const double reference = view_apparent_range(view, 0.0);
-    const double fine_rate = elements->sampling_rate_hz * work->pulse.fine;
-    const double slope = tan(elements->aspect_limit_rad);
-    const int32_t share = (int32_t)(work->fine_samples / SHARE_SAMPLES) + 1;
-    const int32_t wanted = (int32_t)(WORK_ITEMS / work->chunk) + 1;
-    struct impulse_grid_record record;
-    memset(&record, 0, sizeof record);
-    record.strip_width = (float)(view->row_spacing_m / piece->grid.strips_per_row);
-    record.bin_width = (float)bin_width;
-    record.reference_range = (float)reference;
-    record.first_strip = piece->grid.strips.first;
-    record.strips = piece->grid.strips.count;
-    record.largest_range = (float)(reference + piece->last_bin * bin_width);
-    record.cycles_per_metre = (float)(1.0 / wavelength);
-    record.samples_per_metre = (float)(fine_rate / c);
-    record.first_sample = (float)((2.0 * reference / c - work->pulse.first_time_s) * fine_rate);
-    record.transmitter_cycles = (float)(0.5 * elements->transmitter_length_m / wavelength);
-    record.hydrophone_cycles = (float)(0.5 * elements->hydrophone_length_m / wavelength);
-    record.largest_slope_squared =
-        elements->aspect_limit_rad > 0.0 && slope * slope < ANY_SLOPE_SQUARE
-            ? (float)(slope * slope)
-            : (float)ANY_SLOPE_SQUARE;
-    record.samples = (cl_int)work->fine_samples;
-    record.segments = work->device->is_cpu ? 1 : share < wanted ? share : wanted;
-    return record;
-}
-
-/* Position on the numbering of a piece's strips: whole strips, and the rest. */
-static void find_strip(const struct patch_view *view, const struct impulse_piece *piece,
-                       double along_track_m, int32_t *strip, float *fraction)
-{
-    const double per_row = piece->grid.strips_per_row;
-    const double x = view->is_mirrored ? -along_track_m : along_track_m;
-    const double position = (view_row_of_x(view, x) + 0.5) * per_row - 0.5;
-    const double limited = fmax(-STRIPS_AWAY_MAX, fmin(position, STRIPS_AWAY_MAX));
-    *strip = (int32_t)floor(limited);
-    *fraction = (float)(limited - floor(limited));
-}
-
-static void fill_pairs(struct series_work *work, const struct impulse_piece *piece, size_t first,
-                       size_t count)
-{
-    const sonject_elements_params *elements = &work->request->layout->elements;
-    for (size_t i = 0; i < count; i++) {
-        const uint32_t ping = (uint32_t)((first + i) / elements->hydrophones);
-        const uint32_t hydrophone = (uint32_t)((first + i) % elements->hydrophones);
-        struct element_pair_record *record = &work->records[i];
-        find_strip(work->request->view, piece, element_transmitter_m(elements, ping),
-                   &record->transmitter_strip, &record->transmitter_fraction);
-        find_strip(work->request->view, piece, element_hydrophone_m(elements, ping, hydrophone),
-                   &record->hydrophone_strip, &record->hydrophone_fraction);
-    }
-}
-
 /* A buffer of a piece's numbers with room for a group of lanes behind them. */
 static sonject_status padded_buffer(struct series_work *work, const void *numbers, size_t count,
                                     cl_mem *buffer)
@@ -190,6 +118,16 @@ static sonject_status padded_buffer(struct series_work *work, const void *number
     return status;
 }
 
+/* Work-items that share a line: a CPU's do a whole one each. */
+static int32_t series_segments(const struct series_work *work)
+{
+    if (work->device->is_cpu)
+        return 1;
+    const int32_t most = (int32_t)(work->fine_samples / SHARE_SAMPLES) + 1;
+    const int32_t wanted = (int32_t)(WORK_ITEMS / work->chunk) + 1;
+    return most < wanted ? most : wanted;
+}
+
 struct piece_buffers {
     cl_mem grid, pairs, starts, bins, real_part, imaginary_part;
 };
@@ -198,9 +136,12 @@ static sonject_status piece_buffers_init(struct piece_buffers *buffers, struct s
                                          const struct impulse_piece *piece, size_t first,
                                          size_t count, int32_t *segments)
 {
-    const struct impulse_grid_record grid = grid_record_of(work, piece);
+    const struct series_request *request = work->request;
+    const struct impulse_grid_record grid = impulse_grid_record_of(
+        request->layout, request->view, piece, &work->pulse, series_segments(work));
     *segments = grid.segments;
-    fill_pairs(work, piece, first, count);
+    element_pair_records_fill(work->records, &request->layout->elements, request->view, piece,
+                              first, count);
     memset(buffers, 0, sizeof *buffers);
     sonject_status status =
         buffer_create(work->report, work->device, sizeof grid, &grid, &buffers->grid);
