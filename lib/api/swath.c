@@ -74,6 +74,7 @@ static sonject_status describe_made(const struct scene *scene, struct swath *swa
     swath->is_complex = is_synthetic && scene->synthetic.complex_pixels;
     swath->layout.channels = swath->is_complex ? 2 : 1;
     swath->layout.type = PIXEL_FLOAT32;
+    swath->is_made = true;
     swath->is_lossless = true;
     return SONJECT_OK;
 }
@@ -226,6 +227,7 @@ struct injection_input swath_input(const struct swath *swath)
     input.first_row = (double)swath->patch.first_row;
     input.first_column = (double)swath->patch.first_column;
     input.is_complex = swath->is_complex;
+    input.is_made = swath->is_made;
     input.pixels = swath->pixels;
     return input;
 }

@@ -15,6 +15,7 @@ struct swath {
     void *stored;  /* the patch's pixels as the file stores them; NULL if made */
     float *pixels; /* the patch, linear: amplitudes or pairs */
     bool is_complex;
+    bool is_made; /* by sonject */
     bool is_lossless;
     uint64_t clipped;                  /* pixels at full scale */
     char identity[HASH_TEXT_CAPACITY]; /* of path, size, time and patch pixels; of parameters if

@@ -174,16 +174,20 @@ static void hand_over_orders(struct echoes *echoes, struct injection_result *res
     }
 }
 
-static sonject_status form_and_compose(struct tracer *tracer, const float *pixels, bool is_complex,
+static sonject_status form_and_compose(struct injection_setup *setup,
+                                       const struct injection_input *input,
                                        const struct impulse_source *source,
                                        sonject_progress_function progress, void *user,
                                        struct injection_result *result)
 {
+    struct tracer *tracer = &setup->tracer;
+    const float *pixels = setup->pixels;
+    const bool is_complex = input->is_complex;
     const bool resynthesises = tracer->scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
     struct patch_request patch;
     struct image_match match;
     struct echoes echoes;
-    sonject_status status = match_image(tracer, pixels, is_complex, &match);
+    sonject_status status = match_image(tracer, pixels, input, &match);
     if (status == SONJECT_OK)
         status = patch_request_init(&patch, tracer, pixels, is_complex, progress, user);
     if (status != SONJECT_OK)
@@ -221,8 +225,7 @@ sonject_status injection_form(struct report *report, struct device *device,
     if (status == SONJECT_OK)
         status = result_init(result, report, scene, input);
     if (status == SONJECT_OK)
-        status = form_and_compose(&setup.tracer, setup.pixels, input->is_complex, source, progress,
-                                  user, result);
+        status = form_and_compose(&setup, input, source, progress, user, result);
     if (status == SONJECT_OK && setup.tracer.view.is_mirrored)
         unmirror(result, setup.scratch);
     injection_setup_clear(&setup);
@@ -250,7 +253,7 @@ sonject_status injection_trace(struct report *report, struct device *device,
     struct patch_request patch;
     sonject_status status = injection_setup_init(&setup, report, device, scene, input);
     if (status == SONJECT_OK) /* the grid follows the response */
-        status = match_image(&setup.tracer, setup.pixels, input->is_complex, &match);
+        status = match_image(&setup.tracer, setup.pixels, input, &match);
     if (status == SONJECT_OK)
         status = patch_request_init(&patch, &setup.tracer, setup.pixels, input->is_complex,
                                     progress, user);

@@ -18,6 +18,7 @@ struct injection_input {
     size_t rows, columns;
     double first_row, first_column; /* of the patch in the swath that the geometry describes */
     bool is_complex;
+    bool is_made;        /* by sonject, so that it is what the sonar's parameters say */
     const float *pixels; /* rows x columns amplitudes, or pairs of real and imaginary part */
 };
 

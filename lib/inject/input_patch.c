@@ -34,6 +34,7 @@ sonject_status make_input(struct report *report, const struct scene *scene,
                           struct injection_input *input)
 {
     memset(input, 0, sizeof *input);
+    input->is_made = true;
     if (scene->input_kind == SONJECT_INPUT_SYNTHETIC) {
         input->rows = scene->synthetic.rows;
         input->columns = scene->synthetic.columns;

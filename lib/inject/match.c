@@ -143,24 +143,17 @@ static sonject_status measure_around(const struct tracer *tracer, const float *p
     return status;
 }
 
-/* Images that sonject makes are what the sonar's parameters say; so are those that are traced
- * anew. */
-static bool is_measured(const struct scene *scene, bool is_complex)
-{
-    return !is_complex && scene->injection.mode == SONJECT_MODE_COMPOSITE &&
-           (scene->input_kind == SONJECT_INPUT_FILE || scene->input_kind == SONJECT_INPUT_MEMORY);
-}
-
-sonject_status match_image(struct tracer *tracer, const float *pixels, bool is_complex,
-                           struct image_match *match)
+sonject_status match_image(struct tracer *tracer, const float *pixels,
+                           const struct injection_input *input, struct image_match *match)
 {
     const sonject_injection_params *asked = &tracer->scene->injection;
     const struct speckle_statistics *seabed = &match->seabed;
     memset(match, 0, sizeof *match);
     match->looks = 1.0;
     match->saturation = INFINITY;
-    const sonject_status status = measure_around(tracer, pixels, is_complex, &match->seabed);
-    if (status != SONJECT_OK || !is_measured(tracer->scene, is_complex))
+    const sonject_status status = measure_around(tracer, pixels, input->is_complex, &match->seabed);
+    if (status != SONJECT_OK || input->is_complex || input->is_made ||
+        asked->mode != SONJECT_MODE_COMPOSITE)
         return status;
     if (asked->match_looks >= 1.0)
         match->looks = asked->match_looks;

@@ -13,11 +13,13 @@ struct image_match {
     double saturation;                /* amplitude that cuts highlights, or INFINITY */
 };
 
-/* Measures the patch's pixels (the view's row order) around the placed objects, and widens or
- * narrows the tracer's response where the scene asks for it and the image clearly differs. Errors:
- * MEMORY. */
-sonject_status match_image(struct tracer *tracer, const float *pixels, bool is_complex,
-                           struct image_match *match);
+/* Measures the patch's pixels (in the view's row order, otherwise as the input says) around the
+ * placed objects. Where that is a measured magnitude image that targets are composed into, widens
+ * or narrows the tracer's response if the scene asks for it and the image clearly differs: images
+ * that sonject makes are what the sonar's parameters say, and so are those that are traced anew.
+ * Errors: MEMORY. */
+sonject_status match_image(struct tracer *tracer, const float *pixels,
+                           const struct injection_input *input, struct image_match *match);
 
 /* Intensity correlation of single-look speckle formed by the response, at a distance in m. */
 double along_track_speckle_correlation(const struct point_response *response, double distance_m);

@@ -80,7 +80,7 @@ SIZES = {
     "sonject_seabed_file_params": 256,
     "sonject_trace_params": 16,
     "sonject_form_params": 32,
-    "sonject_measure_params": 64,
+    "sonject_measure_params": 72,
     "sonject_measurement": 112,
     "sonject_pulse_params": 24,
     "sonject_motion_params": 224,
