@@ -18,8 +18,11 @@
 #define XTF_BYTES    (1024 + PINGS * PING_BYTES)
 #define NPY_HEADER   "{'descr': '<f4', 'fortran_order': False, 'shape': (4, 5), }"
 #define NPY_BYTES    (10 + 70 + 4 * 5 * 4)
-#define MUTATED      4000
 #define LARGEST_FILE (XTF_BYTES > NPY_BYTES ? XTF_BYTES : NPY_BYTES)
+
+#ifndef MUTATIONS
+#define MUTATIONS 4000
+#endif
 
 static void put(unsigned char *bytes, size_t place, uint64_t number, size_t size)
 {
@@ -129,7 +132,7 @@ static void mutate(const char *folder, const char *name, const unsigned char *by
     snprintf(path, sizeof path, "%s/%s", folder, name);
     snprintf(copy, sizeof copy, "%s/copy-of-%s", folder, name);
     expect_whole(path, copy, bytes, count);
-    for (int i = 0; i < MUTATED; i++) {
+    for (int i = 0; i < MUTATIONS; i++) {
         memcpy(changed, bytes, count);
         seed = seed * 1664525u + 1013904223u;
         const size_t place = (seed >> 8) % (i % 2 ? count : (count < 300 ? count : 300));
@@ -144,7 +147,7 @@ static void mutate(const char *folder, const char *name, const unsigned char *by
             fail_msg("byte %zu: status %d", place, (int)status);
         taken += status == SONJECT_OK;
     }
-    assert_true(taken > 0 && taken < MUTATED);
+    assert_true(taken > 0 && taken < MUTATIONS);
 }
 
 static void test_damaged_recordings(void **state)
