@@ -1,6 +1,7 @@
 """sonject elements: series of an array from a scene's own image."""
 
 import json
+import math
 
 import numpy
 
@@ -23,11 +24,11 @@ def test_files_hold_the_series(sonject, scene, tmp_path):
     assert facts["array"]["hydrophone_length_m"] == 0.05  # twice the resolution
     assert facts["array"]["first_hydrophone_m"] == -0.025
     assert facts["heard"] == "targets"
-    # the ball is in the middle; its brightest echo comes from its front half, the nearest point of
-    # which is 25 cm before the middle of its range, give or take the pulse's 5 cm
+    # the ball stands on the seabed point in the middle: its glint comes from 25 cm before its centre
     peak = facts["first_time_s"] + numpy.abs(series[0, 0]).argmax() / facts["sampling_rate_hz"]
-    nearest = 25 + 0.025 * (COLUMNS - 1) / 2 - 0.25
-    assert -0.05 < peak * 1500 / 2 - nearest < 0.25
+    ground = math.sqrt((25 + 0.025 * (COLUMNS - 1) / 2) ** 2 - 10**2)
+    nearest = math.hypot(ground, 10 - 0.25) - 0.25
+    assert abs(peak * 1500 / 2 - nearest) < 0.5 * 0.025
     answer = sonject("elements", scene, "-o", "real", "--set", "elements.form=passband")
     assert answer.returncode == 0, answer.stderr
     assert numpy.load(tmp_path / "real" / "series.npy").dtype == numpy.float32

@@ -132,10 +132,9 @@ void bench_ready(struct bench *bench)
     tracer->part_count = bench->placed.part_count;
     tracer->objects = bench->placed.objects;
     tracer->relief = bench->placed.relief;
-    expect_ok(bench,
-              point_response_of_scene(&tracer->response, &bench->report, &bench->scene,
-                                      &tracer->view,
-                                      tracer->view.range_ratio * bench->water.straight_speed_mps));
+    expect_ok(bench, point_response_of_scene(
+                         &tracer->response, &bench->report, &bench->scene, &tracer->view,
+                         tracer->view.range_ratio * bench->water.straight_speed_mps));
 }
 
 double bench_wavenumber(const struct bench *bench)

@@ -10,10 +10,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../unit/temporary_folder.h"
 #include "bench.h"
 #include "inject/impulse_file.h"
 #include "inject/injection.h"
-#include "../unit/temporary_folder.h"
 
 #define ROWS    60
 #define COLUMNS 80
