@@ -15,6 +15,29 @@ struct scene_arguments {
     bool allows_user_shapes;
 };
 
+/* Lines of a verb's arguments, whose options are a structure with a struct scene_arguments `scene`.
+ */
+#define SCENE_ARGUMENTS(structure)                                                                 \
+    {"--seed",                                                                                     \
+     NULL,                                                                                         \
+     "N",                                                                                          \
+     "seed of the random numbers: --set injection.seed=N",                                         \
+     ARGUMENT_WHOLE,                                                                               \
+     false,                                                                                        \
+     offsetof(structure, scene.seed)},                                                             \
+        {"--set",                                                                                  \
+         NULL,                                                                                     \
+         "KEY.PATH=VALUE",                                                                         \
+         "replaces or adds a key of the scene; may be repeated",                                   \
+         ARGUMENT_TEXTS,                                                                           \
+         false,                                                                                    \
+         offsetof(structure, scene.overrides)},                                                    \
+    {                                                                                              \
+        "--allow-user-shapes", NULL, NULL,                                                         \
+            "runs code of shapes in the scene; only if you trust it", ARGUMENT_FLAG, false,        \
+            offsetof(structure, scene.allows_user_shapes)                                          \
+    }
+
 /* As sonject_scene_read_with. */
 sonject_status scene_arguments_read(sonject_context *context,
                                     const struct scene_arguments *arguments, sonject_scene **scene);

@@ -3,49 +3,34 @@
 
 #include <sonject/sonject.h>
 
-#include "exit_code.h"
-#include "message.h"
-#include "progress.h"
 #include "scene_arguments.h"
-#include "stop.h"
+#include "stage.h"
 #include "verbs.h"
 
 struct trace_options {
+    struct stage_options stage;
     struct scene_arguments scene;
-    const char *file;
-    const char *device;
-    bool is_verbose;
-    bool is_quiet;
 };
 
 static const struct argument arguments[] = {
     {"--output", "-o", "FILE", "file of impulses to write, for sonject form", ARGUMENT_TEXT, true,
-     offsetof(struct trace_options, file)},
-    {"--seed", NULL, "N", "seed of the random numbers: --set injection.seed=N", ARGUMENT_WHOLE,
-     false, offsetof(struct trace_options, scene.seed)},
-    {"--device", NULL, "NAME", "part of an OpenCL device's name, see sonject devices",
-     ARGUMENT_TEXT, false, offsetof(struct trace_options, device)},
-    {"--set", NULL, "KEY.PATH=VALUE", "replaces or adds a key of the scene; may be repeated",
-     ARGUMENT_TEXTS, false, offsetof(struct trace_options, scene.overrides)},
-    {"--allow-user-shapes", NULL, NULL, "runs code of shapes in the scene; only if you trust it",
-     ARGUMENT_FLAG, false, offsetof(struct trace_options, scene.allows_user_shapes)},
-    {"--verbose", NULL, NULL, "also tells the device, what was built for it, the noise floor, ...",
-     ARGUMENT_FLAG, false, offsetof(struct trace_options, is_verbose)},
-    {"--quiet", NULL, NULL, "no progress bar, no news; only what is wrong", ARGUMENT_FLAG, false,
-     offsetof(struct trace_options, is_quiet)},
+     offsetof(struct trace_options, stage.output)},
+    SCENE_ARGUMENTS(struct trace_options),
+    STAGE_ARGUMENTS(struct trace_options),
 };
 
-static sonject_status trace(sonject_context *context, const struct trace_options *options,
-                            struct progress *progress)
+static sonject_status trace(sonject_context *context, const void *verb_options,
+                            struct progress *progress, int *was_finished)
 {
+    (void)was_finished;
+    const struct trace_options *options = verb_options;
     sonject_scene *scene = NULL;
+    sonject_trace_params params;
+    sonject_trace_params_init(&params);
+    params.file = options->stage.output;
     sonject_status status = scene_arguments_read(context, &options->scene, &scene);
-    if (status == SONJECT_OK) {
-        sonject_trace_params params;
-        sonject_trace_params_init(&params);
-        params.file = options->file;
+    if (status == SONJECT_OK)
         status = sonject_trace(context, scene, &params, progress_update, progress);
-    }
     sonject_scene_release(&scene);
     return status;
 }
@@ -53,28 +38,7 @@ static sonject_status trace(sonject_context *context, const struct trace_options
 static int work(const void *verb_options)
 {
     const struct trace_options *options = verb_options;
-    stop_watch();
-    struct progress progress;
-    progress_begin(&progress, options->is_quiet);
-    sonject_context_params params;
-    sonject_context_params_init(&params);
-    params.device_name = options->device;
-    params.log = options->is_verbose && !options->is_quiet ? progress_log : NULL;
-    params.log_user = &progress;
-    sonject_context *context = NULL;
-    sonject_status status = sonject_context_create(&params, &context);
-    if (status == SONJECT_OK)
-        status = trace(context, options, &progress);
-    progress_end(&progress);
-    int code = EXIT_CODE_DONE;
-    if (status == SONJECT_CANCELLED)
-        code = stop_report();
-    else if (status != SONJECT_OK)
-        code = fail_with(context, status);
-    else if (!options->is_quiet)
-        message("the impulses are in ", options->file);
-    sonject_context_release(&context);
-    return code;
+    return stage_work(&options->stage, trace, verb_options, "the impulses are in ");
 }
 
 const struct verb trace_verb = {

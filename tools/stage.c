@@ -1,0 +1,35 @@
+#include "stage.h"
+
+#include "exit_code.h"
+#include "message.h"
+#include "stop.h"
+
+int stage_work(const struct stage_options *stage, stage_function function, const void *verb_options,
+               const char *done)
+{
+    stop_watch();
+    struct progress progress;
+    progress_begin(&progress, stage->is_quiet);
+    sonject_context_params params;
+    sonject_context_params_init(&params);
+    params.device_name = stage->device;
+    params.log = stage->is_verbose && !stage->is_quiet ? progress_log : NULL;
+    params.log_user = &progress;
+    sonject_context *context = NULL;
+    int was_finished = 0;
+    sonject_status status = sonject_context_create(&params, &context);
+    if (status == SONJECT_OK)
+        status = function(context, verb_options, &progress, &was_finished);
+    progress_end(&progress);
+    int code = EXIT_CODE_DONE;
+    if (status == SONJECT_CANCELLED)
+        code = stop_report();
+    else if (status != SONJECT_OK)
+        code = fail_with(context, status);
+    else if (!stage->is_quiet && was_finished)
+        message(stage->output, " already holds the finished result");
+    else if (!stage->is_quiet)
+        message(done, stage->output);
+    sonject_context_release(&context);
+    return code;
+}
