@@ -52,6 +52,33 @@ def test_the_stages_leave_what_a_run_leaves(sonject, scene, tmp_path, interactio
 
 
 @needs_hdf5
+@pytest.mark.parametrize(
+    "chosen",
+    [
+        ["sonar.kind=real", "sonar.array={length: 1.2 m}"],
+        ["sonar.aperture=10 deg", "injection.mode=resynthesise"],
+        ["sonar.pulse={kind: chirp, window: hann}"],
+        ["sonar.motion={sway: [{amplitude: 1 mm, wavelength: 2 m}]}"],
+    ],
+    ids=lambda chosen: chosen[0],
+)
+def test_the_stages_of_other_sonars(sonject, scene, tmp_path, chosen):
+    compare_with_run(sonject, tmp_path, scene, *(word for each in chosen for word in ("--set", each)))
+
+
+@needs_hdf5
+def test_another_pulse_needs_no_new_trace(sonject, scene, tmp_path):
+    other = ["--set", "sonar.pulse={kind: chirp, window: hann}"]
+    command(sonject, "trace", scene, "-o", "impulses.h5", *NOMINAL)
+    command(sonject, "form", "impulses.h5", "-o", "formed", *other)
+    command(sonject, "run", scene, "-o", "run", *other, *NOMINAL)
+    formed, run = (images.read_tiff(tmp_path / folder / "energy.tif").astype(float)
+                   for folder in ("formed", "run"))
+    # margins follow the pulse, so the fan has other rays
+    assert abs(formed.sum() / run.sum() - 1) < 0.02
+
+
+@needs_hdf5
 def test_the_stages_of_a_complex_image_to_starboard(sonject, scene, tmp_path, swath):
     pixels = numpy.stack([swath, swath[::-1]], axis=2)
     (tmp_path / "swath.tif").write_bytes(images.tiff_bytes(pixels))
