@@ -10,25 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bench.h"
+#include "aperture_screen.h"
 #include "trace/aspects.h"
 
-#define ROWS        241
-#define COLUMNS     401
-#define RANGE       44.0
-#define MIDDLE_ROW  120
-#define SCREEN_H    1.8 /* m, height of the screen */
-#define ROW_SPACING 0.025
-
-/* The aspects of the response, whose resolution is the row spacing. */
-static void open_sas(struct bench *bench, uint32_t window, double ray_scale)
-{
-    bench_open(bench, ROWS, COLUMNS, RANGE);
-    bench->scene.geometry.row_spacing_m = ROW_SPACING;
-    bench->scene.sonar.aperture_rad = -1.0;
-    bench->scene.sonar.response_window = window;
-    bench->scene.injection.ray_scale = ray_scale;
-}
+#define RANGE         44.0
+#define SCREEN_HEIGHT 1.8 /* m */
 
 /* Traces the whole patch; the tiles, for free(). */
 static float *trace_tiles(struct bench *bench, struct rough_trace *trace)
@@ -45,96 +31,6 @@ static float *trace_tiles(struct bench *bench, struct rough_trace *trace)
     return tiles;
 }
 
-/* An upright screen across the track's normal in the middle row, its foot at a ground range. */
-static void add_screen(struct bench *bench, double width, double ground_range)
-{
-    sonject_object_params *screen =
-        bench_add(bench, SONJECT_SHAPE_PLANE, width, 2.0 * SCREEN_H, 0.0);
-    screen->roll_rad = 0.5 * PI;
-    screen->burial_m = SCREEN_H;
-    screen->position_kind = SONJECT_POSITION_PIXELS;
-    screen->position_along = MIDDLE_ROW;
-    bench_ready(bench);
-    screen->position_range = view_column_of_range(
-        &bench->tracer.view, hypot(ground_range, bench->tracer.view.altitude_m));
-}
-
-/* Visibility of every pixel. */
-static double *visibility_of(struct bench *bench)
-{
-    struct echoes echoes;
-    bench_ready(bench);
-    bench_echoes(bench, NULL, SEABED_FIELD_NONE, &echoes);
-    double *visibility = calloc(ROWS * COLUMNS, sizeof *visibility);
-    assert_non_null(visibility);
-    for (size_t i = 0; i < ROWS * COLUMNS; i++)
-        visibility[i] = 1.0 - (double)echoes.lost_energy[i] / echoes.seabed_energy[i];
-    echoes_clear(&echoes);
-    return visibility;
-}
-
-/* Energy window of the aspects, over one period of the offset. */
-static double window_energy(uint32_t window, double offset)
-{
-    const double amplitude =
-        window == SONJECT_WINDOW_HAMMING ? 0.54 + 0.46 * cos(2.0 * PI * offset) : 1.0;
-    return amplitude * amplitude;
-}
-
-/* Visibility at x along the track behind a screen of `width` around 0, at a distance d behind it in
- * the plane across the track: the aspects whose way from there, x - d tan(aspect) at the screen, is
- * beside it. Lambert's law gives each aspect the square of its cosine. */
-static double expected_visibility(double x, double width, double d, double largest_sine,
-                                  uint32_t window)
-{
-    const int steps = 4000;
-    double seen = 0.0, all = 0.0;
-    for (int i = 0; i < steps; i++) {
-        const double offset = (i + 0.5) / steps - 0.5;
-        const double sine = 2.0 * largest_sine * offset;
-        const double energy = window_energy(window, offset) * (1.0 - sine * sine);
-        const double at_screen = x - d * sine / sqrt(1.0 - sine * sine);
-        seen += fabs(at_screen) > 0.5 * width ? energy : 0.0;
-        all += energy;
-    }
-    return seen / all;
-}
-
-/* Distance, along the sound's way in the plane across the track, from the screen to a column's
- * seabed. */
-static double distance_behind(const struct bench *bench, double column, double screen_ground)
-{
-    const double range = view_apparent_range(&bench->tracer.view, column);
-    const double ground = view_ground_range(&bench->tracer.view, range);
-    return (ground - screen_ground) * range / ground;
-}
-
-static size_t column_behind(const struct bench *bench, double screen_ground, double distance)
-{
-    size_t column = 0;
-    while (column + 1 < COLUMNS && distance_behind(bench, (double)column, screen_ground) < distance)
-        column++;
-    return column;
-}
-
-/* Mean over nine columns, which the pulse joins anyway, against the geometry, in every row. */
-static double line_error(const double *visibility, const struct bench *bench, double width,
-                         double ground, size_t column, uint32_t window)
-{
-    const double sine = aspects_sine(&bench->tracer);
-    const double d = distance_behind(bench, (double)column, ground);
-    double square = 0.0;
-    for (size_t row = 0; row < ROWS; row++) {
-        const double x = ((double)row - MIDDLE_ROW) * bench->tracer.view.row_spacing_m;
-        double mean = 0.0;
-        for (size_t k = column - 4; k <= column + 4; k++)
-            mean += visibility[row * COLUMNS + k] / 9.0;
-        const double error = mean - expected_visibility(x, width, d, sine, window);
-        square += error * error;
-    }
-    return sqrt(square / ROWS);
-}
-
 /* Visibility is linear across a penumbra d * wavelength / (2 resolution) wide at a distance d
  * behind the screen; a Hamming window's square narrows it. The line's own kinks, smoothed over a
  * few pixels, and 70 rays a point, stratified, leave less than 0.015; a penumbra of a tenth more
@@ -144,8 +40,8 @@ static void compare_penumbra(uint32_t window)
     static const double distances[] = {1.0, 3.0, 6.0};
     static const double ground = 40.0;
     struct bench bench;
-    open_sas(&bench, window, 4.0);
-    add_screen(&bench, 2.0, ground);
+    open_synthetic_aperture(&bench, RANGE, window, 4.0);
+    add_screen(&bench, 2.0, SCREEN_HEIGHT, ground);
     const double slope = bench.tracer.view.wavelength_m / (2.0 * ROW_SPACING);
     double *visibility = visibility_of(&bench);
     for (size_t i = 0; i < 3; i++) {
@@ -180,15 +76,13 @@ static void test_core_closes(void **unused)
     static const double ground = 40.0;
     static const double width = 0.6;
     struct bench bench;
-    open_sas(&bench, SONJECT_WINDOW_RECTANGULAR, 4.0);
-    add_screen(&bench, width, ground);
+    open_synthetic_aperture(&bench, RANGE, SONJECT_WINDOW_RECTANGULAR, 4.0);
+    add_screen(&bench, width, SCREEN_HEIGHT, ground);
     double *visibility = visibility_of(&bench);
     const double closing = 2.0 * width * ROW_SPACING / bench.tracer.view.wavelength_m;
     for (double d = 0.5; d < 6.5; d += 0.5) {
         const size_t column = column_behind(&bench, ground, d);
-        double mean = 0.0;
-        for (size_t k = column - 4; k <= column + 4; k++)
-            mean += visibility[MIDDLE_ROW * COLUMNS + k] / 9.0;
+        const double mean = visibility_at(visibility, MIDDLE_ROW, column);
         print_message("%.1f m behind: ", d);
         /* 70 stratified rays; the tangent's growth over the sine's and cos^2 are below 0.02 */
         expect_close("visibility", mean, d < closing ? 0.0 : 1.0 - closing / d, 0.04);
@@ -206,8 +100,8 @@ static void test_noise_in_penumbra(void **unused)
     struct bench bench;
     double square = 0.0;
     size_t count = 0;
-    open_sas(&bench, SONJECT_WINDOW_RECTANGULAR, 1.0);
-    add_screen(&bench, 2.0, ground);
+    open_synthetic_aperture(&bench, RANGE, SONJECT_WINDOW_RECTANGULAR, 1.0);
+    add_screen(&bench, 2.0, SCREEN_HEIGHT, ground);
     double *visibility = visibility_of(&bench);
     const double sine = aspects_sine(&bench.tracer);
     for (size_t column = column_behind(&bench, ground, 3.0);
@@ -240,7 +134,7 @@ static void test_seabed_level(void **unused)
     for (int is_on = 0; is_on < 2; is_on++) {
         struct bench bench;
         struct echoes echoes;
-        open_sas(&bench, SONJECT_WINDOW_HAMMING, 1.0);
+        open_synthetic_aperture(&bench, RANGE, SONJECT_WINDOW_HAMMING, 1.0);
         bench.scene.sonar.aperture_rad = is_on ? -1.0 : 0.0;
         bench_ready(&bench);
         sine = fmax(sine, aspects_sine(&bench.tracer));
@@ -275,7 +169,7 @@ static void test_highlight_stays(void **unused)
         for (int is_on = 0; is_on < 2; is_on++) {
             struct bench bench;
             struct rough_trace trace;
-            open_sas(&bench, SONJECT_WINDOW_RECTANGULAR, 64.0);
+            open_synthetic_aperture(&bench, RANGE, SONJECT_WINDOW_RECTANGULAR, 64.0);
             bench.scene.sonar.aperture_rad = is_on ? -1.0 : 0.0;
             sonject_object_params *sphere = bench_add(&bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.02);
             sphere->material.lambert = 0.2;
@@ -318,7 +212,7 @@ static void test_relief_stays(void **unused)
     for (int is_on = 0; is_on < 2; is_on++) {
         struct bench bench;
         struct echoes echoes;
-        open_sas(&bench, SONJECT_WINDOW_RECTANGULAR, 2.0);
+        open_synthetic_aperture(&bench, RANGE, SONJECT_WINDOW_RECTANGULAR, 2.0);
         bench.scene.sonar.aperture_rad = is_on ? -1.0 : 0.0;
         struct relief_feature *mound = bench_add_relief(&bench, RELIEF_MOUND);
         mound->radius_m = 0.25;
