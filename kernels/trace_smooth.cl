@@ -1,5 +1,5 @@
-/* Entry points: one work-item traces one segment of one sub-strip. */
-#include "trace_smooth_mirrored.h"
+/* Entry point: one work-item traces one segment of one sub-strip. */
+#include "trace_smooth.h"
 
 __kernel void trace_smooth(__global const struct fan_record *fan_buffer,
                            __global const struct ray_piece_record *pieces,
@@ -10,18 +10,4 @@ __kernel void trace_smooth(__global const struct fan_record *fan_buffer,
     const int strip = strip_of_item(&fan, (int)get_global_id(0));
     const int segment = (int)(get_global_id(0) % (size_t)fan.segments);
     outcomes[get_global_id(0)] = trace_smooth_strip(&fan, pieces, objects, tally, strip, segment);
-}
-
-__kernel void trace_smooth_mirrored(__global const struct fan_record *fan_buffer,
-                                    __global const struct ray_piece_record *pieces,
-                                    __global const struct object_record *objects,
-                                    __global long *tally,
-                                    __global const struct source_pair_record *pair,
-                                    __global struct outcome_record *outcomes)
-{
-    const struct fan_record fan = *fan_buffer;
-    const int strip = strip_of_item(&fan, (int)get_global_id(0));
-    const int segment = (int)(get_global_id(0) % (size_t)fan.segments);
-    outcomes[get_global_id(0)] =
-        trace_smooth_mirrored_strip(&fan, pieces, pair, objects, tally, strip, segment);
 }

@@ -94,8 +94,9 @@ static sonject_status trace_part(struct rough_trace *trace, struct tracer *trace
         status = launch_records_create(&records, tracer, &parts, tracer->placements[part].centre);
     if (status == SONJECT_OK) {
         rough_tile_describe(trace, object, &records[parts.target]);
-        status = trace_device_init(&on_device, tracer, PROGRAM_TRACE_ROUGH, "trace_rough_mirrored",
-                                   records, (struct part_list){parts.numbers, parts.count}, 1, 1);
+        status = trace_device_init(&on_device, tracer, PROGRAM_TRACE_ROUGH_MIRRORED,
+                                   "trace_rough_mirrored", records,
+                                   (struct part_list){parts.numbers, parts.count}, 1, 1);
     }
     if (status == SONJECT_OK)
         status = trace_pairs(trace, tracer, &on_device, &parts);

@@ -74,8 +74,7 @@ static void choose_quanta(struct smooth_trace *trace, const struct tracer *trace
 
 /* Of the parts, those in the way go to the device; the frame is centred on the one aimed at. */
 static sonject_status begin_on_device(struct smooth_trace *trace, struct tracer *tracer,
-                                      const char *kernel_name, uint32_t number, bool is_straight,
-                                      int32_t strips)
+                                      uint32_t number, bool is_straight, int32_t strips)
 {
     struct launch_parts parts;
     struct object_record *records = NULL;
@@ -86,9 +85,12 @@ static sonject_status begin_on_device(struct smooth_trace *trace, struct tracer 
         trace->fan.objects = (int32_t)parts.count;
         trace->fan.relief_words = object_buffer_relief_words(tracer, parts.count);
         trace->fan.only_object = (int32_t)parts.target;
-        status = trace_device_init(&trace->on_device, tracer, PROGRAM_TRACE_SMOOTH, kernel_name,
-                                   records, (struct part_list){parts.numbers, parts.count},
-                                   (size_t)strips, 2 * (size_t)trace->grid.bins.count);
+        status =
+            trace_device_init(&trace->on_device, tracer,
+                              is_straight ? PROGRAM_TRACE_SMOOTH : PROGRAM_TRACE_SMOOTH_MIRRORED,
+                              is_straight ? "trace_smooth" : "trace_smooth_mirrored", records,
+                              (struct part_list){parts.numbers, parts.count}, (size_t)strips,
+                              2 * (size_t)trace->grid.bins.count);
     }
     free(records);
     launch_parts_clear(&parts);
@@ -114,8 +116,7 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
     sonject_status status =
         object_rays_add(&trace->rays, tracer, number, &sonar.way, &trace->fan.table);
     if (status == SONJECT_OK)
-        status =
-            begin_on_device(trace, tracer, "trace_smooth", number, true, trace->grid.strips.count);
+        status = begin_on_device(trace, tracer, number, true, trace->grid.strips.count);
     if (status != SONJECT_OK)
         smooth_trace_end(trace);
     return status;
@@ -138,7 +139,7 @@ sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tr
     const int32_t strips =
         trace->grid.strips.count < MIRRORED_STRIPS ? trace->grid.strips.count : MIRRORED_STRIPS;
     if (status == SONJECT_OK)
-        status = begin_on_device(trace, tracer, "trace_smooth_mirrored", number, false, strips);
+        status = begin_on_device(trace, tracer, number, false, strips);
     if (status == SONJECT_OK)
         status = buffer_create(tracer->report, tracer->device, sizeof sources, &sources,
                                &trace->sources);

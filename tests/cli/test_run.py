@@ -159,11 +159,11 @@ def test_verbose_tells_what_happens(sonject, scene, tmp_path):
     assert (quiet.returncode, quiet.stdout, quiet.stderr) == (0, "", "")
 
 
-def test_no_home_and_no_cache_are_no_reason_to_fail(sonject, scene, tmp_path):
-    gone = {"HOME": None, "XDG_CACHE_HOME": None}
+def test_no_home_and_no_cache_are_no_reason_to_fail(sonject, scene, tmp_path, environment):
+    drivers_cache = {"POCL_CACHE_DIR": environment["XDG_CACHE_HOME"] + "/pocl/kcache"}
+    gone = {"HOME": None, "XDG_CACHE_HOME": None, **drivers_cache}
     assert sonject("run", scene, "-o", "a", changes=gone).returncode == 0
-    closed = {"HOME": "/dev/null", "XDG_CACHE_HOME": "/dev/null/cache"}
-    closed["POCL_CACHE_DIR"] = str(tmp_path / "pocl")
+    closed = {"HOME": "/dev/null", "XDG_CACHE_HOME": "/dev/null/cache", **drivers_cache}
     assert sonject("run", scene, "-o", "b", changes=closed).returncode == 0
     assert contents(tmp_path / "a") == contents(tmp_path / "b")
 
