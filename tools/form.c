@@ -10,6 +10,7 @@ struct form_options {
     struct stage_options stage;
     const char *file;
     struct text_list overrides;
+    bool allows_user_shapes;
 };
 
 static const struct argument arguments[] = {
@@ -17,6 +18,8 @@ static const struct argument arguments[] = {
      offsetof(struct form_options, stage.output)},
     {"--set", NULL, "KEY.PATH=VALUE", "another pulse, bandwidth or response; may be repeated",
      ARGUMENT_TEXTS, false, offsetof(struct form_options, overrides)},
+    {"--allow-user-shapes", NULL, NULL, "runs code of shapes in the scene; only if you trust it",
+     ARGUMENT_FLAG, false, offsetof(struct form_options, allows_user_shapes)},
     STAGE_ARGUMENTS(struct form_options),
 };
 
@@ -30,6 +33,7 @@ static sonject_status form(sonject_context *context, const void *verb_options,
     params.folder = options->stage.output;
     params.overrides = (const char *const *)options->overrides.texts;
     params.override_count = (uint32_t)options->overrides.count;
+    params.allows_user_shapes = options->allows_user_shapes;
     return sonject_form(context, NULL, &params, progress_update, progress, was_finished);
 }
 

@@ -448,6 +448,19 @@ class scene
         check(sonject_scene_add_user_shape(handle_, &shape, &number));
         return number;
     }
+    /* The target that a file describes; placing: its position, pose, burial and level, and its name
+     * and class where not "". */
+    std::uint32_t add_target(
+        const std::string &path,
+        const sonject_object_params &placing = defaults<sonject_object_params>(),
+        bool allows_user_shapes = false)
+    {
+        std::uint32_t index = 0;
+        sonject_scene_read_params params = defaults<sonject_scene_read_params>();
+        params.allows_user_shapes = allows_user_shapes;
+        check(sonject_scene_add_target(handle_, path.c_str(), &params, &placing, &index));
+        return index;
+    }
     /* A part of the object of that number, whose shape is SONJECT_SHAPE_PARTS. */
     void add_part(std::uint32_t object, const sonject_object_params &shape,
                   const sonject_part_params &part = defaults<sonject_part_params>())

@@ -195,6 +195,17 @@ SONJECT_API sonject_status sonject_scene_add_user_shape(sonject_scene *scene,
                                                         const sonject_user_shape_params *shape,
                                                         uint32_t *user_shape);
 
+/* Adds the target that a file describes (tools/targets holds such), as `target:` in a scene file
+ * does; files that it names are meant from its own folder. Of `object`, NULL for a proud one in the
+ * middle of the patch, position, pose, burial and level count, and name and class where they are
+ * not ""; all else is the file's. params: whether the file may hold code; NULL: it may not. *index
+ * (may be NULL) gets the object's number. On failure the scene is unchanged. Errors: ARGUMENT,
+ * INPUT (what is wrong and where), STORAGE, UNSUPPORTED (a mesh's format), MEMORY. */
+SONJECT_API sonject_status sonject_scene_add_target(sonject_scene *scene, const char *path,
+                                                    const sonject_scene_read_params *params,
+                                                    const sonject_object_params *object,
+                                                    uint32_t *index);
+
 /* Adds a part to an object of the shape SONJECT_SHAPE_PARTS. Of `shape`, the shape itself, its
  * sizes, ends, cuts and material count; its name, class, position, pose and burial do not. Parts
  * may overlap: they then are their union. Up to 1000 parts a scene. An object without parts is

@@ -38,6 +38,9 @@ typedef struct sonject_form_params {
                                      sonar.bandwidth, sonar.resolution, sonar.response and what is
                                      below it, and input.path (the same image elsewhere); no other
                                      key */
+    uint32_t allows_user_shapes;  /* 1: run code of shapes in that scene, or beside it, as
+                                     sonject_scene_read_params has it; 0: refuse it */
+    uint32_t reserved;            /* 0 */
 } sonject_form_params;
 
 SONJECT_API void sonject_form_params_init(sonject_form_params *params);

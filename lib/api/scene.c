@@ -8,6 +8,7 @@
 #include "base/memory.h"
 #include "io/recording.h"
 #include "io/scene_file.h"
+#include "io/scene_target.h"
 #include "io/xtf_file.h"
 #include "medium/profile.h"
 
@@ -399,6 +400,33 @@ sonject_status sonject_scene_add_object(sonject_scene *scene, const sonject_obje
         status = check_number(scene, &taken);
     if (status == SONJECT_OK)
         status = scene_append_object(&scene->scene, scene->report, &taken);
+    if (status == SONJECT_OK && index)
+        *index = scene->scene.object_count - 1;
+    return status;
+}
+
+sonject_status sonject_scene_add_target(sonject_scene *scene, const char *path,
+                                        const sonject_scene_read_params *params,
+                                        const sonject_object_params *object, uint32_t *index)
+{
+    if (!scene)
+        return SONJECT_ERROR_ARGUMENT;
+    if (!path)
+        return null_argument(scene->report, "path");
+    sonject_scene_read_params reading;
+    sonject_object_params placing;
+    sonject_scene_read_params_init(&reading);
+    sonject_object_params_init(&placing);
+    sonject_status status = SONJECT_OK;
+    if (params)
+        status = params_take(scene->report, &reading, sizeof reading, params, sizeof reading,
+                             "scene read parameters");
+    if (status == SONJECT_OK && object)
+        status =
+            params_take(scene->report, &placing, sizeof placing, object, sizeof placing, "object");
+    if (status == SONJECT_OK)
+        status = scene_append_target(&scene->scene, scene->report, path,
+                                     reading.allows_user_shapes != 0, &placing);
     if (status == SONJECT_OK && index)
         *index = scene->scene.object_count - 1;
     return status;

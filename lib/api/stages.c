@@ -1,5 +1,6 @@
 #define _POSIX_C_SOURCE 200809L
 #include <errno.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -244,7 +245,7 @@ static sonject_status read_traced_scene(struct report *report, const struct impu
     source.override_count = head->override_count + params->override_count;
     source.moved_folder = is_here ? NULL : head->scene_folder;
     source.moved_overrides = head->override_count;
-    source.allows_user_shapes = true; /* their code is compared, and not run */
+    source.allows_user_shapes = params->allows_user_shapes != 0;
     const sonject_status status = path && overrides
                                       ? scene_text_read(report, &source, scene)
                                       : report_out_of_memory(report, "the scene's text");
@@ -284,8 +285,9 @@ sonject_status sonject_form(sonject_context *context, const sonject_scene *scene
     sonject_form_params taken;
     struct impulse_file *impulses;
     sonject_form_params_init(&taken);
-    sonject_status status = params_take(&context->report, &taken, sizeof taken, params,
-                                        sizeof taken, "form parameters");
+    sonject_status status =
+        params_take(&context->report, &taken, sizeof taken, params,
+                    offsetof(sonject_form_params, allows_user_shapes), "form parameters");
     if (status != SONJECT_OK)
         return status;
     if (!taken.file || !taken.file[0] || !taken.folder || !taken.folder[0])

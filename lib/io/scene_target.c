@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/memory.h"
 #include "base/text.h"
 #include "io/scene_parts.h"
 #include "io/scene_shape.h"
@@ -55,19 +56,13 @@ static struct reader reader_of_target(const struct reader *reader, const struct 
                            .allows_user_shapes = reader->allows_user_shapes};
 }
 
-sonject_status read_target(struct reader *reader, const struct tree_node *node,
-                           struct target_text *target)
+/* Reads the file that the target names. */
+static sonject_status read_target_file(struct reader *reader, struct target_text *target)
 {
-    char excerpt[400];
     char *text = NULL;
     size_t bytes;
-    sonject_status status = read_path(reader, node, &target->file);
-    if (status != SONJECT_OK)
-        return status;
-    if (!file_exists(target->file))
-        return refuse_value(reader, node, "there is no file %s; check its name",
-                            text_excerpt(excerpt, sizeof excerpt, target->file));
-    status = file_read_whole(reader->report, target->file, TREE_BYTES_MAX, &text, &bytes);
+    sonject_status status =
+        file_read_whole(reader->report, target->file, TREE_BYTES_MAX, &text, &bytes);
     if (status != SONJECT_OK)
         return status;
     tree_init(&target->tree, reader->report, target->file);
@@ -80,6 +75,19 @@ sonject_status read_target(struct reader *reader, const struct tree_node *node,
     if (status == SONJECT_OK)
         status = read_section(&inner, &target_section, &target->tree.root, target);
     return status;
+}
+
+sonject_status read_target(struct reader *reader, const struct tree_node *node,
+                           struct target_text *target)
+{
+    char excerpt[400];
+    const sonject_status status = read_path(reader, node, &target->file);
+    if (status != SONJECT_OK)
+        return status;
+    if (!file_exists(target->file))
+        return refuse_value(reader, node, "there is no file %s; check its name",
+                            text_excerpt(excerpt, sizeof excerpt, target->file));
+    return read_target_file(reader, target);
 }
 
 sonject_status read_target_parts(struct reader *reader, const struct target_text *target)
@@ -97,4 +105,64 @@ void target_text_clear(struct target_text *target)
         tree_clear(&target->tree);
     free(target->file);
     target->file = NULL;
+}
+
+/* Place, pose and level of an object, and what it is called, where that is said. */
+static void take_placing(sonject_object_params *to, const sonject_object_params *from)
+{
+    if (from->name[0])
+        memcpy(to->name, from->name, sizeof to->name);
+    if (from->class_name[0])
+        memcpy(to->class_name, from->class_name, sizeof to->class_name);
+    to->position_kind = from->position_kind;
+    to->position_along = from->position_along;
+    to->position_range = from->position_range;
+    to->heading_rad = from->heading_rad;
+    to->pitch_rad = from->pitch_rad;
+    to->roll_rad = from->roll_rad;
+    to->burial_kind = from->burial_kind;
+    to->burial_m = from->burial_m;
+    to->burial_fraction = from->burial_fraction;
+    to->proud_height_m = from->proud_height_m;
+    to->level_kind = from->level_kind;
+    to->level_db = from->level_db;
+}
+
+static sonject_status append_target(struct reader *reader, struct target_text *target,
+                                    const sonject_object_params *placing)
+{
+    sonject_status status = read_target_file(reader, target);
+    if (status == SONJECT_OK) {
+        take_placing(&target->object, placing);
+        status = check_object(&target->object, reader->report, NULL);
+    }
+    if (status == SONJECT_OK)
+        status = read_target_parts(reader, target);
+    if (status == SONJECT_OK)
+        status = scene_append_object(reader->scene, reader->report, &target->object);
+    return status;
+}
+
+sonject_status scene_append_target(struct scene *scene, struct report *report, const char *path,
+                                   bool allows_user_shapes, const sonject_object_params *placing)
+{
+    char excerpt[400];
+    struct target_text target;
+    struct reader reader = {
+        .report = report, .scene = scene, .allows_user_shapes = allows_user_shapes};
+    const struct scene_counts before = scene_count(scene);
+    if (!file_exists(path))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: there is no such target file; check its name",
+                              text_excerpt(excerpt, sizeof excerpt, path));
+    memset(&target, 0, sizeof target);
+    start_shape(&target.object, NULL);
+    target.file = copy_text(path);
+    if (!target.file)
+        return report_out_of_memory(report, "a path");
+    const sonject_status status = append_target(&reader, &target, placing);
+    target_text_clear(&target);
+    if (status != SONJECT_OK)
+        scene_cut_back(scene, &before);
+    return status;
 }

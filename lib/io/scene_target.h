@@ -21,6 +21,11 @@ sonject_status read_target(struct reader *reader, const struct tree_node *node,
  * Errors: INPUT, MEMORY. */
 sonject_status read_target_parts(struct reader *reader, const struct target_text *target);
 
+/* Appends the target of a file as an object. placing: what sonject_scene_add_target takes of an
+ * object. On failure the scene is as before. Errors: INPUT, STORAGE, MEMORY. */
+sonject_status scene_append_target(struct scene *scene, struct report *report, const char *path,
+                                   bool allows_user_shapes, const sonject_object_params *placing);
+
 /* Frees what is owned. */
 void target_text_clear(struct target_text *target);
 

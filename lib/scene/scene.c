@@ -82,6 +82,22 @@ sonject_status scene_append_part(struct scene *scene, struct report *report,
     return SONJECT_OK;
 }
 
+struct scene_counts scene_count(const struct scene *scene)
+{
+    return (struct scene_counts){scene->object_count, scene->part_count, scene->mesh_count,
+                                 scene->user_shapes.count, scene->user_shapes.snippet_count};
+}
+
+/* Room stays: a power of two that holds more will do for fewer. */
+void scene_cut_back(struct scene *scene, const struct scene_counts *counts)
+{
+    scene->object_count = counts->objects;
+    scene->part_count = counts->parts;
+    while (scene->mesh_count > counts->meshes)
+        mesh_clear(&scene->meshes[--scene->mesh_count]);
+    user_shapes_cut_back(&scene->user_shapes, counts->user_shapes, counts->snippets);
+}
+
 sonject_status scene_append_mesh(struct scene *scene, struct report *report, const char *path,
                                  const struct mesh_options *options, bool allows_open)
 {

@@ -77,6 +77,13 @@ sonject_status scene_append_object(struct scene *scene, struct report *report,
 sonject_status scene_append_part(struct scene *scene, struct report *report,
                                  const struct scene_part *part);
 
+/* How much was appended, to take back what comes after. */
+struct scene_counts {
+    uint32_t objects, parts, meshes, user_shapes, snippets;
+};
+struct scene_counts scene_count(const struct scene *scene);
+void scene_cut_back(struct scene *scene, const struct scene_counts *counts);
+
 /* Reads and appends a mesh. Errors: as mesh_load, INPUT also where it is open or there are too
  * many. */
 sonject_status scene_append_mesh(struct scene *scene, struct report *report, const char *path,

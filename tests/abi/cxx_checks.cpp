@@ -27,6 +27,13 @@ static sonject::scene scene_with_ball(const sonject::context &context)
     ball.diameter_m = 0.3;
     ball.material = sonject::material("steel");
     expect(scene.add(ball) == 0 && scene.object_count() == 1, "objects are counted");
+    try {
+        scene.add_target("there/is/none.yaml", ball);
+        expect(false, "missing files of targets throw");
+    } catch (const sonject::error &error) {
+        expect(error.status() == SONJECT_ERROR_INPUT && scene.object_count() == 1,
+               "and leave the scene");
+    }
     return scene;
 }
 

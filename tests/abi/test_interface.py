@@ -37,7 +37,7 @@ def test_exports_are_the_declared_functions():
 
 
 @pytest.mark.parametrize("header", HEADERS, ids=lambda header: header.name)
-@pytest.mark.parametrize("language", ["c99", "c++11", "c++17"])
+@pytest.mark.parametrize("language", ["c99", "c++11", "c++17", "c++20"])
 def test_headers_compile_alone(header, language, tmp_path):
     is_c = language == "c99"
     source = tmp_path / ("alone.c" if is_c else "alone.cpp")
@@ -79,7 +79,7 @@ SIZES = {
     "sonject_quicklook_params": 136,
     "sonject_seabed_file_params": 256,
     "sonject_trace_params": 16,
-    "sonject_form_params": 32,
+    "sonject_form_params": 40,
     "sonject_measure_params": 72,
     "sonject_measurement": 112,
     "sonject_pulse_params": 24,

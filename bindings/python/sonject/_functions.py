@@ -132,6 +132,16 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
         _status,
         [_scene, POINTER(s.sonject_user_shape_params), POINTER(c_uint32)],
     ),
+    "sonject_scene_add_target": (
+        _status,
+        [
+            _scene,
+            c_char_p,
+            POINTER(s.sonject_scene_read_params),
+            POINTER(s.sonject_object_params),
+            POINTER(c_uint32),
+        ],
+    ),
     "sonject_scene_add_part": (
         _status,
         [_scene, c_uint32, POINTER(s.sonject_object_params), POINTER(s.sonject_part_params)],

@@ -416,6 +416,8 @@ class sonject_form_params(Structure):
         ("file", c_char_p),
         ("folder", c_char_p),
         ("overrides", POINTER(c_char_p)),
+        ("allows_user_shapes", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 

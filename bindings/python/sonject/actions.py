@@ -110,11 +110,14 @@ def form(
     scene: Optional[Scene] = None,
     progress: Optional[Progress] = None,
     context: Optional[Context] = None,
+    *,
+    allows_user_shapes: bool = False,
 ) -> bool:
     """Forms the image of what trace wrote into file, and writes what run would into folder.
 
     overrides: as of Scene.read, of bandwidth, resolution and response of the sonar and of
-    input.path; scene: where it was traced from no scene file, or instead of overrides.
+    input.path; scene: where it was traced from no scene file, or instead of overrides;
+    allows_user_shapes: as of Scene.read.
     False, with nothing done, if folder already held the finished result of the same inputs.
     """
     if scene is not None:
@@ -127,6 +130,7 @@ def form(
     params.folder = file_name("folder", folder)
     params.overrides = ctypes.cast(array, ctypes.POINTER(ctypes.c_char_p))
     params.override_count = len(texts)
+    params.allows_user_shapes = int(bool(allows_user_shapes))
     bridge = ProgressBridge(progress)
     was_finished = ctypes.c_int()
     context.call(

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar, Optional, Sequence, Union
 
 from . import _structures as s
-from ._values import choice, fill, initialised
+from ._values import PathLike, choice, fill, initialised
 from .enumerations import BurialKind, End, LevelKind, PositionKind, Shape
 from .material import Material
 
@@ -136,7 +136,8 @@ class Object:
                 values[name] = choice(name, End, values[name])
         values["material"] = self.material.to_structure()
         values["shape"] = self._shape
-        values.pop("parts", None)
+        for name in ("parts", "path", "allows_user_shapes"):
+            values.pop(name, None)
         structure = initialised(s.sonject_object_params)
         fill(structure, values)
         structure.cuts[: len(cuts)] = cuts
@@ -319,4 +320,25 @@ class Parts(Object):
         for part in self.parts:
             if not isinstance(part, Part):
                 raise TypeError(f"each of parts must be a Part, not {part!r}")
+        return super().to_structure()
+
+
+@dataclass
+class Target(Object):
+    """What a target's file describes, such as those of tools/targets: ``Target("tyre.yaml")``.
+
+    path: of the file, which tells shape or parts and material; class and name too, unless given
+    here; allows_user_shapes: its shape may be code, which then can do what the process can: only
+    for files that you trust.
+    """
+
+    _shape: ClassVar[Shape] = Shape.SPHERE  # of no meaning: the file's counts
+
+    path: PathLike
+    allows_user_shapes: bool = field(default=False, kw_only=True)
+
+    def to_structure(self) -> s.sonject_object_params:
+        """Its pose and level. Raises TypeError or ValueError where a value does not fit into it."""
+        if len(self.cuts) > 0 or self.material != Material():
+            raise ValueError("material and cuts of a Target are its file's")
         return super().to_structure()

@@ -22,7 +22,7 @@ from ._values import (
 from .context import Context, default_context
 from ._elements import Elements
 from .enumerations import PulseAxis
-from .objects import Object, Parts
+from .objects import Object, Parts, Target
 from .parameters import (
     Geometry,
     Injection,
@@ -419,6 +419,18 @@ class Scene(Handle):
             raise TypeError(f"an Object is wanted, not {thing!r}")
         index = ctypes.c_uint32()
         structure = thing.to_structure()
+        if isinstance(thing, Target):
+            params = initialised(s.sonject_scene_read_params)
+            params.allows_user_shapes = int(bool(thing.allows_user_shapes))
+            self._context.call(
+                "sonject_scene_add_target",
+                self,
+                file_name("path", thing.path),
+                ctypes.byref(params),
+                ctypes.byref(structure),
+                ctypes.byref(index),
+            )
+            return index.value
         parts = [part.to_structures() for part in thing.parts] if isinstance(thing, Parts) else []
         self._context.call(
             "sonject_scene_add_object",

@@ -2,6 +2,7 @@
 
 import gc
 import math
+import pathlib
 import threading
 
 import numpy
@@ -281,3 +282,60 @@ def test_measure_takes_what_inject_gives(amplitude_patch, make_scene):
     assert math.isnan(sonject.measure(amplitude_patch).seam)
     with pytest.raises(ValueError, match="influence"):
         sonject.measure(amplitude_patch, result.influence[1:])
+
+
+TARGETS = pathlib.Path(__file__).resolve().parents[3] / "tools" / "targets"
+
+def test_targets_have_the_pose_that_is_given(amplitude_patch, make_scene):
+    target = sonject.Target(
+        TARGETS / "boulder.yaml", name="stone", position=sonject.Pixels(70, 100), over_seabed_db=9.0
+    )
+    scene = make_scene(objects=[target], input=sonject.Uniform(ROWS, COLUMNS))
+    assert "stone" in sonject.check(scene)
+    truth = sonject.inject(amplitude_patch, scene).objects[0]
+    assert truth.row == pytest.approx(70)
+    assert 90 < truth.column < 100  # its centre is above the ground, so nearer
+    assert truth.over_seabed_db == pytest.approx(9.0, abs=1e-4)
+
+
+def test_a_refused_target_leaves_the_scene(make_scene, tmp_path):
+    scene = make_scene()
+    bad = tmp_path / "bad.yaml"
+    bad.write_text(
+        "sonject_target: 1\nparts:\n  - {shape: sphere, diameter: 1}\n"
+        f"  - {{shape: mesh, mesh: {TARGETS}/rock.obj}}\n  - {{shape: sphere}}\n"
+    )
+    with pytest.raises(sonject.SonjectError, match=r"bad.yaml:5.*diameter"):
+        scene.add(sonject.Target(bad))
+    with pytest.raises(sonject.SonjectError, match="none.yaml: there is no such target file"):
+        scene.add(sonject.Target(tmp_path / "none.yaml"))
+    with pytest.raises(sonject.SonjectError, match="burial"):
+        scene.add(sonject.Target(TARGETS / "tyre.yaml", burial_fraction=2.0))
+    with pytest.raises(sonject.SonjectError, match="allow-user-shapes"):
+        scene.add(sonject.Target(TARGETS / "boulder_relief.yaml"))
+    with pytest.raises(ValueError, match="file's"):
+        sonject.Target(
+            TARGETS / "tyre.yaml", material=sonject.Material.named("rubber")
+        ).to_structure()
+    assert scene.object_count == 1
+    assert scene.add(sonject.Target(TARGETS / "tyre.yaml")) == 1
+    assert scene.add_mesh(TARGETS / "rock.obj") == 0
+
+
+def test_another_thread_cancels(amplitude_patch, make_scene):
+    """The call waits in a progress function until the other thread has asked it to stop."""
+    is_running, is_asked = threading.Event(), threading.Event()
+
+    def ask():
+        is_running.wait()
+        is_asked.set()
+
+    def progress(fraction, stage):
+        is_running.set()
+        return is_asked.wait()
+
+    thread = threading.Thread(target=ask)
+    thread.start()
+    with pytest.raises(sonject.Cancelled):
+        sonject.inject(amplitude_patch, make_scene(), progress=progress)
+    thread.join()
