@@ -37,6 +37,15 @@ def pkg_config_flags(root):
                           text=True, check=True, env=variables).stdout.split()
 
 
+def pkg_config_static(prefix):
+    """Flags of sonject-static, whose file is made to name the prefix where it now is."""
+    installed = next(prefix.rglob("sonject-static.pc"))
+    return subprocess.run(["pkg-config", f"--define-variable=prefix={prefix}", "--cflags", "--libs",
+                           "sonject-static"], capture_output=True, text=True, check=True,
+                          env={**os.environ, "PKG_CONFIG_PATH": str(installed.parent)}
+                          ).stdout.split()
+
+
 def library_folder(prefix):
     return next(prefix.rglob("libsonject.so.0.*")).parent
 
@@ -92,3 +101,83 @@ def test_cmake_knows_the_version(prefix, tmp_path, version, is_found):
     answer = subprocess.run(["cmake", "-S", tmp_path, "-B", tmp_path / "build",
                              f"-DCMAKE_PREFIX_PATH={prefix}"], capture_output=True, check=False)
     assert (answer.returncode == 0) == is_found, answer.stderr
+
+
+# A program with names of its own that functions of the library have, too.
+STATIC = """\
+#include <stdio.h>
+#include <string.h>
+#include <sonject/sonject.h>
+
+int scene_clear = 1, hash_begin = 2, mesh_load = 3, check_sonar = 4;
+
+int main(void)
+{
+    sonject_context *context = NULL;
+    sonject_scene *scene = NULL;
+    sonject_object_params ball;
+    sonject_object_params_init(&ball);
+    sonject_status status = sonject_context_create(NULL, &context);
+    if (status == SONJECT_OK)
+        status = sonject_scene_create(context, &scene);
+    if (status == SONJECT_OK)
+        status = sonject_scene_add_object(scene, &ball, NULL);
+    if (status == SONJECT_OK)
+        status = sonject_scene_set_input_file(scene, "none.png");
+    if (status == SONJECT_OK && sonject_check(context, scene, NULL) == SONJECT_OK)
+        return 1;
+    sonject_scene_release(&scene);
+    sonject_context_release(&context);
+    if (status == SONJECT_OK && strcmp(sonject_version(), "0.1.0") == 0)
+        puts("all right");
+    return scene_clear + hash_begin + mesh_load + check_sonar != 10;
+}
+"""
+
+
+@pytest.fixture(scope="module")
+def static_library(prefix):
+    found = list(prefix.rglob("libsonject-static.a"))
+    if not found:
+        pytest.skip("built without the static library")
+    return found[0]
+
+
+def assert_stands_alone(program):
+    needed = subprocess.run(["readelf", "-d", program], capture_output=True, text=True,
+                            check=True).stdout
+    assert "libOpenCL" in needed and "libsonject" not in needed
+    answer = subprocess.run([program], capture_output=True, text=True, check=False)
+    assert (answer.returncode, answer.stdout) == (0, "all right\n"), answer.stderr
+
+
+def test_the_static_library_shows_the_interface_alone(static_library):
+    listing = subprocess.run(["nm", "-g", "--defined-only", static_library], capture_output=True,
+                             text=True, check=True).stdout
+    names = {line.split()[-1] for line in listing.splitlines() if len(line.split()) == 3}
+    assert names == set((SOURCE / "tests" / "abi" / "symbols.txt").read_text().split())
+
+
+def test_programs_link_the_static_library_by_pkg_config(static_library, prefix, tmp_path):
+    (tmp_path / "program.c").write_text(STATIC)
+    subprocess.run([os.environ.get("CC", "cc"), "-std=c99", *WARNINGS, tmp_path / "program.c",
+                    *pkg_config_static(prefix), "-o", tmp_path / "program"], check=True)
+    assert_stands_alone(tmp_path / "program")
+
+
+def test_programs_link_the_static_library_by_cmake(static_library, prefix, tmp_path):
+    if not shutil.which("cmake"):
+        pytest.skip("cmake is not installed")
+    (tmp_path / "program.c").write_text(STATIC)
+    (tmp_path / "CMakeLists.txt").write_text("""\
+cmake_minimum_required(VERSION 3.16)
+project(program C)
+find_package(sonject 0.1 REQUIRED)
+add_executable(program program.c)
+target_link_libraries(program sonject::static)
+""")
+    build = tmp_path / "build"
+    subprocess.run(["cmake", "-S", tmp_path, "-B", build, f"-DCMAKE_PREFIX_PATH={prefix}"],
+                   check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", build], check=True, stdout=subprocess.DEVNULL)
+    assert_stands_alone(build / "program")
