@@ -16,7 +16,8 @@ from ._callbacks import Progress
 from ._library import load as _load
 from .actions import check, form, inject, measure, quicklook, run, trace, write_seabed
 from .context import Context, Device, default_context, devices
-from .elements import ElementLayout, Elements, element_layout, element_series, run_elements
+from ._elements import Elements
+from .elements import ElementLayout, element_layout, element_series, run_elements
 from .enumerations import (
     ColumnRule,
     End,

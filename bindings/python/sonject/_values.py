@@ -18,7 +18,7 @@ Overrides = Union[Iterable[str], Mapping[str, Any]]
 AnyStructure = TypeVar("AnyStructure", bound=ctypes.Structure)
 AnyEnum = TypeVar("AnyEnum", bound=enum.IntEnum)
 
-_LARGEST = {ctypes.c_uint32: 2**32 - 1, ctypes.c_uint64: 2**64 - 1}
+_LARGEST: dict[Any, int] = {ctypes.c_uint32: 2**32 - 1, ctypes.c_uint64: 2**64 - 1}
 
 
 def whole_number(name: str, value: Any, largest: int) -> int:

@@ -362,7 +362,7 @@ class Recording:
 
     def number(self) -> int:
         """The channel as the library counts them."""
-        words = {"port": -1, "starboard": -2, None: -3}
+        words: dict[Union[str, int, None], int] = {"port": -1, "starboard": -2, None: -3}
         if self.channel in words:
             return words[self.channel]
         return whole_number("channel", self.channel, 63)

@@ -190,7 +190,7 @@ class Scene(Handle):
 
         before: its arguments that come first.
         """
-        arrays = {
+        arrays: dict[str, Any] = {
             key: None if values is None else real_numbers(key, values)
             for key, values in columns.items()
         }

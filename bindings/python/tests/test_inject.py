@@ -1,5 +1,6 @@
 """Injection into arrays."""
 
+import ctypes
 import gc
 import math
 import pathlib
@@ -10,6 +11,7 @@ import pytest
 
 import sonject
 from conftest import COLUMNS, ROWS
+from sonject import _library
 from sonject._pixels import library_pixels
 
 
@@ -261,6 +263,11 @@ def test_other_threads_run_meanwhile(amplitude_patch, make_scene):
     for thread in threads:
         thread.join()
     assert images == [expected, expected]
+
+
+def test_calls_release_the_global_lock():
+    library = _library.load()  # ctypes holds the lock during calls of a PyDLL alone
+    assert isinstance(library, ctypes.CDLL) and not isinstance(library, ctypes.PyDLL)
 
 
 def test_levels_are_those_asked_for(amplitude_patch, make_scene):

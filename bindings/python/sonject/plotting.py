@@ -1,0 +1,100 @@
+"""Pictures by matplotlib, which is imported when the first one is drawn."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any, Optional
+
+import numpy
+
+from .parameters import Geometry
+from .result import Result
+
+# Of the brightest thousandth to what is hardly seen beside it.
+_SPAN_DB = 50.0
+
+
+def _pyplot() -> Any:
+    return importlib.import_module("matplotlib.pyplot")
+
+
+def _decibels(image: Any) -> Any:
+    """20 log10 of the magnitudes, -inf where they are 0; float64, of the image's shape."""
+    with numpy.errstate(divide="ignore"):
+        return 20.0 * numpy.log10(numpy.abs(numpy.asarray(image)).astype(numpy.float64))
+
+
+def _extent(shape: tuple[int, int], geometry: Geometry) -> tuple[float, float, float, float]:
+    """Outer edges of the pixels in m: first and last slant range, last and first track position."""
+    rows, columns = shape
+    left = geometry.first_slant_range_m - 0.5 * geometry.column_spacing_m
+    top = geometry.first_along_track_m - 0.5 * geometry.row_spacing_m
+    return (
+        left,
+        left + columns * geometry.column_spacing_m,
+        top + rows * geometry.row_spacing_m,
+        top,
+    )
+
+
+def draw(
+    image: Any,
+    *,
+    geometry: Optional[Geometry] = None,
+    decibels: Optional[tuple[float, float]] = None,
+    axes: Any = None,
+) -> Any:
+    """Draws an image's magnitudes in dB; gives matplotlib's AxesImage.
+
+    image: rows (track positions) x columns (slant ranges), amplitudes or complex pixels; geometry:
+    labels the axes in metres, None: in pixels; decibels: ends of the grey scale, None: 50 dB up to
+    the brightest thousandth; axes: matplotlib's to draw in, None: the current ones.
+    """
+    axes = _pyplot().gca() if axes is None else axes
+    levels = _decibels(image)
+    if levels.ndim != 2 or levels.size == 0:
+        raise ValueError(f"an image has rows and columns, not the shape {levels.shape}")
+    if decibels is None:
+        seen = levels[numpy.isfinite(levels)]
+        top = float(numpy.quantile(seen, 0.999)) if seen.size else 0.0
+        decibels = (top - _SPAN_DB, top)
+    extent = None if geometry is None else _extent(levels.shape, geometry)
+    axes.set_xlabel("slant range in columns" if geometry is None else "slant range in m")
+    axes.set_ylabel("track in rows" if geometry is None else "track in m")
+    return axes.imshow(
+        numpy.maximum(levels, decibels[0]),
+        cmap="gray",
+        vmin=decibels[0],
+        vmax=decibels[1],
+        extent=extent,
+        interpolation="nearest",
+    )
+
+
+def draw_result(
+    patch: Any,
+    result: Result,
+    *,
+    geometry: Optional[Geometry] = None,
+    decibels: Optional[tuple[float, float]] = None,
+    figure: Any = None,
+) -> Any:
+    """Draws the patch as it was, with the objects in it, and with their labels; gives the figure.
+
+    patch: what inject was given; geometry, decibels: as of draw, the same for all three; figure:
+    matplotlib's to draw in, None: a new one.
+    """
+    figure = _pyplot().figure(figsize=(12, 4), layout="constrained") if figure is None else figure
+    panels = figure.subplots(1, 3, sharex=True, sharey=True)
+    before = draw(patch, geometry=geometry, decibels=decibels, axes=panels[0])
+    scale = before.get_clim()
+    for panel in panels[1:]:
+        draw(result.image, geometry=geometry, decibels=scale, axes=panel)
+    labels = numpy.ma.masked_equal(result.labels, 0)
+    panels[2].imshow(
+        labels, cmap="tab10", vmin=0, vmax=9, alpha=0.6, extent=before.get_extent(),
+        interpolation="nearest",
+    )
+    for panel, title in zip(panels, ("before", "after", "labels")):
+        panel.set_title(title)
+    return figure
