@@ -39,10 +39,12 @@ sonject_status scene_text_read(struct report *report, const struct scene_text *s
                                struct scene *scene);
 
 struct scene_file_key {
-    char path[64];       /* "objects[].heading" */
-    const char *unit;    /* "deg, rad", "whole number", "word", ...; static */
-    const char *meaning; /* one line; static */
-    bool is_required;    /* in its section */
+    char path[64];            /* "objects[].heading" */
+    const char *unit;         /* "deg, rad", "whole number", "word", ...; static */
+    const char *meaning;      /* one line; static */
+    bool is_required;         /* in its section */
+    const char *const *words; /* that it may be, ended by NULL, "" for a place that no word has;
+                                 NULL: it is no word */
 };
 
 /* Lists every key that has a value of its own. keys: room for capacity entries (NULL if capacity is

@@ -55,6 +55,7 @@ static void list_field(struct listing *listing, const char *path, const struct f
         key->unit = unit_of(field);
         key->meaning = field->meaning;
         key->is_required = field->is_required;
+        key->words = field->kind == FIELD_WORD ? field->words : NULL;
     }
     listing->count++;
 }
