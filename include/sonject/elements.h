@@ -23,7 +23,8 @@ SONJECT_BEGIN_DECLARATIONS
  *     A b_t b_r / (R_t R_r) exp(+i 2 pi f0 tau) g(t - tau)
  *
  * |A|^2 is a backscattering cross-section in m^2, so that a series is the pressure over that of the
- * source at 1 m, without absorption; b = sinc(length sin(aspect) / wavelength) at f0. */
+ * source at 1 m, without absorption, unless source_level_db makes it a pressure; b = sinc(length
+ * sin(aspect) / wavelength) at f0. */
 typedef enum sonject_series_form {
     SONJECT_SERIES_BASEBAND = 0, /* the complex envelope above */
     SONJECT_SERIES_PASSBAND = 1  /* the real part of it times exp(-i 2 pi f0 t) */
@@ -57,9 +58,13 @@ typedef struct sonject_elements_params {
     double last_time_s;      /* NaN: what the patch's aperture needs */
     double chirp_duration_s; /* of the chirp, above 0 */
     double aspect_limit_rad; /* echoes further off abeam are left out, 0...pi/2; 0: none are */
+    double source_level_db;  /* rms, over 1 uPa at 1 m, 0...300: the series are then pressures in Pa
+                                (of a tone, sqrt(2) times its rms), less the water's absorption on
+                                the way to each echo abeam and back; NaN: ratios, see above */
 } sonject_elements_params;
 
-/* One hydrophone, complex baseband, compressed; 10 ms chirp; all else by default. */
+/* One hydrophone, complex baseband, compressed; 10 ms chirp; ratios of pressures; all else by
+ * default. */
 SONJECT_API void sonject_elements_params_init(sonject_elements_params *elements);
 
 /* As the other functions sonject_scene_set_... */

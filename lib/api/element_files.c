@@ -1,6 +1,7 @@
 /* The element level of a scene's own input, as files. */
 #include "api/handles.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -60,6 +61,7 @@ static json_t *series_document(const struct scene *scene, const struct injection
                                const sonject_element_layout *layout)
 {
     const sonject_elements_params *elements = &layout->elements;
+    const bool is_pressure = !isnan(elements->source_level_db);
     const bool is_chirp = elements->pulse == SONJECT_SERIES_CHIRP;
     const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
     json_t *document = json_object();
@@ -75,7 +77,10 @@ static json_t *series_document(const struct scene *scene, const struct injection
         json_string("an echo of delay tau has phase +2 pi f0 tau; pass band: real part of base "
                     "band times exp(-i 2 pi f0 t)"));
     add(document, "normalisation",
-        json_string("pressure over that of the source at 1 m, without absorption"));
+        json_string(is_pressure ? "pressure in Pa, sqrt(2) times the rms of a tone, less absorption"
+                                : "pressure over that of the source at 1 m, without absorption"));
+    add(document, "source_level_db",
+        is_pressure ? json_real(elements->source_level_db) : json_null());
     add(document, "heard", json_string(resynthesises ? "targets and seabed" : "targets"));
     add(document, "samples", json_integer((json_int_t)layout->samples));
     add(document, "sampling_rate_hz", json_real(elements->sampling_rate_hz));

@@ -1,10 +1,12 @@
 #include "inject/element_echoes.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "elements/series.h"
+#include "elements/source_level.h"
 #include "inject/coherent_seabed.h"
 #include "inject/injection_setup.h"
 #include "inject/traced_impulses.h"
@@ -137,6 +139,10 @@ static sonject_status hear(struct element_taker *taker, sonject_progress_functio
                            void *user, const sonject_element_layout *layout, float *series)
 {
     struct tracer *tracer = taker->tracer;
+    if (!isnan(layout->elements.source_level_db))
+        impulse_list_set_source_level(&taker->impulses, &tracer->view,
+                                      layout->elements.source_level_db,
+                                      tracer->scene->medium.absorption_db_per_m);
     const struct series_request request = {
         layout, &tracer->view, &tracer->response, &taker->impulses, progress, user, TRACE_SHARE};
     return series_compute(&request, tracer->report, tracer->device, series);

@@ -65,6 +65,10 @@ static const struct field elements_fields[] = {
      QUANTITY(STRUCTURE, first_time_s, QUANTITY_TIME)},
     {"last_time", "of the last sample at most; by default what the patch needs",
      QUANTITY(STRUCTURE, last_time_s, QUANTITY_TIME)},
+    {"source_level",
+     "rms, over 1 uPa at 1 m: series are pressures in Pa, less absorption; by default they are "
+     "ratios",
+     QUANTITY(STRUCTURE, source_level_db, QUANTITY_DECIBEL)},
     {"aspect_limit", "echoes further off abeam are left out; by default none",
      QUANTITY(STRUCTURE, aspect_limit_rad, QUANTITY_ANGLE)},
 };

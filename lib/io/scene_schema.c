@@ -41,8 +41,9 @@ static const struct section synthetic_section = {synthetic_fields, COUNT(synthet
 
 #define STRUCTURE sonject_geometry_params
 static const struct field geometry_fields[] = {
-    {"row_spacing", "distance between track positions",
-     QUANTITY(STRUCTURE, row_spacing_m, QUANTITY_LENGTH), REQUIRED},
+    {"row_spacing", "distance between track positions, or the speed and ping_rate that make it",
+     .kind = FIELD_SPECIAL, .read = read_row_spacing, .section = &ping_spacing_section,
+     .unit = "m, km, cm, mm, or {speed, ping_rate}", REQUIRED},
     {"column_spacing", "distance between range cells, in slant range",
      QUANTITY(STRUCTURE, column_spacing_m, QUANTITY_LENGTH), REQUIRED},
     {"first_slant_range", "slant range of column 0 of the whole swath",

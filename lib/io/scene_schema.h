@@ -152,8 +152,11 @@ sonject_status read_medium(struct reader *reader, const struct tree_node *node, 
  * altitude. They are taken when the sonar's keys, and so the input's and the patch's, are read:
  * finish_recording is the sonar's check. */
 extern const struct section geometry_section;
+extern const struct section ping_spacing_section;
 sonject_status read_channel(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status read_geometry(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status read_row_spacing(struct reader *reader, const struct tree_node *node,
+                                void *structure);
 sonject_status read_altitude(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status finish_recording(struct reader *reader, const struct tree_node *node,
                                 void *structure);

@@ -5,12 +5,13 @@
 #include "base/ranges.h"
 #include "scene/scene.h"
 
-#define HALF_PI         1.57079632679489661923
-#define HYDROPHONES_MAX 65536
-#define PINGS_MAX       (UINT32_C(1) << 24)
-#define TIME_MAX_S      3600.0
-#define RATE_MIN_HZ     1.0
-#define RATE_MAX_HZ     1e10
+#define HALF_PI             1.57079632679489661923
+#define HYDROPHONES_MAX     65536
+#define PINGS_MAX           (UINT32_C(1) << 24)
+#define TIME_MAX_S          3600.0
+#define RATE_MIN_HZ         1.0
+#define RATE_MAX_HZ         1e10
+#define SOURCE_LEVEL_MAX_DB 300.0
 
 void sonject_elements_params_init(sonject_elements_params *elements)
 {
@@ -26,6 +27,7 @@ void sonject_elements_params_init(sonject_elements_params *elements)
     elements->first_time_s = NAN;
     elements->last_time_s = NAN;
     elements->chirp_duration_s = 0.01;
+    elements->source_level_db = NAN;
 }
 
 static void check_given_length(struct check *check, const char *key, double value_m)
@@ -78,6 +80,9 @@ sonject_status check_elements(const sonject_elements_params *elements, struct re
     check_spacing(&check, "hydrophones.spacing", elements->hydrophone_spacing_m);
     check_given_length(&check, "hydrophones.length", elements->hydrophone_length_m);
     check_times(&check, elements);
+    if (!isnan(elements->source_level_db))
+        check_within(&check, "source_level", elements->source_level_db, 0.0, SOURCE_LEVEL_MAX_DB,
+                     " dB");
     check_within(&check, "aspect_limit", elements->aspect_limit_rad, 0.0, HALF_PI, " rad");
     return check.status;
 }

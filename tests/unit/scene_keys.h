@@ -32,6 +32,13 @@ static const char synthetic[] = "sonject: 1\n"
                                 "first_slant_range: 40}\n"
                                 "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n";
 
+static const char pinging[] = "sonject: 1\n"
+                              "input:\n"
+                              "  uniform: {rows: 4, columns: 5}\n"
+                              "  geometry: {row_spacing: {speed: 1, ping_rate: 20}, "
+                              "column_spacing: 1, first_slant_range: 40}\n"
+                              "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n";
+
 static const char sidescan[] = "sonject: 1\n"
                                "input:\n"
                                "  uniform: {rows: 4, columns: 5}\n"
@@ -118,6 +125,10 @@ static const struct key_case {
      SCENE(synthetic.mean_amplitude), 0.5, NULL, NULL},
     {"input.geometry.row_spacing", small, "5 cm", TYPE_DOUBLE, SCENE(geometry.row_spacing_m), 0.05,
      NULL, NULL},
+    {"input.geometry.row_spacing.speed", pinging, "1.5 m/s", TYPE_DOUBLE,
+     SCENE(geometry.row_spacing_m), 0.075, NULL, NULL},
+    {"input.geometry.row_spacing.ping_rate", pinging, "16 Hz", TYPE_DOUBLE,
+     SCENE(geometry.row_spacing_m), 0.0625, NULL, NULL},
     {"input.geometry.column_spacing", small, "15 mm", TYPE_DOUBLE, SCENE(geometry.column_spacing_m),
      0.015, NULL, NULL},
     {"input.geometry.first_slant_range", small, "0.043 km", TYPE_DOUBLE,
@@ -389,6 +400,8 @@ static const struct key_case {
     {"elements.chirp", small, "20 ms", TYPE_DOUBLE, SCENE(elements.chirp_duration_s), 0.02, NULL,
      NULL},
     {"elements.sampling_rate", small, "70 kHz", TYPE_DOUBLE, SCENE(elements.sampling_rate_hz), 70e3,
+     NULL, NULL},
+    {"elements.source_level", small, "220 dB", TYPE_DOUBLE, SCENE(elements.source_level_db), 220.0,
      NULL, NULL},
     {"elements.first_time", small, "50 ms", TYPE_DOUBLE, SCENE(elements.first_time_s), 0.05, NULL,
      NULL},

@@ -84,6 +84,13 @@ static void test_missing_keys(void **state)
          "and first_slant_range, or from_file (XTF))"},
         {START "input:\n  uniform: {rows: 1, columns: 1}\n  geometry:\n    row_spacing: 1\n" SONAR,
          ":5:5: input.geometry: column_spacing, first_slant_range are missing; add them"},
+        {START "input:\n  uniform: {rows: 1, columns: 1}\n  geometry: {row_spacing: {speed: 2}, "
+               "column_spacing: 1, first_slant_range: 40}\n" SONAR,
+         ":4:27: input.geometry.row_spacing.ping_rate: missing; add it (pings, and so rows, a "
+         "second)"},
+        {START "input:\n  uniform: {rows: 1, columns: 1}\n  geometry: {row_spacing: {speed: 2, "
+               "ping_rate: 0}, column_spacing: 1, first_slant_range: 40}\n" SONAR,
+         ":4:49: input.geometry.row_spacing.ping_rate: must be above 0 Hz, not 0"},
         {START "input: {uniform: {rows: 1}, geometry: {}}\n" SONAR,
          ":2:18: input.uniform.columns: missing; add it (range cells)"},
         {BASE "patch: {row: 1, column: 1}\n", ":4:8: patch: rows, columns are missing; add them"},
@@ -397,6 +404,8 @@ static void test_elements(void **state)
         {BASE "elements: {first_time: 60 ms, last_time: 50 ms}\n",
          ":4:42: elements.last_time: must not be before first_time, 0.06 s, but is 0.05 s"},
         {BASE "elements: {chirp: 0 ms}\n", ":4:19: elements.chirp: must be 1e-09...100 s, not 0"},
+        {BASE "elements: {source_level: 301 dB}\n",
+         ":4:26: elements.source_level: must be 0...300 dB, not 301"},
         {BASE "elements: {aspect_limit: 91 deg}\n",
          ":4:26: elements.aspect_limit: must be 0...1.5708 rad, not 1.58825"},
         {BASE "elements: {sampling_rate: 0.1}\n",

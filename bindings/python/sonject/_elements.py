@@ -22,7 +22,9 @@ class Elements(Parameters):
     lengths, NaN: about the origin, and twice the along-track resolution (length 0: a point);
     hydrophone_spacing_m: 0: the length; sampling_rate_hz: 0: twice the bandwidth, in pass band
     twice the frequency more; first_time_s, last_time_s: of the samples after transmission, NaN:
-    what the patch needs; aspect_limit_rad: echoes further off abeam are left out, 0: none.
+    what the patch needs; aspect_limit_rad: echoes further off abeam are left out, 0: none;
+    source_level_db: rms over 1 uPa at 1 m: series are pressures in Pa, less absorption; NaN: they
+    are ratios to the source's pressure at 1 m.
     """
 
     _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_elements_params
@@ -47,3 +49,4 @@ class Elements(Parameters):
     last_time_s: float = library_default()
     chirp_duration_s: float = library_default()
     aspect_limit_rad: float = library_default()
+    source_level_db: float = library_default()

@@ -377,6 +377,7 @@ class sonject_elements_params(Structure):
         ("last_time_s", c_double),
         ("chirp_duration_s", c_double),
         ("aspect_limit_rad", c_double),
+        ("source_level_db", c_double),
     ]
 
 

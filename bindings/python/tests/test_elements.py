@@ -282,6 +282,32 @@ def test_aspects_beyond_the_limit_are_left_out(context):
     assert numpy.all(limited[1] == 0) and numpy.abs(whole[1]).max() > 0
 
 
+def test_a_source_level_makes_pressures(context):
+    """The sonar equation: SL - absorption on the way there and back, at the water's own sound speed,
+    not the processor's; and sqrt(2) from rms to amplitude."""
+    array = dict(pings=1, hydrophones=2)
+    level, absorption, true_speed, assumed_speed = 217.0, 0.05, 1500.0, 1450.0
+    scenes = []
+    for elements in sonject.Elements(**array), sonject.Elements(source_level_db=level, **array):
+        scene = scene_of(context, SMOOTH, elements=elements)
+        scene.set_medium(
+            sonject.Medium(
+                sound_speed_mps=true_speed,
+                reference_sound_speed_mps=assumed_speed,
+                absorption_db_per_m=absorption,
+            )
+        )
+        scenes.append(scene)
+    ratio, pressure = (sonject.element_series(PATCH, scene) for scene in scenes)
+    below = (FIRST_RANGE + MIDDLE[1] * SPACING) * true_speed / assumed_speed  # of the seabed there
+    altitude, centre = 10.0, 0.2 + RADIUS
+    range_m = numpy.hypot(numpy.sqrt(below**2 - altitude**2), altitude - centre) - RADIUS
+    expected = level - 120 + decibels(numpy.sqrt(2)) - 2 * absorption * range_m
+    measured = decibels(numpy.abs(pressure).max() / numpy.abs(ratio).max())
+    # a bin off in range would be 0.002 dB, the processor's sound speed 0.07 dB
+    assert measured == pytest.approx(expected, abs=0.01)
+
+
 def test_what_is_wrong_is_told(context):
     def refused(match, **elements):
         scene = scene_of(context, SMOOTH, elements=sonject.Elements(**elements))
