@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "io/scene_file.h"
+#include "new_file.h"
 
 #define SCENE_FOLDER_CAPACITY 1024
 
@@ -54,7 +55,7 @@ static inline int remove_scene_folder(void **state)
 
 static inline void write_scene(struct scene_folder *folder, const char *text, size_t bytes)
 {
-    FILE *file = fopen(folder->file, "wb");
+    FILE *file = open_new_file(folder->file);
     assert_non_null(file);
     assert_int_equal(fwrite(text, 1, bytes, file), bytes);
     assert_int_equal(fclose(file), 0);

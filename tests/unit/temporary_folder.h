@@ -10,6 +10,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "new_file.h"
+
 #define TEMPORARY_CAPACITY 1024
 
 struct temporary_folder {
@@ -95,7 +97,7 @@ static inline unsigned char *bytes_of_file(const char *path, size_t *count)
 
 static inline void write_bytes(const char *path, const void *bytes, size_t count)
 {
-    FILE *file = fopen(path, "wb");
+    FILE *file = open_new_file(path);
     assert_non_null(file);
     assert_int_equal(fwrite(bytes, 1, count, file), count);
     assert_int_equal(fclose(file), 0);

@@ -801,7 +801,7 @@ struct damage {
 static void try_damaged(struct damage *damage, const unsigned char *bytes, size_t count)
 {
     struct raster_file *file;
-    FILE *out = fopen(damage->source, "wb");
+    FILE *out = open_new_file(damage->source);
     if (!out || fwrite(bytes, 1, count, out) != count || fclose(out) != 0)
         return;
     unlink(damage->copy);

@@ -278,7 +278,7 @@ static sonject_status expect_target_taken_or_explained(struct scene_folder *fold
     const char *place = folder->report.message + strlen(path);
     unsigned long line, column;
     int length = 0;
-    FILE *file = fopen(path, "wb");
+    FILE *file = open_new_file(path);
     assert_non_null(file);
     assert_int_equal(fwrite(text, 1, bytes, file), bytes);
     assert_int_equal(fclose(file), 0);
