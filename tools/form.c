@@ -3,11 +3,14 @@
 
 #include <sonject/sonject.h>
 
+#include "exit_code.h"
+#include "labels_argument.h"
 #include "stage.h"
 #include "verbs.h"
 
 struct form_options {
     struct stage_options stage;
+    const char *labels;
     const char *file;
     struct text_list overrides;
     bool allows_user_shapes;
@@ -20,6 +23,8 @@ static const struct argument arguments[] = {
      ARGUMENT_TEXTS, false, offsetof(struct form_options, overrides)},
     {"--allow-user-shapes", NULL, NULL, "runs code of shapes in the scene; only if you trust it",
      ARGUMENT_FLAG, false, offsetof(struct form_options, allows_user_shapes)},
+    {"--labels", NULL, "FORMATS", LABELS_HELP, ARGUMENT_TEXT, false,
+     offsetof(struct form_options, labels)},
     STAGE_ARGUMENTS(struct form_options),
 };
 
@@ -31,6 +36,7 @@ static sonject_status form(sonject_context *context, const void *verb_options,
     sonject_form_params_init(&params);
     params.file = options->file;
     params.folder = options->stage.output;
+    labels_parse("form", options->labels, &params.labels);
     params.overrides = (const char *const *)options->overrides.texts;
     params.override_count = (uint32_t)options->overrides.count;
     params.allows_user_shapes = options->allows_user_shapes;
@@ -40,6 +46,9 @@ static sonject_status form(sonject_context *context, const void *verb_options,
 static int work(const void *verb_options)
 {
     const struct form_options *options = verb_options;
+    uint32_t labels;
+    if (!labels_parse("form", options->labels, &labels))
+        return EXIT_CODE_USAGE;
     return stage_work(&options->stage, form, verb_options, "the result is in ");
 }
 

@@ -3,12 +3,15 @@
 
 #include <sonject/sonject.h>
 
+#include "exit_code.h"
+#include "labels_argument.h"
 #include "scene_arguments.h"
 #include "stage.h"
 #include "verbs.h"
 
 struct run_options {
     struct stage_options stage;
+    const char *labels;
     struct scene_arguments scene;
 };
 
@@ -16,6 +19,8 @@ static const struct argument arguments[] = {
     {"--output", "-o", "DIR", "folder for the results, made where missing", ARGUMENT_TEXT, true,
      offsetof(struct run_options, stage.output)},
     SCENE_ARGUMENTS(struct run_options),
+    {"--labels", NULL, "FORMATS", LABELS_HELP, ARGUMENT_TEXT, false,
+     offsetof(struct run_options, labels)},
     STAGE_ARGUMENTS(struct run_options),
 };
 
@@ -27,6 +32,7 @@ static sonject_status inject(sonject_context *context, const void *verb_options,
     sonject_run_params params;
     sonject_run_params_init(&params);
     params.folder = options->stage.output;
+    labels_parse("run", options->labels, &params.labels);
     sonject_status status = scene_arguments_read(context, &options->scene, &scene);
     if (status == SONJECT_OK)
         status = sonject_run(context, scene, &params, progress_update, progress, was_finished);
@@ -37,6 +43,9 @@ static sonject_status inject(sonject_context *context, const void *verb_options,
 static int work(const void *verb_options)
 {
     const struct run_options *options = verb_options;
+    uint32_t labels;
+    if (!labels_parse("run", options->labels, &labels))
+        return EXIT_CODE_USAGE;
     return stage_work(&options->stage, inject, verb_options, "the result is in ");
 }
 

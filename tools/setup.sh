@@ -8,7 +8,7 @@ build_packages="build-essential meson ninja-build pkg-config python3
 test_packages="cmake libassimp-dev libcmocka-dev python3-numpy python3-pytest python3-venv clang valgrind"
 # From PyPI: readers by others, which tests hold our files to, and what builds, checks and draws with
 # the Python package.
-readers="pyxtf meson-python mypy==1.18.2 matplotlib"
+readers="pyxtf pycocotools meson-python mypy==1.18.2 matplotlib"
 
 # dpkg calls programs from here, which a plain su leaves out.
 PATH="$PATH:/usr/sbin:/sbin"

@@ -490,13 +490,16 @@ class scene
         return description;
     }
 
-    /* Does the whole run on files into the folder; true if it was finished already. */
-    bool run(const std::string &folder, const progress &callback = progress()) const
+    /* Does the whole run on files into the folder; true if it was finished already. labels: sum of
+     * sonject_labels. */
+    bool run(const std::string &folder, const progress &callback = progress(),
+             std::uint32_t labels = 0) const
     {
         sonject_run_params params = defaults<sonject_run_params>();
         detail::progress_bridge bridge(callback);
         int was_finished = 0;
         params.folder = folder.c_str();
+        params.labels = labels;
         const sonject_status status =
             sonject_run(context_, handle_, &params, bridge.function(), &bridge, &was_finished);
         bridge.rethrow();

@@ -118,6 +118,14 @@ typedef struct sonject_object_truth {
                                   -infinity where nothing of it is in view */
     double seabed_strength_db; /* assumed: 10 log10 of the seabed's cross-section per m^2 at the
                                   centre's grazing angle */
+    double highlight_visible;  /* share, 0...1, of the energy that the patch holds of it which lies
+                                  in pixels where it dominates seabed, noise and all other objects;
+                                  NaN where nothing of it is in view */
+    double shadow_visible;     /* share, 0...1, of its shadow's pixels that no other object's
+                                  highlight fills; NaN where it casts none */
+    double overall_length_m;   /* of what is left of it, along its nose */
+    double overall_width_m;    /* along its own y */
+    double overall_height_m;   /* along its own z */
 } sonject_object_truth;
 
 /* Truth of object number index. truth->struct_size must be set. Errors: ARGUMENT. */

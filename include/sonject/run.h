@@ -11,9 +11,15 @@
 
 SONJECT_BEGIN_DECLARATIONS
 
+/* Labels beside coco.json; they may be added up. */
+typedef enum sonject_labels {
+    SONJECT_LABELS_YOLO = 1, /* image.txt, and the names of its classes in classes.txt */
+    SONJECT_LABELS_VOC = 2   /* image.xml, as Pascal VOC has it */
+} sonject_labels;
+
 typedef struct sonject_run_params {
     uint32_t struct_size;
-    uint32_t reserved;
+    uint32_t labels;    /* sum of sonject_labels; 0: none */
     const char *folder; /* for the results; made where missing */
 } sonject_run_params;
 

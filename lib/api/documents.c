@@ -9,36 +9,19 @@
 
 #include <jansson.h>
 
+#include <sonject/run.h>
 #include <sonject/version.h>
 
 #include "base/file.h"
+#include "base/json_document.h"
+#include "label/contact_record.h"
 
-static json_t *number(double value)
+/* Horizontal range of a level seabed at a slant range; NaN before the first return. */
+static double level_ground_range(const struct run_facts *facts, double slant_range_m)
 {
-    return isfinite(value) ? json_real(value) : json_null();
-}
-
-static json_t *count(uint64_t value)
-{
-    return json_integer((json_int_t)value);
-}
-
-/* Adds a member; jansson itself frees a value that cannot be added, and a document that lacks
- * something fails when it is written. */
-static void add(json_t *object, const char *key, json_t *value)
-{
-    json_object_set_new(object, key, value);
-}
-
-static sonject_status write_document(struct report *report, json_t *document, const char *path)
-{
-    char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    json_decref(document);
-    if (!text)
-        return report_out_of_memory(report, path);
-    const sonject_status status = file_write_whole(report, path, text, strlen(text));
-    free(text);
-    return status;
+    const double altitude = facts->scene->sonar.altitude_m;
+    return slant_range_m >= altitude ? sqrt((slant_range_m - altitude) * (slant_range_m + altitude))
+                                     : NAN;
 }
 
 /* Boxes of truth files count swath pixels, and say where they lie in metres. */
@@ -49,18 +32,24 @@ static json_t *box_document(const struct run_facts *facts, const sonject_box *bo
     const sonject_geometry_params *geometry = &facts->scene->geometry;
     const uint64_t row = facts->swath->patch.first_row + box->first_row;
     const uint64_t column = facts->swath->patch.first_column + box->first_column;
+    const double near =
+        geometry->first_slant_range_m + ((double)column - 0.5) * geometry->column_spacing_m;
+    const double width = (double)box->columns * geometry->column_spacing_m;
+    const double ground = level_ground_range(facts, near);
     json_t *document = json_object();
-    add(document, "row", count(row));
-    add(document, "column", count(column));
-    add(document, "rows", count(box->rows));
-    add(document, "columns", count(box->columns));
-    add(document, "along_track_m",
-        number(geometry->first_along_track_m + ((double)row - 0.5) * geometry->row_spacing_m));
-    add(document, "slant_range_m",
-        number(geometry->first_slant_range_m +
-               ((double)column - 0.5) * geometry->column_spacing_m));
-    add(document, "length_m", number((double)box->rows * geometry->row_spacing_m));
-    add(document, "width_m", number((double)box->columns * geometry->column_spacing_m));
+    json_add(document, "row", json_count(row));
+    json_add(document, "column", json_count(column));
+    json_add(document, "rows", json_count(box->rows));
+    json_add(document, "columns", json_count(box->columns));
+    json_add(
+        document, "along_track_m",
+        json_number(geometry->first_along_track_m + ((double)row - 0.5) * geometry->row_spacing_m));
+    json_add(document, "slant_range_m", json_number(near));
+    json_add(document, "ground_range_m", json_number(ground));
+    json_add(document, "length_m", json_number((double)box->rows * geometry->row_spacing_m));
+    json_add(document, "width_m", json_number(width));
+    json_add(document, "ground_width_m",
+             json_number(level_ground_range(facts, near + width) - ground));
     return document;
 }
 
@@ -74,11 +63,45 @@ static json_t *level_document(const struct run_facts *facts, uint32_t index)
     const sonject_object_truth *truth = &facts->result->objects[index];
     const bool is_physical = truth->level_kind == SONJECT_LEVEL_PHYSICAL;
     json_t *document = json_object();
-    add(document, "set_by", json_string(kinds[truth->level_kind]));
-    add(document, "asked_db", is_physical ? json_null() : number(object->level_db));
-    add(document, "gain_db", number(truth->level_gain_db));
-    add(document, "over_seabed_db", number(truth->over_seabed_db));
-    add(document, "seabed_strength_db", number(truth->seabed_strength_db));
+    json_add(document, "set_by", json_string(kinds[truth->level_kind]));
+    json_add(document, "asked_db", is_physical ? json_null() : json_number(object->level_db));
+    json_add(document, "gain_db", json_number(truth->level_gain_db));
+    json_add(document, "over_seabed_db", json_number(truth->over_seabed_db));
+    json_add(document, "seabed_strength_db", json_number(truth->seabed_strength_db));
+    return document;
+}
+
+/* Which edge a box of the patch touches: "swath", where the swath goes on "patch", or null. */
+static json_t *cut_document(const struct run_facts *facts, bool is_cut, const sonject_box *box)
+{
+    const struct region *patch = &facts->swath->patch;
+    const struct raster_layout *layout = &facts->swath->layout;
+    const bool goes_on = (box->first_row == 0 && patch->first_row > 0) ||
+                         (box->first_column == 0 && patch->first_column > 0) ||
+                         (box->first_row + box->rows == patch->rows &&
+                          patch->first_row + patch->rows < layout->rows) ||
+                         (box->first_column + box->columns == patch->columns &&
+                          patch->first_column + patch->columns < layout->columns);
+    return is_cut ? json_string(goes_on ? "patch" : "swath") : json_null();
+}
+
+/* Where a row and a range of the swath lie on the map; null where the recording does not tell. */
+static json_t *position_document(const struct run_facts *facts, double row, double ground_range_m)
+{
+    const struct track *track = &facts->swath->track;
+    struct place place;
+    return track_place(track, row, ground_range_m, facts->scene->geometry.side == SONJECT_SIDE_PORT,
+                       &place)
+               ? place_document(track->is_geographic, &place)
+               : json_null();
+}
+
+static json_t *dimensions_document(const sonject_object_truth *truth)
+{
+    json_t *document = json_object();
+    json_add(document, "length_m", json_number(truth->overall_length_m));
+    json_add(document, "width_m", json_number(truth->overall_width_m));
+    json_add(document, "height_m", json_number(truth->overall_height_m));
     return document;
 }
 
@@ -87,43 +110,53 @@ static json_t *object_document(const struct run_facts *facts, uint32_t index)
     const sonject_object_params *object = &facts->scene->objects[index];
     const sonject_object_truth *truth = &facts->result->objects[index];
     json_t *pose = json_object();
-    add(pose, "heading_deg", number(object->heading_rad * DEGREES_PER_RADIAN));
-    add(pose, "pitch_deg", number(object->pitch_rad * DEGREES_PER_RADIAN));
-    add(pose, "roll_deg", number(object->roll_rad * DEGREES_PER_RADIAN));
+    json_add(pose, "heading_deg", json_number(object->heading_rad * DEGREES_PER_RADIAN));
+    json_add(pose, "pitch_deg", json_number(object->pitch_rad * DEGREES_PER_RADIAN));
+    json_add(pose, "roll_deg", json_number(object->roll_rad * DEGREES_PER_RADIAN));
     json_t *document = json_object();
-    add(document, "id", count(index + 1));
-    add(document, "name", json_string(object->name));
-    add(document, "class", json_string(object->class_name));
-    add(document, "shape", json_string(shape_name(object->shape)));
-    add(document, "length_m", number(object->length_m));
-    add(document, "width_m", number(object->width_m));
-    add(document, "diameter_m", number(object->diameter_m));
-    add(document, "body_height_m", number(object->height_m));
-    add(document, "top_diameter_m", number(object->top_diameter_m));
-    add(document, "front_height_m", number(object->front_height_m));
-    add(document, "cuts", count(object->cut_count));
-    add(document, "pose", pose);
-    add(document, "burial_m", number(truth->burial_m));
-    add(document, "along_track_m", number(truth->along_track_m));
-    add(document, "slant_range_m", number(truth->slant_range_m));
-    add(document, "ground_range_m", number(truth->ground_range_m));
-    add(document, "height_m", number(truth->height_m));
-    add(document, "grazing_deg", number(truth->grazing_rad * DEGREES_PER_RADIAN));
-    add(document, "transmission_loss_db", number(truth->transmission_loss_db));
-    add(document, "row", number(truth->row + (double)facts->swath->patch.first_row));
-    add(document, "column", number(truth->column + (double)facts->swath->patch.first_column));
-    add(document, "visible", json_boolean(truth->is_visible));
-    add(document, "highlight_cut", json_boolean(truth->highlight_is_cut));
-    add(document, "shadow_cut", json_boolean(truth->shadow_is_cut));
-    add(document, "highlight", box_document(facts, &truth->highlight));
-    add(document, "shadow", box_document(facts, &truth->shadow));
-    add(document, "box", box_document(facts, &truth->both));
-    add(document, "highlight_pixels", count(truth->highlight_pixels));
-    add(document, "shadow_pixels", count(truth->shadow_pixels));
-    add(document, "target_strength_db", number(truth->target_strength_db));
-    add(document, "highlight_contrast_db", number(truth->highlight_contrast_db));
-    add(document, "shadow_contrast_db", number(truth->shadow_contrast_db));
-    add(document, "level", level_document(facts, index));
+    json_add(document, "id", json_count(index + 1));
+    json_add(document, "name", json_string(object->name));
+    json_add(document, "class", json_string(object->class_name));
+    json_add(document, "shape", json_string(shape_name(object->shape)));
+    json_add(document, "length_m", json_number(object->length_m));
+    json_add(document, "width_m", json_number(object->width_m));
+    json_add(document, "diameter_m", json_number(object->diameter_m));
+    json_add(document, "body_height_m", json_number(object->height_m));
+    json_add(document, "top_diameter_m", json_number(object->top_diameter_m));
+    json_add(document, "front_height_m", json_number(object->front_height_m));
+    json_add(document, "cuts", json_count(object->cut_count));
+    json_add(document, "pose", pose);
+    json_add(document, "burial_m", json_number(truth->burial_m));
+    json_add(document, "along_track_m", json_number(truth->along_track_m));
+    json_add(document, "slant_range_m", json_number(truth->slant_range_m));
+    json_add(document, "ground_range_m", json_number(truth->ground_range_m));
+    json_add(document, "height_m", json_number(truth->height_m));
+    json_add(document, "grazing_deg", json_number(truth->grazing_rad * DEGREES_PER_RADIAN));
+    json_add(document, "transmission_loss_db", json_number(truth->transmission_loss_db));
+    json_add(document, "row", json_number(truth->row + (double)facts->swath->patch.first_row));
+    json_add(document, "column",
+             json_number(truth->column + (double)facts->swath->patch.first_column));
+    json_add(document, "visible", json_boolean(truth->is_visible));
+    json_add(document, "highlight_cut", json_boolean(truth->highlight_is_cut));
+    json_add(document, "shadow_cut", json_boolean(truth->shadow_is_cut));
+    json_add(document, "highlight_cut_by",
+             cut_document(facts, truth->highlight_is_cut, &truth->highlight));
+    json_add(document, "shadow_cut_by", cut_document(facts, truth->shadow_is_cut, &truth->shadow));
+    json_add(document, "highlight_visible", json_number(truth->highlight_visible));
+    json_add(document, "shadow_visible", json_number(truth->shadow_visible));
+    json_add(document, "dimensions", dimensions_document(truth));
+    json_add(document, "position",
+             position_document(facts, truth->row + (double)facts->swath->patch.first_row,
+                               truth->ground_range_m));
+    json_add(document, "highlight", box_document(facts, &truth->highlight));
+    json_add(document, "shadow", box_document(facts, &truth->shadow));
+    json_add(document, "box", box_document(facts, &truth->both));
+    json_add(document, "highlight_pixels", json_count(truth->highlight_pixels));
+    json_add(document, "shadow_pixels", json_count(truth->shadow_pixels));
+    json_add(document, "target_strength_db", json_number(truth->target_strength_db));
+    json_add(document, "highlight_contrast_db", json_number(truth->highlight_contrast_db));
+    json_add(document, "shadow_contrast_db", json_number(truth->shadow_contrast_db));
+    json_add(document, "level", level_document(facts, index));
     return document;
 }
 
@@ -132,106 +165,63 @@ static json_t *blending_document(const sonject_statistics *statistics)
 {
     const bool has_texture = isfinite(statistics->seabed_shape);
     json_t *seabed = json_object();
-    add(seabed, "amplitude_contrast", number(statistics->seabed_amplitude_contrast));
-    add(seabed, "looks", number(statistics->seabed_looks));
-    add(seabed, "k_shape", has_texture ? number(statistics->seabed_shape) : json_null());
-    add(seabed, "row_correlation", number(statistics->seabed_row_correlation));
-    add(seabed, "column_correlation", number(statistics->seabed_column_correlation));
+    json_add(seabed, "amplitude_contrast", json_number(statistics->seabed_amplitude_contrast));
+    json_add(seabed, "looks", json_number(statistics->seabed_looks));
+    json_add(seabed, "k_shape", has_texture ? json_number(statistics->seabed_shape) : json_null());
+    json_add(seabed, "row_correlation", json_number(statistics->seabed_row_correlation));
+    json_add(seabed, "column_correlation", json_number(statistics->seabed_column_correlation));
     json_t *document = json_object();
-    add(document, "seabed_estimated", seabed);
-    add(document, "along_track_resolution_m", number(statistics->along_track_resolution_m));
-    add(document, "range_resolution_m", number(statistics->range_resolution_m));
-    add(document, "looks", number(statistics->looks));
-    add(document, "noise_floor_db", number(statistics->noise_floor_db));
-    add(document, "saturation_amplitude", number(statistics->saturation_amplitude));
+    json_add(document, "seabed_estimated", seabed);
+    json_add(document, "along_track_resolution_m",
+             json_number(statistics->along_track_resolution_m));
+    json_add(document, "range_resolution_m", json_number(statistics->range_resolution_m));
+    json_add(document, "looks", json_number(statistics->looks));
+    json_add(document, "noise_floor_db", json_number(statistics->noise_floor_db));
+    json_add(document, "saturation_amplitude", json_number(statistics->saturation_amplitude));
     return document;
+}
+
+/* Where the patch's corners lie on the map: first row near and far, last row far and near; null
+ * where that is not known. */
+static json_t *corners_document(const struct run_facts *facts)
+{
+    const sonject_geometry_params *geometry = &facts->scene->geometry;
+    const struct region *patch = &facts->swath->patch;
+    json_t *corners = json_array();
+    if (facts->swath->track.fix_count == 0) {
+        json_decref(corners);
+        return json_null();
+    }
+    for (int corner = 0; corner < 4; corner++) {
+        const bool is_last = corner >= 2;
+        const bool is_far = corner == 1 || corner == 2;
+        const double row = (double)(patch->first_row + (is_last ? patch->rows - 1 : 0));
+        const double column = (double)(patch->first_column + (is_far ? patch->columns - 1 : 0));
+        const double range = geometry->first_slant_range_m + column * geometry->column_spacing_m;
+        json_array_append_new(corners,
+                              position_document(facts, row, level_ground_range(facts, range)));
+    }
+    return corners;
 }
 
 sonject_status write_truth(struct report *report, const struct run_facts *facts, const char *path)
 {
     json_t *patch = json_object();
-    add(patch, "row", count(facts->swath->patch.first_row));
-    add(patch, "column", count(facts->swath->patch.first_column));
-    add(patch, "rows", count(facts->swath->patch.rows));
-    add(patch, "columns", count(facts->swath->patch.columns));
+    json_add(patch, "row", json_count(facts->swath->patch.first_row));
+    json_add(patch, "column", json_count(facts->swath->patch.first_column));
+    json_add(patch, "rows", json_count(facts->swath->patch.rows));
+    json_add(patch, "columns", json_count(facts->swath->patch.columns));
+    json_add(patch, "corners", corners_document(facts));
     json_t *objects = json_array();
     for (uint32_t i = 0; i < facts->result->object_count; i++)
         json_array_append_new(objects, object_document(facts, i));
     json_t *document = json_object();
-    add(document, "image", json_string(facts->image_name));
-    add(document, "range_axis", json_string("slant"));
-    add(document, "patch", patch);
-    add(document, "blending", blending_document(&facts->result->statistics));
-    add(document, "objects", objects);
-    return write_document(report, document, path);
-}
-
-/* The number of the object's class among the classes in order of first use, from 1. */
-static uint32_t category_of(const struct scene *scene, uint32_t index)
-{
-    uint32_t category = 0;
-    for (uint32_t i = 0; i <= index; i++) {
-        uint32_t first = 0;
-        while (strcmp(scene->objects[first].class_name, scene->objects[i].class_name) != 0)
-            first++;
-        category += first == i;
-        if (i < index &&
-            strcmp(scene->objects[i].class_name, scene->objects[index].class_name) == 0)
-            return category;
-    }
-    return category;
-}
-
-static json_t *coco_annotation(const struct run_facts *facts, uint32_t index)
-{
-    const sonject_object_truth *truth = &facts->result->objects[index];
-    const struct region *patch = &facts->swath->patch;
-    json_t *box = json_array();
-    json_array_append_new(box, count(patch->first_column + truth->both.first_column));
-    json_array_append_new(box, count(patch->first_row + truth->both.first_row));
-    json_array_append_new(box, count(truth->both.columns));
-    json_array_append_new(box, count(truth->both.rows));
-    json_t *annotation = json_object();
-    add(annotation, "id", count(index + 1));
-    add(annotation, "image_id", count(1));
-    add(annotation, "category_id", count(category_of(facts->scene, index)));
-    add(annotation, "bbox", box);
-    add(annotation, "area", count(truth->highlight_pixels + truth->shadow_pixels));
-    add(annotation, "segmentation", json_array());
-    add(annotation, "iscrowd", count(0));
-    return annotation;
-}
-
-sonject_status write_coco(struct report *report, const struct run_facts *facts, const char *path)
-{
-    const struct scene *scene = facts->scene;
-    json_t *image = json_object();
-    add(image, "id", count(1));
-    add(image, "file_name", json_string(facts->image_name));
-    add(image, "width", count(facts->swath->layout.columns));
-    add(image, "height", count(facts->swath->layout.rows));
-    json_t *images = json_array();
-    json_array_append_new(images, image);
-    json_t *annotations = json_array();
-    json_t *categories = json_array();
-    uint32_t known = 0;
-    for (uint32_t i = 0; i < scene->object_count; i++) {
-        const uint32_t category = category_of(scene, i);
-        if (category > known) {
-            json_t *entry = json_object();
-            known = category;
-            add(entry, "id", count(category));
-            add(entry, "name", json_string(scene->objects[i].class_name));
-            json_array_append_new(categories, entry);
-        }
-        if (facts->result->objects[i].is_visible)
-            json_array_append_new(annotations, coco_annotation(facts, i));
-    }
-    json_t *document = json_object();
-    add(document, "images", images);
-    add(document, "annotations", annotations);
-    add(document, "categories", categories);
-    return write_document(report, document, path);
+    json_add(document, "image", json_string(facts->image_name));
+    json_add(document, "range_axis", json_string("slant"));
+    json_add(document, "patch", patch);
+    json_add(document, "blending", blending_document(&facts->result->statistics));
+    json_add(document, "objects", objects);
+    return json_document_write(report, document, path);
 }
 
 static uint64_t peak_memory(void)
@@ -244,12 +234,12 @@ static json_t *times_document(const struct run_facts *facts)
 {
     const sonject_statistics *statistics = &facts->result->statistics;
     json_t *document = json_object();
-    add(document, "read", number(facts->read_s));
-    add(document, "trace", number(statistics->trace_s));
-    add(document, "form", number(statistics->form_s));
-    add(document, "inject", number(statistics->inject_s));
-    add(document, "write", number(facts->write_s));
-    add(document, "total", number(facts->total_s));
+    json_add(document, "read", json_number(facts->read_s));
+    json_add(document, "trace", json_number(statistics->trace_s));
+    json_add(document, "form", json_number(statistics->form_s));
+    json_add(document, "inject", json_number(statistics->inject_s));
+    json_add(document, "write", json_number(facts->write_s));
+    json_add(document, "total", json_number(facts->total_s));
     return document;
 }
 
@@ -257,36 +247,52 @@ static json_t *options_document(const struct scene *scene)
 {
     const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
     json_t *document = json_object();
-    add(document, "mode", json_string(resynthesises ? "resynthesise" : "composite"));
-    add(document, "columns",
+    json_add(document, "mode", json_string(resynthesises ? "resynthesise" : "composite"));
+    json_add(
+        document, "columns",
         json_string(scene->injection.column_rule == SONJECT_COLUMNS_PAPER ? "paper" : "focused"));
-    add(document, "ray_scale", number(scene->injection.ray_scale));
-    add(document, "influence_db", number(scene->injection.influence_db));
-    add(document, "match_response",
+    json_add(document, "ray_scale", json_number(scene->injection.ray_scale));
+    json_add(document, "influence_db", json_number(scene->injection.influence_db));
+    json_add(
+        document, "match_response",
         json_string(scene->injection.match_response == SONJECT_MATCH_IMAGE ? "image" : "nominal"));
-    add(document, "match_looks",
-        scene->injection.match_looks == 0.0 ? json_string("image")
-                                            : number(scene->injection.match_looks));
-    add(document, "match_saturation",
-        json_string(scene->injection.match_saturation == SONJECT_MATCH_IMAGE ? "image"
-                                                                             : "full_scale"));
-    add(document, "seabed_lambert_db", number(10.0 * log10(scene->seabed.lambert)));
-    add(document, "interactions", count(scene->injection.interactions));
-    add(document, "estimator",
-        json_string(scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE ? "brute_force"
-                                                                                : "connect"));
+    json_add(document, "match_looks",
+             scene->injection.match_looks == 0.0 ? json_string("image")
+                                                 : json_number(scene->injection.match_looks));
+    json_add(document, "match_saturation",
+             json_string(scene->injection.match_saturation == SONJECT_MATCH_IMAGE ? "image"
+                                                                                  : "full_scale"));
+    json_add(document, "seabed_lambert_db", json_number(10.0 * log10(scene->seabed.lambert)));
+    json_add(document, "interactions", json_count(scene->injection.interactions));
+    json_add(document, "estimator",
+             json_string(scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE ? "brute_force"
+                                                                                     : "connect"));
     return document;
 }
 
 static json_t *comparison_document(const sonject_statistics *statistics)
 {
     json_t *document = json_object();
-    add(document, "level_change_db", number(statistics->level_change_db));
-    add(document, "input_contrast", number(statistics->input_contrast));
-    add(document, "output_contrast", number(statistics->output_contrast));
-    add(document, "histogram_distance", number(statistics->histogram_distance));
-    add(document, "correlation", number(statistics->correlation));
+    json_add(document, "level_change_db", json_number(statistics->level_change_db));
+    json_add(document, "input_contrast", json_number(statistics->input_contrast));
+    json_add(document, "output_contrast", json_number(statistics->output_contrast));
+    json_add(document, "histogram_distance", json_number(statistics->histogram_distance));
+    json_add(document, "correlation", json_number(statistics->correlation));
     return document;
+}
+
+static const struct {
+    const char *name;
+    uint32_t format;
+} label_names[] = {{"yolo", SONJECT_LABELS_YOLO}, {"voc", SONJECT_LABELS_VOC}};
+
+static json_t *labels_document(uint32_t formats)
+{
+    json_t *names = json_array();
+    for (size_t i = 0; i < sizeof label_names / sizeof *label_names; i++)
+        if (formats & label_names[i].format)
+            json_array_append_new(names, json_string(label_names[i].name));
+    return names;
 }
 
 /* JSON's readers take integers of 63 bits at the most; larger seeds are written as text. */
@@ -294,7 +300,7 @@ static json_t *seed_document(uint64_t seed)
 {
     char text[24];
     if (seed <= (uint64_t)INT64_MAX)
-        return count(seed);
+        return json_count(seed);
     snprintf(text, sizeof text, "%llu", (unsigned long long)seed);
     return json_string(text);
 }
@@ -303,36 +309,52 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
 {
     const sonject_statistics *statistics = &facts->result->statistics;
     json_t *device = json_object();
-    add(device, "name", json_string(facts->device->name));
-    add(device, "platform", json_string(facts->device->platform));
-    add(device, "driver", json_string(facts->device->driver));
-    add(device, "width", count(facts->device->width));
+    json_add(device, "name", json_string(facts->device->name));
+    json_add(device, "platform", json_string(facts->device->platform));
+    json_add(device, "driver", json_string(facts->device->driver));
+    json_add(device, "width", json_count(facts->device->width));
     json_t *document = json_object();
-    add(document, "sonject", json_string(sonject_version()));
-    add(document, "scene_hash", json_string(facts->scene_hash));
-    add(document, "seed", seed_document(facts->scene->injection.seed));
-    add(document, "device", device);
-    add(document, "options", options_document(facts->scene));
-    add(document, "image", json_string(facts->image_name));
-    add(document, "image_is_lossless", json_boolean(facts->swath->is_lossless));
-    add(document, "times_s", times_document(facts));
-    add(document, "pings", count(statistics->pings));
-    add(document, "rays", count(statistics->rays));
-    add(document, "ray_queries", count(statistics->ray_queries));
-    add(document, "impulses", count(statistics->impulses));
-    add(document, "peak_memory_bytes", count(peak_memory()));
-    add(document, "noise_floor_db", number(statistics->noise_floor_db));
-    add(document, "blending", blending_document(statistics));
-    add(document, "input_clipped_pixels", count(statistics->input_clipped));
-    add(document, "output_clipped_pixels", count(statistics->output_clipped));
-    add(document, "changed_pixels", count(statistics->changed_pixels));
-    add(document, "seabed_comparison",
-        facts->scene->injection.mode == SONJECT_MODE_RESYNTHESISE ? comparison_document(statistics)
-                                                                  : json_null());
-    return write_document(report, document, path);
+    json_add(document, "sonject", json_string(sonject_version()));
+    json_add(document, "scene_hash", json_string(facts->scene_hash));
+    json_add(document, "seed", seed_document(facts->scene->injection.seed));
+    json_add(document, "device", device);
+    json_add(document, "options", options_document(facts->scene));
+    json_add(document, "image", json_string(facts->image_name));
+    json_add(document, "labels", labels_document(facts->label_formats));
+    json_add(document, "image_is_lossless", json_boolean(facts->swath->is_lossless));
+    json_add(document, "times_s", times_document(facts));
+    json_add(document, "pings", json_count(statistics->pings));
+    json_add(document, "rays", json_count(statistics->rays));
+    json_add(document, "ray_queries", json_count(statistics->ray_queries));
+    json_add(document, "impulses", json_count(statistics->impulses));
+    json_add(document, "peak_memory_bytes", json_count(peak_memory()));
+    json_add(document, "noise_floor_db", json_number(statistics->noise_floor_db));
+    json_add(document, "blending", blending_document(statistics));
+    json_add(document, "input_clipped_pixels", json_count(statistics->input_clipped));
+    json_add(document, "output_clipped_pixels", json_count(statistics->output_clipped));
+    json_add(document, "changed_pixels", json_count(statistics->changed_pixels));
+    json_add(document, "seabed_comparison",
+             facts->scene->injection.mode == SONJECT_MODE_RESYNTHESISE
+                 ? comparison_document(statistics)
+                 : json_null());
+    return json_document_write(report, document, path);
 }
 
-bool run_is_finished(const char *path, const char *scene_hash)
+/* The formats that a run.json names. */
+static uint32_t label_formats_of(const json_t *document)
+{
+    const json_t *names = json_object_get(document, "labels");
+    uint32_t formats = 0;
+    for (size_t i = 0; i < json_array_size(names); i++) {
+        const char *name = json_string_value(json_array_get(names, i));
+        for (size_t k = 0; name && k < sizeof label_names / sizeof *label_names; k++)
+            if (strcmp(name, label_names[k].name) == 0)
+                formats |= label_names[k].format;
+    }
+    return formats;
+}
+
+bool run_is_finished(const char *path, const char *scene_hash, uint32_t label_formats)
 {
     struct report ignored = {{0}, NULL, NULL};
     char *text = NULL;
@@ -342,7 +364,8 @@ bool run_is_finished(const char *path, const char *scene_hash)
         return false;
     json_t *document = json_loads(text, 0, NULL);
     const char *hash = json_string_value(json_object_get(document, "scene_hash"));
-    const bool is_same = hash && strcmp(hash, scene_hash) == 0;
+    const bool is_same =
+        hash && strcmp(hash, scene_hash) == 0 && (label_formats & ~label_formats_of(document)) == 0;
     json_decref(document);
     free(text);
     return is_same;

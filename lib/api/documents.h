@@ -12,15 +12,15 @@ struct run_facts {
     const struct device *device;
     const char *scene_hash; /* of scene and input: see run.c */
     const char *image_name;
+    uint32_t label_formats; /* sum of sonject_labels */
     double read_s, write_s, total_s;
 };
 
 /* Each writes one file, whole or not at all. Errors: STORAGE, MEMORY. */
 sonject_status write_truth(struct report *report, const struct run_facts *facts, const char *path);
-sonject_status write_coco(struct report *report, const struct run_facts *facts, const char *path);
 sonject_status write_run(struct report *report, const struct run_facts *facts, const char *path);
 
-/* True if path is the run.json of a finished run with that hash. */
-bool run_is_finished(const char *path, const char *scene_hash);
+/* True if path is the run.json of a finished run with that hash and at least those labels. */
+bool run_is_finished(const char *path, const char *scene_hash, uint32_t label_formats);
 
 #endif

@@ -6,6 +6,7 @@
 #include <sonject/run.h>
 
 #include "api/documents.h"
+#include "api/label_files.h"
 #include "api/layers.h"
 #include "api/run_scene.h"
 #include "api/scene_hash.h"
@@ -55,14 +56,12 @@ static sonject_status write_documents(struct report *report, struct run_facts *f
                                       const char *folder, double run_start, double write_start)
 {
     char *truth = path_join(folder, "truth.json");
-    char *coco = path_join(folder, "coco.json");
     char *run = path_join(folder, "run.json");
-    sonject_status status =
-        truth && coco && run ? SONJECT_OK : report_out_of_memory(report, "a path");
+    sonject_status status = truth && run ? SONJECT_OK : report_out_of_memory(report, "a path");
     if (status == SONJECT_OK)
         status = write_truth(report, facts, truth);
     if (status == SONJECT_OK)
-        status = write_coco(report, facts, coco);
+        status = write_labels(report, facts, folder);
     if (status == SONJECT_OK) {
         const double now = clock_seconds();
         facts->write_s = now - write_start;
@@ -70,7 +69,6 @@ static sonject_status write_documents(struct report *report, struct run_facts *f
         status = write_run(report, facts, run);
     }
     free(truth);
-    free(coco);
     free(run);
     return status;
 }
@@ -162,7 +160,8 @@ sonject_status run_scene(struct sonject_context *context, const struct run_reque
         status = report_out_of_memory(report, "a path");
     if (status == SONJECT_OK)
         status = scene_hash(report, scene, swath.identity, hash);
-    const bool is_finished = status == SONJECT_OK && run_is_finished(run_path, hash);
+    const bool is_finished =
+        status == SONJECT_OK && run_is_finished(run_path, hash, request->label_formats);
     if (status == SONJECT_OK && !is_finished)
         status = folder_make(report, request->folder);
     if (status == SONJECT_OK && !is_finished)
@@ -172,6 +171,7 @@ sonject_status run_scene(struct sonject_context *context, const struct run_reque
         facts.swath = &swath;
         facts.scene_hash = hash;
         facts.image_name = image_name;
+        facts.label_formats = request->label_formats;
         facts.read_s = clock_seconds() - start;
         status = run_swath(context, request, &swath, &facts, start);
     }
@@ -200,6 +200,10 @@ sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
         return status;
     if (!taken.folder || !taken.folder[0])
         return null_argument(&context->report, "folder");
-    const struct run_request request = {&scene->scene, NULL, taken.folder, progress, user};
+    if (taken.labels & ~LABEL_FORMATS)
+        return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
+                              "labels must be a sum of sonject_labels");
+    const struct run_request request = {&scene->scene, NULL, taken.folder,
+                                        progress,      user, taken.labels};
     return run_scene(context, &request, was_finished);
 }

@@ -2,9 +2,13 @@
 #ifndef SONJECT_API_RUN_SCENE_H
 #define SONJECT_API_RUN_SCENE_H
 
+#include <sonject/run.h>
+
 #include "api/handles.h"
 #include "api/swath.h"
 #include "inject/impulse_file.h"
+
+#define LABEL_FORMATS ((uint32_t)(SONJECT_LABELS_YOLO | SONJECT_LABELS_VOC))
 
 struct run_request {
     const struct scene *scene;
@@ -12,6 +16,7 @@ struct run_request {
     const char *folder;
     sonject_progress_function progress; /* may be NULL */
     void *user;
+    uint32_t label_formats; /* sum of sonject_labels */
 };
 
 /* Injects and writes the folder's files: sonject_run and sonject_form. */

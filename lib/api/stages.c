@@ -261,7 +261,7 @@ static sonject_status form_file(struct sonject_context *context, const sonject_s
 {
     struct report *report = &context->report;
     const struct impulse_head *head = impulse_file_head(impulses);
-    struct run_request request = {NULL, impulses, params->folder, progress, user};
+    struct run_request request = {NULL, impulses, params->folder, progress, user, params->labels};
     struct scene read;
     scene_init(&read);
     sonject_status status = check_version(report, params->file, head);
@@ -292,6 +292,9 @@ sonject_status sonject_form(sonject_context *context, const sonject_scene *scene
         return status;
     if (!taken.file || !taken.file[0] || !taken.folder || !taken.folder[0])
         return null_argument(&context->report, "file and folder");
+    if (taken.labels & ~LABEL_FORMATS)
+        return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
+                              "labels must be a sum of sonject_labels");
     status = check_overrides(&context->report, scene, &taken);
     if (status == SONJECT_OK)
         status = impulse_file_open(&context->report, taken.file, &impulses);

@@ -43,6 +43,7 @@ static sonject_status choose_patch(struct report *report, const struct scene *sc
 static sonject_status describe_file(struct report *report, const struct scene *scene,
                                     const struct swath_file *file, struct swath *swath)
 {
+    const struct xtf_file *recording = swath_file_xtf(file);
     swath_file_layout(file, &swath->layout);
     swath->is_lossless = swath_file_is_lossless(file);
     swath->is_complex = swath->layout.channels == 2;
@@ -63,7 +64,7 @@ static sonject_status describe_file(struct report *report, const struct scene *s
     if (swath->is_complex && scene->transfer.kind != SONJECT_TRANSFER_AMPLITUDE)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "a complex image cannot have a transfer function: take transfer out");
-    return SONJECT_OK;
+    return recording ? track_of_recording(&swath->track, report, recording) : SONJECT_OK;
 }
 
 static sonject_status describe_made(const struct scene *scene, struct swath *swath)
@@ -103,8 +104,10 @@ static sonject_status open_and_describe(struct report *report, const struct scen
     }
     if (status == SONJECT_OK)
         status = choose_patch(report, scene, swath);
-    if (status != SONJECT_OK)
+    if (status != SONJECT_OK) {
         swath_file_close(file);
+        track_clear(&swath->track);
+    }
     return status;
 }
 
@@ -113,6 +116,7 @@ sonject_status swath_describe(struct report *report, const struct scene *scene, 
     struct swath_file *file;
     const sonject_status status = open_and_describe(report, scene, swath, &file);
     swath_file_close(&file);
+    track_clear(&swath->track);
     return status;
 }
 
@@ -236,6 +240,7 @@ void swath_close(struct swath *swath)
 {
     free(swath->stored);
     free(swath->pixels);
+    track_clear(&swath->track);
     memset(swath, 0, sizeof *swath);
 }
 

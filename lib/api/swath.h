@@ -6,6 +6,7 @@
 #include "base/report.h"
 #include "image/raster.h"
 #include "inject/injection.h"
+#include "io/track.h"
 #include "scene/scene.h"
 
 /* Owned parts are freed by swath_close. */
@@ -17,6 +18,7 @@ struct swath {
     bool is_complex;
     bool is_made; /* by sonject */
     bool is_lossless;
+    struct track track;                /* of a recording */
     uint64_t clipped;                  /* pixels at full scale */
     char identity[HASH_TEXT_CAPACITY]; /* of path, size, time and patch pixels; of parameters if
                                           made */

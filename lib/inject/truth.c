@@ -60,7 +60,7 @@ static bool is_on_object(const struct object_echo *echo, size_t rows, size_t row
 
 /* Expected energies of a pixel, m^2. */
 struct pixel_levels {
-    double own, background, hidden_share;
+    double own, others, background, hidden_share;
 };
 
 static struct pixel_levels levels_at(const struct patch_level *level, const struct echoes *echoes,
@@ -71,6 +71,7 @@ static struct pixel_levels levels_at(const struct patch_level *level, const stru
     const double without = echoes->seabed_energy[i];
     struct pixel_levels levels;
     levels.own = echo->energy[local];
+    levels.others = fmax(0.0, (double)echoes->target_energy[i] - levels.own);
     levels.background = fmax(0.0, without - echoes->lost_energy[i]) +
                         level->noise_ratio * level->cell_energy[column];
     levels.hidden_share = without > 0.0 ? echo->lost[local] / without : 0.0;
@@ -96,6 +97,8 @@ static void find_object(const struct patch_level *level, const struct echoes *ec
     memset(&shadow, 0, sizeof shadow);
     memset(&both, 0, sizeof both);
     double brightest = 0.0;
+    double energy = 0.0;
+    double dominant = 0.0;
     for (size_t row = 0; echo->energy && row < echoes->rows; row++)
         for (size_t column = echo->first_column; column < echo->first_column + echo->columns;
              column++) {
@@ -103,6 +106,9 @@ static void find_object(const struct patch_level *level, const struct echoes *ec
             const struct pixel_levels levels = levels_at(level, echoes, echo, row, column);
             const double plain = level->cell_energy[column];
             brightest = fmax(brightest, levels.own);
+            energy += levels.own;
+            if (levels.own > levels.background && levels.own > levels.others)
+                dominant += levels.own;
             if (levels.own > levels.background && is_on_object(echo, echoes->rows, row, column)) {
                 result->highlight[i] = 255;
                 result->labels[i] = (uint8_t)(number + 1);
@@ -125,9 +131,28 @@ static void find_object(const struct patch_level *level, const struct echoes *ec
     truth->both = box_of(&both);
     truth->highlight_pixels = highlight.pixels;
     truth->shadow_pixels = shadow.pixels;
+    truth->highlight_visible = energy > 0.0 ? dominant / energy : NAN;
     truth->target_strength_db = decibels(brightest);
     truth->highlight_contrast_db = decibels_over(&highlight);
     truth->shadow_contrast_db = decibels_over(&shadow);
+}
+
+/* Of an object's shadow, when the masks of all objects are known. */
+static void find_visible_shadow(const struct patch_level *level, const struct echoes *echoes,
+                                uint32_t number, struct injection_result *result)
+{
+    const struct object_echo *echo = &echoes->objects[number];
+    sonject_object_truth *truth = &result->objects[number];
+    uint64_t pixels = 0;
+    for (size_t row = 0; echo->energy && row < echoes->rows; row++)
+        for (size_t local = 0; local < echo->columns; local++) {
+            const size_t column = echo->first_column + local;
+            const size_t i = row * echoes->columns + column;
+            if (result->shadow[i] && levels_at(level, echoes, echo, row, column).hidden_share > 0.5)
+                pixels++;
+        }
+    truth->shadow_visible =
+        truth->shadow_pixels > 0 ? (double)pixels / (double)truth->shadow_pixels : NAN;
 }
 
 static double transmission_loss(const struct tracer *tracer, const double origin[3], double grazing)
@@ -137,12 +162,35 @@ static double transmission_loss(const struct tracer *tracer, const double origin
            tracer->scene->medium.absorption_db_per_m * ray.length_m;
 }
 
+/* From one side of an object to the other. */
+static double overall_size(const struct tracer *tracer, const struct placed_object *object,
+                           const double direction[3])
+{
+    const double back[3] = {-direction[0], -direction[1], -direction[2]};
+    double low = INFINITY;
+    double high = -INFINITY;
+    for (uint32_t i = 0; i < object->part_count; i++) {
+        const struct placement *part = &tracer->placements[object->first_part + i];
+        double at = 0.0;
+        for (int axis = 0; axis < 3; axis++)
+            at += (part->centre[axis] - object->origin[axis]) * direction[axis];
+        high = fmax(high, at + placement_extent(part, direction));
+        low = fmin(low, at - placement_extent(part, back));
+    }
+    return high > low ? high - low : 0.0;
+}
+
 static void locate(const struct tracer *tracer, uint32_t number, sonject_object_truth *truth)
 {
     const struct placed_object *object = &tracer->objects[number];
     const double *origin = object->origin;
     const struct patch_view *view = &tracer->view;
+    double axes[3][3];
+    object_axes(axes, &tracer->scene->objects[number], view->is_mirrored);
     truth->struct_size = sizeof *truth;
+    truth->overall_length_m = overall_size(tracer, object, axes[0]);
+    truth->overall_width_m = overall_size(tracer, object, axes[1]);
+    truth->overall_height_m = overall_size(tracer, object, axes[2]);
     truth->along_track_m = origin[0];
     truth->ground_range_m = origin[1];
     truth->height_m = origin[2];
@@ -165,4 +213,6 @@ void find_truth(const struct tracer *tracer, const struct patch_level *level,
     for (size_t i = 0; i < echoes->rows * echoes->columns; i++)
         if (result->highlight[i])
             result->shadow[i] = 0;
+    for (uint32_t i = 0; i < echoes->object_count; i++)
+        find_visible_shadow(level, echoes, i, result);
 }

@@ -202,6 +202,9 @@ static sonject_status add_ping(struct opening *opening, const unsigned char *pac
     ping.easting = has_sensor ? sensor_x : double_at(packet, 136);
     ping.northing = has_sensor ? sensor_y : double_at(packet, 128);
     ping.altitude_m = float_at(packet, 196);
+    ping.heading_deg = float_at(packet, 212);
+    if (ping.heading_deg == 0.0f)
+        ping.heading_deg = float_at(packet, 124);
     ping.slant_range_m = float_at(channel, 4);
     ping.delay_s = float_at(channel, 12);
     ping.duration_s = float_at(channel, 16);

@@ -18,6 +18,7 @@ enum xtf_side {
 struct xtf_ping {
     double easting, northing; /* of the sonar, else of the ship, in the file's units */
     float altitude_m;
+    float heading_deg;   /* of the sonar, else of the ship; clockwise from north */
     float slant_range_m; /* to the far edge of the last cell */
     float delay_s;       /* until the first cell's near edge */
     float duration_s;    /* of all cells */

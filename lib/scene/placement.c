@@ -99,6 +99,14 @@ static void turn_part(struct placement *part, const struct scene_part *in_object
             part->centre[i] += in_object->centre[k] * axes[k][i];
 }
 
+void object_axes(double axes[3][3], const sonject_object_params *object, bool is_mirrored)
+{
+    /* the image's along-track axis is -x in a mirrored view: heading and roll change sense; what is
+     * turned stays as it is, a left hand does not become a right one */
+    turn_axes(axes, is_mirrored ? PI - object->heading_rad : object->heading_rad, object->pitch_rad,
+              is_mirrored ? -object->roll_rad : object->roll_rad);
+}
+
 /* The parts of an object, their centres counted from its origin in axes of the view. Returns their
  * number. parts: room for them, or NULL to count. */
 static uint32_t pose_parts(struct placement *parts, const struct scene *scene, uint32_t object,
@@ -107,10 +115,7 @@ static uint32_t pose_parts(struct placement *parts, const struct scene *scene, u
     const sonject_object_params *whole = &scene->objects[object];
     double axes[3][3];
     uint32_t count = 0;
-    /* the image's along-track axis is -x in a mirrored view: heading and roll change sense; what is
-     * turned stays as it is, a left hand does not become a right one */
-    turn_axes(axes, is_mirrored ? PI - whole->heading_rad : whole->heading_rad, whole->pitch_rad,
-              is_mirrored ? -whole->roll_rad : whole->roll_rad);
+    object_axes(axes, whole, is_mirrored);
     if (whole->shape != SONJECT_SHAPE_PARTS) {
         if (parts) {
             take_shape(parts, scene, object, whole);

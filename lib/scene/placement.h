@@ -44,6 +44,9 @@ sonject_status placements_init(struct placements *placements, struct report *rep
                                double first_row, double first_column);
 void placements_clear(struct placements *placements);
 
+/* Nose, own y and own z of an object in the axes of a view. */
+void object_axes(double axes[3][3], const sonject_object_params *object, bool is_mirrored);
+
 /* How far a part reaches from its centre along a unit direction of the view. */
 double placement_extent(const struct placement *placement, const double direction[3]);
 

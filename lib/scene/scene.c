@@ -1,5 +1,6 @@
 #include "scene/scene.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -51,6 +52,16 @@ static void *make_room(void *elements, uint32_t count, size_t size)
     return realloc(elements, (count == 0 ? 1 : 2 * (size_t)count) * size);
 }
 
+/* The names that an object has where it was given none. */
+static void name_object(sonject_object_params *object, uint32_t number)
+{
+    const char *shape = shape_name(object->shape);
+    if (!object->name[0])
+        snprintf(object->name, sizeof object->name, "object %u", (unsigned)number);
+    if (!object->class_name[0] && shape)
+        snprintf(object->class_name, sizeof object->class_name, "%s", shape);
+}
+
 sonject_status scene_append_object(struct scene *scene, struct report *report,
                                    const sonject_object_params *object)
 {
@@ -65,6 +76,7 @@ sonject_status scene_append_object(struct scene *scene, struct report *report,
         return report_out_of_memory(report, "objects");
     scene->objects = objects;
     scene->objects[scene->object_count++] = *object;
+    name_object(&scene->objects[scene->object_count - 1], scene->object_count);
     return SONJECT_OK;
 }
 

@@ -69,7 +69,8 @@ void scene_init(struct scene *scene);
 /* Frees what the scene owns and makes it empty again. */
 void scene_clear(struct scene *scene);
 
-/* Appends a copy. Errors: INPUT (too many), MEMORY. */
+/* Appends a copy, with the name and class that it has by default where it has none. Errors: INPUT
+ * (too many), MEMORY. */
 sonject_status scene_append_object(struct scene *scene, struct report *report,
                                    const sonject_object_params *object);
 

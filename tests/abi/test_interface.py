@@ -71,7 +71,7 @@ SIZES = {
     "sonject_element_layout": 176,
     "sonject_pixels": 40,
     "sonject_box": 32,
-    "sonject_object_truth": 256,
+    "sonject_object_truth": 296,
     "sonject_statistics": 208,
     "sonject_run_params": 16,
     "sonject_quicklook_params": 136,

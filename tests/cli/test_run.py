@@ -25,6 +25,8 @@ RESULTS = {
     "influence.png",
     "truth.json",
     "coco.json",
+    "contacts.json",
+    "contacts.csv",
     "quicklook.png",
     "run.json",
 }

@@ -10,7 +10,7 @@ import pytest
 from conftest import COMMAND, assert_refused
 
 VERBS = {"run", "trace", "form", "elements", "check", "measure", "quicklook", "seabed", "devices"}
-NOT_THERE = r"\b(merge|campaign|convert)\b|--(shard|labels)"
+NOT_THERE = r"\b(merge|campaign|convert)\b|--shard"
 
 
 def test_version(sonject):

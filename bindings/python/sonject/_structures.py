@@ -322,6 +322,11 @@ class sonject_object_truth(Structure):
         ("level_gain_db", c_double),
         ("over_seabed_db", c_double),
         ("seabed_strength_db", c_double),
+        ("highlight_visible", c_double),
+        ("shadow_visible", c_double),
+        ("overall_length_m", c_double),
+        ("overall_width_m", c_double),
+        ("overall_height_m", c_double),
     ]
 
 
@@ -397,7 +402,7 @@ class sonject_element_layout(Structure):
 class sonject_run_params(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
-        ("reserved", c_uint32),
+        ("labels", c_uint32),
         ("folder", c_char_p),
     ]
 
@@ -418,7 +423,7 @@ class sonject_form_params(Structure):
         ("folder", c_char_p),
         ("overrides", POINTER(c_char_p)),
         ("allows_user_shapes", c_uint32),
-        ("reserved", c_uint32),
+        ("labels", c_uint32),
     ]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any, Optional, Union
+from typing import Any, Iterable, Optional, Union
 
 import numpy
 
@@ -22,7 +22,7 @@ from ._values import (
     sized,
 )
 from .context import Context, default_context
-from .enumerations import RangeAxis
+from .enumerations import LabelFormat, RangeAxis
 from .parameters import Geometry, Recording, Sonar, Synthetic, Transfer
 from .result import Measurement, Result, _copied
 from .scene import Scene
@@ -63,14 +63,27 @@ def inject(patch: Any, scene: Scene, progress: Optional[Progress] = None) -> Res
     return Result(context, pointer, count)
 
 
-def run(scene: Scene, folder: PathLike, progress: Optional[Progress] = None) -> bool:
+def _label_sum(labels: Iterable[Union[str, LabelFormat]]) -> int:
+    if isinstance(labels, str):
+        raise TypeError("labels must be a sequence of formats, such as ['yolo', 'voc']")
+    return sum({choice("labels", LabelFormat, label) for label in labels})
+
+
+def run(
+    scene: Scene,
+    folder: PathLike,
+    progress: Optional[Progress] = None,
+    labels: Iterable[Union[str, LabelFormat]] = (),
+) -> bool:
     """Reads the scene's input, injects, and writes the result files into folder.
 
+    labels: formats ("yolo", "voc") of label files beside coco.json.
     False, with nothing done, if folder already held the finished result of the same inputs.
     """
     context = scene.context
     params = initialised(s.sonject_run_params)
     params.folder = file_name("folder", folder)
+    params.labels = _label_sum(labels)
     bridge = ProgressBridge(progress)
     was_finished = ctypes.c_int()
     context.call(
@@ -112,12 +125,13 @@ def form(
     context: Optional[Context] = None,
     *,
     allows_user_shapes: bool = False,
+    labels: Iterable[Union[str, LabelFormat]] = (),
 ) -> bool:
     """Forms the image of what trace wrote into file, and writes what run would into folder.
 
     overrides: as of Scene.read, of bandwidth, resolution and response of the sonar and of
     input.path; scene: where it was traced from no scene file, or instead of overrides;
-    allows_user_shapes: as of Scene.read.
+    allows_user_shapes: as of Scene.read; labels: as of run.
     False, with nothing done, if folder already held the finished result of the same inputs.
     """
     if scene is not None:
@@ -131,6 +145,7 @@ def form(
     params.overrides = ctypes.cast(array, ctypes.POINTER(ctypes.c_char_p))
     params.override_count = len(texts)
     params.allows_user_shapes = int(bool(allows_user_shapes))
+    params.labels = _label_sum(labels)
     bridge = ProgressBridge(progress)
     was_finished = ctypes.c_int()
     context.call(

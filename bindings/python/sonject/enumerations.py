@@ -50,6 +50,13 @@ class LevelKind(enum.IntEnum):
     OVER_SEABED = 2
 
 
+class LabelFormat(enum.IntEnum):
+    """sonject_labels: label files that a run writes beside coco.json."""
+
+    YOLO = 1
+    VOC = 2
+
+
 class Mode(enum.IntEnum):
     """sonject_injection_mode: compose into the patch, or trace the whole patch anew."""
 

@@ -59,7 +59,9 @@ class ObjectTruth:
     point; grazing_rad: of the sound that comes straight to the centre; transmission_loss_db: one
     way, from 1 m off the sonar; level_kind: LevelKind that was asked for; level_gain_db: by which
     its echo was scaled; over_seabed_db: its brightest pixel over the seabed there;
-    seabed_strength_db: assumed, of an m^2 at the centre's grazing angle.
+    seabed_strength_db: assumed, of an m^2 at the centre's grazing angle; highlight_visible: share
+    of its energy where it dominates all else; shadow_visible: share of its shadow that no other
+    object's highlight fills; overall sizes: along its nose, its own y and z.
     """
 
     is_visible: bool
@@ -86,6 +88,11 @@ class ObjectTruth:
     level_gain_db: float
     over_seabed_db: float
     seabed_strength_db: float
+    highlight_visible: float
+    shadow_visible: float
+    overall_length_m: float
+    overall_width_m: float
+    overall_height_m: float
 
 
 @dataclass(frozen=True)

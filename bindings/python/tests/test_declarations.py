@@ -17,6 +17,7 @@ ENUMERATIONS = {
     "sonject_side": (enumerations.Side, "SONJECT_SIDE_"),
     "sonject_match": (enumerations.Match, "SONJECT_MATCH_"),
     "sonject_level_kind": (enumerations.LevelKind, "SONJECT_LEVEL_"),
+    "sonject_labels": (enumerations.LabelFormat, "SONJECT_LABELS_"),
     "sonject_transfer": (enumerations.TransferKind, "SONJECT_TRANSFER_"),
     "sonject_injection_mode": (enumerations.Mode, "SONJECT_MODE_"),
     "sonject_column_rule": (enumerations.ColumnRule, "SONJECT_COLUMNS_"),

@@ -1,0 +1,151 @@
+#include "label/image_labels.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+#define DEGREES_PER_RADIAN 57.29577951308232
+
+/* Box and number of the pixels that carry a contact's number, in pixels of the patch. */
+static void find_box(struct contact *contact, const struct injection_result *result)
+{
+    size_t first_row = result->rows;
+    size_t last_row = 0;
+    size_t first_column = result->columns;
+    size_t last_column = 0;
+    for (size_t row = 0; row < result->rows; row++)
+        for (size_t column = 0; column < result->columns; column++) {
+            if (result->labels[row * result->columns + column] != contact->number)
+                continue;
+            first_row = row < first_row ? row : first_row;
+            last_row = row;
+            first_column = column < first_column ? column : first_column;
+            last_column = column > last_column ? column : last_column;
+            contact->pixels++;
+        }
+    if (contact->pixels > 0) {
+        contact->box.first_row = first_row;
+        contact->box.first_column = first_column;
+        contact->box.rows = last_row - first_row + 1;
+        contact->box.columns = last_column - first_column + 1;
+    }
+}
+
+/* Runs being written: all pixels up to `reached` are told. */
+struct run_writer {
+    uint64_t *runs; /* NULL: they are only counted */
+    size_t count;
+    uint64_t reached;
+    bool is_inside; /* at `reached` */
+};
+
+static void end_run(struct run_writer *writer, uint64_t position)
+{
+    if (writer->runs)
+        writer->runs[writer->count] = position - writer->reached;
+    writer->count++;
+    writer->reached = position;
+    writer->is_inside = !writer->is_inside;
+}
+
+/* The runs of the image; the contact's box still counts pixels of the patch. */
+static size_t write_runs(const struct contact *contact, const struct label_request *request,
+                         uint64_t *runs)
+{
+    const struct injection_result *result = request->result;
+    const sonject_box *box = &contact->box;
+    struct run_writer writer = {runs, 0, 0, false};
+    for (uint64_t column = box->first_column; column < box->first_column + box->columns; column++) {
+        const uint64_t start =
+            (request->patch.first_column + column) * request->rows + request->patch.first_row;
+        for (uint64_t row = box->first_row; row < box->first_row + box->rows; row++) {
+            const bool is_inside =
+                result->labels[row * result->columns + column] == contact->number;
+            if (is_inside != writer.is_inside)
+                end_run(&writer, start + row);
+        }
+        if (writer.is_inside && box->rows < request->rows)
+            end_run(&writer, start + box->first_row + box->rows);
+    }
+    if (writer.reached < request->rows * request->columns)
+        end_run(&writer, request->rows * request->columns);
+    return writer.count;
+}
+
+static sonject_status find_pixels(struct contact *contact, struct report *report,
+                                  const struct label_request *request)
+{
+    find_box(contact, request->result);
+    if (contact->pixels == 0)
+        return SONJECT_OK;
+    contact->run_count = write_runs(contact, request, NULL);
+    contact->runs = allocate_array(contact->run_count, sizeof *contact->runs);
+    if (!contact->runs)
+        return report_out_of_memory(report, "labels");
+    write_runs(contact, request, contact->runs);
+    contact->box.first_row += request->patch.first_row;
+    contact->box.first_column += request->patch.first_column;
+    return SONJECT_OK;
+}
+
+static void describe(struct contact *contact, const struct label_request *request, uint32_t index)
+{
+    const sonject_object_params *object = &request->scene->objects[index];
+    const sonject_object_truth *truth = &request->result->objects[index];
+    contact->number = index + 1;
+    contact->name = object->name;
+    contact->class_name = object->class_name;
+    contact->confidence = 1.0;
+    contact->row = truth->row + (double)request->patch.first_row;
+    contact->column = truth->column + (double)request->patch.first_column;
+    contact->along_track_m = truth->along_track_m;
+    contact->slant_range_m = truth->slant_range_m;
+    contact->ground_range_m = truth->ground_range_m;
+    contact->height_m = truth->height_m;
+    contact->length_m = truth->overall_length_m;
+    contact->width_m = truth->overall_width_m;
+    contact->body_height_m = truth->overall_height_m;
+    contact->heading_deg = object->heading_rad * DEGREES_PER_RADIAN;
+    contact->is_truncated = truth->highlight_is_cut || truth->shadow_is_cut;
+    contact->has_place =
+        request->track &&
+        track_place(request->track, contact->row + (double)request->first_row,
+                    contact->ground_range_m, request->scene->geometry.side == SONJECT_SIDE_PORT,
+                    &contact->place);
+}
+
+sonject_status image_labels_find(struct image_labels *labels, struct report *report,
+                                 const struct label_request *request)
+{
+    const struct injection_result *result = request->result;
+    sonject_status status = SONJECT_OK;
+    memset(labels, 0, sizeof *labels);
+    labels->contacts = allocate_array(result->object_count, sizeof *labels->contacts);
+    if (!labels->contacts)
+        return report_out_of_memory(report, "labels");
+    labels->file_name = request->file_name;
+    labels->rows = request->rows;
+    labels->columns = request->columns;
+    labels->is_geographic = request->track && request->track->is_geographic;
+    labels->count = result->object_count;
+    for (uint32_t i = 0; status == SONJECT_OK && i < labels->count; i++) {
+        struct contact *contact = &labels->contacts[i];
+        const sonject_object_truth *truth = &result->objects[i];
+        describe(contact, request, i);
+        status = find_pixels(contact, report, request);
+        contact->is_occluded = contact->pixels < truth->highlight_pixels + truth->shadow_pixels;
+    }
+    if (status != SONJECT_OK)
+        image_labels_clear(labels);
+    return status;
+}
+
+void image_labels_clear(struct image_labels *labels)
+{
+    for (uint32_t i = 0; labels->contacts && i < labels->count; i++)
+        free(labels->contacts[i].runs);
+    free(labels->contacts);
+    memset(labels, 0, sizeof *labels);
+}

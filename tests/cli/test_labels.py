@@ -1,0 +1,305 @@
+"""Labels of a run: boxes and masks in every format, contact records, places on the map."""
+
+import csv
+import json
+import math
+import os
+import subprocess
+import xml.etree.ElementTree
+
+import numpy
+import pytest
+
+import images
+import recordings
+from conftest import COMMAND, COLUMNS, ROWS, assert_refused
+
+# Boxes as long as they are wide would hide rows and columns that are swapped. The second target
+# stands in the first one's shadow, the third one's leaves the patch, the fourth is buried.
+SCENE = """\
+sonject: 1
+input:
+  path: swath.tif
+  geometry: {row_spacing: 5 cm, column_spacing: 2.5 cm, first_slant_range: 24 m}
+patch: {row: 4, column: 8, rows: 80, columns: 112}
+sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}
+objects:
+  - {name: 'a "b", <c> & d', class: 'x<&>y, "q"', shape: box, length: 1.6 m, width: 0.2 m,
+     height: 0.3 m, heading: 0.1, position: {row: 60, column: 60}}
+  - {name: ball, shape: sphere, diameter: 0.3 m, position: {row: 60, column: 80}}
+  - {name: far ball, shape: sphere, diameter: 0.4 m, position: {row: 20, column: 110}}
+  - {shape: sphere, diameter: 0.2 m, burial: 0.3 m, position: {row: 30, column: 30}}
+"""
+CLASSES = ['x<&>y, "q"', "sphere"]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory, environment):
+    """A run's folder with all labels."""
+    place = tmp_path_factory.mktemp("labels")
+    random = numpy.random.default_rng(4)
+    swath = random.rayleigh(0.1, (ROWS, COLUMNS)).astype(numpy.float32)
+    (place / "swath.tif").write_bytes(images.tiff_bytes(swath))
+    (place / "scene.yaml").write_text(SCENE)
+    subprocess.run([COMMAND, "run", "scene.yaml", "-o", "out", "--quiet", "--labels", "voc,yolo"],
+                   cwd=place, env=environment, check=True)
+    return place / "out"
+
+
+def read_json(path):
+    return json.loads(path.read_text())
+
+
+@pytest.fixture(scope="module")
+def seen(folder):
+    """{number of the object: its pixels} of what labels.png shows."""
+    masks = numpy.zeros((ROWS, COLUMNS), numpy.uint8)
+    for annotation in read_json(folder / "coco.json")["annotations"]:
+        masks += annotation["object_id"] * decoded(annotation["segmentation"])
+    labels = read_png(folder / "labels.png")
+    assert numpy.array_equal(labels, masks)
+    return {number: labels == number for number in (1, 2, 3, 4) if (labels == number).any()}
+
+
+def decoded(segmentation):
+    rows, columns = segmentation["size"]
+    values = numpy.arange(len(segmentation["counts"])) % 2
+    return numpy.repeat(values, segmentation["counts"]).reshape(columns, rows).T.astype("u1")
+
+
+def read_png(path):
+    """Pixels of an 8 bit grey PNG."""
+    import zlib
+
+    data, place, body = path.read_bytes(), 8, b""
+    while place < len(data):
+        length = int.from_bytes(data[place : place + 4], "big")
+        if data[place + 4 : place + 8] == b"IDAT":
+            body += data[place + 8 : place + 8 + length]
+        place += 12 + length
+    lines = numpy.frombuffer(zlib.decompress(body), "u1").reshape(ROWS, COLUMNS + 1)
+    pixels = numpy.zeros((ROWS, COLUMNS), int)
+    for row, line in enumerate(lines.astype(int)):
+        above = pixels[row - 1] if row else numpy.zeros(COLUMNS, int)
+        for column, value in enumerate(line[1:]):
+            left = pixels[row, column - 1] if column else 0
+            corner = above[column - 1] if column else 0
+            guess = left + above[column] - corner
+            nearest = min((left, above[column], corner), key=lambda x: abs(guess - x))
+            added = [0, left, above[column], (left + above[column]) // 2, nearest][line[0]]
+            pixels[row, column] = (value + added) % 256
+    return pixels
+
+
+def box_of(mask):
+    """(row, column, rows, columns) of the pixels that are set."""
+    rows, columns = numpy.nonzero(mask)
+    return (rows.min(), columns.min(), numpy.ptp(rows) + 1, numpy.ptp(columns) + 1)
+
+
+def test_every_format_has_the_boxes_of_the_masks(folder, seen):
+    assert sorted(seen) == [1, 2, 3]
+    boxes = {number: tuple(map(int, box_of(mask))) for number, mask in seen.items()}
+    assert all(rows != columns for _, _, rows, columns in boxes.values())
+    coco = read_json(folder / "coco.json")
+    assert coco["images"] == [{"id": 1, "file_name": "image.tif", "width": COLUMNS, "height": ROWS}]
+    assert [entry["name"] for entry in coco["categories"]] == CLASSES
+    lines = (folder / "image.txt").read_text().splitlines()
+    voc = xml.etree.ElementTree.parse(folder / "image.xml").getroot()
+    assert [voc.find("size").find(key).text for key in ("width", "height", "depth")] == [
+        str(COLUMNS), str(ROWS), "1"]
+    assert (folder / "classes.txt").read_text().splitlines() == CLASSES
+    labelled = zip(sorted(boxes), coco["annotations"], lines, voc.findall("object"), strict=True)
+    for number, annotation, line, entry in labelled:
+        row, column, rows, columns = boxes[number]
+        name = CLASSES[number > 1]
+        assert annotation["bbox"] == [column, row, columns, rows]
+        assert annotation["area"] == seen[number].sum() > 0
+        assert annotation["category_id"] == 1 + (number > 1)
+        kind, *place = line.split()
+        assert int(kind) == (number > 1)
+        middle = ((column + columns / 2) / COLUMNS, (row + rows / 2) / ROWS)
+        size = (columns / COLUMNS, rows / ROWS)
+        assert [float(value) for value in place] == pytest.approx([*middle, *size], abs=1e-11)
+        assert entry.find("name").text == name
+        limits = [int(entry.find("bndbox").find(key).text)
+                  for key in ("xmin", "ymin", "xmax", "ymax")]
+        assert limits == [column + 1, row + 1, column + columns, row + rows]
+        assert entry.find("truncated").text == str(int(annotation["truncated"]))
+        assert entry.find("occluded").text == str(int(annotation["occluded"]))
+    assert [entry["truncated"] for entry in coco["annotations"]] == [False, False, True]
+    assert [entry["occluded"] for entry in coco["annotations"]] == [True, False, False]
+
+
+def test_truth_says_where_boxes_lie_and_what_is_seen(folder, seen):
+    truth = read_json(folder / "truth.json")
+    bar, ball, far, buried = truth["objects"]
+    assert truth["patch"]["corners"] is None and bar["position"] is None
+    box = bar["highlight"]
+    assert box["along_track_m"] == pytest.approx((box["row"] - 0.5) * 0.05)
+    near = 24 + (box["column"] - 0.5) * 0.025
+    assert box["slant_range_m"] == pytest.approx(near)
+    assert box["ground_range_m"] == pytest.approx(math.sqrt(near**2 - 100))
+    assert box["ground_width_m"] == pytest.approx(
+        math.sqrt((near + 0.025 * box["columns"]) ** 2 - 100) - math.sqrt(near**2 - 100))
+    # The bar along the track is 1.6 m long: 32 rows, and one or two where sound spills over.
+    assert box["rows"] in (32, 33, 34)
+    assert bar["dimensions"] == {"length_m": 1.6, "width_m": 0.2, "height_m": 0.3}
+    taken = seen[2] & (read_png(folder / "highlight.png") > 0)
+    taken = (taken & (numpy.indices(taken.shape)[1] < box_of(seen[1])[1] + box_of(seen[1])[3])).sum()
+    assert bar["shadow_visible"] == pytest.approx(1 - taken / bar["shadow_pixels"], abs=0.01)
+    assert 0.9 < bar["shadow_visible"] < 0.99 < bar["highlight_visible"] <= 1
+    assert ball["shadow_visible"] == 1
+    assert [entry["shadow_cut_by"] for entry in truth["objects"]] == [None, None, "patch", None]
+    assert far["shadow_cut"] and not far["highlight_cut"] and far["highlight_cut_by"] is None
+    assert not buried["visible"] and buried["shadow_visible"] is None
+    assert buried["name"] == "object 4" and buried["class"] == "sphere"
+
+
+def test_contact_records(folder):
+    truth = read_json(folder / "truth.json")["objects"]
+    record = read_json(folder / "contacts.json")
+    assert record["image"] == "image.tif"
+    with open(folder / "contacts.csv", newline="", encoding="utf-8") as file:
+        lines = list(csv.DictReader(file))
+    for entry, contact, line in zip(truth, record["contacts"], lines, strict=True):
+        assert contact["confidence"] == float(line["confidence"]) == 1
+        for key in ("id", "name", "class", "row", "column", "slant_range_m", "ground_range_m"):
+            assert contact[key] == entry[key]
+            assert line[key] == entry[key] or float(line[key]) == pytest.approx(entry[key])
+        assert contact["dimensions"] == entry["dimensions"]
+        assert float(line["height_m"]) == entry["dimensions"]["height_m"]
+        assert contact["position"] is None and line["longitude_deg"] == line["easting_m"] == ""
+        cells = [line[f"box_{key}"] for key in ("row", "column", "rows", "columns")]
+        if contact["box"] is None:
+            assert cells == [""] * 4 and contact["pixels"] == 0
+        else:
+            assert [int(cell) for cell in cells] == list(contact["box"].values())
+    assert lines[0]["name"] == 'a "b", <c> & d'
+
+
+def test_pycocotools_reads_the_annotations(folder, seen, tmp_path):
+    reader = os.environ.get("SONJECT_READERS")
+    if not reader:
+        pytest.skip("SONJECT_READERS does not name a Python that has pycocotools")
+    script = ("import sys, numpy\n"
+              "from pycocotools import mask\n"
+              "from pycocotools.coco import COCO\n"
+              "coco = COCO(sys.argv[1])\n"
+              "for number in coco.getAnnIds(imgIds=coco.getImgIds()):\n"
+              "    (entry,) = coco.loadAnns(number)\n"
+              "    runs = coco.annToRLE(entry)\n"
+              "    assert mask.area(runs) == entry['area'] > 0\n"
+              "    assert list(mask.toBbox(runs)) == entry['bbox']\n"
+              "    numpy.save(f\"{sys.argv[2]}/{entry['object_id']}.npy\", coco.annToMask(entry))\n"
+              "assert len(coco.getAnnIds(catIds=coco.getCatIds(catNms=['sphere']))) == 2\n")
+    subprocess.run([reader, "-c", script, folder / "coco.json", tmp_path], check=True,
+                   env={**os.environ, "PYTHONPATH": ""})
+    for number, mask in seen.items():
+        assert numpy.array_equal(numpy.load(tmp_path / f"{number}.npy"), mask)
+
+
+def test_a_finished_run_without_the_labels_is_run_again(folder, sonject, tmp_path):
+    (tmp_path / "swath.tif").write_bytes((folder.parent / "swath.tif").read_bytes())
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    result = tmp_path / "out"
+    formats = {"image.txt": "yolo", "classes.txt": "yolo", "image.xml": "voc"}
+    for asked, expected in ((["--labels", "voc"], {"image.xml"}), ([], {"image.xml"}),
+                            (["--labels=yolo"], {"image.txt", "classes.txt"})):
+        answer = sonject("run", "scene.yaml", "-o", "out", *asked)
+        assert answer.returncode == 0, answer.stderr
+        assert ("already" in answer.stderr) == (asked == [])
+        assert {path.name for path in result.iterdir()} & set(formats) == expected
+        assert set(read_json(result / "run.json")["labels"]) == {formats[name] for name in expected}
+    for path in result.iterdir():
+        if path.name not in ("run.json", "truth.json"):
+            assert path.read_bytes() == (folder / path.name).read_bytes(), path.name
+
+
+@pytest.mark.parametrize("asked", ["yolo,", "coco", "", "yolo;voc"])
+def test_unknown_labels_are_refused(sonject, tmp_path, asked):
+    answer = sonject("run", "scene.yaml", "-o", "out", f"--labels={asked}")
+    assert answer.returncode == 2 and "--labels" in answer.stderr
+    assert len(answer.stderr.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+# Where a vehicle was at each ping, and what a contact abeam of it must then be told to be.
+EAST = math.radians(89.0)
+TRACKS = {
+    "east across the date line, to starboard": ("starboard", 3, None, EAST),
+    "the recorded heading, to port": ("port", 3, 10.0, math.radians(10.0)),
+    "in metres": ("port", 0, None, EAST),
+}
+
+
+def metres_per_degree(latitude):
+    """Of longitude and latitude on the WGS 84 ellipsoid, by the distance of points of its surface
+    in space."""
+
+    def point(longitude, latitude):
+        a, e2 = 6378137.0, 1 - (1 - 1 / 298.257223563) ** 2
+        n = a / math.sqrt(1 - e2 * math.sin(math.radians(latitude)) ** 2)
+        x, y = math.radians(longitude), math.radians(latitude)
+        return (n * math.cos(y) * math.cos(x), n * math.cos(y) * math.sin(x),
+                n * (1 - e2) * math.sin(y))
+
+    step = 1e-4
+    return (math.dist(point(step, latitude), point(0, latitude)) / step,
+            math.dist(point(0, latitude + step), point(0, latitude)) / step)
+
+
+@pytest.mark.parametrize("case", TRACKS)
+def test_contacts_lie_abeam_of_the_recorded_track(sonject, tmp_path, case):
+    side, units, recorded, heading = TRACKS[case]
+    scale = metres_per_degree(-40.0) if units else (1.0, 1.0)
+    origin = (179.99999, -40.0) if units else (500000.0, 4000000.0)
+
+    def at(along, abeam, bearing):
+        """So far along the track (which runs east by north), and so far abeam of the bearing."""
+        turn = bearing + (math.pi / 2 if side == "starboard" else -math.pi / 2)
+        x = along * math.sin(EAST) + abeam * math.sin(turn)
+        y = along * math.cos(EAST) + abeam * math.cos(turn)
+        return origin[0] + x / scale[0], origin[1] + y / scale[1]
+
+    # Positions are recorded every fourth ping only, and repeated in between; two are missing.
+    data = recordings.file_header([recordings.PORT if side == "port" else recordings.STARBOARD],
+                                  units=units)
+    samples = numpy.random.default_rng(3).rayleigh(2000.0, (60, 200)).astype("<u2")
+    for row, line in enumerate(samples):
+        x, y = at(0.1 * (row - row % 4), 0.0, 0.0)
+        x = (x + 180) % 360 - 180 if units else x
+        place = (0.0, 0.0) if row in (30, 33) else (x, y)
+        packet = bytearray(recordings.ping([(0, line)], position=place))
+        if recorded is not None:
+            packet[212:216] = numpy.float32(recorded).tobytes()
+        data += bytes(packet)
+    (tmp_path / "line.xtf").write_bytes(data)
+    (tmp_path / "scene.yaml").write_text(
+        "sonject: 1\n"
+        "input:\n"
+        "  path: line.xtf\n"
+        f"  geometry: {{row_spacing: 0.1 m, column_spacing: 0.15 m, first_slant_range: 0.075 m, "
+        f"side: {side}}}\n"
+        "patch: {row: 10, column: 60, rows: 40, columns: 120}\n"
+        "sonar: {frequency: 600 kHz, bandwidth: 10 kHz, altitude: 6 m, resolution: 0.1 m}\n"
+        "objects: [{shape: sphere, diameter: 0.6 m, position: {row: 30, column: 100}}]\n")
+    answer = sonject("run", "scene.yaml", "-o", "out")
+    assert answer.returncode == 0, answer.stderr
+    (contact,) = read_json(tmp_path / "out" / "contacts.json")["contacts"]
+    truth = read_json(tmp_path / "out" / "truth.json")
+    assert contact["position"] == truth["objects"][0]["position"]
+    keys = ("longitude_deg", "latitude_deg") if units else ("easting_m", "northing_m")
+    wanted = [(30, truth["objects"][0]["ground_range_m"])]
+    for row, column in ((10, 60), (10, 179), (49, 179), (49, 60)):
+        wanted.append((row, math.sqrt((0.075 + 0.15 * column) ** 2 - 36)))
+    told = [contact["position"], *truth["patch"]["corners"]]
+    for (row, ground), place in zip(wanted, told, strict=True):
+        x, y = at(0.1 * row, ground, heading)
+        off = (place[keys[0]] - x + 180) % 360 - 180 if units else place[keys[0]] - x
+        assert abs(off * scale[0]) < 1e-3 and abs((place[keys[1]] - y) * scale[1]) < 1e-3
+        assert not units or -180 <= place["longitude_deg"] <= 180
+    with open(tmp_path / "out" / "contacts.csv", newline="", encoding="utf-8") as file:
+        (line,) = csv.DictReader(file)
+    assert [float(line[key]) for key in keys] == pytest.approx(list(contact["position"].values()),
+                                                               abs=1e-9 if units else 1e-4)
