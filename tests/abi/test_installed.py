@@ -2,6 +2,7 @@
 CMake."""
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 
@@ -181,3 +182,37 @@ target_link_libraries(program sonject::static)
                    check=True, stdout=subprocess.DEVNULL)
     subprocess.run(["cmake", "--build", build], check=True, stdout=subprocess.DEVNULL)
     assert_stands_alone(build / "program")
+
+
+@pytest.fixture(scope="module")
+def command(prefix):
+    """Runs the installed command."""
+    program = prefix / "bin" / "sonject"
+    if not program.exists():
+        pytest.skip("built without the command")
+    variables = {**os.environ, "LD_LIBRARY_PATH": str(library_folder(prefix))}
+    return lambda *arguments: subprocess.run([program, *arguments], capture_output=True, text=True,
+                                             check=True, env=variables).stdout
+
+
+def read_page(path):
+    """What a reader sees; no warnings."""
+    if not shutil.which("groff"):
+        pytest.skip("groff is not installed")
+    answer = subprocess.run(["groff", "-man", "-Tutf8", "-ww", "-rLL=100n", "-P-c", "-P-b", "-P-u",
+                             path], capture_output=True, text=True, check=False)
+    assert (answer.returncode, answer.stderr) == (0, "")
+    return answer.stdout.translate({0x2212: "-", 0x2010: "-"})  # minus signs and hyphens
+
+
+def test_every_verb_has_its_manual_page(command, prefix):
+    verbs = set(re.findall(r"^  sonject (\w+) ", command("--help"), flags=re.M)) - {"help"}
+    folder = next(prefix.rglob("man1"))
+    assert {path.name for path in folder.iterdir()} == {
+        "sonject.1", *(f"sonject-{verb}.1" for verb in verbs)}
+    overview = read_page(folder / "sonject.1")
+    for verb in verbs:
+        assert f"sonject-{verb}(1)" in overview
+        page = " ".join(read_page(folder / f"sonject-{verb}.1").split())
+        for line in filter(None, command("help", verb).splitlines()):
+            assert " ".join(line.split()) in page, line
