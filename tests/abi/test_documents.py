@@ -2,6 +2,10 @@
 import os
 import pathlib
 import re
+import shutil
+import subprocess
+
+import pytest
 
 SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
 FOLDERS = ("kernels", "lib", "include", "tools", "tests", "bindings")
@@ -30,9 +34,25 @@ def test_every_function_of_the_formulas_exists():
 
 def test_every_file_that_documents_name_exists():
     missing = []
-    for document in ("README.md", "kernels/MATH.md", "bindings/python/README.md"):
+    for document in ("README.md", "CONTRIBUTING.md", "kernels/MATH.md",
+                     "bindings/python/README.md"):
         for text in quoted(document):
             for name in re.findall(PATH, text):
                 if not list(SOURCE.glob(name)):
                     missing.append(f"{document}: {name}")
     assert sorted(missing) == []
+
+
+def test_the_reference_of_the_interface_is_made_without_warnings(tmp_path):
+    if not shutil.which("doxygen"):
+        pytest.skip("doxygen is not installed")
+    settings = (SOURCE / "include" / "Doxyfile").read_text() + f"OUTPUT_DIRECTORY = {tmp_path}\n"
+    answer = subprocess.run(["doxygen", "-"], input=settings, cwd=SOURCE, capture_output=True,
+                            text=True, check=False)
+    assert (answer.returncode, answer.stderr) == (0, "")
+    pages = "".join(path.read_text() for path in (tmp_path / "html").glob("*.html"))
+    for name in (SOURCE / "tests" / "abi" / "symbols.txt").read_text().split():
+        assert f"{name}()</h2>" in pages, name
+    # what stands before a declaration and what stands behind one
+    assert "Forgets" not in pages and "Puts the scene's objects into a patch" in pages
+    assert "height of the track over the mean seabed" in pages

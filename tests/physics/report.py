@@ -1,0 +1,117 @@
+"""The validation report: what the physics tests measured beside what closed forms say.
+
+    python3 tests/physics/report.py [BUILD] > report.md
+
+runs the tests of the build folder ("build" by default) and writes a table for each; --log FILE takes
+meson's log of an earlier run, BUILD/meson-logs/testlog.json, instead. Fails where a test failed.
+"""
+
+import argparse
+import collections
+import json
+import pathlib
+import re
+import subprocess
+import sys
+
+FOLDER = pathlib.Path(__file__).resolve().parent
+NUMBER = r"([-+\w.]+)"
+CLOSE = re.compile(rf"(?:.*: )?(.+?): {NUMBER}, expected {NUMBER} \+- {NUMBER}$")
+BELOW = re.compile(rf"(?:.*: )?(.+?): {NUMBER}, to be below {NUMBER}$")
+
+
+class Check:
+    """What was compared under one name: how often, and when it was nearest to its limit."""
+
+    def __init__(self):
+        self.count = 0
+        self.share = -1.0
+        self.cells = ()
+
+    def add(self, share, cells):
+        self.count += 1
+        if not share <= self.share:
+            self.share, self.cells = share, cells
+
+
+def share_of(distance, room):
+    return distance / room if room > 0 else float(distance > 0)
+
+
+def read_checks(output):
+    """Name: Check, of a program's output."""
+    checks = collections.defaultdict(Check)
+    for line in output.splitlines():
+        close, below = CLOSE.fullmatch(line), BELOW.fullmatch(line)
+        if close:
+            measured, expected, tolerance = map(float, close.groups()[1:])
+            checks[close[1]].add(share_of(abs(measured - expected), tolerance),
+                                 (close[2], close[3], f"± {close[4]}"))
+        elif below:
+            measured, limit = map(float, below.groups()[1:])
+            checks[below[1]].add(share_of(max(measured, 0.0), limit),
+                                 (below[2], f"below {below[3]}", ""))
+    return checks
+
+
+def first_comment(name):
+    """What the test's source says of itself."""
+    source = FOLDER / f"test_{name}.c"
+    text = source.read_text(encoding="utf-8") if source.is_file() else ""
+    found = re.match(r"/\*(.*?)\*/", text, flags=re.S)
+    return re.sub(r"\s*\n \*\s*", " ", found[1]).strip() if found else ""
+
+
+def read_log(path):
+    """(name, passed, output) of the physics tests in meson's log, by name."""
+    entries = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines() if line]
+    named = [(entry["name"].rpartition(" / "), entry) for entry in entries]
+    return sorted((name, entry["result"] == "OK", entry.get("stdout", ""))
+                  for (suites, _, name), entry in named if "physics" in suites)
+
+
+def cell(text):
+    return text.replace("|", "\\|")
+
+
+def report(tests):
+    """The report's lines."""
+    failed = [name for name, passed, _ in tests if not passed]
+    compared = [read_checks(output) for _, _, output in tests]
+    total = sum(check.count for checks in compared for check in checks.values())
+    lines = ["# Validation report", "",
+             f"{len(tests)} programs compared {total} figures with what is expected of them; "
+             + (f"failed: {', '.join(failed)}." if failed else "all are within their tolerances."),
+             "Of each kind of figure the one nearest to its limit is shown."]
+    for (name, passed, _), checks in zip(tests, compared):
+        lines += ["", f"## {name}" + ("" if passed else ": failed"), "", first_comment(name), ""]
+        if checks:
+            lines += ["| figure | compared | measured | expected | tolerance | of its limit |",
+                      "|---|---|---|---|---|---|"]
+        for what, check in sorted(checks.items()):
+            lines.append(f"| {cell(what)} | {check.count} | " + " | ".join(check.cells)
+                         + f" | {100 * check.share:.0f} % |")
+    return lines
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("build", nargs="?", default="build", type=pathlib.Path, metavar="BUILD")
+    parser.add_argument("--log", type=pathlib.Path, help="meson's log of tests that were run")
+    options = parser.parse_args()
+    log = options.log
+    if not log:
+        subprocess.run(["meson", "test", "-C", options.build, "--suite", "physics", "--logbase",
+                        "validation"], stdout=sys.stderr, check=False)
+        log = options.build / "meson-logs" / "validation.json"
+    if not log.is_file():
+        sys.exit(f"{log}: there is no such log; build the tests first")
+    tests = read_log(log)
+    if not tests:
+        sys.exit(f"{log}: has no physics tests")
+    print("\n".join(report(tests)))
+    return 0 if all(passed for _, passed, _ in tests) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
