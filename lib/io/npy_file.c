@@ -57,7 +57,8 @@ static const char *value_of(const char *header, const char *key)
 static bool read_type(const char *header, struct sample_rows *rows)
 {
     const char *value = value_of(header, "descr");
-    if (!value || (*value != '\'' && *value != '"') || !strchr("<>|=", value[1]))
+    if (!value || (*value != '\'' && *value != '"') || value[1] == '\0' ||
+        !strchr("<>|=", value[1]))
         return false;
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
         const size_t length = strlen(kinds[i].description);

@@ -190,12 +190,35 @@ static void test_sizes_that_overflow(void **state)
     }
 }
 
+/* Headers that end within a word: nothing behind them may be looked at, which tools that watch
+ * memory see. */
+static void test_headers_that_end_early(void **state)
+{
+    static const char *const headers[] = {"{'fortran_order': False, 'shape': (4, 5), 'descr': '",
+                                          "{'fortran_order': False, 'shape': (4, 5), 'descr': '<",
+                                          "{'fortran_order': False, 'shape': (4, 5), 'descr': '<f4",
+                                          "{'descr': '<f4', 'shape': (4, 5), 'fortran_order': F",
+                                          "{'descr': '<f4', 'fortran_order': False, 'shape': (",
+                                          "{'descr': '<f4', 'fortran_order': False, 'shape': (4, 5",
+                                          "{'descr': '<f4', 'fortran_order': False, 'shape'"};
+    char path[512];
+    snprintf(path, sizeof path, "%s/line.npy", (const char *)*state);
+    for (size_t i = 0; i < sizeof headers / sizeof *headers; i++) {
+        unsigned char bytes[NPY_BYTES] = {0x93, 'N', 'U', 'M', 'P', 'Y', 1, 0};
+        put(bytes, 8, strlen(headers[i]), 2);
+        memcpy(bytes + 10, headers[i], strlen(headers[i]));
+        write_file(path, bytes, sizeof bytes);
+        assert_int_equal(use_file(path, path, SONJECT_CHANNEL_ONLY), SONJECT_ERROR_INPUT);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_damaged_recordings),
         cmocka_unit_test(test_damaged_arrays),
         cmocka_unit_test(test_sizes_that_overflow),
+        cmocka_unit_test(test_headers_that_end_early),
     };
     return cmocka_run_group_tests(tests, make_temporary_folder, remove_temporary_folder);
 }
