@@ -414,6 +414,12 @@ class scene
         set_input(path);
         check(sonject_scene_set_input_channel(handle_, channel));
     }
+    /* An array of an HDF5 or MATLAB file. */
+    void set_input(const std::string &path, const std::string &array)
+    {
+        set_input(path);
+        check(sonject_scene_set_input_array(handle_, array.c_str()));
+    }
     void set_input_uniform(std::uint32_t rows, std::uint32_t columns)
     {
         check(sonject_scene_set_input_uniform(handle_, rows, columns));

@@ -155,12 +155,16 @@ SONJECT_API sonject_status sonject_scene_set_injection(sonject_scene *scene,
                                                        const sonject_injection_params *injection);
 SONJECT_API sonject_status sonject_scene_set_patch(sonject_scene *scene,
                                                    const sonject_patch_params *patch);
-/* An image (TIFF, PNG, JPEG), a NumPy array or an XTF file. path is copied. */
+/* An image (TIFF, PNG, JPEG, PGM, PFM), an array (NumPy, HDF5, MATLAB) or an XTF file. path is
+ * copied. */
 SONJECT_API sonject_status sonject_scene_set_input_file(sonject_scene *scene, const char *path);
 /* The channel of an input file that is XTF: 0...63, SONJECT_CHANNEL_PORT and the like; by default
  * SONJECT_CHANNEL_ONLY. Rows are pings, columns range cells from the track outwards on either side.
  * Errors: ARGUMENT (no such number). */
 SONJECT_API sonject_status sonject_scene_set_input_channel(sonject_scene *scene, int32_t channel);
+/* The name of the array in an input file that is HDF5 (its path there) or MATLAB, copied; NULL, as
+ * by default: the only one of several rows and columns. Errors: ARGUMENT, MEMORY. */
+SONJECT_API sonject_status sonject_scene_set_input_array(sonject_scene *scene, const char *array);
 /* Sets the scene's geometry and the sonar's altitude from its input file, an XTF file: row spacing
  * (straight line between positions) and altitude are means over the rows of the patch, to be set
  * before. Other geometry (first_along_track_m) stays. On failure the scene is unchanged. Errors:

@@ -290,6 +290,18 @@ sonject_status sonject_scene_set_input_channel(sonject_scene *scene, int32_t cha
     return SONJECT_OK;
 }
 
+sonject_status sonject_scene_set_input_array(sonject_scene *scene, const char *array)
+{
+    if (!scene)
+        return SONJECT_ERROR_ARGUMENT;
+    char *copy = array ? copy_text(array) : NULL;
+    if (array && !copy)
+        return report_out_of_memory(scene->report, "the name of an array");
+    free(scene->scene.array);
+    scene->scene.array = copy;
+    return SONJECT_OK;
+}
+
 sonject_status sonject_scene_take_geometry(sonject_scene *scene)
 {
     return scene ? recording_describe(scene->report, true, true, &scene->scene)

@@ -160,6 +160,7 @@ static void add_image(struct hash *hash, const struct scene *scene)
     ADD(hash, scene->input_kind);
     ADD(hash, scene->input_is_complex);
     ADD(hash, scene->channel);
+    hash_add_text(hash, scene->array ? scene->array : "");
 }
 
 static void add_object(struct hash *hash, const sonject_object_params *object)

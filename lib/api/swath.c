@@ -47,6 +47,11 @@ static sonject_status describe_file(struct report *report, const struct scene *s
     swath_file_layout(file, &swath->layout);
     swath->is_lossless = swath_file_is_lossless(file);
     swath->is_complex = swath->layout.channels == 2;
+    swath->transfer = scene->transfer;
+    const double largest = (double)swath_file_largest(file);
+    if (largest > 0.0 &&
+        !(swath->transfer.full_scale > 0.0 && swath->transfer.full_scale < largest))
+        swath->transfer.full_scale = largest;
     if (swath->is_complex && !scene->input_is_complex)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s has 2 channels: say complex: true under input if they are real "
@@ -83,7 +88,7 @@ static sonject_status describe_made(const struct scene *scene, struct swath *swa
 static sonject_status open_input(struct report *report, const struct scene *scene,
                                  struct swath_file **file)
 {
-    return swath_file_open(report, scene->input_path, scene->channel, file);
+    return swath_file_open_array(report, scene->input_path, scene->channel, scene->array, file);
 }
 
 static sonject_status open_and_describe(struct report *report, const struct scene *scene,
@@ -170,7 +175,7 @@ static sonject_status read_patch(struct report *report, const struct scene *scen
         return report_out_of_memory(report, "the patch");
     sonject_status status = swath_file_read(report, file, &swath->patch, swath->stored);
     if (status == SONJECT_OK) {
-        status = transfer_to_amplitude(&scene->transfer, swath->layout.type, swath->stored, count,
+        status = transfer_to_amplitude(&swath->transfer, swath->layout.type, swath->stored, count,
                                        swath->pixels, &bad, &swath->clipped);
         if (status != SONJECT_OK)
             status = bad_pixel(report, scene, swath, bad, "not a finite number");
@@ -262,8 +267,8 @@ char *swath_image_name(const struct scene *scene)
 }
 
 /* The stored patch with the touched pixels replaced. To be given to free(). */
-static void *stored_with_result(const struct scene *scene, const struct swath *swath,
-                                const struct injection_result *result, uint64_t *clipped)
+static void *stored_with_result(const struct swath *swath, const struct injection_result *result,
+                                uint64_t *clipped)
 {
     const size_t pixels = result->rows * result->columns;
     const size_t parts = swath->is_complex ? 2 : 1;
@@ -278,7 +283,7 @@ static void *stored_with_result(const struct scene *scene, const struct swath *s
         else
             for (size_t i = 0; i < pixels; i++)
                 if (result->influence[i])
-                    transfer_to_stored(&scene->transfer, swath->layout.type, step,
+                    transfer_to_stored(&swath->transfer, swath->layout.type, step,
                                        result->image + i, 1, fresh + i * bytes, clipped);
         for (size_t i = 0; i < pixels; i++)
             if (result->influence[i])
@@ -318,7 +323,7 @@ sonject_status swath_write(struct report *report, const struct scene *scene,
     *clipped = 0;
     if (scene->input_kind != SONJECT_INPUT_FILE)
         return write_made(report, scene, swath, result, path);
-    void *stored = stored_with_result(scene, swath, result, clipped);
+    void *stored = stored_with_result(swath, result, clipped);
     if (!stored)
         return report_out_of_memory(report, "the patch");
     struct swath_file *file;

@@ -13,6 +13,8 @@
 struct swath {
     struct raster_layout layout; /* of the whole swath */
     struct region patch;
+    sonject_transfer_params
+        transfer;  /* the scene's, with the file's largest number as full scale */
     void *stored;  /* the patch's pixels as the file stores them; NULL if made */
     float *pixels; /* the patch, linear: amplitudes or pairs */
     bool is_complex;

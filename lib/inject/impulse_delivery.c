@@ -4,7 +4,7 @@
 #include "base/memory.h"
 #include "inject/beam_shadows.h"
 #include "inject/echoes.h"
-#include "inject/hdf5_values.h"
+#include "base/hdf5_values.h"
 #include "inject/impulse_reading.h"
 #include "inject/reimaging.h"
 

@@ -3,7 +3,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "inject/hdf5_values.h"
+#include "base/hdf5_values.h"
 #include "inject/impulse_reading.h"
 #include "inject/impulse_seal.h"
 

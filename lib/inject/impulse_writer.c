@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "inject/hdf5_values.h"
+#include "base/hdf5_values.h"
 #include "inject/impulse_file.h"
 #include "inject/impulse_seal.h"
 

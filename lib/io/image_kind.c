@@ -17,6 +17,34 @@ struct beginning {
     size_t count;
 };
 
+/* What users may have at hand that sonject does not read. */
+struct foreign {
+    const char *name;
+    const char *bytes;
+    size_t place, count;
+};
+
+static const struct foreign foreign_kinds[] = {
+    {"an OpenEXR", "\x76\x2F\x31\x01", 0, 4},
+    {"a FITS", "SIMPLE  =", 0, 9},
+    {"a DPX", "SDPX", 0, 4},
+    {"a DPX", "XPDS", 0, 4},
+    {"a Cineon", "\x80\x2A\x5F\xD7", 0, 4},
+    {"a PSD", "8BPS", 0, 4},
+    {"a GIF", "GIF8", 0, 4},
+    {"a JPEG 2000", "\x00\x00\x00\x0CjP  ", 0, 8},
+    {"a WebP", "WEBP", 8, 4},
+    {"a Radiance", "#?RADIANCE", 0, 10},
+    {"a colour PFM", "PF\n", 0, 3},
+    {"a PBM", "P4", 0, 2},
+    {"a PPM", "P6", 0, 2},
+    {"a PGM in ASCII (P2)", "P2", 0, 2},
+    {"a NITF", "NITF", 0, 4},
+    {"a JSF", "\x01\x16", 0, 2},
+    {"a zip or .npz", "PK\x03\x04", 0, 4},
+    {"a BMP", "BM", 0, 2},
+};
+
 static const struct beginning beginnings[] = {
     {IMAGE_TIFF, {'I', 'I', 42, 0}, 4},    {IMAGE_TIFF, {'M', 'M', 0, 42}, 4},
     {IMAGE_TIFF, {'I', 'I', 43, 0}, 4},    {IMAGE_TIFF, {'M', 'M', 0, 43}, 4},
@@ -33,9 +61,46 @@ static const struct extension extensions[] = {{IMAGE_TIFF, "tif"},
                                               {IMAGE_JPEG, "jpg"},
                                               {IMAGE_JPEG, "jpeg"}};
 
+static const char *foreign_name(const unsigned char *head, size_t count)
+{
+    for (size_t i = 0; i < sizeof foreign_kinds / sizeof *foreign_kinds; i++) {
+        const struct foreign *kind = &foreign_kinds[i];
+        if (count >= kind->place + kind->count &&
+            memcmp(head + kind->place, kind->bytes, kind->count) == 0)
+            return kind->name;
+    }
+    return NULL;
+}
+
+static sonject_status refuse_kind(struct report *report, const char *path,
+                                  const unsigned char *head, size_t count)
+{
+    static const char readable[] =
+        "TIFF, PNG, JPEG, PGM (P5), PFM (Pf), XTF, NumPy (.npy), HDF5 and MATLAB (.mat)";
+    const char *name = foreign_name(head, count);
+    if (name)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: is %s file, which sonject does not read; it reads %s", path,
+                              name, readable);
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "%s: is %s; sonject reads %s: convert it to one of these", path,
+                          count == 0 ? "empty" : "of no format that sonject knows", readable);
+}
+
+bool image_kind_of_beginning(const unsigned char *bytes, size_t count, enum image_kind *kind)
+{
+    for (size_t i = 0; i < sizeof beginnings / sizeof *beginnings; i++)
+        if (count >= beginnings[i].count &&
+            memcmp(bytes, beginnings[i].bytes, beginnings[i].count) == 0) {
+            *kind = beginnings[i].kind;
+            return true;
+        }
+    return false;
+}
+
 sonject_status image_kind_of(struct report *report, const char *path, enum image_kind *kind)
 {
-    unsigned char head[4] = {0};
+    unsigned char head[16] = {0};
     uint64_t bytes;
     FILE *file = byte_file_open(path, &bytes);
     if (!file) {
@@ -44,15 +109,9 @@ sonject_status image_kind_of(struct report *report, const char *path, enum image
     }
     const size_t got = fread(head, 1, sizeof head, file);
     fclose(file);
-    for (size_t i = 0; i < sizeof beginnings / sizeof *beginnings; i++)
-        if (got >= beginnings[i].count &&
-            memcmp(head, beginnings[i].bytes, beginnings[i].count) == 0) {
-            *kind = beginnings[i].kind;
-            return SONJECT_OK;
-        }
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: is not a TIFF, PNG or JPEG image%s: convert it to one of these",
-                          path, got == 0 ? ", but empty" : "");
+    if (image_kind_of_beginning(head, got, kind))
+        return SONJECT_OK;
+    return refuse_kind(report, path, head, got);
 }
 
 static bool is_same_but_for_case(const char *text, const char *letters)

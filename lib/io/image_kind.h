@@ -20,6 +20,9 @@ enum image_kind {
 /* Told by the file's first bytes. Errors: INPUT (cannot be opened, another kind). */
 sonject_status image_kind_of(struct report *report, const char *path, enum image_kind *kind);
 
+/* Told by bytes from a file's beginning; false for another kind. */
+bool image_kind_of_beginning(const unsigned char *bytes, size_t count, enum image_kind *kind);
+
 /* Told by the extension of a file that is to be written; false for another kind. */
 bool image_kind_of_name(const char *path, enum image_kind *kind);
 

@@ -60,7 +60,8 @@ sonject_status recording_describe(struct report *report, bool takes_geometry, bo
     if (!scene->input_path)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "from_file needs an XTF file as input.path");
-    sonject_status status = swath_file_open(report, scene->input_path, scene->channel, &file);
+    sonject_status status =
+        swath_file_open_array(report, scene->input_path, scene->channel, scene->array, &file);
     if (status != SONJECT_OK)
         return status;
     const struct xtf_file *xtf = swath_file_xtf(file);

@@ -30,8 +30,9 @@ static size_t pixel_size(const struct sample_rows *rows)
 /* Where the stored run begins that holds `columns` columns of a row from first_column on. */
 static uint64_t run_place(const struct sample_rows *rows, uint64_t row, const struct region *region)
 {
+    const uint64_t stored = rows->is_upside_down ? rows->layout.rows - 1 - row : row;
     const uint64_t start =
-        rows->places ? rows->places[row] : rows->first_place + row * rows->row_bytes;
+        rows->places ? rows->places[row] : rows->first_place + stored * rows->row_bytes;
     const uint64_t first = rows->is_reversed
                                ? rows->layout.columns - region->first_column - region->columns
                                : region->first_column;
@@ -60,20 +61,29 @@ static sonject_status cut_short(struct report *report, const struct sample_rows 
                           rows->path);
 }
 
-/* Of 16-bit samples. */
+/* row, first_column: of the run's first sample in the image. */
 static sonject_status check_largest(struct report *report, const struct sample_rows *rows,
                                     uint64_t row, const struct region *region,
                                     const unsigned char *run)
 {
-    uint16_t sample;
     for (uint64_t i = 0; rows->largest > 0 && i < region->columns; i++) {
-        memcpy(&sample, run + i * sizeof sample, sizeof sample);
-        if (sample > rows->largest)
+        uint16_t sample = run[i];
+        if (rows->layout.type == PIXEL_UINT16)
+            memcpy(&sample, run + i * sizeof sample, sizeof sample);
+        if (sample <= rows->largest)
+            continue;
+        if (rows->above_is_negative)
             return report_failure(report, SONJECT_ERROR_INPUT,
-                                  "%s: the sample at ping %llu, column %llu is negative: sonject "
+                                  "%s: the sample at row %llu, column %llu is negative: sonject "
                                   "reads magnitudes, so convert the file first",
                                   rows->path, (unsigned long long)row,
                                   (unsigned long long)(region->first_column + i));
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: the sample at row %llu, column %llu is %u, more than the file's "
+                              "largest number of %u",
+                              rows->path, (unsigned long long)row,
+                              (unsigned long long)(region->first_column + i), (unsigned)sample,
+                              (unsigned)rows->largest);
     }
     return SONJECT_OK;
 }
@@ -127,8 +137,12 @@ static sonject_status put_patch(struct report *report, const struct sample_rows 
         return report_out_of_memory(report, "a row");
     sonject_status status = SONJECT_OK;
     for (uint64_t i = 0; status == SONJECT_OK && i < region->rows; i++) {
+        const unsigned char *row = (const unsigned char *)pixels + i * run_bytes;
         const uint64_t place = run_place(rows, region->first_row + i, region);
-        turn_run(rows, (const unsigned char *)pixels + i * run_bytes, run, region->columns);
+        turn_run(rows, row, run, region->columns);
+        status = check_largest(report, rows, region->first_row + i, region, row);
+        if (status != SONJECT_OK)
+            break;
         if (fseeko(out, (off_t)place, SEEK_SET) != 0 || fwrite(run, 1, run_bytes, out) != run_bytes)
             status = file_failure(report, path, "write", errno);
     }

@@ -1,5 +1,6 @@
-/* Files whose rows are runs of plain samples at known places: channels of XTF files, NumPy arrays.
- * Copies differ from their source in the replaced samples alone, byte for byte. */
+/* Files whose rows are runs of plain samples at known places: channels of XTF files, NumPy arrays,
+ * PGM and PFM images. Copies differ from their source in the replaced samples alone, byte for byte.
+ */
 #ifndef SONJECT_IO_SAMPLE_ROWS_H
 #define SONJECT_IO_SAMPLE_ROWS_H
 
@@ -15,9 +16,11 @@ struct sample_rows {
     struct raster_layout layout;
     uint64_t *places; /* owned: of each row's first stored sample; NULL: row_bytes apart */
     uint64_t first_place, row_bytes;
-    bool is_reversed; /* column 0 is the row's last stored sample */
+    bool is_reversed;    /* column 0 is the row's last stored sample */
+    bool is_upside_down; /* the last row comes first in the file */
     bool is_big_endian;
-    uint32_t largest; /* samples above are refused: they mean negative numbers; 0: none are */
+    uint32_t largest;       /* larger samples are refused; 0: none are */
+    bool above_is_negative; /* what is larger are negative numbers */
 };
 
 /* Frees what rows owns; fit for zeroed ones. */
@@ -29,7 +32,8 @@ sonject_status sample_rows_read(struct report *report, const struct sample_rows 
                                 const struct region *region, void *pixels);
 
 /* Writes at path a copy of the file with the region's samples replaced. path is published whole or
- * not at all. progress may be NULL. Errors: INPUT (cut short), STORAGE, MEMORY, CANCELLED. */
+ * not at all. progress may be NULL. Errors: INPUT (cut short, a new sample above the largest),
+ * STORAGE, MEMORY, CANCELLED. */
 sonject_status sample_rows_copy_with_patch(struct report *report, const struct sample_rows *rows,
                                            const char *path, const struct region *region,
                                            const void *pixels, sonject_progress_function progress,

@@ -5,8 +5,8 @@
 
 #include "base/memory.h"
 #include "base/ranges.h"
-#include "io/raster_file.h"
 #include "io/scene_fields.h"
+#include "io/swath_file.h"
 
 enum positive_way {
     POSITIVE_UP,
@@ -16,6 +16,7 @@ enum positive_way {
 /* What is said about the file: a height is offset_m, and unit_m times the pixel up or down. */
 struct heights_text {
     char *path;              /* owned */
+    char *array;             /* owned; in a file of several, its name */
     double unit_m, offset_m; /* m a number of the file; height where that is 0 */
     uint32_t positive;       /* enum positive_way: where larger numbers lie */
     sonject_relief_params grid;
@@ -25,6 +26,17 @@ static sonject_status read_heights_unit(struct reader *reader, const struct tree
                                         void *structure)
 {
     return read_length_unit(reader, node, &((struct heights_text *)structure)->unit_m);
+}
+
+static sonject_status read_heights_array(struct reader *reader, const struct tree_node *node,
+                                         void *structure)
+{
+    struct heights_text *heights = structure;
+    const char *text = read_text(reader, node);
+    if (!text)
+        return SONJECT_ERROR_INPUT;
+    heights->array = copy_text(text);
+    return heights->array ? SONJECT_OK : report_out_of_memory(reader->report, "a name");
 }
 
 static sonject_status finish_heights(struct reader *reader, const struct tree_node *node,
@@ -44,8 +56,10 @@ static sonject_status finish_heights(struct reader *reader, const struct tree_no
 
 #define STRUCTURE struct heights_text
 static const struct field heights_fields[] = {
-    {"file", "image of one channel: rows along-track, columns in ground range", .kind = FIELD_PATH,
-     .offset = offsetof(STRUCTURE, path), REQUIRED},
+    {"file", "image or array of one channel: rows along-track, columns in ground range",
+     .kind = FIELD_PATH, .offset = offsetof(STRUCTURE, path), REQUIRED},
+    {"array", "in an HDF5 or MATLAB file of several: its name", .kind = FIELD_SPECIAL,
+     .unit = "text", .read = read_heights_array},
     {"unit", "of the file's numbers", .kind = FIELD_SPECIAL, .unit = "m, km, cm, mm",
      .read = read_heights_unit, REQUIRED},
     {"positive", "where larger numbers lie: up (heights, by default) or down (depths)",
@@ -95,10 +109,10 @@ static sonject_status set_heights(struct scene *scene, struct report *report,
 
 /* Sizes that no relief may have are refused before anything is held in memory. */
 static sonject_status take_pixels(struct reader *reader, struct report *report,
-                                  struct heights_text *text, struct raster_file *file)
+                                  struct heights_text *text, struct swath_file *file)
 {
     struct raster_layout layout;
-    raster_file_layout(file, &layout);
+    swath_file_layout(file, &layout);
     if (layout.channels != 1)
         return report_failure(report, SONJECT_ERROR_INPUT, "%s: has %lu channels; heights need one",
                               text->path, (unsigned long)layout.channels);
@@ -114,7 +128,7 @@ static sonject_status take_pixels(struct reader *reader, struct report *report,
     float *heights = allocate_array(count, sizeof *heights);
     text->grid.rows = (uint32_t)layout.rows;
     text->grid.columns = (uint32_t)layout.columns;
-    sonject_status status = pixels && heights ? raster_file_read(report, file, &all, pixels)
+    sonject_status status = pixels && heights ? swath_file_read(report, file, &all, pixels)
                                               : report_out_of_memory(report, text->path);
     if (status == SONJECT_OK) {
         heights_of_pixels(text, pixels, layout.type, heights, count);
@@ -130,11 +144,12 @@ static sonject_status load(struct reader *reader, const struct tree_node *node,
                            struct heights_text *text)
 {
     struct report report = {{0}, NULL, NULL};
-    struct raster_file *file;
-    sonject_status status = raster_file_open(&report, text->path, &file);
+    struct swath_file *file;
+    sonject_status status =
+        swath_file_open_array(&report, text->path, SONJECT_CHANNEL_ONLY, text->array, &file);
     if (status == SONJECT_OK) {
         status = take_pixels(reader, &report, text, file);
-        raster_file_close(&file);
+        swath_file_close(&file);
     }
     if (status != SONJECT_OK)
         refuse_key(reader, node, "file", "%s", report.message);
@@ -153,5 +168,6 @@ sonject_status read_relief_heights(struct reader *reader, const struct tree_node
     if (status == SONJECT_OK)
         status = load(reader, node, &text);
     free(text.path);
+    free(text.array);
     return status;
 }

@@ -105,7 +105,7 @@ sonject_status finish_scene(struct reader *reader, const struct tree_node *node,
 
 sonject_status finish_input(struct reader *reader, const struct tree_node *node, void *structure)
 {
-    static const char *const file_keys[] = {"channel", "complex", "transfer"};
+    static const char *const file_keys[] = {"channel", "array", "complex", "transfer"};
     struct scene *scene = structure;
     const bool is_file = is_given(node, "path");
     const bool is_uniform = is_given(node, "uniform");
@@ -113,7 +113,7 @@ sonject_status finish_input(struct reader *reader, const struct tree_node *node,
     if (is_file + is_uniform + is_synthetic != 1)
         return refuse_value(reader, node, "%s of path, uniform and synthetic is there; give one",
                             is_file + is_uniform + is_synthetic == 0 ? "none" : "more than one");
-    for (int i = 0; i < 3; i++)
+    for (int i = 0; i < 4; i++)
         if (!is_file && is_given(node, file_keys[i]))
             return refuse_key(reader, node, file_keys[i],
                               "belongs to an image file (path), not to %s; remove it",

@@ -81,6 +81,8 @@ static const struct field input_fields[] = {
     {"path", "image file", .kind = FIELD_PATH, .offset = offsetof(STRUCTURE, input_path)},
     {"channel", "of an XTF file: port, starboard, or its number there", .kind = FIELD_SPECIAL,
      .read = read_channel, .unit = "word or whole number"},
+    {"array", "in an HDF5 or MATLAB file of several: its name", .kind = FIELD_SPECIAL,
+     .read = read_array, .unit = "text"},
     {"complex", "the file's two channels are real and imaginary part", .kind = FIELD_BOOL,
      .offset = offsetof(STRUCTURE, input_is_complex)},
     {"uniform", "a swath of unit reflectivity", SAME(uniform_section)},

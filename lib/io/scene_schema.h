@@ -148,12 +148,13 @@ sonject_status finish_object(struct reader *reader, const struct tree_node *node
 extern const struct section medium_section;
 sonject_status read_medium(struct reader *reader, const struct tree_node *node, void *structure);
 
-/* What an XTF file may say of itself, in scene_recording.c: the channel that is meant, geometry and
- * altitude. They are taken when the sonar's keys, and so the input's and the patch's, are read:
- * finish_recording is the sonar's check. */
+/* What an XTF file may say of itself, in scene_recording.c: the channel or array that is meant,
+ * geometry and altitude. They are taken when the sonar's keys, and so the input's and the patch's,
+ * are read: finish_recording is the sonar's check. */
 extern const struct section geometry_section;
 extern const struct section ping_spacing_section;
 sonject_status read_channel(struct reader *reader, const struct tree_node *node, void *structure);
+sonject_status read_array(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status read_geometry(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status read_row_spacing(struct reader *reader, const struct tree_node *node,
                                 void *structure);

@@ -7,13 +7,21 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "io/byte_file.h"
+#include "io/hdf5_array.h"
+#include "io/hdf5_mark.h"
+#include "io/image_kind.h"
+#include "io/mat_file.h"
 #include "io/npy_file.h"
+#include "io/pnm_file.h"
 #include "io/raster_file.h"
 
 enum swath_kind {
     SWATH_IMAGE,
     SWATH_XTF,
-    SWATH_NPY
+    SWATH_NPY,
+    SWATH_PNM,
+    SWATH_HDF5,
+    SWATH_MAT
 };
 
 struct swath_file {
@@ -21,12 +29,15 @@ struct swath_file {
     char *path;
     struct raster_file *image; /* SWATH_IMAGE */
     struct xtf_file xtf;
-    struct sample_rows array; /* SWATH_NPY */
+    struct sample_rows plain; /* SWATH_NPY, SWATH_PNM */
+    struct hdf5_array *hdf5;
+    struct mat_file mat;
 };
 
 static sonject_status tell_kind(struct report *report, struct swath_file *file)
 {
-    unsigned char head[8] = {0};
+    unsigned char head[16] = {0};
+    enum image_kind image;
     uint64_t bytes;
     FILE *stream = byte_file_open(file->path, &bytes);
     if (!stream) {
@@ -35,27 +46,53 @@ static sonject_status tell_kind(struct report *report, struct swath_file *file)
     }
     const size_t got = fread(head, 1, sizeof head, stream);
     fclose(stream);
-    file->kind = xtf_begins(head, got)   ? SWATH_XTF
-                 : npy_begins(head, got) ? SWATH_NPY
-                                         : SWATH_IMAGE;
+    file->kind = xtf_begins(head, got)                        ? SWATH_XTF
+                 : npy_begins(head, got)                      ? SWATH_NPY
+                 : pnm_begins(head, got)                      ? SWATH_PNM
+                 : mat_begins(head, got)                      ? SWATH_MAT
+                 : image_kind_of_beginning(head, got, &image) ? SWATH_IMAGE
+                 : hdf5_mark_is_in(file->path)                ? SWATH_HDF5
+                                                              : SWATH_IMAGE;
     return SONJECT_OK;
 }
 
-static sonject_status open_kind(struct report *report, struct swath_file *file, int32_t channel)
+static sonject_status open_kind(struct report *report, struct swath_file *file, int32_t channel,
+                                const char *array)
 {
-    if (file->kind == SWATH_XTF)
-        return xtf_file_open(report, file->path, channel, &file->xtf);
-    if (channel != SONJECT_CHANNEL_ONLY)
+    if (channel != SONJECT_CHANNEL_ONLY && file->kind != SWATH_XTF)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: is no XTF file, so it has no channels: take input.channel out",
                               file->path);
-    if (file->kind == SWATH_NPY)
-        return npy_file_open(report, file->path, &file->array);
+    if (array && file->kind != SWATH_HDF5 && file->kind != SWATH_MAT)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: is neither HDF5 nor MATLAB, so its arrays have no names: take "
+                              "the array out",
+                              file->path);
+    switch (file->kind) {
+    case SWATH_XTF:
+        return xtf_file_open(report, file->path, channel, &file->xtf);
+    case SWATH_NPY:
+        return npy_file_open(report, file->path, &file->plain);
+    case SWATH_PNM:
+        return pnm_file_open(report, file->path, &file->plain);
+    case SWATH_HDF5:
+        return hdf5_array_open(report, file->path, array, &file->hdf5);
+    case SWATH_MAT:
+        return mat_file_open(report, file->path, array, &file->mat);
+    case SWATH_IMAGE:
+        break;
+    }
     return raster_file_open(report, file->path, &file->image);
 }
 
 sonject_status swath_file_open(struct report *report, const char *path, int32_t channel,
                                struct swath_file **file)
+{
+    return swath_file_open_array(report, path, channel, NULL, file);
+}
+
+sonject_status swath_file_open_array(struct report *report, const char *path, int32_t channel,
+                                     const char *array, struct swath_file **file)
 {
     *file = NULL;
     struct swath_file *opened = allocate_array(1, sizeof *opened);
@@ -69,7 +106,7 @@ sonject_status swath_file_open(struct report *report, const char *path, int32_t 
     opened->path = copy;
     status = tell_kind(report, opened);
     if (status == SONJECT_OK)
-        status = open_kind(report, opened, channel);
+        status = open_kind(report, opened, channel, array);
     if (status == SONJECT_OK)
         *file = opened;
     else
@@ -83,18 +120,20 @@ void swath_file_close(struct swath_file **file)
         return;
     raster_file_close(&(*file)->image);
     xtf_file_close(&(*file)->xtf);
-    sample_rows_clear(&(*file)->array);
+    sample_rows_clear(&(*file)->plain);
+    hdf5_array_close(&(*file)->hdf5);
+    mat_file_close(&(*file)->mat);
     free((*file)->path);
     free(*file);
     *file = NULL;
 }
 
-/* NULL: it is an image. */
+/* NULL: it is of another kind. */
 static const struct sample_rows *sample_rows_of(const struct swath_file *file)
 {
     if (file->kind == SWATH_XTF)
         return &file->xtf.rows;
-    return file->kind == SWATH_NPY ? &file->array : NULL;
+    return file->kind == SWATH_NPY || file->kind == SWATH_PNM ? &file->plain : NULL;
 }
 
 void swath_file_layout(const struct swath_file *file, struct raster_layout *layout)
@@ -102,13 +141,27 @@ void swath_file_layout(const struct swath_file *file, struct raster_layout *layo
     const struct sample_rows *rows = sample_rows_of(file);
     if (rows)
         *layout = rows->layout;
+    else if (file->kind == SWATH_HDF5)
+        hdf5_array_layout(file->hdf5, layout);
+    else if (file->kind == SWATH_MAT)
+        *layout = file->mat.layout;
     else
         raster_file_layout(file->image, layout);
 }
 
 bool swath_file_is_lossless(const struct swath_file *file)
 {
-    return sample_rows_of(file) || raster_file_is_lossless(file->image);
+    return file->kind != SWATH_IMAGE || raster_file_is_lossless(file->image);
+}
+
+uint32_t swath_file_largest(const struct swath_file *file)
+{
+    const struct sample_rows *rows = sample_rows_of(file);
+    if (rows)
+        return rows->largest;
+    if (file->kind == SWATH_HDF5)
+        return hdf5_array_largest(file->hdf5);
+    return file->kind == SWATH_MAT ? mat_file_largest(&file->mat) : 0;
 }
 
 const struct xtf_file *swath_file_xtf(const struct swath_file *file)
@@ -119,15 +172,29 @@ const struct xtf_file *swath_file_xtf(const struct swath_file *file)
 bool swath_file_attribute(const struct swath_file *file, const char *name, char *value,
                           size_t capacity)
 {
-    return file->kind == SWATH_IMAGE && raster_file_attribute(file->image, name, value, capacity);
+    switch (file->kind) {
+    case SWATH_IMAGE:
+        return raster_file_attribute(file->image, name, value, capacity);
+    case SWATH_PNM:
+        return pnm_file_attribute(&file->plain, name, value, capacity);
+    case SWATH_HDF5:
+        return hdf5_array_attribute(file->hdf5, name, value, capacity);
+    default:
+        return false;
+    }
 }
 
 sonject_status swath_file_read(struct report *report, struct swath_file *file,
                                const struct region *region, void *pixels)
 {
     const struct sample_rows *rows = sample_rows_of(file);
-    return rows ? sample_rows_read(report, rows, region, pixels)
-                : raster_file_read(report, file->image, region, pixels);
+    if (rows)
+        return sample_rows_read(report, rows, region, pixels);
+    if (file->kind == SWATH_HDF5)
+        return hdf5_array_read(report, file->hdf5, region, pixels);
+    if (file->kind == SWATH_MAT)
+        return mat_file_read(report, &file->mat, region, pixels);
+    return raster_file_read(report, file->image, region, pixels);
 }
 
 sonject_status swath_file_copy_with_patch(struct report *report, const struct swath_file *file,
@@ -136,7 +203,11 @@ sonject_status swath_file_copy_with_patch(struct report *report, const struct sw
                                           void *user)
 {
     const struct sample_rows *rows = sample_rows_of(file);
-    return rows ? sample_rows_copy_with_patch(report, rows, path, region, pixels, progress, user)
-                : raster_file_copy_with_patch(report, file->path, path, region, pixels, progress,
-                                              user);
+    if (rows)
+        return sample_rows_copy_with_patch(report, rows, path, region, pixels, progress, user);
+    if (file->kind == SWATH_HDF5)
+        return hdf5_array_copy_with_patch(report, file->hdf5, path, region, pixels, progress, user);
+    if (file->kind == SWATH_MAT)
+        return mat_file_copy_with_patch(report, &file->mat, path, region, pixels, progress, user);
+    return raster_file_copy_with_patch(report, file->path, path, region, pixels, progress, user);
 }

@@ -1,4 +1,5 @@
-/* Files that hold a swath: images, channels of XTF files, NumPy arrays. */
+/* Files that hold a swath: images, channels of XTF files, arrays of NumPy, HDF5 and MATLAB files.
+ */
 #ifndef SONJECT_IO_SWATH_FILE_H
 #define SONJECT_IO_SWATH_FILE_H
 
@@ -8,12 +9,17 @@
 
 struct swath_file;
 
-/* Opens for reading; the file's first bytes tell what it is. choice: of an XTF file's channels;
- * must not choose for other files. Errors: INPUT (as raster_file_open, xtf_file_open, npy_file_open
- * say), UNSUPPORTED, STORAGE, MEMORY. On success *file is the caller's, for swath_file_close; on
- * failure NULL. */
+/* Opens for reading; the file's first bytes tell what it is. channel: of an XTF file; must be
+ * SONJECT_CHANNEL_ONLY for other files. Of several arrays in a file none is chosen. Errors: INPUT
+ * (as raster_file_open, xtf_file_open and the like say), UNSUPPORTED, STORAGE, MEMORY. On success
+ * *file is the caller's, for swath_file_close; on failure NULL. */
 sonject_status swath_file_open(struct report *report, const char *path, int32_t channel,
                                struct swath_file **file);
+
+/* The same, and the name of the array in an HDF5 or MATLAB file; NULL: the only one. Must be NULL
+ * for other files. */
+sonject_status swath_file_open_array(struct report *report, const char *path, int32_t channel,
+                                     const char *array, struct swath_file **file);
 void swath_file_close(struct swath_file **file);
 
 void swath_file_layout(const struct swath_file *file, struct raster_layout *layout);
@@ -21,10 +27,14 @@ void swath_file_layout(const struct swath_file *file, struct raster_layout *layo
 /* False where writing the format changes pixels (JPEG). */
 bool swath_file_is_lossless(const struct swath_file *file);
 
+/* The largest number that the file may hold where that is less than its type's; 0 elsewhere. */
+uint32_t swath_file_largest(const struct swath_file *file);
+
 /* The XTF file behind it; NULL for other kinds. */
 const struct xtf_file *swath_file_xtf(const struct swath_file *file);
 
-/* A text that sonject stored with an image, as raster_file_attribute; false for other kinds. */
+/* A text that sonject stored with an image, as raster_file_attribute; false for kinds that keep
+ * none. */
 bool swath_file_attribute(const struct swath_file *file, const char *name, char *value,
                           size_t capacity);
 

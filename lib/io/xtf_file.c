@@ -149,6 +149,7 @@ static sonject_status set_samples(struct opening *opening)
     rows->layout.type = channel->sample_bytes == 1 ? PIXEL_UINT8 : PIXEL_UINT16;
     rows->layout.channels = 1;
     rows->largest = channel->is_signed && channel->sample_bytes == 2 ? LARGEST_POSITIVE_16 : 0;
+    rows->above_is_negative = true;
     /* port's samples are stored as a display shows them: from far to near */
     rows->is_reversed = opening->file->side == XTF_PORT;
     return SONJECT_OK;

@@ -29,6 +29,7 @@ void scene_init(struct scene *scene)
 void scene_clear(struct scene *scene)
 {
     free(scene->input_path);
+    free(scene->array);
     free(scene->objects);
     free(scene->parts);
     for (uint32_t i = 0; i < scene->mesh_count; i++)

@@ -51,6 +51,7 @@ struct scene {
     char *input_path;      /* owned; NULL unless input_kind is SONJECT_INPUT_FILE */
     bool input_is_complex; /* two channels of the file are real and imaginary part */
     int32_t channel; /* of a file that is XTF: SONJECT_CHANNEL_PORT and the like, or a number */
+    char *array;     /* owned; of several in a file, its name; NULL: the only one */
     uint32_t uniform_rows, uniform_columns;
     sonject_synthetic_params synthetic;
     sonject_object_params *objects; /* owned */

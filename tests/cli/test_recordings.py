@@ -177,7 +177,7 @@ def test_signed_samples_below_zero_are_refused(sonject, tmp_path, sides):
         for row, line in enumerate(sides[1]))
     (tmp_path / "line.xtf").write_bytes(data)
     answer = sonject("run", write_scene(tmp_path, "line.xtf"), "-o", "out")
-    assert_refused(answer, 3, "the sample at ping 30, column 100 is negative")
+    assert_refused(answer, 3, "the sample at row 30, column 100 is negative")
 
 
 @pytest.mark.parametrize("array, words", [

@@ -94,9 +94,11 @@ static const struct key_case {
 #define GRID(member)   offsetof(sonject_relief_params, member)
 #define CAST           SOURCE_ROOT "/tests/unit/cast.csv"
 #define HEIGHTS        SOURCE_ROOT "/tests/unit/heights.png"
+#define ARRAYS         SOURCE_ROOT "/tests/unit/heights.mat" /* two arrays of 2 x 3 bytes */
     {"sonject", small, "1", TYPE_NOTHING, 0, 0.0, NULL, NULL},
     {"input.path", file, "swath-2.tif", TYPE_PATH, SCENE(input_path), 0.0, "swath-2.tif", NULL},
     {"input.channel", file, "5", TYPE_U32, SCENE(channel), 5.0, NULL, NULL},
+    {"input.array", file, "swath", TYPE_PATH, SCENE(array), 0.0, "swath", NULL},
     {"input.complex", file, "true", TYPE_BOOL, SCENE(input_is_complex), 1.0, NULL, NULL},
     {"input.uniform.rows", small, "1048576", TYPE_U32, SCENE(uniform_rows), 1048576.0, NULL, NULL},
     {"input.uniform.columns", small, "7", TYPE_U32, SCENE(uniform_columns), 7.0, NULL, NULL},
@@ -262,6 +264,9 @@ static const struct key_case {
     {"seabed.relief[].heights.file", small, HEIGHTS, TYPE_U32, GRID(columns), 3.0, NULL,
      "seabed.relief=[{heights: {unit: cm, row_spacing: 1, column_spacing: 1, first_ground_range: "
      "30}}]"},
+    {"seabed.relief[].heights.array", small, "depths", TYPE_U32, GRID(columns), 3.0, NULL,
+     "seabed.relief=[{heights: {file: '" ARRAYS
+     "', unit: cm, row_spacing: 1, column_spacing: 1, first_ground_range: 30}}]"},
     {"seabed.relief[].heights.unit", small, "10 cm", TYPE_NOTHING, 0, 0.0, NULL,
      "seabed.relief=[{heights: {file: '" HEIGHTS
      "', row_spacing: 1, column_spacing: 1, first_ground_range: 30}}]"},

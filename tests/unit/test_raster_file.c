@@ -754,9 +754,9 @@ static void test_files_that_are_no_images(void **state)
     write_bytes(temporary_file(folder, "a.tif"), "", 0);
     expect_no_open(folder->file, "empty");
     write_bytes(temporary_file(folder, "a.tif"), "Please convert me.", 18);
-    expect_no_open(folder->file, "not a TIFF, PNG or JPEG");
+    expect_no_open(folder->file, "of no format that sonject knows");
     write_bytes(temporary_file(folder, "a.tif"), "GIF89a", 6);
-    expect_no_open(folder->file, "not a TIFF, PNG or JPEG");
+    expect_no_open(folder->file, "is a GIF file");
     const unsigned char pixels[4] = {0};
     const struct region region = {0, 0, 1, 1};
     char missing[TEMPORARY_CAPACITY + 300];

@@ -116,6 +116,7 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sonject_scene_set_transfer": (_status, [_scene, POINTER(s.sonject_transfer_params)]),
     "sonject_scene_set_injection": (_status, [_scene, POINTER(s.sonject_injection_params)]),
     "sonject_scene_set_patch": (_status, [_scene, POINTER(s.sonject_patch_params)]),
+    "sonject_scene_set_input_array": (_status, [_scene, c_char_p]),
     "sonject_scene_set_input_channel": (_status, [_scene, c_int32]),
     "sonject_scene_set_input_file": (_status, [_scene, c_char_p]),
     "sonject_scene_set_input_uniform": (_status, [_scene, c_uint32, c_uint32]),

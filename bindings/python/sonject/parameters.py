@@ -355,10 +355,12 @@ class Uniform:
 
 @dataclass
 class Recording:
-    """A channel of an XTF file: "port", "starboard", its number there, or None for the only one."""
+    """A channel of an XTF file: "port", "starboard", its number there, or None for the only one; or
+    the array of that name in an HDF5 or MATLAB file, None for the only one."""
 
     path: PathLike
     channel: Union[str, int, None] = None
+    array: Optional[str] = None
 
     def number(self) -> int:
         """The channel as the library counts them."""

@@ -317,6 +317,8 @@ class Scene(Handle):
             path = file_name("input", source.path)
             self._context.call("sonject_scene_set_input_file", self, path)
             self._context.call("sonject_scene_set_input_channel", self, number)
+            array = None if source.array is None else source.array.encode()
+            self._context.call("sonject_scene_set_input_array", self, array)
         else:
             path = file_name("input", source)
             self._context.call("sonject_scene_set_input_file", self, path)

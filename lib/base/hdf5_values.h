@@ -1,7 +1,7 @@
 /* Values in HDF5 files: each call says whether it succeeded, and believes nothing of what it reads.
  * The library keeps its state in one place, so calls come between hdf5_enter and hdf5_leave. */
-#ifndef SONJECT_INJECT_HDF5_VALUES_H
-#define SONJECT_INJECT_HDF5_VALUES_H
+#ifndef SONJECT_BASE_HDF5_VALUES_H
+#define SONJECT_BASE_HDF5_VALUES_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
 #define _POSIX_C_SOURCE 200809L
-#include "inject/hdf5_values.h"
+#include "base/hdf5_values.h"
 
 #include <fcntl.h>
 #include <pthread.h>

@@ -1,0 +1,50 @@
+/* A data set of an open HDF5 file, and its samples in the order that images have. Calls come
+ * between hdf5_enter and hdf5_leave. */
+#ifndef SONJECT_IO_HDF5_SET_H
+#define SONJECT_IO_HDF5_SET_H
+
+#include "base/hdf5_values.h"
+#include "image/raster.h"
+#include "io/array_list.h"
+#include "io/hdf5_array.h"
+
+#define HDF5_NAME_MAX 256 /* bytes of a data set's path, the final 0 among them */
+
+enum hdf5_number {
+    HDF5_UINT8,
+    HDF5_UINT16,
+    HDF5_INT16,
+    HDF5_FLOAT32,
+    HDF5_FLOAT64,
+    HDF5_OTHER
+};
+
+/* What a data set is. */
+struct hdf5_set {
+    char name[HDF5_NAME_MAX];
+    hsize_t sides[2]; /* in the file's order */
+    enum hdf5_number number;
+    bool is_complex;
+    bool is_matlab;        /* the file's order is columns, rows */
+    char part_names[2][8]; /* of a complex one's compound */
+};
+
+/* What the data set of that path is; false if it is not one of two dimensions. */
+bool hdf5_set_look_at(hid_t file, const char *name, struct hdf5_set *set);
+
+/* True if its numbers are of a type that sonject reads. */
+bool hdf5_set_is_read(const struct hdf5_set *set);
+
+/* Walks through the file's groups and keeps the data set that is wanted. Errors: INPUT. */
+sonject_status hdf5_set_choose(struct report *report, const char *path, hid_t file,
+                               const char *wanted, struct hdf5_set *set);
+
+/* Checks how its samples are stored. Errors: INPUT (in other files, cut short, unknown filters). */
+sonject_status hdf5_set_check_storage(struct report *report, const char *path, hid_t dataset,
+                                      const struct hdf5_set *set, uint64_t file_bytes);
+
+/* The type in memory: floats, doubles or whole numbers, or pairs of them. To be closed by H5Tclose.
+ * wide: doubles where the file has them. */
+hid_t hdf5_set_memory_type(const struct hdf5_set *set, bool wide);
+
+#endif

@@ -1,0 +1,163 @@
+"""HDF5 and MATLAB arrays and PGM images as input, in the eyes of h5py and scipy."""
+
+import numpy
+import pytest
+
+from conftest import COLUMNS, ROWS, SCENE, assert_refused
+
+h5py = pytest.importorskip("h5py")
+scipy_io = pytest.importorskip("scipy.io")
+
+
+def write_scene(folder, name, keys=""):
+    path = folder / f"{name}.yaml"
+    path.write_text(SCENE.replace("path: swath.tif", f"path: {name}\n  {keys}".rstrip()))
+    return path
+
+
+def assert_target_is_there(before, after):
+    assert after.dtype == before.dtype and after.shape == before.shape
+    assert (after != before).sum() > 50
+    assert (after == before).sum() > before.size / 4
+
+
+def others(group):
+    """All that a file holds but the image: values, attributes, types and storage."""
+    found = {}
+
+    def note(name, thing):
+        facts = [str(dict(thing.attrs))]
+        if isinstance(thing, h5py.Dataset):
+            facts += [str(thing.dtype), thing.chunks, thing.compression, thing.maxshape]
+            if name != "image":
+                facts.append(str(thing[()]))
+        found[name] = facts
+
+    group.visititems(note)
+    return found
+
+
+@pytest.mark.parametrize("kind, storage", [("f4", "plain"), ("f8", "gzip"), ("c8", "plain"),
+                                           ("c16", "gzip"), ("u2", "plain")])
+def test_hdf5(sonject, tmp_path, swath, kind, storage):
+    image = (swath * 20000 if kind == "u2" else swath.astype("f8") * 1.1).astype(kind)
+    options = {} if storage == "plain" else {"chunks": (17, 31), "compression": "gzip",
+                                             "shuffle": True}
+    with h5py.File(tmp_path / "line.h5", "w") as file:
+        file.create_dataset("image", data=image, **options)
+        file["image"].attrs["units"] = "Pa"
+        file["more/rate"] = 48000.0
+        file["more/note"] = "of the operator"
+        file["names"] = numpy.array([b"a", b"bc"])
+    complex_key = "complex: true" if kind.startswith("c") else ""
+    answer = sonject("run", write_scene(tmp_path, "line.h5", complex_key), "-o", "out")
+    assert answer.returncode == 0, answer.stderr
+    with h5py.File(tmp_path / "line.h5") as before, \
+            h5py.File(tmp_path / "out/image.h5") as after:
+        assert_target_is_there(before["image"][()], after["image"][()])
+        assert others(before) == others(after)
+    if storage == "plain":
+        bytes_before, bytes_after = (numpy.fromfile(tmp_path / name, "u1")
+                                     for name in ("line.h5", "out/image.h5"))
+        changed = numpy.flatnonzero(bytes_before != bytes_after)
+        assert changed.max() - changed.min() <= image.nbytes
+
+
+def write_matlab_73(path, image, compression=None):
+    """As MATLAB's -v7.3 lays it out: columns are together, so HDF5 sees the transpose."""
+    with h5py.File(path, "w", userblock_size=512) as file:
+        pairs = image.T
+        if image.dtype.kind == "c":
+            part = numpy.dtype(f"f{image.dtype.itemsize // 2}")
+            pairs = numpy.zeros(image.T.shape, [("real", part), ("imag", part)])
+            pairs["real"], pairs["imag"] = image.T.real, image.T.imag
+        file.create_dataset("swath", data=pairs, compression=compression)
+        file["swath"].attrs["MATLAB_class"] = numpy.bytes_("double")
+        file["fs"] = numpy.array([[48000.0]])
+        file["fs"].attrs["MATLAB_class"] = numpy.bytes_("double")
+    head = b"MATLAB 7.3 MAT-file, Platform: GLNXA64".ljust(124) + b"\x00\x02IM"
+    with open(path, "r+b") as file:
+        file.write(head)
+
+
+def test_matlab_7_3(sonject, tmp_path, swath):
+    image = swath.astype("c16") / (3 + 1j)
+    write_matlab_73(tmp_path / "line.mat", image, "gzip")
+    scene = write_scene(tmp_path, "line.mat", "complex: true")
+    answer = sonject("run", scene, "-o", "out")
+    assert answer.returncode == 0, answer.stderr
+    assert ((tmp_path / "out/image.mat").read_bytes()[:512] ==
+            (tmp_path / "line.mat").read_bytes()[:512])
+    with h5py.File(tmp_path / "out/image.mat") as file:
+        after = file["swath"][()].T
+        assert file["fs"][()] == 48000.0
+    assert_target_is_there(image, after["real"] + 1j * after["imag"])
+
+
+@pytest.mark.parametrize("kind, compressed", [("f8", False), ("c8", True), ("u1", True)])
+def test_matlab_5(sonject, tmp_path, swath, kind, compressed):
+    image = numpy.asfortranarray((swath * 300 if kind == "u1" else swath / 3).astype(kind))
+    variables = {
+        "fs": 48000.0,
+        "swath": image,
+        "facts": {"ship": "Anna", "pings": numpy.arange(5)},
+        "cells": numpy.array([1.5, "text"], object),
+        "cube": numpy.arange(24.0).reshape(2, 3, 4),
+    }
+    scipy_io.savemat(tmp_path / "line.mat", variables, do_compression=compressed)
+    complex_key = "complex: true" if kind.startswith("c") else ""
+    answer = sonject("run", write_scene(tmp_path, "line.mat", complex_key), "-o", "out")
+    assert answer.returncode == 0, answer.stderr
+    before, after = (scipy_io.loadmat(tmp_path / name) for name in ("line.mat", "out/image.mat"))
+    assert_target_is_there(before.pop("swath"), after.pop("swath"))
+    assert str(before) == str(after)
+    if not compressed:
+        assert len((tmp_path / "line.mat").read_bytes()) == len(
+            (tmp_path / "out/image.mat").read_bytes())
+
+
+def test_the_same_pixels_give_the_same_image(sonject, tmp_path, swath, scene):
+    """A float32 TIFF, an HDF5 of the same in float64, the transpose as MATLAB keeps it."""
+    double = swath.astype("f8")
+    with h5py.File(tmp_path / "line.h5", "w") as file:
+        file["image"] = double
+    write_matlab_73(tmp_path / "line.mat", double)
+    scenes = {"tif": scene, "h5": write_scene(tmp_path, "line.h5"),
+              "mat": write_scene(tmp_path, "line.mat")}
+    for name, path in scenes.items():
+        answer = sonject("run", path, "-o", name)
+        assert answer.returncode == 0, answer.stderr
+    pixels = (tmp_path / "tif/image.tif").read_bytes()[8:8 + 4 * ROWS * COLUMNS]
+    expected = numpy.frombuffer(pixels, "<f4").reshape(ROWS, COLUMNS)
+    with h5py.File(tmp_path / "h5/image.h5") as file:
+        assert numpy.array_equal(file["image"][()].astype("f4"), expected)
+    with h5py.File(tmp_path / "mat/image.mat") as file:
+        assert numpy.array_equal(file["swath"][()].T.astype("f4"), expected)
+
+
+def test_one_of_several_arrays(sonject, tmp_path, swath):
+    with h5py.File(tmp_path / "line.h5", "w") as file:
+        file["port"] = swath
+        file["sides/starboard"] = swath[::-1]
+    scene = write_scene(tmp_path, "line.h5")
+    assert_refused(sonject("run", scene, "-o", "out"), 3,
+                   "port (96 x 128), sides/starboard (96 x 128)")
+    answer = sonject("run", scene, "-o", "out", "--set", "input.array=sides/starboard")
+    assert answer.returncode == 0, answer.stderr
+    with h5py.File(tmp_path / "out/image.h5") as file:
+        assert numpy.array_equal(file["port"][()], swath)
+        assert_target_is_there(swath[::-1], file["sides/starboard"][()])
+
+
+def test_a_pgm_keeps_its_largest_number(sonject, tmp_path, swath):
+    """Glints brighter than the file's largest number are cut there, as the recorder would."""
+    pixels = (swath / swath.max() * 4095).astype(">u2")
+    head = b"P5\n# of the operator\n%d %d\n4095\n" % (COLUMNS, ROWS)
+    (tmp_path / "line.pgm").write_bytes(head + pixels.tobytes())
+    answer = sonject("run", write_scene(tmp_path, "line.pgm"), "-o", "out")
+    assert answer.returncode == 0, answer.stderr
+    after = (tmp_path / "out/image.pgm").read_bytes()
+    assert after.startswith(head)
+    samples = numpy.frombuffer(after[len(head):], ">u2").reshape(ROWS, COLUMNS)
+    assert samples.max() <= 4095
+    assert_target_is_there(pixels, samples)

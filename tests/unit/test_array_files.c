@@ -1,0 +1,644 @@
+/* PGM and PFM images and arrays of MATLAB and HDF5 files: which sample is where, what a copy keeps,
+ * and files that are damaged. */
+#include "damaged_files.h"
+
+#include <sys/wait.h>
+
+#include "io/mat_element.h"
+
+#ifdef HAS_HDF5
+#include "base/hdf5_values.h"
+#endif
+
+#define ROWS    3
+#define COLUMNS 4
+#define LEAKS   9 /* a child's exit status where valgrind finds them */
+
+#ifndef MUTATIONS
+#define MUTATIONS 600
+#endif
+
+/* A file in the making. */
+struct draft {
+    unsigned char bytes[LARGEST_FILE];
+    size_t count;
+};
+
+static void add(struct draft *draft, const void *bytes, size_t count)
+{
+    assert_true(draft->count + count <= sizeof draft->bytes);
+    memcpy(draft->bytes + draft->count, bytes, count);
+    draft->count += count;
+}
+
+static void add_number(struct draft *draft, uint64_t number, size_t size)
+{
+    unsigned char bytes[8];
+    number_to_bytes(number, bytes, size, false);
+    add(draft, bytes, size);
+}
+
+static const char *file_in(const char *folder, const char *name)
+{
+    static char path[2][512];
+    static int turn;
+    turn = !turn;
+    snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
+    return path[turn];
+}
+
+static struct swath_file *open_draft(const char *folder, const char *name, const char *array,
+                                     const struct draft *draft)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct swath_file *file = NULL;
+    const char *path = file_in(folder, name);
+    if (draft)
+        write_file(path, draft->bytes, draft->count);
+    if (swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, array, &file) != SONJECT_OK)
+        fail_msg("%s", report.message);
+    return file;
+}
+
+static void expect_refused(const char *folder, const char *name, const char *array,
+                           const struct draft *draft, const char *words)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct swath_file *file = NULL;
+    const char *path = file_in(folder, name);
+    if (draft)
+        write_file(path, draft->bytes, draft->count);
+    assert_int_equal(swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, array, &file),
+                     SONJECT_ERROR_INPUT);
+    if (!strstr(report.message, words))
+        fail_msg("'%s' is not in '%s'", words, report.message);
+}
+
+static void expect_layout(const struct swath_file *file, uint32_t channels, enum pixel_type type)
+{
+    struct raster_layout layout;
+    swath_file_layout(file, &layout);
+    assert_int_equal(layout.rows, ROWS);
+    assert_int_equal(layout.columns, COLUMNS);
+    assert_int_equal(layout.channels, channels);
+    assert_int_equal(layout.type, type);
+}
+
+static const struct region whole = {0, 0, ROWS, COLUMNS};
+static const struct region inside = {1, 2, 2, 2};
+
+/* Replaces the samples inside, reads the copy as a file, and gives its bytes. */
+static void patch(struct swath_file *file, const char *folder, const char *copy,
+                  const void *samples, struct draft *back)
+{
+    struct report report = {{0}, NULL, NULL};
+    const char *path = file_in(folder, copy);
+    if (swath_file_copy_with_patch(&report, file, path, &inside, samples, NULL, NULL) != SONJECT_OK)
+        fail_msg("%s", report.message);
+    FILE *stream = fopen(path, "rb");
+    assert_non_null(stream);
+    back->count = fread(back->bytes, 1, sizeof back->bytes, stream);
+    fclose(stream);
+}
+
+static void read_all(struct swath_file *file, void *samples)
+{
+    struct report report = {{0}, NULL, NULL};
+    if (swath_file_read(&report, file, &whole, samples) != SONJECT_OK)
+        fail_msg("%s", report.message);
+}
+
+static void make_pgm(struct draft *draft, unsigned largest)
+{
+    char head[100];
+    snprintf(head, sizeof head, "P5\n# sonject:side=port\n%d %d # width, height\n%u\n", COLUMNS,
+             ROWS, largest);
+    draft->count = 0;
+    add(draft, head, strlen(head));
+    for (unsigned i = 0; i < ROWS * COLUMNS; i++) {
+        const unsigned char sample[2] = {(unsigned char)(3 * i >> 8), (unsigned char)(3 * i)};
+        add(draft, sample + (largest < 256), largest < 256 ? 1 : 2);
+    }
+}
+
+static void test_pgm(void **state)
+{
+    struct draft draft, back;
+    struct report report = {{0}, NULL, NULL};
+    uint16_t wide[ROWS * COLUMNS];
+    uint8_t narrow[ROWS * COLUMNS];
+    char side[8] = "";
+    make_pgm(&draft, 4095);
+    struct swath_file *file = open_draft(*state, "a.pgm", NULL, &draft);
+    expect_layout(file, 1, PIXEL_UINT16);
+    assert_int_equal(swath_file_largest(file), 4095);
+    assert_true(swath_file_attribute(file, "sonject:side", side, sizeof side));
+    assert_string_equal(side, "port");
+    read_all(file, wide);
+    for (unsigned i = 0; i < ROWS * COLUMNS; i++)
+        assert_int_equal(wide[i], 3 * i);
+    patch(file, *state, "b.pgm", (uint16_t[]){1000, 1001, 1002, 4095}, &back);
+    assert_int_equal(back.count, draft.count);
+    const size_t first = draft.count - 2 * ROWS * COLUMNS;
+    for (size_t i = 0; i < draft.count; i++) {
+        const size_t sample = i < first ? 0 : (i - first) / 2;
+        if (i < first || sample / COLUMNS < 1 || sample % COLUMNS < 2)
+            assert_int_equal(back.bytes[i], draft.bytes[i]);
+    }
+    assert_memory_equal(back.bytes + first + 2 * 6, "\x03\xE8\x03\xE9", 4);
+    assert_memory_equal(back.bytes + first + 2 * 10, "\x03\xEA\x0F\xFF", 4);
+    const uint16_t too_large[4] = {1, 2, 3, 4096};
+    assert_int_equal(swath_file_copy_with_patch(&report, file, file_in(*state, "c.pgm"), &inside,
+                                                too_large, NULL, NULL),
+                     SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(report.message, "row 2, column 3 is 4096"));
+    swath_file_close(&file);
+    make_pgm(&draft, 200);
+    file = open_draft(*state, "a.pgm", NULL, &draft);
+    expect_layout(file, 1, PIXEL_UINT8);
+    read_all(file, narrow);
+    assert_int_equal(narrow[11], 33);
+    swath_file_close(&file);
+}
+
+static void make_pfm(struct draft *draft, bool is_big_endian)
+{
+    const char *head = is_big_endian ? "Pf\n4 3\n1.0\n" : "Pf\n4 3\n-1.0\n";
+    draft->count = 0;
+    add(draft, head, strlen(head));
+    for (unsigned i = 0; i < ROWS * COLUMNS; i++) {
+        const float sample = 0.1f * (float)i;
+        unsigned char bytes[4];
+        uint32_t word;
+        memcpy(&word, &sample, sizeof word);
+        number_to_bytes(word, bytes, 4, is_big_endian);
+        add(draft, bytes, 4);
+    }
+}
+
+/* The file's first row is the image's last. */
+static void test_pfm(void **state)
+{
+    for (int order = 0; order < 2; order++) {
+        struct draft draft, back;
+        float samples[ROWS * COLUMNS];
+        make_pfm(&draft, order);
+        struct swath_file *file = open_draft(*state, "a.pfm", NULL, &draft);
+        expect_layout(file, 1, PIXEL_FLOAT32);
+        read_all(file, samples);
+        for (unsigned i = 0; i < ROWS * COLUMNS; i++)
+            assert_true(samples[i] ==
+                        0.1f * (float)((ROWS - 1 - i / COLUMNS) * COLUMNS + i % COLUMNS));
+        patch(file, *state, "b.pfm", (float[]){7.0f, 8.0f, 9.0f, 10.0f}, &back);
+        swath_file_close(&file);
+        assert_int_equal(back.count, draft.count);
+        file = open_draft(*state, "b.pfm", NULL, NULL);
+        read_all(file, samples);
+        assert_true(samples[6] == 7.0f && samples[11] == 10.0f && samples[5] == 0.1f * 5.0f);
+        swath_file_close(&file);
+    }
+    struct draft draft = {"Pf 4 3 2.0\n", 11};
+    expect_refused(*state, "a.pfm", NULL, &draft, "scaled");
+    draft = (struct draft){"P5 4 3 255\nabc", 14};
+    expect_refused(*state, "a.pgm", NULL, &draft, "cut short");
+    draft = (struct draft){"P5 4294967296 4294967296 255\n", 29};
+    expect_refused(*state, "a.pgm", NULL, &draft, "width or height");
+}
+
+static void begin_mat(struct draft *draft)
+{
+    draft->count = 0;
+    memset(draft->bytes, ' ', 116);
+    memcpy(draft->bytes, "MATLAB 5.0 MAT-file", 19);
+    memset(draft->bytes + 116, 0, 8);
+    memcpy(draft->bytes + 124, "\x00\x01IM", 4);
+    draft->count = 128;
+}
+
+static void add_element(struct draft *draft, uint32_t type, const void *bytes, size_t count)
+{
+    static const unsigned char zeros[8];
+    add_number(draft, type, 4);
+    add_number(draft, count, 4);
+    add(draft, bytes, count);
+    add(draft, zeros, (8 - count % 8) % 8);
+}
+
+/* parts: one or two, of rows x columns numbers of the stored type. */
+static void add_variable(struct draft *draft, const char *name, uint32_t kind, uint32_t rows,
+                         uint32_t columns, uint32_t type, const void *const *parts)
+{
+    const size_t start = draft->count;
+    const uint32_t flags[2] = {kind | (parts[1] ? 0x800u : 0), 0};
+    const uint32_t sides[2] = {rows, columns};
+    add_element(draft, MAT_MATRIX, "", 0);
+    add_element(draft, MAT_UINT32, flags, sizeof flags);
+    add_element(draft, MAT_INT32, sides, sizeof sides);
+    add_element(draft, MAT_INT8, name, strlen(name));
+    for (int i = 0; i < 2 && parts[i]; i++)
+        add_element(draft, type, parts[i], rows * columns * mat_type_bytes(type));
+    number_to_bytes(draft->count - start - 8, draft->bytes + start + 4, 4, false);
+}
+
+/* Column after column: 0.1, 1.1, 2.1, 0.2, ... : row + (column + 1) / 10. */
+static double number_at(size_t row, size_t column)
+{
+    return (double)row + 0.1 * (double)(column + 1);
+}
+
+/* A scalar, an image of doubles (with imaginary parts), numbers packed into bytes, and a text. */
+static void make_mat(struct draft *draft, bool is_complex)
+{
+    double numbers[2][ROWS * COLUMNS];
+    uint8_t packed[ROWS * COLUMNS];
+    const double rate = 48000.0;
+    for (size_t i = 0; i < ROWS * COLUMNS; i++) {
+        numbers[0][i] = number_at(i % ROWS, i / ROWS);
+        numbers[1][i] = -numbers[0][i];
+        packed[i] = (uint8_t)(10 * (i % ROWS) + i / ROWS);
+    }
+    begin_mat(draft);
+    add_variable(draft, "rate", MAT_CLASS_DOUBLE, 1, 1, MAT_DOUBLE,
+                 (const void *const[]){&rate, NULL});
+    add_variable(draft, "img", MAT_CLASS_DOUBLE, ROWS, COLUMNS, MAT_DOUBLE,
+                 (const void *const[]){numbers[0], is_complex ? numbers[1] : NULL});
+    add_variable(draft, "packed", MAT_CLASS_DOUBLE, ROWS, COLUMNS, MAT_UINT8,
+                 (const void *const[]){packed, NULL});
+    add_variable(draft, "note", 4, 1, 4, MAT_UINT16, (const void *const[]){"t\0e\0x\0t", NULL});
+}
+
+static void expect_numbers(struct swath_file *file, bool is_patched)
+{
+    float samples[ROWS * COLUMNS];
+    read_all(file, samples);
+    for (size_t i = 0; i < ROWS * COLUMNS; i++) {
+        const size_t row = i / COLUMNS;
+        const size_t column = i % COLUMNS;
+        const bool is_new = is_patched && row == 2 && column == 3;
+        assert_true(samples[i] == (is_new ? 99.5f : (float)number_at(row, column)));
+    }
+}
+
+/* What the region inside holds, the last sample changed. */
+static const float *changed_samples(void)
+{
+    static float samples[4];
+    for (size_t i = 0; i < 4; i++)
+        samples[i] = (float)number_at(1 + i / 2, 2 + i % 2);
+    samples[3] = 99.5f;
+    return samples;
+}
+
+static void test_matlab_array(void **state)
+{
+    struct draft draft, back;
+    make_mat(&draft, false);
+    expect_refused(*state, "a.mat", NULL, &draft, "img (3 x 4), packed (3 x 4)");
+    expect_refused(*state, "a.mat", "other", NULL, "choose one of img (3 x 4), packed (3 x 4)");
+    struct swath_file *file = open_draft(*state, "a.mat", "img", NULL);
+    expect_layout(file, 1, PIXEL_FLOAT32);
+    expect_numbers(file, false);
+    patch(file, *state, "b.mat", changed_samples(), &back);
+    swath_file_close(&file);
+    /* one double has changed, the last of the last column; 0.1 and the like kept all bits */
+    assert_int_equal(back.count, draft.count);
+    size_t different = 0;
+    size_t last = 0;
+    for (size_t i = 0; i < draft.count; i++)
+        if (back.bytes[i] != draft.bytes[i]) {
+            different++;
+            last = i;
+        }
+    assert_in_range(different, 1, 8);
+    double number;
+    memcpy(&number, back.bytes + last / 8 * 8, 8);
+    assert_true(number == 99.5);
+    file = open_draft(*state, "b.mat", "img", NULL);
+    expect_numbers(file, true);
+    swath_file_close(&file);
+}
+
+/* Where MATLAB packed doubles into bytes, the copy has room for any; all else is in place. */
+static void test_packed_matlab_array(void **state)
+{
+    struct draft draft, back;
+    float samples[ROWS * COLUMNS];
+    make_mat(&draft, false);
+    struct swath_file *file = open_draft(*state, "a.mat", "packed", &draft);
+    read_all(file, samples);
+    assert_true(samples[0] == 0.0f && samples[3] == 3.0f && samples[4] == 10.0f);
+    patch(file, *state, "b.mat", (float[]){12.0f, 13.0f, 22.0f, 0.25f}, &back);
+    swath_file_close(&file);
+    assert_int_equal(back.count, draft.count + 8 * ROWS * COLUMNS - 16);
+    file = open_draft(*state, "b.mat", "packed", NULL);
+    read_all(file, samples);
+    assert_true(samples[11] == 0.25f && samples[10] == 22.0f && samples[4] == 10.0f);
+    swath_file_close(&file);
+    file = open_draft(*state, "b.mat", "img", NULL);
+    expect_numbers(file, false);
+    swath_file_close(&file);
+    const size_t text = 8 + 16 + 16 + 16 + 16;
+    assert_memory_equal(back.bytes + back.count - text, draft.bytes + draft.count - text, text);
+}
+
+static void test_complex_matlab_array(void **state)
+{
+    struct draft draft, back;
+    float samples[2 * ROWS * COLUMNS];
+    make_mat(&draft, true);
+    struct swath_file *file = open_draft(*state, "a.mat", "img", &draft);
+    expect_layout(file, 2, PIXEL_FLOAT32);
+    read_all(file, samples);
+    for (size_t i = 0; i < ROWS * COLUMNS; i++) {
+        assert_true(samples[2 * i] == (float)number_at(i / COLUMNS, i % COLUMNS));
+        assert_true(samples[2 * i + 1] == -samples[2 * i]);
+    }
+    patch(file, *state, "b.mat", (float[]){1, 2, 3, 4, 5, 6, 7, 8}, &back);
+    swath_file_close(&file);
+    file = open_draft(*state, "b.mat", "img", NULL);
+    read_all(file, samples);
+    assert_true(samples[2 * 6] == 1.0f && samples[2 * 11 + 1] == 8.0f);
+    swath_file_close(&file);
+}
+
+/* The variables of the first draft, each compressed. */
+static void compress(const struct draft *draft, struct draft *compressed)
+{
+    begin_mat(compressed);
+    for (size_t place = 128; place < draft->count;) {
+        const size_t bytes = 8 + (size_t)number_from_bytes(draft->bytes + place + 4, 4, false);
+        size_t count = 0;
+        unsigned char *deflated = mat_deflate(draft->bytes + place, bytes, &count);
+        assert_non_null(deflated);
+        add_number(compressed, MAT_COMPRESSED, 4);
+        add_number(compressed, count, 4);
+        add(compressed, deflated, count);
+        free(deflated);
+        place += bytes;
+    }
+}
+
+static void test_compressed_matlab_array(void **state)
+{
+    struct draft draft, compressed, back;
+    if (!mat_can_inflate())
+        skip();
+    make_mat(&draft, false);
+    compress(&draft, &compressed);
+    struct swath_file *file = open_draft(*state, "a.mat", "img", &compressed);
+    expect_numbers(file, false);
+    patch(file, *state, "b.mat", changed_samples(), &back);
+    swath_file_close(&file);
+    file = open_draft(*state, "b.mat", "img", NULL);
+    expect_numbers(file, true);
+    swath_file_close(&file);
+    file = open_draft(*state, "b.mat", "packed", NULL);
+    swath_file_close(&file);
+    /* the scalar before it, to the byte */
+    const size_t before = 8 + (size_t)number_from_bytes(compressed.bytes + 132, 4, false);
+    assert_memory_equal(back.bytes, compressed.bytes, 128 + before);
+}
+
+#ifdef HAS_HDF5
+/* A data set of sides[0] x sides[1] doubles, or pairs of them with those names. */
+static void put_set(hid_t file, const char *name, const hsize_t sides[2], const double *numbers,
+                    const char *const *pair, bool is_matlab, bool is_chunked)
+{
+    const hid_t space = H5Screate_simple(2, sides, NULL);
+    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+    const hid_t type = pair ? H5Tcreate(H5T_COMPOUND, 16) : H5Tcopy(H5T_NATIVE_DOUBLE);
+    if (pair) {
+        H5Tinsert(type, pair[0], 0, H5T_NATIVE_DOUBLE);
+        H5Tinsert(type, pair[1], 8, H5T_NATIVE_DOUBLE);
+    }
+    if (is_chunked) {
+        H5Pset_chunk(creation, 2, (const hsize_t[]){2, 2});
+        H5Pset_deflate(creation, 4);
+    }
+    const hid_t set = H5Dcreate2(file, name, type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+    assert_true(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers) >= 0);
+    if (is_matlab) {
+        const hid_t scalar = H5Screate(H5S_SCALAR);
+        const hid_t note =
+            H5Acreate2(set, "MATLAB_class", H5T_C_S1, scalar, H5P_DEFAULT, H5P_DEFAULT);
+        H5Awrite(note, H5T_C_S1, "d");
+        H5Aclose(note);
+        H5Sclose(scalar);
+    }
+    H5Dclose(set);
+    H5Tclose(type);
+    H5Pclose(creation);
+    H5Sclose(space);
+}
+
+/* "img" as MATLAB keeps it or rows first; with another one where is_full. */
+static void make_hdf5(const char *path, bool is_matlab, bool is_chunked, bool is_complex,
+                      bool is_full)
+{
+    static const char *const pair[] = {"real", "imag"};
+    double numbers[2 * ROWS * COLUMNS];
+    const hsize_t sides[2] = {is_matlab ? COLUMNS : ROWS, is_matlab ? ROWS : COLUMNS};
+    const size_t parts = is_complex ? 2 : 1;
+    for (size_t i = 0; i < ROWS * COLUMNS; i++) {
+        const size_t row = is_matlab ? i % ROWS : i / COLUMNS;
+        const size_t column = is_matlab ? i / ROWS : i % COLUMNS;
+        numbers[parts * i] = number_at(row, column);
+        if (is_complex)
+            numbers[parts * i + 1] = -number_at(row, column);
+    }
+    const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
+    H5Pset_userblock(creation, is_matlab ? 512 : 0);
+    const hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, creation, H5P_DEFAULT);
+    assert_true(file >= 0);
+    put_set(file, "img", sides, numbers, is_complex ? pair : NULL, is_matlab, is_chunked);
+    put_set(file, "scalar", (const hsize_t[]){1, 1}, numbers, NULL, is_matlab, false);
+    if (is_full) {
+        H5Gclose(H5Gcreate2(file, "more", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT));
+        put_set(file, "more/other", sides, numbers, NULL, false, false);
+        H5Lcreate_external("elsewhere.h5", "/img", file, "outside", H5P_DEFAULT, H5P_DEFAULT);
+    }
+    H5Pclose(creation);
+    H5Fclose(file);
+}
+
+static size_t read_bytes(const char *path, unsigned char *bytes)
+{
+    FILE *file = fopen(path, "rb");
+    assert_non_null(file);
+    const size_t count = fread(bytes, 1, LARGEST_FILE, file);
+    fclose(file);
+    return count;
+}
+
+static void test_hdf5_array(void **state)
+{
+    static struct draft before, back;
+    for (int kind = 0; kind < 4; kind++) {
+        const char *path = file_in(*state, "a.h5");
+        make_hdf5(path, kind & 1, kind & 2, false, false);
+        before.count = read_bytes(path, before.bytes);
+        struct swath_file *file = open_draft(*state, "a.h5", NULL, NULL);
+        expect_layout(file, 1, PIXEL_FLOAT32);
+        expect_numbers(file, false);
+        patch(file, *state, "b.h5", changed_samples(), &back);
+        swath_file_close(&file);
+        file = open_draft(*state, "b.h5", NULL, NULL);
+        expect_numbers(file, true);
+        swath_file_close(&file);
+        if (kind & 2)
+            continue;
+        size_t different = 0;
+        assert_int_equal(back.count, before.count);
+        for (size_t i = 0; i < before.count; i++)
+            different += back.bytes[i] != before.bytes[i];
+        assert_in_range(different, 1, 8); /* one double, nothing else of the file */
+    }
+}
+
+static void test_complex_hdf5_array(void **state)
+{
+    float samples[2 * ROWS * COLUMNS];
+    make_hdf5(file_in(*state, "a.h5"), true, true, true, false);
+    struct swath_file *file = open_draft(*state, "a.h5", NULL, NULL);
+    expect_layout(file, 2, PIXEL_FLOAT32);
+    read_all(file, samples);
+    for (size_t i = 0; i < ROWS * COLUMNS; i++) {
+        assert_true(samples[2 * i] == (float)number_at(i / COLUMNS, i % COLUMNS));
+        assert_true(samples[2 * i + 1] == -samples[2 * i]);
+    }
+    swath_file_close(&file);
+}
+
+static void test_hdf5_names(void **state)
+{
+    make_hdf5(file_in(*state, "a.h5"), false, false, false, true);
+    expect_refused(*state, "a.h5", NULL, NULL, "img (3 x 4), more/other (3 x 4)");
+    expect_refused(*state, "a.h5", "none", NULL, "choose one of img (3 x 4), more/other (3 x 4)");
+    expect_refused(*state, "a.h5", "outside", NULL, "holds no array 'outside'");
+    struct swath_file *file = open_draft(*state, "a.h5", "/more/other", NULL);
+    expect_layout(file, 1, PIXEL_FLOAT32);
+    swath_file_close(&file);
+}
+
+/* HDF5 leaks what it had read of a damaged file, so a process of its own reads them. */
+static void test_damaged_hdf5(void **state)
+{
+    static unsigned char bytes[LARGEST_FILE];
+    for (int kind = 0; kind < 2; kind++) {
+        const char *path = file_in(*state, "line.h5");
+        make_hdf5(path, kind, kind, kind, false);
+        const size_t count = read_bytes(path, bytes);
+        fflush(NULL);
+        const pid_t child = fork();
+        if (child == 0) {
+            mutate(*state, "line.h5", SONJECT_CHANNEL_ONLY, bytes, count, MUTATIONS);
+            _exit(0);
+        }
+        int status = -1;
+        assert_true(child > 0 && waitpid(child, &status, 0) == child);
+        if (!WIFEXITED(status) || (WEXITSTATUS(status) != 0 && WEXITSTATUS(status) != LEAKS))
+            fail_msg("a damaged file ended the process: status %d", status);
+    }
+}
+#endif
+
+/* The scalar and the image alone, so that the image is the only one. */
+static void keep_two(struct draft *draft)
+{
+    size_t place = 128;
+    for (int i = 0; i < 2; i++)
+        place += 8 + (size_t)number_from_bytes(draft->bytes + place + 4, 4, false);
+    draft->count = place;
+}
+
+static void test_damaged_images_and_arrays(void **state)
+{
+    struct draft draft, compressed;
+    make_pgm(&draft, 4095);
+    mutate(*state, "line.pgm", SONJECT_CHANNEL_ONLY, draft.bytes, draft.count, MUTATIONS);
+    make_pfm(&draft, false);
+    mutate(*state, "line.pfm", SONJECT_CHANNEL_ONLY, draft.bytes, draft.count, MUTATIONS);
+    make_mat(&draft, true);
+    keep_two(&draft);
+    mutate(*state, "line.mat", SONJECT_CHANNEL_ONLY, draft.bytes, draft.count, MUTATIONS);
+    if (!mat_can_inflate())
+        return;
+    compress(&draft, &compressed);
+    mutate(*state, "line.mat", SONJECT_CHANNEL_ONLY, compressed.bytes, compressed.count, MUTATIONS);
+}
+
+/* 2^31 x 2^31 doubles, and 4 GB, in a few hundred bytes. */
+static void test_matlab_sizes_that_lie(void **state)
+{
+    struct draft draft, compressed;
+    make_mat(&draft, false);
+    keep_two(&draft);
+    const size_t image = 128 + 8 + (size_t)number_from_bytes(draft.bytes + 132, 4, false);
+    memset(draft.bytes + image + 8 + 16 + 8, 0x7F, 8);
+    expect_refused(*state, "a.mat", NULL, &draft, "damaged");
+    if (!mat_can_inflate())
+        return;
+    make_mat(&draft, false);
+    keep_two(&draft);
+    size_t count = 0;
+    memset(draft.bytes + image + 4, 0xFF, 4);
+    unsigned char *deflated = mat_deflate(draft.bytes + image, draft.count - image, &count);
+    begin_mat(&compressed);
+    add_number(&compressed, MAT_COMPRESSED, 4);
+    add_number(&compressed, count, 4);
+    add(&compressed, deflated, count);
+    free(deflated);
+    expect_refused(*state, "a.mat", NULL, &compressed, "damaged");
+}
+
+/* Formats that sonject does not read are named, and those that it reads. */
+static void test_foreign_formats(void **state)
+{
+    static const struct {
+        const char *bytes, *words;
+    } foreign[] = {{"SDPX and more of it", "is a DPX file"},
+                   {"8BPS and more of it", "is a PSD file"},
+                   {"SIMPLE  =           ", "is a FITS file"},
+                   {"BM and more of it all", "is a BMP file"},
+                   {"P6 and more of it all", "is a PPM file"},
+                   {"\x76\x2F\x31\x01 and more of it", "is an OpenEXR file"},
+                   {"nothing that is known", "of no format that sonject knows"}};
+    for (size_t i = 0; i < sizeof foreign / sizeof *foreign; i++) {
+        struct draft draft = {{0}, 0};
+        add(&draft, foreign[i].bytes, 19);
+#ifdef HAS_RASTER_FILES
+        expect_refused(*state, "a.bin", NULL, &draft, foreign[i].words);
+        expect_refused(*state, "a.bin", NULL, &draft,
+                       "TIFF, PNG, JPEG, PGM (P5), PFM (Pf), XTF, NumPy (.npy), HDF5 and MATLAB");
+#else
+        (void)state;
+#endif
+    }
+}
+
+int main(void)
+{
+#ifdef HAS_HDF5
+    struct hdf5_session session; /* before all else: as the library uses HDF5 */
+    hdf5_enter(&session);
+    hdf5_leave(&session);
+#endif
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_pgm),
+        cmocka_unit_test(test_pfm),
+        cmocka_unit_test(test_matlab_array),
+        cmocka_unit_test(test_packed_matlab_array),
+        cmocka_unit_test(test_complex_matlab_array),
+        cmocka_unit_test(test_compressed_matlab_array),
+#ifdef HAS_HDF5
+        cmocka_unit_test(test_hdf5_array),
+        cmocka_unit_test(test_complex_hdf5_array),
+        cmocka_unit_test(test_hdf5_names),
+        cmocka_unit_test(test_damaged_hdf5),
+#endif
+        cmocka_unit_test(test_damaged_images_and_arrays),
+        cmocka_unit_test(test_matlab_sizes_that_lie),
+        cmocka_unit_test(test_foreign_formats),
+    };
+    return cmocka_run_group_tests(tests, make_temporary_folder, remove_temporary_folder);
+}
