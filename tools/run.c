@@ -1,5 +1,8 @@
 /* sonject run: the targets of a scene into its image. */
 #include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include <sonject/sonject.h>
 
@@ -24,19 +27,58 @@ static const struct argument arguments[] = {
     STAGE_ARGUMENTS(struct run_options),
 };
 
+/* Of one band, NULL where the scene has no others, into a folder. */
+static sonject_status inject_band(sonject_context *context, const struct run_options *options,
+                                  const char *band, const char *folder, struct progress *progress,
+                                  int *was_finished)
+{
+    struct scene_arguments of_band = options->scene;
+    sonject_scene *scene = NULL;
+    sonject_run_params params;
+    sonject_run_params_init(&params);
+    params.folder = folder;
+    labels_parse("run", options->labels, &params.labels);
+    of_band.band = band;
+    sonject_status status = scene_arguments_read(context, &of_band, &scene);
+    if (status == SONJECT_OK)
+        status = sonject_run(context, scene, &params, progress_update, progress, was_finished);
+    sonject_scene_release(&scene);
+    return status;
+}
+
+/* Each of the names, one a line, into a folder of its own; *was_finished is 1 if all were. Cuts the
+ * text up. */
+static sonject_status inject_bands(sonject_context *context, const struct run_options *options,
+                                   char *names, struct progress *progress, int *was_finished)
+{
+    const size_t bytes = strlen(options->stage.output) + strlen(names) + 2;
+    char *folder = malloc(bytes);
+    sonject_status status = folder ? SONJECT_OK : SONJECT_ERROR_MEMORY;
+    *was_finished = 1;
+    while (status == SONJECT_OK && *names) {
+        int was_band_finished = 0;
+        char *end = strchr(names, '\n');
+        *end = '\0';
+        snprintf(folder, bytes, "%s/%s", options->stage.output, names);
+        status = inject_band(context, options, names, folder, progress, &was_band_finished);
+        *was_finished = *was_finished && was_band_finished;
+        names = end + 1;
+    }
+    free(folder);
+    return status;
+}
+
 static sonject_status inject(sonject_context *context, const void *verb_options,
                              struct progress *progress, int *was_finished)
 {
     const struct run_options *options = verb_options;
-    sonject_scene *scene = NULL;
-    sonject_run_params params;
-    sonject_run_params_init(&params);
-    params.folder = options->stage.output;
-    labels_parse("run", options->labels, &params.labels);
-    sonject_status status = scene_arguments_read(context, &options->scene, &scene);
-    if (status == SONJECT_OK)
-        status = sonject_run(context, scene, &params, progress_update, progress, was_finished);
-    sonject_scene_release(&scene);
+    char *names = NULL;
+    sonject_status status = scene_arguments_bands(context, &options->scene, &names);
+    if (status == SONJECT_OK && *names)
+        status = inject_bands(context, options, names, progress, was_finished);
+    else if (status == SONJECT_OK)
+        status = inject_band(context, options, NULL, options->stage.output, progress, was_finished);
+    sonject_text_release(&names);
     return status;
 }
 
@@ -56,7 +98,9 @@ const struct verb run_verb = {
     .operand_offset = offsetof(struct run_options, scene.path),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
-    .notes = "A folder that already holds the finished result of the same inputs is left as it is.",
+    .notes =
+        "A folder that already holds the finished result of the same inputs is left as it is.\n"
+        "Of a scene with bands each goes to a folder of its name; --set band=NAME takes one.",
     .options_size = sizeof(struct run_options),
     .work = work,
 };

@@ -4,12 +4,21 @@
 #include <stdlib.h>
 #include <string.h>
 
+sonject_status scene_arguments_bands(sonject_context *context,
+                                     const struct scene_arguments *arguments, char **names)
+{
+    return sonject_scene_bands(context, arguments->path,
+                               (const char *const *)arguments->overrides.texts,
+                               arguments->overrides.count, names);
+}
+
 sonject_status scene_arguments_read(sonject_context *context,
                                     const struct scene_arguments *arguments, sonject_scene **scene)
 {
     char seed[48];
+    char band[SONJECT_NAME_CAPACITY + 8];
     size_t count = arguments->overrides.count;
-    const char **overrides = calloc(count + 1, sizeof(*overrides));
+    const char **overrides = calloc(count + 2, sizeof(*overrides));
     if (!overrides)
         return SONJECT_ERROR_MEMORY;
     if (count > 0)
@@ -17,6 +26,10 @@ sonject_status scene_arguments_read(sonject_context *context,
     snprintf(seed, sizeof(seed), "injection.seed=%llu", (unsigned long long)arguments->seed.value);
     if (arguments->seed.is_given)
         overrides[count++] = seed;
+    if (arguments->band) {
+        snprintf(band, sizeof(band), "band=%s", arguments->band);
+        overrides[count++] = band;
+    }
     sonject_scene_read_params params;
     sonject_scene_read_params_init(&params);
     params.allows_user_shapes = arguments->allows_user_shapes;

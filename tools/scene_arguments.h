@@ -13,6 +13,7 @@ struct scene_arguments {
     struct text_list overrides;
     struct whole_argument seed; /* an override too, the last */
     bool allows_user_shapes;
+    const char *band; /* --set band=, of a verb that goes through all; NULL: as the scene says */
 };
 
 /* Lines of a verb's arguments, whose options are a structure with a struct scene_arguments `scene`.
@@ -37,6 +38,10 @@ struct scene_arguments {
             "runs code of shapes in the scene; only if you trust it", ARGUMENT_FLAG, false,        \
             offsetof(structure, scene.allows_user_shapes)                                          \
     }
+
+/* The bands that the scene leaves to be chosen; see sonject_scene_bands. */
+sonject_status scene_arguments_bands(sonject_context *context,
+                                     const struct scene_arguments *arguments, char **names);
 
 /* As sonject_scene_read_with. */
 sonject_status scene_arguments_read(sonject_context *context,

@@ -70,6 +70,14 @@ SONJECT_API sonject_status sonject_scene_read_with(sonject_context *context, con
                                                    const sonject_scene_read_params *params,
                                                    sonject_scene **scene);
 
+/* The names of the bands that a scene file (section `bands`), with its overrides, leaves to be
+ * chosen by an override such as "band=low": in the file's order, one a line, "" for a file without
+ * bands or with one chosen. Of the scene nothing else is read. *names is the caller's, for
+ * sonject_text_release. Errors: ARGUMENT, INPUT, STORAGE, MEMORY. */
+SONJECT_API sonject_status sonject_scene_bands(sonject_context *context, const char *path,
+                                               const char *const *overrides, size_t count,
+                                               char **names);
+
 /* Releases the scene and sets *scene to NULL; NULL allowed. */
 SONJECT_API void sonject_scene_release(sonject_scene **scene);
 

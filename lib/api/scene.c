@@ -92,6 +92,40 @@ static sonject_status read_file(struct sonject_scene *scene, const char *path,
     return scene_text_read(scene->report, &source, &scene->scene);
 }
 
+static sonject_status check_overrides(struct report *report, const char *path,
+                                      const char *const *overrides, size_t count)
+{
+    if (!path || (count > 0 && !overrides))
+        return null_argument(report, "path and overrides");
+    for (size_t i = 0; i < count; i++)
+        if (!overrides[i])
+            return null_argument(report, "an override");
+    return SONJECT_OK;
+}
+
+sonject_status sonject_scene_bands(sonject_context *context, const char *path,
+                                   const char *const *overrides, size_t count, char **names)
+{
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    struct report *report = &context->report;
+    if (!names)
+        return null_argument(report, "names");
+    *names = NULL;
+    char *text;
+    size_t bytes;
+    sonject_status status = check_overrides(report, path, overrides, count);
+    if (status == SONJECT_OK)
+        status = scene_file_load(report, path, &text, &bytes);
+    if (status != SONJECT_OK)
+        return status;
+    const struct scene_text source = {path, text, bytes, overrides, count, NULL, 0, false};
+    status = scene_text_bands(report, &source, names);
+    free(text);
+    return status;
+}
+
 void sonject_scene_read_params_init(sonject_scene_read_params *params)
 {
     memset(params, 0, sizeof *params);
@@ -121,11 +155,9 @@ sonject_status sonject_scene_read_with(sonject_context *context, const char *pat
                                         sizeof taken, "scene read parameters");
     if (status != SONJECT_OK)
         return status;
-    if (!path || (count > 0 && !overrides))
-        return null_argument(&context->report, "path and overrides");
-    for (size_t i = 0; i < count; i++)
-        if (!overrides[i])
-            return null_argument(&context->report, "an override");
+    status = check_overrides(&context->report, path, overrides, count);
+    if (status != SONJECT_OK)
+        return status;
     sonject_scene *made;
     status = sonject_scene_create(context, &made);
     if (status != SONJECT_OK)

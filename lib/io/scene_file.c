@@ -5,7 +5,15 @@
 
 #include "base/file.h"
 #include "base/text.h"
-#include "io/scene_schema.h"
+#include "io/scene_bands.h"
+
+static sonject_status apply_overrides(struct tree *tree, const struct scene_text *source)
+{
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; status == SONJECT_OK && i < source->override_count; i++)
+        status = tree_override(tree, source->overrides[i]);
+    return status;
+}
 
 static sonject_status fill_scene(struct tree *tree, const struct scene_text *source,
                                  struct scene *scene)
@@ -16,15 +24,15 @@ static sonject_status fill_scene(struct tree *tree, const struct scene_text *sou
                             .allows_user_shapes = source->allows_user_shapes,
                             .moved_folder = source->moved_folder,
                             .moved_overrides = source->moved_overrides};
-    for (size_t i = 0; i < source->override_count; i++) {
-        const sonject_status status = tree_override(tree, source->overrides[i]);
-        if (status != SONJECT_OK)
-            return status;
-    }
+    sonject_status status = apply_overrides(tree, source);
+    if (status != SONJECT_OK)
+        return status;
     if (tree_is_null(&tree->root))
         return refuse_value(&reader, &tree->root,
                             "there is nothing in it; start with 'sonject: 1'");
-    return read_section(&reader, &scene_section, &tree->root, scene);
+    status = choose_band(&reader, tree);
+    return status == SONJECT_OK ? read_section(&reader, &scene_section, &tree->root, scene)
+                                : status;
 }
 
 sonject_status scene_file_load(struct report *report, const char *path, char **text, size_t *bytes)
@@ -70,5 +78,21 @@ sonject_status scene_file_read_with(struct report *report, const char *path,
                                       count, NULL, 0,     allows_user_shapes};
     status = scene_text_read(report, &source, scene);
     free(text);
+    return status;
+}
+
+sonject_status scene_text_bands(struct report *report, const struct scene_text *source,
+                                char **names)
+{
+    struct tree tree;
+    tree_init(&tree, report, source->path);
+    struct reader reader = {.report = report, .tree = &tree};
+    *names = NULL;
+    sonject_status status = tree_parse(&tree, source->text, source->bytes);
+    if (status == SONJECT_OK)
+        status = apply_overrides(&tree, source);
+    if (status == SONJECT_OK)
+        status = list_bands(&reader, names);
+    tree_clear(&tree);
     return status;
 }

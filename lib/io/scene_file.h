@@ -38,6 +38,11 @@ struct scene_text {
 sonject_status scene_text_read(struct report *report, const struct scene_text *source,
                                struct scene *scene);
 
+/* The names of the bands that the text leaves to be chosen, in its order, one a line; for free().
+ * Errors: INPUT, MEMORY. */
+sonject_status scene_text_bands(struct report *report, const struct scene_text *source,
+                                char **names);
+
 struct scene_file_key {
     char path[64];            /* "objects[].heading" */
     const char *unit;         /* "deg, rad", "whole number", "word", ...; static */

@@ -1,4 +1,5 @@
 /* The tables. A line: key, meaning, what it is, where it goes. */
+#include "io/scene_bands.h"
 #include "io/scene_fields.h"
 
 #define SIDE_MAX  (UINT64_C(1) << 20)
@@ -258,6 +259,10 @@ static const struct section injection_section = {injection_fields, COUNT(injecti
 #define STRUCTURE struct scene
 static const struct field scene_fields[] = {
     {"sonject", "version of the format, 1", .kind = FIELD_SPECIAL, .read = read_version, REQUIRED},
+    {"band", "which of the bands this scene is", .kind = FIELD_SPECIAL, .read = read_band,
+     .unit = "a band's name"},
+    {"bands", "by name, the keys in which each of several sonars differs from the rest of the file",
+     .kind = FIELD_SPECIAL, .read = read_band, .unit = "sections of the scene's keys"},
     {"input", "where the image comes from: path, uniform or synthetic, and geometry",
      SAME(input_section), REQUIRED},
     {"patch", "part of the swath that is worked on; by default all of it",

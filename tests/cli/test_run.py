@@ -130,6 +130,21 @@ def test_the_seed_is_an_override(sonject, scene, tmp_path):
     assert contents(tmp_path / "a")["image.tif"] != contents(tmp_path / "c")["image.tif"]
 
 
+def test_bands_go_to_folders_of_their_names(sonject, scene, tmp_path):
+    bands = ["--set", "bands={low: {sonar: {frequency: 90 kHz}}, high: {}}"]
+    answer = sonject("run", scene, "-o", "both", *bands)
+    assert answer.returncode == 0, answer.stderr
+    assert sonject("run", scene, "-o", "low", "--set", "sonar.frequency=90 kHz").returncode == 0
+    assert sonject("run", scene, "-o", "high", *bands, "--set", "band=high").returncode == 0
+    names = sorted(path.name for path in (tmp_path / "both").iterdir())
+    assert names == ["high", "low"]
+    for name in names:
+        assert contents(tmp_path / "both" / name) == contents(tmp_path / name)
+    assert contents(tmp_path / "low")["image.tif"] != contents(tmp_path / "high")["image.tif"]
+    assert "already" in sonject("run", scene, "-o", "both", *bands).stderr
+    assert_refused(sonject("check", scene, *bands), 3, "bands", "choose one of low, high")
+
+
 def test_set_changes_the_scene(sonject, scene, tmp_path):
     assert sonject("run", scene, "-o", "a", "--set", "objects[0].diameter=0.3 m").returncode == 0
     scene.write_text(scene.read_text().replace("0.5 m", "30 cm"))

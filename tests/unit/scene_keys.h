@@ -39,6 +39,14 @@ static const char pinging[] = "sonject: 1\n"
                               "column_spacing: 1, first_slant_range: 40}\n"
                               "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n";
 
+static const char banded[] = "sonject: 1\n"
+                             "input:\n"
+                             "  uniform: {rows: 4, columns: 5}\n"
+                             "  geometry: {row_spacing: 1, column_spacing: 1, "
+                             "first_slant_range: 40}\n"
+                             "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
+                             "bands: {low: {}, high: {sonar: {frequency: 400e3}}}\n";
+
 static const char sidescan[] = "sonject: 1\n"
                                "input:\n"
                                "  uniform: {rows: 4, columns: 5}\n"
@@ -96,6 +104,9 @@ static const struct key_case {
 #define HEIGHTS        SOURCE_ROOT "/tests/unit/heights.png"
 #define ARRAYS         SOURCE_ROOT "/tests/unit/heights.mat" /* two arrays of 2 x 3 bytes */
     {"sonject", small, "1", TYPE_NOTHING, 0, 0.0, NULL, NULL},
+    /* what these two do: test_scene_bands.c */
+    {"band", banded, "high", TYPE_NOTHING, 0, 0.0, NULL, NULL},
+    {"bands", small, "{low: {}}", TYPE_NOTHING, 0, 0.0, NULL, "band=low"},
     {"input.path", file, "swath-2.tif", TYPE_PATH, SCENE(input_path), 0.0, "swath-2.tif", NULL},
     {"input.channel", file, "5", TYPE_U32, SCENE(channel), 5.0, NULL, NULL},
     {"input.array", file, "swath", TYPE_PATH, SCENE(array), 0.0, "swath", NULL},

@@ -69,6 +69,16 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
             POINTER(_scene),
         ],
     ),
+    "sonject_scene_bands": (
+        _status,
+        [
+            _context,
+            c_char_p,
+            POINTER(c_char_p),
+            c_size_t,
+            POINTER(c_char_p),
+        ],
+    ),
     "sonject_scene_release": (None, [POINTER(_scene)]),
     "sonject_scene_set_sonar": (_status, [_scene, POINTER(s.sonject_sonar_params)]),
     "sonject_pulse_params_init": (None, [POINTER(s.sonject_pulse_params)]),

@@ -9,6 +9,7 @@ import numpy
 
 from . import _structures as s
 from ._handle import Handle
+from ._library import load
 from ._values import (
     Overrides,
     PathLike,
@@ -101,7 +102,7 @@ class Scene(Handle):
         *,
         allows_user_shapes: bool = False,
     ) -> "Scene":
-        """Reads a scene file.
+        """Reads a scene file; of one with bands the override "band" chooses one of ``Scene.bands``.
 
         overrides: "key.path=value" texts, or a mapping of key paths to values, which replace or
         add keys: ``{"input.path": "swath.tif", "objects[0].heading": "30 deg"}``;
@@ -124,6 +125,27 @@ class Scene(Handle):
         scene = cls.__new__(cls)
         Handle.__init__(scene, context, pointer)
         return scene
+
+    @staticmethod
+    def bands(
+        path: PathLike, overrides: Overrides = (), context: Optional[Context] = None
+    ) -> list[str]:
+        """Names of the bands that a scene file, with overrides as for ``read``, leaves to be chosen."""
+        texts = override_texts(overrides)
+        context = default_context() if context is None else context
+        names = ctypes.c_char_p()
+        context.call(
+            "sonject_scene_bands",
+            context,
+            file_name("path", path),
+            (ctypes.c_char_p * len(texts))(*texts),
+            len(texts),
+            ctypes.byref(names),
+        )
+        try:
+            return (names.value or b"").decode().split()
+        finally:
+            load().sonject_text_release(ctypes.byref(names))
 
     def _set(self, name: str, setting: Any, kind: Type[Any]) -> None:
         if not isinstance(setting, kind):

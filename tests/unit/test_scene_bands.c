@@ -1,0 +1,100 @@
+/* Bands: several sonars in one scene file. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "scene_folder.h"
+
+#define HEAD                                                                                       \
+    "sonject: 1\n"                                                                                 \
+    "input: {uniform: {rows: 4, columns: 5},\n"                                                    \
+    "        geometry: {row_spacing: 1, column_spacing: 1, first_slant_range: 40}}\n"              \
+    "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10}\n"
+#define TWO_BANDS                                                                                  \
+    HEAD "bands:\n"                                                                                \
+         "  low: {sonar: {bandwidth: 20 kHz}}\n"                                                   \
+         "  high:\n"                                                                               \
+         "    sonar: {frequency: 400 kHz}\n"                                                       \
+         "    seabed: {lambert: -20 dB}\n"
+
+static const char *const low[] = {"band=low"};
+static const char *const high[] = {"band=high"};
+
+static void test_a_band_changes_its_keys_alone(void **state)
+{
+    struct scene_folder *folder = *state;
+    write_scene(folder, TWO_BANDS, strlen(TWO_BANDS));
+    assert_int_equal(read_scene(folder, low, 1), SONJECT_OK);
+    assert_true(folder->scene.sonar.centre_frequency_hz == 100e3);
+    assert_true(folder->scene.sonar.bandwidth_hz == 20e3);
+    assert_int_equal(read_scene(folder, high, 1), SONJECT_OK);
+    assert_true(folder->scene.sonar.centre_frequency_hz == 400e3);
+    assert_true(folder->scene.sonar.bandwidth_hz == 30e3);
+    assert_true(folder->scene.sonar.altitude_m == 10.0);
+    assert_true(folder->scene.seabed.lambert == 0.01);
+}
+
+static void test_a_band_may_stand_in_the_file(void **state)
+{
+    struct scene_folder *folder = *state;
+    expect_scene_taken(folder, TWO_BANDS "band: high\n");
+    assert_true(folder->scene.sonar.centre_frequency_hz == 400e3);
+}
+
+static void expect_names(struct scene_folder *folder, const char *text,
+                         const char *const *overrides, size_t count, const char *expected)
+{
+    char *names;
+    const struct scene_text source = {folder->file, text, strlen(text), overrides, count,
+                                      NULL,         0,    false};
+    assert_int_equal(scene_text_bands(&folder->report, &source, &names), SONJECT_OK);
+    assert_string_equal(names, expected);
+    free(names);
+}
+
+static void test_bands_that_are_left_are_named(void **state)
+{
+    expect_names(*state, TWO_BANDS, NULL, 0, "low\nhigh\n");
+    expect_names(*state, TWO_BANDS, high, 1, "");
+    expect_names(*state, HEAD, NULL, 0, "");
+}
+
+static void test_what_is_wrong_is_told(void **state)
+{
+    struct scene_folder *folder = *state;
+    expect_scene_refused(folder, TWO_BANDS,
+                         ":6:3: bands: choose one of low, high (--set band=low)");
+    expect_scene_refused(folder, TWO_BANDS "band: middle\n",
+                         ":10:7: band: 'middle' is not one of low, high");
+    expect_scene_refused(folder, HEAD "band: low\n",
+                         ":5:7: band: there are no bands to choose from");
+    expect_scene_refused(folder, HEAD "bands: {}\n",
+                         ":5:8: bands: must be a section of bands: their names, and keys");
+    expect_scene_refused(folder, HEAD "bands: {../up: {}}\n",
+                         ":5:16: bands.../up: a band's name is that of a folder: 1 to 63 letters, "
+                         "digits, _ and -");
+    expect_scene_refused(folder, HEAD "bands: {low: 3}\nband: low\n",
+                         ":5:14: bands.low: must be a section of the scene's keys that this band "
+                         "changes");
+    expect_scene_refused(folder, HEAD "bands: {low: {bands: {}}}\nband: low\n",
+                         ":5:22: bands.low.bands: cannot be a band's own; remove it");
+    /* the place is where it was written */
+    expect_scene_refused(folder, HEAD "bands:\n  low: {sonar: {bandwidth: 3 kg}}\nband: low\n",
+                         ":6:28: sonar.bandwidth: unit 'kg' is not one of Hz, kHz, MHz");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_a_band_changes_its_keys_alone),
+        cmocka_unit_test(test_a_band_may_stand_in_the_file),
+        cmocka_unit_test(test_bands_that_are_left_are_named),
+        cmocka_unit_test(test_what_is_wrong_is_told),
+    };
+    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
+}
