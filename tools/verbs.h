@@ -7,6 +7,8 @@
 extern const struct verb run_verb;
 extern const struct verb trace_verb;
 extern const struct verb form_verb;
+extern const struct verb campaign_verb;
+extern const struct verb merge_verb;
 extern const struct verb check_verb;
 extern const struct verb quicklook_verb;
 extern const struct verb measure_verb;

@@ -112,6 +112,8 @@ template <typename Structure> void fill_defaults(Structure &structure);
     {                                                                                              \
         name##_init(&structure);                                                                   \
     }
+SONJECT_CXX_DEFAULTS(sonject_campaign_read_params)
+SONJECT_CXX_DEFAULTS(sonject_campaign_run_params)
 SONJECT_CXX_DEFAULTS(sonject_geometry_params)
 SONJECT_CXX_DEFAULTS(sonject_injection_params)
 SONJECT_CXX_DEFAULTS(sonject_material_params)
@@ -691,6 +693,100 @@ inline result inject(const scene &scene, const pixels &patch, const progress &ca
 inline result inject(const scene &scene, const progress &callback = progress())
 {
     return detail::inject(scene, nullptr, callback);
+}
+
+/* Many injections, drawn from distributions that a campaign file names. */
+class campaign
+{
+  public:
+    /* overrides: "key.path=value" of the campaign's keys. */
+    campaign(const context &context, const std::string &path,
+             const std::vector<std::string> &overrides = std::vector<std::string>(),
+             const sonject_campaign_read_params &params = defaults<sonject_campaign_read_params>())
+        : context_(context.get()), handle_(nullptr)
+    {
+        std::vector<const char *> texts;
+        for (const std::string &override_text : overrides)
+            texts.push_back(override_text.c_str());
+        check(sonject_campaign_read(context_, path.c_str(), texts.data(), texts.size(), &params,
+                                    &handle_));
+    }
+    campaign(campaign &&other) noexcept : context_(other.context_), handle_(other.handle_)
+    {
+        other.handle_ = nullptr;
+    }
+    campaign &operator=(campaign &&other) noexcept
+    {
+        std::swap(context_, other.context_);
+        std::swap(handle_, other.handle_);
+        return *this;
+    }
+    campaign(const campaign &) = delete;
+    campaign &operator=(const campaign &) = delete;
+    ~campaign()
+    {
+        sonject_campaign_release(&handle_);
+    }
+
+    sonject_campaign *get() const noexcept
+    {
+        return handle_;
+    }
+    std::uint64_t image_count() const
+    {
+        std::uint64_t count = 0;
+        check(sonject_campaign_image_count(handle_, &count));
+        return count;
+    }
+    sonject_campaign_image describe(std::uint64_t id) const
+    {
+        sonject_campaign_image image = {};
+        image.struct_size = sizeof image;
+        check(sonject_campaign_describe(handle_, id, &image));
+        return image;
+    }
+    /* Makes an image in memory. */
+    result inject(std::uint64_t id, const progress &callback = progress()) const
+    {
+        detail::progress_bridge bridge(callback);
+        const std::uint32_t objects = describe(id).object_count;
+        sonject_result *made = nullptr;
+        const sonject_status status =
+            sonject_campaign_inject(context_, handle_, id, bridge.function(), &bridge, &made);
+        bridge.rethrow();
+        check(status);
+        return result(made, context_, objects);
+    }
+    /* Makes the images that the folder lacks; false if there was nothing left to do. */
+    bool run(const sonject_campaign_run_params &params, const progress &callback = progress()) const
+    {
+        detail::progress_bridge bridge(callback);
+        int was_finished = 0;
+        const sonject_status status = sonject_campaign_run(
+            context_, handle_, &params, bridge.function(), &bridge, &was_finished);
+        bridge.rethrow();
+        check(status);
+        return !was_finished;
+    }
+
+  private:
+    void check(sonject_status status) const
+    {
+        detail::check(context_, status);
+    }
+    sonject_context *context_;
+    sonject_campaign *handle_;
+};
+
+/* Joins what the shards of a campaign left in a folder; see sonject_campaign_merge. */
+inline void merge_campaign(const context &context, const std::string &folder,
+                           const progress &callback = progress())
+{
+    detail::progress_bridge bridge(callback);
+    const sonject_status status =
+        sonject_campaign_merge(context.get(), folder.c_str(), bridge.function(), &bridge);
+    bridge.rethrow();
+    context.check(status);
 }
 
 /* The library's version, such as "0.1.0". */

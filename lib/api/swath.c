@@ -160,8 +160,26 @@ static sonject_status check_signs(struct report *report, const struct scene *sce
     return SONJECT_OK;
 }
 
+/* whole: the file's pixels, if they are in memory. */
+static sonject_status read_stored(struct report *report, struct swath_file *file,
+                                  const unsigned char *whole, const struct swath *swath)
+{
+    const struct region *patch = &swath->patch;
+    const struct raster_layout *layout = &swath->layout;
+    if (!whole)
+        return swath_file_read(report, file, patch, swath->stored);
+    const size_t pixel = layout->channels * pixel_bytes(layout->type);
+    for (size_t row = 0; row < patch->rows; row++)
+        memcpy((unsigned char *)swath->stored + row * (size_t)patch->columns * pixel,
+               whole + (((size_t)patch->first_row + row) * (size_t)layout->columns +
+                        (size_t)patch->first_column) *
+                           pixel,
+               (size_t)patch->columns * pixel);
+    return SONJECT_OK;
+}
+
 static sonject_status read_patch(struct report *report, const struct scene *scene,
-                                 struct swath_file *file, struct swath *swath)
+                                 struct swath_file *file, const void *whole, struct swath *swath)
 {
     size_t bytes;
     size_t bad = 0;
@@ -173,7 +191,7 @@ static sonject_status read_patch(struct report *report, const struct scene *scen
     swath->pixels = allocate_array(count, sizeof(float));
     if (!swath->stored || !swath->pixels)
         return report_out_of_memory(report, "the patch");
-    sonject_status status = swath_file_read(report, file, &swath->patch, swath->stored);
+    sonject_status status = read_stored(report, file, whole, swath);
     if (status == SONJECT_OK) {
         status = transfer_to_amplitude(&swath->transfer, swath->layout.type, swath->stored, count,
                                        swath->pixels, &bad, &swath->clipped);
@@ -220,8 +238,64 @@ sonject_status swath_open(struct report *report, const struct scene *scene, stru
     struct swath_file *file;
     sonject_status status = open_and_describe(report, scene, swath, &file);
     if (status == SONJECT_OK)
-        status = file ? read_patch(report, scene, file, swath) : make_patch(report, scene, swath);
+        status =
+            file ? read_patch(report, scene, file, NULL, swath) : make_patch(report, scene, swath);
     swath_file_close(&file);
+    if (status != SONJECT_OK)
+        swath_close(swath);
+    return status;
+}
+
+/* Swaths of up to so many bytes are kept in memory. */
+#define STORE_BYTES_MAX ((size_t)256 << 20)
+
+void swath_store_close(struct swath_store *store)
+{
+    swath_file_close(&store->file);
+    free(store->path);
+    free(store->pixels);
+    memset(store, 0, sizeof *store);
+}
+
+static sonject_status store_take(struct report *report, const struct scene *scene,
+                                 struct swath_store *store)
+{
+    struct raster_layout layout;
+    size_t bytes;
+    if (store->path && strcmp(store->path, scene->input_path) == 0 &&
+        store->channel == scene->channel)
+        return SONJECT_OK;
+    swath_store_close(store);
+    sonject_status status = open_input(report, scene, &store->file);
+    if (status != SONJECT_OK)
+        return status;
+    store->channel = scene->channel;
+    store->path = copy_text(scene->input_path);
+    swath_file_layout(store->file, &layout);
+    const struct region all = {0, 0, layout.rows, layout.columns};
+    if (region_bytes(&layout, &all, &bytes) && bytes <= STORE_BYTES_MAX) {
+        store->pixels = allocate_array(bytes, 1);
+        if (store->pixels)
+            status = swath_file_read(report, store->file, &all, store->pixels);
+    }
+    if (status == SONJECT_OK && !store->path)
+        status = report_out_of_memory(report, "a path");
+    if (status != SONJECT_OK)
+        swath_store_close(store);
+    return status;
+}
+
+sonject_status swath_open_stored(struct report *report, const struct scene *scene,
+                                 struct swath_store *store, struct swath *swath)
+{
+    memset(swath, 0, sizeof *swath);
+    sonject_status status = store_take(report, scene, store);
+    if (status == SONJECT_OK)
+        status = describe_file(report, scene, store->file, swath);
+    if (status == SONJECT_OK)
+        status = choose_patch(report, scene, swath);
+    if (status == SONJECT_OK)
+        status = read_patch(report, scene, store->file, store->pixels, swath);
     if (status != SONJECT_OK)
         swath_close(swath);
     return status;
@@ -266,9 +340,8 @@ char *swath_image_name(const struct scene *scene)
     return name;
 }
 
-/* The stored patch with the touched pixels replaced. To be given to free(). */
-static void *stored_with_result(const struct swath *swath, const struct injection_result *result,
-                                uint64_t *clipped)
+void *swath_stored_result(const struct swath *swath, const struct injection_result *result,
+                          uint64_t *clipped)
 {
     const size_t pixels = result->rows * result->columns;
     const size_t parts = swath->is_complex ? 2 : 1;
@@ -323,7 +396,7 @@ sonject_status swath_write(struct report *report, const struct scene *scene,
     *clipped = 0;
     if (scene->input_kind != SONJECT_INPUT_FILE)
         return write_made(report, scene, swath, result, path);
-    void *stored = stored_with_result(swath, result, clipped);
+    void *stored = swath_stored_result(swath, result, clipped);
     if (!stored)
         return report_out_of_memory(report, "the patch");
     struct swath_file *file;

@@ -6,6 +6,7 @@
 #include "base/report.h"
 #include "image/raster.h"
 #include "inject/injection.h"
+#include "io/swath_file.h"
 #include "io/track.h"
 #include "scene/scene.h"
 
@@ -34,6 +35,26 @@ sonject_status swath_describe(struct report *report, const struct scene *scene,
 /* The same, and reads (or makes) the patch. On failure nothing is held. */
 sonject_status swath_open(struct report *report, const struct scene *scene, struct swath *swath);
 void swath_close(struct swath *swath);
+
+/* A file that many patches are cut out of: it stays open, and where it is small its pixels are read
+ * once. Starts as all zeros, is for swath_store_close. */
+struct swath_store {
+    struct swath_file *file;
+    char *path;
+    int32_t channel;
+    void *pixels; /* all of them; NULL: regions are read as they are asked for */
+};
+
+/* swath_open for a scene whose input is a file, by way of the store, which takes that file instead
+ * of the one it holds. */
+sonject_status swath_open_stored(struct report *report, const struct scene *scene,
+                                 struct swath_store *store, struct swath *swath);
+void swath_store_close(struct swath_store *store);
+
+/* The patch as the file would store it, pixels touched by the result replaced; for free(), NULL
+ * when memory is out. clipped: as of swath_write. */
+void *swath_stored_result(const struct swath *swath, const struct injection_result *result,
+                          uint64_t *clipped);
 
 /* The patch, as an injection takes it; its pixels stay the swath's. */
 struct injection_input swath_input(const struct swath *swath);

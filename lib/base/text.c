@@ -129,6 +129,20 @@ bool text_to_number(const char *text, double *number, const char **rest)
     return text_to_shifted_number(text, 0, number, rest);
 }
 
+const char *text_of_number(char *text, size_t capacity, double number, int digits)
+{
+    size_t length = 0;
+    snprintf(text, capacity, "%.*g", digits, number);
+    for (const char *from = text; *from; from++) {
+        if (is_digit(*from) || strchr("+-e", *from))
+            text[length++] = *from;
+        else if (length == 0 || text[length - 1] != '.') /* however long the locale's is */
+            text[length++] = '.';
+    }
+    text[length] = 0;
+    return text;
+}
+
 bool text_to_count(const char *text, uint64_t *count)
 {
     uint64_t value = 0;

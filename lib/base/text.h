@@ -18,6 +18,10 @@ bool text_to_shifted_number(const char *text, int shift, double *number, const c
 /* Parses a whole text of decimal digits; false on anything else or overflow. */
 bool text_to_count(const char *text, uint64_t *count);
 
+/* Writes a finite number with so many significant digits, the separator a '.' under every locale.
+ * capacity: at least digits + 10. Returns text. */
+const char *text_of_number(char *text, size_t capacity, double number, int digits);
+
 /* True if the text is well-formed UTF-8 without control characters. */
 bool text_is_printable(const char *text);
 

@@ -15,6 +15,7 @@ rows (track positions) x columns (slant ranges).
 from ._callbacks import Progress
 from ._library import load as _load
 from .actions import check, form, inject, measure, quicklook, run, trace, write_seabed
+from .campaign import Campaign, CampaignImage, merge_campaign
 from .context import Context, Device, default_context, devices
 from ._elements import Elements
 from .elements import ElementLayout, element_layout, element_series, run_elements
@@ -93,6 +94,8 @@ def version() -> str:
 
 __all__ = [
     "Box",
+    "Campaign",
+    "CampaignImage",
     "Cancelled",
     "Capsule",
     "ColumnRule",
@@ -170,6 +173,7 @@ __all__ = [
     "from_degrees",
     "inject",
     "measure",
+    "merge_campaign",
     "quicklook",
     "run",
     "run_elements",

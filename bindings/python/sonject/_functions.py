@@ -24,6 +24,7 @@ _status = c_int
 _context = POINTER(s.sonject_context)
 _scene = POINTER(s.sonject_scene)
 _result = POINTER(s.sonject_result)
+_campaign = POINTER(s.sonject_campaign)
 
 # name: (what it returns, its parameters in order)
 FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
@@ -240,6 +241,52 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
             s.sonject_progress_function,
             c_void_p,
         ],
+    ),
+    "sonject_campaign_read_params_init": (None, [POINTER(s.sonject_campaign_read_params)]),
+    "sonject_campaign_read": (
+        _status,
+        [
+            _context,
+            c_char_p,
+            POINTER(c_char_p),
+            c_size_t,
+            POINTER(s.sonject_campaign_read_params),
+            POINTER(_campaign),
+        ],
+    ),
+    "sonject_campaign_release": (None, [POINTER(_campaign)]),
+    "sonject_campaign_image_count": (_status, [_campaign, POINTER(c_uint64)]),
+    "sonject_campaign_describe": (
+        _status,
+        [_campaign, c_uint64, POINTER(s.sonject_campaign_image)],
+    ),
+    "sonject_campaign_scene": (_status, [_context, _campaign, c_uint64, POINTER(_scene)]),
+    "sonject_campaign_inject": (
+        _status,
+        [
+            _context,
+            _campaign,
+            c_uint64,
+            s.sonject_progress_function,
+            c_void_p,
+            POINTER(_result),
+        ],
+    ),
+    "sonject_campaign_run_params_init": (None, [POINTER(s.sonject_campaign_run_params)]),
+    "sonject_campaign_run": (
+        _status,
+        [
+            _context,
+            _campaign,
+            POINTER(s.sonject_campaign_run_params),
+            s.sonject_progress_function,
+            c_void_p,
+            POINTER(c_int),
+        ],
+    ),
+    "sonject_campaign_merge": (
+        _status,
+        [_context, c_char_p, s.sonject_progress_function, c_void_p],
     ),
     "sonject_check": (_status, [_context, _scene, POINTER(c_char_p)]),
     "sonject_text_release": (None, [POINTER(c_char_p)]),

@@ -41,6 +41,45 @@ class sonject_result(Structure):
     """Opaque."""
 
 
+class sonject_campaign(Structure):
+    """Opaque."""
+
+
+class sonject_campaign_read_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("allows_user_shapes", c_uint32),
+    ]
+
+
+class sonject_campaign_image(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("object_count", c_uint32),
+        ("id", c_uint64),
+        ("first_row", c_uint64),
+        ("first_column", c_uint64),
+        ("rows", c_uint64),
+        ("columns", c_uint64),
+        ("seed", c_uint64),
+        ("swath", c_uint32),
+        ("has_target", c_uint32),
+        ("split", c_char * NAME_CAPACITY),
+        ("class_name", c_char * NAME_CAPACITY),
+    ]
+
+
+class sonject_campaign_run_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("shard_index", c_uint32),
+        ("shard_count", c_uint32),
+        ("only_one", c_uint32),
+        ("only", c_uint64),
+        ("folder", c_char_p),
+    ]
+
+
 class sonject_context_params(Structure):
     _fields_ = [
         ("struct_size", c_uint32),

@@ -122,6 +122,11 @@ class Scene(Handle):
             len(texts),
             ctypes.byref(params),
         )
+        return cls._adopt(context, pointer)
+
+    @classmethod
+    def _adopt(cls, context: Context, pointer: Any) -> "Scene":
+        """The scene behind a handle that the library made."""
         scene = cls.__new__(cls)
         Handle.__init__(scene, context, pointer)
         return scene

@@ -1,0 +1,183 @@
+"""Campaigns: many injections drawn from distributions, as a data set or one by one in memory."""
+
+from __future__ import annotations
+
+import ctypes
+from dataclasses import dataclass
+from typing import Iterator, Optional, Tuple
+
+from . import _structures as s
+from ._callbacks import Progress, ProgressBridge, text
+from ._handle import Handle
+from ._values import Overrides, PathLike, file_name, initialised, override_texts, sized
+from .context import Context, default_context
+from .result import Result
+from .scene import Scene
+
+
+@dataclass(frozen=True)
+class CampaignImage:
+    """What is drawn for an image.
+
+    first_row, first_column: of the image in its swath; swath: its number in the campaign file;
+    class_name: of the target, "" without one.
+    """
+
+    id: int
+    split: str
+    swath: int
+    first_row: int
+    first_column: int
+    rows: int
+    columns: int
+    seed: int
+    object_count: int
+    class_name: str
+
+
+class Campaign(Handle):
+    """A campaign file that was read and checked; len() is the number of its images.
+
+    As a sequence it makes images in memory, without files: campaign[17] is the Result of image 17,
+    the same however often and in whatever order it is asked for, so that
+    ``for result in campaign`` or a loader with workers of its own can train on it.
+
+    overrides: as of Scene.read, but of the campaign's keys: ``{"images": 100}``.
+    """
+
+    _noun = "campaign"
+
+    def __init__(
+        self,
+        path: PathLike,
+        overrides: Overrides = (),
+        context: Optional[Context] = None,
+        *,
+        allows_user_shapes: bool = False,
+    ) -> None:
+        context = default_context() if context is None else context
+        texts = override_texts(overrides)
+        array = (ctypes.c_char_p * len(texts))(*texts)
+        params = initialised(s.sonject_campaign_read_params)
+        params.allows_user_shapes = int(bool(allows_user_shapes))
+        pointer = context.make(
+            s.sonject_campaign,
+            "sonject_campaign_read",
+            context,
+            file_name("path", path),
+            array,
+            len(texts),
+            ctypes.byref(params),
+        )
+        super().__init__(context, pointer)
+
+    def __len__(self) -> int:
+        count = ctypes.c_uint64()
+        self._context.call("sonject_campaign_image_count", self, ctypes.byref(count))
+        return count.value
+
+    def _id(self, number: int) -> int:
+        count = len(self)
+        if not -count <= number < count:
+            raise IndexError(f"there is no image {number}: the campaign has {count}")
+        return number % count
+
+    def describe(self, number: int) -> CampaignImage:
+        """What is drawn for an image."""
+        told = sized(s.sonject_campaign_image)
+        self._context.call(
+            "sonject_campaign_describe", self, self._id(number), ctypes.byref(told)
+        )
+        return CampaignImage(
+            id=told.id,
+            split=text(told.split),
+            swath=told.swath,
+            first_row=told.first_row,
+            first_column=told.first_column,
+            rows=told.rows,
+            columns=told.columns,
+            seed=told.seed,
+            object_count=told.object_count,
+            class_name=text(told.class_name),
+        )
+
+    def scene(self, number: int) -> Scene:
+        """The scene of an image: its input is the swath's file, its patch the image."""
+        pointer = self._context.make(
+            s.sonject_scene, "sonject_campaign_scene", self._context, self, self._id(number)
+        )
+        return Scene._adopt(self._context, pointer)
+
+    def inject(self, number: int, progress: Optional[Progress] = None) -> Result:
+        """Makes an image in memory; its truth counts the image's own pixels."""
+        bridge = ProgressBridge(progress)
+        image = self.describe(number)
+        pointer = self._context.make(
+            s.sonject_result,
+            "sonject_campaign_inject",
+            self._context,
+            self,
+            image.id,
+            bridge.callback,
+            None,
+            bridge=bridge,
+        )
+        return Result(self._context, pointer, image.object_count)
+
+    def __getitem__(self, number: int) -> Result:
+        return self.inject(number)
+
+    def __iter__(self) -> Iterator[Result]:
+        return (self.inject(number) for number in range(len(self)))
+
+    def run(
+        self,
+        folder: PathLike,
+        progress: Optional[Progress] = None,
+        *,
+        shard: Tuple[int, int] = (1, 1),
+        only: Optional[int] = None,
+    ) -> bool:
+        """Makes the images that the folder lacks, and the data set's documents once all are there.
+
+        shard: (i, k) makes ids with id % k == i - 1, for merge; only: makes this image alone, anew.
+        False if there was nothing left to do.
+        """
+        params = initialised(s.sonject_campaign_run_params)
+        params.folder = file_name("folder", folder)
+        params.shard_index, params.shard_count = shard
+        if only is not None:
+            params.only_one = 1
+            params.only = self._id(only)
+        bridge = ProgressBridge(progress)
+        was_finished = ctypes.c_int()
+        self._context.call(
+            "sonject_campaign_run",
+            self._context,
+            self,
+            ctypes.byref(params),
+            bridge.callback,
+            None,
+            ctypes.byref(was_finished),
+            bridge=bridge,
+        )
+        return not was_finished.value
+
+
+def merge_campaign(
+    folder: PathLike, progress: Optional[Progress] = None, context: Optional[Context] = None
+) -> None:
+    """Checks that all images of a folder's campaign are there and writes the data set's documents.
+
+    Raises SonjectError, which names what is missing.
+    """
+    context = default_context() if context is None else context
+    bridge = ProgressBridge(progress)
+    context.call(
+        "sonject_campaign_merge",
+        context,
+        file_name("folder", folder),
+        bridge.callback,
+        None,
+        bridge=bridge,
+    )

@@ -1,0 +1,83 @@
+"""Campaigns in memory and as files."""
+
+import numpy
+import pytest
+
+import sonject
+
+CAMPAIGN = """\
+sonject_campaign: 1
+scene: scene.yaml
+images: 6
+chip: {rows: 64, columns: 64, spread: 0.3}
+empty: 0.34
+swaths: [{path: swath.npy}]
+draw:
+  objects[].diameter: {uniform: [20 cm, 30 cm]}
+targets:
+  - {class: ball, object: {shape: sphere}}
+"""
+SCENE = """\
+sonject: 1
+input:
+  geometry: {row_spacing: 2.5 cm, column_spacing: 2.5 cm, first_slant_range: 25 m}
+sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}
+"""
+
+
+@pytest.fixture
+def campaign(tmp_path):
+    (tmp_path / "campaign.yaml").write_text(CAMPAIGN)
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    numbers = numpy.random.default_rng(7)
+    swath = numbers.rayleigh(0.1, (90, 120)).astype(numpy.float32)
+    numpy.save(tmp_path / "swath.npy", swath)
+    return sonject.Campaign(tmp_path / "campaign.yaml"), swath
+
+
+def test_images_are_made_in_memory_in_any_order(campaign):
+    whole, swath = campaign
+    assert len(whole) == 6
+    forward = [result.image for result in whole]
+    backward = [whole[-1 - number].image for number in range(6)]
+    for number in range(6):
+        assert numpy.array_equal(forward[number], backward[5 - number])
+        told = whole.describe(number)
+        place = swath[told.first_row : told.first_row + 64, told.first_column : told.first_column + 64]
+        assert (told.id, told.split, told.swath, told.rows, told.columns) == (number, "all", 0, 64, 64)
+        assert numpy.array_equal(forward[number], place) == (told.object_count == 0)
+        assert told.class_name == ("ball" if told.object_count else "")
+    assert sum(whole.describe(number).object_count for number in range(6)) == 4
+    with pytest.raises(IndexError):
+        whole[6]
+
+
+def test_the_scene_of_an_image_is_one_to_inject(campaign):
+    whole, swath = campaign
+    number = next(i for i in range(6) if whole.describe(i).object_count)
+    told = whole.describe(number)
+    scene = whole.scene(number)
+    assert scene.object_count == 1
+    truth = whole[number].objects[0]
+    assert 64 * 0.35 - 1 <= truth.row <= 64 * 0.65 and truth.is_visible
+
+
+def test_a_data_set_is_made_once(campaign, tmp_path):
+    whole, _ = campaign
+    seen = []
+    for part in ((1, 2), (2, 2)):
+        with pytest.raises(sonject.SonjectError):
+            sonject.merge_campaign(tmp_path / "set")
+        assert whole.run(tmp_path / "set", shard=part,
+                         progress=lambda fraction, stage: seen.append(stage))
+    sonject.merge_campaign(tmp_path / "set")
+    assert not whole.run(tmp_path / "set")
+    assert any(stage.endswith("images/s") for stage in seen)
+    assert (tmp_path / "set" / "all" / "coco.json").exists()
+    with pytest.raises(sonject.SonjectError, match="shard_index"):
+        whole.run(tmp_path / "set", shard=(3, 2))
+
+
+def test_mistakes_say_where(tmp_path, campaign):
+    with pytest.raises(sonject.SonjectError, match="images: must be at most"):
+        sonject.Campaign(tmp_path / "campaign.yaml", {"images": 10**18})

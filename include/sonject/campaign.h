@@ -1,0 +1,112 @@
+/* Campaigns: many injections drawn from distributions, as a labelled data set. */
+#ifndef SONJECT_CAMPAIGN_H
+#define SONJECT_CAMPAIGN_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include <sonject/export.h>
+#include <sonject/result.h>
+#include <sonject/scene.h>
+#include <sonject/status.h>
+
+SONJECT_BEGIN_DECLARATIONS
+
+typedef struct sonject_campaign sonject_campaign;
+
+typedef struct sonject_campaign_read_params {
+    uint32_t struct_size;
+    uint32_t
+        allows_user_shapes; /* as in sonject_scene_read_params, of the base scene and targets */
+} sonject_campaign_read_params;
+
+SONJECT_API void sonject_campaign_read_params_init(sonject_campaign_read_params *params);
+
+/* Reads a campaign file and checks it: keys, distributions, swaths (which are read whole, once) and
+ * scenes with the ends of all distributions. path: YAML file. overrides: count strings
+ * "key.path=value" that replace or add keys of it. Relative file names are resolved against the
+ * campaign file's folder, those that overrides give to scene and swaths against the working
+ * directory. params may be NULL (all defaults). Message on failure: file:line:column, the key, what
+ * is wrong. On success *campaign is the caller's, for sonject_campaign_release, before its context;
+ * on failure NULL. Errors: ARGUMENT, INPUT, STORAGE, UNSUPPORTED, MEMORY. */
+SONJECT_API sonject_status sonject_campaign_read(sonject_context *context, const char *path,
+                                                 const char *const *overrides, size_t count,
+                                                 const sonject_campaign_read_params *params,
+                                                 sonject_campaign **campaign);
+
+/* Releases the campaign and sets *campaign to NULL; NULL allowed. */
+SONJECT_API void sonject_campaign_release(sonject_campaign **campaign);
+
+/* Number of images; their ids count from 0. Errors: ARGUMENT. */
+SONJECT_API sonject_status sonject_campaign_image_count(const sonject_campaign *campaign,
+                                                        uint64_t *count);
+
+/* What is drawn for an image. */
+typedef struct sonject_campaign_image {
+    uint32_t struct_size;
+    uint32_t object_count;
+    uint64_t id;
+    uint64_t first_row; /* of the image in its swath */
+    uint64_t first_column;
+    uint64_t rows;
+    uint64_t columns;
+    uint64_t seed;       /* of its injection */
+    uint32_t swath;      /* number in the campaign file, from 0 */
+    uint32_t has_target; /* 0: empty, or clutter alone */
+    char split[SONJECT_NAME_CAPACITY];
+    char class_name[SONJECT_NAME_CAPACITY]; /* of the target; "" without one */
+} sonject_campaign_image;
+
+/* image->struct_size must be set. id: below the number of images. Errors: ARGUMENT, MEMORY. */
+SONJECT_API sonject_status sonject_campaign_describe(const sonject_campaign *campaign, uint64_t id,
+                                                     sonject_campaign_image *image);
+
+/* The scene of an image, whose input is the swath's file and whose patch is the image. On success
+ * *scene is the caller's, for sonject_scene_release; on failure NULL. Errors: ARGUMENT, INPUT,
+ * STORAGE, UNSUPPORTED, MEMORY. */
+SONJECT_API sonject_status sonject_campaign_scene(sonject_context *context,
+                                                  sonject_campaign *campaign, uint64_t id,
+                                                  sonject_scene **scene);
+
+/* Makes an image in memory: sonject_inject of that scene into the image's part of the swath; no
+ * file is written. Truth of objects counts the image's pixels. On success *result is the caller's,
+ * for sonject_result_release; on failure NULL. Errors: ARGUMENT, INPUT, DEVICE, STORAGE, MEMORY,
+ * CANCELLED. */
+SONJECT_API sonject_status sonject_campaign_inject(sonject_context *context,
+                                                   sonject_campaign *campaign, uint64_t id,
+                                                   sonject_progress_function progress, void *user,
+                                                   sonject_result **result);
+
+typedef struct sonject_campaign_run_params {
+    uint32_t struct_size;
+    uint32_t shard_index; /* 1...shard_count: only ids with id mod shard_count = shard_index - 1 */
+    uint32_t shard_count; /* 0 or 1: all images */
+    uint32_t only_one;    /* 1: only the image `only`, anew if it is there */
+    uint64_t only;        /* id */
+    const char *folder;   /* for the data set; made where missing */
+} sonject_campaign_run_params;
+
+SONJECT_API void sonject_campaign_run_params_init(sonject_campaign_run_params *params);
+
+/* Makes the images that are not in the folder yet, each published file by file with its record
+ * last, and, if all were asked for, the documents of the whole. A run that was stopped, or killed,
+ * goes on where it was; the bytes do not depend on that. *was_finished (may be NULL) gets 1 if
+ * nothing was left to do. A folder of another campaign, or of another version, is refused. progress
+ * (may be NULL): fractions of what was missing; its stage tells the rate.
+ * Errors: ARGUMENT, INPUT, DEVICE, STORAGE, MEMORY, UNSUPPORTED, CANCELLED (finished images stay).
+ */
+SONJECT_API sonject_status sonject_campaign_run(sonject_context *context,
+                                                sonject_campaign *campaign,
+                                                const sonject_campaign_run_params *params,
+                                                sonject_progress_function progress, void *user,
+                                                int *was_finished);
+
+/* Checks that all images of a folder's campaign are there, whoever made them, and writes the
+ * documents of the whole, as a run of all would. Errors: ARGUMENT, INPUT (names what is missing),
+ * STORAGE, MEMORY, UNSUPPORTED, CANCELLED. */
+SONJECT_API sonject_status sonject_campaign_merge(sonject_context *context, const char *folder,
+                                                  sonject_progress_function progress, void *user);
+
+SONJECT_END_DECLARATIONS
+
+#endif

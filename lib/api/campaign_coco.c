@@ -1,0 +1,191 @@
+/* COCO documents of the splits, put together image by image. */
+#define _POSIX_C_SOURCE 200809L
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "api/campaign_documents.h"
+#include "base/file.h"
+
+/* A document in the making: annotations wait in a file of their own until all images are told. */
+struct coco {
+    const struct data_set *set;
+    size_t split;
+    FILE *images, *annotations;
+    uint64_t annotation_count;
+};
+
+/* The number of a class among the campaign's, from 1. */
+static json_int_t category_of(const struct data_set *set, const char *name)
+{
+    size_t i;
+    const json_t *known;
+    json_array_foreach(json_object_get(set->head, "classes"), i, known)
+    {
+        const char *text = json_string_value(known);
+        if (text && strcmp(text, name) == 0)
+            return (json_int_t)i + 1;
+    }
+    return 0;
+}
+
+/* Adds a document, which is given up, to a list in a file. */
+static sonject_status add_entry(const struct data_set *set, FILE *file, json_t *entry,
+                                bool is_first)
+{
+    char *text = entry ? json_dumps(entry, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
+    json_decref(entry);
+    if (!text)
+        return report_out_of_memory(set->report, "coco.json");
+    const bool failed = fprintf(file, "%s%s", is_first ? "\n" : ",\n", text) < 0;
+    free(text);
+    return failed ? file_failure(set->report, set->folder, "write coco.json below", errno)
+                  : SONJECT_OK;
+}
+
+static json_int_t member_whole(const json_t *object, const char *key)
+{
+    return json_integer_value(json_object_get(object, key));
+}
+
+static json_t *annotation_of(const struct coco *coco, json_int_t image, const json_t *object)
+{
+    const json_t *box = json_object_get(object, "box");
+    const bool is_cut = json_is_true(json_object_get(object, "highlight_cut")) ||
+                        json_is_true(json_object_get(object, "shadow_cut"));
+    return json_pack(
+        "{s:I, s:I, s:I, s:[I,I,I,I], s:I, s:[], s:i, s:b}", "id",
+        (json_int_t)coco->annotation_count, "image_id", image, "category_id",
+        category_of(coco->set, member_text(object, "class")), "bbox", member_whole(box, "column"),
+        member_whole(box, "row"), member_whole(box, "columns"), member_whole(box, "rows"), "area",
+        member_whole(object, "highlight_pixels") + member_whole(object, "shadow_pixels"),
+        "segmentation", "iscrowd", 0, "truncated", is_cut);
+}
+
+static sonject_status add_image(struct coco *coco, uint64_t id, bool is_first)
+{
+    json_t *record, *truth;
+    size_t i;
+    const json_t *object;
+    const struct data_set *set = coco->set;
+    sonject_status status = data_set_image(set, coco->split, id, &record, &truth);
+    if (status != SONJECT_OK)
+        return status;
+    status = add_entry(set, coco->images,
+                       json_pack("{s:I, s:s, s:I, s:I}", "id", (json_int_t)id, "file_name",
+                                 member_text(record, "image"), "width",
+                                 member_whole(set->head, "columns"), "height",
+                                 member_whole(set->head, "rows")),
+                       is_first);
+    json_array_foreach(json_object_get(truth, "objects"), i, object)
+    {
+        if (status != SONJECT_OK || !json_is_true(json_object_get(object, "visible")))
+            continue;
+        coco->annotation_count++;
+        status = add_entry(set, coco->annotations, annotation_of(coco, (json_int_t)id, object),
+                           coco->annotation_count == 1);
+    }
+    json_decref(record);
+    json_decref(truth);
+    return status;
+}
+
+static sonject_status add_images(struct coco *coco)
+{
+    const struct data_set *set = coco->set;
+    sonject_status status = SONJECT_OK;
+    for (uint64_t k = 0; status == SONJECT_OK && k < set->split_images[coco->split]; k++) {
+        const double fraction = (double)(set->split_first[coco->split] + k) / (double)set->images;
+        if (set->progress && set->progress(set->user, fraction, "documents") != 0)
+            return report_failure(set->report, SONJECT_CANCELLED, "cancelled");
+        status = add_image(coco, set->split_first[coco->split] + k, k == 0);
+    }
+    return status;
+}
+
+static bool copy_all(FILE *from, FILE *to)
+{
+    char bytes[65536];
+    size_t count;
+    rewind(from);
+    while ((count = fread(bytes, 1, sizeof bytes, from)) > 0)
+        if (fwrite(bytes, 1, count, to) != count)
+            return false;
+    return !ferror(from);
+}
+
+static sonject_status add_categories(struct coco *coco)
+{
+    size_t i;
+    const json_t *name;
+    sonject_status status = SONJECT_OK;
+    json_array_foreach(json_object_get(coco->set->head, "classes"), i, name)
+    {
+        if (status == SONJECT_OK)
+            status =
+                add_entry(coco->set, coco->images,
+                          json_pack("{s:I, s:O}", "id", (json_int_t)i + 1, "name", name), i == 0);
+    }
+    return status;
+}
+
+static sonject_status write_split(struct coco *coco, const char *path)
+{
+    struct report *report = coco->set->report;
+    fputs("{\"images\": [", coco->images);
+    sonject_status status = add_images(coco);
+    fputs("],\n\"annotations\": [", coco->images);
+    if (status == SONJECT_OK && !copy_all(coco->annotations, coco->images))
+        status = file_failure(report, path, "write", errno);
+    fputs("],\n\"categories\": [", coco->images);
+    if (status == SONJECT_OK)
+        status = add_categories(coco);
+    fputs("]}\n", coco->images);
+    if (status == SONJECT_OK && (fflush(coco->images) != 0 || ferror(coco->images)))
+        status = file_failure(report, path, "write", errno);
+    return status;
+}
+
+static sonject_status write_coco_file(const struct data_set *set, size_t split, const char *path)
+{
+    char *part = file_part_name(path);
+    char *waiting = file_part_name(path);
+    struct coco coco = {set, split, NULL, NULL, 0};
+    sonject_status status = SONJECT_OK;
+    if (!part || !waiting) {
+        status = report_out_of_memory(set->report, "a file name");
+    } else {
+        coco.images = fopen(part, "wb");
+        coco.annotations = fopen(waiting, "w+b");
+        if (!coco.images || !coco.annotations)
+            status = file_failure(set->report, path, "write", errno);
+    }
+    if (status == SONJECT_OK)
+        status = write_split(&coco, path);
+    if (coco.annotations)
+        fclose(coco.annotations);
+    if (coco.images && fclose(coco.images) != 0 && status == SONJECT_OK)
+        status = file_failure(set->report, path, "write", errno);
+    if (waiting)
+        file_discard(waiting);
+    if (status == SONJECT_OK)
+        status = file_publish(set->report, part, path);
+    else if (part)
+        file_discard(part);
+    free(part);
+    free(waiting);
+    return status;
+}
+
+sonject_status write_data_set_coco(const struct data_set *set)
+{
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; status == SONJECT_OK && i < set->split_count; i++) {
+        char *path = campaign_file(set->folder, set->split_names[i], "coco.json", NULL);
+        if (!path)
+            return report_out_of_memory(set->report, "a file name");
+        status = write_coco_file(set, i, path);
+        free(path);
+    }
+    return status;
+}

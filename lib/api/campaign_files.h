@@ -1,0 +1,61 @@
+/* Where the files of a campaign's data set lie, and its JSON. */
+#ifndef SONJECT_API_CAMPAIGN_FILES_H
+#define SONJECT_API_CAMPAIGN_FILES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <jansson.h>
+
+#include "base/report.h"
+#include "campaign/campaign.h"
+#include "image/raster.h"
+
+#define OUTPUT_KINDS 5
+
+struct output_file {
+    uint32_t output; /* enum output */
+    const char *folder, *extension;
+};
+
+extern const struct output_file output_files[OUTPUT_KINDS];
+
+/* The files of one image; owned. */
+struct image_files {
+    char *image, *truth, *record;
+    struct {
+        const struct output_file *kind;
+        char *path;
+    } outputs[OUTPUT_KINDS];
+    size_t output_count;
+};
+
+/* ".png" where that stores the pixels as they are, else ".tif". */
+const char *image_extension(enum pixel_type type, bool is_complex);
+
+/* files: for image_files_clear, also on failure. Errors: MEMORY. */
+sonject_status image_files_init(struct image_files *files, struct report *report,
+                                const char *folder, const char *split, uint64_t id,
+                                enum pixel_type type, bool is_complex, uint32_t outputs);
+void image_files_clear(struct image_files *files);
+bool image_files_exist(const struct image_files *files);
+
+/* Makes the folders of a split. Errors: STORAGE, MEMORY. */
+sonject_status split_folders_make(struct report *report, const char *folder, const char *split,
+                                  uint32_t outputs);
+
+/* Removes what killed writers left in them: files named as parts are. Never fails. */
+void split_folders_tidy(const char *folder, const char *split, uint32_t outputs);
+void folder_tidy(const char *folder);
+
+/* "folder/split/kind/name" for free(); parts may be NULL from the end. NULL when memory is out. */
+char *campaign_file(const char *folder, const char *split, const char *kind, const char *name);
+
+/* Writes a document, which is given up; NULL counts as memory that was out. Errors: STORAGE,
+ * MEMORY. */
+sonject_status campaign_write_json(struct report *report, json_t *document, const char *path);
+
+/* Reads a JSON object of at most 64 MB. Errors: STORAGE, INPUT, MEMORY. */
+sonject_status campaign_read_json(struct report *report, const char *path, json_t **document);
+
+#endif

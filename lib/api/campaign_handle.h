@@ -1,0 +1,61 @@
+/* A campaign as the library keeps it, and one image of it. */
+#ifndef SONJECT_API_CAMPAIGN_HANDLE_H
+#define SONJECT_API_CAMPAIGN_HANDLE_H
+
+#include <sonject/campaign.h>
+
+#include "api/handles.h"
+#include "api/swath.h"
+#include "base/hash.h"
+#include "campaign/campaign.h"
+#include "campaign/image_plan.h"
+
+struct sonject_campaign {
+    struct report *report; /* the context's */
+    struct campaign campaign;
+    char *scene_text; /* of the base scene's file; owned */
+    size_t scene_bytes;
+    bool allows_user_shapes;
+    char (*swath_hashes)[HASH_TEXT_CAPACITY]; /* of the swaths' files; owned */
+    char hash[HASH_TEXT_CAPACITY];            /* of all that images depend on */
+    struct swath_store store;
+};
+
+/* Reads the scene that a plan describes. scene: initialised and empty; on failure it is left empty.
+ * Errors: as sonject_scene_read, with the place in the campaign file where that says it. */
+sonject_status campaign_read_scene(struct sonject_campaign *campaign, const struct image_plan *plan,
+                                   struct scene *scene);
+
+/* The hash of the code: the library's version and the kernels' sources. Errors: MEMORY. */
+sonject_status code_hash(struct report *report, char text[HASH_TEXT_CAPACITY]);
+
+/* scene_hash without the name of the input's file, so that it is the same wherever that lies. */
+sonject_status place_free_hash(struct report *report, const struct scene *scene,
+                               const char *input_identity, char text[HASH_TEXT_CAPACITY]);
+
+/* An image as it is made. Starts as all zeros, is for campaign_image_clear. */
+struct campaign_image {
+    struct image_plan plan;
+    struct scene scene;
+    struct swath swath;
+    struct injection_result result;
+};
+
+/* Plans the image, reads its scene and its part of the swath, and injects. Errors: as
+ * sonject_campaign_inject; the message names the image. */
+sonject_status campaign_image_make(struct sonject_context *context,
+                                   struct sonject_campaign *campaign, uint64_t id,
+                                   sonject_progress_function progress, void *user,
+                                   struct campaign_image *image);
+void campaign_image_clear(struct campaign_image *image);
+
+/* Writes the image's files below the folder, its record last. Errors: STORAGE, MEMORY,
+ * UNSUPPORTED. */
+sonject_status campaign_image_write(struct sonject_campaign *campaign, struct campaign_image *image,
+                                    const char *folder);
+
+/* Whether all files of an image are there. Errors: MEMORY. */
+sonject_status campaign_image_exists(const struct sonject_campaign *campaign, uint64_t id,
+                                     const char *folder, bool *exists);
+
+#endif

@@ -1,0 +1,219 @@
+/* One image of a campaign: made, written, looked for. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <jansson.h>
+
+#include <sonject/version.h>
+
+#include "api/campaign_files.h"
+#include "api/campaign_handle.h"
+#include "api/documents.h"
+#include "api/geometry_notes.h"
+#include "base/file.h"
+#include "base/memory.h"
+#include "inject/traced_impulses.h"
+#include "io/raster_file.h"
+
+void campaign_image_clear(struct campaign_image *image)
+{
+    injection_result_clear(&image->result);
+    swath_close(&image->swath);
+    scene_clear(&image->scene);
+    image_plan_clear(&image->plan);
+}
+
+/* The message of what failed, with the image's number before it. */
+static sonject_status name_image(struct report *report, uint64_t id, sonject_status status)
+{
+    char message[REPORT_CAPACITY];
+    if (status == SONJECT_OK || status == SONJECT_CANCELLED)
+        return status;
+    memcpy(message, report->message, sizeof message);
+    return report_failure(report, status, "image %llu: %s", (unsigned long long)id, message);
+}
+
+sonject_status campaign_image_make(struct sonject_context *context,
+                                   struct sonject_campaign *campaign, uint64_t id,
+                                   sonject_progress_function progress, void *user,
+                                   struct campaign_image *image)
+{
+    struct device *device;
+    scene_init(&image->scene);
+    sonject_status status =
+        image_plan_make(campaign->report, &campaign->campaign, id, &image->plan);
+    if (status == SONJECT_OK)
+        status = campaign_read_scene(campaign, &image->plan, &image->scene);
+    if (status == SONJECT_OK)
+        status =
+            swath_open_stored(campaign->report, &image->scene, &campaign->store, &image->swath);
+    if (status == SONJECT_OK)
+        status = context_device(context, &device);
+    if (status == SONJECT_OK) {
+        const struct injection_input input = swath_input(&image->swath);
+        status = injection_run(campaign->report, device, &image->scene, &input, progress, user,
+                               &image->result);
+    }
+    if (status == SONJECT_OK)
+        image->result.statistics.input_clipped = image->swath.clipped;
+    return name_image(campaign->report, id, status);
+}
+
+/* The image as one by itself: its own pixel (0, 0) is where its geometry begins. */
+static void take_alone(struct campaign_image *image, struct scene *scene, struct swath *swath)
+{
+    const struct region *chip = &image->plan.chip;
+    const struct region all = {0, 0, chip->rows, chip->columns};
+    *scene = image->scene;
+    *swath = image->swath;
+    scene->geometry.first_along_track_m += (double)chip->first_row * scene->geometry.row_spacing_m;
+    scene->geometry.first_slant_range_m +=
+        (double)chip->first_column * scene->geometry.column_spacing_m;
+    swath->layout.rows = chip->rows;
+    swath->layout.columns = chip->columns;
+    swath->patch = all;
+}
+
+static sonject_status write_pixels(struct sonject_campaign *campaign, const struct scene *scene,
+                                   struct swath *swath, struct injection_result *result,
+                                   const char *path)
+{
+    static const char *const complex_names[] = {"real", "imag"};
+    struct geometry_notes notes;
+    void *stored = swath_stored_result(swath, result, &result->statistics.output_clipped);
+    if (!stored)
+        return report_out_of_memory(campaign->report, "an image");
+    geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
+    const sonject_status status = raster_file_write(campaign->report, path, &swath->layout,
+                                                    swath->is_complex ? complex_names : NULL,
+                                                    notes.attributes, GEOMETRY_NOTES_COUNT, stored);
+    free(stored);
+    return status;
+}
+
+/* What an output's file holds. */
+static sonject_status write_output(struct sonject_campaign *campaign, const struct scene *scene,
+                                   const struct swath *swath, const struct injection_result *result,
+                                   const struct output_file *output, const char *path)
+{
+    static const char *const complex_names[] = {"real", "imag"};
+    struct geometry_notes notes;
+    struct raster_layout layout = {swath->layout.rows, swath->layout.columns, 1, PIXEL_FLOAT32};
+    const void *pixels = output->output == OUTPUT_ENERGY      ? (const void *)result->energy
+                         : output->output == OUTPUT_FIELD     ? (const void *)result->field
+                         : output->output == OUTPUT_HIGHLIGHT ? (const void *)result->highlight
+                         : output->output == OUTPUT_SHADOW    ? (const void *)result->shadow
+                                                              : (const void *)result->labels;
+    const bool is_float = output->output == OUTPUT_ENERGY || output->output == OUTPUT_FIELD;
+    layout.channels = output->output == OUTPUT_FIELD ? 2 : 1;
+    layout.type = is_float ? PIXEL_FLOAT32 : PIXEL_UINT8;
+    geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
+    return raster_file_write(campaign->report, path, &layout,
+                             layout.channels == 2 ? complex_names : NULL, notes.attributes,
+                             is_float ? GEOMETRY_NOTES_COUNT : 0, pixels);
+}
+
+/* JSON's readers take integers of 63 bits at the most; larger seeds are written as text. */
+static json_t *seed_of(uint64_t seed)
+{
+    char text[24];
+    if (seed <= (uint64_t)INT64_MAX)
+        return json_integer((json_int_t)seed);
+    snprintf(text, sizeof text, "%llu", (unsigned long long)seed);
+    return json_string(text);
+}
+
+static json_t *record_of(const struct sonject_campaign *campaign,
+                         const struct campaign_image *image, const char *image_name,
+                         const char *scene_hash_text)
+{
+    const struct image_plan *plan = &image->plan;
+    const struct swath_plan *swath = &campaign->campaign.swaths[plan->swath];
+    const bool has_target = plan->category >= CATEGORY_TARGET;
+    json_t *keys = json_array();
+    for (size_t i = 0; i < plan->key_count; i++)
+        json_array_append_new(keys, json_string(plan->keys[i].text));
+    return json_pack(
+        "{s:I, s:s, s:s, s:s?, s:{s:s, s:s, s:I, s:I, s:I, s:I}, s:o, s:s, s:o, s:s, s:s, s:s}",
+        "id", (json_int_t)plan->id, "split", campaign->campaign.splits[plan->split].name, "image",
+        image_name, "target",
+        has_target ? campaign->campaign.targets[plan->category - CATEGORY_TARGET].class_name : NULL,
+        "swath", "path", swath->written, "hash", campaign->swath_hashes[plan->swath], "row",
+        (json_int_t)plan->chip.first_row, "column", (json_int_t)plan->chip.first_column, "rows",
+        (json_int_t)plan->chip.rows, "columns", (json_int_t)plan->chip.columns, "seed",
+        seed_of(image->scene.injection.seed), "scene", campaign->campaign.scene_written, "set",
+        keys, "scene_hash", scene_hash_text, "campaign_hash", campaign->hash, "sonject",
+        sonject_version());
+}
+
+static sonject_status write_record(struct sonject_campaign *campaign,
+                                   const struct campaign_image *image, const char *image_name,
+                                   const char *path)
+{
+    char hash[HASH_TEXT_CAPACITY];
+    const sonject_status status =
+        place_free_hash(campaign->report, &image->scene, image->swath.identity, hash);
+    if (status != SONJECT_OK)
+        return status;
+    return campaign_write_json(campaign->report, record_of(campaign, image, image_name, hash),
+                               path);
+}
+
+static sonject_status write_truth_of(struct sonject_campaign *campaign, const struct scene *scene,
+                                     const struct swath *swath,
+                                     const struct injection_result *result, const char *image_name,
+                                     const char *path)
+{
+    struct run_facts facts;
+    memset(&facts, 0, sizeof facts);
+    facts.scene = scene;
+    facts.swath = swath;
+    facts.result = result;
+    facts.image_name = image_name;
+    return write_truth(campaign->report, &facts, path);
+}
+
+sonject_status campaign_image_write(struct sonject_campaign *campaign, struct campaign_image *image,
+                                    const char *folder)
+{
+    struct scene scene;
+    struct swath swath;
+    char image_name[64];
+    const char *split = campaign->campaign.splits[image->plan.split].name;
+    const uint64_t id = image->plan.id;
+    struct image_files files;
+    take_alone(image, &scene, &swath);
+    sonject_status status =
+        image_files_init(&files, campaign->report, folder, split, id, swath.layout.type,
+                         swath.is_complex, campaign->campaign.outputs);
+    snprintf(image_name, sizeof image_name, "images/%08llu%s", (unsigned long long)id,
+             image_extension(swath.layout.type, swath.is_complex));
+    if (status == SONJECT_OK)
+        status = write_pixels(campaign, &scene, &swath, &image->result, files.image);
+    for (size_t i = 0; status == SONJECT_OK && i < files.output_count; i++)
+        status = write_output(campaign, &scene, &swath, &image->result, files.outputs[i].kind,
+                              files.outputs[i].path);
+    if (status == SONJECT_OK)
+        status = write_truth_of(campaign, &scene, &swath, &image->result, image_name, files.truth);
+    if (status == SONJECT_OK)
+        status = write_record(campaign, image, image_name, files.record);
+    image_files_clear(&files);
+    return status;
+}
+
+sonject_status campaign_image_exists(const struct sonject_campaign *campaign, uint64_t id,
+                                     const char *folder, bool *exists)
+{
+    const struct campaign *plan = &campaign->campaign;
+    const struct split *split = &plan->splits[image_split(plan, id)];
+    const uint64_t number = (id - split->first_image) * split->swath_count / split->images;
+    const struct raster_layout *layout = &plan->swaths[split->swaths[number]].layout;
+    struct image_files files;
+    const sonject_status status =
+        image_files_init(&files, campaign->report, folder, split->name, id, layout->type,
+                         layout->channels == 2, plan->outputs);
+    *exists = status == SONJECT_OK && image_files_exist(&files);
+    image_files_clear(&files);
+    return status;
+}

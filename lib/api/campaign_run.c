@@ -1,0 +1,318 @@
+/* The loop over a campaign's images, and the calls that make one. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "api/campaign_documents.h"
+#include "base/clock.h"
+#include "base/file.h"
+#include "base/memory.h"
+
+sonject_status sonject_campaign_image_count(const sonject_campaign *campaign, uint64_t *count)
+{
+    if (!campaign || !count)
+        return SONJECT_ERROR_ARGUMENT;
+    *count = campaign->campaign.images;
+    return SONJECT_OK;
+}
+
+static sonject_status check_id(const struct sonject_campaign *campaign, uint64_t id)
+{
+    if (id < campaign->campaign.images)
+        return SONJECT_OK;
+    return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
+                          "there is no image %llu: the campaign has %llu, counted from 0",
+                          (unsigned long long)id, (unsigned long long)campaign->campaign.images);
+}
+
+static void describe_plan(const struct campaign *campaign, const struct image_plan *plan,
+                          sonject_campaign_image *told)
+{
+    memset(told, 0, sizeof *told);
+    told->id = plan->id;
+    told->first_row = plan->chip.first_row;
+    told->first_column = plan->chip.first_column;
+    told->rows = plan->chip.rows;
+    told->columns = plan->chip.columns;
+    told->seed = plan->seed;
+    told->swath = plan->swath;
+    told->object_count = plan->object_count;
+    told->has_target = plan->category >= CATEGORY_TARGET;
+    strcpy(told->split, campaign->splits[plan->split].name);
+    if (told->has_target)
+        memcpy(told->class_name, campaign->targets[plan->category - CATEGORY_TARGET].class_name,
+               sizeof told->class_name);
+}
+
+sonject_status sonject_campaign_describe(const sonject_campaign *campaign, uint64_t id,
+                                         sonject_campaign_image *image)
+{
+    struct image_plan plan;
+    sonject_campaign_image told;
+    if (!campaign)
+        return SONJECT_ERROR_ARGUMENT;
+    sonject_status status = check_id(campaign, id);
+    if (status != SONJECT_OK)
+        return status;
+    status = image_plan_make(campaign->report, &campaign->campaign, id, &plan);
+    if (status == SONJECT_OK) {
+        describe_plan(&campaign->campaign, &plan, &told);
+        status = params_give(campaign->report, image, &told, sizeof told, sizeof told,
+                             "a campaign's image");
+    }
+    image_plan_clear(&plan);
+    return status;
+}
+
+sonject_status sonject_campaign_scene(sonject_context *context, sonject_campaign *campaign,
+                                      uint64_t id, sonject_scene **scene)
+{
+    struct image_plan plan;
+    if (!context || !scene)
+        return SONJECT_ERROR_ARGUMENT;
+    *scene = NULL;
+    context_begin_call(context);
+    if (!campaign)
+        return null_argument(&context->report, "campaign");
+    sonject_status status = check_id(campaign, id);
+    if (status == SONJECT_OK)
+        status = sonject_scene_create(context, scene);
+    if (status != SONJECT_OK)
+        return status;
+    status = image_plan_make(campaign->report, &campaign->campaign, id, &plan);
+    if (status == SONJECT_OK)
+        status = campaign_read_scene(campaign, &plan, &(*scene)->scene);
+    image_plan_clear(&plan);
+    if (status != SONJECT_OK)
+        sonject_scene_release(scene);
+    return status;
+}
+
+sonject_status sonject_campaign_inject(sonject_context *context, sonject_campaign *campaign,
+                                       uint64_t id, sonject_progress_function progress, void *user,
+                                       sonject_result **result)
+{
+    struct campaign_image image;
+    if (!context || !result)
+        return SONJECT_ERROR_ARGUMENT;
+    *result = NULL;
+    context_begin_call(context);
+    if (!campaign)
+        return null_argument(&context->report, "campaign");
+    sonject_status status = check_id(campaign, id);
+    if (status != SONJECT_OK)
+        return status;
+    struct sonject_result *made = allocate_array(1, sizeof *made);
+    if (!made)
+        return report_out_of_memory(&context->report, "a result");
+    memset(&image, 0, sizeof image);
+    status = campaign_image_make(context, campaign, id, progress, user, &image);
+    if (status == SONJECT_OK) {
+        made->report = &context->report;
+        made->result = image.result;
+        memset(&image.result, 0, sizeof image.result);
+        *result = made;
+    } else {
+        free(made);
+    }
+    campaign_image_clear(&image);
+    return status;
+}
+
+void sonject_campaign_run_params_init(sonject_campaign_run_params *params)
+{
+    memset(params, 0, sizeof *params);
+    params->struct_size = sizeof *params;
+    params->shard_index = 1;
+    params->shard_count = 1;
+}
+
+/* A run over images, and how far it is. */
+struct sweep {
+    struct sonject_context *context;
+    struct sonject_campaign *campaign;
+    const sonject_campaign_run_params *params;
+    sonject_progress_function progress;
+    void *user;
+    double start_s;
+    uint64_t made, missing; /* images of this run */
+};
+
+/* Within an image, so that it can be cancelled there. */
+static int tell_image(void *user, double fraction, const char *stage)
+{
+    const struct sweep *sweep = user;
+    char rate[32] = "first image";
+    const double elapsed = clock_seconds() - sweep->start_s;
+    (void)stage;
+    if (!sweep->progress)
+        return 0;
+    const double images_per_s = elapsed > 0.0 ? (double)sweep->made / elapsed : 0.0;
+    if (images_per_s > 0.0)
+        snprintf(rate, sizeof rate, "%.*f images/s", images_per_s < 10.0 ? 2 : 0, images_per_s);
+    return sweep->progress(sweep->user, ((double)sweep->made + fraction) / (double)sweep->missing,
+                           rate);
+}
+
+static sonject_status make_image(struct sweep *sweep, uint64_t id)
+{
+    struct campaign_image image;
+    memset(&image, 0, sizeof image);
+    sonject_status status =
+        campaign_image_make(sweep->context, sweep->campaign, id, tell_image, sweep, &image);
+    if (status == SONJECT_OK)
+        status = campaign_image_write(sweep->campaign, &image, sweep->params->folder);
+    campaign_image_clear(&image);
+    sweep->made++;
+    if (status == SONJECT_OK && tell_image(sweep, 0.0, "") != 0)
+        status = report_failure(sweep->campaign->report, SONJECT_CANCELLED, "cancelled");
+    return status;
+}
+
+/* Ids of this run: the shard's, in rising order. */
+static uint64_t first_id(const sonject_campaign_run_params *params)
+{
+    return params->only_one ? params->only : params->shard_index - 1;
+}
+
+static uint64_t next_id(const struct sweep *sweep, uint64_t id)
+{
+    return sweep->params->only_one ? sweep->campaign->campaign.images
+                                   : id + sweep->params->shard_count;
+}
+
+static sonject_status sweep_images(struct sweep *sweep, bool only_counts)
+{
+    sonject_status status = SONJECT_OK;
+    for (uint64_t id = first_id(sweep->params);
+         status == SONJECT_OK && id < sweep->campaign->campaign.images; id = next_id(sweep, id)) {
+        bool exists = false;
+        if (!sweep->params->only_one)
+            status = campaign_image_exists(sweep->campaign, id, sweep->params->folder, &exists);
+        if (status != SONJECT_OK || exists)
+            continue;
+        if (only_counts)
+            sweep->missing++;
+        else
+            status = make_image(sweep, id);
+    }
+    return status;
+}
+
+static sonject_status make_folders(struct sonject_campaign *campaign, const char *folder)
+{
+    sonject_status status = folder_make(campaign->report, folder);
+    if (status == SONJECT_OK)
+        status = data_set_begin(campaign, folder);
+    for (size_t i = 0; status == SONJECT_OK && i < campaign->campaign.split_count; i++)
+        status = split_folders_make(campaign->report, folder, campaign->campaign.splits[i].name,
+                                    campaign->campaign.outputs);
+    return status;
+}
+
+/* Times are the only thing that differs from run to run, and so in a file of their own. */
+static sonject_status write_times(const struct sweep *sweep)
+{
+    const double elapsed = clock_seconds() - sweep->start_s;
+    char *path = path_join(sweep->params->folder, "times.json");
+    if (!path)
+        return report_out_of_memory(sweep->campaign->report, "a file name");
+    const sonject_status status = campaign_write_json(
+        sweep->campaign->report,
+        json_pack("{s:I, s:f, s:f}", "images_made", (json_int_t)sweep->made, "seconds", elapsed,
+                  "images_per_second", elapsed > 0.0 ? (double)sweep->made / elapsed : 0.0),
+        path);
+    free(path);
+    return status;
+}
+
+static sonject_status finish_whole(struct sweep *sweep, int *was_finished)
+{
+    struct data_set set;
+    memset(&set, 0, sizeof set);
+    sonject_status status = data_set_open(&set, sweep->campaign->report, sweep->params->folder);
+    set.progress = sweep->progress;
+    set.user = sweep->user;
+    const bool is_finished =
+        status == SONJECT_OK && sweep->missing == 0 && data_set_is_finished(&set);
+    if (status == SONJECT_OK && !is_finished)
+        status = data_set_finish(&set);
+    data_set_clear(&set);
+    if (was_finished)
+        *was_finished = is_finished;
+    return status;
+}
+
+static sonject_status run_campaign(struct sweep *sweep, int *was_finished)
+{
+    const bool is_whole = sweep->params->shard_count == 1 && !sweep->params->only_one;
+    sonject_status status = make_folders(sweep->campaign, sweep->params->folder);
+    if (status == SONJECT_OK)
+        status = sweep_images(sweep, true);
+    sweep->start_s = clock_seconds();
+    if (status == SONJECT_OK)
+        status = sweep_images(sweep, false);
+    if (status == SONJECT_OK && sweep->made > 0)
+        status = write_times(sweep);
+    if (was_finished)
+        *was_finished = sweep->missing == 0;
+    if (status == SONJECT_OK && is_whole)
+        status = finish_whole(sweep, was_finished);
+    return status;
+}
+
+static sonject_status check_params(const struct sonject_campaign *campaign,
+                                   sonject_campaign_run_params *params)
+{
+    if (!params->folder || !params->folder[0])
+        return null_argument(campaign->report, "folder");
+    if (params->shard_count == 0)
+        params->shard_count = 1;
+    if (params->shard_index == 0 || params->shard_index > params->shard_count)
+        return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
+                              "shard_index must be from 1 to shard_count, %u",
+                              (unsigned)params->shard_count);
+    return params->only_one ? check_id(campaign, params->only) : SONJECT_OK;
+}
+
+sonject_status sonject_campaign_run(sonject_context *context, sonject_campaign *campaign,
+                                    const sonject_campaign_run_params *params,
+                                    sonject_progress_function progress, void *user,
+                                    int *was_finished)
+{
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    if (!campaign)
+        return null_argument(&context->report, "campaign");
+    sonject_campaign_run_params taken;
+    sonject_campaign_run_params_init(&taken);
+    sonject_status status = params_take(&context->report, &taken, sizeof taken, params,
+                                        sizeof taken, "campaign run parameters");
+    if (status == SONJECT_OK)
+        status = check_params(campaign, &taken);
+    if (status != SONJECT_OK)
+        return status;
+    struct sweep sweep = {context, campaign, &taken, progress, user, clock_seconds(), 0, 0};
+    return run_campaign(&sweep, was_finished);
+}
+
+sonject_status sonject_campaign_merge(sonject_context *context, const char *folder,
+                                      sonject_progress_function progress, void *user)
+{
+    struct data_set set;
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    if (!folder || !folder[0])
+        return null_argument(&context->report, "folder");
+    memset(&set, 0, sizeof set);
+    sonject_status status = data_set_open(&set, &context->report, folder);
+    set.progress = progress;
+    set.user = user;
+    if (status == SONJECT_OK)
+        status = data_set_finish(&set);
+    data_set_clear(&set);
+    return status;
+}

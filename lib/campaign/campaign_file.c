@@ -1,0 +1,268 @@
+/* Campaign files: the tables of their keys. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "campaign/campaign_fields.h"
+#include "io/scene_file.h"
+#include "io/yaml_flow.h"
+
+#define STRUCTURE struct campaign
+
+static sonject_status read_scene_name(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    struct campaign *campaign = structure;
+    sonject_status status = read_path(reader, node, &campaign->scene_path);
+    if (status != SONJECT_OK)
+        return status;
+    campaign->scene_written = copy_text(node->text);
+    return campaign->scene_written ? SONJECT_OK
+                                   : report_out_of_memory(reader->report, "the campaign");
+}
+
+static sonject_status read_range(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    struct campaign *campaign = structure;
+    if (node->kind != TREE_LIST || node->count != 2)
+        return refuse_value(reader, node, "must be two slant ranges, [nearest, farthest]");
+    sonject_status status =
+        read_quantity(reader, &node->entries[0].value, QUANTITY_LENGTH, &campaign->nearest_range_m);
+    if (status == SONJECT_OK)
+        status = read_quantity(reader, &node->entries[1].value, QUANTITY_LENGTH,
+                               &campaign->farthest_range_m);
+    if (status == SONJECT_OK && !(campaign->nearest_range_m < campaign->farthest_range_m))
+        status = refuse_value(reader, node, "begins at %g m, which is not below its end, %g m",
+                              campaign->nearest_range_m, campaign->farthest_range_m);
+    campaign->has_range = true;
+    return status;
+}
+
+static sonject_status read_outputs(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    static const char *const words[] = {"highlight", "shadow", "masks", "energy", "field"};
+    struct campaign *campaign = structure;
+    if (node->kind != TREE_LIST)
+        return refuse_value(reader, node, "must be a list");
+    campaign->outputs = 0;
+    for (size_t i = 0; i < node->count; i++) {
+        struct word_list list = {{0}, 0};
+        const struct tree_node *entry = &node->entries[i].value;
+        const char *text = read_text(reader, entry);
+        size_t word = 0;
+        if (!text)
+            return SONJECT_ERROR_INPUT;
+        while (word < COUNT(words) && strcmp(words[word], text) != 0)
+            list_word(&list, words[word++]);
+        if (word == COUNT(words))
+            return refuse_word(reader, entry, text, &list, nearest_word(text, words, COUNT(words)));
+        campaign->outputs |= 1u << word;
+    }
+    return SONJECT_OK;
+}
+
+static sonject_status finish_fraction(struct reader *reader, const struct tree_node *node,
+                                      const char *key, double fraction)
+{
+    if (fraction >= 0.0 && fraction <= 1.0)
+        return SONJECT_OK;
+    return refuse_key(reader, node, key, "must be from 0 to 1, not %g", fraction);
+}
+
+static sonject_status finish_chip(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    const struct campaign *campaign = structure;
+    if (campaign->chip_rows < 16)
+        return refuse_key(reader, node, "rows", "must be at least 16");
+    if (campaign->chip_columns < 16)
+        return refuse_key(reader, node, "columns", "must be at least 16");
+    return finish_fraction(reader, node, "spread", campaign->spread);
+}
+
+static const struct field chip_fields[] = {
+    {"rows", "of each image", COUNT32(STRUCTURE, chip_rows, CAMPAIGN_CHIP_MAX), REQUIRED},
+    {"columns", "of each image", COUNT32(STRUCTURE, chip_columns, CAMPAIGN_CHIP_MAX), REQUIRED},
+    {"edge", "pixels that images stay away from swaths' edges",
+     COUNT32(STRUCTURE, edge, UINT32_MAX / 4)},
+    {"clearance", "pixels that images stay away from contacts to avoid",
+     COUNT32(STRUCTURE, clearance, UINT32_MAX / 4)},
+    {"spread", "part of the sides in which objects lie, about the middle, 0 to 1",
+     QUANTITY(STRUCTURE, spread, QUANTITY_NUMBER)},
+    {"slant_range", "[nearest, farthest] that the middle of an image may have",
+     .kind = FIELD_SPECIAL, .read = read_range, .unit = "list of two lengths"},
+};
+static const struct section chip_section = {chip_fields, COUNT(chip_fields), finish_chip};
+
+static sonject_status finish_clutter(struct reader *reader, const struct tree_node *node,
+                                     void *structure)
+{
+    const struct campaign *campaign = structure;
+    return finish_fraction(reader, node, "alone", campaign->clutter_alone);
+}
+
+static const struct field clutter_fields[] = {
+    {"objects", "list of what clutter may be, as targets are", .kind = FIELD_SPECIAL,
+     .unit = "list", .read = read_clutter_objects, REQUIRED},
+    {"number", "of clutter objects in an image with a target", .kind = FIELD_SPECIAL,
+     .unit = "whole number, or a distribution", .read = read_clutter_number},
+    {"alone", "fraction of images with clutter and no target",
+     QUANTITY(STRUCTURE, clutter_alone, QUANTITY_NUMBER)},
+};
+static const struct section clutter_section = {clutter_fields, COUNT(clutter_fields),
+                                               finish_clutter};
+
+static sonject_status finish_campaign(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    struct campaign *campaign = structure;
+    if (campaign->images == 0)
+        return refuse_key(reader, node, "images", "must be at least 1");
+    sonject_status status = finish_fraction(reader, node, "empty", campaign->empty);
+    if (status == SONJECT_OK && campaign->empty + campaign->clutter_alone > 1.0)
+        status = refuse_key(reader, node, "empty", "and clutter.alone together are above 1");
+    if (status == SONJECT_OK && campaign->target_count == 0 &&
+        campaign->empty + campaign->clutter_alone < 1.0)
+        status = refuse_key(reader, node, "targets",
+                            "is missing; add it, or make empty and clutter.alone add up to 1");
+    return status;
+}
+
+/* Draws are read last, in this order, so that streams of random numbers keep their places. */
+static const struct field campaign_fields[] = {
+    {"sonject_campaign", "version of the format, 1", .kind = FIELD_SPECIAL, .read = read_version,
+     REQUIRED},
+    {"scene", "scene file with all that is not drawn", .kind = FIELD_SPECIAL,
+     .read = read_scene_name, .unit = "file name", REQUIRED},
+    {"images", "number of images", COUNT64(STRUCTURE, images, CAMPAIGN_IMAGES_MAX), REQUIRED},
+    {"seed", "of all that is drawn", COUNT64(STRUCTURE, seed, UINT64_MAX)},
+    {"design", "how values are drawn",
+     WORD(STRUCTURE, design) =
+         {[DESIGN_RANDOM] = "random", [DESIGN_STRATIFIED] = "stratified", [DESIGN_GRID] = "grid"}},
+    {"chip", "size of images, and where in swaths they lie", .kind = FIELD_SECTION, .offset = 0,
+     .section = &chip_section, REQUIRED},
+    {"outputs", "written beside image and truth: highlight, shadow, masks, energy, field",
+     .kind = FIELD_SPECIAL, .read = read_outputs, .unit = "list of words"},
+    {"empty", "fraction of images without any object", QUANTITY(STRUCTURE, empty, QUANTITY_NUMBER)},
+    {"splits", "names and fractions, such as {train: 0.8, test: 0.2}", .kind = FIELD_SPECIAL,
+     .read = read_splits, .unit = "section"},
+    {"swaths", "list of the images that objects are put into", .kind = FIELD_SPECIAL,
+     .read = read_swaths, .unit = "list", REQUIRED},
+    {"draw", "what keys of the scene are drawn from", .kind = FIELD_SPECIAL,
+     .read = read_campaign_draws, .unit = "section"},
+    {"targets", "list of what is to be found", .kind = FIELD_SPECIAL, .read = read_targets,
+     .unit = "list"},
+    {"clutter", "what else lies there", .kind = FIELD_SECTION, .offset = 0,
+     .section = &clutter_section},
+};
+static const struct section campaign_section = {campaign_fields, COUNT(campaign_fields),
+                                                finish_campaign};
+
+static sonject_status fill_campaign(struct tree *tree, const char *const *overrides, size_t count,
+                                    struct campaign *campaign)
+{
+    struct reader reader = {.report = tree->report, .tree = tree};
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
+        status = tree_override(tree, overrides[i]);
+    if (status == SONJECT_OK && tree_is_null(&tree->root))
+        status = refuse_value(&reader, &tree->root,
+                              "there is nothing in it; start with 'sonject_campaign: 1'");
+    if (status == SONJECT_OK)
+        status = read_section(&reader, &campaign_section, &tree->root, campaign);
+    if (status == SONJECT_OK)
+        status = tree_override_text(tree->report, &tree->root, &campaign->canonical);
+    return status;
+}
+
+static void set_defaults(struct campaign *campaign)
+{
+    memset(campaign, 0, sizeof *campaign);
+    campaign->seed = 1;
+    campaign->design = DESIGN_STRATIFIED;
+    campaign->spread = 0.5;
+    campaign->outputs = OUTPUT_HIGHLIGHT | OUTPUT_SHADOW | OUTPUT_MASKS;
+    campaign->splits[0].fraction = 1.0;
+    strcpy(campaign->splits[0].name, "all");
+    campaign->split_count = 1;
+}
+
+sonject_status campaign_read(struct report *report, const char *path, const char *const *overrides,
+                             size_t count, struct campaign *campaign)
+{
+    char *text = NULL;
+    size_t bytes;
+    set_defaults(campaign);
+    campaign->path = copy_text(path);
+    campaign->folder = path_folder(path);
+    if (!campaign->path || !campaign->folder)
+        return report_out_of_memory(report, "the campaign");
+    if (!file_exists(path))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: there is no such campaign file; check its name", path);
+    sonject_status status = file_read_whole(report, path, TREE_BYTES_MAX, &text, &bytes);
+    if (status != SONJECT_OK)
+        return status;
+    tree_init(&campaign->tree, report, campaign->path);
+    status = tree_parse(&campaign->tree, text, bytes);
+    if (status == SONJECT_OK)
+        status = fill_campaign(&campaign->tree, overrides, count, campaign);
+    free(text);
+    return status;
+}
+
+static void clear_draws(struct draws *draws)
+{
+    for (size_t i = 0; i < draws->count; i++)
+        distribution_clear(&draws->list[i]);
+    free(draws->list);
+}
+
+static void clear_items(struct item *items, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        clear_draws(&items[i].draws);
+        free(items[i].object);
+    }
+    free(items);
+}
+
+static void clear_swath(struct swath_plan *swath)
+{
+    for (size_t i = 0; i < swath->key_count; i++)
+        free(swath->keys[i]);
+    free(swath->keys);
+    free(swath->path);
+    free(swath->written);
+    free(swath->split);
+    free(swath->avoid);
+    chip_room_clear(&swath->room);
+}
+
+void campaign_clear(struct campaign *campaign)
+{
+    clear_draws(&campaign->draws);
+    clear_draws(&campaign->object_draws);
+    clear_items(campaign->targets, campaign->target_count);
+    clear_items(campaign->clutter, campaign->clutter_count);
+    distribution_clear(&campaign->clutter_number);
+    for (size_t i = 0; i < campaign->swath_count; i++)
+        clear_swath(&campaign->swaths[i]);
+    free(campaign->swaths);
+    for (size_t i = 0; i < campaign->split_count; i++) {
+        free(campaign->splits[i].swaths);
+        free(campaign->splits[i].shares);
+    }
+    free(campaign->canonical);
+    free(campaign->scene_path);
+    free(campaign->scene_written);
+    free(campaign->folder);
+    if (campaign->tree.file)
+        tree_clear(&campaign->tree);
+    free(campaign->path);
+    memset(campaign, 0, sizeof *campaign);
+}

@@ -1,0 +1,360 @@
+"""Campaigns: what the data set holds, and that it is the same however it came about."""
+
+import json
+import random
+import signal
+import subprocess
+import time
+
+import numpy
+import pytest
+
+import images
+from conftest import COMMAND, assert_refused, files_below
+from measured_images import read_png
+
+ROWS, COLUMNS, CHIP = 110, 150, 64
+IMAGES = 20
+
+SCENE = """\
+sonject: 1
+input:
+  geometry: {row_spacing: 2.5 cm, column_spacing: 2.5 cm, first_slant_range: 25 m}
+sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}
+"""
+
+# Classes are data: none of these characters may reach a file's name.
+CAMPAIGN = f"""\
+sonject_campaign: 1
+scene: scene.yaml
+images: {IMAGES}
+seed: 5
+chip: {{rows: {CHIP}, columns: {CHIP}, spread: 0.4, clearance: 2}}
+empty: 0.2
+splits: {{train: 0.5, test: 0.5}}
+swaths:
+  - path: swath0.png
+    avoid: [{{row: 0, column: 80, rows: 20, columns: 70}}]
+  - path: swath1.png
+  - path: swath2.png
+draw:
+  seabed.lambert: {{uniform: [-30 dB, -24 dB]}}
+  objects[].burial: {{uniform: [0 cm, 5 cm]}}
+targets:
+  - class: 'ball, "big"/<b>'
+    object: {{shape: sphere, diameter: 0.3 m}}
+  - class: rod ÅÄ&
+    object: {{shape: capsule, diameter: 0.2 m}}
+    draw:
+      length: {{log_uniform: [0.4 m, 0.6 m]}}
+      heading: {{uniform: [0 deg, 180 deg]}}
+clutter:
+  number: {{choice: [0, 1]}}
+  objects:
+    - class: stone
+      object: {{shape: sphere, diameter: 0.2 m}}
+"""
+TARGETS = ['ball, "big"/<b>', "rod ÅÄ&"]
+
+
+@pytest.fixture(scope="module")
+def ground(tmp_path_factory):
+    """A folder with swaths, their scene and a campaign."""
+    folder = tmp_path_factory.mktemp("campaign")
+    numbers = numpy.random.default_rng(20261122)
+    for i in range(3):
+        amplitudes = numbers.rayleigh(30, (ROWS, COLUMNS)).clip(1, 255)
+        (folder / f"swath{i}.png").write_bytes(images.png_bytes(amplitudes))
+    (folder / "scene.yaml").write_text(SCENE)
+    (folder / "campaign.yaml").write_text(CAMPAIGN)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def command(ground, environment):
+    """Runs the command where the campaign lies."""
+
+    def run(*arguments):
+        return subprocess.run([COMMAND, *map(str, arguments)], cwd=ground, env=environment,
+                              capture_output=True, text=True, timeout=600)
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def whole(ground, command):
+    """The data set that one run makes."""
+    answer = command("campaign", "campaign.yaml", "-o", "whole")
+    assert (answer.returncode, answer.stderr) == (0, "sonject: the data set is in whole\n")
+    return ground / "whole"
+
+
+def contents(folder):
+    """Of all files but the one that tells times."""
+    return {
+        str(path.relative_to(folder)): path.read_bytes()
+        for path in files_below(folder)
+        if path.name != "times.json"
+    }
+
+
+def records(folder):
+    return [json.loads(path.read_text()) for path in sorted(folder.glob("*/records/*.json"))]
+
+
+def of_image(record, kind, extension):
+    return f"{record['split']}/{kind}/{record['id']:08d}{extension}"
+
+
+def test_every_image_has_its_files(whole):
+    found = records(whole)
+    assert sorted(record["id"] for record in found) == list(range(IMAGES))
+    expected = {"campaign.json", "dataset.json", "report.html", "contact_sheet.png",
+                "train/coco.json", "test/coco.json"}
+    for record in found:
+        assert record["image"] == f"images/{record['id']:08d}.png"
+        expected |= {of_image(record, kind, ".png")
+                     for kind in ("images", "highlight", "shadow", "masks")}
+        expected |= {of_image(record, kind, ".json") for kind in ("truth", "records")}
+    assert set(contents(whole)) == expected
+    assert len({record["seed"] for record in found}) == IMAGES
+
+
+def test_no_swath_is_in_two_splits(whole):
+    splits = {}
+    for record in records(whole):
+        splits.setdefault(record["swath"]["hash"], set()).add(record["split"])
+    assert sorted(map(len, splits.values())) == [1, 1, 1]
+    assert set.union(*splits.values()) == {"train", "test"}
+
+
+def test_classes_are_balanced_in_each_split(whole):
+    # ten images a split: two are empty, the others have one of two targets
+    for split in ("train", "test"):
+        targets = [record["target"] for record in records(whole) if record["split"] == split]
+        assert {name: targets.count(name) for name in [None, *TARGETS]} == {
+            None: 2, TARGETS[0]: 4, TARGETS[1]: 4}
+
+
+def test_images_keep_away_from_contacts(whole):
+    first = [record["swath"] for record in records(whole)
+             if record["swath"]["path"] == "swath0.png"]
+    assert first
+    for place in first:
+        assert 0 <= place["row"] <= ROWS - CHIP and 0 <= place["column"] <= COLUMNS - CHIP
+        assert place["row"] >= 22 or place["column"] + CHIP <= 78
+
+
+def test_what_is_drawn_is_stratified(whole):
+    lambert = sorted(float(text.split("=")[1].split()[0]) for record in records(whole)
+                     for text in record["set"] if text.startswith("seabed.lambert="))
+    strata = [int((value + 30) / 6 * IMAGES) for value in lambert]
+    assert strata == list(range(IMAGES))
+
+
+def test_an_image_without_objects_is_the_swath(whole, ground):
+    checked = 0
+    for record in records(whole):
+        truth = json.loads((whole / of_image(record, "truth", ".json")).read_text())
+        if truth["objects"]:
+            continue
+        place = record["swath"]
+        swath = read_png(ground / place["path"])
+        chip = swath[place["row"] : place["row"] + CHIP, place["column"] : place["column"] + CHIP]
+        assert numpy.array_equal(read_png(whole / of_image(record, "images", ".png")), chip)
+        assert not read_png(whole / of_image(record, "masks", ".png")).any()
+        checked += 1
+    assert checked == 4
+
+
+def test_coco_is_what_truth_and_masks_say(whole):
+    for split in ("train", "test"):
+        coco = json.loads((whole / split / "coco.json").read_text())
+        names = {entry["id"]: entry["name"] for entry in coco["categories"]}
+        assert list(names.values()) == [*TARGETS, "stone"]
+        ids = [entry["id"] for entry in coco["images"]]
+        assert ids == sorted(ids) and len(ids) == 10
+        assert [entry["id"] for entry in coco["annotations"]] == list(
+            range(1, len(coco["annotations"]) + 1))
+        for image in coco["images"]:
+            mine = [entry for entry in coco["annotations"] if entry["image_id"] == image["id"]]
+            truth = json.loads((whole / split / "truth" / f"{image['id']:08d}.json").read_text())
+            seen = [each for each in truth["objects"] if each["visible"]]
+            assert [names[entry["category_id"]] for entry in mine] == [each["class"] for each in seen]
+            if len(seen) == 1:
+                rows, columns = numpy.nonzero(read_png(whole / split / "masks" /
+                                                       f"{image['id']:08d}.png"))
+                assert mine[0]["bbox"] == [columns.min(), rows.min(), numpy.ptp(columns) + 1,
+                                           numpy.ptp(rows) + 1]
+                assert mine[0]["area"] == rows.size
+
+
+def test_the_report_holds_no_markup_of_classes(whole):
+    page = (whole / "report.html").read_text()
+    assert "&#60;b&#62;" in page and "<b>" not in page
+    assert page.count("data:image/svg+xml;base64,") > 8
+    assert "<script" not in page
+
+
+def test_a_finished_data_set_is_left_alone(command, whole):
+    before = {path: path.stat().st_mtime_ns for path in files_below(whole)}
+    answer = command("campaign", "campaign.yaml", "-o", "whole")
+    assert answer.returncode == 0 and "already holds the finished result" in answer.stderr
+    assert {path: path.stat().st_mtime_ns for path in files_below(whole)} == before
+
+
+def test_one_image_alone_is_the_same(command, whole, ground):
+    number = next(record["id"] for record in records(whole) if record["target"] == TARGETS[1])
+    assert command("campaign", "campaign.yaml", "-o", "alone", "--only", number).returncode == 0
+    alone = contents(ground / "alone")
+    assert len(alone) == 7  # its six files and campaign.json
+    assert alone.items() <= contents(whole).items()
+
+
+def test_the_record_of_an_image_is_a_run(command, whole, ground):
+    record = next(each for each in records(whole) if each["target"] == TARGETS[1])
+    place = record["swath"]
+    settings = [part for text in [*record["set"], f"input.path={place['path']}"]
+                for part in ("--set", text)]
+    answer = command("run", "scene.yaml", "-o", "run", *settings)
+    assert answer.returncode == 0, answer.stderr
+    chip = read_png(ground / "run" / "image.png")[
+        place["row"] : place["row"] + CHIP, place["column"] : place["column"] + CHIP]
+    assert numpy.array_equal(chip, read_png(whole / of_image(record, "images", ".png")))
+
+
+def test_shards_and_merge_are_one_run(command, whole, ground):
+    for shard in ("2/2", "1/2"):
+        answer = command("merge", "shards")
+        assert_refused(answer, 3, "no campaign" if shard == "2/2" else "10 of 20 images are missing: 0, 2")
+        assert command("campaign", "campaign.yaml", "-o", "shards", "--shard", shard).returncode == 0
+        made = {record["id"] % 2 for record in records(ground / "shards")}
+        assert made == ({1} if shard == "2/2" else {0, 1})
+    assert command("merge", "shards").returncode == 0
+    assert contents(ground / "shards") == contents(whole)
+
+
+def wait_for_files(process, folder, count):
+    """Until the folder has so many files, or the process has ended."""
+    end = time.monotonic() + 300
+    while process.poll() is None and len(files_below(folder)) < count:
+        assert time.monotonic() < end
+        time.sleep(0.002)
+
+
+def test_killed_ten_times_it_goes_on(ground, environment, whole):
+    numbers = random.Random(7)
+    arguments = [COMMAND, "campaign", "campaign.yaml", "-o", "killed"]
+    for _ in range(10):
+        process = subprocess.Popen(arguments, cwd=ground, env=environment, stderr=subprocess.PIPE)
+        before = len(files_below(ground / "killed"))
+        wait_for_files(process, ground / "killed", before + numbers.randint(1, 18))
+        process.kill()
+        process.communicate()
+    last = subprocess.run(arguments, cwd=ground, env=environment, capture_output=True, text=True)
+    assert last.returncode == 0, last.stderr
+    assert contents(ground / "killed") == contents(whole)
+
+
+def test_sigterm_keeps_finished_images(ground, environment, whole):
+    arguments = [COMMAND, "campaign", "campaign.yaml", "-o", "stopped"]
+    process = subprocess.Popen(arguments, cwd=ground, env=environment, stderr=subprocess.PIPE,
+                               text=True)
+    wait_for_files(process, ground / "stopped", 15)
+    process.send_signal(signal.SIGTERM)
+    _, message = process.communicate(timeout=300)
+    assert process.returncode == 85 and "run the same command again" in message
+    made = records(ground / "stopped")
+    assert 0 < len(made) < IMAGES
+    assert contents(ground / "stopped").items() <= contents(whole).items()
+
+
+def test_another_campaign_is_refused(command, whole):
+    before = contents(whole)
+    answer = command("campaign", "campaign.yaml", "-o", "whole", "--set", "seed=6")
+    assert_refused(answer, 3, "whole", "another campaign")
+    assert contents(whole) == before
+
+
+def test_a_grid_draws_every_cell(command, ground):
+    settings = {
+        "design": "grid", "images": 8, "empty": 0, "targets[0].weight": 0, "splits": "{all: 1}",
+        "draw": "{sonar.bandwidth: {choice: [30 kHz, 29 kHz]}}",
+        "targets[1].draw.heading": "{uniform: [0 deg, 90 deg], steps: 4}",
+    }
+    changes = [part for pair in settings.items() for part in ("--set", "=".join(map(str, pair)))]
+    assert command("campaign", "campaign.yaml", "-o", "grid", *changes, "--shard",
+                   "1/1").returncode == 0
+    drawn = [dict(text.split("=", 1) for text in record["set"]) for record in records(ground / "grid")]
+    cells = {(each["sonar.bandwidth"], each["objects[0].heading"]) for each in drawn}
+    assert cells == {(bandwidth, f"{heading} deg") for bandwidth in ("30 kHz", "29 kHz")
+                     for heading in (0, 30, 60, 90)}
+
+
+HOSTILE = [
+    (["images=1000000000000000000"], "images", "at most"),
+    (["images=0"], "images", "at least 1"),
+    (["images=-3"], "images", "whole number"),
+    (["scene=nowhere.yaml"], "nowhere.yaml", "there is no such scene file"),
+    (["swaths[1].path=nowhere.png"], "nowhere.png", "there is no"),
+    (["swaths[1].path=campaign.yaml"], "campaign.yaml", "no format"),
+    (["draw.sonar.frequncy=3"], "draw", "section"),
+    (['draw={sonar.frequncy: 3}'], "sonar.frequncy", "did you mean 'frequency'?"),
+    (['draw={"objects[].headnig": 3}'], "headnig", "did you mean 'heading'?"),
+    (['draw={patch.rows: 3}'], "patch.rows", "the campaign itself"),
+    (['draw={seabed.lambert: {uniform: [-3 dB, -30 dB]}}'], "seabed.lambert", "swap them"),
+    (['draw={seabed.lambert: {uniform: [nan, 1]}}'], "seabed.lambert", "not a finite number"),
+    (['draw={seabed.lambert: {uniform: [-30 dB, 1]}}'], "seabed.lambert", "same unit"),
+    (['draw={seabed.lambert: {log_uniform: [-30 dB, -3 dB]}}'], "seabed.lambert", "above 0"),
+    (['draw={seabed.lambert: {unifrom: [-30 dB, -3 dB]}}'], "seabed.lambert", "'uniform'"),
+    (['draw={seabed.lambert: {normal: {mean: 0, deviation: 1, minimum: 50, maximum: 60}}}'],
+     "seabed.lambert", "draws nothing"),
+    (['draw={seabed.lambert: {choice: [1, 2], weights: [0, 0]}}'], "weights", "all 0"),
+    (['draw={sonar.altitude: {uniform: [-3 m, 3 m]}}'], "sonar.altitude", "altitude"),
+    (["design=grid", 'draw={seabed.lambert: {uniform: [0.1, 0.2], steps: 1000000}, '
+      'sonar.bandwidth: {uniform: [29 kHz, 30 kHz], steps: 1000000}, '
+      'sonar.resolution: {uniform: [3 cm, 4 cm], steps: 1000000}, '
+      'sonar.frequency: {uniform: [90 kHz, 91 kHz], steps: 1000000}}'], "grid", "more than"),
+    (["chip.rows=200"], "swath0.png", "too few for images of 200 x 64"),
+    (["chip.rows=0"], "chip.rows", "at least 16"),
+    (["swaths[0].avoid=[{row: 0, column: 0, rows: 1099511627776, columns: 1099511627776}]"],
+     "swath0.png", "leave no room"),
+    (["chip.slant_range=[60 m, 70 m]"], "swath0.png", "60 to 70 m"),
+    (["swaths[1].path=swath0.png", "swaths[2].path=swath0.png"], "too few for 2 splits", "swath"),
+    (["swaths[1].path=swath0.png", "swaths[0].split=train", "swaths[1].split=test"],
+     "same image", "swath0.png"),
+    (["swaths[0].split=vla"], "swaths[0].split", "train, test"),
+    (["splits={../evil: 1}"], "splits", "names a folder"),
+    (["splits={train: 0.5}"], "splits", "add up to 0.5"),
+    (["targets[0].class=''"], "class", "1 to"),
+    (["targets[0].object={shape: sphere, diamter: 1 m}"], "diamter", "did you mean 'diameter'?"),
+    (["empty=1.5"], "empty", "from 0 to 1"),
+    (["clutter.number=51"], "clutter.number", "0 to 50"),
+    (["outputs=[shadows]"], "outputs", "did you mean 'shadow'?"),
+    (["sonject_campaign=2"], "sonject_campaign", "must be 1"),
+]
+
+
+@pytest.mark.parametrize("changes, where, what", HOSTILE)
+def test_bad_campaigns_are_refused_with_a_line(command, ground, changes, where, what):
+    settings = [part for change in changes for part in ("--set", change)]
+    answer = command("campaign", "campaign.yaml", "-o", "hostile", *settings)
+    assert_refused(answer, 3, where, what)
+    assert not (ground / "hostile").exists()
+
+
+def test_mistakes_have_a_place(command, ground):
+    (ground / "typo.yaml").write_text(CAMPAIGN.replace("log_uniform: [0.4 m", "log_uniform: [4 m"))
+    line = 1 + CAMPAIGN[: CAMPAIGN.index("log_uniform")].count("\n")
+    answer = command("campaign", "typo.yaml", "-o", "hostile")
+    assert_refused(answer, 3, f"typo.yaml:{line}:29: targets[1].draw.length.log_uniform: ")
+    (ground / "typo.yaml").write_text(CAMPAIGN.replace("-24 dB]", "90 dB]"))
+    line = 1 + CAMPAIGN[: CAMPAIGN.index("seabed.lambert")].count("\n")
+    answer = command("campaign", "typo.yaml", "-o", "hostile")
+    assert_refused(answer, 3, f"typo.yaml:{line}:", "seabed.lambert")
+
+
+@pytest.mark.parametrize("shard", ["0/2", "3/2", "1", "1/0", "/", "1/2/3", "-1/2"])
+def test_odd_shards_are_usage(command, shard):
+    assert_refused(command("campaign", "campaign.yaml", "-o", "hostile", f"--shard={shard}"), 2,
+                   "--shard")

@@ -1,0 +1,204 @@
+/* What campaigns are drawn from: distributions against their closed forms, permutations, shares,
+ * and places for images. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "base/memory.h"
+#include "base/text.h"
+#include "campaign/chip_room.h"
+#include "campaign/design.h"
+#include "campaign/distribution.h"
+
+#define DRAWS 40000
+
+static void read_text_of(const char *text, struct distribution *distribution)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct tree tree;
+    tree_init(&tree, &report, "test.yaml");
+    struct reader reader = {.report = &report, .tree = &tree};
+    memset(distribution, 0, sizeof *distribution);
+    assert_int_equal(tree_parse(&tree, text, strlen(text)), SONJECT_OK);
+    assert_int_equal(distribution_read(&reader, &tree.root, "key", distribution), SONJECT_OK);
+    tree_clear(&tree);
+}
+
+/* Mean and variance of the values that text draws, which must follow within five standard errors;
+ * fourth: the distribution's fourth central moment over its variance squared. */
+static void check_moments(const char *text, double mean, double variance, double fourth)
+{
+    struct distribution distribution;
+    double sum = 0.0;
+    double squares = 0.0;
+    read_text_of(text, &distribution);
+    for (uint64_t i = 0; i < DRAWS; i++) {
+        const double value = distribution_number(&distribution, uniform_number(11, 3, i));
+        assert_true(value >= distribution.low && value <= distribution.high);
+        sum += value - mean;
+        squares += (value - mean) * (value - mean);
+    }
+    assert_true(fabs(sum / DRAWS) < 5.0 * sqrt(variance / DRAWS));
+    assert_true(fabs(squares / DRAWS - variance) < 5.0 * variance * sqrt((fourth - 1.0) / DRAWS));
+    distribution_clear(&distribution);
+}
+
+static void test_moments_are_those_of_the_distributions(void **state)
+{
+    (void)state;
+    check_moments("{uniform: [-2 cm, 4 cm]}", 1.0, 3.0, 1.8);
+    /* mean (b - a) / ln(b / a), mean square (b^2 - a^2) / (2 ln(b / a)) */
+    const double log_mean = 9.0 / log(10.0);
+    check_moments("{log_uniform: [1, 10]}", log_mean, 49.5 / log(10.0) - log_mean * log_mean, 2.46);
+    check_moments("{normal: {mean: 3 dB, deviation: 2 dB}}", 3.0, 4.0, 3.0);
+    /* cut at the mean: half a normal, mean sqrt(2 / pi), variance 1 - 2 / pi */
+    check_moments("{normal: {mean: 0, deviation: 1, minimum: 0}}", sqrt(2.0 / 3.141592653589793),
+                  1.0 - 2.0 / 3.141592653589793, 3.87);
+    /* far out in the tail, six deviations and more: mean phi(6) / Q(6), by the table 6.158 */
+    check_moments("{normal: {mean: 0, deviation: 1, minimum: 6}}", 6.1584826, 0.0239876, 8.04);
+}
+
+static void test_weights_are_frequencies(void **state)
+{
+    struct distribution distribution;
+    char text[DISTRIBUTION_TEXT_CAPACITY];
+    int counts[3] = {0, 0, 0};
+    (void)state;
+    read_text_of("{choice: [a, b, {c: d}], weights: [1, 0, 3]}", &distribution);
+    for (uint64_t i = 0; i < DRAWS; i++) {
+        const char *value = distribution_value(&distribution, uniform_number(1, 1, i), text);
+        counts[*value == 'a' ? 0 : *value == 'b' ? 1 : 2]++;
+    }
+    assert_int_equal(counts[1], 0);
+    assert_true(fabs(counts[0] - 0.25 * DRAWS) < 5.0 * sqrt(0.25 * 0.75 * DRAWS));
+    assert_string_equal(distribution_value(&distribution, 1.0, text), "{\"c\": d}");
+    distribution_clear(&distribution);
+}
+
+static void test_ends_are_reached_and_not_left(void **state)
+{
+    struct distribution distribution;
+    char text[DISTRIBUTION_TEXT_CAPACITY];
+    double value;
+    const char *rest;
+    (void)state;
+    read_text_of("{uniform: [0.3333333333333333 m, 0.6666666666666666 m]}", &distribution);
+    for (int end = 0; end < 2; end++) {
+        assert_true(text_to_number(distribution_value(&distribution, end, text), &value, &rest));
+        assert_true(value >= distribution.low && value <= distribution.high);
+        assert_string_equal(rest, " m");
+    }
+    distribution_clear(&distribution);
+    read_text_of("{uniform: [0 deg, 90 deg], steps: 4}", &distribution);
+    assert_int_equal(distribution_steps(&distribution), 4);
+    assert_string_equal(distribution_step(&distribution, 1, text), "30 deg");
+    assert_string_equal(distribution_step(&distribution, 3, text), "90 deg");
+    distribution_clear(&distribution);
+}
+
+static void test_permutations_hit_all_once(void **state)
+{
+    (void)state;
+    for (uint64_t count = 1; count < 300; count += 1 + count / 7) {
+        uint8_t hits[300] = {0};
+        uint64_t fixed = 0;
+        for (uint64_t i = 0; i < count; i++) {
+            const uint64_t to = permuted_index(5, 9, i, count);
+            assert_true(to < count);
+            assert_int_equal(hits[to]++, 0);
+            fixed += to == i;
+        }
+        /* one in the mean, so more than eight in less than one case in 10^5 */
+        assert_true(count == 1 || fixed < 9);
+    }
+}
+
+static void test_strata_hold_one_each(void **state)
+{
+    uint8_t hits[1000] = {0};
+    double products = 0.0;
+    (void)state;
+    for (uint64_t i = 0; i < 1000; i++) {
+        const double u = stratified_number(3, 1, i, 1000);
+        const double v = stratified_number(3, 2, i, 1000);
+        assert_int_equal(hits[(int)(u * 1000)]++, 0);
+        products += (u - 0.5) * (v - 0.5);
+    }
+    /* of independent axes: variance 1/144 each */
+    assert_true(fabs(products / 1000) < 5.0 / 12.0 / sqrt(1000));
+}
+
+static void test_shares_are_whole_and_add_up(void **state)
+{
+    const double weights[] = {1.0, 0.0, 2.0, 0.5, 0.1};
+    uint64_t shares[5];
+    (void)state;
+    for (uint64_t total = 0; total < 200; total++) {
+        uint64_t sum = 0;
+        share_out(total, weights, 5, shares);
+        for (int i = 0; i < 5; i++) {
+            assert_true(fabs((double)shares[i] - (double)total * weights[i] / 3.6) < 1.0);
+            sum += shares[i];
+        }
+        assert_int_equal(shares[1], 0);
+        assert_int_equal(sum, total);
+    }
+}
+
+static void test_places_are_all_that_boxes_leave(void **state)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct chip_room room;
+    const struct region chips = {2, 3, 10, 12};
+    const struct region avoid[] = {{0, 8, 6, 3}, {4, 0, 3, 6}, {5, 5, 2, 5}, {11, 0, 99, 99}};
+    int hits[14][18] = {{0}};
+    uint64_t places = 0;
+    (void)state;
+    assert_int_equal(chip_room_init(&room, &report, &chips, avoid, 4), SONJECT_OK);
+    for (uint64_t row = 0; row < 14; row++)
+        for (uint64_t column = 0; column < 18; column++) {
+            bool is_free = row >= 2 && row < 12 && column >= 3 && column < 15;
+            for (int i = 0; i < 4; i++)
+                is_free = is_free &&
+                          !(row >= avoid[i].first_row && row < avoid[i].first_row + avoid[i].rows &&
+                            column >= avoid[i].first_column &&
+                            column < avoid[i].first_column + avoid[i].columns);
+            hits[row][column] = is_free ? 0 : -1;
+            places += is_free;
+        }
+    assert_int_equal(room.places, places);
+    for (int i = 0; i < 200; i++)
+        for (int j = 0; j < 60; j++) {
+            uint64_t row, column;
+            chip_room_choose(&room, (i + 0.5) / 200, (j + 0.5) / 60, &row, &column);
+            assert_true(row < 14 && column < 18 && hits[row][column] >= 0);
+            hits[row][column]++;
+        }
+    for (int row = 0; row < 14; row++)
+        for (int column = 0; column < 18; column++)
+            assert_true(hits[row][column] != 0);
+    chip_room_clear(&room);
+    const struct region all = {0, 0, 100, 100};
+    assert_int_equal(chip_room_init(&room, &report, &chips, &all, 1), SONJECT_OK);
+    assert_int_equal(room.places, 0);
+    chip_room_clear(&room);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_moments_are_those_of_the_distributions),
+        cmocka_unit_test(test_weights_are_frequencies),
+        cmocka_unit_test(test_ends_are_reached_and_not_left),
+        cmocka_unit_test(test_permutations_hit_all_once),
+        cmocka_unit_test(test_strata_hold_one_each),
+        cmocka_unit_test(test_shares_are_whole_and_add_up),
+        cmocka_unit_test(test_places_are_all_that_boxes_leave),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,108 @@
+/* sonject campaign: many injections, as a data set. */
+#include <stddef.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <sonject/sonject.h>
+
+#include "exit_code.h"
+#include "message.h"
+#include "number.h"
+#include "stage.h"
+#include "verbs.h"
+
+struct campaign_options {
+    struct stage_options stage;
+    const char *path;
+    struct text_list overrides;
+    const char *shard;
+    struct whole_argument only;
+    bool allows_user_shapes;
+};
+
+static const struct argument arguments[] = {
+    {"--output", "-o", "DIR", "folder for the data set, made where missing", ARGUMENT_TEXT, true,
+     offsetof(struct campaign_options, stage.output)},
+    {"--set", NULL, "KEY=VALUE", "change the campaign, e.g. --set images=50; may be repeated",
+     ARGUMENT_TEXTS, false, offsetof(struct campaign_options, overrides)},
+    {"--shard", NULL, "I/K", "only images with id mod K = I - 1; then sonject merge DIR",
+     ARGUMENT_TEXT, false, offsetof(struct campaign_options, shard)},
+    {"--only", NULL, "ID", "only this image, anew; ids count from 0", ARGUMENT_WHOLE, false,
+     offsetof(struct campaign_options, only)},
+    {"--allow-user-shapes", NULL, NULL, "take shapes that files describe by code", ARGUMENT_FLAG,
+     false, offsetof(struct campaign_options, allows_user_shapes)},
+    STAGE_ARGUMENTS(struct campaign_options),
+};
+
+/* "2/8": both whole, 1 to K. */
+static bool parse_shard(const char *text, sonject_campaign_run_params *params)
+{
+    char index[24];
+    uint64_t number, count;
+    const size_t length = strcspn(text, "/");
+    if (length >= sizeof(index) || text[length] != '/')
+        return false;
+    memcpy(index, text, length);
+    index[length] = '\0';
+    if (!whole_number_parse(index, &number) || !whole_number_parse(text + length + 1, &count) ||
+        number < 1 || number > count || count > UINT32_MAX)
+        return false;
+    params->shard_index = (uint32_t)number;
+    params->shard_count = (uint32_t)count;
+    return true;
+}
+
+static sonject_status make(sonject_context *context, const void *verb_options,
+                           struct progress *progress, int *was_finished)
+{
+    const struct campaign_options *options = verb_options;
+    sonject_campaign *campaign = NULL;
+    sonject_campaign_read_params reading;
+    sonject_campaign_run_params params;
+    sonject_campaign_read_params_init(&reading);
+    sonject_campaign_run_params_init(&params);
+    reading.allows_user_shapes = options->allows_user_shapes;
+    if (options->shard)
+        parse_shard(options->shard, &params);
+    params.only_one = options->only.is_given;
+    params.only = options->only.value;
+    params.folder = options->stage.output;
+    sonject_status status = sonject_campaign_read(context, options->path, options->overrides.texts,
+                                                  options->overrides.count, &reading, &campaign);
+    if (status == SONJECT_OK)
+        status = sonject_campaign_run(context, campaign, &params, progress_update, progress,
+                                      was_finished);
+    sonject_campaign_release(&campaign);
+    return status;
+}
+
+static int work(const void *verb_options)
+{
+    const struct campaign_options *options = verb_options;
+    sonject_campaign_run_params params;
+    if (options->shard && !parse_shard(options->shard, &params)) {
+        message("campaign: --shard takes I/K, 1 to K, not \"", options->shard, "\"");
+        return EXIT_CODE_USAGE;
+    }
+    if (options->shard && options->only.is_given) {
+        message("campaign: --shard and --only exclude each other");
+        return EXIT_CODE_USAGE;
+    }
+    const bool is_part = options->shard || options->only.is_given;
+    return stage_work(&options->stage, make, verb_options,
+                      is_part ? "these images are in " : "the data set is in ");
+}
+
+const struct verb campaign_verb = {
+    .name = "campaign",
+    .summary = "makes a labelled data set of many injections",
+    .operand = "CAMPAIGN.yaml",
+    .operand_offset = offsetof(struct campaign_options, path),
+    .arguments = arguments,
+    .argument_count = sizeof(arguments) / sizeof(arguments[0]),
+    .notes =
+        "Images that DIR has already are kept: the same command goes on where it was stopped.\n"
+        "The bytes of all files but times.json depend on the campaign and its inputs alone.",
+    .options_size = sizeof(struct campaign_options),
+    .work = work,
+};
