@@ -12,6 +12,7 @@
 
 #include "api/swath.h"
 #include "base/file.h"
+#include "base/json_document.h"
 #include "base/memory.h"
 #include "inject/element_echoes.h"
 #include "io/numpy_file.h"
@@ -19,24 +20,19 @@
 
 #define SERIES_FILE "series.npy"
 
-static void add(json_t *object, const char *key, json_t *value)
-{
-    json_object_set_new(object, key, value);
-}
-
 static json_t *array_document(const sonject_elements_params *elements)
 {
     json_t *document = json_object();
-    add(document, "pings", json_integer((json_int_t)elements->pings));
-    add(document, "first_ping_m", json_real(elements->first_ping_m));
-    add(document, "ping_spacing_m", json_real(elements->ping_spacing_m));
-    add(document, "transmitter_offset_m", json_real(elements->transmitter_offset_m));
-    add(document, "transmitter_length_m", json_real(elements->transmitter_length_m));
-    add(document, "hydrophones", json_integer((json_int_t)elements->hydrophones));
-    add(document, "first_hydrophone_m", json_real(elements->first_hydrophone_m));
-    add(document, "hydrophone_spacing_m", json_real(elements->hydrophone_spacing_m));
-    add(document, "hydrophone_length_m", json_real(elements->hydrophone_length_m));
-    add(document, "aspect_limit_rad", json_real(elements->aspect_limit_rad));
+    json_add(&document, "pings", json_integer((json_int_t)elements->pings));
+    json_add(&document, "first_ping_m", json_number(elements->first_ping_m));
+    json_add(&document, "ping_spacing_m", json_number(elements->ping_spacing_m));
+    json_add(&document, "transmitter_offset_m", json_number(elements->transmitter_offset_m));
+    json_add(&document, "transmitter_length_m", json_number(elements->transmitter_length_m));
+    json_add(&document, "hydrophones", json_integer((json_int_t)elements->hydrophones));
+    json_add(&document, "first_hydrophone_m", json_number(elements->first_hydrophone_m));
+    json_add(&document, "hydrophone_spacing_m", json_number(elements->hydrophone_spacing_m));
+    json_add(&document, "hydrophone_length_m", json_number(elements->hydrophone_length_m));
+    json_add(&document, "aspect_limit_rad", json_number(elements->aspect_limit_rad));
     return document;
 }
 
@@ -45,15 +41,16 @@ static json_t *image_document(const struct scene *scene, const struct injection_
 {
     const sonject_geometry_params *geometry = &scene->geometry;
     json_t *document = json_object();
-    add(document, "rows", json_integer((json_int_t)input->rows));
-    add(document, "columns", json_integer((json_int_t)input->columns));
-    add(document, "row_spacing_m", json_real(geometry->row_spacing_m));
-    add(document, "column_spacing_m", json_real(geometry->column_spacing_m));
-    add(document, "first_along_track_m",
-        json_real(geometry->first_along_track_m + input->first_row * geometry->row_spacing_m));
-    add(document, "first_slant_range_m",
-        json_real(geometry->first_slant_range_m +
-                  input->first_column * geometry->column_spacing_m));
+    json_add(&document, "rows", json_integer((json_int_t)input->rows));
+    json_add(&document, "columns", json_integer((json_int_t)input->columns));
+    json_add(&document, "row_spacing_m", json_number(geometry->row_spacing_m));
+    json_add(&document, "column_spacing_m", json_number(geometry->column_spacing_m));
+    json_add(
+        &document, "first_along_track_m",
+        json_number(geometry->first_along_track_m + input->first_row * geometry->row_spacing_m));
+    json_add(&document, "first_slant_range_m",
+             json_number(geometry->first_slant_range_m +
+                         input->first_column * geometry->column_spacing_m));
     return document;
 }
 
@@ -65,35 +62,37 @@ static json_t *series_document(const struct scene *scene, const struct injection
     const bool is_chirp = elements->pulse == SONJECT_SERIES_CHIRP;
     const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
     json_t *document = json_object();
-    add(document, "sonject", json_string(sonject_version()));
-    add(document, "series", json_string(SERIES_FILE));
-    add(document, "axes", json_pack("[s, s, s]", "ping", "hydrophone", "sample"));
-    add(document, "form",
-        json_string(elements->form == SONJECT_SERIES_PASSBAND ? "passband" : "baseband"));
-    add(document, "pulse", json_string(is_chirp ? "chirp" : "compressed"));
-    add(document, "chirp_duration_s",
-        is_chirp ? json_real(elements->chirp_duration_s) : json_null());
-    add(document, "phase",
+    json_add(&document, "sonject", json_string(sonject_version()));
+    json_add(&document, "series", json_string(SERIES_FILE));
+    json_add(&document, "axes", json_pack("[s, s, s]", "ping", "hydrophone", "sample"));
+    json_add(&document, "form",
+             json_string(elements->form == SONJECT_SERIES_PASSBAND ? "passband" : "baseband"));
+    json_add(&document, "pulse", json_string(is_chirp ? "chirp" : "compressed"));
+    json_add(&document, "chirp_duration_s",
+             is_chirp ? json_number(elements->chirp_duration_s) : json_null());
+    json_add(
+        &document, "phase",
         json_string("an echo of delay tau has phase +2 pi f0 tau; pass band: real part of base "
                     "band times exp(-i 2 pi f0 t)"));
-    add(document, "normalisation",
-        json_string(is_pressure ? "pressure in Pa, sqrt(2) times the rms of a tone, less absorption"
-                                : "pressure over that of the source at 1 m, without absorption"));
-    add(document, "source_level_db",
-        is_pressure ? json_real(elements->source_level_db) : json_null());
-    add(document, "heard", json_string(resynthesises ? "targets and seabed" : "targets"));
-    add(document, "samples", json_integer((json_int_t)layout->samples));
-    add(document, "sampling_rate_hz", json_real(elements->sampling_rate_hz));
-    add(document, "first_time_s", json_real(elements->first_time_s));
-    add(document, "sound_speed_mps", json_real(layout->sound_speed_mps));
-    add(document, "centre_frequency_hz", json_real(layout->centre_frequency_hz));
-    add(document, "bandwidth_hz", json_real(layout->bandwidth_hz));
-    add(document, "along_track_resolution_m", json_real(layout->along_track_resolution_m));
-    add(document, "altitude_m", json_real(scene->sonar.altitude_m));
-    add(document, "side",
-        json_string(scene->geometry.side == SONJECT_SIDE_STARBOARD ? "starboard" : "port"));
-    add(document, "array", array_document(elements));
-    add(document, "image", image_document(scene, input));
+    json_add(&document, "normalisation",
+             json_string(is_pressure
+                             ? "pressure in Pa, sqrt(2) times the rms of a tone, less absorption"
+                             : "pressure over that of the source at 1 m, without absorption"));
+    json_add(&document, "source_level_db",
+             is_pressure ? json_number(elements->source_level_db) : json_null());
+    json_add(&document, "heard", json_string(resynthesises ? "targets and seabed" : "targets"));
+    json_add(&document, "samples", json_integer((json_int_t)layout->samples));
+    json_add(&document, "sampling_rate_hz", json_number(elements->sampling_rate_hz));
+    json_add(&document, "first_time_s", json_number(elements->first_time_s));
+    json_add(&document, "sound_speed_mps", json_number(layout->sound_speed_mps));
+    json_add(&document, "centre_frequency_hz", json_number(layout->centre_frequency_hz));
+    json_add(&document, "bandwidth_hz", json_number(layout->bandwidth_hz));
+    json_add(&document, "along_track_resolution_m", json_number(layout->along_track_resolution_m));
+    json_add(&document, "altitude_m", json_number(scene->sonar.altitude_m));
+    json_add(&document, "side",
+             json_string(scene->geometry.side == SONJECT_SIDE_STARBOARD ? "starboard" : "port"));
+    json_add(&document, "array", array_document(elements));
+    json_add(&document, "image", image_document(scene, input));
     return document;
 }
 

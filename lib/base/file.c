@@ -20,7 +20,8 @@ sonject_status file_failure(struct report *report, const char *path, const char 
     char reason[128];
     if (strerror_r(error, reason, sizeof reason) != 0)
         snprintf(reason, sizeof reason, "error %d", error);
-    return report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot %s: %s", path, action, reason);
+    return report_failure(report, error == ENOMEM ? SONJECT_ERROR_MEMORY : SONJECT_ERROR_STORAGE,
+                          "%s: cannot %s: %s", path, action, reason);
 }
 
 /* From a '.' inside the last component to the end; "" if there is none. */

@@ -12,7 +12,8 @@
 extern "C" {
 #endif
 
-/* The message "path: cannot <action>: <reason>" for an errno. Returns STORAGE. */
+/* The message "path: cannot <action>: <reason>" for an errno. Returns STORAGE, or MEMORY for
+ * ENOMEM. */
 sonject_status file_failure(struct report *report, const char *path, const char *action, int error);
 
 /* A private name beside path for a file in the making: "<path>.<unique>.part<extension of path>",
@@ -21,7 +22,7 @@ sonject_status file_failure(struct report *report, const char *path, const char 
 char *file_part_name(const char *path);
 
 /* Flushes the file part to disk and renames it to path. On failure part is removed and the message
- * names path and the reason (errno text). Errors: STORAGE. */
+ * names path and the reason (errno text). Errors: STORAGE, MEMORY. */
 sonject_status file_publish(struct report *report, const char *part, const char *path);
 
 /* Removes a part if it is there; never fails. */

@@ -5,6 +5,8 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/memory.h"
+#include "base/text.h"
 
 json_t *json_number(double value)
 {
@@ -16,9 +18,37 @@ json_t *json_count(uint64_t value)
     return json_integer((json_int_t)value);
 }
 
-void json_add(json_t *object, const char *key, json_t *value)
+json_t *json_text(const char *text)
 {
-    json_object_set_new(object, key, value);
+    if (text_is_printable(text))
+        return json_string(text);
+    char *copy = copy_text(text);
+    if (!copy)
+        return NULL;
+    for (char *c = copy; *c; c++)
+        if ((unsigned char)*c < 0x20 || (unsigned char)*c > 0x7e)
+            *c = '?';
+    json_t *value = json_string(copy);
+    free(copy);
+    return value;
+}
+
+static void give_up(json_t **document)
+{
+    json_decref(*document);
+    *document = NULL;
+}
+
+void json_add(json_t **object, const char *key, json_t *value)
+{
+    if (json_object_set_new(*object, key, value) != 0)
+        give_up(object);
+}
+
+void json_append(json_t **array, json_t *value)
+{
+    if (json_array_append_new(*array, value) != 0)
+        give_up(array);
 }
 
 sonject_status json_document_write(struct report *report, json_t *document, const char *path)

@@ -13,11 +13,19 @@ json_t *json_number(double value);
 
 json_t *json_count(uint64_t value);
 
-/* Adds a member; jansson itself frees a value that cannot be added, and a document that lacks
- * something fails when it is written. */
-void json_add(json_t *object, const char *key, json_t *value);
+/* A text. One that is not well-formed UTF-8 without control characters, as a file's name may be,
+ * has
+ * '?' for all of its bytes that are not printable ASCII. */
+json_t *json_text(const char *text);
 
-/* Writes the document, indented, whole or not at all, and releases it. Errors: STORAGE, MEMORY. */
+/* Adds a member to an object, or an element to an array; the value goes into it. Where memory is
+ * out or the value is NULL, *object or *array is released and becomes NULL, and what is added to
+ * NULL is released, so that a document that lacks something is NULL in the end. */
+void json_add(json_t **object, const char *key, json_t *value);
+void json_append(json_t **array, json_t *value);
+
+/* Writes the document, indented, whole or not at all, and releases it. Errors: STORAGE, MEMORY
+ * (also where the document is NULL). */
 sonject_status json_document_write(struct report *report, json_t *document, const char *path);
 
 #endif

@@ -12,48 +12,48 @@
 json_t *place_document(bool is_geographic, const struct place *place)
 {
     json_t *document = json_object();
-    json_add(document, is_geographic ? "longitude_deg" : "easting_m", json_real(place->x));
-    json_add(document, is_geographic ? "latitude_deg" : "northing_m", json_real(place->y));
+    json_add(&document, is_geographic ? "longitude_deg" : "easting_m", json_number(place->x));
+    json_add(&document, is_geographic ? "latitude_deg" : "northing_m", json_number(place->y));
     return document;
 }
 
 static json_t *box_document(const sonject_box *box)
 {
     json_t *document = json_object();
-    json_add(document, "row", json_count(box->first_row));
-    json_add(document, "column", json_count(box->first_column));
-    json_add(document, "rows", json_count(box->rows));
-    json_add(document, "columns", json_count(box->columns));
+    json_add(&document, "row", json_count(box->first_row));
+    json_add(&document, "column", json_count(box->first_column));
+    json_add(&document, "rows", json_count(box->rows));
+    json_add(&document, "columns", json_count(box->columns));
     return document;
 }
 
 static json_t *contact_document(const struct image_labels *labels, const struct contact *contact)
 {
     json_t *dimensions = json_object();
-    json_add(dimensions, "length_m", json_number(contact->length_m));
-    json_add(dimensions, "width_m", json_number(contact->width_m));
-    json_add(dimensions, "height_m", json_number(contact->body_height_m));
+    json_add(&dimensions, "length_m", json_number(contact->length_m));
+    json_add(&dimensions, "width_m", json_number(contact->width_m));
+    json_add(&dimensions, "height_m", json_number(contact->body_height_m));
     json_t *document = json_object();
-    json_add(document, "id", json_count(contact->number));
-    json_add(document, "name", json_string(contact->name));
-    json_add(document, "class", json_string(contact->class_name));
-    json_add(document, "confidence", json_number(contact->confidence));
-    json_add(document, "row", json_number(contact->row));
-    json_add(document, "column", json_number(contact->column));
-    json_add(document, "along_track_m", json_number(contact->along_track_m));
-    json_add(document, "slant_range_m", json_number(contact->slant_range_m));
-    json_add(document, "ground_range_m", json_number(contact->ground_range_m));
-    json_add(document, "position",
+    json_add(&document, "id", json_count(contact->number));
+    json_add(&document, "name", json_text(contact->name));
+    json_add(&document, "class", json_text(contact->class_name));
+    json_add(&document, "confidence", json_number(contact->confidence));
+    json_add(&document, "row", json_number(contact->row));
+    json_add(&document, "column", json_number(contact->column));
+    json_add(&document, "along_track_m", json_number(contact->along_track_m));
+    json_add(&document, "slant_range_m", json_number(contact->slant_range_m));
+    json_add(&document, "ground_range_m", json_number(contact->ground_range_m));
+    json_add(&document, "position",
              contact->has_place ? place_document(labels->is_geographic, &contact->place)
                                 : json_null());
-    json_add(document, "sonar_heading_deg",
+    json_add(&document, "sonar_heading_deg",
              contact->has_place ? json_number(contact->place.heading_deg) : json_null());
-    json_add(document, "dimensions", dimensions);
-    json_add(document, "heading_deg", json_number(contact->heading_deg));
-    json_add(document, "box", contact->pixels > 0 ? box_document(&contact->box) : json_null());
-    json_add(document, "pixels", json_count(contact->pixels));
-    json_add(document, "truncated", json_boolean(contact->is_truncated));
-    json_add(document, "occluded", json_boolean(contact->is_occluded));
+    json_add(&document, "dimensions", dimensions);
+    json_add(&document, "heading_deg", json_number(contact->heading_deg));
+    json_add(&document, "box", contact->pixels > 0 ? box_document(&contact->box) : json_null());
+    json_add(&document, "pixels", json_count(contact->pixels));
+    json_add(&document, "truncated", json_boolean(contact->is_truncated));
+    json_add(&document, "occluded", json_boolean(contact->is_occluded));
     return document;
 }
 
@@ -62,10 +62,10 @@ sonject_status contacts_write_json(struct report *report, const struct image_lab
 {
     json_t *contacts = json_array();
     for (uint32_t i = 0; i < labels->count; i++)
-        json_array_append_new(contacts, contact_document(labels, &labels->contacts[i]));
+        json_append(&contacts, contact_document(labels, &labels->contacts[i]));
     json_t *document = json_object();
-    json_add(document, "image", json_string(labels->file_name));
-    json_add(document, "contacts", contacts);
+    json_add(&document, "image", json_text(labels->file_name));
+    json_add(&document, "contacts", contacts);
     return json_document_write(report, document, path);
 }
 
