@@ -1,0 +1,177 @@
+"""First inputs of the fuzzers, small and made here: make(kind, folder, source) fills a folder, and
+words(kind, source) lists what a mutation may put in."""
+
+import re
+import struct
+import sys
+import zlib
+
+import numpy
+
+
+def _yaml(folder):
+    return {path.name: path.read_bytes() for path in sorted(folder.glob("*.yaml"))}
+
+
+def scenes(source):
+    texts = _yaml(source / "tools" / "scenes")
+    texts["recording.yaml"] = (
+        b"sonject: 1\ninput: {path: line.xtf, channel: port, geometry: from_file}\n"
+        b"sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: from_file}\n"
+    )
+    return texts
+
+
+def targets(source):
+    return _yaml(source / "tools" / "targets")
+
+
+def recordings(source):
+    sys.path.insert(0, str(source / "tests" / "cli"))
+    import recordings as writer
+
+    samples = numpy.arange(24, dtype="<u2").reshape(3, 8)
+    both = writer.xtf_bytes(samples, samples + 1)
+    one = writer.file_header([writer.PORT], sample_bytes=1)
+    for row in range(3):
+        one += writer.ping([(0, samples[row].astype("u1"))], number=row)
+    return {"both": both, "port": one, "degrees": writer.xtf_bytes(samples, samples, units=3),
+            "empty": writer.file_header([writer.PORT])}
+
+
+def arrays(_):
+    def array(text, numbers, version=1):
+        text = text.encode()
+        length = struct.pack("<H" if version == 1 else "<I", len(text))
+        return b"\x93NUMPY" + bytes([version, 0]) + length + text + numbers.tobytes()
+
+    head = "{{'descr': '{}', 'fortran_order': {}, 'shape': ({}), }}"
+    numbers = numpy.arange(6)
+    return {
+        **{kind[1:]: array(head.format(kind, False, "2, 3"), numbers.astype(kind))
+           for kind in ("|u1", "<u2", ">u2", "<f4", "<c8")},
+        "second": array(head.format("<f4", False, "2, 3"), numbers.astype("<f4"), 2),
+        "fortran": array(head.format("<f4", True, "2, 3"), numbers.astype("<f4")),
+        "flat": array(head.format("<f4", False, "6,"), numbers.astype("<f4")),
+        "open": array("{'fortran_order': False, 'shape': (2, 3), 'descr': '", numbers),
+    }
+
+
+VERTICES = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
+FACES = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
+
+
+def stl(_):
+    text = "solid a\n"
+    binary = bytes(80) + struct.pack("<I", len(FACES))
+    for face in FACES:
+        corners = [VERTICES[i] for i in face]
+        text += "facet normal 0 0 1\nouter loop\n"
+        text += "".join("vertex {} {} {:e}\n".format(*corner) for corner in corners)
+        text += "endloop\nendfacet\n"
+        binary += struct.pack("<12fH", 0, 0, 1, *sum(corners, ()), 0)
+    return {"text": (text + "endsolid a\n").encode(), "binary": binary}
+
+
+def obj(_):
+    vertices = "".join("v {} {} {}\n".format(*vertex) for vertex in VERTICES)
+    faces = "".join("f {} {} {}\n".format(*(i + 1 for i in face)) for face in FACES)
+    return {
+        "plain": (vertices + faces).encode(),
+        "rich": ("# a\nmtllib a.mtl\no a\nvt 0 1\nvn 0 0 1\n" + vertices
+                 + "usemtl b\ns off\nf 1/1/1 2//1 3/1 4\nf -1 -2 \\\n-3\n").encode(),
+    }
+
+
+def ply(_):
+    head = ("ply\nformat {} 1.0\ncomment a\nelement vertex 4\nproperty float x\nproperty double y\n"
+            "property float z\nelement face 4\nproperty uchar flag\n"
+            "property list uchar int vertex_indices\nend_header\n")
+    text = "".join("{} {} {}\n".format(*vertex) for vertex in VERTICES)
+    text += "".join("7 3 {} {} {}\n".format(*face) for face in FACES)
+    files = {"text": (head.format("ascii") + text).encode()}
+    for order, name in (("<", "binary_little_endian"), (">", "binary_big_endian")):
+        body = b"".join(struct.pack(order + "fdf", *vertex) for vertex in VERTICES)
+        body += b"".join(struct.pack(order + "BB3i", 7, 3, *face) for face in FACES)
+        files[name] = head.format(name).encode() + body
+    return files
+
+
+def _tiff(order, is_big, tiled):
+    """One image of 4 x 16 bytes."""
+    mark = b"II" if order == "<" else b"MM"
+    kinds = {1: "B", 3: "H", 4: "I", 16: "Q"}
+    width = "Q" if is_big else "I"
+    entries = [(256, 3, 16), (257, 3, 4), (258, 3, 8), (259, 3, 1), (262, 3, 1), (277, 3, 1)]
+    entries += [(322, 3, 16), (323, 3, 16), (324, 4, 512), (325, 4, 256)] if tiled else [
+        (273, 4, 512), (278, 3, 4), (279, 4, 64)]
+    head = mark + (struct.pack(order + "HHHQ", 43, 8, 0, 16) if is_big
+                   else struct.pack(order + "HI", 42, 8))
+    body = struct.pack(order + ("Q" if is_big else "H"), len(entries))
+    for tag, kind, value in sorted(entries):
+        stored = struct.pack(order + kinds[kind], value).ljust(8 if is_big else 4, b"\0")
+        body += struct.pack(order + "HH" + width, tag, kind, 1) + stored
+    body += struct.pack(order + width, 0)
+    return (head + body).ljust(512, b"\0") + bytes(256 if tiled else 64)
+
+
+def _png():
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(
+            ">I", zlib.crc32(kind + data))
+
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 4, 3, 8, 0, 0, 0, 0))
+            + chunk(b"tEXt", b"Comment\0a") + chunk(b"IDAT", zlib.compress(bytes(15)))
+            + chunk(b"IEND", b""))
+
+
+def _jpeg():
+    def segment(mark, data):
+        return bytes([0xFF, mark]) + struct.pack(">H", len(data) + 2) + data
+
+    return (b"\xff\xd8" + segment(0xE0, b"JFIF\0\1\1\0\0\1\0\1\0\0") + segment(0xFE, b"a note")
+            + segment(0xDB, bytes([0]) + bytes([1]) * 64)
+            + segment(0xC0, struct.pack(">BHHBBBB", 8, 8, 8, 1, 1, 0x11, 0))
+            + segment(0xC4, bytes([0, 1] + [0] * 15 + [0]))
+            + segment(0xDA, bytes([1, 1, 0, 0, 63, 0])) + b"\x12\xff\x00\x34\xff\xd9")
+
+
+def images(_):
+    files = {f"{order}{is_big}{tiled}".replace("<", "le").replace(">", "be"):
+             _tiff(order, is_big, tiled)
+             for order in "<>" for is_big in (False, True) for tiled in (False, True)}
+    return {**files, "png": _png(), "jpeg": _jpeg()}
+
+
+def tables(_):
+    return {
+        "commas": b"depth,speed\n0,1500\n10,1490.5\n",
+        "spaces": b"# a\ntime speed other\n0 1e3 2\n1\t-2 3 # b\n",
+        "semicolons": b"depth;speed;note\r\n0;1500;x\r\n",
+    }
+
+
+def snippets(source):
+    code = (source / "tools" / "targets" / "boulder_relief.cl").read_bytes()
+    short = (b"#define R 1.0f\nreal shape_distance(real3 o, real3 d)\n{\n    /* a */ return R;\n}\n"
+             b"real3 shape_normal(real3 p)\n{\n    return p; // b\n}\n")
+    return {"boulder": code, "short": short}
+
+
+MAKERS = {"scene": scenes, "target": targets, "xtf": recordings, "npy": arrays, "stl": stl,
+          "obj": obj, "ply": ply, "image": images, "table": tables, "snippet": snippets}
+TEXTS = {"scene", "target", "npy", "stl", "obj", "ply", "table", "snippet"}
+
+
+def make(kind, folder, source):
+    folder.mkdir(parents=True)
+    for name, content in MAKERS[kind](source).items():
+        (folder / name).write_bytes(content)
+
+
+def words(kind, source):
+    """The words of the corpus, for a dictionary; none where bytes are no text."""
+    if kind not in TEXTS:
+        return []
+    contents = b"\n".join(MAKERS[kind](source).values())
+    return sorted({word.decode() for word in re.findall(rb"[A-Za-z_]{2,30}", contents)})

@@ -1,0 +1,55 @@
+/* What sonject itself reads of image files: where a TIFF keeps its pixels, the chunks of a PNG, the
+ * segments of a JPEG. Decoding is OpenImageIO's. */
+#include "fuzz.h"
+
+#include <stdlib.h>
+
+#include "io/byte_file.h"
+#include "io/jpeg_segments.h"
+#include "io/png_chunks.h"
+#include "io/tiff_structure.h"
+
+static void check_parts(sonject_status (*check)(struct report *report, const char *path,
+                                                struct byte_ranges *parts),
+                        uint64_t file_bytes)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct byte_ranges parts = {0};
+    const sonject_status status = check(&report, "fuzz.image", &parts);
+    fuzz_expect(status, &report);
+    for (size_t i = 0; status == SONJECT_OK && i < parts.count; i++)
+        if (parts.list[i].place > file_bytes ||
+            parts.list[i].count > file_bytes - parts.list[i].place)
+            abort();
+    free(parts.list);
+}
+
+static void check_blocks(uint64_t file_bytes)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct tiff_structure structure;
+    const sonject_status status = tiff_structure_read(&report, "fuzz.image", &structure);
+    fuzz_expect(status, &report);
+    if (status != SONJECT_OK)
+        return;
+    for (uint64_t i = 0; i < structure.block_count; i++) {
+        (void)tiff_block_rows(&structure, i);
+        (void)tiff_block_bytes(&structure, i);
+        if (structure.offsets[i] > file_bytes ||
+            structure.counts[i] > file_bytes - structure.offsets[i])
+            abort();
+    }
+    tiff_structure_clear(&structure);
+}
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
+{
+    fuzz_write("fuzz.image", bytes, count);
+    if (count > 0 && bytes[0] == 0x89)
+        check_parts(png_check, count);
+    else if (count > 0 && bytes[0] == 0xFF)
+        check_parts(jpeg_check, count);
+    else
+        check_blocks(count);
+    return 0;
+}

@@ -1,0 +1,52 @@
+"""Runs a fuzzer on a corpus of its kind: run_fuzzer.py PROGRAM KIND SOURCE.
+
+SONJECT_FUZZ_SECONDS says for how long (20), SONJECT_FUZZ_FINDINGS where what it finds is kept
+(./findings). Runs begin with the same seed.
+"""
+
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import corpora
+
+# One triangle pyramid in place of a rock's hundreds.
+ROCK = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+LONGEST = {"scene": 8192, "target": 8192, "xtf": 4096, "snippet": 4096}
+
+
+def fill(folder, kind, source):
+    """Returns the arguments that name its dictionary."""
+    corpora.make(kind, folder / "corpus", source)
+    (folder / "scenes").mkdir()
+    (folder / "targets").mkdir()
+    for name, text in corpora.targets(source).items():
+        (folder / "targets" / name).write_bytes(text)
+    (folder / "targets" / "rock.obj").write_bytes(ROCK)
+    words = corpora.words(kind, source)
+    (folder / "words").write_text("".join(f'"{word}"\n' for word in words))
+    return [f"-dict={folder / 'words'}"] if words else []
+
+
+def main():
+    program, source = (pathlib.Path(sys.argv[i]).resolve() for i in (1, 3))
+    kind = sys.argv[2]
+    seconds = os.environ.get("SONJECT_FUZZ_SECONDS", "20")
+    findings = pathlib.Path(os.environ.get("SONJECT_FUZZ_FINDINGS", "findings")).absolute()
+    findings.mkdir(parents=True, exist_ok=True)
+    fast = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
+    with tempfile.TemporaryDirectory(prefix="sonject-fuzz-", dir=fast) as name:
+        folder = pathlib.Path(name)
+        dictionary = fill(folder, kind, source)
+        arguments = [
+            program, "-seed=1", f"-max_total_time={seconds}", f"-max_len={LONGEST.get(kind, 2048)}",
+            "-timeout=60", "-rss_limit_mb=2048", "-print_final_stats=1", "-verbosity=0",
+            f"-artifact_prefix={findings / kind}-", *dictionary, folder / "corpus",
+        ]
+        return subprocess.run(arguments, cwd=folder, stdin=subprocess.DEVNULL, check=False).returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main())
