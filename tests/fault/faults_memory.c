@@ -1,0 +1,62 @@
+#include "faults.h"
+
+#include <errno.h>
+#include <stddef.h>
+
+#include <jansson.h>
+
+/* As the linker names what was meant and what is called instead. */
+void *__real_malloc(size_t bytes);
+void *__real_calloc(size_t count, size_t bytes);
+void *__real_realloc(void *block, size_t bytes);
+void __real_free(void *block);
+void *__wrap_malloc(size_t bytes);
+void *__wrap_calloc(size_t count, size_t bytes);
+void *__wrap_realloc(void *block, size_t bytes);
+void __wrap_free(void *block);
+
+static bool is_out_of_memory(void)
+{
+    int error;
+    if (!fault_is_due(FAULT_MEMORY, &error))
+        return false;
+    errno = ENOMEM;
+    return true;
+}
+
+static void *counted(void *block)
+{
+    if (block)
+        fault_count_block(1);
+    return block;
+}
+
+void *__wrap_malloc(size_t bytes)
+{
+    return is_out_of_memory() ? NULL : counted(__real_malloc(bytes));
+}
+
+void *__wrap_calloc(size_t count, size_t bytes)
+{
+    return is_out_of_memory() ? NULL : counted(__real_calloc(count, bytes));
+}
+
+void *__wrap_realloc(void *block, size_t bytes)
+{
+    if (is_out_of_memory())
+        return NULL;
+    void *larger = __real_realloc(block, bytes);
+    return block ? larger : counted(larger);
+}
+
+void __wrap_free(void *block)
+{
+    if (block)
+        fault_count_block(-1);
+    __real_free(block);
+}
+
+void fault_take_jansson(void)
+{
+    json_set_alloc_funcs(__wrap_malloc, __wrap_free);
+}

@@ -1,0 +1,183 @@
+/* The n-th call fails, of those that the library makes for memory, of OpenCL, or of files: a status
+ * and a message, nothing held, no file that is not whole, and the next call works.
+ *
+ * SONJECT_FAULT_POINTS: how many n are tried of each piece of work (0: all). KIND: the calls. */
+#define _POSIX_C_SOURCE 200809L
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <stdlib.h>
+
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
+
+#include "faults.h"
+#include "work.h"
+
+#ifndef POINTS
+#define POINTS 24
+#endif
+
+#define COUNT(array) (sizeof(array) / sizeof(array)[0])
+
+/* What an OpenCL call may say; a device that is lost stays so. */
+static const int opencl_errors[] = {CL_OUT_OF_RESOURCES, CL_DEVICE_NOT_AVAILABLE,
+                                    CL_OUT_OF_HOST_MEMORY, CL_MEM_OBJECT_ALLOCATION_FAILURE};
+
+static long points_wanted(void)
+{
+    const char *text = getenv("SONJECT_FAULT_POINTS");
+    return text ? strtol(text, NULL, 10) : POINTS;
+}
+
+static bool is_right_status(sonject_status status)
+{
+    switch (KIND) {
+    case FAULT_MEMORY:
+        return status == SONJECT_ERROR_MEMORY;
+    case FAULT_OPENCL:
+        return status == SONJECT_ERROR_DEVICE || status == SONJECT_ERROR_MEMORY;
+    default: /* where an input cannot be opened, INPUT */
+        return status == SONJECT_ERROR_STORAGE || status == SONJECT_ERROR_INPUT;
+    }
+}
+
+static void expect_nothing_held(const char *name, long n, long blocks)
+{
+    if (fault_blocks() != blocks)
+        fail_msg("%s, call %ld: %ld blocks of memory are left", name, n, fault_blocks() - blocks);
+    if (fault_objects() != 0)
+        fail_msg("%s, call %ld: %ld OpenCL objects are left", name, n, fault_objects());
+}
+
+/* Returns whether the work failed; a call may be one that the library can do without. */
+static bool fail_at(struct work *work, const char *name, work_piece *piece, long n)
+{
+    const int error = KIND == FAULT_OPENCL ? opencl_errors[(size_t)n % COUNT(opencl_errors)] : 0;
+    const bool stays = KIND == FAULT_OPENCL ? error == CL_DEVICE_NOT_AVAILABLE : n % 2 == 1;
+    const long blocks = fault_blocks();
+    fault_arm(KIND, n, stays, error);
+    const sonject_status status = piece(work);
+    const long calls = fault_disarm();
+    /* a device that fails may be asked in another order; then there is nothing to be seen */
+    if (calls < n && status != SONJECT_OK)
+        fail_msg("%s failed of itself: %s", name, work->message);
+    if (status != SONJECT_OK && !is_right_status(status))
+        fail_msg("%s, call %ld: %s: %s", name, n, sonject_status_name(status), work->message);
+    if (status != SONJECT_OK && status != SONJECT_ERROR_MEMORY && work->message[0] == '\0')
+        fail_msg("%s, call %ld: no message", name, n);
+    expect_nothing_held(name, n, blocks);
+    work_check_results(work, status == SONJECT_OK);
+    return status != SONJECT_OK;
+}
+
+static void expect_done(struct work *work, const char *name, work_piece *piece)
+{
+    const long blocks = fault_blocks();
+    if (piece(work) != SONJECT_OK)
+        fail_msg("%s, undisturbed: %s", name, work->message);
+    expect_nothing_held(name, 0, blocks);
+}
+
+/* Fails calls spread over all that the work makes, the next call of which must work each time that
+ * a third of them is done. */
+static void test_piece(struct work *work, const char *name, work_piece *piece)
+{
+    expect_done(work, name, piece); /* fills the cache of programs */
+    work_expect(work);
+    fault_arm(KIND, 0, false, 0);
+    expect_done(work, name, piece);
+    const long calls = fault_disarm();
+    work_check_results(work, true);
+    const long wanted = points_wanted();
+    const long points = wanted > 0 && wanted < calls ? wanted : calls;
+    long failed = 0;
+    for (long i = 0; i < points; i++) {
+        /* one of each of as many runs of calls, another in each so that none is left out for ever
+         */
+        const long first = i * calls / points;
+        const long length = (i + 1) * calls / points - first;
+        failed += fail_at(work, name, piece, 1 + first + (7 * i) % length);
+        if (i % (points / 3 + 1) == points / 3 || i == points - 1) {
+            expect_done(work, name, piece);
+            work_check_results(work, true);
+        }
+    }
+    print_message("%s: %ld calls, %ld tried, %ld failed the work\n", name, calls, points, failed);
+    /* what concerns the cache of programs alone can be done without */
+    assert_true(failed > 0);
+}
+
+static void test_reading_a_scene(void **state)
+{
+    test_piece(*state, "read", work_read);
+}
+
+static void test_injecting(void **state)
+{
+    test_piece(*state, "inject", work_inject);
+}
+
+static void test_checking(void **state)
+{
+    test_piece(*state, "check", work_check);
+}
+
+static void test_measuring(void **state)
+{
+    test_piece(*state, "measure", work_measure);
+}
+
+static void test_running(void **state)
+{
+    test_piece(*state, "run", work_run);
+}
+
+static void test_drawing(void **state)
+{
+    test_piece(*state, "quicklook", work_quicklook);
+}
+
+static void test_making_a_seabed(void **state)
+{
+    test_piece(*state, "seabed", work_seabed);
+}
+
+#if defined(HAS_HDF5)
+static void test_tracing(void **state)
+{
+    test_piece(*state, "trace", work_trace);
+}
+
+static void test_forming(void **state)
+{
+    expect_done(*state, "trace", work_trace);
+    test_piece(*state, "form", work_form);
+}
+#endif
+
+int main(void)
+{
+    const struct CMUnitTest with_device[] = {
+        cmocka_unit_test(test_injecting),
+        cmocka_unit_test(test_running),
+#if defined(HAS_HDF5)
+        cmocka_unit_test(test_tracing),
+        cmocka_unit_test(test_forming),
+#endif
+    };
+    const struct CMUnitTest without_device[] = {
+        cmocka_unit_test(test_reading_a_scene), cmocka_unit_test(test_checking),
+        cmocka_unit_test(test_measuring),       cmocka_unit_test(test_drawing),
+        cmocka_unit_test(test_making_a_seabed),
+    };
+    fault_take_jansson();
+    int failed = cmocka_run_group_tests(with_device, work_prepare, work_remove);
+    if (KIND != FAULT_OPENCL)
+        failed += cmocka_run_group_tests(without_device, work_prepare, work_remove);
+    return failed;
+}

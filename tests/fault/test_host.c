@@ -1,0 +1,276 @@
+/* The library in a process that is not its own: it prints nothing and changes nothing of it. What
+ * the OpenCL driver does when it is first used is done before, on the host's own context, which the
+ * library then works in. */
+#define _GNU_SOURCE
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <fcntl.h>
+#include <fenv.h>
+#include <locale.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
+
+#include <sonject/sonject.h>
+
+#include "unit/temporary_folder.h"
+
+#define SIDE    32
+#define SIGNALS 65 /* numbers of Linux end before */
+
+extern char **environ;
+
+/* Signals with what the host does with them, and what it blocks. */
+struct process_state {
+    char locale[256], folder[4096];
+    size_t environment_count;
+    uint64_t environment_digest;
+    int rounding, traps;
+    mode_t mask;
+    struct sigaction actions[SIGNALS];
+    sigset_t blocked;
+    int descriptors;
+};
+
+static uint64_t digest_of_text(uint64_t digest, const char *text)
+{
+    for (; *text; text++)
+        digest = (digest ^ (unsigned char)*text) * UINT64_C(0x100000001B3);
+    return digest;
+}
+
+static void read_state(struct process_state *state)
+{
+    memset(state, 0, sizeof *state);
+    snprintf(state->locale, sizeof state->locale, "%s", setlocale(LC_ALL, NULL));
+    assert_non_null(getcwd(state->folder, sizeof state->folder));
+    for (char **variable = environ; *variable; variable++) {
+        state->environment_count++;
+        state->environment_digest = digest_of_text(state->environment_digest, *variable);
+    }
+    state->rounding = fegetround();
+#if defined(__GLIBC__)
+    state->traps = fegetexcept();
+#endif
+    state->mask = umask(0);
+    (void)umask(state->mask);
+    for (int i = 1; i < SIGNALS; i++)
+        (void)sigaction(i, NULL, &state->actions[i]);
+    assert_int_equal(sigprocmask(SIG_SETMASK, NULL, &state->blocked), 0);
+    state->descriptors = count_entries("/proc/self/fd");
+}
+
+static void expect_unchanged(const struct process_state *before)
+{
+    struct process_state now;
+    read_state(&now);
+    assert_string_equal(now.locale, before->locale);
+    assert_string_equal(now.folder, before->folder);
+    assert_int_equal(now.environment_count, before->environment_count);
+    assert_true(now.environment_digest == before->environment_digest);
+    assert_int_equal(now.rounding, before->rounding);
+    assert_int_equal(now.traps, before->traps);
+    assert_int_equal(now.mask, before->mask);
+    for (int i = 1; i < SIGNALS; i++) {
+        if (now.actions[i].sa_handler != before->actions[i].sa_handler ||
+            now.actions[i].sa_flags != before->actions[i].sa_flags)
+            fail_msg("signal %d is taken otherwise", i);
+        assert_int_equal(sigismember(&now.blocked, i), sigismember(&before->blocked, i));
+    }
+    assert_int_equal(now.descriptors, before->descriptors);
+}
+
+/* A host with habits of its own. */
+static void live_differently(const char *folder)
+{
+    if (!setlocale(LC_ALL, "de_DE.UTF-8") || strcmp(localeconv()->decimal_point, ",") != 0)
+        print_message("no locale with a decimal comma can be used\n");
+    (void)signal(SIGPIPE, SIG_IGN);
+    (void)umask(027);
+    assert_int_equal(chdir(folder), 0);
+    assert_int_equal(setenv("SONJECT_TEST_OF_A_HOST", "1", 1), 0);
+}
+
+struct opencl {
+    cl_device_id device;
+    cl_context context;
+};
+
+/* Opens the first device and builds and runs a kernel on it. */
+static struct opencl use_opencl(void)
+{
+    static const char *source = "kernel void fill(global int *a) { a[get_global_id(0)] = 1; }";
+    struct opencl opencl;
+    cl_platform_id platform;
+    cl_int answer;
+    const size_t items = 64;
+    assert_int_equal(clGetPlatformIDs(1, &platform, NULL), CL_SUCCESS);
+    assert_int_equal(clGetDeviceIDs(platform, CL_DEVICE_TYPE_ALL, 1, &opencl.device, NULL),
+                     CL_SUCCESS);
+    opencl.context = clCreateContext(NULL, 1, &opencl.device, NULL, NULL, &answer);
+    assert_non_null(opencl.context);
+    cl_command_queue queue = clCreateCommandQueue(opencl.context, opencl.device, 0, &answer);
+    cl_program program = clCreateProgramWithSource(opencl.context, 1, &source, NULL, &answer);
+    assert_int_equal(clBuildProgram(program, 1, &opencl.device, "", NULL, NULL), CL_SUCCESS);
+    cl_kernel kernel = clCreateKernel(program, "fill", &answer);
+    cl_mem buffer = clCreateBuffer(opencl.context, CL_MEM_READ_WRITE, 256, NULL, &answer);
+    assert_int_equal(clSetKernelArg(kernel, 0, sizeof buffer, &buffer), CL_SUCCESS);
+    assert_int_equal(clEnqueueNDRangeKernel(queue, kernel, 1, NULL, &items, NULL, 0, NULL, NULL),
+                     CL_SUCCESS);
+    assert_int_equal(clFinish(queue), CL_SUCCESS);
+    clReleaseMemObject(buffer);
+    clReleaseKernel(kernel);
+    clReleaseProgram(program);
+    clReleaseCommandQueue(queue);
+    return opencl;
+}
+
+static sonject_scene *make_scene(sonject_context *context)
+{
+    sonject_scene *scene;
+    sonject_geometry_params geometry;
+    sonject_sonar_params sonar;
+    sonject_object_params ball;
+    assert_int_equal(sonject_scene_create(context, &scene), SONJECT_OK);
+    sonject_geometry_params_init(&geometry);
+    geometry.row_spacing_m = 0.05;
+    geometry.column_spacing_m = 0.05;
+    geometry.first_slant_range_m = 25.0;
+    assert_int_equal(sonject_scene_set_geometry(scene, &geometry), SONJECT_OK);
+    sonject_sonar_params_init(&sonar);
+    sonar.centre_frequency_hz = 100e3;
+    sonar.bandwidth_hz = 15e3;
+    sonar.altitude_m = 10.0;
+    assert_int_equal(sonject_scene_set_sonar(scene, &sonar), SONJECT_OK);
+    assert_int_equal(sonject_scene_set_input_uniform(scene, SIDE, SIDE), SONJECT_OK);
+    sonject_object_params_init(&ball);
+    ball.shape = SONJECT_SHAPE_SPHERE;
+    ball.diameter_m = 0.4;
+    assert_int_equal(sonject_scene_add_object(scene, &ball, NULL), SONJECT_OK);
+    return scene;
+}
+
+/* Whole runs, failures too. */
+static void work(const struct opencl *opencl, const char *folder)
+{
+    char results[TEMPORARY_CAPACITY + 16];
+    sonject_context_params params;
+    sonject_context *context;
+    sonject_run_params run;
+    sonject_scene *none;
+    char *text = NULL;
+    sonject_context_params_init(&params);
+    params.cache_folder = "";
+    params.opencl_context = opencl->context;
+    params.opencl_device = opencl->device;
+    assert_int_equal(sonject_context_create(&params, &context), SONJECT_OK);
+    assert_int_equal(sonject_scene_read(context, "there is none.yaml", NULL, 0, &none),
+                     SONJECT_ERROR_INPUT);
+    sonject_scene *scene = make_scene(context);
+    sonject_run_params_init(&run);
+    snprintf(results, sizeof results, "%s/results", folder);
+    run.folder = results;
+    if (sonject_run(context, scene, &run, NULL, NULL, NULL) != SONJECT_OK)
+        fail_msg("%s", sonject_context_message(context));
+    assert_int_equal(sonject_check(context, scene, &text), SONJECT_OK);
+    sonject_text_release(&text);
+    run.folder = "/proc/nothing/can/be/made/here";
+    assert_int_equal(sonject_run(context, scene, &run, NULL, NULL, NULL), SONJECT_ERROR_STORAGE);
+    sonject_scene_release(&scene);
+    sonject_context_release(&context);
+}
+
+/* Lets standard output and error go to a file; returns where they went before. */
+static int capture(int descriptor, int file)
+{
+    const int kept = dup(descriptor);
+    assert_true(kept >= 0);
+    assert_true(dup2(file, descriptor) >= 0);
+    return kept;
+}
+
+/* Of what the run says of its objects, numbers as text among it. */
+static uint64_t digest_of_truth(const char *folder)
+{
+    char path[TEMPORARY_CAPACITY + 32];
+    size_t count;
+    snprintf(path, sizeof path, "%s/results/truth.json", folder);
+    char *text = (char *)bytes_of_file(path, &count);
+    assert_int_equal(strlen(text), count);
+    const uint64_t digest = digest_of_text(1, text);
+    free(text);
+    return digest;
+}
+
+static void remove_results(const char *folder)
+{
+    char path[TEMPORARY_CAPACITY + 300];
+    snprintf(path, sizeof path, "%s/results", folder);
+    DIR *list = opendir(path);
+    assert_non_null(list);
+    for (const struct dirent *entry = readdir(list); entry; entry = readdir(list)) {
+        snprintf(path, sizeof path, "%s/results/%s", folder, entry->d_name);
+        if (is_entry(entry))
+            (void)unlink(path);
+    }
+    closedir(list);
+    snprintf(path, sizeof path, "%s/results", folder);
+    assert_int_equal(rmdir(path), 0);
+}
+
+static void test_a_host_stays_as_it_was(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct process_state before;
+    struct stat said;
+    struct opencl opencl = use_opencl();
+    work(&opencl, folder->path); /* what libraries do once, such as reading their own settings */
+    const uint64_t truth = digest_of_truth(folder->path);
+    remove_results(folder->path);
+    live_differently(folder->path);
+    const int file = open(temporary_file(folder, "said"), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+    assert_true(file >= 0);
+    fflush(NULL);
+    const int output = capture(STDOUT_FILENO, file);
+    const int errors = capture(STDERR_FILENO, file);
+    read_state(&before);
+    work(&opencl, folder->path);
+    expect_unchanged(&before);
+    assert_true(digest_of_truth(folder->path) == truth);
+    remove_results(folder->path);
+    (void)fesetround(FE_UPWARD); /* which changes numbers */
+    read_state(&before);
+    work(&opencl, folder->path);
+    expect_unchanged(&before);
+    fflush(NULL);
+    assert_true(dup2(output, STDOUT_FILENO) >= 0);
+    assert_true(dup2(errors, STDERR_FILENO) >= 0);
+    assert_int_equal(fstat(file, &said), 0);
+    assert_int_equal(said.st_size, 0);
+    (void)fesetround(FE_TONEAREST);
+    remove_results(folder->path);
+    clReleaseContext(opencl.context);
+    close(output);
+    close(errors);
+    close(file);
+    assert_int_equal(chdir("/"), 0);
+    (void)setlocale(LC_ALL, "C");
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {cmocka_unit_test_setup_teardown(
+        test_a_host_stays_as_it_was, make_temporary_folder, remove_temporary_folder)};
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,114 @@
+"""The command in a bad world: killed at any moment, twice at once, without files or rights."""
+
+import hashlib
+import os
+import random
+import resource
+import subprocess
+import time
+
+import pytest
+
+from command_fixtures import COMMAND, assert_refused
+
+# Killed runs; each takes less than a whole one.
+KILLS = int(os.environ.get("SONJECT_KILLS", "12"))
+
+# Before the command: root may write anywhere unless it gives that up.
+WITHOUT_RIGHTS = ["setpriv", "--bounding-set=-dac_override,-dac_read_search", "--inh-caps=-all"]
+
+
+def digests(folder):
+    """Of each file by its name; run.json tells times, so that only its presence counts."""
+    files = {path.name: path.read_bytes() for path in folder.iterdir()} if folder.is_dir() else {}
+    return {
+        name: "" if name == "run.json" else hashlib.sha256(content).hexdigest()
+        for name, content in files.items()
+    }
+
+
+def finals(folder):
+    """What is there under final names."""
+    return {name: digest for name, digest in digests(folder).items() if ".part" not in name}
+
+
+@pytest.fixture
+def reference(sonject, scene, tmp_path):
+    """The files that a run leaves, and how long it takes with full caches."""
+    assert sonject("run", scene, "-o", "first").returncode == 0
+    start = time.monotonic()
+    assert sonject("run", scene, "-o", "reference").returncode == 0
+    return digests(tmp_path / "reference"), time.monotonic() - start
+
+
+def begin(scene, folder, tmp_path, environment):
+    return subprocess.Popen(
+        [COMMAND, "run", str(scene), "-o", folder], cwd=tmp_path, env=environment,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def test_killed_at_any_moment(reference, scene, tmp_path, environment, sonject):
+    expected, duration = reference
+    moments = random.Random(20240502)
+    finished = 0
+    for number in range(KILLS):
+        process = begin(scene, "result", tmp_path, environment)
+        # most of the files are written in the last third
+        time.sleep(duration * (0.5 * moments.random() + 0.5 * (number % 2)))
+        process.kill()
+        process.communicate()
+        left = finals(tmp_path / "result")
+        assert left.items() <= expected.items()
+        if "run.json" in left:
+            assert left == expected
+            finished += 1
+            (tmp_path / "result").rename(tmp_path / f"finished{finished}")
+    assert sonject("run", scene, "-o", "result").returncode == 0
+    assert finals(tmp_path / "result") == expected
+
+
+def test_two_at_once_in_one_folder(reference, scene, tmp_path, environment):
+    expected, _ = reference
+    for _ in range(3):
+        both = [begin(scene, "result", tmp_path, environment) for _ in range(2)]
+        for process in both:
+            _, said = process.communicate()
+            assert process.returncode == 0, said
+        assert digests(tmp_path / "result") == expected
+        (tmp_path / "result" / "run.json").unlink()
+
+
+def test_few_open_files(reference, scene, tmp_path, sonject):
+    """Either all is there or one line says what is not."""
+    expected, _ = reference
+    codes = set()
+    for number in (4, 6, 8, 12, 64):
+        answer = sonject(
+            "run", scene, "-o", f"result{number}",
+            preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_NOFILE, (number, number)))
+        left = digests(tmp_path / f"result{number}")
+        codes.add(answer.returncode)
+        if answer.returncode == 0:
+            assert left == expected
+        else:
+            assert answer.returncode in (3, 4, 5), answer.stderr
+            assert answer.stderr.count("\n") == 1, answer.stderr
+            assert left.items() <= expected.items()
+    assert 0 in codes
+
+
+@pytest.mark.parametrize("is_made", [True, False])
+def test_a_folder_that_may_not_be_written(scene, tmp_path, environment, is_made):
+    folder = tmp_path / "closed"
+    result = folder / "result"
+    (result if is_made else folder).mkdir(parents=True)
+    for path in (result, folder):
+        if path.is_dir():
+            path.chmod(0o555)
+    prefix = WITHOUT_RIGHTS if os.geteuid() == 0 else []
+    answer = subprocess.run(
+        [*prefix, COMMAND, "run", str(scene), "-o", str(result)], cwd=tmp_path, env=environment,
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
+    folder.chmod(0o755)
+    assert_refused(answer, 5, str(result), "Permission denied")
+    assert not result.is_dir() or not any(result.iterdir())

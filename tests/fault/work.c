@@ -1,0 +1,357 @@
+#define _POSIX_C_SOURCE 200809L
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include <jansson.h>
+
+#include "work.h"
+
+#define ROWS    24
+#define COLUMNS 32
+
+static const char scene_text[] =
+    "sonject: 1\n"
+    "input:\n"
+    "  path: swath.npy\n"
+    "  geometry: {row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 25 m}\n"
+    "sonar: {frequency: 100 kHz, bandwidth: 15 kHz, altitude: 10 m}\n"
+    "injection: {order_energies: true}\n"
+    "objects:\n"
+    "  - {name: ball, shape: sphere, diameter: 0.4 m, material: {reflection: 0.5, lambert: 0.05}}\n"
+    "  - {name: buoy, target: buoy.yaml, position: {along_track: 0.3 m, slant_range: 25.9 m}}\n";
+static const char target_text[] = "sonject_target: 1\n"
+                                  "class: buoy\n"
+                                  "parts:\n"
+                                  "  - {shape: cylinder, length: 0.2 m, diameter: 0.1 m}\n"
+                                  "  - {shape: sphere, diameter: 0.1 m, at: {up: 0.1 m}}\n";
+
+static uint64_t add_to_digest(uint64_t digest, const void *bytes, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        digest = (digest ^ ((const unsigned char *)bytes)[i]) * UINT64_C(0x100000001B3);
+    return digest;
+}
+
+/* Speckle of unit mean square, by a generator of remainders. */
+static void fill_pixels(float pixels[ROWS * COLUMNS])
+{
+    uint32_t state = 1;
+    for (size_t i = 0; i < ROWS * COLUMNS; i++) {
+        state = state * 1664525u + 1013904223u;
+        pixels[i] = 0.02f + (float)(state >> 8) / 16777216.0f;
+    }
+}
+
+static void write_image(const char *path)
+{
+    unsigned char header[128] = "\x93NUMPY\x01";
+    float pixels[ROWS * COLUMNS];
+    FILE *file = fopen(path, "wb");
+    fill_pixels(pixels);
+    memset(header + 10, ' ', sizeof header - 10);
+    header[8] = sizeof header - 10;
+    memcpy(header + 10, "{'descr': '<f4', 'fortran_order': False, 'shape': (24, 32)}", 59);
+    header[sizeof header - 1] = '\n';
+    assert_non_null(file);
+    assert_int_equal(fwrite(header, 1, sizeof header, file), sizeof header);
+    assert_int_equal(fwrite(pixels, sizeof *pixels, ROWS * COLUMNS, file), ROWS * COLUMNS);
+    assert_int_equal(fclose(file), 0);
+}
+
+static void set_path(struct work *work, char path[WORK_PATH], const char *name)
+{
+    snprintf(path, WORK_PATH, "%s/%s", work->folder->path, name);
+}
+
+static sonject_status begin(struct work *work, sonject_context **context)
+{
+    sonject_context_params params;
+    sonject_context_params_init(&params);
+    params.cache_folder = work->cache;
+    work->message[0] = '\0';
+    work->digest = UINT64_C(0xCBF29CE484222325);
+    return sonject_context_create(&params, context);
+}
+
+static sonject_status begin_scene(struct work *work, sonject_context **context,
+                                  sonject_scene **scene)
+{
+    *scene = NULL;
+    const sonject_status status = begin(work, context);
+    return status == SONJECT_OK ? sonject_scene_read(*context, work->scene, NULL, 0, scene)
+                                : status;
+}
+
+static sonject_status end(struct work *work, sonject_status status, sonject_context **context,
+                          sonject_scene **scene)
+{
+    if (*context && status != SONJECT_OK)
+        snprintf(work->message, sizeof work->message, "%s", sonject_context_message(*context));
+    if (scene)
+        sonject_scene_release(scene);
+    sonject_context_release(context);
+    return status;
+}
+
+static sonject_status write_seabed(struct work *work, const char *image)
+{
+    sonject_context *context;
+    sonject_seabed_file_params params;
+    sonject_seabed_file_params_init(&params);
+    params.image = image;
+    params.synthetic.rows = 40;
+    params.synthetic.columns = 40;
+    sonject_status status = begin(work, &context);
+    if (status == SONJECT_OK)
+        status = sonject_seabed_write(context, &params);
+    return end(work, status, &context, NULL);
+}
+
+int work_prepare(void **state)
+{
+    struct work *work = calloc(1, sizeof *work);
+    if (!work || make_temporary_folder((void **)&work->folder) != 0)
+        return 1;
+    set_path(work, work->scene, "scene.yaml");
+    set_path(work, work->image, "swath.npy");
+    set_path(work, work->seabed, "seabed.tif");
+    set_path(work, work->impulses, "impulses.h5");
+    set_path(work, work->cache, "cache");
+    set_path(work, work->results, "results");
+    write_bytes(work->scene, scene_text, strlen(scene_text));
+    write_bytes(temporary_file(work->folder, "buoy.yaml"), target_text, strlen(target_text));
+    write_image(work->image);
+    *state = work;
+    if (mkdir(work->cache, 0777) != 0)
+        return 1;
+    return write_seabed(work, work->seabed) != SONJECT_OK;
+}
+
+static void empty_folder(const char *path)
+{
+    char file[WORK_PATH + 300];
+    DIR *list = opendir(path);
+    if (!list)
+        return;
+    for (const struct dirent *entry = readdir(list); entry; entry = readdir(list)) {
+        snprintf(file, sizeof file, "%s/%s", path, entry->d_name);
+        if (is_entry(entry) && unlink(file) != 0)
+            empty_folder(file);
+    }
+    closedir(list);
+    (void)rmdir(path);
+}
+
+int work_remove(void **state)
+{
+    struct work *work = *state;
+    empty_folder(work->folder->path);
+    free(work->folder);
+    free(work);
+    return 0;
+}
+
+sonject_status work_read(struct work *work)
+{
+    sonject_context *context;
+    sonject_scene *scene;
+    uint32_t count = 0;
+    sonject_status status = begin_scene(work, &context, &scene);
+    if (status == SONJECT_OK)
+        status = sonject_scene_object_count(scene, &count);
+    work->digest = add_to_digest(work->digest, &count, sizeof count);
+    return end(work, status, &context, &scene);
+}
+
+sonject_status work_inject(struct work *work)
+{
+    sonject_context *context;
+    sonject_scene *scene;
+    sonject_result *result = NULL;
+    float pixels[ROWS * COLUMNS];
+    const sonject_pixels patch = {sizeof patch, SONJECT_PIXELS_AMPLITUDE, ROWS, COLUMNS, 0, pixels};
+    fill_pixels(pixels);
+    sonject_status status = begin_scene(work, &context, &scene);
+    if (status == SONJECT_OK)
+        status = sonject_inject(context, scene, &patch, NULL, NULL, &result);
+    assert_true((status == SONJECT_OK) == (result != NULL));
+    if (status == SONJECT_OK)
+        status = sonject_result_layer(result, SONJECT_LAYER_IMAGE, pixels, sizeof pixels);
+    work->digest = add_to_digest(work->digest, pixels, sizeof pixels);
+    sonject_result_release(&result);
+    return end(work, status, &context, &scene);
+}
+
+sonject_status work_measure(struct work *work)
+{
+    sonject_context *context;
+    sonject_measure_params params;
+    sonject_measurement measurement = {.struct_size = sizeof measurement};
+    sonject_measure_params_init(&params);
+    params.image = work->seabed;
+    sonject_status status = begin(work, &context);
+    if (status == SONJECT_OK)
+        status = sonject_measure(context, &params, &measurement);
+    work->digest = add_to_digest(work->digest, &measurement, sizeof measurement);
+    return end(work, status, &context, NULL);
+}
+
+sonject_status work_check(struct work *work)
+{
+    sonject_context *context;
+    sonject_scene *scene;
+    char *text = NULL;
+    sonject_status status = begin_scene(work, &context, &scene);
+    if (status == SONJECT_OK)
+        status = sonject_check(context, scene, &text);
+    assert_true((status == SONJECT_OK) == (text != NULL));
+    if (text)
+        work->digest = add_to_digest(work->digest, text, strlen(text));
+    sonject_text_release(&text);
+    return end(work, status, &context, &scene);
+}
+
+sonject_status work_run(struct work *work)
+{
+    sonject_context *context;
+    sonject_scene *scene;
+    sonject_run_params params;
+    sonject_run_params_init(&params);
+    params.folder = work->results;
+    sonject_status status = begin_scene(work, &context, &scene);
+    if (status == SONJECT_OK)
+        status = sonject_run(context, scene, &params, NULL, NULL, NULL);
+    return end(work, status, &context, &scene);
+}
+
+sonject_status work_trace(struct work *work)
+{
+    sonject_context *context;
+    sonject_scene *scene;
+    sonject_trace_params params;
+    sonject_trace_params_init(&params);
+    params.file = work->impulses;
+    sonject_status status = begin_scene(work, &context, &scene);
+    if (status == SONJECT_OK)
+        status = sonject_trace(context, scene, &params, NULL, NULL);
+    return end(work, status, &context, &scene);
+}
+
+sonject_status work_form(struct work *work)
+{
+    sonject_context *context;
+    sonject_form_params params;
+    sonject_form_params_init(&params);
+    params.file = work->impulses;
+    params.folder = work->results;
+    sonject_status status = begin(work, &context);
+    if (status == SONJECT_OK)
+        status = sonject_form(context, NULL, &params, NULL, NULL, NULL);
+    return end(work, status, &context, NULL);
+}
+
+sonject_status work_quicklook(struct work *work)
+{
+    char picture[WORK_PATH + 16];
+    sonject_context *context;
+    sonject_quicklook_params params;
+    sonject_quicklook_params_init(&params);
+    snprintf(picture, sizeof picture, "%s/look.png", work->results);
+    params.image = work->image;
+    params.picture = picture;
+    (void)mkdir(work->results, 0777);
+    sonject_status status = begin(work, &context);
+    if (status == SONJECT_OK)
+        status = sonject_quicklook(context, &params);
+    return end(work, status, &context, NULL);
+}
+
+sonject_status work_seabed(struct work *work)
+{
+    char image[WORK_PATH + 16];
+    snprintf(image, sizeof image, "%s/seabed.tif", work->results);
+    (void)mkdir(work->results, 0777);
+    return write_seabed(work, image);
+}
+
+static uint64_t digest_of_file(const struct work *work, const char *name)
+{
+    char path[WORK_PATH + 300];
+    size_t count;
+    snprintf(path, sizeof path, "%s/%s", work->results, name);
+    unsigned char *bytes = bytes_of_file(path, &count);
+    uint64_t digest = add_to_digest(1, bytes, count);
+    if (strcmp(name, "run.json") == 0) { /* it tells times: only whether it is whole */
+        json_t *document = json_loadb((const char *)bytes, count, 0, NULL);
+        if (!document)
+            fail_msg("run.json is not whole");
+        json_decref(document);
+        digest = 0;
+    }
+    free(bytes);
+    return digest;
+}
+
+static size_t list_results(const struct work *work, struct work_file files[WORK_FILES])
+{
+    size_t count = 0;
+    DIR *list = opendir(work->results);
+    if (!list)
+        return 0;
+    for (const struct dirent *entry = readdir(list); entry; entry = readdir(list)) {
+        if (!is_entry(entry))
+            continue;
+        if (count == WORK_FILES)
+            fail_msg("too many files, such as %s", entry->d_name);
+        if (strstr(entry->d_name, ".part"))
+            fail_msg("%s is left", entry->d_name);
+        snprintf(files[count].name, sizeof files->name, "%.60s", entry->d_name);
+        files[count].digest = digest_of_file(work, entry->d_name);
+        count++;
+    }
+    closedir(list);
+    return count;
+}
+
+void work_expect(struct work *work)
+{
+    work->expected_digest = work->digest;
+    work->expected_count = list_results(work, work->expected);
+    empty_folder(work->results);
+}
+
+static void check_file(const struct work *work, const struct work_file *file)
+{
+    for (size_t i = 0; i < work->expected_count; i++) {
+        if (strcmp(work->expected[i].name, file->name) != 0)
+            continue;
+        if (work->expected[i].digest != file->digest)
+            fail_msg("%s is not what it should be", file->name);
+        return;
+    }
+    fail_msg("%s should not be there", file->name);
+}
+
+void work_check_results(struct work *work, bool is_done)
+{
+    struct work_file files[WORK_FILES];
+    const size_t count = list_results(work, files);
+    if (is_done && work->digest != work->expected_digest)
+        fail_msg("other numbers than those of an undisturbed call");
+    for (size_t i = 0; i < count; i++) {
+        check_file(work, &files[i]);
+        is_done |= strcmp(files[i].name, "run.json") == 0;
+    }
+    if (is_done)
+        assert_int_equal(count, work->expected_count);
+    empty_folder(work->results);
+}
