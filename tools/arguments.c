@@ -151,6 +151,13 @@ static bool take_operand(const struct verb *verb, const char *text, void *option
         return false;
     }
     const char **operand = member(options, verb->operand_offset);
+    if (*operand && verb->second_operand && !*(const char **)member(options, verb->second_offset))
+        operand = member(options, verb->second_offset);
+    if (*operand && verb->second_operand) {
+        message(verb->name, ": ", verb->operand, " and ", verb->second_operand,
+                " are wanted; what is \"", text, "\"?");
+        return false;
+    }
     if (*operand) {
         message(verb->name, ": one ", verb->operand, " is wanted, not both \"", *operand,
                 "\" and \"", text, "\"");
@@ -168,6 +175,11 @@ static bool check_presence(const struct verb *verb, void *options)
 {
     if (verb->operand && !*(const char **)member(options, verb->operand_offset)) {
         message(verb->name, ": ", verb->operand, " is missing; see sonject help ", verb->name);
+        return false;
+    }
+    if (verb->second_operand && !*(const char **)member(options, verb->second_offset)) {
+        message(verb->name, ": ", verb->second_operand, " is missing; see sonject help ",
+                verb->name);
         return false;
     }
     for (size_t i = 0; i < verb->argument_count; i++) {
@@ -218,6 +230,8 @@ void arguments_help(const struct verb *verb, FILE *file)
     fprintf(file, "sonject %s", verb->name);
     if (verb->operand)
         fprintf(file, " %s", verb->operand);
+    if (verb->second_operand)
+        fprintf(file, " %s", verb->second_operand);
     bool has_optional = false;
     for (size_t i = 0; i < verb->argument_count; i++) {
         const struct argument *argument = &verb->arguments[i];

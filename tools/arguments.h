@@ -46,6 +46,8 @@ struct verb {
     const char *summary; /* one line for the list of verbs */
     const char *operand; /* "SCENE.yaml", NULL if the verb has none */
     size_t operand_offset;
+    const char *second_operand; /* behind it; NULL if the verb has none */
+    size_t second_offset;
     const struct argument *arguments;
     size_t argument_count;
     const char *notes; /* below the options in the help; "" for none */

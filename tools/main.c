@@ -12,8 +12,8 @@
 #include "verbs.h"
 
 static const struct verb *const verbs[] = {
-    &run_verb,     &trace_verb,     &form_verb,   &campaign_verb, &merge_verb,  &check_verb,
-    &measure_verb, &quicklook_verb, &seabed_verb, &elements_verb, &devices_verb};
+    &run_verb,     &trace_verb,     &form_verb,    &campaign_verb, &merge_verb,    &check_verb,
+    &measure_verb, &quicklook_verb, &convert_verb, &seabed_verb,   &elements_verb, &devices_verb};
 static const size_t verb_count = sizeof(verbs) / sizeof(verbs[0]);
 
 static void print_help(FILE *file)

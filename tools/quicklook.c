@@ -4,6 +4,7 @@
 
 #include <sonject/sonject.h>
 
+#include "channel_argument.h"
 #include "exit_code.h"
 #include "message.h"
 #include "number.h"
@@ -75,24 +76,6 @@ static bool read_transfer(const char *text, sonject_quicklook_params *params)
     return transfer_parse("quicklook", text, &params->transfer);
 }
 
-static bool read_channel(const char *text, sonject_quicklook_params *params)
-{
-    double number = 0.0;
-    if (strcmp(text, "port") == 0) {
-        params->channel = SONJECT_CHANNEL_PORT;
-    } else if (strcmp(text, "starboard") == 0) {
-        params->channel = SONJECT_CHANNEL_STARBOARD;
-    } else if (number_parse(text, &number) && number >= 0.0 && number < 64.0 &&
-               number == (double)(int32_t)number) {
-        params->channel = (int32_t)number;
-    } else {
-        message("quicklook: --channel takes port, starboard or a channel's number, not \"", text,
-                "\"");
-        return false;
-    }
-    return true;
-}
-
 static bool read_geometry(const struct quicklook_options *options, sonject_quicklook_params *params)
 {
     int given = options->row_spacing.is_given + options->column_spacing.is_given +
@@ -125,7 +108,7 @@ static bool fill(const struct quicklook_options *options, sonject_quicklook_para
     return (!options->decibels || read_decibels(options->decibels, params)) &&
            (!options->range_axis || read_range_axis(options->range_axis, params)) &&
            (!options->transfer || read_transfer(options->transfer, params)) &&
-           (!options->channel || read_channel(options->channel, params)) &&
+           (!options->channel || channel_parse("quicklook", options->channel, &params->channel)) &&
            read_geometry(options, params);
 }
 

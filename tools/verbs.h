@@ -12,6 +12,7 @@ extern const struct verb merge_verb;
 extern const struct verb check_verb;
 extern const struct verb quicklook_verb;
 extern const struct verb measure_verb;
+extern const struct verb convert_verb;
 extern const struct verb seabed_verb;
 extern const struct verb elements_verb;
 extern const struct verb devices_verb;

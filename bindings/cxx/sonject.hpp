@@ -114,6 +114,7 @@ template <typename Structure> void fill_defaults(Structure &structure);
     }
 SONJECT_CXX_DEFAULTS(sonject_campaign_read_params)
 SONJECT_CXX_DEFAULTS(sonject_campaign_run_params)
+SONJECT_CXX_DEFAULTS(sonject_convert_params)
 SONJECT_CXX_DEFAULTS(sonject_geometry_params)
 SONJECT_CXX_DEFAULTS(sonject_injection_params)
 SONJECT_CXX_DEFAULTS(sonject_material_params)
@@ -273,6 +274,12 @@ class context
     void quicklook(const sonject_quicklook_params &params) const
     {
         check(sonject_quicklook(handle_, &params));
+    }
+
+    /* Makes a file of one format from a file of another. */
+    void convert(const sonject_convert_params &params) const
+    {
+        check(sonject_convert(handle_, &params));
     }
 
     /* Writes a synthetic seabed. */

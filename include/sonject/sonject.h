@@ -4,6 +4,7 @@
 
 #include <sonject/campaign.h>
 #include <sonject/context.h>
+#include <sonject/convert.h>
 #include <sonject/elements.h>
 #include <sonject/image.h>
 #include <sonject/injection.h>

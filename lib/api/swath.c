@@ -52,6 +52,12 @@ static sonject_status describe_file(struct report *report, const struct scene *s
     if (largest > 0.0 &&
         !(swath->transfer.full_scale > 0.0 && swath->transfer.full_scale < largest))
         swath->transfer.full_scale = largest;
+    if (swath_file_range_axis(file) == RANGE_GROUND)
+        return report_failure(
+            report, SONJECT_ERROR_INPUT,
+            "%s is in ground range, and runs work in slant range: convert it first "
+            "with sonject convert --range-axis slant",
+            scene->input_path);
     if (swath->is_complex && !scene->input_is_complex)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s has 2 channels: say complex: true under input if they are real "

@@ -34,25 +34,25 @@ struct swath_file {
     struct mat_file mat;
 };
 
-static sonject_status tell_kind(struct report *report, struct swath_file *file)
+static sonject_status tell_kind(struct report *report, const char *path, enum swath_kind *kind)
 {
     unsigned char head[16] = {0};
     enum image_kind image;
     uint64_t bytes;
-    FILE *stream = byte_file_open(file->path, &bytes);
+    FILE *stream = byte_file_open(path, &bytes);
     if (!stream) {
-        (void)file_failure(report, file->path, "open", errno);
+        (void)file_failure(report, path, "open", errno);
         return SONJECT_ERROR_INPUT;
     }
     const size_t got = fread(head, 1, sizeof head, stream);
     fclose(stream);
-    file->kind = xtf_begins(head, got)                        ? SWATH_XTF
-                 : npy_begins(head, got)                      ? SWATH_NPY
-                 : pnm_begins(head, got)                      ? SWATH_PNM
-                 : mat_begins(head, got)                      ? SWATH_MAT
-                 : image_kind_of_beginning(head, got, &image) ? SWATH_IMAGE
-                 : hdf5_mark_is_in(file->path)                ? SWATH_HDF5
-                                                              : SWATH_IMAGE;
+    *kind = xtf_begins(head, got)                        ? SWATH_XTF
+            : npy_begins(head, got)                      ? SWATH_NPY
+            : pnm_begins(head, got)                      ? SWATH_PNM
+            : mat_begins(head, got)                      ? SWATH_MAT
+            : image_kind_of_beginning(head, got, &image) ? SWATH_IMAGE
+            : hdf5_mark_is_in(path)                      ? SWATH_HDF5
+                                                         : SWATH_IMAGE;
     return SONJECT_OK;
 }
 
@@ -104,7 +104,7 @@ sonject_status swath_file_open_array(struct report *report, const char *path, in
         return report_out_of_memory(report, "a file");
     }
     opened->path = copy;
-    status = tell_kind(report, opened);
+    status = tell_kind(report, opened->path, &opened->kind);
     if (status == SONJECT_OK)
         status = open_kind(report, opened, channel, array);
     if (status == SONJECT_OK)
@@ -162,6 +162,35 @@ uint32_t swath_file_largest(const struct swath_file *file)
     if (file->kind == SWATH_HDF5)
         return hdf5_array_largest(file->hdf5);
     return file->kind == SWATH_MAT ? mat_file_largest(&file->mat) : 0;
+}
+
+enum range_axis swath_file_range_axis(const struct swath_file *file)
+{
+    char axis[16] = "";
+    if (file->kind == SWATH_XTF)
+        return file->xtf.is_ground_range ? RANGE_GROUND : RANGE_SLANT;
+    if (!swath_file_attribute(file, "sonject:range_axis", axis, sizeof axis))
+        return RANGE_UNKNOWN;
+    return strcmp(axis, "ground") == 0  ? RANGE_GROUND
+           : strcmp(axis, "slant") == 0 ? RANGE_SLANT
+                                        : RANGE_UNKNOWN;
+}
+
+static bool is_kind(const char *path, enum swath_kind first, enum swath_kind second)
+{
+    struct report report = {{0}, NULL, NULL};
+    enum swath_kind kind;
+    return tell_kind(&report, path, &kind) == SONJECT_OK && (kind == first || kind == second);
+}
+
+bool swath_file_has_channels(const char *path)
+{
+    return is_kind(path, SWATH_XTF, SWATH_XTF);
+}
+
+bool swath_file_has_names(const char *path)
+{
+    return is_kind(path, SWATH_HDF5, SWATH_MAT);
 }
 
 const struct xtf_file *swath_file_xtf(const struct swath_file *file)

@@ -30,6 +30,18 @@ bool swath_file_is_lossless(const struct swath_file *file);
 /* The largest number that the file may hold where that is less than its type's; 0 elsewhere. */
 uint32_t swath_file_largest(const struct swath_file *file);
 
+/* Which range axis a file says that its columns have. */
+enum range_axis {
+    RANGE_UNKNOWN,
+    RANGE_SLANT,
+    RANGE_GROUND
+};
+enum range_axis swath_file_range_axis(const struct swath_file *file);
+
+/* Whether channels of the file are chosen (XTF), and arrays by their names (HDF5, MATLAB). */
+bool swath_file_has_channels(const char *path);
+bool swath_file_has_names(const char *path);
+
 /* The XTF file behind it; NULL for other kinds. */
 const struct xtf_file *swath_file_xtf(const struct swath_file *file);
 

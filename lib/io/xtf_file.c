@@ -22,6 +22,7 @@
 #define PACKET_BYTES        256 /* of a ping's header */
 #define CHANNEL_HEAD_BYTES  64
 #define PACKET_KIND_SONAR   0
+#define CORRECTED_TO_GROUND 2 /* of a channel's correction flags; 1: slant range */
 #define UNITS_GEOGRAPHIC    3
 #define SAMPLES_MAX         (UINT32_C(1) << 24)
 #define LARGEST_POSITIVE_16 32767
@@ -30,6 +31,7 @@ struct xtf_channel {
     uint32_t kind; /* enum xtf_side, or others */
     uint32_t sample_bytes;
     bool is_signed;
+    bool is_ground_range;
 };
 
 /* A file being opened. */
@@ -97,6 +99,7 @@ static sonject_status read_header(struct opening *opening, uint64_t *first_packe
                             sizeof info))
             return damaged(opening, CHANNELS_PLACE, "its channels are cut short");
         opening->channels[i].kind = info[0];
+        opening->channels[i].is_ground_range = word_at(info, 2, 2) == CORRECTED_TO_GROUND;
         opening->channels[i].is_signed = word_at(info, 4, 2) == 0;
         opening->channels[i].sample_bytes = word_at(info, 6, 2);
     }
@@ -135,6 +138,7 @@ static sonject_status choose_channel(struct opening *opening, int32_t wanted)
                               list);
     opening->file->channel = found;
     opening->file->side = opening->channels[found].kind;
+    opening->file->is_ground_range = opening->channels[found].is_ground_range;
     return SONJECT_OK;
 }
 

@@ -29,6 +29,7 @@ struct xtf_file {
     struct xtf_ping *pings; /* owned; rows.layout.rows of them */
     uint32_t side;          /* enum xtf_side */
     uint32_t channel;       /* its number */
+    bool is_ground_range;   /* samples are equally spaced on the seabed, as the file says */
     bool is_geographic;     /* positions are degrees of longitude and latitude, else m */
 };
 

@@ -10,8 +10,7 @@ import pytest
 from conftest import COMMAND, assert_refused
 
 VERBS = {"run", "campaign", "merge", "trace", "form", "elements", "check", "measure", "quicklook",
-         "seabed", "devices"}
-NOT_THERE = r"\bconvert\b"
+         "convert", "seabed", "devices"}
 
 
 def test_version(sonject):
@@ -37,11 +36,6 @@ def test_help_of_a_verb(sonject, verb):
     for option in re.findall(r"--[a-z-]+", answer.stdout):
         refused = sonject(verb, option + "x")
         assert_refused(refused, 2, "there is no option")
-    assert not re.search(NOT_THERE, answer.stdout)
-
-
-def test_help_says_nothing_about_what_is_not_there(sonject):
-    assert not re.search(NOT_THERE, sonject("--help").stdout)
 
 
 def test_nothing_asked_is_a_usage_error(sonject):

@@ -14,13 +14,14 @@ rows (track positions) x columns (slant ranges).
 
 from ._callbacks import Progress
 from ._library import load as _load
-from .actions import check, form, inject, measure, quicklook, run, trace, write_seabed
+from .actions import check, convert, form, inject, measure, quicklook, run, trace, write_seabed
 from .campaign import Campaign, CampaignImage, merge_campaign
 from .context import Context, Device, default_context, devices
 from ._elements import Elements
 from .elements import ElementLayout, element_layout, element_series, run_elements
 from .enumerations import (
     ColumnRule,
+    ConvertAxis,
     End,
     Estimator,
     ForwardRule,
@@ -33,6 +34,7 @@ from .enumerations import (
     RangeAxis,
     ReflectionKind,
     ResponseWindow,
+    Samples,
     SeabedMap,
     SeriesForm,
     SeriesPulse,
@@ -101,6 +103,7 @@ __all__ = [
     "ColumnRule",
     "Cone",
     "Context",
+    "ConvertAxis",
     "Cuboid",
     "Cut",
     "Cylinder",
@@ -141,6 +144,7 @@ __all__ = [
     "ReflectionKind",
     "ResponseWindow",
     "Result",
+    "Samples",
     "Scene",
     "Seabed",
     "SeabedMap",
@@ -165,6 +169,7 @@ __all__ = [
     "Wedge",
     "absorption",
     "check",
+    "convert",
     "default_context",
     "devices",
     "element_layout",

@@ -292,6 +292,8 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
     "sonject_text_release": (None, [POINTER(c_char_p)]),
     "sonject_quicklook_params_init": (None, [POINTER(s.sonject_quicklook_params)]),
     "sonject_quicklook": (_status, [_context, POINTER(s.sonject_quicklook_params)]),
+    "sonject_convert_params_init": (None, [POINTER(s.sonject_convert_params)]),
+    "sonject_convert": (_status, [_context, POINTER(s.sonject_convert_params)]),
     "sonject_seabed_file_params_init": (None, [POINTER(s.sonject_seabed_file_params)]),
     "sonject_measure_params_init": (None, [POINTER(s.sonject_measure_params)]),
     "sonject_measure": (

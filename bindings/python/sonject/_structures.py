@@ -548,6 +548,24 @@ class sonject_quicklook_params(Structure):
     ]
 
 
+class sonject_convert_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("channel", c_int32),
+        ("input", c_char_p),
+        ("output", c_char_p),
+        ("into", c_char_p),
+        ("array", c_char_p),
+        ("samples", c_uint32),
+        ("magnitude", c_uint32),
+        ("scale", c_double),
+        ("range_axis", c_uint32),
+        ("has_geometry", c_uint32),
+        ("geometry", sonject_geometry_params),
+        ("altitude_m", c_double),
+    ]
+
+
 class sonject_measure_params(Structure):
     _fields_ = [
         ("struct_size", c_uint32),

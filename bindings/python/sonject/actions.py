@@ -22,7 +22,7 @@ from ._values import (
     sized,
 )
 from .context import Context, default_context
-from .enumerations import LabelFormat, RangeAxis
+from .enumerations import ConvertAxis, LabelFormat, RangeAxis, Samples
 from .parameters import Geometry, Recording, Sonar, Synthetic, Transfer
 from .result import Measurement, Result, _copied
 from .scene import Scene
@@ -208,6 +208,48 @@ def quicklook(
         params.has_transfer = 1
         params.transfer = transfer.to_structure()
     context.call("sonject_quicklook", context, ctypes.byref(params))
+
+
+def convert(
+    source: PathLike,
+    output: PathLike,
+    *,
+    into: Optional[PathLike] = None,
+    channel: Union[str, int, None] = None,
+    array: Optional[str] = None,
+    magnitude: bool = False,
+    samples: Samples = Samples.KEPT,
+    scale: float = 1.0,
+    range_axis: ConvertAxis = ConvertAxis.KEPT,
+    geometry: Optional[Geometry] = None,
+    altitude_m: Optional[float] = None,
+    context: Optional[Context] = None,
+) -> None:
+    """Makes a file of one format (.tif, .png, .npy, .h5, .pgm, .pfm) from a file of another.
+
+    into: the output is a copy of this file with the source's samples; samples, scale: another type,
+    in which values that do not fit are refused; geometry, altitude_m: None for what the source's
+    metadata says.
+    """
+    context = default_context() if context is None else context
+    params = initialised(s.sonject_convert_params)
+    params.input = file_name("source", source)
+    params.output = file_name("output", output)
+    if into is not None:
+        params.into = file_name("into", into)
+    params.channel = Recording(source, channel).number()
+    if array is not None:
+        params.array = array.encode()
+    params.magnitude = bool(magnitude)
+    params.samples = choice("samples", Samples, samples)
+    params.scale = real_number("scale", scale)
+    params.range_axis = choice("range_axis", ConvertAxis, range_axis)
+    if geometry is not None:
+        params.has_geometry = 1
+        params.geometry = geometry.to_structure()
+    if altitude_m is not None:
+        params.altitude_m = real_number("altitude_m", altitude_m)
+    context.call("sonject_convert", context, ctypes.byref(params))
 
 
 def write_seabed(

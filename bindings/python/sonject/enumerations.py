@@ -178,6 +178,23 @@ class RangeAxis(enum.IntEnum):
     GROUND = 1
 
 
+class Samples(enum.IntEnum):
+    """sonject_samples: types of samples that a conversion makes."""
+
+    KEPT = 0
+    UINT8 = 1
+    UINT16 = 2
+    FLOAT32 = 3
+
+
+class ConvertAxis(enum.IntEnum):
+    """sonject_convert_axis: range axis that a conversion makes."""
+
+    KEPT = 0
+    SLANT = 1
+    GROUND = 2
+
+
 class InputKind(enum.IntEnum):
     """sonject_input_kind: where a scene's swath comes from."""
 

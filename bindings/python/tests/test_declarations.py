@@ -30,6 +30,8 @@ ENUMERATIONS = {
     "sonject_position_kind": (enumerations.PositionKind, "SONJECT_POSITION_"),
     "sonject_pixel_kind": (enumerations.PixelKind, "SONJECT_PIXELS_"),
     "sonject_layer": (enumerations.Layer, "SONJECT_LAYER_"),
+    "sonject_samples": (enumerations.Samples, "SONJECT_SAMPLES_"),
+    "sonject_convert_axis": (enumerations.ConvertAxis, "SONJECT_CONVERT_AXIS_"),
     "sonject_range_axis": (enumerations.RangeAxis, "SONJECT_AXIS_"),
     "sonject_input_kind": (enumerations.InputKind, "SONJECT_INPUT_"),
     "sonject_seabed_map": (enumerations.SeabedMap, "SONJECT_MAP_"),

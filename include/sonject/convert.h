@@ -1,0 +1,58 @@
+/* Files of one format from files of another. */
+#ifndef SONJECT_CONVERT_H
+#define SONJECT_CONVERT_H
+
+#include <stdint.h>
+
+#include <sonject/context.h>
+#include <sonject/export.h>
+#include <sonject/image.h>
+#include <sonject/status.h>
+
+SONJECT_BEGIN_DECLARATIONS
+
+typedef enum sonject_samples {
+    SONJECT_SAMPLES_KEPT = 0, /* the input's type */
+    SONJECT_SAMPLES_UINT8 = 1,
+    SONJECT_SAMPLES_UINT16 = 2,
+    SONJECT_SAMPLES_FLOAT32 = 3
+} sonject_samples;
+
+typedef enum sonject_convert_axis {
+    SONJECT_CONVERT_AXIS_KEPT = 0, /* the input's range axis */
+    SONJECT_CONVERT_AXIS_SLANT = 1,
+    SONJECT_CONVERT_AXIS_GROUND = 2
+} sonject_convert_axis;
+
+typedef struct sonject_convert_params {
+    uint32_t struct_size;
+    int32_t channel;    /* of an XTF file, SONJECT_CHANNEL_ONLY by default */
+    const char *input;  /* any image, array or recording that runs read */
+    const char *output; /* .tif, .png, .npy, .h5, .pgm, .pfm; with `into` any */
+    const char *into;   /* NULL, or a file of the output's size and type: the output is a copy of it
+                           with the input's samples, all else untouched */
+    const char *array;  /* in an HDF5 or MATLAB file of several, its name; NULL: the only one */
+    uint32_t samples;   /* sonject_samples; another type needs a scale */
+    uint32_t magnitude; /* 1: of complex samples their magnitude */
+    double scale;       /* with samples: new = old * scale, whole numbers rounded; > 0 */
+    uint32_t range_axis;   /* sonject_convert_axis; columns are resampled to equal steps of it, each
+                              from   the nearest column of the input, at the input's column spacing */
+    uint32_t has_geometry; /* 1: geometry below is used instead of the input's own */
+    sonject_geometry_params geometry; /* of slant range */
+    double altitude_m;                /* 0: the input's own */
+} sonject_convert_params;
+
+SONJECT_API void sonject_convert_params_init(sonject_convert_params *params);
+
+/* Converts a file. Geometry that is known goes with the samples where the format keeps texts (all
+ * but .npy and .pfm; a line of the log tells of it). Channel and array are those of
+ * `input`, and of `into` where that has several. Refused (INPUT): samples that the new type cannot
+ * hold, formats that cannot hold the samples as they are, a range axis of an input that does not
+ * tell its own, and whatever would do nothing. The output appears whole or not at all. Errors:
+ * ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED (a format that this build lacks), CANCELLED. */
+SONJECT_API sonject_status sonject_convert(sonject_context *context,
+                                           const sonject_convert_params *params);
+
+SONJECT_END_DECLARATIONS
+
+#endif

@@ -1,0 +1,182 @@
+#include "api/handles.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <sonject/convert.h>
+
+#include "api/conversion.h"
+#include "base/memory.h"
+#include "io/raster_formats.h"
+
+#define PIXELS_MAX ((uint64_t)1 << 31)
+
+void sonject_convert_params_init(sonject_convert_params *params)
+{
+    memset(params, 0, sizeof *params);
+    params->struct_size = sizeof *params;
+    params->channel = SONJECT_CHANNEL_ONLY;
+    params->scale = 1.0;
+    sonject_geometry_params_init(&params->geometry);
+}
+
+static sonject_status check_choices(struct report *report, const sonject_convert_params *params)
+{
+    if (!params->input || !params->output)
+        return null_argument(report, "input and output");
+    if (params->samples > SONJECT_SAMPLES_FLOAT32 ||
+        params->range_axis > SONJECT_CONVERT_AXIS_GROUND)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                              "samples or range_axis: no such choice");
+    if (!(params->scale > 0.0) || !isfinite(params->scale))
+        return report_failure(report, SONJECT_ERROR_INPUT, "scale must be a number above 0, not %g",
+                              params->scale);
+    if (!(params->altitude_m >= 0.0) || !isfinite(params->altitude_m))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "altitude must be a number of m above 0, not %g", params->altitude_m);
+    if (params->samples == SONJECT_SAMPLES_KEPT && params->scale != 1.0)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "a scale belongs to a type of samples: say which");
+    return params->has_geometry ? check_geometry(&params->geometry, report, NULL) : SONJECT_OK;
+}
+
+static sonject_status open_file(struct report *report, const sonject_convert_params *params,
+                                const char *path, struct swath_file **file)
+{
+    return swath_file_open_array(
+        report, path, swath_file_has_channels(path) ? params->channel : SONJECT_CHANNEL_ONLY,
+        swath_file_has_names(path) ? params->array : NULL, file);
+}
+
+/* What is asked for but has nothing to do. */
+static sonject_status check_uses(struct report *report, const sonject_convert_params *params)
+{
+    const char *into = params->into ? params->into : params->input;
+    if (params->channel != SONJECT_CHANNEL_ONLY && !swath_file_has_channels(params->input) &&
+        !swath_file_has_channels(into))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: is no XTF file, so it has no channels: take the channel out",
+                              params->input);
+    if (params->array && !swath_file_has_names(params->input) && !swath_file_has_names(into))
+        return report_failure(
+            report, SONJECT_ERROR_INPUT,
+            "%s: is neither HDF5 nor MATLAB, so its arrays have no names: take the "
+            "array out",
+            params->input);
+    const bool keeps_geometry = !params->into && raster_format_keeps_attributes(params->output);
+    if ((params->has_geometry || params->altitude_m > 0.0) && !keeps_geometry &&
+        params->range_axis == SONJECT_CONVERT_AXIS_KEPT)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: keeps no geometry or altitude: take them out, or write .tif",
+                              params->output);
+    return SONJECT_OK;
+}
+
+static sonject_status read_input(struct report *report, const sonject_convert_params *params,
+                                 struct conversion *conversion)
+{
+    struct swath_file *file = NULL;
+    size_t bytes = 0;
+    sonject_status status = open_file(report, params, params->input, &file);
+    if (status != SONJECT_OK)
+        return status;
+    struct raster_layout *layout = &conversion->layout;
+    swath_file_layout(file, layout);
+    const struct region whole = {0, 0, layout->rows, layout->columns};
+    if (layout->rows > PIXELS_MAX / layout->columns || !region_bytes(layout, &whole, &bytes))
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "%s: %llu x %llu pixels are more than the 2^31 that are converted",
+                                params->input, (unsigned long long)layout->rows,
+                                (unsigned long long)layout->columns);
+    else if (!(conversion->pixels = allocate_array(bytes, 1)))
+        status = report_out_of_memory(report, params->input);
+    else
+        status = swath_file_read(report, file, &whole, conversion->pixels);
+    if (status == SONJECT_OK)
+        conversion_take_notes(conversion, file, params);
+    swath_file_close(&file);
+    return status;
+}
+
+static sonject_status write_into(struct report *report, const sonject_convert_params *params,
+                                 const struct conversion *conversion)
+{
+    struct swath_file *file = NULL;
+    struct raster_layout layout;
+    sonject_status status = open_file(report, params, params->into, &file);
+    if (status != SONJECT_OK)
+        return status;
+    swath_file_layout(file, &layout);
+    const struct raster_layout *ours = &conversion->layout;
+    const struct region whole = {0, 0, layout.rows, layout.columns};
+    if (!swath_file_is_lossless(file))
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "%s: a JPEG would change the samples: choose another format",
+                                params->into);
+    else if (layout.rows != ours->rows || layout.columns != ours->columns ||
+             layout.channels != ours->channels || layout.type != ours->type)
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "%s holds %llu x %llu %s samples, the input %llu x %llu %s ones: "
+                                "both must be alike",
+                                params->into, (unsigned long long)layout.rows,
+                                (unsigned long long)layout.columns, conversion_type_name(&layout),
+                                (unsigned long long)ours->rows, (unsigned long long)ours->columns,
+                                conversion_type_name(ours));
+    else
+        status = swath_file_copy_with_patch(report, file, params->output, &whole,
+                                            conversion->pixels, NULL, NULL);
+    swath_file_close(&file);
+    return status;
+}
+
+static sonject_status write_new(struct report *report, const sonject_convert_params *params,
+                                struct conversion *conversion)
+{
+    const sonject_status status =
+        raster_format_write(report, params->output, &conversion->layout, conversion->notes,
+                            conversion->note_count, conversion->pixels);
+    if (status == SONJECT_OK && conversion->note_count > 0 &&
+        !raster_format_keeps_attributes(params->output))
+        report_news(report, "%s keeps no geometry: .tif, .png, .h5 and .pgm do", params->output);
+    return status;
+}
+
+static sonject_status convert(struct report *report, const sonject_convert_params *params,
+                              struct conversion *conversion)
+{
+    sonject_status status = read_input(report, params, conversion);
+    if (status == SONJECT_OK && params->magnitude)
+        status = conversion_to_magnitude(report, conversion, params->input);
+    if (status == SONJECT_OK && params->range_axis != SONJECT_CONVERT_AXIS_KEPT)
+        status = conversion_resample(report, conversion, params);
+    if (status == SONJECT_OK && params->samples != SONJECT_SAMPLES_KEPT)
+        status = conversion_to_type(report, conversion, params);
+    if (status != SONJECT_OK)
+        return status;
+    conversion_make_notes(conversion);
+    return params->into ? write_into(report, params, conversion)
+                        : write_new(report, params, conversion);
+}
+
+sonject_status sonject_convert(sonject_context *context, const sonject_convert_params *params)
+{
+    struct conversion conversion;
+    sonject_convert_params taken;
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    struct report *report = &context->report;
+    memset(&conversion, 0, sizeof conversion);
+    sonject_convert_params_init(&taken);
+    sonject_status status =
+        params_take(report, &taken, sizeof taken, params, sizeof taken, "convert parameters");
+    if (status == SONJECT_OK)
+        status = check_choices(report, &taken);
+    if (status == SONJECT_OK)
+        status = check_uses(report, &taken);
+    if (status == SONJECT_OK)
+        status = convert(report, &taken, &conversion);
+    free(conversion.pixels);
+    return status;
+}

@@ -1,0 +1,160 @@
+"""sonject convert: sonar formats to rasters and back, nothing guessed and nothing cut."""
+
+import struct
+
+import numpy
+import pytest
+
+import images
+import recordings
+from conftest import assert_refused
+
+ROWS, COLUMNS = 40, 120
+ALTITUDE, SPACING = 6.0, 30.0 / COLUMNS
+
+
+@pytest.fixture
+def sides():
+    random = numpy.random.default_rng(7)
+    return [random.rayleigh(2000.0, (ROWS, COLUMNS)).astype(numpy.uint16) for _ in range(2)]
+
+
+@pytest.fixture
+def line(tmp_path, sides):
+    """line.xtf: port and starboard of 30 m, 10 cm a ping, 6 m up."""
+    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides))
+    return tmp_path / "line.xtf"
+
+
+def done(answer):
+    assert answer.returncode == 0, answer.stderr
+    return answer
+
+
+def test_a_recording_goes_through_rasters_and_back(sonject, tmp_path, line, sides):
+    done(sonject("convert", "line.xtf", "a.tif", "--channel", "port"))
+    assert numpy.array_equal(images.read_tiff(tmp_path / "a.tif"), sides[0])
+    told = (tmp_path / "a.tif").read_bytes()
+    for note in (b"sonject:row_spacing_m=0.1\n", b"sonject:column_spacing_m=0.25\n",
+                 b"sonject:first_slant_range_m=0.125\n", b"sonject:altitude_m=6\n",
+                 b"sonject:side=port\n", b"sonject:range_axis=slant"):
+        assert note in told
+    assert b"frequency" not in told  # the recording's is not known
+    done(sonject("convert", "a.tif", "b.pgm"))
+    head, data = (tmp_path / "b.pgm").read_bytes().split(b"\n65535\n", 1)
+    assert b"# sonject:altitude_m=6\n" in head
+    assert numpy.array_equal(numpy.frombuffer(data, ">u2").reshape(ROWS, COLUMNS), sides[0])
+    answer = done(sonject("convert", "b.pgm", "c.npy"))
+    assert "c.npy keeps no geometry" in answer.stderr
+    array = numpy.load(tmp_path / "c.npy")
+    assert array.dtype == "<u2" and numpy.array_equal(array, sides[0])
+    numpy.save(tmp_path / "d.npy", array[::-1])
+    done(sonject("convert", "d.npy", "new.xtf", "--into", "line.xtf", "--channel", "port"))
+    changed = bytearray(line.read_bytes())
+    assert changed != (tmp_path / "new.xtf").read_bytes()
+    done(sonject("convert", "c.npy", "same.xtf", "--into", "new.xtf", "--channel", "port"))
+    assert (tmp_path / "same.xtf").read_bytes() == changed
+
+
+def test_hdf5_keeps_samples_and_geometry(sonject, tmp_path, line, sides):
+    h5py = pytest.importorskip("h5py")
+    done(sonject("convert", "line.xtf", "a.h5", "--channel", "starboard"))
+    with h5py.File(tmp_path / "a.h5") as file:
+        assert numpy.array_equal(file["image"][()], sides[1])
+        assert file["image"].attrs["sonject:side"] in ("starboard", b"starboard")
+    done(sonject("convert", "a.h5", "b.tif"))
+    assert numpy.array_equal(images.read_tiff(tmp_path / "b.tif"), sides[1])
+    assert b"sonject:side=starboard\n" in (tmp_path / "b.tif").read_bytes()
+
+
+def test_complex_samples_and_their_magnitude(sonject, tmp_path, swath):
+    image = (swath * numpy.exp(1j * swath * 50)).astype(numpy.complex64)
+    numpy.save(tmp_path / "a.npy", image)
+    done(sonject("convert", "a.npy", "b.tif"))
+    done(sonject("convert", "b.tif", "c.npy"))
+    assert numpy.array_equal(numpy.load(tmp_path / "c.npy"), image)
+    done(sonject("convert", "a.npy", "d.pfm", "--magnitude"))
+    head, data = (tmp_path / "d.pfm").read_bytes().split(b"\n-1.0\n", 1)
+    assert head == b"Pf\n%d %d" % image.shape[::-1]
+    magnitude = numpy.frombuffer(data, "<f4").reshape(image.shape)[::-1]
+    assert numpy.abs(magnitude - numpy.abs(image)).max() <= 1e-7 * magnitude.max()
+    assert_refused(sonject("convert", "a.npy", "d.png"), 3, "does not hold complex samples")
+    assert_refused(sonject("convert", "d.pfm", "e.tif", "--magnitude"), 3, "is not complex")
+
+
+def test_types_change_by_a_stated_scale_alone(sonject, tmp_path, swath):
+    numpy.save(tmp_path / "a.npy", swath)
+    assert_refused(sonject("convert", "a.npy", "b.png"), 3, "does not hold floating-point samples")
+    assert_refused(sonject("convert", "a.npy", "b.png", "--type", "uint8"), 2, "--scale")
+    scale = 255.0 / float(swath.max())
+    assert_refused(
+        sonject("convert", "a.npy", "b.pgm", "--type", "uint8", "--scale", 1.1 * scale), 3,
+        "row {}, column {} would become".format(*numpy.argwhere(swath * 1.1 * scale >= 255.5)[0]))
+    assert not (tmp_path / "b.pgm").exists()
+    done(sonject("convert", "a.npy", "b.pgm", "--type", "uint8", "--scale", scale))
+    data = (tmp_path / "b.pgm").read_bytes().split(b"\n255\n", 1)[1]
+    rounded = numpy.floor(swath.astype("f8") * scale + 0.5).astype("u1")
+    assert numpy.array_equal(numpy.frombuffer(data, "u1").reshape(swath.shape), rounded)
+    assert_refused(sonject("convert", "a.npy", "b.tif", "--type", "float32", "--scale", 1), 3,
+                   "already has float32 samples")
+
+
+def test_ground_range_and_back(sonject, tmp_path, line, sides):
+    done(sonject("convert", "line.xtf", "g.tif", "--channel", "port", "--range-axis", "ground"))
+    told = (tmp_path / "g.tif").read_bytes()
+    assert b"sonject:range_axis=ground" in told and b"first_ground_range_m=0\n" in told
+    assert b"sonject:resampled=nearest column" in told and b"first_slant" not in told
+    ground = images.read_tiff(tmp_path / "g.tif")
+    last = numpy.sqrt((SPACING * (COLUMNS - 0.5)) ** 2 - ALTITUDE**2)
+    assert ground.shape == (ROWS, int(last / SPACING) + 1)
+    slant = numpy.hypot(SPACING * numpy.arange(ground.shape[1]), ALTITUDE)
+    nearest = numpy.floor((slant - SPACING / 2) / SPACING + 0.5).astype(int)
+    assert numpy.array_equal(ground, sides[0][:, nearest])
+    done(sonject("convert", "g.tif", "s.tif", "--range-axis", "slant"))
+    back = images.read_tiff(tmp_path / "s.tif")
+    # far out a column of the one is a column of the other
+    first = COLUMNS - back.shape[1]
+    assert 0 < first <= ALTITUDE / SPACING + 1
+    offset = ALTITUDE / SPACING - 0.5
+    same = [numpy.array_equal(back[:, j], sides[0][:, int(round(offset + j)) + k])
+            for j in range(60, back.shape[1] - 2) for k in (-1, 0, 1)]
+    assert sum(same) == back.shape[1] - 62
+    assert_refused(sonject("convert", "g.tif", "x.tif", "--range-axis", "ground"), 3,
+                   "in ground range already")
+    scene = tmp_path / "scene.yaml"
+    scene.write_text("sonject: 1\ninput: {path: g.tif, geometry: {row_spacing: 0.1 m, "
+                     "column_spacing: 0.25 m, first_slant_range: 7 m}}\nsonar: {frequency: 600 kHz, "
+                     "bandwidth: 10 kHz, altitude: 6 m, resolution: 0.2 m}\n"
+                     "objects: [{name: b, shape: sphere, diameter: 1 m}]\n")
+    assert_refused(sonject("run", scene, "-o", "out"), 3, "ground range",
+                   "sonject convert --range-axis slant")
+
+
+def test_a_recording_that_says_ground_range(sonject, tmp_path, line):
+    data = bytearray(line.read_bytes())
+    for channel in range(3):
+        struct.pack_into("<H", data, 256 + 128 * channel + 2, 2)
+    line.write_bytes(data)
+    done(sonject("convert", "line.xtf", "a.tif", "--channel", "port"))
+    assert b"sonject:range_axis=ground" in (tmp_path / "a.tif").read_bytes()
+
+
+@pytest.mark.parametrize("arguments, code, words", [
+    (["plain.npy", "x.tif", "--range-axis", "ground", "--altitude", 6], 3, "where its columns lie"),
+    (["plain.npy", "x.npy", "--altitude", 6], 3, "keeps no geometry"),
+    (["plain.npy", "x.tif", "--channel", "port"], 3, "no XTF file"),
+    (["plain.npy", "x.tif", "--array", "a"], 3, "neither HDF5 nor MATLAB"),
+    (["plain.npy", "x.jpg"], 3, "without loss as .tif, .png, .npy, .h5, .pgm or .pfm"),
+    (["plain.npy", "x.xtf", "--into", "line.xtf", "--channel", "port"], 3, "must be alike"),
+    (["line.xtf", "x.tif", "--channel", "port", "--range-axis", "slant"], 3, "slant range already"),
+    (["line.xtf", "x.tif"], 3, "choose one of 1 (port), 2 (starboard)"),
+    (["plain.npy"], 2, "OUT is missing"),
+    (["plain.npy", "x.tif", "y.tif"], 2, "IN and OUT are wanted"),
+    (["strange.dpx", "x.tif"], 3, "is a DPX file"),
+])
+def test_refusals(sonject, tmp_path, line, arguments, code, words):
+    numpy.save(tmp_path / "plain.npy", numpy.ones((4, 5), numpy.float32))
+    (tmp_path / "strange.dpx").write_bytes(b"SDPX" + bytes(2048))
+    before = sorted(tmp_path.iterdir())
+    assert_refused(sonject("convert", *arguments), code, words)
+    assert sorted(tmp_path.iterdir()) == before
