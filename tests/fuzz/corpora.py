@@ -57,6 +57,44 @@ def arrays(_):
     }
 
 
+def netpbm(_):
+    samples = numpy.arange(6)
+    return {
+        "pgm": b"P5\n# name=a\n3 2\n255\n" + samples.astype("u1").tobytes(),
+        "wide": b"P5 3 2 65535\n" + samples.astype(">u2").tobytes(),
+        "pfm": b"Pf\n3 2\n-1.0\n" + samples.astype("<f4").tobytes(),
+        "big": b"Pf\n3 2\n1\n" + samples.astype(">f4").tobytes(),
+    }
+
+
+def _mat_element(kind, data):
+    return struct.pack("<II", kind, len(data)) + data + bytes(-len(data) % 8)
+
+
+def _mat_array(name, kind, numbers, imaginary=None):
+    """kind: MATLAB's class; the type of the numbers goes with it."""
+    stored = {6: (9, "<f8"), 7: (7, "<f4"), 9: (2, "u1"), 10: (3, "<i2"), 11: (4, "<u2")}[kind]
+    flags = struct.pack("<II", kind | (0x800 if imaginary is not None else 0), 0)
+    body = _mat_element(6, flags) + _mat_element(5, struct.pack("<ii", *numbers.shape))
+    body += _mat_element(1, name)
+    for part in [numbers] + ([imaginary] if imaginary is not None else []):
+        body += _mat_element(stored[0], part.astype(stored[1]).tobytes(order="F"))
+    return struct.pack("<II", 14, len(body)) + body
+
+
+def matlab(_):
+    head = b"MATLAB 5.0 MAT-file".ljust(124) + struct.pack("<H", 0x0100) + b"IM"
+    numbers = numpy.arange(6).reshape(2, 3)
+    arrays = {kind: _mat_array(b"swath", kind, numbers) for kind in (6, 7, 9, 10, 11)}
+    packed = zlib.compress(arrays[7])
+    return {
+        **{f"class{kind}": head + array for kind, array in arrays.items()},
+        "complex": head + _mat_array(b"swath", 7, numbers, numbers),
+        "two": head + arrays[7] + _mat_array(b"other", 6, numbers),
+        "compressed": head + struct.pack("<II", 15, len(packed)) + packed,
+    }
+
+
 VERTICES = [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)]
 FACES = [(0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)]
 
@@ -158,8 +196,9 @@ def snippets(source):
     return {"boulder": code, "short": short}
 
 
-MAKERS = {"scene": scenes, "target": targets, "xtf": recordings, "npy": arrays, "stl": stl,
-          "obj": obj, "ply": ply, "image": images, "table": tables, "snippet": snippets}
+MAKERS = {"scene": scenes, "target": targets, "xtf": recordings, "npy": arrays, "pnm": netpbm,
+          "mat": matlab, "stl": stl, "obj": obj, "ply": ply, "image": images, "table": tables,
+          "snippet": snippets}
 TEXTS = {"scene", "target", "npy", "stl", "obj", "ply", "table", "snippet"}
 
 

@@ -1,0 +1,33 @@
+/* Netpbm's grey images: header, samples and comments. */
+#include "fuzz.h"
+
+#include <stdlib.h>
+
+#include "base/memory.h"
+#include "io/pnm_file.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct sample_rows rows;
+    char value[16];
+    size_t size;
+    fuzz_write("fuzz.pgm", bytes, count);
+    (void)pnm_begins(bytes, count);
+    const sonject_status status = pnm_file_open(&report, "fuzz.pgm", &rows);
+    fuzz_expect(status, &report);
+    if (status != SONJECT_OK)
+        return 0;
+    const struct region whole = {0, 0, rows.layout.rows, rows.layout.columns};
+    /* All that it says to hold is in the file. */
+    if (!region_bytes(&rows.layout, &whole, &size) || size > count)
+        abort();
+    void *pixels = allocate_array(size, 1);
+    if (!pixels)
+        abort();
+    fuzz_expect(sample_rows_read(&report, &rows, &whole, pixels), &report);
+    (void)pnm_file_attribute(&rows, "name", value, sizeof value);
+    free(pixels);
+    sample_rows_clear(&rows);
+    return 0;
+}
