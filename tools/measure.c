@@ -1,7 +1,9 @@
 /* sonject measure: an image's statistics as JSON. */
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include <sonject/sonject.h>
@@ -18,6 +20,12 @@ struct measure_options {
     const char *influence;
     const char *labels;
     const char *transfer;
+    struct text_list boxes;
+    bool finds;
+    const char *truth;
+    struct number_argument row_spacing, column_spacing;
+    const char *compared;
+    const char *picture;
 };
 
 #define MEMBER(name) offsetof(struct measure_options, name)
@@ -33,6 +41,19 @@ static const struct argument arguments[] = {
      false, MEMBER(labels)},
     {"--transfer", NULL, "KIND[:P[:OFFSET]]", "how stored numbers came from amplitudes, see below",
      ARGUMENT_TEXT, false, MEMBER(transfer)},
+    {"--box", NULL, "ROW,COLUMN,ROWS,COLUMNS", "measures the contact there; may be repeated",
+     ARGUMENT_TEXTS, false, MEMBER(boxes)},
+    {"--truth", NULL, "FILE", "measures the contacts of a run's truth.json", ARGUMENT_TEXT, false,
+     MEMBER(truth)},
+    {"--find", NULL, NULL, "measures the brightest contact", ARGUMENT_FLAG, false, MEMBER(finds)},
+    {"--row-spacing", NULL, "M", "of contacts' lengths in metres", ARGUMENT_NUMBER, false,
+     MEMBER(row_spacing)},
+    {"--column-spacing", NULL, "M", "likewise, of slant range", ARGUMENT_NUMBER, false,
+     MEMBER(column_spacing)},
+    {"--compare", NULL, "FILE", "IMAGE and FILE hold measures of contacts: compares the sets",
+     ARGUMENT_TEXT, false, MEMBER(compared)},
+    {"--picture", NULL, "PNG", "draws the sets' distributions", ARGUMENT_TEXT, false,
+     MEMBER(picture)},
 };
 
 /* JSON knows neither NaN nor infinity. */
@@ -84,9 +105,115 @@ static bool fill(const struct measure_options *options, sonject_measure_params *
     return !options->transfer || transfer_parse("measure", options->transfer, &params->transfer);
 }
 
+static bool wants_contacts(const struct measure_options *options)
+{
+    return options->boxes.count > 0 || options->truth || options->finds;
+}
+
+/* "ROW,COLUMN,ROWS,COLUMNS" */
+static bool box_parse(const char *text, sonject_box *box)
+{
+    uint64_t values[4];
+    const char *rest = text;
+    for (int i = 0; i < 4; i++) {
+        char *end;
+        if (*rest < '0' || *rest > '9')
+            return false;
+        errno = 0;
+        values[i] = strtoull(rest, &end, 10);
+        if (errno || *end != (i < 3 ? ',' : '\0'))
+            return false;
+        rest = end + 1;
+    }
+    box->first_row = values[0];
+    box->first_column = values[1];
+    box->rows = values[2];
+    box->columns = values[3];
+    return box->rows > 0 && box->columns > 0;
+}
+
+/* What contacts have in common; the boxes are for free(). */
+static bool fill_contacts(const struct measure_options *options,
+                          sonject_contact_file_params *params, sonject_box **boxes)
+{
+    sonject_contact_file_params_init(params);
+    *boxes = calloc(options->boxes.count + 1, sizeof **boxes);
+    if (!*boxes) {
+        message("measure: memory is out");
+        return false;
+    }
+    for (size_t i = 0; i < options->boxes.count; i++)
+        if (!box_parse(options->boxes.texts[i], &(*boxes)[i])) {
+            message("measure: --box takes ROW,COLUMN,ROWS,COLUMNS in pixels, not \"",
+                    options->boxes.texts[i], "\"");
+            return false;
+        }
+    params->image = options->image;
+    params->truth = options->truth;
+    params->boxes = *boxes;
+    params->box_count = (uint32_t)options->boxes.count;
+    params->row_spacing_m = options->row_spacing.value;
+    params->column_spacing_m = options->column_spacing.value;
+    params->has_transfer = options->transfer != NULL;
+    return !options->transfer || transfer_parse("measure", options->transfer, &params->transfer);
+}
+
+/* Contacts, or two sets of them; prints JSON. */
+static int work_on_contacts(const struct measure_options *options)
+{
+    sonject_contact_file_params params;
+    sonject_box *boxes = NULL;
+    sonject_context *context = NULL;
+    char *text = NULL;
+    int code = EXIT_CODE_USAGE;
+    if (options->compared || fill_contacts(options, &params, &boxes)) {
+        sonject_status status = sonject_context_create(NULL, &context);
+        if (status == SONJECT_OK)
+            status = options->compared
+                         ? sonject_compare_contacts(context, options->image, options->compared,
+                                                    options->picture, &text)
+                         : sonject_measure_contacts(context, &params, &text);
+        if (text)
+            puts(text);
+        code = status == SONJECT_OK ? finish_output() : fail_with(context, status);
+    }
+    sonject_text_release(&text);
+    sonject_context_release(&context);
+    free(boxes);
+    return code;
+}
+
+/* Options that mean nothing together. */
+static const char *conflict(const struct measure_options *options)
+{
+    const bool has_spacing = options->row_spacing.is_given || options->column_spacing.is_given;
+    if (options->picture && !options->compared)
+        return "measure: --picture is for --compare";
+    if (options->compared && (wants_contacts(options) || options->transfer || has_spacing))
+        return "measure: --compare takes two files of measures, and no options of an image";
+    if (has_spacing && !wants_contacts(options))
+        return "measure: --row-spacing and --column-spacing are for --box, --truth and --find";
+    if ((options->compared || wants_contacts(options)) &&
+        (options->wants_seam || options->before || options->influence || options->labels))
+        return "measure: contacts and the seam are measured one at a time";
+    if (options->finds && (options->truth || options->boxes.count > 0))
+        return "measure: --find looks for a contact that --box and --truth do not tell";
+    if ((options->row_spacing.is_given && !(options->row_spacing.value > 0.0)) ||
+        (options->column_spacing.is_given && !(options->column_spacing.value > 0.0)))
+        return "measure: --row-spacing and --column-spacing must be above 0";
+    return NULL;
+}
+
 static int work(const void *verb_options)
 {
     const struct measure_options *options = verb_options;
+    const char *wrong = conflict(options);
+    if (wrong) {
+        message(wrong);
+        return EXIT_CODE_USAGE;
+    }
+    if (options->compared || wants_contacts(options))
+        return work_on_contacts(options);
     sonject_measure_params params;
     sonject_measurement measurement;
     if (!fill(options, &params))
@@ -105,7 +232,8 @@ static int work(const void *verb_options)
 
 const struct verb measure_verb = {
     .name = "measure",
-    .summary = "prints an image's statistics, and the seam of an injection, as JSON",
+    .summary =
+        "prints an image's statistics, its contacts' lengths and levels, or the seam, as JSON",
     .operand = "IMAGE",
     .operand_offset = MEMBER(image),
     .arguments = arguments,

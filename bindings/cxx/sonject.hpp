@@ -796,6 +796,17 @@ inline void merge_campaign(const context &context, const std::string &folder,
     context.check(status);
 }
 
+/* Lengths and levels of a contact; see sonject_measure_contact. */
+inline sonject_contact_measures measure_contact(const context &context, const pixels &image,
+                                                const sonject_contact_params &params)
+{
+    sonject_contact_measures measures = {};
+    measures.struct_size = sizeof measures;
+    detail::check(context.get(),
+                  sonject_measure_contact(context.get(), &image.value, &params, &measures));
+    return measures;
+}
+
 /* The library's version, such as "0.1.0". */
 inline std::string version()
 {

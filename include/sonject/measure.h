@@ -65,6 +65,94 @@ SONJECT_API sonject_status sonject_measure_pixels(sonject_context *context,
                                                   const uint8_t *influence, const uint8_t *labels,
                                                   sonject_measurement *measurement);
 
+/* Where a contact is in an image. */
+typedef struct sonject_contact_params {
+    uint32_t struct_size;
+    uint32_t reserved;
+    sonject_box box; /* pixels of the image, around highlight and shadow with some seabed; rows 0:
+                        the whole image, of which the highlight of most energy is taken */
+    double row_spacing_m;    /* 0: unknown, and lengths are known in pixels alone */
+    double column_spacing_m; /* of slant range */
+} sonject_contact_params;
+
+SONJECT_API void sonject_contact_params_init(sonject_contact_params *params);
+
+/* One ruler for measured and injected contacts. NaN: not there, or not known. A highlight are
+ * pixels whose mean with their neighbours is 6 dB over the seabed (and less than 20 dB under the
+ * contact's brightest), a shadow those that are 6 dB under it. Along-track lengths are taken across
+ * the whole part, range lengths across the middle third of its rows; edges lie at 0.6 of
+ * the seabed's mean for shadows, and at 0.15 of the way from it to the highlight's. On single-look
+ * speckle they are good to a pixel or two. */
+typedef struct sonject_contact_measures {
+    uint32_t struct_size;
+    uint32_t reserved;
+    sonject_box highlight; /* around its pixels; rows 0: there is none */
+    sonject_box shadow;    /* beyond the highlight's near edge, in its rows */
+    double highlight_along_pixels;
+    double highlight_range_pixels;
+    double shadow_along_pixels;
+    double shadow_range_pixels; /* its length */
+    double highlight_along_m;
+    double highlight_range_m;
+    double shadow_along_m;
+    double shadow_range_m;
+    double axis_length_m; /* of the highlight along its principal axis, of second moments of energy:
+                             that of a uniform bar */
+    double axis_width_m;  /* likewise, across it */
+    double axis_rad;      /* from along-track towards range, -pi/2...pi/2 */
+    double highlight_db;  /* mean intensity, 10 log10 of squared amplitude units */
+    double shadow_db;
+    double seabed_db;             /* around the box */
+    double highlight_contrast_db; /* over the seabed */
+    double shadow_contrast_db;
+    double seabed_shape; /* of the whole image without the contact, as in sonject_measurement */
+    double seabed_looks;
+    double row_length_pixels;
+    double column_length_pixels;
+} sonject_contact_measures;
+
+/* Measures a contact in pixels in memory, linear. measures->struct_size must be set. Errors:
+ * ARGUMENT, INPUT (box outside the image, a dark image), MEMORY. */
+SONJECT_API sonject_status sonject_measure_contact(sonject_context *context,
+                                                   const sonject_pixels *pixels,
+                                                   const sonject_contact_params *params,
+                                                   sonject_contact_measures *measures);
+
+/* An image file and its contacts. */
+typedef struct sonject_contact_file_params {
+    uint32_t struct_size;
+    uint32_t has_transfer; /* 1: transfer below is used; 0: plain amplitude */
+    const char *image;
+    const char *truth; /* a run's truth.json: its boxes, and the spacing that they tell; or NULL
+                        */
+    const sonject_box *boxes; /* box_count of them, beside those of truth; where there are none of
+                                 either, the contact is looked for in the whole image */
+    uint32_t box_count;
+    uint32_t reserved;
+    double row_spacing_m; /* 0: unknown, or as truth tells */
+    double column_spacing_m;
+    sonject_transfer_params transfer;
+} sonject_contact_file_params;
+
+SONJECT_API void sonject_contact_file_params_init(sonject_contact_file_params *params);
+
+/* Measures contacts of an image file. *text gets JSON, {"contacts": [...]} with the members of
+ * sonject_contact_measures (null where they are not known), the caller's for sonject_text_release;
+ * NULL on failure. Errors: ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED. */
+SONJECT_API sonject_status sonject_measure_contacts(sonject_context *context,
+                                                    const sonject_contact_file_params *params,
+                                                    char **text);
+
+/* Compares two sets of contacts, files as sonject_measure_contacts writes them (also several such
+ * texts one after the other). *text gets JSON: of each measure the number of contacts that have it,
+ * mean and standard error of both sets, the Kolmogorov-Smirnov distance and the probability that
+ * sets of one kind are that far apart (asymptotic: for some 8 contacts a set or more). picture: a
+ * PNG of both sets' distributions, or NULL. Errors: ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED.
+ */
+SONJECT_API sonject_status sonject_compare_contacts(sonject_context *context, const char *first,
+                                                    const char *second, const char *picture,
+                                                    char **text);
+
 SONJECT_END_DECLARATIONS
 
 #endif

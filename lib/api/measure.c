@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "api/contacts.h"
 #include "api/handles.h"
 #include "base/memory.h"
 #include "image/seam.h"
@@ -280,6 +281,41 @@ static sonject_status take_amplitudes(struct report *report, const sonject_pixel
                                   i / input.columns, i % input.columns);
     }
     return SONJECT_OK;
+}
+
+static void square(float *values, size_t count)
+{
+    for (size_t i = 0; values && i < count; i++)
+        values[i] *= values[i];
+}
+
+sonject_status take_intensities(struct report *report, const sonject_pixels *pixels, size_t *rows,
+                                size_t *columns, float **intensity)
+{
+    struct measured measured;
+    memset(&measured, 0, sizeof measured);
+    const sonject_status status = take_amplitudes(report, pixels, &measured);
+    *rows = measured.rows;
+    *columns = measured.columns;
+    *intensity = measured.amplitudes;
+    if (status == SONJECT_OK)
+        square(measured.amplitudes, measured.rows * measured.columns);
+    return status;
+}
+
+sonject_status read_intensities(struct report *report, const char *path,
+                                const sonject_transfer_params *transfer, size_t *rows,
+                                size_t *columns, float **intensity)
+{
+    struct measured measured;
+    memset(&measured, 0, sizeof measured);
+    const sonject_status status = read_image(report, path, transfer, &measured);
+    *rows = measured.rows;
+    *columns = measured.columns;
+    *intensity = measured.amplitudes;
+    if (status == SONJECT_OK)
+        square(measured.amplitudes, measured.rows * measured.columns);
+    return status;
 }
 
 sonject_status sonject_measure_pixels(sonject_context *context, const sonject_pixels *pixels,

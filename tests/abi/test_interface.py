@@ -81,6 +81,9 @@ SIZES = {
     "sonject_form_params": 40,
     "sonject_measure_params": 72,
     "sonject_measurement": 112,
+    "sonject_contact_params": 56,
+    "sonject_contact_measures": 232,
+    "sonject_contact_file_params": 88,
     "sonject_pulse_params": 24,
     "sonject_motion_params": 224,
 }

@@ -1,6 +1,7 @@
 """sonject measure: an image's statistics as JSON."""
 
 import json
+import struct
 
 import numpy
 import pytest
@@ -108,3 +109,81 @@ def test_steps_of_grey_are_kept(sonject, tmp_path):
     assert truth["blending"]["seabed_estimated"]["looks"] >= 1
     run = json.loads((tmp_path / "out" / "run.json").read_text())
     assert run["blending"] == truth["blending"]
+
+
+# Highlight and shadow of unequal rows and columns, somewhere off the middle.
+HIGHLIGHT, SHADOW = (70, 150, 21, 12), (70, 162, 21, 55)
+
+
+def contact(seed=1, shadow_columns=55):
+    pixels = speckle(seed=seed)
+    row, column, rows, columns = HIGHLIGHT
+    pixels[row : row + rows, column : column + columns] *= 6
+    row, column, rows, _ = SHADOW
+    pixels[row : row + rows, column : column + shadow_columns] *= 0.05
+    return pixels
+
+
+def test_lengths_of_a_contact(sonject, tmp_path):
+    """Sharp edges in speckle: means over 12 rows or columns and more know them to a pixel or two."""
+    write(tmp_path / "image.tif", contact())
+    spacing = ["--row-spacing", "0.1", "--column-spacing", "0.05"]
+    box = "60,140,41,90"
+    (told_by_box,) = told(sonject("measure", "image.tif", "--box", box, *spacing))["contacts"]
+    for part, (row, column, rows, columns) in (("highlight", HIGHLIGHT), ("shadow", SHADOW)):
+        for name, size, metres in (("along", rows, 0.1), ("range", columns, 0.05)):
+            assert told_by_box[f"{part}_{name}_pixels"] == pytest.approx(size, abs=1.5)
+            assert told_by_box[f"{part}_{name}_m"] == pytest.approx(
+                told_by_box[f"{part}_{name}_pixels"] * metres)
+        near = told_by_box[part]
+        assert abs(near["row"] - row) <= 2 and abs(near["rows"] - rows) <= 4
+        assert abs(near["column"] - column) <= 2 and abs(near["columns"] - columns) <= 4
+    # 36 times the seabed's energy, and 1/400 of it; 252 and 1155 single-look values
+    assert told_by_box["highlight_contrast_db"] == pytest.approx(15.6, abs=1.0)
+    assert told_by_box["shadow_contrast_db"] == pytest.approx(-26.0, abs=1.0)
+    assert told_by_box["seabed_db"] == pytest.approx(-20.0, abs=0.5)
+    assert told_by_box["axis_length_m"] == pytest.approx(2.1, abs=0.3)
+    assert told_by_box["axis_width_m"] == pytest.approx(0.6, abs=0.15)
+    (found,) = told(sonject("measure", "image.tif", "--find", *spacing))["contacts"]
+    for name, value in found.items():
+        if isinstance(value, float) and not name.startswith(("seabed", "shadow_c", "highlight_c")):
+            assert value == pytest.approx(told_by_box[name], abs=0.5), name
+    truth = {"objects": [{"box": {"row": 70, "column": 150, "rows": 21, "columns": 67,
+                                  "length_m": 2.1, "width_m": 3.35}}, {"box": None}]}
+    (tmp_path / "truth.json").write_text(json.dumps(truth))
+    (by_truth,) = told(sonject("measure", "image.tif", "--truth", "truth.json"))["contacts"]
+    assert by_truth["shadow_range_m"] == pytest.approx(told_by_box["shadow_range_m"], abs=0.05)
+    truth["objects"][0]["box"]["columns"] = 1000
+    (tmp_path / "truth.json").write_text(json.dumps(truth))
+    assert_refused(sonject("measure", "image.tif", "--truth", "truth.json"), 3, "truth.json")
+    for bad in ("250,0,10,10", "0,0,10,321", f"{2**64 - 1},0,1,1"):
+        assert_refused(sonject("measure", "image.tif", "--box", bad), 3, "box")
+    for bad in ("1,2,3", "1,2,0,4", "1,2,3,4,5", "-1,2,3,4"):
+        assert_refused(sonject("measure", "image.tif", f"--box={bad}"), 2, "--box")
+
+
+def test_two_sets_of_contacts(sonject, tmp_path):
+    """Sets of equal shadows, and of shadows a third longer in one of them."""
+    for name, columns, seed in (("a", 55, 10), ("b", 55, 30), ("c", 75, 50)):
+        texts = []
+        for i in range(5):
+            write(tmp_path / "image.tif", contact(seed + i, columns))
+            texts.append(sonject("measure", "image.tif", "--box", "60,140,41,110").stdout)
+        (tmp_path / f"{name}.json").write_text("".join(texts))
+    same = told(sonject("measure", "a.json", "--compare", "b.json"))
+    other = told(sonject("measure", "a.json", "--compare", "c.json", "--picture", "sets.png"))
+    length = other["shadow_range_pixels"]
+    assert length["first"]["count"] == length["second"]["count"] == 5
+    assert length["first"]["mean"] == pytest.approx(55, abs=1.5)
+    assert length["second"]["mean"] == pytest.approx(75, abs=1.5)
+    assert 0 < length["first"]["standard_error"] < 1
+    assert length["ks_distance"] == 1 and length["p_value"] < 0.02
+    assert same["shadow_range_pixels"]["p_value"] > 0.02
+    assert other["shadow_range_m"]["p_value"] is None
+    assert other["shadow_range_m"]["first"]["count"] == 0
+    header = (tmp_path / "sets.png").read_bytes()
+    assert struct.unpack(">II", header[16:24])[0] > 1000
+    (tmp_path / "none.json").write_text("{}")
+    assert_refused(sonject("measure", "a.json", "--compare", "none.json"), 3, "none.json")
+    assert_refused(sonject("measure", "a.json", "--compare", "absent.json"), 3, "absent.json")
+    assert_refused(sonject("measure", "a.json", "--picture", "x.png"), 2, "--compare")

@@ -14,7 +14,18 @@ rows (track positions) x columns (slant ranges).
 
 from ._callbacks import Progress
 from ._library import load as _load
-from .actions import check, convert, form, inject, measure, quicklook, run, trace, write_seabed
+from .actions import (
+    check,
+    convert,
+    form,
+    inject,
+    measure,
+    measure_contact,
+    quicklook,
+    run,
+    trace,
+    write_seabed,
+)
 from .campaign import Campaign, CampaignImage, merge_campaign
 from .context import Context, Device, default_context, devices
 from ._elements import Elements
@@ -85,7 +96,7 @@ from .parameters import (
     absorption,
     from_degrees,
 )
-from .result import Box, Measurement, ObjectTruth, Result, Statistics
+from .result import Box, ContactMeasures, Measurement, ObjectTruth, Result, Statistics
 from .scene import Scene
 
 
@@ -102,6 +113,7 @@ __all__ = [
     "Capsule",
     "ColumnRule",
     "Cone",
+    "ContactMeasures",
     "Context",
     "ConvertAxis",
     "Cuboid",
@@ -178,6 +190,7 @@ __all__ = [
     "from_degrees",
     "inject",
     "measure",
+    "measure_contact",
     "merge_campaign",
     "quicklook",
     "run",

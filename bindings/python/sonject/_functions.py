@@ -38,6 +38,25 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
         _status,
         [_context, POINTER(s.sonject_device_info), c_size_t, POINTER(c_size_t)],
     ),
+    "sonject_contact_params_init": (None, [POINTER(s.sonject_contact_params)]),
+    "sonject_contact_file_params_init": (None, [POINTER(s.sonject_contact_file_params)]),
+    "sonject_measure_contact": (
+        _status,
+        [
+            _context,
+            POINTER(s.sonject_pixels),
+            POINTER(s.sonject_contact_params),
+            POINTER(s.sonject_contact_measures),
+        ],
+    ),
+    "sonject_measure_contacts": (
+        _status,
+        [_context, POINTER(s.sonject_contact_file_params), POINTER(c_char_p)],
+    ),
+    "sonject_compare_contacts": (
+        _status,
+        [_context, c_char_p, c_char_p, c_char_p, POINTER(c_char_p)],
+    ),
     "sonject_geometry_params_init": (None, [POINTER(s.sonject_geometry_params)]),
     "sonject_transfer_params_init": (None, [POINTER(s.sonject_transfer_params)]),
     "sonject_synthetic_params_init": (None, [POINTER(s.sonject_synthetic_params)]),

@@ -607,3 +607,57 @@ class sonject_seabed_file_params(Structure):
         ("geometry", sonject_geometry_params),
         ("sonar", sonject_sonar_params),
     ]
+
+
+class sonject_contact_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("box", sonject_box),
+        ("row_spacing_m", c_double),
+        ("column_spacing_m", c_double),
+    ]
+
+
+class sonject_contact_measures(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("reserved", c_uint32),
+        ("highlight", sonject_box),
+        ("shadow", sonject_box),
+        ("highlight_along_pixels", c_double),
+        ("highlight_range_pixels", c_double),
+        ("shadow_along_pixels", c_double),
+        ("shadow_range_pixels", c_double),
+        ("highlight_along_m", c_double),
+        ("highlight_range_m", c_double),
+        ("shadow_along_m", c_double),
+        ("shadow_range_m", c_double),
+        ("axis_length_m", c_double),
+        ("axis_width_m", c_double),
+        ("axis_rad", c_double),
+        ("highlight_db", c_double),
+        ("shadow_db", c_double),
+        ("seabed_db", c_double),
+        ("highlight_contrast_db", c_double),
+        ("shadow_contrast_db", c_double),
+        ("seabed_shape", c_double),
+        ("seabed_looks", c_double),
+        ("row_length_pixels", c_double),
+        ("column_length_pixels", c_double),
+    ]
+
+
+class sonject_contact_file_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("has_transfer", c_uint32),
+        ("image", c_char_p),
+        ("truth", c_char_p),
+        ("boxes", POINTER(sonject_box)),
+        ("box_count", c_uint32),
+        ("reserved", c_uint32),
+        ("row_spacing_m", c_double),
+        ("column_spacing_m", c_double),
+        ("transfer", sonject_transfer_params),
+    ]

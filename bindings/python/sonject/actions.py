@@ -20,11 +20,12 @@ from ._values import (
     override_texts,
     real_number,
     sized,
+    whole_number,
 )
 from .context import Context, default_context
 from .enumerations import ConvertAxis, LabelFormat, RangeAxis, Samples
 from .parameters import Geometry, Recording, Sonar, Synthetic, Transfer
-from .result import Measurement, Result, _copied
+from .result import Box, ContactMeasures, Measurement, Result, _copied
 from .scene import Scene
 
 
@@ -310,3 +311,39 @@ def measure(
     )
     del array, masks
     return Measurement(**_copied(Measurement, measurement))
+
+
+def measure_contact(
+    image: Any,
+    box: Optional[Box] = None,
+    *,
+    row_spacing_m: float = 0.0,
+    column_spacing_m: float = 0.0,
+    context: Optional[Context] = None,
+) -> ContactMeasures:
+    """How long, wide and bright a contact's highlight and shadow are in an image as inject takes it.
+
+    box: around both, with some seabed; None: the brightest highlight of the image. Spacings: 0 where
+    they are unknown, and lengths are known in pixels alone.
+    """
+    context = default_context() if context is None else context
+    pixels, array = library_pixels(image)
+    params = initialised(s.sonject_contact_params)
+    params.row_spacing_m = real_number("row_spacing_m", row_spacing_m)
+    params.column_spacing_m = real_number("column_spacing_m", column_spacing_m)
+    if box is not None:
+        for name in ("first_row", "first_column", "rows", "columns"):
+            setattr(params.box, name, whole_number(name, getattr(box, name), 2**31))
+    measures = sized(s.sonject_contact_measures)
+    context.call(
+        "sonject_measure_contact",
+        context,
+        ctypes.byref(pixels),
+        ctypes.byref(params),
+        ctypes.byref(measures),
+    )
+    del array
+    values = _copied(ContactMeasures, measures)
+    for name in ("highlight", "shadow"):
+        values[name] = Box(**_copied(Box, values[name]))
+    return ContactMeasures(**values)

@@ -158,6 +158,36 @@ class Measurement:
     background_patches: int
 
 
+@dataclass(frozen=True)
+class ContactMeasures:
+    """Lengths and levels of a contact's highlight and shadow, NaN where there is none or it is not
+    known. along: along the track; range: slant range, the shadow's length; axis: of the highlight's
+    energy; levels in dB of squared amplitude; the rest is of the seabed, as in Measurement."""
+
+    highlight: Box
+    shadow: Box
+    highlight_along_pixels: float
+    highlight_range_pixels: float
+    shadow_along_pixels: float
+    shadow_range_pixels: float
+    highlight_along_m: float
+    highlight_range_m: float
+    shadow_along_m: float
+    shadow_range_m: float
+    axis_length_m: float
+    axis_width_m: float
+    axis_rad: float
+    highlight_db: float
+    shadow_db: float
+    seabed_db: float
+    highlight_contrast_db: float
+    shadow_contrast_db: float
+    seabed_shape: float
+    seabed_looks: float
+    row_length_pixels: float
+    column_length_pixels: float
+
+
 def _copied(kind: Any, structure: ctypes.Structure) -> dict[str, Any]:
     return {entry.name: getattr(structure, entry.name) for entry in fields(kind)}
 
