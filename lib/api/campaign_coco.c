@@ -4,30 +4,18 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <sonject/version.h>
+
 #include "api/campaign_documents.h"
 #include "base/file.h"
 
 /* A document in the making: annotations wait in a file of their own until all images are told. */
-struct coco {
+struct coco_file {
     const struct data_set *set;
     size_t split;
     FILE *images, *annotations;
     uint64_t annotation_count;
 };
-
-/* The number of a class among the campaign's, from 1. */
-static json_int_t category_of(const struct data_set *set, const char *name)
-{
-    size_t i;
-    const json_t *known;
-    json_array_foreach(json_object_get(set->head, "classes"), i, known)
-    {
-        const char *text = json_string_value(known);
-        if (text && strcmp(text, name) == 0)
-            return (json_int_t)i + 1;
-    }
-    return 0;
-}
 
 /* Adds a document, which is given up, to a list in a file. */
 static sonject_status add_entry(const struct data_set *set, FILE *file, json_t *entry,
@@ -48,25 +36,21 @@ static json_int_t member_whole(const json_t *object, const char *key)
     return json_integer_value(json_object_get(object, key));
 }
 
-static json_t *annotation_of(const struct coco *coco, json_int_t image, const json_t *object)
+/* An annotation of an image's record, numbered. Takes it by reference. */
+static json_t *numbered(struct coco_file *coco, uint64_t image, const json_t *annotation)
 {
-    const json_t *box = json_object_get(object, "box");
-    const bool is_cut = json_is_true(json_object_get(object, "highlight_cut")) ||
-                        json_is_true(json_object_get(object, "shadow_cut"));
-    return json_pack(
-        "{s:I, s:I, s:I, s:[I,I,I,I], s:I, s:[], s:i, s:b}", "id",
-        (json_int_t)coco->annotation_count, "image_id", image, "category_id",
-        category_of(coco->set, member_text(object, "class")), "bbox", member_whole(box, "column"),
-        member_whole(box, "row"), member_whole(box, "columns"), member_whole(box, "rows"), "area",
-        member_whole(object, "highlight_pixels") + member_whole(object, "shadow_pixels"),
-        "segmentation", "iscrowd", 0, "truncated", is_cut);
+    json_t *copy = json_copy((json_t *)annotation);
+    coco->annotation_count++;
+    json_object_set_new(copy, "id", json_integer((json_int_t)coco->annotation_count));
+    json_object_set_new(copy, "image_id", json_integer((json_int_t)image));
+    return copy;
 }
 
-static sonject_status add_image(struct coco *coco, uint64_t id, bool is_first)
+static sonject_status add_image(struct coco_file *coco, uint64_t id, bool is_first)
 {
     json_t *record, *truth;
     size_t i;
-    const json_t *object;
+    const json_t *annotation;
     const struct data_set *set = coco->set;
     sonject_status status = data_set_image(set, coco->split, id, &record, &truth);
     if (status != SONJECT_OK)
@@ -77,20 +61,19 @@ static sonject_status add_image(struct coco *coco, uint64_t id, bool is_first)
                                  member_whole(set->head, "columns"), "height",
                                  member_whole(set->head, "rows")),
                        is_first);
-    json_array_foreach(json_object_get(truth, "objects"), i, object)
+    json_array_foreach(json_object_get(record, "annotations"), i, annotation)
     {
-        if (status != SONJECT_OK || !json_is_true(json_object_get(object, "visible")))
-            continue;
-        coco->annotation_count++;
-        status = add_entry(set, coco->annotations, annotation_of(coco, (json_int_t)id, object),
-                           coco->annotation_count == 1);
+        const bool is_first_of_all = coco->annotation_count == 0;
+        if (status == SONJECT_OK)
+            status =
+                add_entry(set, coco->annotations, numbered(coco, id, annotation), is_first_of_all);
     }
     json_decref(record);
     json_decref(truth);
     return status;
 }
 
-static sonject_status add_images(struct coco *coco)
+static sonject_status add_images(struct coco_file *coco)
 {
     const struct data_set *set = coco->set;
     sonject_status status = SONJECT_OK;
@@ -114,7 +97,7 @@ static bool copy_all(FILE *from, FILE *to)
     return !ferror(from);
 }
 
-static sonject_status add_categories(struct coco *coco)
+static sonject_status add_categories(struct coco_file *coco)
 {
     size_t i;
     const json_t *name;
@@ -122,17 +105,21 @@ static sonject_status add_categories(struct coco *coco)
     json_array_foreach(json_object_get(coco->set->head, "classes"), i, name)
     {
         if (status == SONJECT_OK)
-            status =
-                add_entry(coco->set, coco->images,
-                          json_pack("{s:I, s:O}", "id", (json_int_t)i + 1, "name", name), i == 0);
+            status = add_entry(coco->set, coco->images,
+                               json_pack("{s:I, s:O, s:s}", "id", (json_int_t)i + 1, "name", name,
+                                         "supercategory", "object"),
+                               i == 0);
     }
     return status;
 }
 
-static sonject_status write_split(struct coco *coco, const char *path)
+static sonject_status write_split(struct coco_file *coco, const char *path)
 {
     struct report *report = coco->set->report;
-    fputs("{\"images\": [", coco->images);
+    fprintf(coco->images,
+            "{\"info\": {\"description\": \"targets injected by sonject\", \"version\": \"%s\"},\n"
+            "\"licenses\": [],\n\"images\": [",
+            sonject_version());
     sonject_status status = add_images(coco);
     fputs("],\n\"annotations\": [", coco->images);
     if (status == SONJECT_OK && !copy_all(coco->annotations, coco->images))
@@ -150,7 +137,7 @@ static sonject_status write_coco_file(const struct data_set *set, size_t split, 
 {
     char *part = file_part_name(path);
     char *waiting = file_part_name(path);
-    struct coco coco = {set, split, NULL, NULL, 0};
+    struct coco_file coco = {set, split, NULL, NULL, 0};
     sonject_status status = SONJECT_OK;
     if (!part || !waiting) {
         status = report_out_of_memory(set->report, "a file name");

@@ -303,11 +303,33 @@ static sonject_status write_data_set(const struct data_set *set)
     return status;
 }
 
+/* YOLO numbers classes by their lines in here. */
+static sonject_status write_classes(const struct data_set *set)
+{
+    size_t i;
+    const json_t *name;
+    struct growing_text text = {NULL, 0, 0, false};
+    char *path = path_join(set->folder, "classes.txt");
+    json_array_foreach(json_object_get(set->head, "classes"), i, name)
+    {
+        growing_text_add(&text, "%s\n", json_string_value(name) ? json_string_value(name) : "");
+    }
+    char *names = growing_text_end(&text);
+    const sonject_status status = path && names
+                                      ? file_write_whole(set->report, path, names, strlen(names))
+                                      : report_out_of_memory(set->report, "classes.txt");
+    free(path);
+    free(names);
+    return status;
+}
+
 sonject_status data_set_finish(struct data_set *set)
 {
     sonject_status status = check_complete(set);
     if (status == SONJECT_OK)
         status = write_data_set_coco(set);
+    if (status == SONJECT_OK)
+        status = write_classes(set);
     if (status == SONJECT_OK)
         status = write_contact_sheet(set);
     if (status == SONJECT_OK)

@@ -12,9 +12,13 @@
 #define DOCUMENT_BYTES_MAX ((size_t)64 << 20)
 
 const struct output_file output_files[OUTPUT_KINDS] = {
-    {OUTPUT_HIGHLIGHT, "highlight", ".png"}, {OUTPUT_SHADOW, "shadow", ".png"},
-    {OUTPUT_MASKS, "masks", ".png"},         {OUTPUT_ENERGY, "energy", ".tif"},
+    {OUTPUT_HIGHLIGHT, "highlight", ".png"},
+    {OUTPUT_SHADOW, "shadow", ".png"},
+    {OUTPUT_MASKS, "masks", ".png"},
+    {OUTPUT_ENERGY, "energy", ".tif"},
     {OUTPUT_FIELD, "field", ".tif"},
+    {OUTPUT_YOLO, "labels", ".txt"},
+    {OUTPUT_VOC, "voc", ".xml"},
 };
 
 static const char *const common_folders[] = {"images", "truth", "records"};

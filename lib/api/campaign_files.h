@@ -11,7 +11,7 @@
 #include "campaign/campaign.h"
 #include "image/raster.h"
 
-#define OUTPUT_KINDS 5
+#define OUTPUT_KINDS 7
 
 struct output_file {
     uint32_t output; /* enum output */

@@ -12,9 +12,12 @@
 #include "api/documents.h"
 #include "api/geometry_notes.h"
 #include "base/file.h"
+#include "base/json_document.h"
 #include "base/memory.h"
-#include "inject/traced_impulses.h"
 #include "io/raster_file.h"
+#include "label/coco.h"
+#include "label/voc.h"
+#include "label/yolo.h"
 
 void campaign_image_clear(struct campaign_image *image)
 {
@@ -60,11 +63,25 @@ sonject_status campaign_image_make(struct sonject_context *context,
     return name_image(campaign->report, id, status);
 }
 
-/* The image as one by itself: its own pixel (0, 0) is where its geometry begins. */
+/* Rows of the track become those of the image. */
+static void shift_track(struct track *track, uint64_t first_row)
+{
+    const uint64_t shift = first_row < track->rows ? first_row : track->rows;
+    for (size_t i = 0; i < track->fix_count; i++)
+        track->fixes[i].row -= (double)first_row;
+    track->rows -= shift;
+    if (track->headings_deg)
+        memmove(track->headings_deg, track->headings_deg + shift,
+                (size_t)track->rows * sizeof *track->headings_deg);
+}
+
+/* The image as one by itself: its own pixel (0, 0) is where its geometry begins, and its track.
+ * What the two hold is the image's. */
 static void take_alone(struct campaign_image *image, struct scene *scene, struct swath *swath)
 {
     const struct region *chip = &image->plan.chip;
     const struct region all = {0, 0, chip->rows, chip->columns};
+    shift_track(&image->swath.track, chip->first_row);
     *scene = image->scene;
     *swath = image->swath;
     scene->geometry.first_along_track_m += (double)chip->first_row * scene->geometry.row_spacing_m;
@@ -92,10 +109,10 @@ static sonject_status write_pixels(struct sonject_campaign *campaign, const stru
     return status;
 }
 
-/* What an output's file holds. */
-static sonject_status write_output(struct sonject_campaign *campaign, const struct scene *scene,
-                                   const struct swath *swath, const struct injection_result *result,
-                                   const struct output_file *output, const char *path)
+/* Masks and energies. */
+static sonject_status write_layer(struct sonject_campaign *campaign, const struct scene *scene,
+                                  const struct swath *swath, const struct injection_result *result,
+                                  const struct output_file *output, const char *path)
 {
     static const char *const complex_names[] = {"real", "imag"};
     struct geometry_notes notes;
@@ -124,9 +141,10 @@ static json_t *seed_of(uint64_t seed)
     return json_string(text);
 }
 
+/* Annotations are numbered when all images are known. */
 static json_t *record_of(const struct sonject_campaign *campaign,
                          const struct campaign_image *image, const char *image_name,
-                         const char *scene_hash_text)
+                         const char *scene_hash_text, json_t *annotations)
 {
     const struct image_plan *plan = &image->plan;
     const struct swath_plan *swath = &campaign->campaign.swaths[plan->swath];
@@ -135,7 +153,8 @@ static json_t *record_of(const struct sonject_campaign *campaign,
     for (size_t i = 0; i < plan->key_count; i++)
         json_array_append_new(keys, json_string(plan->keys[i].text));
     return json_pack(
-        "{s:I, s:s, s:s, s:s?, s:{s:s, s:s, s:I, s:I, s:I, s:I}, s:o, s:s, s:o, s:s, s:s, s:s}",
+        "{s:I, s:s, s:s, s:s?, s:{s:s, s:s, s:I, s:I, s:I, s:I}, s:o, s:s, s:o, s:s, s:s, s:s, "
+        "s:o}",
         "id", (json_int_t)plan->id, "split", campaign->campaign.splits[plan->split].name, "image",
         image_name, "target",
         has_target ? campaign->campaign.targets[plan->category - CATEGORY_TARGET].class_name : NULL,
@@ -144,20 +163,48 @@ static json_t *record_of(const struct sonject_campaign *campaign,
         (json_int_t)plan->chip.rows, "columns", (json_int_t)plan->chip.columns, "seed",
         seed_of(image->scene.injection.seed), "scene", campaign->campaign.scene_written, "set",
         keys, "scene_hash", scene_hash_text, "campaign_hash", campaign->hash, "sonject",
-        sonject_version());
+        sonject_version(), "annotations", annotations);
 }
 
 static sonject_status write_record(struct sonject_campaign *campaign,
-                                   const struct campaign_image *image, const char *image_name,
+                                   const struct campaign_image *image,
+                                   const struct image_labels *labels, struct class_names *classes,
                                    const char *path)
 {
     char hash[HASH_TEXT_CAPACITY];
-    const sonject_status status =
+    struct coco coco;
+    memset(&coco, 0, sizeof coco);
+    sonject_status status =
         place_free_hash(campaign->report, &image->scene, image->swath.identity, hash);
-    if (status != SONJECT_OK)
-        return status;
-    return campaign_write_json(campaign->report, record_of(campaign, image, image_name, hash),
-                               path);
+    if (status == SONJECT_OK)
+        status = coco_add(&coco, campaign->report, labels, classes);
+    if (status == SONJECT_OK)
+        status = campaign_write_json(
+            campaign->report,
+            record_of(campaign, image, labels->file_name, hash, json_incref(coco.annotations)),
+            path);
+    coco_clear(&coco);
+    return status;
+}
+
+/* Labels number the campaign's classes alike in all images. */
+static sonject_status take_classes(const struct campaign *campaign, struct report *report,
+                                   struct class_names *classes)
+{
+    uint32_t number;
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; status == SONJECT_OK && i < campaign->target_count; i++)
+        status = class_names_take(classes, report, campaign->targets[i].class_name, &number);
+    for (size_t i = 0; status == SONJECT_OK && i < campaign->clutter_count; i++)
+        status = class_names_take(classes, report, campaign->clutter[i].class_name, &number);
+    return status;
+}
+
+static sonject_status write_label(struct report *report, const struct image_labels *labels,
+                                  struct class_names *classes, uint32_t output, const char *path)
+{
+    return output == OUTPUT_YOLO ? yolo_write(report, labels, classes, path)
+                                 : voc_write(report, labels, path);
 }
 
 static sonject_status write_truth_of(struct sonject_campaign *campaign, const struct scene *scene,
@@ -174,31 +221,57 @@ static sonject_status write_truth_of(struct sonject_campaign *campaign, const st
     return write_truth(campaign->report, &facts, path);
 }
 
+/* All but the image itself. */
+static sonject_status write_rest(struct sonject_campaign *campaign,
+                                 const struct campaign_image *image, const struct scene *scene,
+                                 const struct swath *swath, const struct image_labels *labels,
+                                 const struct image_files *files)
+{
+    struct class_names classes = {NULL, 0, 0};
+    sonject_status status = take_classes(&campaign->campaign, campaign->report, &classes);
+    for (size_t i = 0; status == SONJECT_OK && i < files->output_count; i++) {
+        const uint32_t output = files->outputs[i].kind->output;
+        const char *path = files->outputs[i].path;
+        status =
+            output >= OUTPUT_YOLO
+                ? write_label(campaign->report, labels, &classes, output, path)
+                : write_layer(campaign, scene, swath, &image->result, files->outputs[i].kind, path);
+    }
+    if (status == SONJECT_OK)
+        status =
+            write_truth_of(campaign, scene, swath, &image->result, labels->file_name, files->truth);
+    if (status == SONJECT_OK)
+        status = write_record(campaign, image, labels, &classes, files->record);
+    class_names_clear(&classes);
+    return status;
+}
+
 sonject_status campaign_image_write(struct sonject_campaign *campaign, struct campaign_image *image,
                                     const char *folder)
 {
     struct scene scene;
     struct swath swath;
+    struct image_labels labels;
+    struct image_files files;
     char image_name[64];
     const char *split = campaign->campaign.splits[image->plan.split].name;
-    const uint64_t id = image->plan.id;
-    struct image_files files;
     take_alone(image, &scene, &swath);
-    sonject_status status =
-        image_files_init(&files, campaign->report, folder, split, id, swath.layout.type,
-                         swath.is_complex, campaign->campaign.outputs);
-    snprintf(image_name, sizeof image_name, "images/%08llu%s", (unsigned long long)id,
+    snprintf(image_name, sizeof image_name, "images/%08llu%s", (unsigned long long)image->plan.id,
              image_extension(swath.layout.type, swath.is_complex));
+    const struct label_request request = {
+        &scene, &image->result, image_name, swath.layout.rows, swath.layout.columns, swath.patch, 0,
+        0,      &swath.track};
+    sonject_status status = image_labels_find(&labels, campaign->report, &request);
+    if (status != SONJECT_OK)
+        return status;
+    status = image_files_init(&files, campaign->report, folder, split, image->plan.id,
+                              swath.layout.type, swath.is_complex, campaign->campaign.outputs);
     if (status == SONJECT_OK)
         status = write_pixels(campaign, &scene, &swath, &image->result, files.image);
-    for (size_t i = 0; status == SONJECT_OK && i < files.output_count; i++)
-        status = write_output(campaign, &scene, &swath, &image->result, files.outputs[i].kind,
-                              files.outputs[i].path);
     if (status == SONJECT_OK)
-        status = write_truth_of(campaign, &scene, &swath, &image->result, image_name, files.truth);
-    if (status == SONJECT_OK)
-        status = write_record(campaign, image, image_name, files.record);
+        status = write_rest(campaign, image, &scene, &swath, &labels, &files);
     image_files_clear(&files);
+    image_labels_clear(&labels);
     return status;
 }
 

@@ -65,13 +65,15 @@ enum design {
     DESIGN_GRID
 };
 
-/* What is written of each image beside image and truth. */
+/* What is written of each image beside image, truth and COCO. */
 enum output {
     OUTPUT_HIGHLIGHT = 1,
     OUTPUT_SHADOW = 2,
     OUTPUT_MASKS = 4,
     OUTPUT_ENERGY = 8,
-    OUTPUT_FIELD = 16
+    OUTPUT_FIELD = 16,
+    OUTPUT_YOLO = 32,
+    OUTPUT_VOC = 64
 };
 
 struct campaign {

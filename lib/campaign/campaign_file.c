@@ -41,14 +41,13 @@ static sonject_status read_range(struct reader *reader, const struct tree_node *
     return status;
 }
 
-static sonject_status read_outputs(struct reader *reader, const struct tree_node *node,
-                                   void *structure)
+/* A list of words, the first of which stands for the bit `first`, the next for the next. */
+static sonject_status read_words(struct reader *reader, const struct tree_node *node,
+                                 const char *const *words, size_t count, uint32_t first,
+                                 uint32_t *bits)
 {
-    static const char *const words[] = {"highlight", "shadow", "masks", "energy", "field"};
-    struct campaign *campaign = structure;
     if (node->kind != TREE_LIST)
         return refuse_value(reader, node, "must be a list");
-    campaign->outputs = 0;
     for (size_t i = 0; i < node->count; i++) {
         struct word_list list = {{0}, 0};
         const struct tree_node *entry = &node->entries[i].value;
@@ -56,13 +55,30 @@ static sonject_status read_outputs(struct reader *reader, const struct tree_node
         size_t word = 0;
         if (!text)
             return SONJECT_ERROR_INPUT;
-        while (word < COUNT(words) && strcmp(words[word], text) != 0)
+        while (word < count && strcmp(words[word], text) != 0)
             list_word(&list, words[word++]);
-        if (word == COUNT(words))
-            return refuse_word(reader, entry, text, &list, nearest_word(text, words, COUNT(words)));
-        campaign->outputs |= 1u << word;
+        if (word == count)
+            return refuse_word(reader, entry, text, &list, nearest_word(text, words, count));
+        *bits |= first << word;
     }
     return SONJECT_OK;
+}
+
+static sonject_status read_outputs(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    static const char *const words[] = {"highlight", "shadow", "masks", "energy", "field"};
+    struct campaign *campaign = structure;
+    campaign->outputs &= OUTPUT_YOLO | OUTPUT_VOC;
+    return read_words(reader, node, words, COUNT(words), OUTPUT_HIGHLIGHT, &campaign->outputs);
+}
+
+static sonject_status read_labels(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    static const char *const words[] = {"yolo", "voc"};
+    struct campaign *campaign = structure;
+    return read_words(reader, node, words, COUNT(words), OUTPUT_YOLO, &campaign->outputs);
 }
 
 static sonject_status finish_fraction(struct reader *reader, const struct tree_node *node,
@@ -147,6 +163,8 @@ static const struct field campaign_fields[] = {
      .section = &chip_section, REQUIRED},
     {"outputs", "written beside image and truth: highlight, shadow, masks, energy, field",
      .kind = FIELD_SPECIAL, .read = read_outputs, .unit = "list of words"},
+    {"labels", "beside COCO: yolo, voc", .kind = FIELD_SPECIAL, .read = read_labels,
+     .unit = "list of words"},
     {"empty", "fraction of images without any object", QUANTITY(STRUCTURE, empty, QUANTITY_NUMBER)},
     {"splits", "names and fractions, such as {train: 0.8, test: 0.2}", .kind = FIELD_SPECIAL,
      .read = read_splits, .unit = "section"},

@@ -31,6 +31,7 @@ images: {IMAGES}
 seed: 5
 chip: {{rows: {CHIP}, columns: {CHIP}, spread: 0.4, clearance: 2}}
 empty: 0.2
+labels: [yolo, voc]
 splits: {{train: 0.5, test: 0.5}}
 swaths:
   - path: swath0.png
@@ -110,12 +111,13 @@ def test_every_image_has_its_files(whole):
     found = records(whole)
     assert sorted(record["id"] for record in found) == list(range(IMAGES))
     expected = {"campaign.json", "dataset.json", "report.html", "contact_sheet.png",
-                "train/coco.json", "test/coco.json"}
+                "train/coco.json", "test/coco.json", "classes.txt"}
     for record in found:
         assert record["image"] == f"images/{record['id']:08d}.png"
         expected |= {of_image(record, kind, ".png")
                      for kind in ("images", "highlight", "shadow", "masks")}
         expected |= {of_image(record, kind, ".json") for kind in ("truth", "records")}
+        expected |= {of_image(record, "labels", ".txt"), of_image(record, "voc", ".xml")}
     assert set(contents(whole)) == expected
     assert len({record["seed"] for record in found}) == IMAGES
 
@@ -187,6 +189,14 @@ def test_coco_is_what_truth_and_masks_say(whole):
                 assert mine[0]["bbox"] == [columns.min(), rows.min(), numpy.ptp(columns) + 1,
                                            numpy.ptp(rows) + 1]
                 assert mine[0]["area"] == rows.size
+                counts = mine[0]["segmentation"]["counts"]
+                flat = numpy.repeat(numpy.arange(len(counts)) % 2, counts)
+                assert numpy.array_equal(numpy.flatnonzero(flat),
+                                         numpy.sort(columns * CHIP + rows))
+            lines = (whole / split / "labels" / f"{image['id']:08d}.txt").read_text().splitlines()
+            assert [int(line.split()[0]) + 1 for line in lines] == [
+                entry["category_id"] for entry in mine]
+    assert (whole / "classes.txt").read_text().splitlines() == [*TARGETS, "stone"]
 
 
 def test_the_report_holds_no_markup_of_classes(whole):
@@ -207,7 +217,7 @@ def test_one_image_alone_is_the_same(command, whole, ground):
     number = next(record["id"] for record in records(whole) if record["target"] == TARGETS[1])
     assert command("campaign", "campaign.yaml", "-o", "alone", "--only", number).returncode == 0
     alone = contents(ground / "alone")
-    assert len(alone) == 7  # its six files and campaign.json
+    assert len(alone) == 9  # its eight files and campaign.json
     assert alone.items() <= contents(whole).items()
 
 
