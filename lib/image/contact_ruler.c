@@ -184,8 +184,10 @@ static double length_between_edges(const struct ruler *ruler, const struct windo
     const size_t size = is_along ? ruler->rows : ruler->columns;
     const size_t middle = first + extent / 2;
     const size_t reach = extent / 2 + EDGE_REACH + 1;
-    return find_edge(ruler, across, is_along, middle, 1, room(middle, 1, size, reach), levels) +
-           find_edge(ruler, across, is_along, middle, -1, room(middle, -1, size, reach), levels);
+    const double length =
+        find_edge(ruler, across, is_along, middle, 1, room(middle, 1, size, reach), levels) +
+        find_edge(ruler, across, is_along, middle, -1, room(middle, -1, size, reach), levels);
+    return fmax(0.0, length);
 }
 
 /* The middle third of a part's rows, at least one. */

@@ -346,3 +346,21 @@ def test_another_thread_cancels(amplitude_patch, make_scene):
     with pytest.raises(sonject.Cancelled):
         sonject.inject(amplitude_patch, make_scene(), progress=progress)
     thread.join()
+
+
+def test_a_contact_is_measured():
+    random = numpy.random.default_rng(5)
+    image = random.rayleigh(0.1, (120, 160)).astype(numpy.float32)
+    image[50:71, 60:72] *= 6
+    image[50:71, 72:112] *= 0.05
+    box = sonject.Box(40, 50, 41, 80)
+    by_box = sonject.measure_contact(image, box, row_spacing_m=0.1, column_spacing_m=0.05)
+    found = sonject.measure_contact(image)
+    # sharp edges across 12 rows or columns and more of speckle
+    assert by_box.shadow_range_pixels == pytest.approx(40, abs=1.5)
+    assert by_box.highlight_along_pixels == pytest.approx(21, abs=1.5)
+    assert by_box.shadow_range_m == pytest.approx(0.05 * by_box.shadow_range_pixels)
+    assert found.shadow_range_pixels == pytest.approx(by_box.shadow_range_pixels, abs=0.5)
+    assert numpy.isnan(found.shadow_range_m) and found.shadow.rows > 15
+    with pytest.raises(sonject.SonjectError, match="not inside"):
+        sonject.measure_contact(image, sonject.Box(100, 0, 30, 30))
