@@ -67,10 +67,12 @@ FUNCTION real refraction_gain(const struct fan_record *fan, const struct fan_ray
 
 /* The strip of a work-item. Devices hand work-items out in runs, and strips near targets take
  * longest: neighbours in a run are strides apart, so that all runs take about as long. The stride
- * has no factor in common with the number of strips, so every strip gets its turn. */
+ * has no factor in common with the number of strips, so every strip gets its turn, in one call of
+ * the kernel or in several. */
 FUNCTION int strip_of_item(const struct fan_record *fan, int item)
 {
-    return (int)((long)(item / fan->segments) * fan->strip_stride % fan->strips);
+    const long turn = (long)fan->first_turn + item / fan->segments;
+    return (int)(turn * fan->strip_stride % fan->strips);
 }
 
 /* Along-track position of the middle of a strip of this launch. */

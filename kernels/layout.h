@@ -208,6 +208,7 @@ struct fan_record {
                                 surface, -1 the seabed, -2 any */
     RECORD_INT segments;     /* work-items that share a strip */
     RECORD_INT strip_stride; /* from a work-item's strip to the next one's, see strip_of_item */
+    RECORD_INT first_turn;   /* of the strips in that order: where this call begins */
     struct ray_table_record table;
     RECORD_WORD relief_words; /* where the relief_record is, in words from the first object's
                                  record; 0: the seabed is the plane */

@@ -1,41 +1,89 @@
 /* sonject merge: the whole of what shards made. */
 #include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include <sonject/sonject.h>
 
+#include "exit_code.h"
+#include "labels_argument.h"
 #include "stage.h"
 #include "verbs.h"
 
 struct merge_options {
     struct stage_options stage; /* output: the operand */
+    const char *labels;
+    bool allows_user_shapes;
 };
 
 static const struct argument arguments[] = {
+    {"--labels", NULL, "FORMATS", LABELS_HELP, ARGUMENT_TEXT, false,
+     offsetof(struct merge_options, labels)},
+    {"--allow-user-shapes", NULL, NULL,
+     "takes code of shapes in a run's scene; only if you trust it", ARGUMENT_FLAG, false,
+     offsetof(struct merge_options, allows_user_shapes)},
     STAGE_ARGUMENTS(struct merge_options),
 };
+
+static sonject_status merge_run(sonject_context *context, const struct merge_options *options,
+                                struct progress *progress, int *was_finished)
+{
+    sonject_merge_params params;
+    sonject_merge_params_init(&params);
+    params.folder = options->stage.output;
+    params.allows_user_shapes = options->allows_user_shapes;
+    labels_parse("merge", options->labels, &params.labels);
+    return sonject_merge(context, NULL, &params, progress_update, progress, was_finished);
+}
+
+/* A campaign's shards begin with its campaign.json. */
+static bool holds_campaign(const char *folder)
+{
+    static const char name[] = "/campaign.json";
+    const size_t bytes = strlen(folder) + sizeof name;
+    char *path = malloc(bytes);
+    FILE *file = NULL;
+    if (path) {
+        snprintf(path, bytes, "%s%s", folder, name);
+        file = fopen(path, "rb");
+    }
+    if (file)
+        fclose(file);
+    free(path);
+    return file != NULL;
+}
 
 static sonject_status merge(sonject_context *context, const void *verb_options,
                             struct progress *progress, int *was_finished)
 {
     const struct merge_options *options = verb_options;
-    (void)was_finished;
-    return sonject_campaign_merge(context, options->stage.output, progress_update, progress);
+    const char *folder = options->stage.output;
+    return holds_campaign(folder)
+               ? sonject_campaign_merge(context, folder, progress_update, progress)
+               : merge_run(context, options, progress, was_finished);
 }
 
 static int work(const void *verb_options)
 {
     const struct merge_options *options = verb_options;
+    uint32_t labels;
+    if (!labels_parse("merge", options->labels, &labels))
+        return EXIT_CODE_USAGE;
     return stage_work(&options->stage, merge, verb_options, "the result is in ");
 }
 
 const struct verb merge_verb = {
     .name = "merge",
-    .summary = "joins the shards of a campaign; writes what one run would",
+    .summary = "joins the shards of a run or campaign; writes what one run would",
     .operand = "DIR",
     .operand_offset = offsetof(struct merge_options, stage.output),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
-    .notes = "Says which images are missing.",
+    .notes =
+        "Says which shards or images are missing. The files and the image of a run's scene must\n"
+        "be those that its shards traced; they are looked for where those found them. Of a\n"
+        "scene with bands, each band's folder is merged.",
     .options_size = sizeof(struct merge_options),
     .work = work,
 };

@@ -8,6 +8,8 @@
 
 #include "exit_code.h"
 #include "labels_argument.h"
+#include "message.h"
+#include "number.h"
 #include "scene_arguments.h"
 #include "stage.h"
 #include "verbs.h"
@@ -16,6 +18,8 @@ struct run_options {
     struct stage_options stage;
     const char *labels;
     struct scene_arguments scene;
+    const char *shard;
+    struct number_argument exit_after, checkpoint;
 };
 
 static const struct argument arguments[] = {
@@ -24,8 +28,32 @@ static const struct argument arguments[] = {
     SCENE_ARGUMENTS(struct run_options),
     {"--labels", NULL, "FORMATS", LABELS_HELP, ARGUMENT_TEXT, false,
      offsetof(struct run_options, labels)},
+    {"--shard", NULL, "I/K", "traces part I of K, for sonject merge; 1/K to K/K are a run",
+     ARGUMENT_TEXT, false, offsetof(struct run_options, shard)},
+    {"--exit-after", NULL, "SECONDS", "stops tracing after so long, as after SIGTERM",
+     ARGUMENT_NUMBER, false, offsetof(struct run_options, exit_after)},
+    {"--checkpoint", NULL, "SECONDS", "keeps what was traced so often; 60 by itself",
+     ARGUMENT_NUMBER, false, offsetof(struct run_options, checkpoint)},
     STAGE_ARGUMENTS(struct run_options),
 };
+
+/* "2/4". False where that is not a part of a whole. */
+static bool shard_parse(const char *text, uint32_t *index, uint32_t *count)
+{
+    char first[16];
+    uint64_t part, whole;
+    const char *slash = strchr(text, '/');
+    if (!slash || (size_t)(slash - text) >= sizeof first)
+        return false;
+    memcpy(first, text, (size_t)(slash - text));
+    first[slash - text] = '\0';
+    if (!whole_number_parse(first, &part) || !whole_number_parse(slash + 1, &whole) || part < 1 ||
+        part > whole || whole > UINT32_MAX)
+        return false;
+    *index = (uint32_t)part;
+    *count = (uint32_t)whole;
+    return true;
+}
 
 /* Of one band, NULL where the scene has no others, into a folder. */
 static sonject_status inject_band(sonject_context *context, const struct run_options *options,
@@ -38,6 +66,10 @@ static sonject_status inject_band(sonject_context *context, const struct run_opt
     sonject_run_params_init(&params);
     params.folder = folder;
     labels_parse("run", options->labels, &params.labels);
+    params.exit_after_s = options->exit_after.value;
+    params.checkpoint_s = options->checkpoint.value;
+    if (options->shard)
+        shard_parse(options->shard, &params.shard_index, &params.shard_count);
     of_band.band = band;
     sonject_status status = scene_arguments_read(context, &of_band, &scene);
     if (status == SONJECT_OK)
@@ -85,10 +117,16 @@ static sonject_status inject(sonject_context *context, const void *verb_options,
 static int work(const void *verb_options)
 {
     const struct run_options *options = verb_options;
-    uint32_t labels;
+    uint32_t labels, index, count;
     if (!labels_parse("run", options->labels, &labels))
         return EXIT_CODE_USAGE;
-    return stage_work(&options->stage, inject, verb_options, "the result is in ");
+    if (options->shard && !shard_parse(options->shard, &index, &count)) {
+        message("--shard: \"", options->shard, "\" is not I/K with whole numbers 1 to K");
+        return EXIT_CODE_USAGE;
+    }
+    return stage_work(&options->stage, inject, verb_options,
+                      options->shard ? "the shard is done; once all are: sonject merge "
+                                     : "the result is in ");
 }
 
 const struct verb run_verb = {
@@ -100,7 +138,9 @@ const struct verb run_verb = {
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
     .notes =
         "A folder that already holds the finished result of the same inputs is left as it is.\n"
-        "Of a scene with bands each goes to a folder of its name; --set band=NAME takes one.",
+        "Of a scene with bands each goes to a folder of its name; --set band=NAME takes one.\n"
+        "A run that was stopped goes on with what is in DIR/work. Shards of a run need the same\n"
+        "DIR and scene; they may run on different machines, at any time, and again.",
     .options_size = sizeof(struct run_options),
     .work = work,
 };

@@ -119,6 +119,7 @@ SONJECT_CXX_DEFAULTS(sonject_geometry_params)
 SONJECT_CXX_DEFAULTS(sonject_injection_params)
 SONJECT_CXX_DEFAULTS(sonject_material_params)
 SONJECT_CXX_DEFAULTS(sonject_medium_params)
+SONJECT_CXX_DEFAULTS(sonject_merge_params)
 SONJECT_CXX_DEFAULTS(sonject_mesh_params)
 SONJECT_CXX_DEFAULTS(sonject_object_params)
 SONJECT_CXX_DEFAULTS(sonject_part_params)
@@ -517,6 +518,35 @@ class scene
         params.labels = labels;
         const sonject_status status =
             sonject_run(context_, handle_, &params, bridge.function(), &bridge, &was_finished);
+        bridge.rethrow();
+        check(status);
+        return was_finished != 0;
+    }
+
+    /* Traces shard 1...shards of a run into the folder. */
+    void run_shard(const std::string &folder, std::uint32_t shard, std::uint32_t shards,
+                   const progress &callback = progress()) const
+    {
+        sonject_run_params params = defaults<sonject_run_params>();
+        detail::progress_bridge bridge(callback);
+        params.folder = folder.c_str();
+        params.shard_index = shard;
+        params.shard_count = shards;
+        const sonject_status status =
+            sonject_run(context_, handle_, &params, bridge.function(), &bridge, nullptr);
+        bridge.rethrow();
+        check(status);
+    }
+
+    /* Makes the result of all shards in the folder; true if it was finished already. */
+    bool merge(const std::string &folder, const progress &callback = progress()) const
+    {
+        sonject_merge_params params = defaults<sonject_merge_params>();
+        detail::progress_bridge bridge(callback);
+        int was_finished = 0;
+        params.folder = folder.c_str();
+        const sonject_status status =
+            sonject_merge(context_, handle_, &params, bridge.function(), &bridge, &was_finished);
         bridge.rethrow();
         check(status);
         return was_finished != 0;

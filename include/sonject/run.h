@@ -19,13 +19,28 @@ typedef enum sonject_labels {
 
 typedef struct sonject_run_params {
     uint32_t struct_size;
-    uint32_t labels;    /* sum of sonject_labels; 0: none */
-    const char *folder; /* for the results; made where missing */
+    uint32_t labels;      /* sum of sonject_labels; 0: none */
+    const char *folder;   /* for the results; made where missing */
+    uint32_t shard_index; /* 1 to shard_count; 0 with it: the whole run */
+    uint32_t shard_count; /* at most 9999; 0: the run is not shared out */
+    double exit_after_s;  /* the call stops tracing by itself after so long; 0: never */
+    double checkpoint_s;  /* what was traced is kept so often at least; 0: every 60 s */
 } sonject_run_params;
 
 SONJECT_API void sonject_run_params_init(sonject_run_params *params);
 
-/* Reads the scene's input, injects, and writes the result files into params->folder; run.json is
+/* With shard_count K this call traces one of K parts of all rays and leaves its tallies in
+ * params->folder/work, no results; other processes, on other machines too, do the other parts in
+ * the same folder, in any order, and sonject_merge makes the result of them, byte for byte that of
+ * a whole run. *was_finished then stays 0 where the part was there already.
+ *
+ * A call that is cancelled while it traces, or that stops by itself after exit_after_s (never
+ * before it has got a little further), returns CANCELLED and leaves what it traced in the folder
+ * work too, from where the same call goes on; a process that is killed loses what came after its
+ * last checkpoint. A whole run removes the folder work once its results are written. Work of
+ * another scene, image or version is refused, that of a whole run is dropped.
+ *
+ * Reads the scene's input, injects, and writes the result files into params->folder; run.json is
  * published last, so a folder with run.json is complete. *was_finished (may be NULL) gets 1, with
  * nothing done, if the folder already holds the finished result of the same inputs. Each file
  * appears whole or not at all.
@@ -35,6 +50,28 @@ SONJECT_API sonject_status sonject_run(sonject_context *context, const sonject_s
                                        const sonject_run_params *params,
                                        sonject_progress_function progress, void *user,
                                        int *was_finished);
+
+typedef struct sonject_merge_params {
+    uint32_t struct_size;
+    uint32_t allows_user_shapes; /* 1: take code of shapes in a scene that the shards keep, as
+                                    sonject_scene_read_params has it; 0: refuse it */
+    const char *folder;          /* that the shards were given; the results go there */
+    uint32_t labels;             /* as of sonject_run_params */
+    uint32_t reserved;           /* 0 */
+} sonject_merge_params;
+
+SONJECT_API void sonject_merge_params_init(sonject_merge_params *params);
+
+/* Makes the result of all shards of a run, and removes their tallies once it is written. scene: the
+ * one that was traced; NULL: that whose text the shards keep (the files that it names are read
+ * again). Every file is that of a whole run byte for byte, but for times, memory and the device in
+ * run.json. *was_finished as of sonject_run, also where the folder has a result and no shards.
+ * Errors: ARGUMENT, INPUT (shards that are missing, not finished, damaged, of another scene, image
+ * or version: the message names them), DEVICE, STORAGE, MEMORY, UNSUPPORTED, CANCELLED. */
+SONJECT_API sonject_status sonject_merge(sonject_context *context, const sonject_scene *scene,
+                                         const sonject_merge_params *params,
+                                         sonject_progress_function progress, void *user,
+                                         int *was_finished);
 
 /* Checks the scene against its input image (which must exist) without tracing, and describes the
  * geometry as a text with a drawing: track, patch, objects, grazing angles, shadow lengths. *text

@@ -168,11 +168,16 @@ sonject_status sonject_elements_run(sonject_context *context, const sonject_scen
     sonject_run_params taken;
     sonject_run_params_init(&taken);
     sonject_status status =
-        params_take(report, &taken, sizeof taken, params, sizeof taken, "run parameters");
+        params_take(report, &taken, sizeof taken, params, offsetof(sonject_run_params, shard_index),
+                    "run parameters");
     if (status != SONJECT_OK)
         return status;
     if (!taken.folder || !taken.folder[0])
         return null_argument(report, "folder");
+    if (taken.shard_index > 0 || taken.shard_count > 0 || taken.exit_after_s != 0.0 ||
+        taken.checkpoint_s != 0.0)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                              "element data have no shards or checkpoints");
     struct swath swath;
     status = swath_open(report, &scene->scene, &swath);
     if (status != SONJECT_OK)

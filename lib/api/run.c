@@ -1,5 +1,6 @@
 #include "api/handles.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,10 +11,10 @@
 #include "api/layers.h"
 #include "api/run_scene.h"
 #include "api/scene_hash.h"
+#include "api/stints.h"
 #include "api/swath.h"
 #include "base/clock.h"
 #include "base/file.h"
-#include "inject/traced_impulses.h"
 
 /* Shares of a run's progress. */
 #define TRACE_START 0.1
@@ -93,6 +94,19 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
     return status;
 }
 
+/* Tallies are the same whatever the image file's name is. */
+static sonject_status inject_traced(const struct stint_job *job, const struct swath *swath,
+                                    struct injection_result *result, bool *is_formed)
+{
+    char hash[HASH_TEXT_CAPACITY];
+    struct scene scene = *job->request->scene;
+    struct stint_job named = *job;
+    scene.input_path = NULL;
+    named.traced_hash = hash;
+    const sonject_status status = scene_hash(&job->context->report, &scene, swath->identity, hash);
+    return status == SONJECT_OK ? inject_by_stints(&named, result, is_formed) : status;
+}
+
 /* Traces and writes; the folder has no run.json of an earlier run while this goes on, so that a
  * folder with run.json is always complete. */
 static sonject_status run_swath(struct sonject_context *context, const struct run_request *request,
@@ -104,13 +118,18 @@ static sonject_status run_swath(struct sonject_context *context, const struct ru
     struct stage_progress stage = {request->progress, request->user, TRACE_START,
                                    WRITE_START - TRACE_START};
     const struct injection_input input = swath_input(swath);
-    const struct impulse_source source =
-        request->impulses ? impulse_file_source(request->impulses) : traced_impulses();
+    bool is_formed = true;
     sonject_status status = context_device(context, &device);
-    if (status == SONJECT_OK)
+    if (status == SONJECT_OK && request->impulses) {
+        const struct impulse_source source = impulse_file_source(request->impulses);
         status = injection_form(&context->report, device, scene, &input, &source, tell_stage,
                                 &stage, &result);
-    if (status != SONJECT_OK)
+    } else if (status == SONJECT_OK) {
+        const struct stint_job job = {context, device,     request, facts->scene_hash, NULL, &input,
+                                      start,   tell_stage, &stage};
+        status = inject_traced(&job, swath, &result, &is_formed);
+    }
+    if (status != SONJECT_OK || !is_formed)
         return status;
     tell_noise_floor(&context->report, scene, &result.statistics);
     result.statistics.input_clipped = swath->clipped;
@@ -118,6 +137,8 @@ static sonject_status run_swath(struct sonject_context *context, const struct ru
     facts->device = device;
     status = write_results(&context->report, facts, &result, request->folder, start,
                            request->progress, request->user);
+    if (status == SONJECT_OK && !request->impulses)
+        stints_remove(request->folder);
     if (status == SONJECT_OK)
         tell_clipped(&context->report, &result.statistics);
     injection_result_clear(&result);
@@ -160,11 +181,13 @@ sonject_status run_scene(struct sonject_context *context, const struct run_reque
         status = report_out_of_memory(report, "a path");
     if (status == SONJECT_OK)
         status = scene_hash(report, scene, swath.identity, hash);
+    if (status == SONJECT_OK && request->scene_hash)
+        memcpy(hash, request->scene_hash, sizeof hash);
     const bool is_finished =
         status == SONJECT_OK && run_is_finished(run_path, hash, request->label_formats);
     if (status == SONJECT_OK && !is_finished)
         status = folder_make(report, request->folder);
-    if (status == SONJECT_OK && !is_finished)
+    if (status == SONJECT_OK && !is_finished && request->shards == 0)
         file_discard(run_path);
     if (status == SONJECT_OK && !is_finished) {
         facts.scene = scene;
@@ -183,6 +206,20 @@ sonject_status run_scene(struct sonject_context *context, const struct run_reque
     return status;
 }
 
+/* Of the shards that are asked for, or of none. */
+static bool is_shard(const sonject_run_params *params)
+{
+    return params->shard_count == 0
+               ? params->shard_index == 0
+               : params->shard_index >= 1 && params->shard_index <= params->shard_count &&
+                     params->shard_count <= SHARDS_MAX;
+}
+
+static bool is_time(double seconds)
+{
+    return seconds >= 0.0 && isfinite(seconds);
+}
+
 sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
                            const sonject_run_params *params, sonject_progress_function progress,
                            void *user, int *was_finished)
@@ -195,7 +232,8 @@ sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
     sonject_run_params taken;
     sonject_run_params_init(&taken);
     const sonject_status status =
-        params_take(&context->report, &taken, sizeof taken, params, sizeof taken, "run parameters");
+        params_take(&context->report, &taken, sizeof taken, params,
+                    offsetof(sonject_run_params, shard_index), "run parameters");
     if (status != SONJECT_OK)
         return status;
     if (!taken.folder || !taken.folder[0])
@@ -203,7 +241,28 @@ sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
     if (taken.labels & ~LABEL_FORMATS)
         return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
                               "labels must be a sum of sonject_labels");
-    const struct run_request request = {&scene->scene, NULL, taken.folder,
-                                        progress,      user, taken.labels};
+    if (!is_shard(&taken))
+        return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
+                              "there is no shard %lu of %lu: shards are 1 to K, K at most %d",
+                              (unsigned long)taken.shard_index, (unsigned long)taken.shard_count,
+                              SHARDS_MAX);
+    if (taken.shard_count > 0 && taken.labels != 0)
+        return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
+                              "shards have no labels: ask sonject_merge for them");
+    if (!is_time(taken.exit_after_s) || !is_time(taken.checkpoint_s))
+        return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
+                              "times are seconds, not below 0");
+    struct run_request request;
+    memset(&request, 0, sizeof request);
+    request.scene = &scene->scene;
+    request.source = &scene->source;
+    request.folder = taken.folder;
+    request.shard = taken.shard_index;
+    request.shards = taken.shard_count;
+    request.exit_after_s = taken.exit_after_s;
+    request.checkpoint_s = taken.checkpoint_s;
+    request.label_formats = taken.labels;
+    request.progress = progress;
+    request.user = user;
     return run_scene(context, &request, was_finished);
 }

@@ -3,6 +3,7 @@
 #define SONJECT_API_RUN_SCENE_H
 
 #include <sonject/run.h>
+#include <sonject/stages.h>
 
 #include "api/handles.h"
 #include "api/swath.h"
@@ -12,7 +13,13 @@
 
 struct run_request {
     const struct scene *scene;
-    struct impulse_file *impulses; /* NULL: they are traced */
+    const struct scene_source *source; /* of the scene; kept with what is traced */
+    struct impulse_file *impulses;     /* NULL: they are traced */
+    uint32_t shard, shards;            /* 1...shards; shards 0: all is traced */
+    bool merges;                       /* nothing is traced: all shards' tallies are there */
+    const char *scene_hash;            /* that the shards' run has; NULL: found */
+    double exit_after_s;               /* 0: never */
+    double checkpoint_s;
     const char *folder;
     sonject_progress_function progress; /* may be NULL */
     void *user;
@@ -27,5 +34,15 @@ sonject_status run_scene(struct sonject_context *context, const struct run_reque
  * formation alone depends on. Errors: INPUT, MEMORY. */
 sonject_status check_traced(struct report *report, const struct impulse_file *impulses,
                             const struct scene *scene, const struct swath *swath);
+
+/* Copies where a scene came from into a head. Errors: MEMORY. */
+sonject_status take_source(struct impulse_head *head, struct report *report,
+                           const struct scene_source *source);
+
+/* Reads the scene whose text a head keeps, with the overrides of params, whose file is for the
+ * message. Names of files are meant from where it was traced. scene is the caller's for
+ * scene_clear, also on failure. Errors: INPUT, STORAGE, MEMORY. */
+sonject_status read_traced_scene(struct report *report, const struct impulse_head *head,
+                                 const sonject_form_params *params, struct scene *scene);
 
 #endif

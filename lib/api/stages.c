@@ -42,8 +42,8 @@ static char *working_folder(void)
     return NULL;
 }
 
-static sonject_status take_source(struct impulse_head *head, struct report *report,
-                                  const struct scene_source *source)
+sonject_status take_source(struct impulse_head *head, struct report *report,
+                           const struct scene_source *source)
 {
     if (!source->text)
         return SONJECT_OK;
@@ -223,9 +223,8 @@ static const char **join_overrides(const struct impulse_head *head,
     return all;
 }
 
-/* The scene whose text the file keeps. Names of files are meant from where it was traced. */
-static sonject_status read_traced_scene(struct report *report, const struct impulse_head *head,
-                                        const sonject_form_params *params, struct scene *scene)
+sonject_status read_traced_scene(struct report *report, const struct impulse_head *head,
+                                 const sonject_form_params *params, struct scene *scene)
 {
     if (!head->scene_text)
         return report_failure(report, SONJECT_ERROR_INPUT,
@@ -261,8 +260,14 @@ static sonject_status form_file(struct sonject_context *context, const sonject_s
 {
     struct report *report = &context->report;
     const struct impulse_head *head = impulse_file_head(impulses);
-    struct run_request request = {NULL, impulses, params->folder, progress, user, params->labels};
+    struct run_request request;
     struct scene read;
+    memset(&request, 0, sizeof request);
+    request.impulses = impulses;
+    request.folder = params->folder;
+    request.label_formats = params->labels;
+    request.progress = progress;
+    request.user = user;
     scene_init(&read);
     sonject_status status = check_version(report, params->file, head);
     if (status == SONJECT_OK && !scene)

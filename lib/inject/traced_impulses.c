@@ -10,6 +10,7 @@
 #include "trace/chains.h"
 #include "trace/glints.h"
 #include "trace/rough_mirrored.h"
+#include "trace/stint.h"
 
 #define STRIPS_A_LAUNCH 64 /* between two looks at whether the caller cancels */
 
@@ -28,6 +29,8 @@ static sonject_status hand_out(const struct tracing *tracing, enum impulse_kind 
                                uint32_t planes, const float *const *plane)
 {
     struct impulse_lines lines;
+    if (stint_is_cut_short(tracing->tracer->stint))
+        return SONJECT_OK;
     memset(&lines, 0, sizeof lines);
     lines.kind = kind;
     lines.number = number;
@@ -129,6 +132,16 @@ static sonject_status hand_out_tile(const struct tracing *tracing, uint32_t numb
                     planes);
 }
 
+/* Chunks that are the same wherever the grid begins: its extent depends on echoes of corners, which
+ * are not all known where another process traces some of them. */
+static struct span next_glint_strips(const struct glints *glints, struct span before)
+{
+    const int32_t chunk = glints_chunk(glints);
+    const int32_t off = before.first + before.count - glints->traces[0].grid.strips.first;
+    const int32_t rest = off % chunk < 0 ? off % chunk + chunk : off % chunk;
+    return next_strips(&glints->grid, before, chunk - rest);
+}
+
 static sonject_status trace_glint_strips(const struct tracing *tracing, struct glints *glints,
                                          uint32_t part)
 {
@@ -140,8 +153,7 @@ static sonject_status trace_glint_strips(const struct tracing *tracing, struct g
     sonject_status status = real_part && imaginary_part
                                 ? SONJECT_OK
                                 : report_out_of_memory(tracing->tracer->report, "glints");
-    while (status == SONJECT_OK &&
-           (strips = next_strips(&glints->grid, strips, glints_chunk(glints))).count > 0) {
+    while (status == SONJECT_OK && (strips = next_glint_strips(glints, strips)).count > 0) {
         status = glints_trace(glints, tracing->tracer, strips, real_part, imaginary_part);
         if (status == SONJECT_OK)
             status = hand_out(tracing, IMPULSES_GLINT, part, &glints->grid, strips, 2, planes);
@@ -355,6 +367,8 @@ sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *
     free(tracing.second);
     if (status == SONJECT_OK)
         status = trace_chains(&tracing);
+    if (status == SONJECT_OK && tracer->stint)
+        status = stint_finish(tracer->stint, &tracer->counts);
     return status;
 }
 

@@ -10,8 +10,8 @@
 #include "trace/object_buffer.h"
 #include "trace/patch_fan.h"
 #include "trace/sea_surface.h"
+#include "trace/stint.h"
 #include "trace/target_spheres.h"
-#include "user/user_program.h"
 
 #define SEABED_SHARE    8.0f /* then all within about four widths of a target are followed */
 #define TALLY_BYTES_MAX ((size_t)1 << 30)
@@ -143,9 +143,8 @@ sonject_status chain_trace_begin(struct chain_trace *trace, struct tracer *trace
     if (status == SONJECT_OK)
         status = make_tallies(trace, tracer);
     if (status == SONJECT_OK)
-        status = scene_kernel_create(tracer->report, tracer->device, tracer->scene,
-                                     tracer_variant(tracer), PROGRAM_TRACE_CHAINS, "trace_chains",
-                                     &trace->kernel);
+        status = trace_kernel_create(tracer, tracer_variant(tracer), PROGRAM_TRACE_CHAINS,
+                                     "trace_chains", &trace->kernel);
     if (status != SONJECT_OK)
         chain_trace_end(trace);
     return status;
@@ -181,13 +180,14 @@ sonject_status chain_trace_read(struct chain_trace *trace, struct tracer *tracer
 {
     const size_t cells = line_grid_cells(&trace->grid);
     const void *mapped;
-    const sonject_status status = buffer_map(tracer->report, tracer->device, trace->tallies,
-                                             trace->planes * cells * sizeof(int64_t), &mapped);
+    const int64_t *tallies;
+    sonject_status status = buffer_map(tracer->report, tracer->device, trace->tallies,
+                                       trace->planes * cells * sizeof(int64_t), &mapped);
     if (status != SONJECT_OK)
         return status;
-    const int64_t *tallies = (const int64_t *)mapped + plane * cells;
-    for (size_t i = 0; i < cells; i++)
+    status = stint_sums(tracer->stint, (const int64_t *)mapped + plane * cells, cells, &tallies);
+    for (size_t i = 0; status == SONJECT_OK && i < cells; i++)
         energy[i] = (float)((double)tallies[i] * trace->energy_of_quantum);
     buffer_unmap(tracer->device, trace->tallies, mapped);
-    return SONJECT_OK;
+    return status;
 }

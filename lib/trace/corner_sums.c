@@ -55,6 +55,37 @@ bool corner_sums_add(struct corner_sums *sums, const struct corner_echo_record *
     return true;
 }
 
+#define TILE_SUMS ((size_t)2 * TILE_STRIPS * TILE_BINS)
+
+static bool add_tile(void *user, uint64_t first, const int64_t *values, size_t count)
+{
+    struct corner_sums *sums = user;
+    if (first % TILE_SUMS != 0 || count != TILE_SUMS)
+        return false;
+    int64_t **tile = &sums->tiles[first / TILE_SUMS];
+    if (!*tile)
+        *tile = allocate_array(TILE_SUMS, sizeof **tile);
+    for (size_t i = 0; i < count; i++)
+        if (!*tile || !add_without_overflow(&(*tile)[i], values[i]))
+            return false;
+    return true;
+}
+
+sonject_status corner_sums_share(struct corner_sums *sums, struct stint *stint)
+{
+    const size_t tiles = sums->rows * sums->columns;
+    if (!stint)
+        return SONJECT_OK;
+    if (stint->files)
+        return stint_add_up(stint, (uint64_t)tiles * TILE_SUMS, add_tile, sums);
+    sonject_status status = stint_writer_begin_sums(&stint->writer, (uint64_t)tiles * TILE_SUMS);
+    for (size_t i = 0; status == SONJECT_OK && i < tiles; i++)
+        if (sums->tiles[i])
+            status = stint_writer_run(&stint->writer, (uint64_t)i * TILE_SUMS, sums->tiles[i],
+                                      TILE_SUMS);
+    return status == SONJECT_OK ? stint_writer_end_sums(&stint->writer) : status;
+}
+
 /* Strips or bins of one tile. */
 static struct span span_of_tile(size_t number, int32_t size, struct span all)
 {

@@ -8,6 +8,7 @@
 
 #include "kernels/layout.h"
 #include "scene/line_grid.h"
+#include "trace/stint.h"
 
 #define TILE_STRIPS 16
 #define TILE_BINS   256
@@ -27,6 +28,10 @@ void corner_sums_clear(struct corner_sums *sums);
  * first. False where memory lacks. */
 bool corner_sums_add(struct corner_sums *sums, const struct corner_echo_record *echoes,
                      size_t count);
+
+/* Sums of a stint: keeps the tiles that were traced, or adds up those of all stints. Nothing where
+ * stint is NULL. Errors: INPUT, STORAGE, MEMORY. */
+sonject_status corner_sums_share(struct corner_sums *sums, struct stint *stint);
 
 /* The strips and bins of the tiles that there are; counts 0 where there is none. */
 void corner_sums_extent(const struct corner_sums *sums, struct span *strips, struct span *bins);

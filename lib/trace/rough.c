@@ -11,6 +11,7 @@
 #include "trace/corners.h"
 #include "trace/patch_fan.h"
 #include "trace/source_pairs.h"
+#include "trace/stint.h"
 
 #define RAYS_PER_BIN 2.0
 #define RAYS_PER_BIN_OF_BEAM                                                                       \
@@ -276,15 +277,16 @@ static sonject_status read_tallies(struct tracer *tracer, cl_mem buffer, size_t 
                                    float *values)
 {
     const void *mapped;
-    const sonject_status status =
+    const int64_t *tallies;
+    sonject_status status =
         buffer_map(tracer->report, tracer->device, buffer, count * sizeof(int64_t), &mapped);
     if (status != SONJECT_OK)
         return status;
-    const int64_t *tallies = mapped;
-    for (size_t i = 0; i < count; i++)
+    status = stint_sums(tracer->stint, mapped, count, &tallies);
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
         values[i] = (float)((double)tallies[i] * unit);
     buffer_unmap(tracer->device, buffer, mapped);
-    return SONJECT_OK;
+    return status;
 }
 
 void rough_trace_aim(struct rough_trace *trace, struct span strips)

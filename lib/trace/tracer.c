@@ -9,6 +9,7 @@
 #include "trace/aspects.h"
 #include "trace/object_buffer.h"
 #include "trace/object_shape.h"
+#include "trace/stint.h"
 #include "user/user_program.h"
 
 #define PI          3.14159265358979323846
@@ -16,7 +17,7 @@
 
 /* Host and device must agree on every byte. */
 typedef char object_record_is_packed[sizeof(struct object_record) == 57 * 4 ? 1 : -1];
-typedef char fan_record_is_packed[sizeof(struct fan_record) == 75 * 4 ? 1 : -1];
+typedef char fan_record_is_packed[sizeof(struct fan_record) == 76 * 4 ? 1 : -1];
 typedef char chain_record_is_packed[sizeof(struct chain_record) == 35 * 4 ? 1 : -1];
 typedef char sphere_group_is_packed[sizeof(struct sphere_group) == 64 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
@@ -195,20 +196,20 @@ static int32_t stride_of(int32_t strips)
     }
 }
 
-sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_record *fan,
-                            const struct ray_table *rays, const cl_mem *buffers,
-                            size_t buffer_count)
+/* Some strips of a launch, in the order of their turns. */
+static sonject_status launch_turns(struct tracer *tracer, cl_kernel kernel, struct fan_record *fan,
+                                   const struct ray_table *rays, const cl_mem *buffers,
+                                   size_t buffer_count, struct span turns)
 {
     struct report *report = tracer->report;
     struct device *device = tracer->device;
-    fan->segments = segments_for(tracer, fan);
-    fan->strip_stride = stride_of(fan->strips);
-    const size_t items = (size_t)fan->strips * (size_t)fan->segments;
+    const size_t items = (size_t)turns.count * (size_t)fan->segments;
     cl_mem fan_buffer = NULL;
     cl_mem piece_buffer = NULL;
     cl_mem outcome_buffer = NULL;
     struct outcome_record *outcomes = allocate_array(items, sizeof *outcomes);
     sonject_status status = outcomes ? SONJECT_OK : report_out_of_memory(report, "trace counts");
+    fan->first_turn = turns.first;
     if (status == SONJECT_OK)
         status = buffer_create(report, device, sizeof *fan, fan, &fan_buffer);
     if (status == SONJECT_OK)
@@ -237,6 +238,39 @@ sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_
     return status;
 }
 
+sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_record *fan,
+                            const struct ray_table *rays, const cl_mem *buffers,
+                            size_t buffer_count)
+{
+    struct stint *stint = tracer->stint;
+    struct span turns = {0, fan->strips};
+    fan->segments = 1;
+    fan->first_turn = 0;
+    fan->strip_stride = stride_of(fan->strips);
+    if (stint)
+        stint_launch(stint, fan, rays);
+    fan->segments = segments_for(tracer, fan);
+    if (!stint)
+        return launch_turns(tracer, kernel, fan, rays, buffers, buffer_count, turns);
+    sonject_status status = SONJECT_OK;
+    while (status == SONJECT_OK && stint_next(stint, &turns)) {
+        status = launch_turns(tracer, kernel, fan, rays, buffers, buffer_count, turns);
+        if (status == SONJECT_OK)
+            stint_advance(stint, turns);
+    }
+    return status;
+}
+
+sonject_status trace_kernel_create(struct tracer *tracer, uint32_t variant,
+                                   enum device_program program, const char *name, cl_kernel *kernel)
+{
+    *kernel = NULL;
+    if (tracer->stint && tracer->stint->files)
+        return SONJECT_OK;
+    return scene_kernel_create(tracer->report, tracer->device, tracer->scene, variant, program,
+                               name, kernel);
+}
+
 sonject_status trace_device_init(struct trace_device *device, struct tracer *tracer,
                                  enum device_program program, const char *kernel_name,
                                  struct object_record *records, struct part_list parts,
@@ -251,8 +285,8 @@ sonject_status trace_device_init(struct trace_device *device, struct tracer *tra
         program == PROGRAM_TRACE_ROUGH &&
         (aspects_sine(tracer) > 0.0 || tracer->scene->sonar.kind == SONJECT_SONAR_REAL);
     const uint32_t variant = tracer_variant(tracer) | (has_aspects ? PROGRAM_WITH_ASPECTS : 0u);
-    sonject_status status = scene_kernel_create(report, tracer->device, tracer->scene, variant,
-                                                program, kernel_name, &device->kernel);
+    sonject_status status =
+        trace_kernel_create(tracer, variant, program, kernel_name, &device->kernel);
     if (status == SONJECT_OK)
         status = object_buffer_create(tracer, records, parts, &device->objects);
     if (status == SONJECT_OK)

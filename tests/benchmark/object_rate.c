@@ -166,7 +166,7 @@ static struct cost cost_of_chains(struct benchmark_scene *set, uint32_t first_fa
 static void print_injection(struct benchmark_scene *set)
 {
     struct injection_result result;
-    struct injection_input input = {PIXELS, PIXELS, 0.0, 0.0, false, false, NULL};
+    struct injection_input input = {PIXELS, PIXELS, 0.0, 0.0, false, false, NULL, NULL};
     float *pixels = allocate_array((size_t)PIXELS * PIXELS, sizeof *pixels);
     for (size_t i = 0; pixels && i < (size_t)PIXELS * PIXELS; i++)
         pixels[i] = 1.0f;

@@ -1,5 +1,6 @@
 """Tracing and image formation apart: the same files as a run leaves, and images of other responses."""
 
+import json
 import os
 import signal
 
@@ -34,10 +35,23 @@ def command(sonject, *arguments):
 
 
 def compare_with_run(sonject, folder, scene, *options):
+    """The result of the stages, and of shards, with a run's."""
     command(sonject, "run", scene, "-o", "run", *options)
+    compare_shards_with_run(sonject, folder, scene, *options)
     command(sonject, "trace", scene, "-o", "impulses.h5", *options)
     command(sonject, "form", "impulses.h5", "-o", "formed")
     assert contents(folder / "formed") == contents(folder / "run")
+
+
+def compare_shards_with_run(sonject, folder, scene, *options):
+    for shard in ("2/2", "1/2"):
+        command(sonject, "run", scene, "-o", "shards", "--shard", shard, *options)
+    command(sonject, "merge", "shards")
+    assert contents(folder / "shards") == contents(folder / "run")
+    facts = [json.loads((folder / name / "run.json").read_text()) for name in ("shards", "run")]
+    for one in facts:
+        del one["times_s"], one["peak_memory_bytes"]
+    assert facts[0] == facts[1]
 
 
 @needs_hdf5

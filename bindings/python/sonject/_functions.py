@@ -210,6 +210,18 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
             POINTER(c_int),
         ],
     ),
+    "sonject_merge_params_init": (None, [POINTER(s.sonject_merge_params)]),
+    "sonject_merge": (
+        _status,
+        [
+            _context,
+            _scene,
+            POINTER(s.sonject_merge_params),
+            s.sonject_progress_function,
+            c_void_p,
+            POINTER(c_int),
+        ],
+    ),
     "sonject_trace_params_init": (None, [POINTER(s.sonject_trace_params)]),
     "sonject_trace": (
         _status,

@@ -443,6 +443,20 @@ class sonject_run_params(Structure):
         ("struct_size", c_uint32),
         ("labels", c_uint32),
         ("folder", c_char_p),
+        ("shard_index", c_uint32),
+        ("shard_count", c_uint32),
+        ("exit_after_s", c_double),
+        ("checkpoint_s", c_double),
+    ]
+
+
+class sonject_merge_params(Structure):
+    _fields_ = [
+        ("struct_size", c_uint32),
+        ("allows_user_shapes", c_uint32),
+        ("folder", c_char_p),
+        ("labels", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 

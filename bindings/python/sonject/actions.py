@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ctypes
-from typing import Any, Iterable, Optional, Union
+from typing import Any, Iterable, Optional, Tuple, Union
 
 import numpy
 
@@ -75,20 +75,68 @@ def run(
     folder: PathLike,
     progress: Optional[Progress] = None,
     labels: Iterable[Union[str, LabelFormat]] = (),
+    shard: Optional[Tuple[int, int]] = None,
+    exit_after_s: float = 0.0,
+    checkpoint_s: float = 0.0,
 ) -> bool:
     """Reads the scene's input, injects, and writes the result files into folder.
 
     labels: formats ("yolo", "voc") of label files beside coco.json.
+    shard: (i, K), i from 1, traces one of K parts of all rays into folder/work and leaves no
+    result: merge makes it of all K. exit_after_s: stops by itself after so long, as if cancelled;
+    the same call then goes on. checkpoint_s: how often what was traced is kept, 60 s by itself.
+
     False, with nothing done, if folder already held the finished result of the same inputs.
     """
     context = scene.context
     params = initialised(s.sonject_run_params)
     params.folder = file_name("folder", folder)
     params.labels = _label_sum(labels)
+    if shard is not None:
+        index, count = shard
+        params.shard_index = whole_number("shard", index, 0xFFFFFFFF)
+        params.shard_count = whole_number("shard", count, 0xFFFFFFFF)
+    params.exit_after_s = real_number("exit_after_s", exit_after_s)
+    params.checkpoint_s = real_number("checkpoint_s", checkpoint_s)
     bridge = ProgressBridge(progress)
     was_finished = ctypes.c_int()
     context.call(
         "sonject_run",
+        context,
+        scene,
+        ctypes.byref(params),
+        bridge.callback,
+        None,
+        ctypes.byref(was_finished),
+        bridge=bridge,
+    )
+    return not was_finished.value
+
+
+def merge(
+    folder: PathLike,
+    scene: Optional[Scene] = None,
+    progress: Optional[Progress] = None,
+    context: Optional[Context] = None,
+    allow_user_shapes: bool = False,
+    labels: Iterable[Union[str, LabelFormat]] = (),
+) -> bool:
+    """Makes the result of all shards in folder, as run would have without shards.
+
+    scene: where it was traced from no scene file; else the shards know their scene.
+    False, with nothing done, if folder already held the finished result.
+    """
+    if scene is not None:
+        context = scene.context
+    context = default_context() if context is None else context
+    params = initialised(s.sonject_merge_params)
+    params.folder = file_name("folder", folder)
+    params.allows_user_shapes = bool(allow_user_shapes)
+    params.labels = _label_sum(labels)
+    bridge = ProgressBridge(progress)
+    was_finished = ctypes.c_int()
+    context.call(
+        "sonject_merge",
         context,
         scene,
         ctypes.byref(params),

@@ -1,0 +1,31 @@
+/* Tracing that is shared out, and that can be stopped and gone on with: tallies in a run's folder
+ * work. */
+#ifndef SONJECT_API_STINTS_H
+#define SONJECT_API_STINTS_H
+
+#include "api/run_scene.h"
+
+#define SHARDS_MAX 9999
+
+struct stint_job {
+    struct sonject_context *context;
+    struct device *device;
+    const struct run_request *request;
+    const char *scene_hash;  /* of the run */
+    const char *traced_hash; /* the same but for the name of the input's file */
+    const struct injection_input *input;
+    double start_s; /* clock_seconds() when the call began */
+    sonject_progress_function progress;
+    void *user;
+};
+
+/* The result of a run by rays; of the whole of it, or of all shards where the request merges. Of a
+ * request for one shard its tallies, and *is_formed is false. What was traced before is not traced
+ * again, and stays until stints_remove. Errors: as sonject_run and sonject_merge. */
+sonject_status inject_by_stints(const struct stint_job *job, struct injection_result *result,
+                                bool *is_formed);
+
+/* Removes the tallies of a run whose results are written. */
+void stints_remove(const char *folder);
+
+#endif

@@ -1,0 +1,161 @@
+"""Runs that are shared out, stopped and gone on with: always the files of a run in one go."""
+
+import random
+import signal
+import subprocess
+import time
+
+import pytest
+
+from conftest import COMMAND, assert_refused, files_below
+from test_run import RESULTS, contents, read_rest, start_and_wait_for_the_bar
+
+# So many that a launch is cut in slices, between which a run stops.
+MANY_RAYS = ["--set", "injection.rays=256"]
+
+
+def command(sonject, *arguments):
+    answer = sonject(*arguments, "--quiet")
+    assert (answer.returncode, answer.stdout, answer.stderr) == (0, "", "")
+
+
+def stints(folder):
+    return sorted((folder / "work").glob("*.stint"))
+
+
+@pytest.fixture
+def whole(sonject, scene, tmp_path):
+    """What a run in one go leaves."""
+    command(sonject, "run", scene, "-o", "whole")
+    return contents(tmp_path / "whole")
+
+
+def test_what_shards_lack_is_named_and_the_rest_is_a_run(sonject, scene, tmp_path, whole):
+    folder = tmp_path / "result"
+    assert_refused(sonject("merge", "result"), 3, "result/work", "holds no shards")
+    for shard in (3, 1):
+        answer = sonject("run", scene, "-o", "result", "--shard", f"{shard}/4")
+        assert (answer.returncode, answer.stdout) == (0, "")
+        assert answer.stderr == "sonject: the shard is done; once all are: sonject merge result\n"
+    assert_refused(sonject("merge", "result"), 3, "missing of 4 shards: 2, 4;")
+    stopped = sonject("run", scene, "-o", "result", "--shard", "2/4", "--exit-after", "1e-9")
+    assert stopped.returncode == 85
+    command(sonject, "run", scene, "-o", "result", "--shard", "4/4")
+    assert_refused(sonject("merge", "result"), 3, "missing of 4 shards: 2 (not finished);")
+    # Another process does the whole shard meanwhile, and one does again what is there.
+    other = tmp_path / "other"
+    command(sonject, "run", scene, "-o", "other", "--shard", "2/4")
+    (complete,) = stints(other)
+    complete.rename(folder / "work" / complete.name)
+    before = {path: path.stat().st_mtime_ns for path in stints(folder)}
+    command(sonject, "run", scene, "-o", "result", "--shard", "2/4")
+    assert before == {path: path.stat().st_mtime_ns for path in stints(folder)}
+    assert {path.name for path in folder.iterdir()} == {"work"}
+    command(sonject, "merge", "result")
+    assert {path.name for path in folder.iterdir()} == RESULTS
+    assert contents(folder) == whole
+    for again in (["merge", "result"], ["run", scene, "-o", "result"],
+                  ["run", scene, "-o", "result", "--shard", "1/4"]):
+        answer = sonject(*again)
+        assert answer.returncode == 0 and "already" in answer.stderr
+    assert {path.name for path in folder.iterdir()} == RESULTS
+
+
+def test_what_is_not_a_shard_of_the_run_is_refused(sonject, scene, tmp_path, whole):
+    for shard in ("1/2", "2/2"):
+        command(sonject, "run", scene, "-o", "result", "--shard", shard)
+    first, second = stints(tmp_path / "result")
+    sound = first.read_bytes()
+    changed = bytearray(sound)
+    changed[len(sound) // 2] ^= 1
+    for bad in (b"", sound[:-1], sound + b"\0", sound[: len(sound) // 2], bytes(changed)):
+        first.write_bytes(bad)
+        assert_refused(sonject("merge", "result"), 3, first.name, "damaged, or cut short")
+        assert second.exists() and not (tmp_path / "result" / "run.json").exists()
+    # A shard that is run again traces what was damaged.
+    answer = sonject("run", scene, "-o", "result", "--shard", "1/2", "--verbose")
+    assert answer.returncode == 0 and "was damaged: it is traced again" in answer.stderr
+    assert first.read_bytes() == sound
+    first.write_bytes(second.read_bytes())
+    assert_refused(sonject("merge", "result"), 3, first.name, "another shard's")
+    first.write_bytes(sound)
+    # Another scene's: merged, and run into the same folder.
+    command(sonject, "run", scene, "-o", "other", "--shard", "1/2", "--seed", "9")
+    foreign = stints(tmp_path / "other")[0].read_bytes()
+    first.write_bytes(foreign)
+    assert_refused(sonject("merge", "result"), 3, "work/shard-", "another scene or image")
+    answer = sonject("run", scene, "-o", "result", "--shard", "1/2")
+    assert_refused(answer, 3, first.name, "another scene or image")
+    first.write_bytes(sound)
+    for other in (["--shard", "1/3"], []):
+        answer = sonject("run", scene, "-o", "result", *other)
+        assert_refused(answer, 3, "result/work", "2 shards")
+    command(sonject, "merge", "result")
+    assert contents(tmp_path / "result") == whole
+
+
+def test_a_run_that_stops_by_itself_goes_on(sonject, scene, tmp_path):
+    command(sonject, "run", scene, "-o", "whole", *MANY_RAYS)
+    folder = tmp_path / "result"
+    stops = 0
+    while True:
+        answer = sonject("run", scene, "-o", "result", *MANY_RAYS, "--exit-after", "1e-9")
+        if answer.returncode == 0:
+            break
+        assert answer.returncode == 85
+        assert answer.stderr == "sonject: stopped; run the same command again\n"
+        stops += 1
+        assert len(stints(folder)) == stops
+        assert {path.name for path in folder.iterdir()} == {"work"}
+    assert stops > 1
+    assert contents(folder) == contents(tmp_path / "whole")
+    assert {path.name for path in folder.iterdir()} == RESULTS
+
+
+def test_what_a_run_of_another_scene_left_is_dropped(sonject, scene, tmp_path, whole):
+    assert sonject("run", scene, "-o", "result", "--seed", "9", "--exit-after",
+                   "1e-9").returncode == 85
+    command(sonject, "run", scene, "-o", "result")
+    assert contents(tmp_path / "result") == whole
+
+
+def test_a_stopped_run_goes_on(sonject, scene, tmp_path, environment):
+    command(sonject, "run", scene, "-o", "whole", *MANY_RAYS)
+    arguments = ["run", scene, "-o", "result", *MANY_RAYS]
+    process, terminal = start_and_wait_for_the_bar(arguments, tmp_path, environment)
+    process.send_signal(signal.SIGTERM)
+    read_rest(terminal)
+    assert process.wait(60) in (0, 85)
+    command(sonject, *arguments)
+    assert contents(tmp_path / "result") == contents(tmp_path / "whole")
+
+
+def test_killed_shards_go_on_with_what_they_had_kept(scene, tmp_path, environment, sonject):
+    chance = random.Random(5)
+    command(sonject, "run", scene, "-o", "whole", *MANY_RAYS)
+    kept = 0
+    for shard in ("1/2", "2/2"):
+        arguments = ["run", scene, "-o", "result", "--quiet", *MANY_RAYS, "--shard", shard]
+        for _ in range(4):
+            process = subprocess.Popen([COMMAND, *map(str, arguments), "--checkpoint", "1e-9"],
+                                       cwd=tmp_path, env=environment)
+            time.sleep(chance.uniform(0.1, 0.6))
+            process.kill()
+            process.wait()
+            kept = max(kept, len(stints(tmp_path / "result")))
+        command(sonject, *arguments)
+    command(sonject, "merge", "result")
+    assert kept > 0
+    assert contents(tmp_path / "result") == contents(tmp_path / "whole")
+    assert {path.name for path in files_below(tmp_path / "result")} == RESULTS
+
+
+def test_shards_know_their_scene_from_elsewhere(sonject, scene, tmp_path, whole):
+    for shard in ("1/2", "2/2"):
+        command(sonject, "run", "scene.yaml", "-o", "result", "--shard", shard)
+    (tmp_path / "elsewhere").mkdir()
+    answer = sonject("merge", "../result", folder="elsewhere")
+    assert answer.returncode == 0, answer.stderr
+    assert contents(tmp_path / "result") == whole
+    answer = sonject("run", "scene.yaml", "-o", "result")
+    assert answer.returncode == 0 and "already" in answer.stderr
