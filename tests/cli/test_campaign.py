@@ -1,6 +1,8 @@
 """Campaigns: what the data set holds, and that it is the same however it came about."""
 
 import json
+import os
+import pathlib
 import random
 import signal
 import subprocess
@@ -299,6 +301,19 @@ def test_a_grid_draws_every_cell(command, ground):
     cells = {(each["sonar.bandwidth"], each["objects[0].heading"]) for each in drawn}
     assert cells == {(bandwidth, f"{heading} deg") for bandwidth in ("30 kHz", "29 kHz")
                      for heading in (0, 30, 60, 90)}
+
+
+def test_the_example_runs_as_it_says(command, ground):
+    example = pathlib.Path(os.environ["SONJECT_SOURCE"]) / "tools" / "campaigns" / "minefield.yaml"
+    settings = []
+    for number in (1, 2, 3):
+        name = f"seabed_{number}.tif"
+        assert command("seabed", "-o", name, "--seed", number, "--rows", 600, "--columns",
+                       800).returncode == 0
+        settings += ["--set", f"swaths[{number - 1}].path={name}"]
+    answer = command("campaign", example, "-o", "minefield", *settings, "--shard", "2/20")
+    assert (answer.returncode, answer.stderr) == (0, "sonject: these images are in minefield\n")
+    assert sorted(record["id"] for record in records(ground / "minefield")) == [1, 21, 41]
 
 
 HOSTILE = [
