@@ -5,6 +5,7 @@
 
 #include "channel_argument.h"
 #include "exit_code.h"
+#include "geometry_argument.h"
 #include "message.h"
 #include "verbs.h"
 
@@ -17,11 +18,7 @@ struct convert_options {
     bool magnitude;
     const char *type;
     struct number_argument scale;
-    const char *range_axis;
-    struct number_argument altitude;
-    struct number_argument row_spacing;
-    struct number_argument column_spacing;
-    struct number_argument first_range;
+    struct geometry_arguments geometry;
 };
 
 #define MEMBER(name) offsetof(struct convert_options, name)
@@ -38,16 +35,7 @@ static const struct argument arguments[] = {
      MEMBER(type)},
     {"--scale", NULL, "FACTOR", "new samples over old ones, with --type", ARGUMENT_NUMBER, false,
      MEMBER(scale)},
-    {"--range-axis", NULL, "slant|ground", "resample the columns to equal steps of it",
-     ARGUMENT_TEXT, false, MEMBER(range_axis)},
-    {"--altitude", NULL, "M", "height of the sonar over the seabed", ARGUMENT_NUMBER, false,
-     MEMBER(altitude)},
-    {"--row-spacing", NULL, "M", "along-track distance of rows", ARGUMENT_NUMBER, false,
-     MEMBER(row_spacing)},
-    {"--column-spacing", NULL, "M", "slant range distance of columns", ARGUMENT_NUMBER, false,
-     MEMBER(column_spacing)},
-    {"--first-range", NULL, "M", "slant range of the first column", ARGUMENT_NUMBER, false,
-     MEMBER(first_range)},
+    GEOMETRY_ARGUMENTS(struct convert_options, "resample the columns to equal steps of it"),
 };
 
 static bool read_type(const struct convert_options *options, sonject_convert_params *params)
@@ -70,38 +58,14 @@ static bool read_type(const struct convert_options *options, sonject_convert_par
     return true;
 }
 
-static bool read_range_axis(const char *text, sonject_convert_params *params)
+static bool read_geometry(const struct geometry_arguments *given, sonject_convert_params *params)
 {
-    if (strcmp(text, "slant") == 0) {
-        params->range_axis = SONJECT_CONVERT_AXIS_SLANT;
-    } else if (strcmp(text, "ground") == 0) {
-        params->range_axis = SONJECT_CONVERT_AXIS_GROUND;
-    } else {
-        message("convert: --range-axis takes slant or ground, not \"", text, "\"");
+    uint32_t is_ground = 0;
+    if (!geometry_parse("convert", given, &is_ground, &params->altitude_m, &params->has_geometry,
+                        &params->geometry))
         return false;
-    }
-    return true;
-}
-
-static bool read_geometry(const struct convert_options *options, sonject_convert_params *params)
-{
-    const int given = options->row_spacing.is_given + options->column_spacing.is_given +
-                      options->first_range.is_given;
-    if (options->altitude.is_given && !(options->altitude.value > 0)) {
-        message("convert: --altitude must be above 0");
-        return false;
-    }
-    params->altitude_m = options->altitude.is_given ? options->altitude.value : 0.0;
-    if (given == 0)
-        return true;
-    if (given < 3) {
-        message("convert: --row-spacing, --column-spacing and --first-range belong together");
-        return false;
-    }
-    params->has_geometry = 1;
-    params->geometry.row_spacing_m = options->row_spacing.value;
-    params->geometry.column_spacing_m = options->column_spacing.value;
-    params->geometry.first_slant_range_m = options->first_range.value;
+    if (given->range_axis)
+        params->range_axis = is_ground ? SONJECT_CONVERT_AXIS_GROUND : SONJECT_CONVERT_AXIS_SLANT;
     return true;
 }
 
@@ -114,9 +78,7 @@ static bool fill(const struct convert_options *options, sonject_convert_params *
     params->array = options->array;
     params->magnitude = options->magnitude;
     return (!options->channel || channel_parse("convert", options->channel, &params->channel)) &&
-           read_type(options, params) &&
-           (!options->range_axis || read_range_axis(options->range_axis, params)) &&
-           read_geometry(options, params);
+           read_type(options, params) && read_geometry(&options->geometry, params);
 }
 
 static void tell(void *user, const char *line)

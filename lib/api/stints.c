@@ -3,9 +3,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <sonject/run.h>
 #include <sonject/version.h>
 
+#include "api/stint_source.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/growing_text.h"
@@ -24,8 +24,7 @@ struct tracing {
     struct report *report;
     char *folder; /* work; owned */
     struct stint_head head;
-    char *source; /* texts; owned */
-    size_t source_bytes;
+    struct stint_source source; /* owned texts */
     struct stint stint;
     double stint_start_s;
     double fraction; /* that was told last */
@@ -33,14 +32,14 @@ struct tracing {
     bool is_cancelled, is_over; /* by the caller; its time */
 };
 
-static char *work_folder(const char *folder)
+char *stints_folder(const char *folder)
 {
     return path_join(folder, "work");
 }
 
 void stints_remove(const char *folder)
 {
-    char *work = work_folder(folder);
+    char *work = stints_folder(folder);
     if (work)
         stint_folder_remove(work);
     free(work);
@@ -90,66 +89,6 @@ static sonject_status take_head(struct tracing *tracing)
     return status == SONJECT_OK ? take_device(tracing->report, job, identity->device) : status;
 }
 
-/* Path, folder and text of the scene, then its overrides. */
-static sonject_status keep_source(struct tracing *tracing)
-{
-    struct impulse_head source;
-    memset(&source, 0, sizeof source);
-    if (!tracing->job->request->source || !tracing->job->request->source->text)
-        return SONJECT_OK;
-    sonject_status status = take_source(&source, tracing->report, tracing->job->request->source);
-    const char *texts[] = {source.scene_path, source.scene_folder, source.scene_text};
-    size_t bytes = 0;
-    for (size_t i = 0; status == SONJECT_OK && i < 3 + source.override_count; i++)
-        bytes += strlen(i < 3 ? texts[i] : source.overrides[i - 3]) + 1;
-    tracing->source = allocate_array(bytes, 1);
-    if (status == SONJECT_OK && !tracing->source)
-        status = report_out_of_memory(tracing->report, "the scene's text");
-    for (size_t i = 0; status == SONJECT_OK && i < 3 + source.override_count; i++) {
-        const char *text = i < 3 ? texts[i] : source.overrides[i - 3];
-        memcpy(tracing->source + tracing->source_bytes, text, strlen(text) + 1);
-        tracing->source_bytes += strlen(text) + 1;
-    }
-    impulse_head_clear(&source);
-    return status;
-}
-
-static const char *next_text(const char **at, const char *end)
-{
-    const char *text = *at;
-    if (text >= end)
-        return NULL;
-    *at = text + strlen(text) + 1;
-    return text;
-}
-
-/* The other way round; texts end with a terminator. */
-static sonject_status read_source(struct impulse_head *head, struct report *report,
-                                  const struct stint_file *file)
-{
-    const char *at = file->source.texts;
-    const char *end = at + file->source.bytes;
-    memset(head, 0, sizeof *head);
-    if (file->source.bytes == 0)
-        return SONJECT_OK;
-    const char *path = next_text(&at, end);
-    const char *folder = next_text(&at, end);
-    const char *text = next_text(&at, end);
-    if (!text)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: damaged: delete it", file->path);
-    head->scene_path = copy_text(path);
-    head->scene_folder = copy_text(folder);
-    head->scene_text = copy_text(text);
-    head->overrides = allocate_array((size_t)(end - at) + 1, sizeof *head->overrides);
-    bool is_whole = head->scene_path && head->scene_folder && head->scene_text && head->overrides;
-    while (is_whole && (text = next_text(&at, end)) != NULL) {
-        head->overrides[head->override_count] = copy_text(text);
-        is_whole = head->overrides[head->override_count] != NULL;
-        head->override_count += is_whole;
-    }
-    return is_whole ? SONJECT_OK : report_out_of_memory(report, "the scene's text");
-}
-
 /* NULL where the tallies are of the same scene, image and version; else what differs. */
 static const char *difference(const struct stint_identity *a, const struct stint_identity *b)
 {
@@ -158,7 +97,7 @@ static const char *difference(const struct stint_identity *a, const struct stint
     return strcmp(a->scene, b->scene) == 0 ? NULL : "another scene or image";
 }
 
-static sonject_status refuse_foreign(struct report *report, const char *path, const char *what)
+sonject_status refuse_foreign_stint(struct report *report, const char *path, const char *what)
 {
     return report_failure(report, SONJECT_ERROR_INPUT,
                           "%s: traced by %s: choose another folder, or delete the work in this one",
@@ -177,7 +116,7 @@ static sonject_status check_folder(struct tracing *tracing, struct stint_folder 
         if (!what && strcmp(file->head.identity.device, mine->device) != 0)
             what = "another device, on which code of shapes may answer differently";
         if (what && is_shard)
-            return refuse_foreign(report, file->path, what);
+            return refuse_foreign_stint(report, file->path, what);
         if (what) {
             report_news(report, "%s was traced by %s and is dropped", tracing->folder, what);
             stint_folder_clear(folder);
@@ -234,9 +173,8 @@ static int ask(void *user)
 
 static sonject_status begin_stint(struct tracing *tracing, uint64_t first)
 {
-    const struct stint_source source = {tracing->source, tracing->source_bytes};
     const sonject_status status = stint_begin(&tracing->stint, tracing->report, tracing->folder,
-                                              &tracing->head, source, first);
+                                              &tracing->head, tracing->source, first);
     tracing->stint.ask = ask;
     tracing->stint.user = tracing;
     tracing->stint_start_s = clock_seconds();
@@ -449,7 +387,7 @@ static sonject_status check_merged(struct tracing *tracing, const struct stint_f
         if (!what && strcmp(file->head.identity.device, first->identity.device) != 0)
             what = "another device, on which code of shapes may answer differently";
         if (what)
-            return refuse_foreign(tracing->report, file->path, what);
+            return refuse_foreign_stint(tracing->report, file->path, what);
     }
     tracing->head.shards = first->shards;
     return first->shards <= SHARDS_MAX
@@ -483,116 +421,16 @@ sonject_status inject_by_stints(const struct stint_job *job, struct injection_re
     memset(&tracing, 0, sizeof tracing);
     tracing.job = job;
     tracing.report = &job->context->report;
-    tracing.folder = work_folder(job->request->folder);
+    tracing.folder = stints_folder(job->request->folder);
     *is_formed = false;
     sonject_status status =
         tracing.folder ? take_head(&tracing) : report_out_of_memory(tracing.report, "a file name");
     if (status == SONJECT_OK)
-        status = keep_source(&tracing);
+        status = stint_source_take(&tracing.source, tracing.report, job->request->source);
     if (status == SONJECT_OK)
         status = job->request->merges ? merge(&tracing, result, is_formed)
                                       : run_shard(&tracing, result, is_formed);
     free(tracing.folder);
-    free(tracing.source);
+    free((void *)tracing.source.texts);
     return status;
-}
-
-void sonject_merge_params_init(sonject_merge_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-}
-
-/* The scene that the first of the shards keeps. */
-static sonject_status read_kept_scene(struct report *report, const struct stint_file *file,
-                                      bool allows_user_shapes, struct scene *scene)
-{
-    struct impulse_head head;
-    sonject_form_params params;
-    sonject_form_params_init(&params);
-    params.file = file->path;
-    params.allows_user_shapes = allows_user_shapes;
-    sonject_status status = read_source(&head, report, file);
-    if (status == SONJECT_OK && strcmp(file->head.identity.version, sonject_version()) != 0)
-        status = refuse_foreign(report, file->path, "another version of sonject");
-    if (status == SONJECT_OK)
-        status = read_traced_scene(report, &head, &params, scene);
-    impulse_head_clear(&head);
-    return status;
-}
-
-static bool has_result(const char *folder)
-{
-    char *path = path_join(folder, "run.json");
-    const bool is_there = path && file_exists(path);
-    free(path);
-    return is_there;
-}
-
-static sonject_status merge_kept(struct sonject_context *context, struct run_request *request,
-                                 bool allows_user_shapes, int *was_finished)
-{
-    struct report *report = &context->report;
-    struct stint_folder folder;
-    struct scene scene;
-    scene_init(&scene);
-    char *work = work_folder(request->folder);
-    if (!work)
-        return report_out_of_memory(report, "a file name");
-    sonject_status status = stint_folder_read(&folder, report, work, 0, false);
-    const bool is_merged = status == SONJECT_OK && folder.count == 0 && has_result(request->folder);
-    if (status == SONJECT_OK && folder.count == 0 && !is_merged)
-        status =
-            report_failure(report, SONJECT_ERROR_INPUT,
-                           "%s: holds no shards of a run, and there is no campaign: run them with "
-                           "--shard I/K first",
-                           work);
-    if (status == SONJECT_OK && !is_merged)
-        status = read_kept_scene(report, &folder.files[0], allows_user_shapes, &scene);
-    char hash[STINT_DIGEST_CAPACITY] = "";
-    if (status == SONJECT_OK && !is_merged)
-        memcpy(hash, folder.files[0].head.result, sizeof hash);
-    stint_folder_clear(&folder);
-    request->scene = &scene;
-    request->scene_hash = hash;
-    if (is_merged && was_finished)
-        *was_finished = 1;
-    if (status == SONJECT_OK && !is_merged)
-        status = run_scene(context, request, was_finished);
-    scene_clear(&scene);
-    free(work);
-    return status;
-}
-
-sonject_status sonject_merge(sonject_context *context, const sonject_scene *scene,
-                             const sonject_merge_params *params, sonject_progress_function progress,
-                             void *user, int *was_finished)
-{
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
-    sonject_merge_params taken;
-    sonject_merge_params_init(&taken);
-    const sonject_status status = params_take(&context->report, &taken, sizeof taken, params,
-                                              sizeof taken, "merge parameters");
-    if (status != SONJECT_OK)
-        return status;
-    if (!taken.folder || !taken.folder[0])
-        return null_argument(&context->report, "folder");
-    struct run_request request;
-    memset(&request, 0, sizeof request);
-    request.folder = taken.folder;
-    if (taken.labels & ~LABEL_FORMATS)
-        return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
-                              "labels must be a sum of sonject_labels");
-    request.label_formats = taken.labels;
-    request.merges = true;
-    request.progress = progress;
-    request.user = user;
-    if (was_finished)
-        *was_finished = 0;
-    if (!scene)
-        return merge_kept(context, &request, taken.allows_user_shapes != 0, was_finished);
-    request.scene = &scene->scene;
-    return run_scene(context, &request, was_finished);
 }

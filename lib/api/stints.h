@@ -25,6 +25,12 @@ struct stint_job {
 sonject_status inject_by_stints(const struct stint_job *job, struct injection_result *result,
                                 bool *is_formed);
 
+/* Where the tallies of a run's folder are, for free(); NULL where memory lacks. */
+char *stints_folder(const char *folder);
+
+/* Says that the file at path was traced by something else. Returns INPUT. */
+sonject_status refuse_foreign_stint(struct report *report, const char *path, const char *what);
+
 /* Removes the tallies of a run whose results are written. */
 void stints_remove(const char *folder);
 

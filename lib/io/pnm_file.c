@@ -123,21 +123,7 @@ static sonject_status read_header(struct report *report, struct sample_rows *row
 
 sonject_status pnm_file_open(struct report *report, const char *path, struct sample_rows *rows)
 {
-    memset(rows, 0, sizeof *rows);
-    rows->path = copy_text(path);
-    if (!rows->path)
-        return report_out_of_memory(report, "a file name");
-    rows->file = byte_file_open(path, &rows->file_bytes);
-    sonject_status status = SONJECT_OK;
-    if (!rows->file) {
-        (void)file_failure(report, path, "open", errno);
-        status = SONJECT_ERROR_INPUT;
-    }
-    if (status == SONJECT_OK)
-        status = read_header(report, rows);
-    if (status != SONJECT_OK)
-        sample_rows_clear(rows);
-    return status;
+    return sample_rows_open(report, path, read_header, rows);
 }
 
 bool pnm_file_attribute(const struct sample_rows *rows, const char *name, char *value,

@@ -23,6 +23,13 @@ struct sample_rows {
     bool above_is_negative; /* what is larger are negative numbers */
 };
 
+/* Opens a file and has its header read, which fills the rest of rows. On failure rows is cleared.
+ * Errors: INPUT (it cannot be opened), MEMORY, and those of read_header. */
+sonject_status sample_rows_open(struct report *report, const char *path,
+                                sonject_status (*read_header)(struct report *report,
+                                                              struct sample_rows *rows),
+                                struct sample_rows *rows);
+
 /* Frees what rows owns; fit for zeroed ones. */
 void sample_rows_clear(struct sample_rows *rows);
 

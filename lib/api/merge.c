@@ -1,0 +1,112 @@
+/* sonject_merge: the result of all shards of a run, whose scene they keep. */
+#include <stdlib.h>
+#include <string.h>
+
+#include <sonject/run.h>
+#include <sonject/version.h>
+
+#include "api/run_scene.h"
+#include "api/stint_source.h"
+#include "api/stints.h"
+#include "base/file.h"
+#include "trace/stint_folder.h"
+
+void sonject_merge_params_init(sonject_merge_params *params)
+{
+    memset(params, 0, sizeof *params);
+    params->struct_size = sizeof *params;
+}
+
+/* The scene that the first of the shards keeps. */
+static sonject_status read_kept_scene(struct report *report, const struct stint_file *file,
+                                      bool allows_user_shapes, struct scene *scene)
+{
+    struct impulse_head head;
+    sonject_form_params params;
+    sonject_form_params_init(&params);
+    params.file = file->path;
+    params.allows_user_shapes = allows_user_shapes;
+    sonject_status status = stint_source_read(&head, report, file);
+    if (status == SONJECT_OK && strcmp(file->head.identity.version, sonject_version()) != 0)
+        status = refuse_foreign_stint(report, file->path, "another version of sonject");
+    if (status == SONJECT_OK)
+        status = read_traced_scene(report, &head, &params, scene);
+    impulse_head_clear(&head);
+    return status;
+}
+
+static bool has_result(const char *folder)
+{
+    char *path = path_join(folder, "run.json");
+    const bool is_there = path && file_exists(path);
+    free(path);
+    return is_there;
+}
+
+static sonject_status merge_kept(struct sonject_context *context, struct run_request *request,
+                                 bool allows_user_shapes, int *was_finished)
+{
+    struct report *report = &context->report;
+    struct stint_folder folder;
+    struct scene scene;
+    scene_init(&scene);
+    char *work = stints_folder(request->folder);
+    if (!work)
+        return report_out_of_memory(report, "a file name");
+    sonject_status status = stint_folder_read(&folder, report, work, 0, false);
+    const bool is_merged = status == SONJECT_OK && folder.count == 0 && has_result(request->folder);
+    if (status == SONJECT_OK && folder.count == 0 && !is_merged)
+        status =
+            report_failure(report, SONJECT_ERROR_INPUT,
+                           "%s: holds no shards of a run, and there is no campaign: run them with "
+                           "--shard I/K first",
+                           work);
+    if (status == SONJECT_OK && !is_merged)
+        status = read_kept_scene(report, &folder.files[0], allows_user_shapes, &scene);
+    char hash[STINT_DIGEST_CAPACITY] = "";
+    if (status == SONJECT_OK && !is_merged)
+        memcpy(hash, folder.files[0].head.result, sizeof hash);
+    stint_folder_clear(&folder);
+    request->scene = &scene;
+    request->scene_hash = hash;
+    if (is_merged && was_finished)
+        *was_finished = 1;
+    if (status == SONJECT_OK && !is_merged)
+        status = run_scene(context, request, was_finished);
+    scene_clear(&scene);
+    free(work);
+    return status;
+}
+
+sonject_status sonject_merge(sonject_context *context, const sonject_scene *scene,
+                             const sonject_merge_params *params, sonject_progress_function progress,
+                             void *user, int *was_finished)
+{
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    sonject_merge_params taken;
+    sonject_merge_params_init(&taken);
+    const sonject_status status = params_take(&context->report, &taken, sizeof taken, params,
+                                              sizeof taken, "merge parameters");
+    if (status != SONJECT_OK)
+        return status;
+    if (!taken.folder || !taken.folder[0])
+        return null_argument(&context->report, "folder");
+    struct run_request request;
+    memset(&request, 0, sizeof request);
+    request.folder = taken.folder;
+    if (taken.labels & ~LABEL_FORMATS)
+        return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
+                              "labels must be a sum of sonject_labels");
+    request.label_formats = taken.labels;
+    request.merges = true;
+    request.progress = progress;
+    request.user = user;
+    if (was_finished)
+        *was_finished = 0;
+    if (!scene)
+        return merge_kept(context, &request, taken.allows_user_shapes != 0, was_finished);
+    request.scene = &scene->scene;
+    return run_scene(context, &request, was_finished);
+}
