@@ -8,6 +8,7 @@
 
 #include "api/campaign_documents.h"
 #include "base/file.h"
+#include "base/json_document.h"
 
 /* A document in the making: annotations wait in a file of their own until all images are told. */
 struct coco_file {
@@ -41,8 +42,8 @@ static json_t *numbered(struct coco_file *coco, uint64_t image, const json_t *an
 {
     json_t *copy = json_copy((json_t *)annotation);
     coco->annotation_count++;
-    json_object_set_new(copy, "id", json_integer((json_int_t)coco->annotation_count));
-    json_object_set_new(copy, "image_id", json_integer((json_int_t)image));
+    json_add(&copy, "id", json_integer((json_int_t)coco->annotation_count));
+    json_add(&copy, "image_id", json_integer((json_int_t)image));
     return copy;
 }
 

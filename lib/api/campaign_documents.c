@@ -9,6 +9,7 @@
 
 #include "base/file.h"
 #include "base/growing_text.h"
+#include "base/json_document.h"
 
 #define FORMAT_VERSION 1
 
@@ -24,25 +25,25 @@ double member_number(const json_t *object, const char *key)
     return json_is_number(value) ? json_number_value(value) : NAN;
 }
 
-static void add_class(json_t *classes, const char *name)
+static void add_class(json_t **classes, const char *name)
 {
     size_t i;
     const json_t *known;
-    json_array_foreach(classes, i, known)
+    json_array_foreach(*classes, i, known)
     {
         if (strcmp(json_string_value(known), name) == 0)
             return;
     }
-    json_array_append_new(classes, json_string(name));
+    json_append(classes, json_string(name));
 }
 
 static json_t *classes_of(const struct campaign *campaign)
 {
     json_t *classes = json_array();
     for (size_t i = 0; i < campaign->target_count; i++)
-        add_class(classes, campaign->targets[i].class_name);
+        add_class(&classes, campaign->targets[i].class_name);
     for (size_t i = 0; i < campaign->clutter_count; i++)
-        add_class(classes, campaign->clutter[i].class_name);
+        add_class(&classes, campaign->clutter[i].class_name);
     return classes;
 }
 
@@ -51,9 +52,9 @@ static json_t *splits_of(const struct campaign *campaign)
     json_t *splits = json_array();
     for (size_t i = 0; i < campaign->split_count; i++) {
         const struct split *split = &campaign->splits[i];
-        json_array_append_new(splits, json_pack("{s:s, s:I, s:I}", "name", split->name,
-                                                "first_image", (json_int_t)split->first_image,
-                                                "images", (json_int_t)split->images));
+        json_append(&splits,
+                    json_pack("{s:s, s:I, s:I}", "name", split->name, "first_image",
+                              (json_int_t)split->first_image, "images", (json_int_t)split->images));
     }
     return splits;
 }
@@ -63,10 +64,9 @@ static json_t *swaths_of(const struct sonject_campaign *campaign)
     json_t *swaths = json_array();
     for (size_t i = 0; i < campaign->campaign.swath_count; i++) {
         const struct swath_plan *swath = &campaign->campaign.swaths[i];
-        json_array_append_new(swaths,
-                              json_pack("{s:s, s:s, s:s}", "path", swath->written, "hash",
-                                        campaign->swath_hashes[i], "split",
-                                        campaign->campaign.splits[swath->split_number].name));
+        json_append(&swaths, json_pack("{s:s, s:s, s:s}", "path", swath->written, "hash",
+                                       campaign->swath_hashes[i], "split",
+                                       campaign->campaign.splits[swath->split_number].name));
     }
     return swaths;
 }
@@ -76,7 +76,7 @@ static json_t *outputs_of(uint32_t outputs)
     json_t *names = json_array();
     for (size_t i = 0; i < OUTPUT_KINDS; i++)
         if (outputs & output_files[i].output)
-            json_array_append_new(names, json_string(output_files[i].folder));
+            json_append(&names, json_string(output_files[i].folder));
     return names;
 }
 

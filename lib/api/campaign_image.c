@@ -151,7 +151,7 @@ static json_t *record_of(const struct sonject_campaign *campaign,
     const bool has_target = plan->category >= CATEGORY_TARGET;
     json_t *keys = json_array();
     for (size_t i = 0; i < plan->key_count; i++)
-        json_array_append_new(keys, json_string(plan->keys[i].text));
+        json_append(&keys, json_string(plan->keys[i].text));
     return json_pack(
         "{s:I, s:s, s:s, s:s?, s:{s:s, s:s, s:I, s:I, s:I, s:I}, s:o, s:s, s:o, s:s, s:s, s:s, "
         "s:o}",
