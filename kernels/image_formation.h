@@ -5,6 +5,7 @@
 #define SONJECT_KERNELS_IMAGE_FORMATION_H
 
 #include "elementary.h"
+#include "layout.h"
 #include "random.h"
 
 /* Complex normal deviates of unit mean square (Box and Muller: -ln u is the exponential intensity,
@@ -32,45 +33,46 @@ FUNCTION real load_tap(GLOBAL const float *line, int bins, int start, int bins_p
     return LOAD_REAL(lanes);
 }
 
-/* The taps that meet bins of the line, for WIDTH pixels of which the first begins at `start`: the
- * others would add zeros. */
-FUNCTION int first_tap_of(int start, int bins_per_pixel)
+/* The taps that meet these, for WIDTH pixels of which the first begins at `start`: the others would
+ * add zeros. */
+FUNCTION int first_tap_of(int start, struct filled_bins filled, int bins_per_pixel)
 {
-    const int outside = -start - (WIDTH - 1) * bins_per_pixel;
+    const int outside = filled.first - start - (WIDTH - 1) * bins_per_pixel;
     return outside > 0 ? outside : 0;
 }
 
-FUNCTION int end_of_taps(int start, int bins, int taps)
+FUNCTION int end_of_taps(int start, struct filled_bins filled, int taps)
 {
-    return bins - start < taps ? bins - start : taps;
+    return filled.end - start < taps ? filled.end - start : taps;
 }
 
 /* Range compression of the WIDTH pixels from `column` on: pixel j is the sum over taps of
  * line[j * bins_per_pixel + first + tap] * pulse[tap]. Lanes are pixels, so that each sum keeps its
  * order whatever a compiler makes of the loop. `out` must have room for whole groups of WIDTH. */
-FUNCTION void compress_range_of(GLOBAL const float *line, int bins, int first, int bins_per_pixel,
-                                GLOBAL const float *pulse, int taps, int column, GLOBAL float *out)
+FUNCTION void compress_range_of(GLOBAL const float *line, int bins, struct filled_bins filled,
+                                int first, int bins_per_pixel, GLOBAL const float *pulse, int taps,
+                                int column, GLOBAL float *out)
 {
     const int start = column * bins_per_pixel + first;
     real sum = SPLAT(0.0f);
-    const int end = end_of_taps(start, bins, taps);
-    for (int tap = first_tap_of(start, bins_per_pixel); tap < end; tap++)
+    const int end = end_of_taps(start, filled, taps);
+    for (int tap = first_tap_of(start, filled, bins_per_pixel); tap < end; tap++)
         sum += load_tap(line, bins, start + tap, bins_per_pixel) * pulse[tap];
     STORE_REAL(sum, out + column);
 }
 
 /* The same with a complex pulse, both parts of the line at once. */
 FUNCTION void compress_complex_of(GLOBAL const float *line_real, GLOBAL const float *line_imaginary,
-                                  int bins, int first, int bins_per_pixel,
-                                  GLOBAL const float *pulse_real,
+                                  int bins, struct filled_bins filled, int first,
+                                  int bins_per_pixel, GLOBAL const float *pulse_real,
                                   GLOBAL const float *pulse_imaginary, int taps, int column,
                                   GLOBAL float *out_real, GLOBAL float *out_imaginary)
 {
     const int start = column * bins_per_pixel + first;
     real sum_real = SPLAT(0.0f);
     real sum_imaginary = SPLAT(0.0f);
-    const int end = end_of_taps(start, bins, taps);
-    for (int tap = first_tap_of(start, bins_per_pixel); tap < end; tap++) {
+    const int end = end_of_taps(start, filled, taps);
+    for (int tap = first_tap_of(start, filled, bins_per_pixel); tap < end; tap++) {
         const real a = load_tap(line_real, bins, start + tap, bins_per_pixel);
         const real b = load_tap(line_imaginary, bins, start + tap, bins_per_pixel);
         sum_real += a * pulse_real[tap] - b * pulse_imaginary[tap];
@@ -83,9 +85,10 @@ FUNCTION void compress_complex_of(GLOBAL const float *line_real, GLOBAL const fl
 /* Where a row takes its aspects from. */
 struct aspects {
     int first_strip; /* of the lines, on the track's numbering */
-    int strips;
     int strips_per_row;
-    int reach; /* the response is kept within +-reach strips; 2 reach + 1 taps */
+    int reach;                    /* the response is kept within +-reach strips; 2 reach + 1 taps */
+    int first_filled, end_filled; /* strips, from the one to before the other, beyond which are none
+                                     but zeros */
 };
 
 #define FORM_ROWS 4 /* rows a work-item forms, so that a line is read once for all of them */
@@ -105,9 +108,8 @@ FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lin
     const int taps = 2 * aspects.reach + 1;
     int low = first_row * aspects.strips_per_row - aspects.reach;
     int high = (first_row + FORM_ROWS - 1) * aspects.strips_per_row + aspects.reach + 1;
-    low = low < aspects.first_strip ? aspects.first_strip : low;
-    high =
-        high > aspects.first_strip + aspects.strips ? aspects.first_strip + aspects.strips : high;
+    low = low < aspects.first_filled ? aspects.first_filled : low;
+    high = high > aspects.end_filled ? aspects.end_filled : high;
     for (int strip = low; strip < high; strip++) {
         const long at = (long)(strip - aspects.first_strip) * stride + column;
         const real a = LOAD_REAL(lines_real + at);
@@ -145,14 +147,13 @@ FUNCTION void combine_varied_of(struct aspects aspects, struct response_set set,
 {
     const int taps = 2 * aspects.reach + 1;
     const long block = (long)(column / set.columns_per_block) * set.block_step;
-    const int end = aspects.first_strip + aspects.strips;
     for (int row = first_row; row < first_row + FORM_ROWS && row < rows; row++) {
         const long first_tap = (long)(row - set.first_row) * set.row_step + block;
         const int last = row * aspects.strips_per_row + aspects.reach; /* strip of tap 0 */
         int low = last - taps + 1;
         int high = last + 1;
-        low = low < aspects.first_strip ? aspects.first_strip : low;
-        high = high > end ? end : high;
+        low = low < aspects.first_filled ? aspects.first_filled : low;
+        high = high > aspects.end_filled ? aspects.end_filled : high;
         real sum_real = SPLAT(0.0f);
         real sum_imaginary = SPLAT(0.0f);
         for (int strip = low; strip < high; strip++) {

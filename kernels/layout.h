@@ -309,4 +309,9 @@ struct outcome_record {
     RECORD_WORD rays; /* that were followed */
 };
 
+/* The bins of a line that may hold anything but zeros, from first on to before end. */
+struct filled_bins {
+    RECORD_INT first, end;
+};
+
 #endif

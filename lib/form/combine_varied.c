@@ -109,7 +109,8 @@ static sonject_status run_rows(struct form_lines *lines, cl_kernel kernel, const
         const size_t left = lines->rows - first_row;
         const size_t some = by_row && taps->rows < left ? taps->rows : left;
         const cl_int first_strip = lines->grid.strips.first;
-        const cl_int strips = lines->grid.strips.count;
+        const cl_int first_filled = lines->first_filled;
+        const cl_int end_filled = lines->end_filled;
         const cl_int per_row = (cl_int)lines->grid.strips_per_row;
         const cl_int reach = lines->reach;
         const cl_int row = (cl_int)first_row;
@@ -119,7 +120,8 @@ static sonject_status run_rows(struct form_lines *lines, cl_kernel kernel, const
         const cl_int stride = (cl_int)lines->stride;
         const cl_int rows = (cl_int)(first_row + some);
         const struct kernel_argument arguments[] = {ARGUMENT(first_strip),
-                                                    ARGUMENT(strips),
+                                                    ARGUMENT(first_filled),
+                                                    ARGUMENT(end_filled),
                                                     ARGUMENT(per_row),
                                                     ARGUMENT(reach),
                                                     ARGUMENT(row),

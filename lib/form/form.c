@@ -8,11 +8,14 @@
 #include "cl/launch.h"
 #include "cl/program.h"
 #include "form/combine_varied.h"
+#include "kernels/layout.h"
 #include "scene/cross_range.h"
 
 #define SPECKLE_ENERGY_SHARE 0.001 /* of |W|^2 that is cut off from speckle and energies */
 #define COLUMN_STEP          16    /* lines are padded to whole groups of any width */
 #define ROWS_PER_ITEM        4     /* FORM_ROWS of kernels/image_formation.h */
+
+typedef char filled_bins_is_packed[sizeof(struct filled_bins) == 2 * 4 ? 1 : -1];
 
 /* The columns that the grid's bins reach through the pulse. */
 static void choose_window(struct form_lines *lines, const struct patch_view *view,
@@ -137,7 +140,7 @@ void form_lines_end(struct form_lines *lines)
 }
 
 static sonject_status compress_complex(struct form_lines *lines, int32_t strip, int32_t count,
-                                       cl_mem real_bins, cl_mem imaginary_bins)
+                                       cl_mem real_bins, cl_mem imaginary_bins, cl_mem filled)
 {
     const cl_int bins = lines->grid.bins.count;
     const cl_int per_pixel = (cl_int)lines->grid.bins_per_pixel;
@@ -147,6 +150,7 @@ static sonject_status compress_complex(struct form_lines *lines, int32_t strip, 
     const cl_int out_strip = strip - lines->grid.strips.first;
     const struct kernel_argument arguments[] = {ARGUMENT(real_bins),
                                                 ARGUMENT(imaginary_bins),
+                                                ARGUMENT(filled),
                                                 ARGUMENT(bins),
                                                 ARGUMENT(first),
                                                 ARGUMENT(per_pixel),
@@ -163,10 +167,10 @@ static sonject_status compress_complex(struct form_lines *lines, int32_t strip, 
 }
 
 static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t count,
-                               cl_mem real_bins, cl_mem imaginary_bins)
+                               cl_mem real_bins, cl_mem imaginary_bins, cl_mem filled)
 {
     if (lines->imaginary_pulse)
-        return compress_complex(lines, strip, count, real_bins, imaginary_bins);
+        return compress_complex(lines, strip, count, real_bins, imaginary_bins, filled);
     const cl_int bins = lines->grid.bins.count;
     const cl_int per_pixel = (cl_int)lines->grid.bins_per_pixel;
     const cl_int first = lines->pulse_first + (cl_int)lines->first_column * per_pixel;
@@ -175,6 +179,7 @@ static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t 
     const cl_int out_strip = strip - lines->grid.strips.first;
     const struct kernel_argument arguments[] = {ARGUMENT(real_bins),
                                                 ARGUMENT(imaginary_bins),
+                                                ARGUMENT(filled),
                                                 ARGUMENT(bins),
                                                 ARGUMENT(first),
                                                 ARGUMENT(per_pixel),
@@ -189,6 +194,54 @@ static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t 
                       sizeof arguments / sizeof *arguments, 3, global);
 }
 
+/* The bins of a line, of both parts, with anything but zeros. */
+static struct filled_bins find_filled(const float *real_part, const float *imaginary_part,
+                                      int32_t bins)
+{
+    struct filled_bins filled = {0, 0};
+    for (int32_t bin = 0; bin < bins; bin++) {
+        if (real_part[bin] == 0.0f && (!imaginary_part || imaginary_part[bin] == 0.0f))
+            continue;
+        if (filled.end == 0)
+            filled.first = bin;
+        filled.end = bin + 1;
+    }
+    return filled;
+}
+
+static void note_filled(struct form_lines *lines, int32_t strip)
+{
+    const bool is_first = lines->first_filled == lines->end_filled;
+    if (is_first || strip < lines->first_filled)
+        lines->first_filled = strip;
+    if (is_first || strip >= lines->end_filled)
+        lines->end_filled = strip + 1;
+}
+
+/* The filled bins of count strips, on the device; all of them where real_part is NULL. */
+static sonject_status send_filled(struct form_lines *lines, int32_t strip, int32_t count,
+                                  const float *real_part, const float *imaginary_part,
+                                  cl_mem *buffer)
+{
+    const int32_t bins = lines->grid.bins.count;
+    struct filled_bins *filled = allocate_array((size_t)count, sizeof *filled);
+    if (!filled)
+        return report_out_of_memory(lines->report, "image formation");
+    for (int32_t i = 0; i < count; i++) {
+        const size_t at = (size_t)i * (size_t)bins;
+        filled[i] = (struct filled_bins){0, bins};
+        if (real_part)
+            filled[i] =
+                find_filled(real_part + at, imaginary_part ? imaginary_part + at : NULL, bins);
+        if (filled[i].end > 0)
+            note_filled(lines, strip + i);
+    }
+    const sonject_status status =
+        buffer_create(lines->report, lines->device, (size_t)count * sizeof *filled, filled, buffer);
+    free(filled);
+    return status;
+}
+
 sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t count,
                               const float *real_part, const float *imaginary_part)
 {
@@ -197,15 +250,19 @@ sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t c
     const size_t bytes = (size_t)count * (size_t)lines->grid.bins.count * sizeof(float);
     cl_mem real_bins = NULL;
     cl_mem imaginary_bins = NULL;
+    cl_mem filled = NULL;
     sonject_status status =
         buffer_create(lines->report, lines->device, bytes, real_part, &real_bins);
     if (status == SONJECT_OK)
         status =
             buffer_create(lines->report, lines->device, bytes, imaginary_part, &imaginary_bins);
     if (status == SONJECT_OK)
-        status = compress(lines, strip, count, real_bins, imaginary_bins);
+        status = send_filled(lines, strip, count, real_part, imaginary_part, &filled);
+    if (status == SONJECT_OK)
+        status = compress(lines, strip, count, real_bins, imaginary_bins, filled);
     buffer_release(&real_bins);
     buffer_release(&imaginary_bins);
+    buffer_release(&filled);
     return status;
 }
 
@@ -218,6 +275,7 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
     cl_mem energies = NULL;
     cl_mem real_bins = NULL;
     cl_mem imaginary_bins = NULL;
+    cl_mem filled = NULL;
     sonject_status status = buffer_create(lines->report, lines->device, bytes, energy, &energies);
     if (status == SONJECT_OK)
         status = buffer_create(lines->report, lines->device, bytes, NULL, &real_bins);
@@ -240,10 +298,13 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
                             sizeof arguments / sizeof *arguments, 2, global);
     }
     if (status == SONJECT_OK)
-        status = compress(lines, strip, count, real_bins, imaginary_bins);
+        status = send_filled(lines, strip, count, NULL, NULL, &filled);
+    if (status == SONJECT_OK)
+        status = compress(lines, strip, count, real_bins, imaginary_bins, filled);
     buffer_release(&energies);
     buffer_release(&real_bins);
     buffer_release(&imaginary_bins);
+    buffer_release(&filled);
     return status;
 }
 
@@ -270,13 +331,15 @@ static sonject_status combine(struct form_lines *lines, cl_mem taps, cl_mem real
     if (!cross_range_is_plain(&lines->response))
         return combine_varied(lines, real_out, imaginary_out);
     const cl_int first_strip = lines->grid.strips.first;
-    const cl_int strips = lines->grid.strips.count;
+    const cl_int first_filled = lines->first_filled;
+    const cl_int end_filled = lines->end_filled;
     const cl_int per_row = (cl_int)lines->grid.strips_per_row;
     const cl_int reach = lines->reach;
     const cl_int stride = (cl_int)lines->stride;
     const cl_int rows = (cl_int)lines->rows;
     const struct kernel_argument arguments[] = {ARGUMENT(first_strip),
-                                                ARGUMENT(strips),
+                                                ARGUMENT(first_filled),
+                                                ARGUMENT(end_filled),
                                                 ARGUMENT(per_row),
                                                 ARGUMENT(reach),
                                                 ARGUMENT(lines->real_lines),

@@ -33,6 +33,7 @@ struct form_lines {
     size_t first_column;          /* of the patch; the window is `columns` wide */
     int32_t reach;                /* of the cross-range response, strips */
     int32_t pulse_first, pulse_taps;
+    int32_t first_filled, end_filled; /* strips that were added with anything but zeros */
     double row_spacing_m;
     struct point_response response;
     cl_mem real_lines, imaginary_lines, pulse;

@@ -584,6 +584,7 @@ static void compress_as_c(struct bench *bench, const struct form_lines *lines,
 {
     const size_t strips = (size_t)lines->grid.strips.count;
     const int count = lines->grid.bins.count;
+    const struct filled_bins all = {0, count}; /* zeros too, which the device leaves out */
     const int per_pixel = (int)lines->grid.bins_per_pixel;
     const int first = lines->pulse_first + (int)lines->first_column * per_pixel;
     float *imaginary = calloc((size_t)lines->pulse_taps, sizeof *imaginary);
@@ -597,11 +598,11 @@ static void compress_as_c(struct bench *bench, const struct form_lines *lines,
             const size_t in = s * (size_t)count;
             const size_t out = s * lines->stride;
             if (lines->imaginary_pulse)
-                compress_complex_of(bins->part[0] + in, bins->part[1] + in, count, first, per_pixel,
-                                    pulse, imaginary, lines->pulse_taps, column,
+                compress_complex_of(bins->part[0] + in, bins->part[1] + in, count, all, first,
+                                    per_pixel, pulse, imaginary, lines->pulse_taps, column,
                                     compressed->part[0] + out, compressed->part[1] + out);
             for (int part = 0; part < 2 && !lines->imaginary_pulse; part++)
-                compress_range_of(bins->part[part] + in, count, first, per_pixel, pulse,
+                compress_range_of(bins->part[part] + in, count, all, first, per_pixel, pulse,
                                   lines->pulse_taps, column, compressed->part[part] + out);
         }
     free(imaginary);
@@ -646,8 +647,9 @@ static void response_as_c(struct bench *bench, const struct form_lines *lines, i
 static void combine_varied_as_c(struct bench *bench, const struct form_lines *lines,
                                 const struct planes *compressed, struct planes *padded)
 {
-    const struct aspects aspects = {lines->grid.strips.first, lines->grid.strips.count,
-                                    (int)lines->grid.strips_per_row, lines->reach};
+    const struct aspects aspects = {lines->grid.strips.first, (int)lines->grid.strips_per_row,
+                                    lines->reach, lines->grid.strips.first,
+                                    lines->grid.strips.first + lines->grid.strips.count};
     const size_t taps = 2 * (size_t)lines->reach + 1;
     float *real_part = calloc(taps, sizeof *real_part);
     float *imaginary_part = calloc(taps, sizeof *imaginary_part);
@@ -691,8 +693,9 @@ static struct planes form_as_c(struct bench *bench, const struct form_lines *lin
         response[i] = (float)(lines->kind == FORM_ENERGY ? w * w : w);
     }
     compress_as_c(bench, lines, bins, pulse, &compressed);
-    const struct aspects aspects = {lines->grid.strips.first, lines->grid.strips.count,
-                                    (int)lines->grid.strips_per_row, lines->reach};
+    const struct aspects aspects = {lines->grid.strips.first, (int)lines->grid.strips_per_row,
+                                    lines->reach, lines->grid.strips.first,
+                                    lines->grid.strips.first + lines->grid.strips.count};
     if (!cross_range_is_plain(&lines->response))
         combine_varied_as_c(bench, lines, &compressed, &padded);
     else
@@ -721,6 +724,11 @@ static struct planes make_bins(const struct line_grid *grid, uint32_t stream)
         two_uniforms(random_key_of(8, 0, stream, 3), i, 0, &u, &v);
         bins.part[0][i] = u < 0.05f ? 0.0f : u * 1e-5f;
         bins.part[1][i] = (v - 0.5f) * 1e-5f;
+        /* as of glints: nothing on some strips, on others only in a few bins */
+        const uint32_t strip = i / (uint32_t)grid->bins.count;
+        const uint32_t bin = i % (uint32_t)grid->bins.count;
+        if (strip < 3 || strip % 5 == 2 || (strip % 5 == 3 && (bin < 30 || bin > 41)))
+            bins.part[0][i] = bins.part[1][i] = 0.0f;
     }
     return bins;
 }
