@@ -6,7 +6,7 @@ build_packages="build-essential meson ninja-build pkg-config python3
     libopenimageio-dev libhdf5-dev zlib1g-dev libyaml-dev libjansson-dev libxxhash-dev
     ocl-icd-opencl-dev opencl-headers pocl-opencl-icd"
 test_packages="cmake doxygen groff-base libassimp-dev libcmocka-dev python3-numpy python3-pytest
-    python3-h5py python3-scipy python3-venv clang locales valgrind"
+    python3-h5py python3-scipy python3-venv clang locales valgrind slurm-wlm munge parallel"
 # From PyPI: readers by others, which tests hold our files to, and what builds, checks and draws with
 # the Python package.
 readers="pyxtf pycocotools meson-python mypy==1.18.2 matplotlib"
@@ -35,6 +35,22 @@ apt() {
         -o DPkg::Lock::Timeout=600 -o Acquire::Retries=3 "$@"
 }
 
+# Calls a command within which installed packages start no services: nothing here needs any, and
+# outside of a booted system they may not start. Where the machine has a policy, that stands.
+without_services() {
+    policy=/usr/sbin/policy-rc.d
+    if [ -e "$policy" ]; then
+        "$@"
+        return
+    fi
+    (
+        trap 'run_as_root rm -f "$policy"' EXIT
+        trap 'exit 130' INT TERM HUP
+        printf '#!/bin/sh\nexit 101\n' | run_as_root tee "$policy" >/dev/null &&
+            run_as_root chmod 755 "$policy" && "$@"
+    )
+}
+
 # Installs those of the named packages that are missing.
 install_packages() {
     if ! command -v apt-get >/dev/null; then
@@ -48,7 +64,7 @@ install_packages() {
     [ -n "$missing" ] || return 0
     apt update
     # shellcheck disable=SC2086 # a list of words
-    apt install --no-install-recommends $missing
+    without_services apt install --no-install-recommends $missing
 }
 
 # Builds into ./build; a folder that an earlier call left, finished or not, is used again. Arguments

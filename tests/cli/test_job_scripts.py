@@ -1,0 +1,225 @@
+"""The scripts of tools/slurm on a Slurm of their own, and the commands that its README.md gives."""
+
+import os
+import pathlib
+import re
+import shutil
+import signal
+import subprocess
+import tempfile
+
+import numpy
+import pytest
+
+import cluster
+import images
+from cluster import wait_for
+from conftest import COMMAND
+from test_campaign import contents as data_set
+from test_run import RESULTS, contents
+
+SCRIPTS = pathlib.Path(os.environ["SONJECT_SOURCE"]) / "tools" / "slurm"
+README = (SCRIPTS / "README.md").read_text(encoding="utf-8")
+COMMANDS = re.findall(r"^    (.*)$", README, re.M)
+# So many rays that a part is traced in two slices, and that there is time to end it in the second.
+MANY_RAYS = "injection: {rays: 512}\n"
+TOLD_OFTEN = "--verbose --checkpoint 1e-9"
+
+CAMPAIGN = """\
+sonject_campaign: 1
+scene: scene.yaml
+images: 6
+chip: {rows: 64, columns: 64}
+splits: {all: 1}
+swaths: [{path: swath.png}]
+targets: [{class: ball, object: {shape: sphere, diameter: 0.3 m}}]
+"""
+
+
+def documented(*words):
+    """The README's first command that holds all the words."""
+    return next(line for line in COMMANDS if all(word in line for word in words))
+
+
+def stints(folder, shard):
+    return sorted((folder / "out" / "work").glob(f"shard-{shard}-of-4-*-*[0-9].stint"))
+
+
+@pytest.fixture(scope="module")
+def named(environment, tmp_path_factory):
+    """An environment in which the command is called by its name."""
+    folder = tmp_path_factory.mktemp("path")
+    (folder / "sonject").symlink_to(COMMAND)
+    return {**environment, "PATH": f"{folder}:{cluster.PATH}"}
+
+
+@pytest.fixture(scope="module")
+def slurm(named):
+    """Slurm's daemons. Their folder is in /tmp, since what TMPDIR names may allow no programs, such
+    as a job's script."""
+    reason = cluster.why_not()
+    if reason:
+        pytest.skip(reason)
+    folder = tempfile.mkdtemp(prefix="slurm-", dir="/tmp")
+    daemons = cluster.Cluster(folder, named)
+    try:
+        daemons.start()
+        yield daemons
+    finally:
+        daemons.stop()
+        shutil.rmtree(folder)
+
+
+@pytest.fixture
+def project(scene, tmp_path):
+    """A folder as the README has it in mind."""
+    (tmp_path / "tools").mkdir()
+    (tmp_path / "tools" / "slurm").symlink_to(SCRIPTS)
+    return tmp_path
+
+
+@pytest.fixture
+def whole(sonject, scene, project):
+    """What a run in one go leaves."""
+    scene.write_text(scene.read_text() + MANY_RAYS)
+    answer = sonject("run", scene, "-o", "whole", "--quiet")
+    assert answer.returncode == 0, answer.stderr
+    return contents(project / "whole")
+
+
+class Parts:
+    """The parts of a run as the tasks of an array, and the job that merges them."""
+
+    def __init__(self, slurm, folder, tasks):
+        lines = documented("sbatch", "--array=1-4", " run "), documented("sbatch", "afterany")
+        script = "\n".join(lines).replace("=1-4", f"={tasks}")
+        script = script.replace("-o out", f"-o out {TOLD_OFTEN}")
+        said = slurm.call("bash", "-euc", script + "\necho $array", cwd=folder)
+        self.merge, self.array = re.fullmatch(r"Submitted batch job (\d+)\n(\d+)\n", said).groups()
+        self.slurm, self.folder = slurm, folder
+
+    def task(self, shard):
+        return self.slurm.job(f"{self.array}_{shard}")
+
+    def log(self, shard):
+        return (self.folder / f"slurm-{self.array}_{shard}.out").read_text()
+
+    def renderer(self, shard):
+        """The process number of a task's sonject, None before it runs."""
+        variables = (f"SLURM_ARRAY_JOB_ID={self.array}", f"SLURM_ARRAY_TASK_ID={shard}")
+        found = cluster.processes_with(self.slurm.mark, *variables)
+        return next((process for process in found if is_sonject(process)), None)
+
+    def freeze(self, *shards):
+        """Stops tasks' sonjects as soon as each has kept its first slice; their process numbers."""
+        running = [wait_for("a renderer", lambda: self.renderer(shard)) for shard in shards]
+        frozen = set()
+
+        def are_frozen():
+            for shard, process in zip(shards, running):
+                if shard not in frozen and stints(self.folder, shard):
+                    os.kill(process, signal.SIGSTOP)
+                    frozen.add(shard)
+            return len(frozen) == len(shards)
+
+        wait_for("checkpoints", are_frozen)
+        assert all(len(stints(self.folder, shard)) == 1 for shard in shards)
+        return running
+
+    def merge_early(self):
+        """Has the merge started and put back while tasks are left."""
+        self.slurm.call("scontrol", "update", f"jobid={self.merge}", "dependency=")
+        wait_for("a merge that is put back", lambda: self.slurm.job(self.merge)["Restarts"] == "1")
+        assert self.slurm.queue(self.array)
+
+    def is_merged(self):
+        """A merge that has gone back into the queue is not held there for two minutes."""
+        merge = self.slurm.job(self.merge)
+        if merge["Reason"] == "BeginTime" and not self.slurm.queue(self.array):
+            self.slurm.start_again(self.merge)
+        return merge["JobState"] in ("COMPLETED", "FAILED")
+
+    def wait(self):
+        """For the end of the merge, what it says and its exit code."""
+        wait_for("the merge", self.is_merged)
+        code = int(self.slurm.job(self.merge)["ExitCode"].split(":")[0])
+        return (self.folder / f"slurm-{self.merge}.out").read_text(), code
+
+
+def is_sonject(process):
+    try:
+        return os.path.samefile(f"/proc/{process}/exe", COMMAND)
+    except OSError:  # has ended
+        return False
+
+
+def test_the_parts_of_a_lost_node_go_on_elsewhere(slurm, project, whole):
+    parts = Parts(slurm, project, "1-4")
+    parts.freeze(2)
+    node = parts.task(2)["NodeList"]
+    slurm.lose(node)
+    slurm.start_again(f"{parts.array}_2")
+    said, code = parts.wait()
+    assert code == 0 and said.endswith("sonject: the result is in out\n")
+    assert parts.task(2)["Restarts"] == "1" and parts.task(2)["NodeList"] != node
+    assert "goes on with what is in out/work" in parts.log(2)
+    assert contents(project / "out") == whole
+    assert {path.name for path in (project / "out").iterdir()} == RESULTS
+    slurm.bring_back(node)
+
+
+def test_evicted_and_killed_parts_go_on_and_missing_ones_are_named(slurm, project, whole):
+    parts = Parts(slurm, project, "1,3")
+    evicted, killed = parts.freeze(1, 3)
+    slurm.call("scontrol", "requeue", f"{parts.array}_1")
+    os.kill(evicted, signal.SIGCONT)
+    os.kill(killed, signal.SIGKILL)
+    slurm.start_again(f"{parts.array}_1")
+    slurm.start_again(f"{parts.array}_3")
+    said, code = parts.wait()
+    assert code == 3 and "out/work: missing of 4 shards: 2, 4;" in said
+    for shard in (1, 3):
+        assert parts.task(shard)["Restarts"] == "1"
+        assert parts.log(shard).count("goes on with what is in out/work") == 1
+    # The others, one asked to stop as Slurm does before the time limit.
+    parts = Parts(slurm, project, "2,4")
+    (asked,) = parts.freeze(2)
+    parts.merge_early()
+    slurm.call("scancel", "--batch", "--signal=USR1", f"{parts.array}_2")
+    os.kill(asked, signal.SIGCONT)
+    slurm.start_again(f"{parts.array}_2")
+    said, code = parts.wait()
+    assert code == 0 and said.endswith("sonject: the result is in out\n")
+    assert said.startswith(f"merge.sh: job {parts.array} is still in the queue")
+    assert "stopped; run the same command again" in parts.log(2)
+    assert contents(project / "out") == whole
+
+
+@pytest.fixture
+def in_parallel(project, named):
+    if not shutil.which("parallel", path=cluster.PATH):
+        pytest.skip("not installed: parallel")
+
+    def run(command):
+        answer = subprocess.run(["bash", "-c", command], cwd=project, env=named, text=True,
+                                capture_output=True, timeout=600)
+        assert answer.returncode == 0, answer.stderr
+
+    return run
+
+
+def test_the_line_for_gnu_parallel_makes_a_run(sonject, scene, project, in_parallel):
+    assert sonject("run", scene, "-o", "whole").returncode == 0
+    in_parallel(documented("parallel", " run "))
+    assert contents(project / "out") == contents(project / "whole")
+
+
+def test_the_line_for_gnu_parallel_makes_a_campaign(sonject, swath, project, in_parallel):
+    grey = numpy.clip(numpy.rint(swath * 255), 1, 255).astype(numpy.uint8)
+    (project / "swath.png").write_bytes(images.png_bytes(grey))
+    (project / "campaign.yaml").write_text(CAMPAIGN)
+    answer = sonject("campaign", "campaign.yaml", "-o", "whole")
+    assert answer.returncode == 0, answer.stderr
+    in_parallel(documented("parallel", " campaign "))
+    made, wanted = data_set(project / "data"), data_set(project / "whole")
+    assert made == wanted and any(name.endswith(".png") for name in made)
