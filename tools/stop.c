@@ -21,8 +21,10 @@ void stop_watch(void)
         struct sigaction action;
         memset(&action, 0, sizeof(action));
         action.sa_handler = note_signal;
-        /* Writing a file is not to fail because a signal came. */
-        action.sa_flags = (int)(SA_RESTART | SA_RESETHAND);
+        /* Writing a file is not to fail because a signal came. A second SIGINT ends the command at
+         * once; SIGTERM comes twice from schedulers that signal a job's script, which hands it on,
+         * and its processes. */
+        action.sa_flags = (int)(numbers[i] == SIGINT ? SA_RESTART | SA_RESETHAND : SA_RESTART);
         sigemptyset(&action.sa_mask);
         sigaction(numbers[i], &action, NULL);
     }

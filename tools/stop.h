@@ -4,7 +4,7 @@
 
 #include "exit_code.h"
 
-/* From now on the first SIGTERM or SIGINT is only noted; another one ends the process. */
+/* From now on SIGTERM and SIGINT are only noted; a second SIGINT ends the process. */
 void stop_watch(void);
 
 /* 1 once a signal came. */
