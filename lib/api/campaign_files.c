@@ -158,17 +158,33 @@ sonject_status campaign_write_json(struct report *report, json_t *document, cons
     return status;
 }
 
+/* Where memory is out jansson may find fault with the text: it is asked twice, and memory is. */
+static json_t *load_json(const char *text, size_t bytes, bool *lacks_memory)
+{
+    json_t *document = json_loadb(text, bytes, 0, NULL);
+    *lacks_memory = false;
+    if (document)
+        return document;
+    document = json_loadb(text, bytes, 0, NULL);
+    void *room = document ? NULL : allocate_array(bytes + 1, 2);
+    *lacks_memory = !document && !room;
+    free(room);
+    return document;
+}
+
 sonject_status campaign_read_json(struct report *report, const char *path, json_t **document)
 {
     char *text;
     size_t bytes;
-    json_error_t error;
+    bool lacks_memory;
     *document = NULL;
     const sonject_status status = file_read_whole(report, path, DOCUMENT_BYTES_MAX, &text, &bytes);
     if (status != SONJECT_OK)
         return status;
-    *document = json_loadb(text, bytes, 0, &error);
+    *document = load_json(text, bytes, &lacks_memory);
     free(text);
+    if (lacks_memory)
+        return report_out_of_memory(report, path);
     if (!json_is_object(*document)) {
         json_decref(*document);
         *document = NULL;

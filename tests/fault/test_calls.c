@@ -137,6 +137,16 @@ static void test_running(void **state)
     test_piece(*state, "run", work_run);
 }
 
+static void test_sharing_out(void **state)
+{
+    test_piece(*state, "shards", work_shards);
+}
+
+static void test_making_a_campaign(void **state)
+{
+    test_piece(*state, "campaign", work_campaign);
+}
+
 static void test_drawing(void **state)
 {
     test_piece(*state, "quicklook", work_quicklook);
@@ -165,6 +175,8 @@ int main(void)
     const struct CMUnitTest with_device[] = {
         cmocka_unit_test(test_injecting),
         cmocka_unit_test(test_running),
+        cmocka_unit_test(test_sharing_out),
+        cmocka_unit_test(test_making_a_campaign),
 #if defined(HAS_HDF5)
         cmocka_unit_test(test_tracing),
         cmocka_unit_test(test_forming),

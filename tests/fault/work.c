@@ -34,6 +34,17 @@ static const char target_text[] = "sonject_target: 1\n"
                                   "  - {shape: cylinder, length: 0.2 m, diameter: 0.1 m}\n"
                                   "  - {shape: sphere, diameter: 0.1 m, at: {up: 0.1 m}}\n";
 
+static const char campaign_text[] =
+    "sonject_campaign: 1\n"
+    "scene: scene.yaml\n"
+    "images: 2\n"
+    "chip: {rows: 20, columns: 24}\n"
+    "outputs: [masks]\n"
+    "labels: [yolo]\n"
+    "swaths: [{path: swath.npy}]\n"
+    "draw: {'objects[].burial': {uniform: [0 cm, 5 cm]}}\n"
+    "targets: [{class: ball, object: {shape: sphere, diameter: 0.3 m}}]\n";
+
 static uint64_t add_to_digest(uint64_t digest, const void *bytes, size_t count)
 {
     for (size_t i = 0; i < count; i++)
@@ -122,12 +133,14 @@ int work_prepare(void **state)
     if (!work || make_temporary_folder((void **)&work->folder) != 0)
         return 1;
     set_path(work, work->scene, "scene.yaml");
+    set_path(work, work->campaign, "campaign.yaml");
     set_path(work, work->image, "swath.npy");
     set_path(work, work->seabed, "seabed.tif");
     set_path(work, work->impulses, "impulses.h5");
     set_path(work, work->cache, "cache");
     set_path(work, work->results, "results");
     write_bytes(work->scene, scene_text, strlen(scene_text));
+    write_bytes(work->campaign, campaign_text, strlen(campaign_text));
     write_bytes(temporary_file(work->folder, "buoy.yaml"), target_text, strlen(target_text));
     write_image(work->image);
     *state = work;
@@ -233,6 +246,57 @@ sonject_status work_run(struct work *work)
     return end(work, status, &context, &scene);
 }
 
+/* One of two shards, or, for 0, both together. */
+static sonject_status do_shard(struct work *work, uint32_t shard)
+{
+    sonject_context *context;
+    sonject_scene *scene = NULL;
+    sonject_run_params params;
+    sonject_merge_params merging;
+    sonject_run_params_init(&params);
+    sonject_merge_params_init(&merging);
+    params.folder = merging.folder = work->results;
+    params.shard_index = shard;
+    params.shard_count = 2;
+    if (shard == 0) {
+        const sonject_status begun = begin(work, &context);
+        return end(work,
+                   begun == SONJECT_OK ? sonject_merge(context, NULL, &merging, NULL, NULL, NULL)
+                                       : begun,
+                   &context, NULL);
+    }
+    sonject_status status = begin_scene(work, &context, &scene);
+    if (status == SONJECT_OK)
+        status = sonject_run(context, scene, &params, NULL, NULL, NULL);
+    return end(work, status, &context, &scene);
+}
+
+sonject_status work_shards(struct work *work)
+{
+    sonject_status status = do_shard(work, 2);
+    if (status == SONJECT_OK)
+        status = do_shard(work, 1);
+    return status == SONJECT_OK ? do_shard(work, 0) : status;
+}
+
+sonject_status work_campaign(struct work *work)
+{
+    sonject_context *context;
+    sonject_campaign *campaign = NULL;
+    sonject_campaign_run_params params;
+    sonject_campaign_run_params_init(&params);
+    params.folder = work->results;
+    sonject_status status = begin(work, &context);
+    if (status == SONJECT_OK)
+        status = sonject_campaign_read(context, work->campaign, NULL, 0, NULL, &campaign);
+    if (status == SONJECT_OK)
+        status = sonject_campaign_run(context, campaign, &params, NULL, NULL, NULL);
+    if (status != SONJECT_OK && context)
+        snprintf(work->message, sizeof work->message, "%s", sonject_context_message(context));
+    sonject_campaign_release(&campaign);
+    return end(work, status, &context, NULL);
+}
+
 sonject_status work_trace(struct work *work)
 {
     sonject_context *context;
@@ -283,6 +347,12 @@ sonject_status work_seabed(struct work *work)
     return write_seabed(work, image);
 }
 
+/* Files that tell times. */
+static bool differs_each_time(const char *name)
+{
+    return strcmp(name, "run.json") == 0 || strcmp(name, "times.json") == 0;
+}
+
 static uint64_t digest_of_file(const struct work *work, const char *name)
 {
     char path[WORK_PATH + 300];
@@ -290,10 +360,10 @@ static uint64_t digest_of_file(const struct work *work, const char *name)
     snprintf(path, sizeof path, "%s/%s", work->results, name);
     unsigned char *bytes = bytes_of_file(path, &count);
     uint64_t digest = add_to_digest(1, bytes, count);
-    if (strcmp(name, "run.json") == 0) { /* it tells times: only whether it is whole */
+    if (differs_each_time(name)) { /* only whether it is whole */
         json_t *document = json_loadb((const char *)bytes, count, 0, NULL);
         if (!document)
-            fail_msg("run.json is not whole");
+            fail_msg("%s is not whole", name);
         json_decref(document);
         digest = 0;
     }
@@ -301,24 +371,40 @@ static uint64_t digest_of_file(const struct work *work, const char *name)
     return digest;
 }
 
+/* The files below a folder of the results, "" or "name/". */
+static void list_below(const struct work *work, const char *below,
+                       struct work_file files[WORK_FILES], size_t *count)
+{
+    char path[WORK_PATH + 300], name[300];
+    snprintf(path, sizeof path, "%s/%s", work->results, below);
+    DIR *list = opendir(path);
+    if (!list)
+        return;
+    for (const struct dirent *entry = readdir(list); entry; entry = readdir(list)) {
+        struct stat facts;
+        if (!is_entry(entry))
+            continue;
+        if (strstr(entry->d_name, ".part"))
+            fail_msg("%s%s is left", below, entry->d_name);
+        snprintf(name, sizeof name, "%s%s", below, entry->d_name);
+        snprintf(path, sizeof path, "%s/%s", work->results, name);
+        if (stat(path, &facts) == 0 && S_ISDIR(facts.st_mode)) {
+            strcat(name, "/");
+            list_below(work, name, files, count);
+        } else if (!strstr(name, ".stint")) { /* what was traced may stay */
+            if (*count == WORK_FILES || strlen(name) >= sizeof files->name)
+                fail_msg("too many files, or too long a name: %s", name);
+            strcpy(files[*count].name, name);
+            files[(*count)++].digest = digest_of_file(work, name);
+        }
+    }
+    closedir(list);
+}
+
 static size_t list_results(const struct work *work, struct work_file files[WORK_FILES])
 {
     size_t count = 0;
-    DIR *list = opendir(work->results);
-    if (!list)
-        return 0;
-    for (const struct dirent *entry = readdir(list); entry; entry = readdir(list)) {
-        if (!is_entry(entry))
-            continue;
-        if (count == WORK_FILES)
-            fail_msg("too many files, such as %s", entry->d_name);
-        if (strstr(entry->d_name, ".part"))
-            fail_msg("%s is left", entry->d_name);
-        snprintf(files[count].name, sizeof files->name, "%.60s", entry->d_name);
-        files[count].digest = digest_of_file(work, entry->d_name);
-        count++;
-    }
-    closedir(list);
+    list_below(work, "", files, &count);
     return count;
 }
 
@@ -349,7 +435,8 @@ void work_check_results(struct work *work, bool is_done)
         fail_msg("other numbers than those of an undisturbed call");
     for (size_t i = 0; i < count; i++) {
         check_file(work, &files[i]);
-        is_done |= strcmp(files[i].name, "run.json") == 0;
+        is_done |=
+            strcmp(files[i].name, "run.json") == 0 || strcmp(files[i].name, "dataset.json") == 0;
     }
     if (is_done)
         assert_int_equal(count, work->expected_count);

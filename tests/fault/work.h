@@ -21,7 +21,8 @@ struct work_file {
 
 struct work {
     struct temporary_folder *folder; /* scene, targets and input image */
-    char scene[WORK_PATH], image[WORK_PATH], seabed[WORK_PATH], impulses[WORK_PATH];
+    char scene[WORK_PATH], campaign[WORK_PATH], image[WORK_PATH], seabed[WORK_PATH],
+        impulses[WORK_PATH];
     char cache[WORK_PATH];   /* of compiled programs */
     char results[WORK_PATH]; /* folder of what the work leaves */
     char message[1024];      /* of the last piece's failure, "" if the context was not made */
@@ -39,13 +40,14 @@ int work_prepare(void **state);
 int work_remove(void **state);
 
 work_piece work_read, work_inject, work_measure, work_check, work_run, work_quicklook, work_seabed,
-    work_trace, work_form;
+    work_trace, work_form, work_shards, work_campaign;
 
 /* Takes what the piece left just now for right, and removes it. */
 void work_expect(struct work *work);
 
-/* Fails the test unless what is there under final names is right, whole where run.json is there,
- * and without a part of a file; where is_done, all must be there. Removes it. */
+/* Fails the test unless what is there under final names is right, whole where run.json or
+ * dataset.json is there, and without a part of a file; where is_done, all must be there. Removes
+ * it. */
 void work_check_results(struct work *work, bool is_done);
 
 #endif
