@@ -7,7 +7,7 @@
 
 #include "exit_code.h"
 #include "message.h"
-#include "number.h"
+#include "shard_argument.h"
 #include "stage.h"
 #include "verbs.h"
 
@@ -17,6 +17,7 @@ struct campaign_options {
     struct text_list overrides;
     const char *shard;
     struct whole_argument only;
+    struct number_argument exit_after;
     bool allows_user_shapes;
 };
 
@@ -29,28 +30,12 @@ static const struct argument arguments[] = {
      ARGUMENT_TEXT, false, offsetof(struct campaign_options, shard)},
     {"--only", NULL, "ID", "only this image, anew; ids count from 0", ARGUMENT_WHOLE, false,
      offsetof(struct campaign_options, only)},
+    {"--exit-after", NULL, "SECONDS", "stops after so long, as after SIGTERM", ARGUMENT_NUMBER,
+     false, offsetof(struct campaign_options, exit_after)},
     {"--allow-user-shapes", NULL, NULL, "take shapes that files describe by code", ARGUMENT_FLAG,
      false, offsetof(struct campaign_options, allows_user_shapes)},
     STAGE_ARGUMENTS(struct campaign_options),
 };
-
-/* "2/8": both whole, 1 to K. */
-static bool parse_shard(const char *text, sonject_campaign_run_params *params)
-{
-    char index[24];
-    uint64_t number, count;
-    const size_t length = strcspn(text, "/");
-    if (length >= sizeof(index) || text[length] != '/')
-        return false;
-    memcpy(index, text, length);
-    index[length] = '\0';
-    if (!whole_number_parse(index, &number) || !whole_number_parse(text + length + 1, &count) ||
-        number < 1 || number > count || count > UINT32_MAX)
-        return false;
-    params->shard_index = (uint32_t)number;
-    params->shard_count = (uint32_t)count;
-    return true;
-}
 
 static sonject_status make(sonject_context *context, const void *verb_options,
                            struct progress *progress, int *was_finished)
@@ -62,8 +47,8 @@ static sonject_status make(sonject_context *context, const void *verb_options,
     sonject_campaign_read_params_init(&reading);
     sonject_campaign_run_params_init(&params);
     reading.allows_user_shapes = options->allows_user_shapes;
-    if (options->shard)
-        parse_shard(options->shard, &params);
+    shard_parse("campaign", options->shard, &params.shard_index, &params.shard_count);
+    params.exit_after_s = options->exit_after.value;
     params.only_one = options->only.is_given;
     params.only = options->only.value;
     params.folder = options->stage.output;
@@ -79,11 +64,9 @@ static sonject_status make(sonject_context *context, const void *verb_options,
 static int work(const void *verb_options)
 {
     const struct campaign_options *options = verb_options;
-    sonject_campaign_run_params params;
-    if (options->shard && !parse_shard(options->shard, &params)) {
-        message("campaign: --shard takes I/K, 1 to K, not \"", options->shard, "\"");
+    uint32_t index, count;
+    if (!shard_parse("campaign", options->shard, &index, &count))
         return EXIT_CODE_USAGE;
-    }
     if (options->shard && options->only.is_given) {
         message("campaign: --shard and --only exclude each other");
         return EXIT_CODE_USAGE;

@@ -83,7 +83,7 @@ const struct verb merge_verb = {
     .notes =
         "Says which shards or images are missing. The files and the image of a run's scene must\n"
         "be those that its shards traced; they are looked for where those found them. Of a\n"
-        "scene with bands, each band's folder is merged.",
+        "scene with bands, all that are below DIR are merged.",
     .options_size = sizeof(struct merge_options),
     .work = work,
 };

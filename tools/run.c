@@ -8,9 +8,8 @@
 
 #include "exit_code.h"
 #include "labels_argument.h"
-#include "message.h"
-#include "number.h"
 #include "scene_arguments.h"
+#include "shard_argument.h"
 #include "stage.h"
 #include "verbs.h"
 
@@ -37,24 +36,6 @@ static const struct argument arguments[] = {
     STAGE_ARGUMENTS(struct run_options),
 };
 
-/* "2/4". False where that is not a part of a whole. */
-static bool shard_parse(const char *text, uint32_t *index, uint32_t *count)
-{
-    char first[16];
-    uint64_t part, whole;
-    const char *slash = strchr(text, '/');
-    if (!slash || (size_t)(slash - text) >= sizeof first)
-        return false;
-    memcpy(first, text, (size_t)(slash - text));
-    first[slash - text] = '\0';
-    if (!whole_number_parse(first, &part) || !whole_number_parse(slash + 1, &whole) || part < 1 ||
-        part > whole || whole > UINT32_MAX)
-        return false;
-    *index = (uint32_t)part;
-    *count = (uint32_t)whole;
-    return true;
-}
-
 /* Of one band, NULL where the scene has no others, into a folder. */
 static sonject_status inject_band(sonject_context *context, const struct run_options *options,
                                   const char *band, const char *folder, struct progress *progress,
@@ -68,8 +49,7 @@ static sonject_status inject_band(sonject_context *context, const struct run_opt
     labels_parse("run", options->labels, &params.labels);
     params.exit_after_s = options->exit_after.value;
     params.checkpoint_s = options->checkpoint.value;
-    if (options->shard)
-        shard_parse(options->shard, &params.shard_index, &params.shard_count);
+    shard_parse("run", options->shard, &params.shard_index, &params.shard_count);
     of_band.band = band;
     sonject_status status = scene_arguments_read(context, &of_band, &scene);
     if (status == SONJECT_OK)
@@ -118,12 +98,9 @@ static int work(const void *verb_options)
 {
     const struct run_options *options = verb_options;
     uint32_t labels, index, count;
-    if (!labels_parse("run", options->labels, &labels))
+    if (!labels_parse("run", options->labels, &labels) ||
+        !shard_parse("run", options->shard, &index, &count))
         return EXIT_CODE_USAGE;
-    if (options->shard && !shard_parse(options->shard, &index, &count)) {
-        message("--shard: \"", options->shard, "\" is not I/K with whole numbers 1 to K");
-        return EXIT_CODE_USAGE;
-    }
     return stage_work(&options->stage, inject, verb_options,
                       options->shard ? "the shard is done; once all are: sonject merge "
                                      : "the result is in ");

@@ -5,7 +5,6 @@
 #include "arguments.h"
 
 extern const struct verb run_verb;
-extern const struct verb merge_verb;
 extern const struct verb trace_verb;
 extern const struct verb form_verb;
 extern const struct verb campaign_verb;

@@ -64,8 +64,10 @@ SONJECT_API void sonject_merge_params_init(sonject_merge_params *params);
 
 /* Makes the result of all shards of a run, and removes their tallies once it is written. scene: the
  * one that was traced; NULL: that whose text the shards keep (the files that it names are read
- * again). Every file is that of a whole run byte for byte, but for times, memory and the device in
- * run.json. *was_finished as of sonject_run, also where the folder has a result and no shards.
+ * again). Where that scene has bands, each with its shards in a folder of its name below the
+ * folder, all of them are merged, once each has a shard at least. Every file is that of a whole run
+ * byte for byte, but for times, memory and the device in run.json. *was_finished as of sonject_run,
+ * also where the folder has a result and no shards.
  * Errors: ARGUMENT, INPUT (shards that are missing, not finished, damaged, of another scene, image
  * or version: the message names them), DEVICE, STORAGE, MEMORY, UNSUPPORTED, CANCELLED. */
 SONJECT_API sonject_status sonject_merge(sonject_context *context, const sonject_scene *scene,

@@ -49,11 +49,11 @@ static json_t *numbered(struct coco_file *coco, uint64_t image, const json_t *an
 
 static sonject_status add_image(struct coco_file *coco, uint64_t id, bool is_first)
 {
-    json_t *record, *truth;
+    json_t *record;
     size_t i;
     const json_t *annotation;
     const struct data_set *set = coco->set;
-    sonject_status status = data_set_image(set, coco->split, id, &record, &truth);
+    sonject_status status = data_set_image(set, coco->split, id, &record, NULL);
     if (status != SONJECT_OK)
         return status;
     status = add_entry(set, coco->images,
@@ -70,7 +70,6 @@ static sonject_status add_image(struct coco_file *coco, uint64_t id, bool is_fir
                 add_entry(set, coco->annotations, numbered(coco, id, annotation), is_first_of_all);
     }
     json_decref(record);
-    json_decref(truth);
     return status;
 }
 
@@ -87,11 +86,13 @@ static sonject_status add_images(struct coco_file *coco)
     return status;
 }
 
+/* rewind() would forget that what it still had to write did not fit on the disk. */
 static bool copy_all(FILE *from, FILE *to)
 {
     char bytes[65536];
     size_t count;
-    rewind(from);
+    if (fflush(from) != 0 || fseek(from, 0, SEEK_SET) != 0)
+        return false;
     while ((count = fread(bytes, 1, sizeof bytes, from)) > 0)
         if (fwrite(bytes, 1, count, to) != count)
             return false;

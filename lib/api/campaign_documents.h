@@ -7,6 +7,8 @@
 #include "api/campaign_files.h"
 #include "api/campaign_handle.h"
 
+#define CLASSES_MAX (2 * CAMPAIGN_ITEMS_MAX)
+
 /* What campaign.json says that documents need. Starts as all zeros, is for data_set_clear. */
 struct data_set {
     struct report *report;
@@ -36,7 +38,8 @@ bool data_set_is_finished(const struct data_set *set);
  * missing), STORAGE, MEMORY, UNSUPPORTED, CANCELLED. */
 sonject_status data_set_finish(struct data_set *set);
 
-/* An image's record and truth, each for json_decref. Errors: INPUT, STORAGE, MEMORY. */
+/* An image's record, and its truth where that is not NULL, each for json_decref. Errors: INPUT,
+ * STORAGE, MEMORY. */
 sonject_status data_set_image(const struct data_set *set, size_t split, uint64_t id,
                               json_t **record, json_t **truth);
 

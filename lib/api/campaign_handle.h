@@ -19,12 +19,20 @@ struct sonject_campaign {
     char (*swath_hashes)[HASH_TEXT_CAPACITY]; /* of the swaths' files; owned */
     char hash[HASH_TEXT_CAPACITY];            /* of all that images depend on */
     struct swath_store store;
+    struct mesh_store meshes; /* of scenes whose mesh_store it is */
 };
 
 /* Reads the scene that a plan describes. scene: initialised and empty; on failure it is left empty.
  * Errors: as sonject_scene_read, with the place in the campaign file where that says it. */
 sonject_status campaign_read_scene(struct sonject_campaign *campaign, const struct image_plan *plan,
                                    struct scene *scene);
+
+/* Opens and measures the swaths, splits them, tries scenes with all that may be drawn, and makes
+ * the campaign's hash. Errors: INPUT, STORAGE, UNSUPPORTED, MEMORY. */
+sonject_status campaign_check(struct sonject_campaign *campaign);
+
+/* Whether the campaign has an image of that id. Errors: ARGUMENT. */
+sonject_status campaign_check_id(const struct sonject_campaign *campaign, uint64_t id);
 
 /* The hash of the code: the library's version and the kernels' sources. Errors: MEMORY. */
 sonject_status code_hash(struct report *report, char text[HASH_TEXT_CAPACITY]);

@@ -44,6 +44,7 @@ sonject_status campaign_image_make(struct sonject_context *context,
 {
     struct device *device;
     scene_init(&image->scene);
+    image->scene.mesh_store = &campaign->meshes;
     sonject_status status =
         image_plan_make(campaign->report, &campaign->campaign, id, &image->plan);
     if (status == SONJECT_OK)
@@ -131,16 +132,6 @@ static sonject_status write_layer(struct sonject_campaign *campaign, const struc
                              is_float ? GEOMETRY_NOTES_COUNT : 0, pixels);
 }
 
-/* JSON's readers take integers of 63 bits at the most; larger seeds are written as text. */
-static json_t *seed_of(uint64_t seed)
-{
-    char text[24];
-    if (seed <= (uint64_t)INT64_MAX)
-        return json_integer((json_int_t)seed);
-    snprintf(text, sizeof text, "%llu", (unsigned long long)seed);
-    return json_string(text);
-}
-
 /* Annotations are numbered when all images are known. */
 static json_t *record_of(const struct sonject_campaign *campaign,
                          const struct campaign_image *image, const char *image_name,
@@ -161,7 +152,7 @@ static json_t *record_of(const struct sonject_campaign *campaign,
         "swath", "path", swath->written, "hash", campaign->swath_hashes[plan->swath], "row",
         (json_int_t)plan->chip.first_row, "column", (json_int_t)plan->chip.first_column, "rows",
         (json_int_t)plan->chip.rows, "columns", (json_int_t)plan->chip.columns, "seed",
-        seed_of(image->scene.injection.seed), "scene", campaign->campaign.scene_written, "set",
+        json_seed(image->scene.injection.seed), "scene", campaign->campaign.scene_written, "set",
         keys, "scene_hash", scene_hash_text, "campaign_hash", campaign->hash, "sonject",
         sonject_version(), "annotations", annotations);
 }
@@ -279,13 +270,11 @@ sonject_status campaign_image_exists(const struct sonject_campaign *campaign, ui
                                      const char *folder, bool *exists)
 {
     const struct campaign *plan = &campaign->campaign;
-    const struct split *split = &plan->splits[image_split(plan, id)];
-    const uint64_t number = (id - split->first_image) * split->swath_count / split->images;
-    const struct raster_layout *layout = &plan->swaths[split->swaths[number]].layout;
+    const struct raster_layout *layout = &plan->swaths[image_swath(plan, id)].layout;
     struct image_files files;
     const sonject_status status =
-        image_files_init(&files, campaign->report, folder, split->name, id, layout->type,
-                         layout->channels == 2, plan->outputs);
+        image_files_init(&files, campaign->report, folder, plan->splits[image_split(plan, id)].name,
+                         id, layout->type, layout->channels == 2, plan->outputs);
     *exists = status == SONJECT_OK && image_files_exist(&files);
     image_files_clear(&files);
     return status;

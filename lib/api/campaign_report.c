@@ -10,11 +10,10 @@
 #include "base/memory.h"
 #include "base/text.h"
 
-#define SERIES_MAX  64
-#define VALUES_MAX  20000 /* kept of a series; of more images every second, third, ... is taken */
-#define CLASSES_MAX 500
+#define SERIES_MAX 64
+#define IMAGES_MAX 20000 /* whose values are kept; of more, every second, third, ... is taken */
 
-/* Values under one name. Texts that are no numbers are counted by themselves. */
+/* Values under one name, in one unit. */
 struct series {
     char name[80], unit[16];
     double *values; /* owned */
@@ -31,15 +30,17 @@ struct statistics_page {
     uint64_t every; /* image that is taken */
 };
 
-static struct series *series_named(struct statistics_page *page, const char *name)
+static struct series *series_named(struct statistics_page *page, const char *name, const char *unit)
 {
     for (size_t i = 0; i < page->series_count; i++)
-        if (strcmp(page->series[i].name, name) == 0)
+        if (strcmp(page->series[i].name, name) == 0 && strcmp(page->series[i].unit, unit) == 0)
             return &page->series[i];
-    if (page->series_count == SERIES_MAX || strlen(name) >= sizeof page->series[0].name)
+    if (page->series_count == SERIES_MAX || strlen(name) >= sizeof page->series[0].name ||
+        strlen(unit) >= sizeof page->series[0].unit)
         return NULL;
     struct series *series = &page->series[page->series_count++];
     strcpy(series->name, name);
+    strcpy(series->unit, unit);
     return series;
 }
 
@@ -47,8 +48,8 @@ static struct series *series_named(struct statistics_page *page, const char *nam
 static void add_value(struct statistics_page *page, const char *name, const char *unit,
                       double value)
 {
-    struct series *series = isfinite(value) ? series_named(page, name) : NULL;
-    if (!series || strlen(unit) >= sizeof series->unit)
+    struct series *series = isfinite(value) ? series_named(page, name, unit) : NULL;
+    if (!series)
         return;
     if (series->count == series->capacity) {
         const size_t capacity = series->capacity ? 2 * series->capacity : 256;
@@ -58,7 +59,6 @@ static void add_value(struct statistics_page *page, const char *name, const char
         series->values = grown;
         series->capacity = capacity;
     }
-    strcpy(series->unit, unit);
     series->values[series->count++] = value;
 }
 
@@ -89,16 +89,19 @@ static void add_set_value(struct statistics_page *page, const char *text)
     add_value(page, key, rest, value);
 }
 
-static void add_object(struct statistics_page *page, size_t split, const json_t *object)
+static void count_object(struct statistics_page *page, size_t split, const json_t *object)
 {
     size_t i;
     const json_t *name;
     json_array_foreach(json_object_get(page->set->head, "classes"), i, name)
     {
-        if (i < page->class_count &&
-            strcmp(json_string_value(name), member_text(object, "class")) == 0)
+        if (strcmp(json_string_value(name), member_text(object, "class")) == 0)
             page->counts[split * page->class_count + i]++;
     }
+}
+
+static void add_object(struct statistics_page *page, const json_t *object)
+{
     add_value(page, "slant range of objects", "m", member_number(object, "slant_range_m"));
     add_value(page, "grazing angle of objects", "deg", member_number(object, "grazing_deg"));
     add_value(page, "burial of objects", "m", member_number(object, "burial_m"));
@@ -115,19 +118,22 @@ static sonject_status add_image(struct statistics_page *page, size_t split, uint
     json_t *record, *truth;
     size_t i;
     const json_t *entry;
+    const bool is_taken = id % page->every == 0;
     const sonject_status status = data_set_image(page->set, split, id, &record, &truth);
     if (status != SONJECT_OK)
         return status;
     json_array_foreach(json_object_get(record, "set"), i, entry)
     {
-        if (id % page->every == 0 && json_string_value(entry))
+        if (is_taken && json_string_value(entry))
             add_set_value(page, json_string_value(entry));
     }
     const json_t *objects = json_object_get(truth, "objects");
     page->empty[split] += json_array_size(objects) == 0;
     json_array_foreach(objects, i, entry)
     {
-        add_object(page, split, entry);
+        count_object(page, split, entry);
+        if (is_taken)
+            add_object(page, entry);
     }
     json_decref(record);
     json_decref(truth);
@@ -191,8 +197,11 @@ static void write_page(const struct statistics_page *page, struct growing_text *
                      "td,th{border:1px solid #999;padding:.2em .6em;text-align:right}"
                      "img{margin:.5em}</style></head><body>\n<h1>Data set of %llu images</h1>\n",
                      (unsigned long long)page->set->images);
-    growing_text_add(text, "<p>campaign %s, sonject %s</p>\n<h2>Objects by class</h2>\n",
-                     member_text(page->set->head, "hash"), member_text(page->set->head, "sonject"));
+    growing_text_add(text, "<p>campaign ");
+    add_escaped(text, member_text(page->set->head, "hash"));
+    growing_text_add(text, ", sonject ");
+    add_escaped(text, member_text(page->set->head, "sonject"));
+    growing_text_add(text, "</p>\n<h2>Objects by class</h2>\n");
     write_counts(page, text);
     growing_text_add(text, "<h2>Swaths</h2>\n");
     write_swaths(page, text);
@@ -223,11 +232,11 @@ sonject_status write_report_page(const struct data_set *set)
     sonject_status status = SONJECT_OK;
     if (page) {
         page->set = set;
-        page->every = set->images / VALUES_MAX + 1;
+        page->every = (set->images + IMAGES_MAX - 1) / IMAGES_MAX;
         page->class_count = json_array_size(json_object_get(set->head, "classes"));
         page->counts = allocate_array(set->split_count, page->class_count * sizeof *page->counts);
     }
-    if (!path || !page || !page->counts || page->class_count > CLASSES_MAX)
+    if (!path || !page || !page->counts)
         status = report_out_of_memory(set->report, "the report");
     if (status == SONJECT_OK)
         status = gather(page);

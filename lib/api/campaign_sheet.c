@@ -135,6 +135,19 @@ static void draw_thumbnail(struct canvas *canvas, const struct thumbnail *small,
         }
 }
 
+/* False where there is no box, or none within the picture. */
+static bool find_box(const json_t *box, double scale, int64_t sides[4])
+{
+    static const char *const keys[] = {"column", "row", "columns", "rows"};
+    for (size_t i = 0; i < 4; i++) {
+        const double side = scale * member_number(box, keys[i]);
+        if (!(side >= 0.0 && side <= CELL_SIDE))
+            return false;
+        sides[i] = (int64_t)(i < 2 ? side : ceil(side));
+    }
+    return true;
+}
+
 static void draw_boxes(struct canvas *canvas, const json_t *truth, const struct thumbnail *small,
                        const char *target, int64_t x, int64_t y)
 {
@@ -144,15 +157,10 @@ static void draw_boxes(struct canvas *canvas, const json_t *truth, const struct 
     const json_t *object;
     json_array_foreach(json_object_get(truth, "objects"), i, object)
     {
-        const json_t *box = json_object_get(object, "box");
-        if (!json_is_object(box))
-            continue;
-        const bool is_target = i == 0 && *target;
-        canvas_frame(canvas, x + (int64_t)(small->scale * member_number(box, "column")),
-                     y + (int64_t)(small->scale * member_number(box, "row")),
-                     (int64_t)ceil(small->scale * member_number(box, "columns")),
-                     (int64_t)ceil(small->scale * member_number(box, "rows")),
-                     is_target ? of_targets : of_others);
+        int64_t sides[4]; /* column, row, columns, rows */
+        if (find_box(json_object_get(object, "box"), small->scale, sides))
+            canvas_frame(canvas, x + sides[0], y + sides[1], sides[2], sides[3],
+                         i == 0 && *target ? of_targets : of_others);
     }
 }
 

@@ -294,14 +294,16 @@ static json_t *labels_document(uint32_t formats)
     return names;
 }
 
-/* JSON's readers take integers of 63 bits at the most; larger seeds are written as text. */
-static json_t *seed_document(uint64_t seed)
+/* All bands of the scene's file. */
+static json_t *bands_document(const struct scene *scene)
 {
-    char text[24];
-    if (seed <= (uint64_t)INT64_MAX)
-        return json_count(seed);
-    snprintf(text, sizeof text, "%llu", (unsigned long long)seed);
-    return json_string(text);
+    json_t *names = json_array();
+    for (const char *name = scene->bands; *name;) {
+        const size_t length = strcspn(name, "\n");
+        json_append(&names, json_stringn(name, length));
+        name += length + (name[length] == '\n');
+    }
+    return names;
 }
 
 sonject_status write_run(struct report *report, const struct run_facts *facts, const char *path)
@@ -315,9 +317,13 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
     json_t *document = json_object();
     json_add(&document, "sonject", json_string(sonject_version()));
     json_add(&document, "scene_hash", json_string(facts->scene_hash));
-    json_add(&document, "seed", seed_document(facts->scene->injection.seed));
+    json_add(&document, "seed", json_seed(facts->scene->injection.seed));
     json_add(&document, "device", device);
     json_add(&document, "options", options_document(facts->scene));
+    if (facts->scene->band) {
+        json_add(&document, "band", json_text(facts->scene->band));
+        json_add(&document, "bands", bands_document(facts->scene));
+    }
     json_add(&document, "image", json_text(facts->image_name));
     json_add(&document, "labels", labels_document(facts->label_formats));
     json_add(&document, "image_is_lossless", json_boolean(facts->swath->is_lossless));
@@ -353,19 +359,33 @@ static uint32_t label_formats_of(const json_t *document)
     return formats;
 }
 
-bool run_is_finished(const char *path, const char *scene_hash, uint32_t label_formats)
+bool folder_has_result(const char *folder)
+{
+    char *path = path_join(folder, "run.json");
+    const bool is_there = path && file_exists(path);
+    free(path);
+    return is_there;
+}
+
+json_t *run_document(const char *path)
 {
     struct report ignored = {{0}, NULL, NULL};
     char *text = NULL;
     size_t bytes = 0;
     if (!file_exists(path) ||
         file_read_whole(&ignored, path, (size_t)1 << 20, &text, &bytes) != SONJECT_OK)
-        return false;
+        return NULL;
     json_t *document = json_loads(text, 0, NULL);
+    free(text);
+    return document;
+}
+
+bool run_is_finished(const char *path, const char *scene_hash, uint32_t label_formats)
+{
+    json_t *document = run_document(path);
     const char *hash = json_string_value(json_object_get(document, "scene_hash"));
     const bool is_same =
         hash && strcmp(hash, scene_hash) == 0 && (label_formats & ~label_formats_of(document)) == 0;
     json_decref(document);
-    free(text);
     return is_same;
 }

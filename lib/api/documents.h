@@ -2,6 +2,8 @@
 #ifndef SONJECT_API_DOCUMENTS_H
 #define SONJECT_API_DOCUMENTS_H
 
+#include <jansson.h>
+
 #include "api/swath.h"
 #include "cl/device.h"
 
@@ -19,6 +21,12 @@ struct run_facts {
 /* Each writes one file, whole or not at all. Errors: STORAGE, MEMORY. */
 sonject_status write_truth(struct report *report, const struct run_facts *facts, const char *path);
 sonject_status write_run(struct report *report, const struct run_facts *facts, const char *path);
+
+/* Whether a run's results are in the folder: run.json, the last of them. */
+bool folder_has_result(const char *folder);
+
+/* The run.json at path, for json_decref; NULL where there is none that can be read. */
+json_t *run_document(const char *path);
 
 /* True if path is the run.json of a finished run with that hash and at least those labels. */
 bool run_is_finished(const char *path, const char *scene_hash, uint32_t label_formats);

@@ -5,6 +5,8 @@
 #include <sonject/run.h>
 #include <sonject/version.h>
 
+#include "api/documents.h"
+#include "api/merged_bands.h"
 #include "api/run_scene.h"
 #include "api/stint_source.h"
 #include "api/stints.h"
@@ -35,18 +37,13 @@ static sonject_status read_kept_scene(struct report *report, const struct stint_
     return status;
 }
 
-static bool has_result(const char *folder)
-{
-    char *path = path_join(folder, "run.json");
-    const bool is_there = path && file_exists(path);
-    free(path);
-    return is_there;
-}
-
-static sonject_status merge_kept(struct sonject_context *context, struct run_request *request,
+/* A run whose scene its shards keep. */
+static sonject_status merge_kept(struct sonject_context *context, const struct run_request *asked,
                                  bool allows_user_shapes, int *was_finished)
 {
     struct report *report = &context->report;
+    struct run_request of_kept = *asked;
+    struct run_request *request = &of_kept;
     struct stint_folder folder;
     struct scene scene;
     scene_init(&scene);
@@ -54,7 +51,8 @@ static sonject_status merge_kept(struct sonject_context *context, struct run_req
     if (!work)
         return report_out_of_memory(report, "a file name");
     sonject_status status = stint_folder_read(&folder, report, work, 0, false);
-    const bool is_merged = status == SONJECT_OK && folder.count == 0 && has_result(request->folder);
+    const bool is_merged =
+        status == SONJECT_OK && folder.count == 0 && folder_has_result(request->folder);
     if (status == SONJECT_OK && folder.count == 0 && !is_merged)
         status =
             report_failure(report, SONJECT_ERROR_INPUT,
@@ -75,6 +73,45 @@ static sonject_status merge_kept(struct sonject_context *context, struct run_req
         status = run_scene(context, request, was_finished);
     scene_clear(&scene);
     free(work);
+    return status;
+}
+
+/* Each of the names, one a line, in its folder; *was_finished is 1 if all were. */
+static sonject_status merge_bands(struct sonject_context *context, const struct run_request *asked,
+                                  bool allows_user_shapes, const char *names, int *was_finished)
+{
+    struct report *report = &context->report;
+    bool were_finished = true;
+    sonject_status status = check_bands_begun(report, asked->folder, names);
+    while (status == SONJECT_OK && *names) {
+        int was_band_finished = 0;
+        struct run_request of_band = *asked;
+        char *band = take_band(&names);
+        char *folder = band ? path_join(asked->folder, band) : NULL;
+        of_band.folder = folder;
+        status = folder ? merge_kept(context, &of_band, allows_user_shapes, &was_band_finished)
+                        : report_out_of_memory(report, "a file name");
+        were_finished = were_finished && was_band_finished;
+        free(band);
+        free(folder);
+    }
+    if (was_finished)
+        *was_finished = status == SONJECT_OK && were_finished;
+    return status;
+}
+
+/* A run in the folder, or those of bands in folders below it. */
+static sonject_status merge_folder(struct sonject_context *context,
+                                   const struct run_request *request, bool allows_user_shapes,
+                                   int *was_finished)
+{
+    char *bands;
+    sonject_status status = find_bands(&context->report, request->folder, &bands);
+    if (status != SONJECT_OK)
+        return status;
+    status = *bands ? merge_bands(context, request, allows_user_shapes, bands, was_finished)
+                    : merge_kept(context, request, allows_user_shapes, was_finished);
+    free(bands);
     return status;
 }
 
@@ -106,7 +143,7 @@ sonject_status sonject_merge(sonject_context *context, const sonject_scene *scen
     if (was_finished)
         *was_finished = 0;
     if (!scene)
-        return merge_kept(context, &request, taken.allows_user_shapes != 0, was_finished);
+        return merge_folder(context, &request, taken.allows_user_shapes != 0, was_finished);
     request.scene = &scene->scene;
     return run_scene(context, &request, was_finished);
 }

@@ -259,8 +259,19 @@ void swath_store_close(struct swath_store *store)
 {
     swath_file_close(&store->file);
     free(store->path);
+    free(store->array);
     free(store->pixels);
     memset(store, 0, sizeof *store);
+}
+
+/* Whether the scene's input is what the store holds. */
+static bool store_holds(const struct swath_store *store, const struct scene *scene)
+{
+    const bool is_same_array = store->array && scene->array
+                                   ? strcmp(store->array, scene->array) == 0
+                                   : !store->array && !scene->array;
+    return store->path && strcmp(store->path, scene->input_path) == 0 &&
+           store->channel == scene->channel && is_same_array;
 }
 
 static sonject_status store_take(struct report *report, const struct scene *scene,
@@ -268,8 +279,7 @@ static sonject_status store_take(struct report *report, const struct scene *scen
 {
     struct raster_layout layout;
     size_t bytes;
-    if (store->path && strcmp(store->path, scene->input_path) == 0 &&
-        store->channel == scene->channel)
+    if (store_holds(store, scene))
         return SONJECT_OK;
     swath_store_close(store);
     sonject_status status = open_input(report, scene, &store->file);
@@ -277,6 +287,7 @@ static sonject_status store_take(struct report *report, const struct scene *scen
         return status;
     store->channel = scene->channel;
     store->path = copy_text(scene->input_path);
+    store->array = scene->array ? copy_text(scene->array) : NULL;
     swath_file_layout(store->file, &layout);
     const struct region all = {0, 0, layout.rows, layout.columns};
     if (region_bytes(&layout, &all, &bytes) && bytes <= STORE_BYTES_MAX) {
@@ -284,7 +295,7 @@ static sonject_status store_take(struct report *report, const struct scene *scen
         if (store->pixels)
             status = swath_file_read(report, store->file, &all, store->pixels);
     }
-    if (status == SONJECT_OK && !store->path)
+    if (status == SONJECT_OK && (!store->path || (scene->array && !store->array)))
         status = report_out_of_memory(report, "a path");
     if (status != SONJECT_OK)
         swath_store_close(store);

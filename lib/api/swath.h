@@ -42,6 +42,7 @@ struct swath_store {
     struct swath_file *file;
     char *path;
     int32_t channel;
+    char *array;  /* NULL: the only one */
     void *pixels; /* all of them; NULL: regions are read as they are asked for */
 };
 

@@ -1,6 +1,7 @@
 #include "base/json_document.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,6 +17,15 @@ json_t *json_number(double value)
 json_t *json_count(uint64_t value)
 {
     return json_integer((json_int_t)value);
+}
+
+json_t *json_seed(uint64_t seed)
+{
+    char text[24];
+    if (seed <= (uint64_t)INT64_MAX)
+        return json_count(seed);
+    snprintf(text, sizeof text, "%llu", (unsigned long long)seed);
+    return json_string(text);
 }
 
 json_t *json_text(const char *text)

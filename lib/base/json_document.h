@@ -13,6 +13,9 @@ json_t *json_number(double value);
 
 json_t *json_count(uint64_t value);
 
+/* A number of 64 bits; a text where it takes all of them, since JSON's readers take 63. */
+json_t *json_seed(uint64_t seed);
+
 /* A text. One that is not well-formed UTF-8 without control characters, as a file's name may be,
  * has
  * '?' for all of its bytes that are not printable ASCII. */

@@ -108,6 +108,9 @@ sonject_status campaign_read(struct report *report, const char *path, const char
                              size_t count, struct campaign *campaign);
 void campaign_clear(struct campaign *campaign);
 
+/* Whether a split may have this name, which is a folder's and stands in documents. */
+bool is_split_name(const char *name);
+
 /* Gives each swath to a split and each split its images, so that no swath is in two: swaths whose
  * identities (one text each, such as a hash) are equal count as one. Errors: INPUT, MEMORY. */
 sonject_status campaign_split(struct report *report, struct campaign *campaign,

@@ -137,8 +137,7 @@ sonject_status read_swaths(struct reader *reader, const struct tree_node *node, 
     return status;
 }
 
-/* Splits are folders. */
-static bool is_folder_name(const char *name)
+bool is_split_name(const char *name)
 {
     static const char signs[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
     return *name && *name != '-' && strspn(name, signs) == strlen(name) &&
@@ -158,7 +157,7 @@ sonject_status read_splits(struct reader *reader, const struct tree_node *node, 
         struct split *split = &campaign->splits[campaign->split_count++];
         memset(split, 0, sizeof *split);
         const size_t before = key_path_add(&reader->path, entry->key);
-        if (!is_folder_name(entry->key))
+        if (!is_split_name(entry->key))
             return tree_failure(reader->tree, entry->place, reader->path.text,
                                 "names a folder: use up to %d letters, digits, _ and -",
                                 SPLIT_NAME_CAPACITY - 1);

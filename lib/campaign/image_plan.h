@@ -34,13 +34,15 @@ sonject_status image_plan_try(struct report *report, const struct campaign *camp
                               struct image_plan *plan);
 void image_plan_clear(struct image_plan *plan);
 
-/* Most steps that image_plan_try has use for: two, or the longest choice. */
-uint32_t image_plan_steps(const struct campaign *campaign);
+/* How many steps image_plan_try has use for: two, or as many as the longest choice has entries,
+ * among what is drawn of an item, or, for NULL, of the scene itself. */
+uint32_t image_plan_steps(const struct campaign *campaign, const struct item *item);
 
 /* Whether each target comes often enough for all cells of a grid. Errors: INPUT. */
 sonject_status image_plan_check_grid(const struct campaign *campaign);
 
-/* The split that an image is in. */
+/* The split that an image is in, and the swath that it is cut out of. */
 uint32_t image_split(const struct campaign *campaign, uint64_t id);
+uint32_t image_swath(const struct campaign *campaign, uint64_t id);
 
 #endif

@@ -3,8 +3,9 @@
 #include <string.h>
 
 #include "base/growing_text.h"
+#include "base/memory.h"
 
-static bool is_name(const char *text)
+bool is_band_name(const char *text)
 {
     static const char letters[] =
         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
@@ -17,7 +18,7 @@ static sonject_status check_band(struct reader *reader, const struct tree_entry 
     static const char *const others[] = {"sonject", "band", "bands"};
     sonject_status status = SONJECT_OK;
     const size_t before = key_path_add(&reader->path, band->key);
-    if (!is_name(band->key))
+    if (!is_band_name(band->key))
         status = refuse_value(reader, &band->value,
                               "a band's name is that of a folder: 1 to %d letters, digits, _ and -",
                               SONJECT_NAME_CAPACITY - 1);
@@ -84,6 +85,27 @@ static void list_names(const struct tree_node *bands, struct word_list *list)
         list_word(list, bands->entries[i].key);
 }
 
+/* One a line, for free(); NULL where memory is out. */
+static char *join_names(const struct tree_node *bands)
+{
+    struct growing_text text = {0};
+    growing_text_add(&text, "%s", "");
+    for (size_t i = 0; i < bands->count; i++)
+        growing_text_add(&text, "%s\n", bands->entries[i].key);
+    return growing_text_end(&text);
+}
+
+/* The scene knows which band it is. */
+static sonject_status keep_names(struct reader *reader, const struct tree_node *bands,
+                                 const char *name)
+{
+    reader->scene->band = copy_text(name);
+    reader->scene->bands = join_names(bands);
+    return reader->scene->band && reader->scene->bands
+               ? SONJECT_OK
+               : report_out_of_memory(reader->report, "the names of bands");
+}
+
 sonject_status choose_band(struct reader *reader, struct tree *tree)
 {
     struct word_list list = {{0}, 0};
@@ -108,6 +130,8 @@ sonject_status choose_band(struct reader *reader, struct tree *tree)
     else if (!band)
         status = refuse_word(reader, &chosen->value, name, &list, NULL);
     key_path_shorten(&reader->path, before);
+    if (status == SONJECT_OK)
+        status = keep_names(reader, &bands->value, name);
     return status == SONJECT_OK ? lay_over(reader, tree, &tree->root, &band->value) : status;
 }
 
@@ -124,14 +148,11 @@ sonject_status list_bands(struct reader *reader, char **names)
     const struct tree_node *root = &reader->tree->root;
     const struct tree_entry *bands = tree_find(root, "bands");
     const bool is_open = bands && !tree_find(root, "band");
-    struct growing_text text = {0};
+    static const struct tree_node none;
     *names = NULL;
     const sonject_status status = is_open ? check_bands(reader, &bands->value) : SONJECT_OK;
     if (status != SONJECT_OK)
         return status;
-    growing_text_add(&text, "%s", "");
-    for (size_t i = 0; is_open && i < bands->value.count; i++)
-        growing_text_add(&text, "%s\n", bands->value.entries[i].key);
-    *names = growing_text_end(&text);
+    *names = join_names(is_open ? &bands->value : &none);
     return *names ? SONJECT_OK : report_out_of_memory(reader->report, "the names of bands");
 }

@@ -5,10 +5,14 @@
 #include "io/scene_schema.h"
 
 /* Puts the keys of the band that the file's key `band` names over those of the file, section by
- * section; messages name the places where they were written. Nothing where the file has no bands.
+ * section, and notes in the reader's scene which that is; messages name the places where they were
+ * written. Nothing where the file has no bands.
  * Errors: INPUT (no band is chosen or it is not there, a name that is none for a folder), MEMORY.
  */
 sonject_status choose_band(struct reader *reader, struct tree *tree);
+
+/* Whether a band may have this name, which is a folder's. */
+bool is_band_name(const char *text);
 
 /* The lines of `band` and `bands`. */
 sonject_status read_band(struct reader *reader, const struct tree_node *node, void *structure);

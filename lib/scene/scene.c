@@ -26,14 +26,24 @@ void scene_init(struct scene *scene)
     scene->channel = SONJECT_CHANNEL_ONLY;
 }
 
+static void give_up_mesh(struct scene *scene, struct mesh *mesh)
+{
+    if (scene->mesh_store)
+        mesh_store_give(scene->mesh_store, mesh);
+    else
+        mesh_clear(mesh);
+}
+
 void scene_clear(struct scene *scene)
 {
     free(scene->input_path);
     free(scene->array);
+    free(scene->band);
+    free(scene->bands);
     free(scene->objects);
     free(scene->parts);
     for (uint32_t i = 0; i < scene->mesh_count; i++)
-        mesh_clear(&scene->meshes[i]);
+        give_up_mesh(scene, &scene->meshes[i]);
     free(scene->meshes);
     user_shapes_clear(&scene->user_shapes);
     free(scene->water_layers);
@@ -107,8 +117,21 @@ void scene_cut_back(struct scene *scene, const struct scene_counts *counts)
     scene->object_count = counts->objects;
     scene->part_count = counts->parts;
     while (scene->mesh_count > counts->meshes)
-        mesh_clear(&scene->meshes[--scene->mesh_count]);
+        give_up_mesh(scene, &scene->meshes[--scene->mesh_count]);
     user_shapes_cut_back(&scene->user_shapes, counts->user_shapes, counts->snippets);
+}
+
+/* From the store, or from its file. */
+static sonject_status take_mesh(struct scene *scene, struct report *report, const char *path,
+                                const struct mesh_options *options, struct mesh *mesh)
+{
+    struct file_identity file;
+    if (!scene->mesh_store)
+        return mesh_load(report, path, options, mesh);
+    const sonject_status status = file_identify(report, path, &file);
+    if (status != SONJECT_OK || mesh_store_take(scene->mesh_store, &file, options, mesh))
+        return status;
+    return mesh_load(report, path, options, mesh);
 }
 
 sonject_status scene_append_mesh(struct scene *scene, struct report *report, const char *path,
@@ -122,7 +145,7 @@ sonject_status scene_append_mesh(struct scene *scene, struct report *report, con
         return report_out_of_memory(report, "meshes");
     scene->meshes = meshes;
     struct mesh *mesh = &scene->meshes[scene->mesh_count];
-    sonject_status status = mesh_load(report, path, options, mesh);
+    sonject_status status = take_mesh(scene, report, path, options, mesh);
     if (status != SONJECT_OK)
         return status;
     if (!allows_open)

@@ -11,7 +11,7 @@
 
 #include "base/report.h"
 #include "medium/water_layer.h"
-#include "mesh/mesh.h"
+#include "mesh/mesh_store.h"
 #include "scene/aperture_motion.h"
 #include "scene/relief_features.h"
 #include "scene/response_table.h"
@@ -52,12 +52,15 @@ struct scene {
     bool input_is_complex; /* two channels of the file are real and imaginary part */
     int32_t channel; /* of a file that is XTF: SONJECT_CHANNEL_PORT and the like, or a number */
     char *array;     /* owned; of several in a file, its name; NULL: the only one */
+    char *band;      /* owned; which of its file's bands it is; NULL: that has none */
+    char *bands;     /* owned; all their names, one a line; NULL likewise */
     uint32_t uniform_rows, uniform_columns;
     sonject_synthetic_params synthetic;
     sonject_object_params *objects; /* owned */
     uint32_t object_count;
     struct mesh *meshes; /* owned */
     uint32_t mesh_count;
+    struct mesh_store *mesh_store; /* that meshes come from and go back to; borrowed; NULL: none */
     struct user_shapes user_shapes;
     struct scene_part *parts; /* owned; in no order */
     uint32_t part_count;

@@ -1,17 +1,17 @@
 #define _POSIX_C_SOURCE 200809L
 #include "trace/stint_folder.h"
 
-#include <dirent.h>
-#include <errno.h>
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "base/file.h"
+#include "base/folder.h"
 #include "base/memory.h"
 
-#define FILES_MAX ((size_t)1 << 20)
+#define PREFIX "shard-" /* of all their names */
 
 /* What a name says. */
 struct stint_name {
@@ -27,80 +27,22 @@ static bool parse_name(const char *text, struct stint_name *name)
            end > 0 && text[end] == '\0';
 }
 
-/* Names in a folder that begin like a stint's, to be given to free_names. */
-struct name_list {
-    char **names;
-    size_t count;
-};
-
-static void free_names(struct name_list *list)
-{
-    for (size_t i = 0; i < list->count; i++)
-        free(list->names[i]);
-    free(list->names);
-    memset(list, 0, sizeof *list);
-}
-
-static bool add_name(struct name_list *list, const char *name)
-{
-    if ((list->count & (list->count + 1)) == 0) { /* 0, 1, 3, 7...: room for twice as many */
-        char **more = list->count < FILES_MAX
-                          ? realloc(list->names, (2 * list->count + 1) * sizeof *more)
-                          : NULL;
-        if (!more)
-            return false;
-        list->names = more;
-    }
-    list->names[list->count] = copy_text(name);
-    if (!list->names[list->count])
-        return false;
-    list->count++;
-    return true;
-}
-
-static int compare_names(const void *a, const void *b)
-{
-    return strcmp(*(char *const *)a, *(char *const *)b);
-}
-
-static sonject_status list_names(struct report *report, const char *path, struct name_list *list)
-{
-    memset(list, 0, sizeof *list);
-    DIR *folder = opendir(path);
-    if (!folder)
-        return errno == ENOENT ? SONJECT_OK : file_failure(report, path, "read", errno);
-    sonject_status status = SONJECT_OK;
-    struct dirent *entry;
-    while (status == SONJECT_OK && (errno = 0, entry = readdir(folder)) != NULL)
-        if (strncmp(entry->d_name, "shard-", 6) == 0 && !add_name(list, entry->d_name))
-            status = report_out_of_memory(report, path);
-    if (status == SONJECT_OK && errno != 0)
-        status = file_failure(report, path, "read", errno);
-    closedir(folder);
-    if (status != SONJECT_OK)
-        free_names(list);
-    else if (list->count > 0)
-        qsort(list->names, list->count, sizeof *list->names, compare_names);
-    return status;
-}
-
 static sonject_status open_one(struct stint_folder *folder, struct report *report, const char *path,
                                const struct stint_name *name, bool drops_damaged)
 {
     struct stint_file *file = &folder->files[folder->count];
-    sonject_status status = stint_file_open(file, report, path);
-    if (status == SONJECT_OK &&
-        (file->head.shard != name->shard || file->head.shards != name->shards)) {
-        stint_file_close(file);
-        status =
-            report_failure(report, SONJECT_ERROR_INPUT,
-                           "%s: is another shard's: give it back its name, or delete it", path);
-    }
+    const sonject_status status = stint_file_open(file, report, path);
     if (status == SONJECT_ERROR_INPUT && drops_damaged) {
         file_discard(path);
         report_news(report, "%s was damaged: it is traced again", path);
         report->message[0] = '\0';
         return SONJECT_OK;
+    }
+    if (status == SONJECT_OK &&
+        (file->head.shard != name->shard || file->head.shards != name->shards)) {
+        stint_file_close(file);
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: is another shard's: give it back its name, or delete it", path);
     }
     folder->count += status == SONJECT_OK;
     return status;
@@ -109,10 +51,10 @@ static sonject_status open_one(struct stint_folder *folder, struct report *repor
 sonject_status stint_folder_read(struct stint_folder *folder, struct report *report,
                                  const char *path, uint64_t shard, bool drops_damaged)
 {
-    struct name_list list;
+    struct folder_names list;
     struct stint_name name;
     memset(folder, 0, sizeof *folder);
-    sonject_status status = list_names(report, path, &list);
+    sonject_status status = folder_names_read(&list, report, path, PREFIX);
     if (status != SONJECT_OK)
         return status;
     folder->files = allocate_array(list.count, sizeof *folder->files);
@@ -126,7 +68,7 @@ sonject_status stint_folder_read(struct stint_folder *folder, struct report *rep
                       : report_out_of_memory(report, "a file name");
         free(file);
     }
-    free_names(&list);
+    folder_names_clear(&list);
     return status;
 }
 
@@ -138,37 +80,62 @@ void stint_folder_clear(struct stint_folder *folder)
     memset(folder, 0, sizeof *folder);
 }
 
-sonject_status stint_folder_shards(struct report *report, const char *path, uint64_t but,
-                                   uint64_t *shards)
+sonject_status stint_folder_first(struct stint_file *file, struct report *report, const char *path,
+                                  bool *is_there)
 {
-    struct name_list list;
+    struct folder_names list;
     struct stint_name name;
-    *shards = 0;
-    const sonject_status status = list_names(report, path, &list);
-    for (size_t i = 0; *shards == 0 && i < list.count; i++)
-        if (parse_name(list.names[i], &name) && name.shards != but)
-            *shards = name.shards;
-    free_names(&list);
+    *is_there = false;
+    sonject_status status = folder_names_read(&list, report, path, PREFIX);
+    if (status != SONJECT_OK)
+        return status;
+    size_t first = 0;
+    while (first < list.count && !parse_name(list.names[first], &name))
+        first++;
+    if (first < list.count) {
+        char *found = path_join(path, list.names[first]);
+        status = found ? stint_file_open(file, report, found)
+                       : report_out_of_memory(report, "a file name");
+        *is_there = status == SONJECT_OK;
+        free(found);
+    }
+    folder_names_clear(&list);
     return status;
 }
 
-/* From which file each is reached; its own number where it begins the shard; count: not reached. */
-static void reach(const struct stint_folder *folder, uint64_t shard, size_t *from)
+sonject_status stint_folder_shards(struct report *report, const char *path, uint64_t but,
+                                   uint64_t *shards)
 {
-    bool is_changed = true;
-    for (size_t i = 0; i < folder->count; i++)
-        from[i] = folder->files[i].head.shard == shard && folder->files[i].end.first == 0
-                      ? i
-                      : folder->count;
-    while (is_changed) {
-        is_changed = false;
-        for (size_t i = 0; i < folder->count; i++)
-            for (size_t k = 0; from[i] < folder->count && k < folder->count; k++)
-                if (from[k] == folder->count && folder->files[k].head.shard == shard &&
-                    folder->files[k].end.first == folder->files[i].end.last) {
-                    from[k] = i;
-                    is_changed = true;
-                }
+    struct folder_names list;
+    struct stint_name name;
+    *shards = 0;
+    const sonject_status status = folder_names_read(&list, report, path, PREFIX);
+    for (size_t i = 0; *shards == 0 && i < list.count; i++)
+        if (parse_name(list.names[i], &name) && name.shards != but)
+            *shards = name.shards;
+    folder_names_clear(&list);
+    return status;
+}
+
+/* By where they begin; what ends there too comes before what goes on from there. */
+static int compare_spans(const void *a, const void *b)
+{
+    const struct stint_end *first = &(*(const struct stint_file *const *)a)->end;
+    const struct stint_end *second = &(*(const struct stint_file *const *)b)->end;
+    if (first->first != second->first)
+        return first->first < second->first ? -1 : 1;
+    return first->last < second->last ? -1 : first->last > second->last;
+}
+
+/* From which of the sorted files each is reached; its own number where it begins the shard; count:
+ * it is not. */
+static void reach(const struct stint_file *const *files, size_t count, size_t *from)
+{
+    for (size_t i = 0; i < count; i++) {
+        from[i] = files[i]->end.first == 0 ? i : count;
+        for (size_t k = i; from[i] == count && k-- > 0;)
+            if (from[k] < count && files[k]->end.last == files[i]->end.first)
+                from[i] = k;
     }
 }
 
@@ -179,29 +146,43 @@ static bool is_farther(const struct stint_end *end, const struct stint_end *than
            (end->is_last == than->is_last && end->last > than->last);
 }
 
+/* The last file of the chain that goes farthest; count: there is none. */
+static size_t find_farthest(const struct stint_file *const *files, size_t count, const size_t *from)
+{
+    size_t last = count;
+    for (size_t i = 0; i < count; i++)
+        if (from[i] < count && (last == count || is_farther(&files[i]->end, &files[last]->end)))
+            last = i;
+    return last;
+}
+
 sonject_status stint_chain_find(struct stint_chain *chain, struct report *report,
                                 const struct stint_folder *folder, uint64_t shard)
 {
+    size_t count = 0;
     memset(chain, 0, sizeof *chain);
+    const struct stint_file **files = allocate_array(folder->count, sizeof *files);
     size_t *from = allocate_array(folder->count, sizeof *from);
     chain->files = allocate_array(folder->count, sizeof *chain->files);
-    if (!from || !chain->files) {
+    if (!files || !from || !chain->files) {
+        free(files);
         free(from);
         stint_chain_clear(chain);
         return report_out_of_memory(report, "stints");
     }
-    reach(folder, shard, from);
-    size_t last = folder->count;
     for (size_t i = 0; i < folder->count; i++)
-        if (from[i] < folder->count &&
-            (last == folder->count || is_farther(&folder->files[i].end, &folder->files[last].end)))
-            last = i;
-    if (last < folder->count) {
-        chain->next = folder->files[last].end.last;
-        chain->is_complete = folder->files[last].end.is_last != 0;
-        while (chain->files[chain->count++] = &folder->files[last], from[last] != last)
+        if (folder->files[i].head.shard == shard)
+            files[count++] = &folder->files[i];
+    qsort(files, count, sizeof *files, compare_spans);
+    reach(files, count, from);
+    size_t last = find_farthest(files, count, from);
+    if (last < count) {
+        chain->next = files[last]->end.last;
+        chain->is_complete = files[last]->end.is_last != 0;
+        while (chain->files[chain->count++] = files[last], from[last] != last)
             last = from[last];
     }
+    free(files);
     free(from);
     return SONJECT_OK;
 }
@@ -215,8 +196,8 @@ void stint_chain_clear(struct stint_chain *chain)
 void stint_folder_remove(const char *path)
 {
     struct report ignored = {{0}, NULL, NULL};
-    struct name_list list;
-    if (list_names(&ignored, path, &list) != SONJECT_OK)
+    struct folder_names list;
+    if (folder_names_read(&list, &ignored, path, PREFIX) != SONJECT_OK)
         return;
     for (size_t i = 0; i < list.count; i++) {
         char *file = strstr(list.names[i], ".stint") ? path_join(path, list.names[i]) : NULL;
@@ -224,6 +205,6 @@ void stint_folder_remove(const char *path)
             file_discard(file);
         free(file);
     }
-    free_names(&list);
+    folder_names_clear(&list);
     rmdir(path);
 }

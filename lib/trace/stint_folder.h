@@ -11,11 +11,17 @@ struct stint_folder {
 
 /* Opens the stints in a folder that may be missing, in the order of their names, of one shard or of
  * all (shard 0). drops_damaged: files that are damaged are removed, with news of it, so that they
- * are traced anew. To be given to stint_folder_clear, also on failure. Errors: as stint_file_open.
+ * are traced anew; one under another shard's name is refused all the same. To be given to
+ * stint_folder_clear, also on failure. Errors: as stint_file_open.
  */
 sonject_status stint_folder_read(struct stint_folder *folder, struct report *report,
                                  const char *path, uint64_t shard, bool drops_damaged);
 void stint_folder_clear(struct stint_folder *folder);
+
+/* Opens the first stint in a folder that may be missing, whosever it is; *is_there: there is one,
+ * to be given to stint_file_close. Errors: as stint_file_open. */
+sonject_status stint_folder_first(struct stint_file *file, struct report *report, const char *path,
+                                  bool *is_there);
 
 /* How many shards the names in the folder speak of, the first that is not `but`; 0: no such name.
  */

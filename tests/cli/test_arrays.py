@@ -1,8 +1,11 @@
 """HDF5 and MATLAB arrays and PGM images as input, in the eyes of h5py and scipy."""
 
+import json
+
 import numpy
 import pytest
 
+import images
 from conftest import COLUMNS, ROWS, SCENE, assert_refused
 
 h5py = pytest.importorskip("h5py")
@@ -147,6 +150,30 @@ def test_one_of_several_arrays(sonject, tmp_path, swath):
     with h5py.File(tmp_path / "out/image.h5") as file:
         assert numpy.array_equal(file["port"][()], swath)
         assert_target_is_there(swath[::-1], file["sides/starboard"][()])
+
+
+def test_a_campaign_takes_each_swath_from_its_array(sonject, tmp_path, swath):
+    sides = {"port": swath, "sides/starboard": swath[::-1]}
+    with h5py.File(tmp_path / "line.h5", "w") as file:
+        for name, side in sides.items():
+            file[name] = side
+    (tmp_path / "scene.yaml").write_text(SCENE.replace("  path: swath.tif\n", "")
+                                         .split("objects:")[0])
+    swaths = ", ".join(f"{{path: line.h5, set: {{input.array: {name}}}}}" for name in sides)
+    (tmp_path / "campaign.yaml").write_text(
+        "sonject_campaign: 1\nscene: scene.yaml\nimages: 4\nempty: 1\n"
+        f"chip: {{rows: 32, columns: 48}}\nswaths: [{swaths}]\n")
+    answer = sonject("campaign", "campaign.yaml", "-o", "set")
+    assert answer.returncode == 0, answer.stderr
+    taken = []
+    for path in sorted((tmp_path / "set").glob("all/records/*.json")):
+        record = json.loads(path.read_text())
+        name = next(text.split("=")[1].strip('"') for text in record["set"] if text.startswith("input.array"))
+        row, column = (record["swath"][key] for key in ("row", "column"))
+        chip = images.read_tiff(tmp_path / "set/all" / record["image"])
+        assert numpy.array_equal(chip, sides[name][row : row + 32, column : column + 48])
+        taken.append(name)
+    assert sorted(taken) == ["port", "port", "sides/starboard", "sides/starboard"]
 
 
 def test_a_pgm_keeps_its_largest_number(sonject, tmp_path, swath):

@@ -1,9 +1,11 @@
 """Campaigns: what the data set holds, and that it is the same however it came about."""
 
+import base64
 import json
 import os
 import pathlib
 import random
+import re
 import signal
 import subprocess
 import time
@@ -50,6 +52,7 @@ targets:
     object: {{shape: capsule, diameter: 0.2 m}}
     draw:
       length: {{log_uniform: [0.4 m, 0.6 m]}}
+      burial: {{uniform: [0 mm, 50 mm]}}
       heading: {{uniform: [0 deg, 180 deg]}}
 clutter:
   number: {{choice: [0, 1]}}
@@ -204,8 +207,12 @@ def test_coco_is_what_truth_and_masks_say(whole):
 def test_the_report_holds_no_markup_of_classes(whole):
     page = (whole / "report.html").read_text()
     assert "&#60;b&#62;" in page and "<b>" not in page
-    assert page.count("data:image/svg+xml;base64,") > 8
-    assert "<script" not in page
+    pictures = re.findall(r"data:image/svg\+xml;base64,([^\"]+)", page)
+    plots = [base64.b64decode(picture).decode() for picture in pictures]
+    assert len(plots) > 8 and "<script" not in page
+    # of one key in two units
+    assert [sum(f">objects[].burial, {unit}<" in plot for plot in plots)
+            for unit in ("cm", "mm")] == [1, 1]
 
 
 def test_a_finished_data_set_is_left_alone(command, whole):
@@ -279,6 +286,26 @@ def test_sigterm_keeps_finished_images(ground, environment, whole):
     made = records(ground / "stopped")
     assert 0 < len(made) < IMAGES
     assert contents(ground / "stopped").items() <= contents(whole).items()
+
+
+def test_it_stops_by_itself(command, ground, whole):
+    for count in (1, 2):
+        answer = command("campaign", "campaign.yaml", "-o", "timed", "--exit-after", "1e-9")
+        assert (answer.returncode, answer.stderr) == (
+            85, "sonject: stopped; run the same command again\n")
+        assert len(records(ground / "timed")) == count
+    assert contents(ground / "timed").items() <= contents(whole).items()
+
+
+@pytest.mark.parametrize("change", [{"classes": [1, 2, 3]}, {"classes": {}}, {"splits": []},
+                                    {"splits": [{"name": "<b>", "images": 20}]},
+                                    {"splits": [{"name": "train", "images": -1}]},
+                                    {"outputs": None}, {"sonject_campaign": 2}])
+def test_a_head_that_was_tampered_with_is_refused(command, whole, ground, change):
+    head = json.loads((whole / "campaign.json").read_text())
+    (ground / "odd").mkdir(exist_ok=True)
+    (ground / "odd" / "campaign.json").write_text(json.dumps({**head, **change}))
+    assert_refused(command("merge", "odd"), 3, "odd/campaign.json", "damaged")
 
 
 def test_another_campaign_is_refused(command, whole):

@@ -1,5 +1,6 @@
 """Runs that are shared out, stopped and gone on with: always the files of a run in one go."""
 
+import json
 import random
 import signal
 import subprocess
@@ -9,6 +10,7 @@ import pytest
 
 from conftest import COMMAND, assert_refused, files_below
 from test_run import RESULTS, contents, read_rest, start_and_wait_for_the_bar
+from test_stages import compare_shards_with_run
 
 # So many that a launch is cut in slices, between which a run stops.
 MANY_RAYS = ["--set", "injection.rays=256"]
@@ -78,6 +80,8 @@ def test_what_is_not_a_shard_of_the_run_is_refused(sonject, scene, tmp_path, who
     assert first.read_bytes() == sound
     first.write_bytes(second.read_bytes())
     assert_refused(sonject("merge", "result"), 3, first.name, "another shard's")
+    answer = sonject("run", scene, "-o", "result", "--shard", "1/2")
+    assert_refused(answer, 3, first.name, "another shard's")
     first.write_bytes(sound)
     # Another scene's: merged, and run into the same folder.
     command(sonject, "run", scene, "-o", "other", "--shard", "1/2", "--seed", "9")
@@ -87,7 +91,7 @@ def test_what_is_not_a_shard_of_the_run_is_refused(sonject, scene, tmp_path, who
     answer = sonject("run", scene, "-o", "result", "--shard", "1/2")
     assert_refused(answer, 3, first.name, "another scene or image")
     first.write_bytes(sound)
-    for other in (["--shard", "1/3"], []):
+    for other in (["--shard", "1/3"], [], ["--seed", "9"]):
         answer = sonject("run", scene, "-o", "result", *other)
         assert_refused(answer, 3, "result/work", "2 shards")
     command(sonject, "merge", "result")
@@ -159,3 +163,35 @@ def test_shards_know_their_scene_from_elsewhere(sonject, scene, tmp_path, whole)
     assert contents(tmp_path / "result") == whole
     answer = sonject("run", "scene.yaml", "-o", "result")
     assert answer.returncode == 0 and "already" in answer.stderr
+
+
+@pytest.mark.parametrize("chosen", [
+    ["seabed.relief=[{ripples: {wavelength: 40 cm, height: 3 cm}}]"],
+    ["injection.interactions=2", "injection.columns=paper"],
+], ids=["relief", "paper"])
+def test_shards_of_other_seabeds_and_columns(sonject, scene, tmp_path, chosen):
+    options = [word for each in chosen for word in ("--set", each)]
+    command(sonject, "run", scene, "-o", "run", *options)
+    compare_shards_with_run(sonject, tmp_path, scene, *options)
+
+
+def test_shards_of_bands_are_merged_at_once(sonject, scene, tmp_path):
+    bands = ["--set", "bands={low: {sonar: {frequency: 90 kHz}}, high: {}}"]
+    folder, low, high = (tmp_path / name for name in ("parts", "parts/low", "parts/high"))
+    command(sonject, "run", scene, "-o", "whole", *bands)
+    command(sonject, "run", scene, "-o", "parts", *bands, "--shard", "2/2")
+    high.rename(tmp_path / "away")
+    assert_refused(sonject("merge", "parts"), 3, "parts: holds no shards of band high")
+    (tmp_path / "away").rename(high)
+    assert_refused(sonject("merge", "parts"), 3, "parts/low/work: missing of 2 shards: 1;")
+    assert [path.name for path in folder.glob("*/*")] == ["work", "work"]
+    command(sonject, "run", scene, "-o", "parts", *bands, "--shard", "1/2")
+    command(sonject, "merge", "parts")
+    for band in (low, high):
+        assert {path.name for path in band.iterdir()} == RESULTS
+        assert contents(band) == contents(tmp_path / "whole" / band.name)
+        assert json.loads((band / "run.json").read_text())["band"] == band.name
+    answer = sonject("merge", "parts")
+    assert answer.returncode == 0 and "already holds" in answer.stderr
+    high.rename(tmp_path / "away")
+    assert_refused(sonject("merge", "parts"), 3, "parts: holds no shards of band high")

@@ -77,6 +77,7 @@ class sonject_campaign_run_params(Structure):
         ("only_one", c_uint32),
         ("only", c_uint64),
         ("folder", c_char_p),
+        ("exit_after_s", c_double),
     ]
 
 

@@ -9,7 +9,15 @@ from typing import Iterator, Optional, Tuple
 from . import _structures as s
 from ._callbacks import Progress, ProgressBridge, text
 from ._handle import Handle
-from ._values import Overrides, PathLike, file_name, initialised, override_texts, sized
+from ._values import (
+    Overrides,
+    PathLike,
+    file_name,
+    initialised,
+    override_texts,
+    real_number,
+    sized,
+)
 from .context import Context, default_context
 from .result import Result
 from .scene import Scene
@@ -137,10 +145,12 @@ class Campaign(Handle):
         *,
         shard: Tuple[int, int] = (1, 1),
         only: Optional[int] = None,
+        exit_after_s: float = 0.0,
     ) -> bool:
         """Makes the images that the folder lacks, and the data set's documents once all are there.
 
         shard: (i, k) makes ids with id % k == i - 1, for merge; only: makes this image alone, anew.
+        exit_after_s: stops by itself after so long, as if cancelled; the same call then goes on.
         False if there was nothing left to do.
         """
         params = initialised(s.sonject_campaign_run_params)
@@ -149,6 +159,7 @@ class Campaign(Handle):
         if only is not None:
             params.only_one = 1
             params.only = self._id(only)
+        params.exit_after_s = real_number("exit_after_s", exit_after_s)
         bridge = ProgressBridge(progress)
         was_finished = ctypes.c_int()
         self._context.call(

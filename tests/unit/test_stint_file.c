@@ -1,0 +1,496 @@
+/* Files of tallies: what is written is read again, whatever is damaged is refused, chains of stints
+ * cover a shard once, and sums that do not go together are not added up. */
+#define _POSIX_C_SOURCE 200809L
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "base/file.h"
+#include "temporary_folder.h"
+#include "trace/stint.h"
+#include "trace/stint_block.h"
+#include "trace/stint_folder.h"
+
+#define SUMS 18
+
+static const char texts[] = "scene.yaml\0/home\0sonject: 1\n";
+static const int64_t sums[SUMS] = {0, 0, 5, 0,         0,         0, 0, -7, 0,
+                                   0, 0, 0, INT64_MAX, INT64_MIN, 1, 0, 0,  3};
+
+static struct report report;
+
+static struct stint_head head_of(uint64_t shard, uint64_t shards)
+{
+    struct stint_head head;
+    memset(&head, 0, sizeof head);
+    strcpy(head.identity.version, "1.2");
+    strcpy(head.identity.code, "code");
+    strcpy(head.identity.scene, "scene");
+    strcpy(head.result, "result");
+    head.shard = shard;
+    head.shards = shards;
+    return head;
+}
+
+static struct stint_end end_of(uint64_t first, uint64_t last, uint64_t is_last)
+{
+    struct stint_end end;
+    memset(&end, 0, sizeof end);
+    end.first = first;
+    end.last = last;
+    end.is_last = is_last;
+    end.rays = 100 + first;
+    strcpy(end.course, "course");
+    return end;
+}
+
+static void write_stint(const char *folder, struct stint_head head, struct stint_end end,
+                        const int64_t *values, size_t count)
+{
+    struct stint_writer writer;
+    const struct stint_source source = {texts, sizeof texts};
+    assert_int_equal(stint_writer_begin(&writer, &report, folder, &head, source), SONJECT_OK);
+    assert_int_equal(stint_writer_sums(&writer, values, count), SONJECT_OK);
+    assert_int_equal(stint_writer_sums(&writer, sums, SUMS), SONJECT_OK);
+    assert_int_equal(stint_writer_publish(&writer, &end), SONJECT_OK);
+    assert_int_equal(end.records, 2);
+    stint_writer_clear(&writer);
+}
+
+struct collected {
+    int64_t *values;
+    uint64_t runs;
+};
+
+static bool collect(void *user, uint64_t first, const int64_t *values, size_t count)
+{
+    struct collected *all = user;
+    memcpy(all->values + first, values, count * sizeof *values);
+    all->runs++;
+    return true;
+}
+
+static bool refuse_all(void *user, uint64_t first, const int64_t *values, size_t count)
+{
+    (void)user;
+    (void)first;
+    (void)values;
+    (void)count;
+    return false;
+}
+
+static void expect_sums(const struct stint_file *file, uint64_t record, const int64_t *values,
+                        size_t count, uint64_t runs)
+{
+    struct collected all = {calloc(count, sizeof(int64_t)), 0};
+    assert_non_null(all.values);
+    assert_int_equal(stint_file_runs(file, &report, record, count, collect, &all), SONJECT_OK);
+    assert_memory_equal(all.values, values, count * sizeof *values);
+    assert_int_equal(all.runs, runs);
+    free(all.values);
+}
+
+static void test_what_is_written_is_read(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct stint_file file;
+    const struct stint_head head = head_of(2, 3);
+    const struct stint_end end = end_of(4, 9, 1);
+    /* so many that they do not stay in memory */
+    const size_t many = ((size_t)33 << 20) / sizeof(int64_t);
+    int64_t *values = calloc(many, sizeof *values);
+    assert_non_null(values);
+    for (size_t i = 0; i < many; i++)
+        values[i] = (int64_t)i * 7 - 5;
+    write_stint(folder->path, head, end, values, many);
+    assert_int_equal(count_entries(folder->path), 1);
+    const char *path = temporary_file(folder, "shard-2-of-3-4-9.stint");
+    assert_int_equal(stint_file_open(&file, &report, path), SONJECT_OK);
+    assert_memory_equal(&file.head, &head, sizeof head);
+    assert_int_equal(file.source.bytes, sizeof texts);
+    assert_memory_equal(file.source.texts, texts, sizeof texts);
+    assert_int_equal(file.end.first, 4);
+    assert_int_equal(file.end.last, 9);
+    assert_int_equal(file.end.is_last, 1);
+    assert_int_equal(file.end.rays, 104);
+    assert_string_equal(file.end.course, "course");
+    assert_int_equal(file.end.records, 2);
+    expect_sums(&file, 0, values, many, 1);
+    /* 5; -7; the three at the limits with the 3 behind two zeros */
+    expect_sums(&file, 1, sums, SUMS, 3);
+    /* none of its sums, other sums, and a taker for whom they do not fit */
+    struct collected none = {NULL, 0};
+    assert_int_equal(stint_file_runs(&file, &report, 2, SUMS, collect, &none), SONJECT_ERROR_INPUT);
+    assert_int_equal(stint_file_runs(&file, &report, 1, SUMS + 1, collect, &none),
+                     SONJECT_ERROR_INPUT);
+    assert_int_equal(stint_file_runs(&file, &report, 1, SUMS, refuse_all, NULL),
+                     SONJECT_ERROR_INPUT);
+    assert_int_equal(none.runs, 0);
+    /* damaged after it was opened */
+    write_bytes(path, sums, sizeof sums);
+    assert_int_equal(stint_file_runs(&file, &report, 1, SUMS, collect, &none), SONJECT_ERROR_INPUT);
+    stint_file_close(&file);
+    free(values);
+}
+
+static void expect_refused(const char *path, const unsigned char *bytes, size_t count)
+{
+    struct stint_file file;
+    write_bytes(path, bytes, count);
+    report.message[0] = '\0';
+    assert_int_equal(stint_file_open(&file, &report, path), SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(report.message, "damaged, or cut short"));
+}
+
+static void test_no_damage_goes_unseen(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct stint_file file;
+    size_t count;
+    char written[TEMPORARY_CAPACITY + 300];
+    write_stint(folder->path, head_of(1, 1), end_of(0, 9, 1), sums, SUMS);
+    strcpy(written, temporary_file(folder, "shard-1-of-1-0-9.stint"));
+    unsigned char *bytes = bytes_of_file(written, &count);
+    const char *path = temporary_file(folder, "damaged.stint");
+    for (size_t i = 0; i < count; i++) {
+        bytes[i] ^= (unsigned char)(1 << i % 8);
+        expect_refused(path, bytes, count);
+        bytes[i] ^= (unsigned char)(1 << i % 8);
+        expect_refused(path, bytes, i);
+    }
+    bytes[count] = 0;
+    expect_refused(path, bytes, count + 1);
+    write_bytes(path, bytes, count);
+    assert_int_equal(stint_file_open(&file, &report, path), SONJECT_OK);
+    stint_file_close(&file);
+    free(bytes);
+    /* what is not there, and what is no file, is not damaged */
+    assert_int_equal(stint_file_open(&file, &report, temporary_file(folder, "none.stint")),
+                     SONJECT_ERROR_STORAGE);
+    assert_int_equal(stint_file_open(&file, &report, folder->path), SONJECT_ERROR_STORAGE);
+}
+
+/* A file that is made of blocks one by one, all with sound digests. */
+struct draft {
+    unsigned char bytes[4096];
+    size_t count;
+};
+
+static void begin_draft(struct draft *draft)
+{
+    draft->count = STINT_MAGIC_BYTES;
+    memcpy(draft->bytes, STINT_MAGIC, STINT_MAGIC_BYTES);
+}
+
+static void add_block(struct draft *draft, uint64_t kind, const void *content, size_t count)
+{
+    struct block_head head;
+    memset(&head, 0, sizeof head);
+    head.kind = kind;
+    head.bytes = count;
+    assert_true(block_digest(&head, content));
+    memcpy(draft->bytes + draft->count, &head, sizeof head);
+    memcpy(draft->bytes + draft->count + sizeof head, content, count);
+    draft->count += sizeof head + count;
+}
+
+static void add_head(struct draft *draft, struct stint_head head)
+{
+    add_block(draft, BLOCK_HEAD, &head, sizeof head);
+}
+
+static void add_end(struct draft *draft, struct stint_end end, uint64_t records)
+{
+    end.records = records;
+    add_block(draft, BLOCK_END, &end, sizeof end);
+}
+
+/* Head and end alone, either changed. */
+static void expect_head_refused(const char *path, struct stint_head head, struct stint_end end,
+                                uint64_t records)
+{
+    struct draft draft;
+    begin_draft(&draft);
+    add_head(&draft, head);
+    add_end(&draft, end, records);
+    expect_refused(path, draft.bytes, draft.count);
+}
+
+static void test_what_makes_no_sense_is_refused(void **state)
+{
+    struct temporary_folder *folder = *state;
+    const char *path = temporary_file(folder, "draft.stint");
+    struct stint_head head = head_of(1, 1);
+    struct stint_end end = end_of(0, 9, 1);
+    struct stint_file file;
+    struct draft draft;
+    begin_draft(&draft);
+    add_head(&draft, head);
+    add_end(&draft, end, 0);
+    write_bytes(path, draft.bytes, draft.count);
+    assert_int_equal(stint_file_open(&file, &report, path), SONJECT_OK);
+    stint_file_close(&file);
+
+    expect_head_refused(path, head_of(0, 1), end, 0);
+    expect_head_refused(path, head_of(2, 1), end, 0);
+    memset(head.identity.scene, 'x', sizeof head.identity.scene);
+    expect_head_refused(path, head, end, 0);
+    head = head_of(1, 1);
+    expect_head_refused(path, head, end_of(9, 0, 1), 0);
+    expect_head_refused(path, head, end_of(0, 9, 2), 0);
+    expect_head_refused(path, head, end, 1);
+    memset(end.course, 'x', sizeof end.course);
+    expect_head_refused(path, head, end, 0);
+    end = end_of(0, 9, 1);
+
+    begin_draft(&draft); /* two heads */
+    add_head(&draft, head);
+    add_head(&draft, head);
+    add_end(&draft, end, 0);
+    expect_refused(path, draft.bytes, draft.count);
+    begin_draft(&draft); /* nothing before the end */
+    add_end(&draft, end, 0);
+    expect_refused(path, draft.bytes, draft.count);
+    begin_draft(&draft); /* an unknown block */
+    add_head(&draft, head);
+    add_block(&draft, 4, sums, sizeof sums);
+    add_end(&draft, end, 0);
+    expect_refused(path, draft.bytes, draft.count);
+    begin_draft(&draft); /* no end */
+    add_head(&draft, head);
+    expect_refused(path, draft.bytes, draft.count);
+    begin_draft(&draft); /* a source that does not end */
+    unsigned char open_source[sizeof head + 1];
+    memcpy(open_source, &head, sizeof head);
+    open_source[sizeof head] = 'x';
+    add_block(&draft, BLOCK_HEAD, open_source, sizeof open_source);
+    add_end(&draft, end, 0);
+    expect_refused(path, draft.bytes, draft.count);
+}
+
+static void test_runs_stay_within_their_sums(void **state)
+{
+    struct temporary_folder *folder = *state;
+    const char *path = temporary_file(folder, "draft.stint");
+    /* number of sums; first and length of a run; values */
+    static const uint64_t blocks[][5] = {{4, 2, 2, 8, 9},          {4, 3, 2, 8, 9},
+                                         {4, 5, 0, 8, 9},          {4, 0, 3, 8, 9},
+                                         {4, UINT64_MAX, 2, 8, 9}, {4, 1, UINT64_MAX, 8, 9}};
+    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
+        int64_t found[4] = {0, 0, 0, 0};
+        struct collected all = {found, 0};
+        struct stint_file file;
+        struct draft draft;
+        begin_draft(&draft);
+        add_head(&draft, head_of(1, 1));
+        add_block(&draft, BLOCK_SUMS, blocks[i], sizeof blocks[i]);
+        add_end(&draft, end_of(0, 9, 1), 1);
+        write_bytes(path, draft.bytes, draft.count);
+        assert_int_equal(stint_file_open(&file, &report, path), SONJECT_OK);
+        assert_int_equal(stint_file_runs(&file, &report, 0, 4, collect, &all),
+                         i == 0 ? SONJECT_OK : SONJECT_ERROR_INPUT);
+        assert_int_equal(all.runs, i == 0);
+        stint_file_close(&file);
+    }
+}
+
+struct span_of_file {
+    uint64_t first, last;
+    bool is_last;
+};
+
+struct chain_case {
+    struct span_of_file files[6];
+    size_t count;
+    uint64_t next;
+    size_t in_chain;
+    bool is_complete;
+};
+
+static void test_chains_cover_a_shard_once(void **state)
+{
+    static const struct chain_case cases[] = {
+        {{{0, 0, false}}, 0, 0, 0, false},
+        {{{0, 4, false}, {4, 9, false}}, 2, 9, 2, false},
+        {{{0, 4, false}, {5, 9, true}}, 2, 4, 1, false},
+        {{{4, 9, true}}, 1, 0, 0, false},
+        {{{0, 4, false}, {0, 6, false}, {4, 9, true}, {6, 8, false}}, 4, 9, 2, true},
+        {{{0, 4, false}, {4, 7, false}, {0, 12, false}}, 3, 12, 1, false},
+        /* by their names 100 comes before 20 */
+        {{{0, 10, false}, {10, 20, false}, {20, 100, false}, {100, 200, false}, {200, 200, true}},
+         5,
+         200,
+         5,
+         true},
+        {{{0, 0, true}}, 1, 0, 1, true}, /* a shard without strips */
+    };
+    struct temporary_folder *folder = *state;
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        struct stint_folder all;
+        struct stint_chain chain;
+        char path[TEMPORARY_CAPACITY + 300];
+        strcpy(path, temporary_file(folder, "work"));
+        assert_int_equal(folder_make(&report, path), SONJECT_OK);
+        for (size_t k = 0; k < cases[i].count; k++) {
+            const struct span_of_file *file = &cases[i].files[k];
+            write_stint(path, head_of(2, 3), end_of(file->first, file->last, file->is_last), sums,
+                        SUMS);
+        }
+        write_stint(path, head_of(1, 3), end_of(0, 99, true), sums, SUMS); /* another's */
+        assert_int_equal(stint_folder_read(&all, &report, path, 0, false), SONJECT_OK);
+        assert_int_equal(all.count, cases[i].count + 1);
+        assert_int_equal(stint_chain_find(&chain, &report, &all, 2), SONJECT_OK);
+        assert_int_equal(chain.next, cases[i].next);
+        assert_int_equal(chain.count, cases[i].in_chain);
+        assert_int_equal(chain.is_complete, cases[i].is_complete);
+        for (size_t k = 0; k < chain.count; k++)
+            assert_int_equal(chain.files[k]->end.first,
+                             k + 1 < chain.count ? chain.files[k + 1]->end.last : 0);
+        stint_chain_clear(&chain);
+        stint_folder_clear(&all);
+        stint_folder_remove(path);
+        assert_false(file_exists(path));
+    }
+}
+
+static void test_a_folder_gives_what_is_its_own(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct stint_folder all;
+    struct stint_file file;
+    uint64_t shards = 7;
+    bool is_there = true;
+    char damaged[TEMPORARY_CAPACITY + 300];
+    assert_int_equal(stint_folder_first(&file, &report, temporary_file(folder, "none"), &is_there),
+                     SONJECT_OK);
+    assert_false(is_there);
+    write_stint(folder->path, head_of(2, 3), end_of(0, 4, false), sums, SUMS);
+    write_stint(folder->path, head_of(1, 3), end_of(0, 4, false), sums, SUMS);
+    strcpy(damaged, temporary_file(folder, "shard-1-of-3-4-5.stint"));
+    write_bytes(damaged, sums, sizeof sums);
+    write_bytes(temporary_file(folder, "shard-1-of-3.stint.7-00.part.stint"), sums, sizeof sums);
+    assert_int_equal(stint_folder_first(&file, &report, folder->path, &is_there), SONJECT_OK);
+    assert_true(is_there);
+    assert_int_equal(file.head.shard, 1);
+    stint_file_close(&file);
+    assert_int_equal(stint_folder_shards(&report, folder->path, 3, &shards), SONJECT_OK);
+    assert_int_equal(shards, 0);
+    assert_int_equal(stint_folder_shards(&report, folder->path, 1, &shards), SONJECT_OK);
+    assert_int_equal(shards, 3);
+    /* what is damaged is refused; its own shard may drop it */
+    assert_int_equal(stint_folder_read(&all, &report, folder->path, 0, false), SONJECT_ERROR_INPUT);
+    stint_folder_clear(&all);
+    assert_int_equal(stint_folder_read(&all, &report, folder->path, 2, true), SONJECT_OK);
+    assert_int_equal(all.count, 1);
+    stint_folder_clear(&all);
+    assert_true(file_exists(damaged));
+    assert_int_equal(stint_folder_read(&all, &report, folder->path, 1, true), SONJECT_OK);
+    assert_int_equal(all.count, 1);
+    stint_folder_clear(&all);
+    assert_false(file_exists(damaged));
+    /* what another shard traced is sound, and stays */
+    write_stint(folder->path, head_of(2, 3), end_of(4, 5, true), sums, SUMS);
+    char other[TEMPORARY_CAPACITY + 300];
+    strcpy(other, temporary_file(folder, "shard-2-of-3-4-5.stint"));
+    assert_int_equal(rename(other, damaged), 0);
+    assert_int_equal(stint_folder_read(&all, &report, folder->path, 1, true), SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(report.message, "another shard's"));
+    stint_folder_clear(&all);
+    assert_true(file_exists(damaged));
+}
+
+/* Adds up two stints of two shards each. */
+static sonject_status add_both(const char *folder, int64_t *total)
+{
+    struct stint_folder all;
+    struct stint stint;
+    struct trace_counts counts;
+    const int64_t *added;
+    memset(&counts, 0, sizeof counts);
+    assert_int_equal(stint_folder_read(&all, &report, folder, 0, false), SONJECT_OK);
+    assert_int_equal(all.count, 2);
+    const struct stint_file *files[] = {&all.files[0], &all.files[1]};
+    assert_int_equal(stint_begin_adding(&stint, &report, files, 2), SONJECT_OK);
+    sonject_status status = stint_sums(&stint, NULL, 2, &added);
+    if (status == SONJECT_OK) {
+        memcpy(total, added, 2 * sizeof *total);
+        status = stint_sums(&stint, NULL, SUMS, &added);
+    }
+    if (status == SONJECT_OK)
+        status = stint_finish(&stint, &counts);
+    stint_clear(&stint);
+    stint_folder_clear(&all);
+    return status;
+}
+
+static void test_only_what_goes_together_is_added_up(void **state)
+{
+    struct temporary_folder *folder = *state;
+    static const int64_t first[] = {3, INT64_MAX - 5};
+    static const int64_t second[] = {-8, 5};
+    static const int64_t overflows[] = {-8, 6};
+    int64_t total[2] = {0, 0};
+    struct stint_end end = end_of(0, 9, true);
+    /* both also hold `sums`, whose limits go beyond 64 bits when doubled */
+    write_stint(folder->path, head_of(1, 2), end, first, 2);
+    write_stint(folder->path, head_of(2, 2), end, second, 2);
+    assert_int_equal(add_both(folder->path, total), SONJECT_ERROR_INPUT);
+    assert_int_equal(total[0], -5);
+    assert_int_equal(total[1], INT64_MAX);
+    write_stint(folder->path, head_of(2, 2), end, overflows, 2);
+    total[0] = 0;
+    assert_int_equal(add_both(folder->path, total), SONJECT_ERROR_INPUT);
+    assert_int_equal(total[0], 0);
+    /* whose course is that of other launches; this stint's own is of none at all */
+    struct stint stint;
+    struct trace_counts counts;
+    struct stint_file file;
+    memset(&counts, 0, sizeof counts);
+    assert_int_equal(
+        stint_file_open(&file, &report, temporary_file(folder, "shard-1-of-2-0-9.stint")),
+        SONJECT_OK);
+    const struct stint_file *files[] = {&file};
+    assert_int_equal(stint_begin_adding(&stint, &report, files, 1), SONJECT_OK);
+    assert_int_equal(stint_finish(&stint, &counts), SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(report.message, "traced other rays"));
+    stint_clear(&stint);
+    /* with that course, but not all of its sums */
+    struct hash *hash = hash_begin();
+    char nothing[HASH_TEXT_CAPACITY];
+    assert_non_null(hash);
+    hash_end(hash, nothing);
+    strcpy(file.end.course, nothing);
+    assert_int_equal(stint_begin_adding(&stint, &report, files, 1), SONJECT_OK);
+    assert_int_equal(stint_finish(&stint, &counts), SONJECT_ERROR_INPUT);
+    stint_clear(&stint);
+    assert_int_equal(stint_begin_adding(&stint, &report, files, 1), SONJECT_OK);
+    stint.record = 2;
+    assert_int_equal(stint_finish(&stint, &counts), SONJECT_OK);
+    assert_int_equal(counts.rays, 100);
+    stint_clear(&stint);
+    stint_file_close(&file);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_what_is_written_is_read, make_temporary_folder,
+                                        remove_temporary_folder),
+        cmocka_unit_test_setup_teardown(test_no_damage_goes_unseen, make_temporary_folder,
+                                        remove_temporary_folder),
+        cmocka_unit_test_setup_teardown(test_what_makes_no_sense_is_refused, make_temporary_folder,
+                                        remove_temporary_folder),
+        cmocka_unit_test_setup_teardown(test_runs_stay_within_their_sums, make_temporary_folder,
+                                        remove_temporary_folder),
+        cmocka_unit_test_setup_teardown(test_chains_cover_a_shard_once, make_temporary_folder,
+                                        remove_temporary_folder),
+        cmocka_unit_test_setup_teardown(test_a_folder_gives_what_is_its_own, make_temporary_folder,
+                                        remove_temporary_folder),
+        cmocka_unit_test_setup_teardown(test_only_what_goes_together_is_added_up,
+                                        make_temporary_folder, remove_temporary_folder),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
