@@ -26,7 +26,7 @@ __kernel void draw_speckle(__global const float *energy, int bins, int first_bin
 /* Global size: groups of WIDTH columns x strips x 2 planes. */
 __kernel void compress_range(__global const float *lines_real,
                              __global const float *lines_imaginary,
-                             __global const struct filled_bins *filled, int bins, int first,
+                             __global const struct filled_span *filled, int bins, int first,
                              int bins_per_pixel, __global const float *pulse, int taps, int stride,
                              int first_out_strip, __global float *out_real,
                              __global float *out_imaginary)
@@ -41,7 +41,7 @@ __kernel void compress_range(__global const float *lines_real,
 /* Global size: groups of WIDTH columns x strips. */
 __kernel void compress_range_complex(__global const float *lines_real,
                                      __global const float *lines_imaginary,
-                                     __global const struct filled_bins *filled, int bins, int first,
+                                     __global const struct filled_span *filled, int bins, int first,
                                      int bins_per_pixel, __global const float *pulse_real,
                                      __global const float *pulse_imaginary, int taps, int stride,
                                      int first_out_strip, __global float *out_real,
@@ -55,30 +55,32 @@ __kernel void compress_range_complex(__global const float *lines_real,
 }
 
 /* Global size: groups of WIDTH columns x groups of FORM_ROWS rows. */
-__kernel void combine_aspects(int first_strip, int first_filled, int end_filled, int strips_per_row,
-                              int reach, __global const float *lines_real,
-                              __global const float *lines_imaginary, int stride,
+__kernel void combine_aspects(int first_strip, int end_strip, int strips_per_row, int reach,
+                              __global const float *lines_real,
+                              __global const float *lines_imaginary,
+                              __global const struct filled_span *filled, int stride,
                               __global const float *response, int rows, __global float *out_real,
                               __global float *out_imaginary)
 {
-    const struct aspects aspects = {first_strip, strips_per_row, reach, first_filled, end_filled};
-    combine_aspects_of(aspects, lines_real, lines_imaginary, stride, response,
+    const struct aspects aspects = {first_strip, end_strip, strips_per_row, reach};
+    combine_aspects_of(aspects, lines_real, lines_imaginary, filled, stride, response,
                        (int)get_global_id(1) * FORM_ROWS, rows, (int)get_global_id(0) * WIDTH,
                        out_real, out_imaginary);
 }
 
 /* Global size: groups of WIDTH columns x groups of FORM_ROWS rows from first_row on. */
-__kernel void combine_varied(int first_strip, int first_filled, int end_filled, int strips_per_row,
-                             int reach, int first_row, int row_step, int columns_per_block,
+__kernel void combine_varied(int first_strip, int end_strip, int strips_per_row, int reach,
+                             int first_row, int row_step, int columns_per_block,
                              int block_step, __global const float *lines_real,
-                             __global const float *lines_imaginary, int stride,
+                             __global const float *lines_imaginary,
+                             __global const struct filled_span *filled, int stride,
                              __global const float *response_real,
                              __global const float *response_imaginary, int rows,
                              __global float *out_real, __global float *out_imaginary)
 {
-    const struct aspects aspects = {first_strip, strips_per_row, reach, first_filled, end_filled};
+    const struct aspects aspects = {first_strip, end_strip, strips_per_row, reach};
     const struct response_set set = {first_row, row_step, columns_per_block, block_step};
-    combine_varied_of(aspects, set, lines_real, lines_imaginary, stride, response_real,
+    combine_varied_of(aspects, set, lines_real, lines_imaginary, filled, stride, response_real,
                       response_imaginary, first_row + (int)get_global_id(1) * FORM_ROWS, rows,
                       (int)get_global_id(0) * WIDTH, out_real, out_imaginary);
 }

@@ -35,13 +35,13 @@ FUNCTION real load_tap(GLOBAL const float *line, int bins, int start, int bins_p
 
 /* The taps that meet these, for WIDTH pixels of which the first begins at `start`: the others would
  * add zeros. */
-FUNCTION int first_tap_of(int start, struct filled_bins filled, int bins_per_pixel)
+FUNCTION int first_tap_of(int start, struct filled_span filled, int bins_per_pixel)
 {
     const int outside = filled.first - start - (WIDTH - 1) * bins_per_pixel;
     return outside > 0 ? outside : 0;
 }
 
-FUNCTION int end_of_taps(int start, struct filled_bins filled, int taps)
+FUNCTION int end_of_taps(int start, struct filled_span filled, int taps)
 {
     return filled.end - start < taps ? filled.end - start : taps;
 }
@@ -49,7 +49,7 @@ FUNCTION int end_of_taps(int start, struct filled_bins filled, int taps)
 /* Range compression of the WIDTH pixels from `column` on: pixel j is the sum over taps of
  * line[j * bins_per_pixel + first + tap] * pulse[tap]. Lanes are pixels, so that each sum keeps its
  * order whatever a compiler makes of the loop. `out` must have room for whole groups of WIDTH. */
-FUNCTION void compress_range_of(GLOBAL const float *line, int bins, struct filled_bins filled,
+FUNCTION void compress_range_of(GLOBAL const float *line, int bins, struct filled_span filled,
                                 int first, int bins_per_pixel, GLOBAL const float *pulse, int taps,
                                 int column, GLOBAL float *out)
 {
@@ -63,7 +63,7 @@ FUNCTION void compress_range_of(GLOBAL const float *line, int bins, struct fille
 
 /* The same with a complex pulse, both parts of the line at once. */
 FUNCTION void compress_complex_of(GLOBAL const float *line_real, GLOBAL const float *line_imaginary,
-                                  int bins, struct filled_bins filled, int first,
+                                  int bins, struct filled_span filled, int first,
                                   int bins_per_pixel, GLOBAL const float *pulse_real,
                                   GLOBAL const float *pulse_imaginary, int taps, int column,
                                   GLOBAL float *out_real, GLOBAL float *out_imaginary)
@@ -84,19 +84,25 @@ FUNCTION void compress_complex_of(GLOBAL const float *line_real, GLOBAL const fl
 
 /* Where a row takes its aspects from. */
 struct aspects {
-    int first_strip; /* of the lines, on the track's numbering */
+    int first_strip, end_strip; /* of the lines, on the track's numbering; to before the end */
     int strips_per_row;
-    int reach;                    /* the response is kept within +-reach strips; 2 reach + 1 taps */
-    int first_filled, end_filled; /* strips, from the one to before the other, beyond which are none
-                                     but zeros */
+    int reach; /* the response is kept within +-reach strips; 2 reach + 1 taps */
 };
+
+/* Whether WIDTH columns of a line may hold anything but zeros. */
+FUNCTION int is_filled_at(struct filled_span columns, int column)
+{
+    return columns.first < column + WIDTH && columns.end > column;
+}
 
 #define FORM_ROWS 4 /* rows a work-item forms, so that a line is read once for all of them */
 
 /* Cross-range response for FORM_ROWS x WIDTH pixels: row n is the sum over strips q of
- * lines[q] * response[n * strips_per_row - q + reach]. Planes are rows_or_strips x stride. */
+ * lines[q] * response[n * strips_per_row - q + reach], but for columns that a strip leaves empty.
+ * Planes are rows_or_strips x stride. */
 FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lines_real,
-                                 GLOBAL const float *lines_imaginary, int stride,
+                                 GLOBAL const float *lines_imaginary,
+                                 GLOBAL const struct filled_span *filled, int stride,
                                  GLOBAL const float *response, int first_row, int rows, int column,
                                  GLOBAL float *out_real, GLOBAL float *out_imaginary)
 {
@@ -108,9 +114,11 @@ FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lin
     const int taps = 2 * aspects.reach + 1;
     int low = first_row * aspects.strips_per_row - aspects.reach;
     int high = (first_row + FORM_ROWS - 1) * aspects.strips_per_row + aspects.reach + 1;
-    low = low < aspects.first_filled ? aspects.first_filled : low;
-    high = high > aspects.end_filled ? aspects.end_filled : high;
+    low = low < aspects.first_strip ? aspects.first_strip : low;
+    high = high > aspects.end_strip ? aspects.end_strip : high;
     for (int strip = low; strip < high; strip++) {
+        if (!is_filled_at(filled[strip - aspects.first_strip], column))
+            continue;
         const long at = (long)(strip - aspects.first_strip) * stride + column;
         const real a = LOAD_REAL(lines_real + at);
         const real b = LOAD_REAL(lines_imaginary + at);
@@ -141,7 +149,8 @@ struct response_set {
  * block to block. */
 FUNCTION void combine_varied_of(struct aspects aspects, struct response_set set,
                                 GLOBAL const float *lines_real, GLOBAL const float *lines_imaginary,
-                                int stride, GLOBAL const float *response_real,
+                                GLOBAL const struct filled_span *filled, int stride,
+                                GLOBAL const float *response_real,
                                 GLOBAL const float *response_imaginary, int first_row, int rows,
                                 int column, GLOBAL float *out_real, GLOBAL float *out_imaginary)
 {
@@ -152,11 +161,13 @@ FUNCTION void combine_varied_of(struct aspects aspects, struct response_set set,
         const int last = row * aspects.strips_per_row + aspects.reach; /* strip of tap 0 */
         int low = last - taps + 1;
         int high = last + 1;
-        low = low < aspects.first_filled ? aspects.first_filled : low;
-        high = high > aspects.end_filled ? aspects.end_filled : high;
+        low = low < aspects.first_strip ? aspects.first_strip : low;
+        high = high > aspects.end_strip ? aspects.end_strip : high;
         real sum_real = SPLAT(0.0f);
         real sum_imaginary = SPLAT(0.0f);
         for (int strip = low; strip < high; strip++) {
+            if (!is_filled_at(filled[strip - aspects.first_strip], column))
+                continue;
             const long at = (long)(strip - aspects.first_strip) * stride + column;
             const real a = LOAD_REAL(lines_real + at);
             const real b = LOAD_REAL(lines_imaginary + at);

@@ -309,8 +309,8 @@ struct outcome_record {
     RECORD_WORD rays; /* that were followed */
 };
 
-/* The bins of a line that may hold anything but zeros, from first on to before end. */
-struct filled_bins {
+/* The bins, or columns, of a line that may hold anything but zeros, from first on to before end. */
+struct filled_span {
     RECORD_INT first, end;
 };
 

@@ -109,8 +109,7 @@ static sonject_status run_rows(struct form_lines *lines, cl_kernel kernel, const
         const size_t left = lines->rows - first_row;
         const size_t some = by_row && taps->rows < left ? taps->rows : left;
         const cl_int first_strip = lines->grid.strips.first;
-        const cl_int first_filled = lines->first_filled;
-        const cl_int end_filled = lines->end_filled;
+        const cl_int end_strip = first_strip + lines->grid.strips.count;
         const cl_int per_row = (cl_int)lines->grid.strips_per_row;
         const cl_int reach = lines->reach;
         const cl_int row = (cl_int)first_row;
@@ -120,8 +119,7 @@ static sonject_status run_rows(struct form_lines *lines, cl_kernel kernel, const
         const cl_int stride = (cl_int)lines->stride;
         const cl_int rows = (cl_int)(first_row + some);
         const struct kernel_argument arguments[] = {ARGUMENT(first_strip),
-                                                    ARGUMENT(first_filled),
-                                                    ARGUMENT(end_filled),
+                                                    ARGUMENT(end_strip),
                                                     ARGUMENT(per_row),
                                                     ARGUMENT(reach),
                                                     ARGUMENT(row),
@@ -130,6 +128,7 @@ static sonject_status run_rows(struct form_lines *lines, cl_kernel kernel, const
                                                     ARGUMENT(block_step),
                                                     ARGUMENT(lines->real_lines),
                                                     ARGUMENT(lines->imaginary_lines),
+                                                    ARGUMENT(lines->filled),
                                                     ARGUMENT(stride),
                                                     ARGUMENT(real_taps),
                                                     ARGUMENT(imaginary_taps),

@@ -8,14 +8,13 @@
 #include "cl/launch.h"
 #include "cl/program.h"
 #include "form/combine_varied.h"
+#include "form/filled_strips.h"
 #include "kernels/layout.h"
 #include "scene/cross_range.h"
 
 #define SPECKLE_ENERGY_SHARE 0.001 /* of |W|^2 that is cut off from speckle and energies */
 #define COLUMN_STEP          16    /* lines are padded to whole groups of any width */
 #define ROWS_PER_ITEM        4     /* FORM_ROWS of kernels/image_formation.h */
-
-typedef char filled_bins_is_packed[sizeof(struct filled_bins) == 2 * 4 ? 1 : -1];
 
 /* The columns that the grid's bins reach through the pulse. */
 static void choose_window(struct form_lines *lines, const struct patch_view *view,
@@ -102,7 +101,10 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
     if (lines->columns == 0)
         return SONJECT_OK;
     const size_t bytes = (size_t)grid->strips.count * lines->stride * sizeof(float);
-    sonject_status status = make_pulse(lines, view, taps_each_side);
+    lines->filled_columns =
+        allocate_array((size_t)grid->strips.count, sizeof *lines->filled_columns);
+    sonject_status status = lines->filled_columns ? make_pulse(lines, view, taps_each_side)
+                                                  : report_out_of_memory(report, "image formation");
     if (status == SONJECT_OK)
         status = buffer_create(report, device, bytes, NULL, &lines->real_lines);
     if (status == SONJECT_OK)
@@ -137,6 +139,8 @@ void form_lines_end(struct form_lines *lines)
     buffer_release(&lines->imaginary_lines);
     buffer_release(&lines->pulse);
     buffer_release(&lines->imaginary_pulse);
+    free(lines->filled_columns);
+    lines->filled_columns = NULL;
 }
 
 static sonject_status compress_complex(struct form_lines *lines, int32_t strip, int32_t count,
@@ -194,75 +198,89 @@ static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t 
                       sizeof arguments / sizeof *arguments, 3, global);
 }
 
-/* The bins of a line, of both parts, with anything but zeros. */
-static struct filled_bins find_filled(const float *real_part, const float *imaginary_part,
-                                      int32_t bins)
+/* Notes the columns of a strip's line that filled bins reach: column j takes the bins from
+ * j * bins_per_pixel + `first` on. */
+static void note_filled(struct form_lines *lines, int32_t strip, struct filled_span bins)
 {
-    struct filled_bins filled = {0, 0};
-    for (int32_t bin = 0; bin < bins; bin++) {
-        if (real_part[bin] == 0.0f && (!imaginary_part || imaginary_part[bin] == 0.0f))
-            continue;
-        if (filled.end == 0)
-            filled.first = bin;
-        filled.end = bin + 1;
-    }
-    return filled;
+    const int32_t per_pixel = (int32_t)lines->grid.bins_per_pixel;
+    const int32_t first = lines->pulse_first + (int32_t)lines->first_column * per_pixel;
+    const int32_t before = bins.first - first - lines->pulse_taps; /* the last bin too early */
+    struct filled_span *columns = &lines->filled_columns[strip - lines->grid.strips.first];
+    columns->first = before < 0 ? 0 : before / per_pixel + 1;
+    columns->end = bins.end - 1 < first ? 0 : (bins.end - 1 - first) / per_pixel + 1;
 }
 
-static void note_filled(struct form_lines *lines, int32_t strip)
+/* Compresses strips of which the device has the bins. */
+static sonject_status compress_filled(struct form_lines *lines, int32_t strip, int32_t count,
+                                      cl_mem real_bins, cl_mem imaginary_bins,
+                                      const struct filled_span *filled)
 {
-    const bool is_first = lines->first_filled == lines->end_filled;
-    if (is_first || strip < lines->first_filled)
-        lines->first_filled = strip;
-    if (is_first || strip >= lines->end_filled)
-        lines->end_filled = strip + 1;
-}
-
-/* The filled bins of count strips, on the device; all of them where real_part is NULL. */
-static sonject_status send_filled(struct form_lines *lines, int32_t strip, int32_t count,
-                                  const float *real_part, const float *imaginary_part,
-                                  cl_mem *buffer)
-{
-    const int32_t bins = lines->grid.bins.count;
-    struct filled_bins *filled = allocate_array((size_t)count, sizeof *filled);
-    if (!filled)
-        return report_out_of_memory(lines->report, "image formation");
-    for (int32_t i = 0; i < count; i++) {
-        const size_t at = (size_t)i * (size_t)bins;
-        filled[i] = (struct filled_bins){0, bins};
-        if (real_part)
-            filled[i] =
-                find_filled(real_part + at, imaginary_part ? imaginary_part + at : NULL, bins);
-        if (filled[i].end > 0)
-            note_filled(lines, strip + i);
-    }
-    const sonject_status status =
-        buffer_create(lines->report, lines->device, (size_t)count * sizeof *filled, filled, buffer);
-    free(filled);
+    cl_mem buffer = NULL;
+    for (int32_t i = 0; i < count; i++)
+        if (!filled_span_is_empty(filled[i]))
+            note_filled(lines, strip + i, filled[i]);
+    sonject_status status = buffer_create(lines->report, lines->device,
+                                          (size_t)count * sizeof *filled, filled, &buffer);
+    if (status == SONJECT_OK)
+        status = compress(lines, strip, count, real_bins, imaginary_bins, buffer);
+    buffer_release(&buffer);
     return status;
 }
 
-sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t count,
-                              const float *real_part, const float *imaginary_part)
+static sonject_status add_run(struct form_lines *lines, int32_t strip, int32_t count,
+                              const float *real_part, const float *imaginary_part,
+                              const struct filled_span *filled)
 {
-    if (lines->columns == 0 || count == 0)
-        return SONJECT_OK;
     const size_t bytes = (size_t)count * (size_t)lines->grid.bins.count * sizeof(float);
     cl_mem real_bins = NULL;
     cl_mem imaginary_bins = NULL;
-    cl_mem filled = NULL;
     sonject_status status =
         buffer_create(lines->report, lines->device, bytes, real_part, &real_bins);
     if (status == SONJECT_OK)
         status =
             buffer_create(lines->report, lines->device, bytes, imaginary_part, &imaginary_bins);
     if (status == SONJECT_OK)
-        status = send_filled(lines, strip, count, real_part, imaginary_part, &filled);
-    if (status == SONJECT_OK)
-        status = compress(lines, strip, count, real_bins, imaginary_bins, filled);
+        status = compress_filled(lines, strip, count, real_bins, imaginary_bins, filled);
     buffer_release(&real_bins);
     buffer_release(&imaginary_bins);
-    buffer_release(&filled);
+    return status;
+}
+
+sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t count,
+                              const float *real_part, const float *imaginary_part)
+{
+    const size_t bins = (size_t)lines->grid.bins.count;
+    if (lines->columns == 0 || count == 0)
+        return SONJECT_OK;
+    struct filled_span *filled = allocate_array((size_t)count, sizeof *filled);
+    if (!filled)
+        return report_out_of_memory(lines->report, "image formation");
+    for (size_t i = 0; i < (size_t)count; i++)
+        filled[i] = filled_span_of(real_part + i * bins,
+                                   imaginary_part ? imaginary_part + i * bins : NULL, bins);
+    struct span run = {0, 0};
+    sonject_status status = SONJECT_OK;
+    while (status == SONJECT_OK && (run = next_filled_strips(filled, count, run)).count > 0) {
+        const size_t at = (size_t)run.first * bins;
+        status = add_run(lines, strip + run.first, run.count, real_part + at,
+                         imaginary_part ? imaginary_part + at : NULL, filled + run.first);
+    }
+    free(filled);
+    return status;
+}
+
+/* Of strips that are all taken for filled. */
+static sonject_status compress_all(struct form_lines *lines, int32_t strip, int32_t count,
+                                   cl_mem real_bins, cl_mem imaginary_bins)
+{
+    struct filled_span *filled = allocate_array((size_t)count, sizeof *filled);
+    if (!filled)
+        return report_out_of_memory(lines->report, "image formation");
+    for (int32_t i = 0; i < count; i++)
+        filled[i].end = lines->grid.bins.count;
+    const sonject_status status =
+        compress_filled(lines, strip, count, real_bins, imaginary_bins, filled);
+    free(filled);
     return status;
 }
 
@@ -275,7 +293,6 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
     cl_mem energies = NULL;
     cl_mem real_bins = NULL;
     cl_mem imaginary_bins = NULL;
-    cl_mem filled = NULL;
     sonject_status status = buffer_create(lines->report, lines->device, bytes, energy, &energies);
     if (status == SONJECT_OK)
         status = buffer_create(lines->report, lines->device, bytes, NULL, &real_bins);
@@ -298,13 +315,10 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
                             sizeof arguments / sizeof *arguments, 2, global);
     }
     if (status == SONJECT_OK)
-        status = send_filled(lines, strip, count, NULL, NULL, &filled);
-    if (status == SONJECT_OK)
-        status = compress(lines, strip, count, real_bins, imaginary_bins, filled);
+        status = compress_all(lines, strip, count, real_bins, imaginary_bins);
     buffer_release(&energies);
     buffer_release(&real_bins);
     buffer_release(&imaginary_bins);
-    buffer_release(&filled);
     return status;
 }
 
@@ -331,19 +345,18 @@ static sonject_status combine(struct form_lines *lines, cl_mem taps, cl_mem real
     if (!cross_range_is_plain(&lines->response))
         return combine_varied(lines, real_out, imaginary_out);
     const cl_int first_strip = lines->grid.strips.first;
-    const cl_int first_filled = lines->first_filled;
-    const cl_int end_filled = lines->end_filled;
+    const cl_int end_strip = first_strip + lines->grid.strips.count;
     const cl_int per_row = (cl_int)lines->grid.strips_per_row;
     const cl_int reach = lines->reach;
     const cl_int stride = (cl_int)lines->stride;
     const cl_int rows = (cl_int)lines->rows;
     const struct kernel_argument arguments[] = {ARGUMENT(first_strip),
-                                                ARGUMENT(first_filled),
-                                                ARGUMENT(end_filled),
+                                                ARGUMENT(end_strip),
                                                 ARGUMENT(per_row),
                                                 ARGUMENT(reach),
                                                 ARGUMENT(lines->real_lines),
                                                 ARGUMENT(lines->imaginary_lines),
+                                                ARGUMENT(lines->filled),
                                                 ARGUMENT(stride),
                                                 ARGUMENT(taps),
                                                 ARGUMENT(rows),
@@ -390,6 +403,10 @@ sonject_status form_lines_finish(struct form_lines *lines, float *real_part, flo
         status = buffer_create(lines->report, lines->device, plane * sizeof(float), NULL,
                                &imaginary_out);
     if (status == SONJECT_OK)
+        status = buffer_create(lines->report, lines->device,
+                               (size_t)lines->grid.strips.count * sizeof *lines->filled_columns,
+                               lines->filled_columns, &lines->filled);
+    if (status == SONJECT_OK)
         status = combine(lines, tap_buffer, real_out, imaginary_out);
     if (status == SONJECT_OK)
         status = read_plane(lines, real_out, padded, real_part);
@@ -398,6 +415,7 @@ sonject_status form_lines_finish(struct form_lines *lines, float *real_part, flo
     buffer_release(&tap_buffer);
     buffer_release(&real_out);
     buffer_release(&imaginary_out);
+    buffer_release(&lines->filled);
     free(taps);
     free(padded);
     return status;

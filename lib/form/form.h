@@ -9,6 +9,7 @@
 
 #include "base/report.h"
 #include "cl/device.h"
+#include "kernels/layout.h"
 #include "scene/line_grid.h"
 #include "scene/patch_view.h"
 #include "scene/point_response.h"
@@ -33,11 +34,12 @@ struct form_lines {
     size_t first_column;          /* of the patch; the window is `columns` wide */
     int32_t reach;                /* of the cross-range response, strips */
     int32_t pulse_first, pulse_taps;
-    int32_t first_filled, end_filled; /* strips that were added with anything but zeros */
+    struct filled_span *filled_columns; /* owned; of each strip's line */
     double row_spacing_m;
     struct point_response response;
     cl_mem real_lines, imaginary_lines, pulse;
     cl_mem imaginary_pulse; /* NULL where G is real */
+    cl_mem filled;          /* filled_columns, while lines are combined */
     cl_kernel compress, combine, speckle;
 };
 

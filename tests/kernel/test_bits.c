@@ -584,7 +584,7 @@ static void compress_as_c(struct bench *bench, const struct form_lines *lines,
 {
     const size_t strips = (size_t)lines->grid.strips.count;
     const int count = lines->grid.bins.count;
-    const struct filled_bins all = {0, count}; /* zeros too, which the device leaves out */
+    const struct filled_span all = {0, count}; /* zeros too, which the device leaves out */
     const int per_pixel = (int)lines->grid.bins_per_pixel;
     const int first = lines->pulse_first + (int)lines->first_column * per_pixel;
     float *imaginary = calloc((size_t)lines->pulse_taps, sizeof *imaginary);
@@ -606,6 +606,24 @@ static void compress_as_c(struct bench *bench, const struct form_lines *lines,
                                   lines->pulse_taps, column, compressed->part[part] + out);
         }
     free(imaginary);
+}
+
+static struct aspects aspects_of(const struct form_lines *lines)
+{
+    const struct aspects aspects = {lines->grid.strips.first,
+                                    lines->grid.strips.first + lines->grid.strips.count,
+                                    (int)lines->grid.strips_per_row, lines->reach};
+    return aspects;
+}
+
+/* As if every line were filled: zeros too are added, which the device leaves out. */
+static struct filled_span *all_filled(const struct form_lines *lines)
+{
+    struct filled_span *filled = calloc((size_t)lines->grid.strips.count, sizeof *filled);
+    assert_non_null(filled);
+    for (int32_t i = 0; i < lines->grid.strips.count; i++)
+        filled[i].end = (int32_t)lines->stride;
+    return filled;
 }
 
 /* The response of a row and column, from its definition. */
@@ -647,9 +665,8 @@ static void response_as_c(struct bench *bench, const struct form_lines *lines, i
 static void combine_varied_as_c(struct bench *bench, const struct form_lines *lines,
                                 const struct planes *compressed, struct planes *padded)
 {
-    const struct aspects aspects = {lines->grid.strips.first, (int)lines->grid.strips_per_row,
-                                    lines->reach, lines->grid.strips.first,
-                                    lines->grid.strips.first + lines->grid.strips.count};
+    const struct aspects aspects = aspects_of(lines);
+    struct filled_span *all = all_filled(lines);
     const size_t taps = 2 * (size_t)lines->reach + 1;
     float *real_part = calloc(taps, sizeof *real_part);
     float *imaginary_part = calloc(taps, sizeof *imaginary_part);
@@ -659,10 +676,11 @@ static void combine_varied_as_c(struct bench *bench, const struct form_lines *li
             const struct response_set one = {row, 0, 1 << 30, 0};
             if (lines->response.motion ? column == 0 : column % 16 == 0)
                 response_as_c(bench, lines, row, column, real_part, imaginary_part);
-            combine_varied_of(aspects, one, compressed->part[0], compressed->part[1],
+            combine_varied_of(aspects, one, compressed->part[0], compressed->part[1], all,
                               (int)lines->stride, real_part, imaginary_part, row, row + 1, column,
                               padded->part[0], padded->part[1]);
         }
+    free(all);
     free(real_part);
     free(imaginary_part);
 }
@@ -693,21 +711,21 @@ static struct planes form_as_c(struct bench *bench, const struct form_lines *lin
         response[i] = (float)(lines->kind == FORM_ENERGY ? w * w : w);
     }
     compress_as_c(bench, lines, bins, pulse, &compressed);
-    const struct aspects aspects = {lines->grid.strips.first, (int)lines->grid.strips_per_row,
-                                    lines->reach, lines->grid.strips.first,
-                                    lines->grid.strips.first + lines->grid.strips.count};
+    const struct aspects aspects = aspects_of(lines);
+    struct filled_span *all = all_filled(lines);
     if (!cross_range_is_plain(&lines->response))
         combine_varied_as_c(bench, lines, &compressed, &padded);
     else
         for (int row = 0; row < (int)lines->rows; row += FORM_ROWS)
             for (int column = 0; column < (int)lines->columns; column++)
-                combine_aspects_of(aspects, compressed.part[0], compressed.part[1],
+                combine_aspects_of(aspects, compressed.part[0], compressed.part[1], all,
                                    (int)lines->stride, response, row, (int)lines->rows, column,
                                    padded.part[0], padded.part[1]);
     for (int part = 0; part < 2; part++)
         for (size_t row = 0; row < lines->rows; row++)
             memcpy(pixels.part[part] + row * lines->columns,
                    padded.part[part] + row * lines->stride, lines->columns * sizeof(float));
+    free(all);
     free(pulse);
     free(response);
     planes_clear(&compressed);
