@@ -54,38 +54,27 @@ const struct source_pair *corner_pairs_next(struct corner_pairs *pairs)
     return NULL;
 }
 
-/* The farthest that two points of two parts may be from each other, straight (sense 1) or by way of
- * the seabed (sense -1). */
-static double farthest(const struct placement *one, const struct placement *other, double sense)
-{
-    const double x = one->centre[0] - other->centre[0];
-    const double y = one->centre[1] - other->centre[1];
-    const double z = one->centre[2] - sense * other->centre[2];
-    return sqrt(x * x + y * y + z * z) + one->bounding_radius_m + other->bounding_radius_m;
-}
-
-/* The most that each further interaction may add to a path between the first and last hit. */
+/* No less than what each further interaction may add to a path between the first and last hit: the
+ * diagonal of a box around the smooth parts, or half that of one around them and their mirror
+ * images in the seabed, which take two interactions. */
 static double longest_step(const struct tracer *tracer)
 {
     double height;
     const sonject_material_params *seabed;
-    const bool has_seabed = scene_mirror(tracer->scene, MIRROR_SEABED, &height, &seabed);
-    double longest = 0.0;
-    for (uint32_t i = 0; i < tracer->part_count; i++)
-        for (uint32_t j = 0; j <= i; j++) {
-            const struct placement *one = &tracer->placements[i];
-            const struct placement *other = &tracer->placements[j];
-            if (!is_smooth(tracer, i) || !is_smooth(tracer, j) || (i == j && is_convex(one)))
-                continue;
-            longest = fmax(longest, farthest(one, other, 1.0));
-            if (has_seabed) /* two interactions */
-                longest = fmax(longest, 0.5 * farthest(one, other, -1.0));
+    double low[3] = {INFINITY, INFINITY, INFINITY};
+    double high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
+        const struct placement *part = &tracer->placements[i];
+        for (int axis = 0; axis < 3 && is_smooth(tracer, i); axis++) {
+            low[axis] = fmin(low[axis], part->centre[axis] - part->bounding_radius_m);
+            high[axis] = fmax(high[axis], part->centre[axis] + part->bounding_radius_m);
         }
-    for (uint32_t i = 0; has_seabed && i < tracer->part_count; i++)
-        if (is_smooth(tracer, i))
-            longest =
-                fmax(longest, 0.5 * farthest(&tracer->placements[i], &tracer->placements[i], -1.0));
-    return longest;
+    }
+    const double level = hypot(high[0] - low[0], high[1] - low[1]);
+    const double straight = hypot(level, high[2] - low[2]);
+    if (!scene_mirror(tracer->scene, MIRROR_SEABED, &height, &seabed))
+        return straight;
+    return fmax(straight, 0.5 * hypot(level, 2.0 * fmax(fabs(low[2]), fabs(high[2]))));
 }
 
 struct ranges {
