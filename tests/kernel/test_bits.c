@@ -745,7 +745,8 @@ static struct planes make_bins(const struct line_grid *grid, uint32_t stream)
         /* as of glints: nothing on some strips, on others only in a few bins */
         const uint32_t strip = i / (uint32_t)grid->bins.count;
         const uint32_t bin = i % (uint32_t)grid->bins.count;
-        if (strip < 3 || strip % 5 == 2 || (strip % 5 == 3 && (bin < 30 || bin > 41)))
+        const uint32_t first = 30 + strip * 7 % 37;
+        if (strip < 3 || strip % 5 == 2 || (strip % 5 == 3 && (bin < first || bin > first + 11)))
             bins.part[0][i] = bins.part[1][i] = 0.0f;
     }
     return bins;
