@@ -1,6 +1,6 @@
-"""Makes the static library: static_library.py OUTPUT ARCHIVE LD OBJCOPY AR.
+"""Makes the static library: static_library.py OUTPUT LD OBJCOPY AR ARCHIVE...
 
-The whole archive becomes one object file of which only the interface's names stay global, so that
+All archives together become one object file of which only the interface's names stay global, so that
 nothing of it, and of the C++ in it, meets the names of a program that links it.
 """
 
@@ -11,14 +11,14 @@ import tempfile
 
 
 def main():
-    output, archive, linker, objcopy, ar = sys.argv[1:]
+    output, linker, objcopy, ar, *archives = sys.argv[1:]
     made = pathlib.Path(output)
     made.unlink(missing_ok=True)
     with tempfile.TemporaryDirectory(dir=made.resolve().parent) as folder:
         whole = pathlib.Path(folder) / "sonject.o"
         # Groups that linkers fold with those of other files would take names that are local here.
-        subprocess.run([linker, "-r", "--force-group-allocation", "--whole-archive", archive,
-                        "-o", whole], check=True)
+        subprocess.run([linker, "-r", "--force-group-allocation", "--whole-archive",
+                        *archives, "-o", whole], check=True)
         subprocess.run([objcopy, "--wildcard", "--keep-global-symbol=sonject_*", whole], check=True)
         subprocess.run([ar, "rcsD", output, whole], check=True)
 

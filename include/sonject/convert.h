@@ -36,8 +36,9 @@ typedef struct sonject_convert_params {
     uint32_t magnitude; /* 1: of complex samples their magnitude */
     double scale;       /* with samples: new = old * scale, whole numbers rounded; > 0 */
     uint32_t range_axis;   /* sonject_convert_axis; columns are resampled to equal steps of it, each
-                              from   the nearest column of the input, at the input's column spacing */
-    uint32_t has_geometry; /* 1: geometry below is used instead of the input's own */
+                              from the nearest column of the input, at the input's column spacing */
+    uint32_t has_geometry; /* 1: geometry below is used instead of the input's own; refused where
+                              that is of ground range */
     sonject_geometry_params geometry; /* of slant range */
     double altitude_m;                /* 0: the input's own */
 } sonject_convert_params;
@@ -46,10 +47,11 @@ SONJECT_API void sonject_convert_params_init(sonject_convert_params *params);
 
 /* Converts a file. Geometry that is known goes with the samples where the format keeps texts (all
  * but .npy and .pfm; a line of the log tells of it). Channel and array are those of
- * `input`, and of `into` where that has several. Refused (INPUT): samples that the new type cannot
- * hold, formats that cannot hold the samples as they are, a range axis of an input that does not
- * tell its own, and whatever would do nothing. The output appears whole or not at all. Errors:
- * ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED (a format that this build lacks), CANCELLED. */
+ * `input`, and of `into` where that has several. Doubles become floats. Refused (INPUT): samples
+ * that the new type cannot hold, formats that cannot hold the samples as they are, a range axis of
+ * an input that does not tell its own, and whatever would do nothing. The output appears whole or
+ * not at all. Errors: ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED (a format that this build
+ * lacks), CANCELLED. */
 SONJECT_API sonject_status sonject_convert(sonject_context *context,
                                            const sonject_convert_params *params);
 

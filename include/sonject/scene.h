@@ -163,8 +163,8 @@ SONJECT_API sonject_status sonject_scene_set_injection(sonject_scene *scene,
                                                        const sonject_injection_params *injection);
 SONJECT_API sonject_status sonject_scene_set_patch(sonject_scene *scene,
                                                    const sonject_patch_params *patch);
-/* An image (TIFF, PNG, JPEG, PGM, PFM), an array (NumPy, HDF5, MATLAB) or an XTF file. path is
- * copied. */
+/* An image (TIFF, PNG, JPEG, PGM, PFM, BMP, FITS), an array (NumPy, HDF5, MATLAB) or an XTF file.
+ * path is copied. */
 SONJECT_API sonject_status sonject_scene_set_input_file(sonject_scene *scene, const char *path);
 /* The channel of an input file that is XTF: 0...63, SONJECT_CHANNEL_PORT and the like; by default
  * SONJECT_CHANNEL_ONLY. Rows are pings, columns range cells from the track outwards on either side.
@@ -173,10 +173,11 @@ SONJECT_API sonject_status sonject_scene_set_input_channel(sonject_scene *scene,
 /* The name of the array in an input file that is HDF5 (its path there) or MATLAB, copied; NULL, as
  * by default: the only one of several rows and columns. Errors: ARGUMENT, MEMORY. */
 SONJECT_API sonject_status sonject_scene_set_input_array(sonject_scene *scene, const char *array);
-/* Sets the scene's geometry and the sonar's altitude from its input file, an XTF file: row spacing
- * (straight line between positions) and altitude are means over the rows of the patch, to be set
- * before. Other geometry (first_along_track_m) stays. On failure the scene is unchanged. Errors:
- * INPUT (not XTF, no positions or altitude in it), STORAGE, MEMORY. */
+/* Sets the scene's geometry and the sonar's altitude from its input file. Of an XTF file row
+ * spacing (straight line between positions) and altitude are means over the rows of the patch, to
+ * be set before, and first_along_track_m stays; an image or HDF5 array tells what sonject_convert
+ * or another call has kept in it. On failure the scene is unchanged. Errors: INPUT (the file does
+ * not tell both, or is in ground range), STORAGE, MEMORY, UNSUPPORTED. */
 SONJECT_API sonject_status sonject_scene_take_geometry(sonject_scene *scene);
 SONJECT_API sonject_status sonject_scene_set_input_uniform(sonject_scene *scene, uint32_t rows,
                                                            uint32_t columns);

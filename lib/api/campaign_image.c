@@ -10,10 +10,10 @@
 #include "api/campaign_files.h"
 #include "api/campaign_handle.h"
 #include "api/documents.h"
-#include "api/geometry_notes.h"
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
+#include "io/geometry_notes.h"
 #include "io/raster_file.h"
 #include "label/coco.h"
 #include "label/voc.h"
@@ -105,7 +105,7 @@ static sonject_status write_pixels(struct sonject_campaign *campaign, const stru
     geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
     const sonject_status status = raster_file_write(campaign->report, path, &swath->layout,
                                                     swath->is_complex ? complex_names : NULL,
-                                                    notes.attributes, GEOMETRY_NOTES_COUNT, stored);
+                                                    notes.attributes, notes.count, stored);
     free(stored);
     return status;
 }
@@ -129,7 +129,7 @@ static sonject_status write_layer(struct sonject_campaign *campaign, const struc
     geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
     return raster_file_write(campaign->report, path, &layout,
                              layout.channels == 2 ? complex_names : NULL, notes.attributes,
-                             is_float ? GEOMETRY_NOTES_COUNT : 0, pixels);
+                             is_float ? notes.count : 0, pixels);
 }
 
 /* Annotations are numbered when all images are known. */

@@ -94,7 +94,7 @@ static sonject_status read_input(struct report *report, const sonject_convert_pa
     else
         status = swath_file_read(report, file, &whole, conversion->pixels);
     if (status == SONJECT_OK)
-        conversion_take_notes(conversion, file, params);
+        status = conversion_take_geometry(report, conversion, file, params);
     swath_file_close(&file);
     return status;
 }
@@ -131,13 +131,18 @@ static sonject_status write_into(struct report *report, const sonject_convert_pa
 }
 
 static sonject_status write_new(struct report *report, const sonject_convert_params *params,
-                                struct conversion *conversion)
+                                const struct conversion *conversion)
 {
-    const sonject_status status =
-        raster_format_write(report, params->output, &conversion->layout, conversion->notes,
-                            conversion->note_count, conversion->pixels);
-    if (status == SONJECT_OK && conversion->note_count > 0 &&
-        !raster_format_keeps_attributes(params->output))
+    struct raster_attribute attributes[GEOMETRY_NOTES_MAX + 1];
+    struct geometry_notes notes;
+    geometry_notes_make(&notes, &conversion->geometry);
+    size_t count = notes.count;
+    memcpy(attributes, notes.attributes, sizeof notes.attributes);
+    if (conversion->is_resampled)
+        attributes[count++] = (struct raster_attribute){"sonject:resampled", "nearest column"};
+    const sonject_status status = raster_format_write(report, params->output, &conversion->layout,
+                                                      attributes, count, conversion->pixels);
+    if (status == SONJECT_OK && count > 0 && !raster_format_keeps_attributes(params->output))
         report_news(report, "%s keeps no geometry: .tif, .png, .h5 and .pgm do", params->output);
     return status;
 }
@@ -154,7 +159,6 @@ static sonject_status convert(struct report *report, const sonject_convert_param
         status = conversion_to_type(report, conversion, params);
     if (status != SONJECT_OK)
         return status;
-    conversion_make_notes(conversion);
     return params->into ? write_into(report, params, conversion)
                         : write_new(report, params, conversion);
 }

@@ -5,10 +5,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "api/geometry_notes.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "image/plot.h"
+#include "io/geometry_notes.h"
 #include "io/raster_file.h"
 
 static sonject_status write_float_layer(struct report *report, const struct geometry_notes *notes,
@@ -17,16 +17,15 @@ static sonject_status write_float_layer(struct report *report, const struct geom
 {
     const struct raster_layout layout = {swath->patch.rows, swath->patch.columns, channels,
                                          PIXEL_FLOAT32};
-    struct raster_attribute attributes[GEOMETRY_NOTES_COUNT + 2];
+    struct raster_attribute attributes[GEOMETRY_NOTES_MAX + 2];
     memcpy(attributes, notes->attributes, sizeof notes->attributes);
-    attributes[GEOMETRY_NOTES_COUNT] =
-        (struct raster_attribute){"sonject:phase_sign", "exp(+i 2 pi f t)"};
-    attributes[GEOMETRY_NOTES_COUNT + 1] = (struct raster_attribute){
+    attributes[notes->count] = (struct raster_attribute){"sonject:phase_sign", "exp(+i 2 pi f t)"};
+    attributes[notes->count + 1] = (struct raster_attribute){
         "sonject:normalisation",
         channels == 2 ? "target_strength, |pixel|^2 in m^2" : "target_strength, pixel in m^2"};
     static const char *const complex_names[] = {"real", "imag"};
     return raster_file_write(report, path, &layout, channels == 2 ? complex_names : NULL,
-                             attributes, sizeof attributes / sizeof *attributes, pixels);
+                             attributes, notes->count + 2, pixels);
 }
 
 static sonject_status write_mask(struct report *report, const struct swath *swath,

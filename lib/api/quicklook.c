@@ -6,10 +6,10 @@
 
 #include <sonject/run.h>
 
-#include "api/geometry_notes.h"
 #include "base/memory.h"
 #include "image/plot.h"
 #include "image/transfer.h"
+#include "io/geometry_notes.h"
 #include "io/raster_file.h"
 #include "io/swath_file.h"
 
@@ -153,33 +153,18 @@ static sonject_status draw(struct report *report, const struct plot_frame *frame
     return status;
 }
 
-/* What the file says of where its pixels lie; false if it does not say it. */
-static bool read_notes(const struct swath_file *file, sonject_geometry_params *geometry,
-                       double *altitude)
-{
-    const struct xtf_file *xtf = swath_file_xtf(file);
-    if (!xtf)
-        return geometry_notes_read(file, geometry, altitude);
-    const struct xtf_geometry noted = xtf_geometry_of(xtf, 0, xtf->rows.layout.rows);
-    geometry->row_spacing_m = noted.row_spacing_m;
-    geometry->column_spacing_m = noted.column_spacing_m;
-    geometry->first_slant_range_m = noted.first_slant_range_m;
-    *altitude = noted.altitude_m;
-    return noted.row_spacing_m > 0.0;
-}
-
 /* Axes: what the caller says, else what the file says, else pixels. */
 static void fill_frame(struct plot_frame *frame, const sonject_quicklook_params *params,
                        const struct swath_file *file, const struct view_image *image,
                        double *altitude)
 {
     sonject_geometry_params geometry = params->geometry;
-    double noted_altitude = 0.0;
-    const bool is_noted = read_notes(file, &geometry, &noted_altitude);
-    if (params->has_geometry)
-        geometry = params->geometry;
-    const bool has_metres = params->has_geometry || is_noted;
-    *altitude = params->altitude_m > 0.0 ? params->altitude_m : noted_altitude;
+    struct noted_geometry noted;
+    geometry_notes_read(file, &noted);
+    const bool has_metres = params->has_geometry || geometry_notes_tell(&noted, &geometry);
+    *altitude = params->altitude_m > 0.0 ? params->altitude_m
+                : noted.altitude_m > 0.0 ? noted.altitude_m
+                                         : 0.0;
     const double block = (double)image->block;
     memset(frame, 0, sizeof *frame);
     frame->rows = image->rows;

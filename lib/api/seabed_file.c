@@ -6,9 +6,9 @@
 
 #include <sonject/run.h>
 
-#include "api/geometry_notes.h"
 #include "base/memory.h"
 #include "inject/input_patch.h"
+#include "io/geometry_notes.h"
 #include "io/raster_file.h"
 
 void sonject_seabed_file_params_init(sonject_seabed_file_params *params)
@@ -88,7 +88,7 @@ sonject_status sonject_seabed_write(sonject_context *context,
             to_bytes((float *)input.pixels, input.rows * input.columns);
         status =
             raster_file_write(report, taken.image, &layout, input.is_complex ? complex_names : NULL,
-                              notes.attributes, GEOMETRY_NOTES_COUNT, input.pixels);
+                              notes.attributes, notes.count, input.pixels);
         free((void *)input.pixels);
     }
     scene_clear(&scene);

@@ -3,11 +3,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "api/geometry_notes.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "image/transfer.h"
 #include "inject/input_patch.h"
+#include "io/geometry_notes.h"
 #include "io/raster_file.h"
 #include "io/swath_file.h"
 
@@ -402,7 +402,7 @@ static sonject_status write_made(struct report *report, const struct scene *scen
     struct geometry_notes notes;
     geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
     return raster_file_write(report, path, &swath->layout, swath->is_complex ? complex_names : NULL,
-                             notes.attributes, GEOMETRY_NOTES_COUNT, whole);
+                             notes.attributes, notes.count, whole);
 }
 
 sonject_status swath_write(struct report *report, const struct scene *scene,

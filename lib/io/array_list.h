@@ -2,6 +2,9 @@
 #ifndef SONJECT_IO_ARRAY_LIST_H
 #define SONJECT_IO_ARRAY_LIST_H
 
+#include <float.h>
+#include <math.h>
+#include <stdbool.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <string.h>
@@ -59,10 +62,20 @@ static inline sonject_status array_list_check(struct report *report, const char 
                           list->text);
 }
 
+/* False for a finite number that is too large. */
+static inline bool float_of_double(double number, float *rounded)
+{
+    const bool is_held = !(fabs(number) > (double)FLT_MAX) || isinf(number);
+    *rounded = is_held ? (float)number : 0.0f;
+    return is_held;
+}
+
 /* The same number if that is what is asked for in single precision, else the new one. */
 static inline double kept_or_new(double old, float fresh)
 {
-    return (float)old == fresh ? old : (double)fresh;
+    float rounded;
+    const bool is_kept = float_of_double(old, &rounded) && rounded == fresh;
+    return is_kept || (isnan(old) && isnan(fresh)) ? old : (double)fresh;
 }
 
 #endif

@@ -11,9 +11,7 @@
 #include "io/byte_file.h"
 #include "io/hdf5_set.h"
 
-#define RUN_BYTES                                                                                  \
-    ((size_t)16 << 20) /* of samples that are in memory at a time beside the image                 \
-                        */
+#define RUN_BYTES ((size_t)16 << 20) /* of samples in memory at a time, beside the image */
 
 struct hdf5_array {
     char *path;
@@ -65,9 +63,11 @@ static sonject_status open_array(struct report *report, struct hdf5_array *array
     fclose(file);
     array->file = open_file(array->path, H5F_ACC_RDONLY);
     if (array->file < 0)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: is damaged or cut short: HDF5 cannot open it; copy it again",
-                              array->path);
+        return report_failure(
+            report, SONJECT_ERROR_INPUT,
+            "%s: HDF5 cannot open it: it is damaged or cut short (copy it again), or "
+            "open for writing elsewhere",
+            array->path);
     sonject_status status = hdf5_set_choose(report, array->path, array->file, name, &array->set);
     if (status != SONJECT_OK)
         return status;
@@ -149,10 +149,12 @@ bool hdf5_array_attribute(const struct hdf5_array *array, const char *name, char
 static bool exchange(const struct transfer *transfer, void *run, size_t at, size_t pixel)
 {
     const enum hdf5_number number = transfer->array->set.number;
-    if (number == HDF5_FLOAT64 && transfer->writes) {
+    if (number == HDF5_FLOAT64) {
         double *stored = (double *)run + at;
-        *stored = kept_or_new(*stored, ((const float *)transfer->pixels)[pixel]);
-        return true;
+        float *shown = (float *)transfer->pixels + pixel;
+        if (transfer->writes)
+            *stored = kept_or_new(*stored, *shown);
+        return transfer->writes || float_of_double(*stored, shown);
     }
     const size_t bytes = pixel_bytes(transfer->array->layout.type);
     unsigned char *stored = (unsigned char *)run + at * bytes;
@@ -167,12 +169,14 @@ static bool exchange(const struct transfer *transfer, void *run, size_t at, size
 static sonject_status refuse_sample(const struct transfer *transfer, uint64_t pixel)
 {
     const struct region *region = transfer->region;
+    const char *why = transfer->writes ? "more than the file's largest number of 32767"
+                      : transfer->array->set.number == HDF5_FLOAT64
+                          ? "beyond what float32 holds: scale the array"
+                          : "negative: sonject reads magnitudes, so convert the file first";
     return report_failure(
         transfer->report, SONJECT_ERROR_INPUT, "%s: the sample at row %llu, column %llu is %s",
         transfer->array->path, (unsigned long long)(region->first_row + pixel / region->columns),
-        (unsigned long long)(region->first_column + pixel % region->columns),
-        transfer->writes ? "more than the file's largest number of 32767"
-                         : "negative: sonject reads magnitudes, so convert the file first");
+        (unsigned long long)(region->first_column + pixel % region->columns), why);
 }
 
 /* All samples of a run: `count` lines of the file's first index, from `first` of the region on. */
@@ -235,7 +239,7 @@ static sonject_status transfer_samples(const struct transfer *transfer)
     const struct region *region = transfer->region;
     const uint64_t lines = array->set.is_matlab ? region->columns : region->rows;
     const uint64_t across = array->set.is_matlab ? region->rows : region->columns;
-    const hid_t type = hdf5_set_memory_type(&array->set, transfer->writes);
+    const hid_t type = hdf5_set_memory_type(&array->set);
     const size_t line_bytes = type < 0 ? 0 : (size_t)across * H5Tget_size(type);
     const uint64_t some = line_bytes > 0 && line_bytes < RUN_BYTES ? RUN_BYTES / line_bytes : 1;
     const uint64_t at_once = some < lines ? some : lines;
@@ -287,10 +291,10 @@ static sonject_status copy_bytes(struct report *report, const struct hdf5_array 
                                  const char *part, const char *path)
 {
     uint64_t bytes = 0;
-    FILE *from = byte_file_open(array->path, &bytes);
-    FILE *to = from ? fopen(part, "wb") : NULL;
     sonject_status status = SONJECT_OK;
+    FILE *from = byte_file_open(array->path, &bytes);
     errno = 0;
+    FILE *to = from ? fopen(part, "wb") : NULL;
     if (!from)
         status = report_failure(report, SONJECT_ERROR_INPUT, "%s: cannot be opened", array->path);
     else if (!to || (!byte_file_copy(from, 0, bytes, to) && ferror(to)))

@@ -30,7 +30,7 @@ static bool fill_file(hid_t file, const struct raster_layout *layout,
         .is_complex = layout->channels == 2,
         .part_names = {"r", "i"},
     };
-    const hid_t type = hdf5_set_memory_type(&described, false);
+    const hid_t type = hdf5_set_memory_type(&described);
     const hid_t set = type < 0 ? -1 : create_set(file, layout, type);
     bool is_done = set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, pixels) >= 0;
     for (size_t i = 0; is_done && i < note_count; i++)

@@ -234,7 +234,7 @@ sonject_status hdf5_set_check_storage(struct report *report, const char *path, h
     return status;
 }
 
-static hid_t plain_type(const struct hdf5_set *set, bool wide)
+static hid_t plain_type(const struct hdf5_set *set)
 {
     switch (set->number) {
     case HDF5_UINT8:
@@ -244,15 +244,15 @@ static hid_t plain_type(const struct hdf5_set *set, bool wide)
     case HDF5_INT16:
         return H5T_NATIVE_INT16;
     case HDF5_FLOAT64:
-        return wide ? H5T_NATIVE_DOUBLE : H5T_NATIVE_FLOAT;
+        return H5T_NATIVE_DOUBLE;
     default:
         return H5T_NATIVE_FLOAT;
     }
 }
 
-hid_t hdf5_set_memory_type(const struct hdf5_set *set, bool wide)
+hid_t hdf5_set_memory_type(const struct hdf5_set *set)
 {
-    const hid_t plain = plain_type(set, wide);
+    const hid_t plain = plain_type(set);
     const size_t bytes = H5Tget_size(plain);
     if (!set->is_complex)
         return H5Tcopy(plain);

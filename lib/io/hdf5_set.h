@@ -44,7 +44,7 @@ sonject_status hdf5_set_check_storage(struct report *report, const char *path, h
                                       const struct hdf5_set *set, uint64_t file_bytes);
 
 /* The type in memory: floats, doubles or whole numbers, or pairs of them. To be closed by H5Tclose.
- * wide: doubles where the file has them. */
-hid_t hdf5_set_memory_type(const struct hdf5_set *set, bool wide);
+ */
+hid_t hdf5_set_memory_type(const struct hdf5_set *set);
 
 #endif

@@ -26,7 +26,6 @@ struct foreign {
 
 static const struct foreign foreign_kinds[] = {
     {"an OpenEXR", "\x76\x2F\x31\x01", 0, 4},
-    {"a FITS", "SIMPLE  =", 0, 9},
     {"a DPX", "SDPX", 0, 4},
     {"a DPX", "XPDS", 0, 4},
     {"a Cineon", "\x80\x2A\x5F\xD7", 0, 4},
@@ -42,7 +41,6 @@ static const struct foreign foreign_kinds[] = {
     {"a NITF", "NITF", 0, 4},
     {"a JSF", "\x01\x16", 0, 2},
     {"a zip or .npz", "PK\x03\x04", 0, 4},
-    {"a BMP", "BM", 0, 2},
 };
 
 static const struct beginning beginnings[] = {
@@ -76,7 +74,7 @@ static sonject_status refuse_kind(struct report *report, const char *path,
                                   const unsigned char *head, size_t count)
 {
     static const char readable[] =
-        "TIFF, PNG, JPEG, PGM (P5), PFM (Pf), XTF, NumPy (.npy), HDF5 and MATLAB (.mat)";
+        "TIFF, PNG, JPEG, PGM (P5), PFM (Pf), BMP, FITS, XTF, NumPy (.npy), HDF5 and MATLAB (.mat)";
     const char *name = foreign_name(head, count);
     if (name)
         return report_failure(report, SONJECT_ERROR_INPUT,

@@ -225,10 +225,8 @@ uint32_t mat_file_largest(const struct mat_file *file)
 /* Puts a number where the image wants it; false if its type cannot hold it. */
 static bool put_sample(enum pixel_type type, double number, void *pixels, size_t at)
 {
-    if (type == PIXEL_FLOAT32) {
-        ((float *)pixels)[at] = (float)number;
-        return true;
-    }
+    if (type == PIXEL_FLOAT32)
+        return float_of_double(number, (float *)pixels + at);
     if (!(number >= 0.0 && number <= pixel_full_scale(type)))
         return false;
     if (type == PIXEL_UINT8)
@@ -257,8 +255,8 @@ sonject_status mat_file_read(struct report *report, const struct mat_file *file,
             if (!put_sample(layout->type, number, pixels, (size_t)i * layout->channels + k))
                 return report_failure(report, SONJECT_ERROR_INPUT,
                                       "%s: the sample at row %llu, column %llu is negative or too "
-                                      "large for its type: sonject reads magnitudes, so convert "
-                                      "the file first",
+                                      "large for its type (float32 for a double): sonject reads "
+                                      "magnitudes, so convert the file first",
                                       file->path, (unsigned long long)row,
                                       (unsigned long long)column);
         }

@@ -58,8 +58,11 @@ static sonject_status write_part(struct report *report, const char *part, const 
     errno = 0;
     bool is_written = fwrite(header, 1, sizeof header, file) == sizeof header &&
                       write_numbers(file, numbers, count);
-    const int error = errno;
-    is_written &= fclose(file) == 0;
+    int error = errno;
+    if (fclose(file) != 0 && is_written) {
+        is_written = false;
+        error = errno;
+    }
     if (is_written)
         return file_publish(report, part, path);
     file_discard(part);

@@ -30,7 +30,7 @@ struct copy_order {
 };
 
 /* Decodes and encodes the image, a strip of rows at a time. */
-void encode_copy(const copy_order &order, struct raster_file &source, const char *encoded)
+void encode_copy(const copy_order &order, struct raster_image &source, const char *encoded)
 {
     const struct raster_layout &layout = source.layout;
     const uint64_t at_once = rows_at_once(layout);
@@ -50,7 +50,7 @@ void encode_copy(const copy_order &order, struct raster_file &source, const char
     output->finish();
 }
 
-void copy_encoded(const copy_order &order, struct raster_file &source, const char *result)
+void copy_encoded(const copy_order &order, struct raster_image &source, const char *result)
 {
     const part_file encoded(result);
     encode_copy(order, source, encoded.name);
@@ -62,16 +62,16 @@ void copy_encoded(const copy_order &order, struct raster_file &source, const cha
 
 struct region_reader {
     struct report *report;
-    struct raster_file *file;
+    struct raster_image *file;
 };
 
 sonject_status read_for_tiff(void *user, const struct region *region, void *pixels)
 {
     const region_reader *reader = static_cast<const region_reader *>(user);
-    return raster_file_read(reader->report, reader->file, region, pixels);
+    return raster_image_read(reader->report, reader->file, region, pixels);
 }
 
-void copy_tiff(const copy_order &order, struct raster_file &source, const char *result)
+void copy_tiff(const copy_order &order, struct raster_image &source, const char *result)
 {
     region_reader reader = {order.report, &source};
     const struct tiff_patch patch = {order.source,  result,         order.path,
@@ -83,13 +83,12 @@ void copy_tiff(const copy_order &order, struct raster_file &source, const char *
 bool holds_patch(const copy_order &order, const char *path)
 {
     size_t bytes = 0;
-    const std::unique_ptr<struct raster_file> copy = open_file(order.report, path);
+    const std::unique_ptr<struct raster_image> copy = open_file(order.report, path);
     if (!region_bytes(&copy->layout, order.region, &bytes))
         throw std::bad_alloc();
     std::vector<unsigned char> pixels(bytes);
     read_region(order.report, *copy, *order.region, pixels.data());
-    return !raster_file_is_lossless(copy.get()) ||
-           std::memcmp(pixels.data(), order.pixels, bytes) == 0;
+    return copy->kind == IMAGE_JPEG || std::memcmp(pixels.data(), order.pixels, bytes) == 0;
 }
 
 /* Whatever went into the copy must come out of it: a file that says contradictory things of itself
@@ -110,14 +109,14 @@ void check_copy(const copy_order &order, const char *path)
 
 } // namespace
 
-sonject_status raster_file_copy_with_patch(struct report *report, const char *source,
-                                           const char *path, const struct region *region,
-                                           const void *pixels, sonject_progress_function progress,
-                                           void *user)
+sonject_status raster_image_copy_with_patch(struct report *report, const char *source,
+                                            const char *path, const struct region *region,
+                                            const void *pixels, sonject_progress_function progress,
+                                            void *user)
 {
     return guarded(report, path, [&] {
         const copy_order order = {report, source, path, region, pixels, progress, user};
-        const std::unique_ptr<struct raster_file> file = open_file(report, source);
+        const std::unique_ptr<struct raster_image> file = open_file(report, source);
         if (!region_is_inside(&file->layout, region))
             throw failure{report_failure(report, SONJECT_ERROR_INPUT,
                                          "%s: the region is not inside the image", source)};

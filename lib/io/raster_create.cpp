@@ -1,5 +1,5 @@
 /* New image files. */
-#include "io/raster_file.h"
+#include "io/raster_image.h"
 
 #include <cstring>
 #include <limits>
@@ -64,11 +64,11 @@ std::string describe(const struct raster_layout &layout, const char *const *chan
 
 } // namespace
 
-sonject_status raster_file_write(struct report *report, const char *path,
-                                 const struct raster_layout *layout,
-                                 const char *const *channel_names,
-                                 const struct raster_attribute *attributes, size_t attribute_count,
-                                 const void *pixels)
+sonject_status raster_image_write(struct report *report, const char *path,
+                                  const struct raster_layout *layout,
+                                  const char *const *channel_names,
+                                  const struct raster_attribute *attributes, size_t attribute_count,
+                                  const void *pixels)
 {
     return guarded(report, path, [&] {
         const enum image_kind kind = kind_to_write(report, path, *layout);
@@ -86,9 +86,9 @@ sonject_status raster_file_write(struct report *report, const char *path,
     });
 }
 
-sonject_status raster_file_write_placed(struct report *report, const char *path,
-                                        const struct raster_layout *layout,
-                                        const struct region *region, const void *pixels)
+sonject_status raster_image_write_placed(struct report *report, const char *path,
+                                         const struct raster_layout *layout,
+                                         const struct region *region, const void *pixels)
 {
     return guarded(report, path, [&] {
         const enum image_kind kind = kind_to_write(report, path, *layout);

@@ -1,4 +1,4 @@
-/* An image file that is open for reading; raster_file.h is what others see of it. Failures are
+/* An image file that is open for reading; raster_image.h is what others see of it. Failures are
  * thrown (raster_failure.hpp). */
 #ifndef SONJECT_IO_RASTER_SOURCE_HPP
 #define SONJECT_IO_RASTER_SOURCE_HPP
@@ -13,9 +13,9 @@
 
 #include "io/image_kind.h"
 #include "io/raster_failure.hpp"
-#include "io/raster_file.h"
+#include "io/raster_image.h"
 
-struct raster_file {
+struct raster_image {
     std::string path;
     enum image_kind kind;
     struct raster_layout layout;
@@ -26,14 +26,14 @@ struct raster_file {
     std::unique_ptr<OIIO::ImageInput> input;
     OIIO::ImageSpec spec;
 
-    raster_file() = default;
-    ~raster_file()
+    raster_image() = default;
+    ~raster_image()
     {
         input.reset();
         std::free(parts.list);
     }
-    raster_file(const raster_file &) = delete;
-    raster_file &operator=(const raster_file &) = delete;
+    raster_image(const raster_image &) = delete;
+    raster_image &operator=(const raster_image &) = delete;
 
     /* Reads whole rows (from a tiled image: those columns) into pixels. */
     void read(struct report *report, const struct region &region, void *pixels)
@@ -60,10 +60,10 @@ namespace raster
 {
 
 /* Checks the file as image_kind_check does and reads its head. */
-std::unique_ptr<struct raster_file> open_file(struct report *report, const char *path);
+std::unique_ptr<struct raster_image> open_file(struct report *report, const char *path);
 
 /* Pixels of a region, row by row. */
-void read_region(struct report *report, struct raster_file &file, const struct region &region,
+void read_region(struct report *report, struct raster_image &file, const struct region &region,
                  void *pixels);
 
 } // namespace raster

@@ -77,6 +77,13 @@ static void turn_run(const struct sample_rows *rows, const unsigned char *from, 
     }
 }
 
+/* Between stored signed numbers and unsigned ones, in the file's order. */
+static void turn_signs(const struct sample_rows *rows, unsigned char *run, uint64_t columns)
+{
+    for (uint64_t i = 0; rows->is_offset && i < columns; i++)
+        run[2 * i + (rows->is_big_endian ? 0 : 1)] ^= 0x80;
+}
+
 static sonject_status cut_short(struct report *report, const struct sample_rows *rows)
 {
     return report_failure(report, SONJECT_ERROR_INPUT, "%s: is cut short: copy it again",
@@ -127,6 +134,7 @@ sonject_status sample_rows_read(struct report *report, const struct sample_rows 
         if (!byte_file_read(rows->file, run_place(rows, row, region), run, run_bytes)) {
             status = cut_short(report, rows);
         } else {
+            turn_signs(rows, run, region->columns);
             turn_run(rows, run, out, region->columns);
             status = check_largest(report, rows, row, region, out);
         }
@@ -162,6 +170,7 @@ static sonject_status put_patch(struct report *report, const struct sample_rows 
         const unsigned char *row = (const unsigned char *)pixels + i * run_bytes;
         const uint64_t place = run_place(rows, region->first_row + i, region);
         turn_run(rows, row, run, region->columns);
+        turn_signs(rows, run, region->columns);
         status = check_largest(report, rows, region->first_row + i, region, row);
         if (status != SONJECT_OK)
             break;

@@ -1,5 +1,6 @@
 /* Files whose rows are runs of plain samples at known places: channels of XTF files, NumPy arrays,
- * PGM and PFM images. Copies differ from their source in the replaced samples alone, byte for byte.
+ * PGM, PFM, BMP and FITS images. Copies differ from their source in the replaced samples alone,
+ * byte for byte.
  */
 #ifndef SONJECT_IO_SAMPLE_ROWS_H
 #define SONJECT_IO_SAMPLE_ROWS_H
@@ -19,6 +20,7 @@ struct sample_rows {
     bool is_reversed;    /* column 0 is the row's last stored sample */
     bool is_upside_down; /* the last row comes first in the file */
     bool is_big_endian;
+    bool is_offset;         /* stored as signed 16-bit numbers, 32768 less than they are */
     uint32_t largest;       /* larger samples are refused; 0: none are */
     bool above_is_negative; /* what is larger are negative numbers */
 };

@@ -1,4 +1,4 @@
-/* What a scene may leave to an XTF file. */
+/* What a scene may leave to its input file. */
 #include <string.h>
 
 #include "base/memory.h"

@@ -6,7 +6,9 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "io/bmp_file.h"
 #include "io/byte_file.h"
+#include "io/fits_file.h"
 #include "io/hdf5_array.h"
 #include "io/hdf5_mark.h"
 #include "io/image_kind.h"
@@ -20,6 +22,8 @@ enum swath_kind {
     SWATH_XTF,
     SWATH_NPY,
     SWATH_PNM,
+    SWATH_FITS,
+    SWATH_BMP,
     SWATH_HDF5,
     SWATH_MAT
 };
@@ -29,7 +33,7 @@ struct swath_file {
     char *path;
     struct raster_file *image; /* SWATH_IMAGE */
     struct xtf_file xtf;
-    struct sample_rows plain; /* SWATH_NPY, SWATH_PNM */
+    struct sample_rows plain; /* SWATH_NPY, SWATH_PNM, SWATH_FITS, SWATH_BMP */
     struct hdf5_array *hdf5;
     struct mat_file mat;
 };
@@ -49,6 +53,8 @@ static sonject_status tell_kind(struct report *report, const char *path, enum sw
     *kind = xtf_begins(head, got)                        ? SWATH_XTF
             : npy_begins(head, got)                      ? SWATH_NPY
             : pnm_begins(head, got)                      ? SWATH_PNM
+            : fits_begins(head, got)                     ? SWATH_FITS
+            : bmp_begins(head, got)                      ? SWATH_BMP
             : mat_begins(head, got)                      ? SWATH_MAT
             : image_kind_of_beginning(head, got, &image) ? SWATH_IMAGE
             : hdf5_mark_is_in(path)                      ? SWATH_HDF5
@@ -75,6 +81,10 @@ static sonject_status open_kind(struct report *report, struct swath_file *file, 
         return npy_file_open(report, file->path, &file->plain);
     case SWATH_PNM:
         return pnm_file_open(report, file->path, &file->plain);
+    case SWATH_FITS:
+        return fits_file_open(report, file->path, &file->plain);
+    case SWATH_BMP:
+        return bmp_file_open(report, file->path, &file->plain);
     case SWATH_HDF5:
         return hdf5_array_open(report, file->path, array, &file->hdf5);
     case SWATH_MAT:
@@ -133,7 +143,7 @@ static const struct sample_rows *sample_rows_of(const struct swath_file *file)
 {
     if (file->kind == SWATH_XTF)
         return &file->xtf.rows;
-    return file->kind == SWATH_NPY || file->kind == SWATH_PNM ? &file->plain : NULL;
+    return file->plain.file ? &file->plain : NULL;
 }
 
 void swath_file_layout(const struct swath_file *file, struct raster_layout *layout)

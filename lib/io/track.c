@@ -39,6 +39,7 @@ sonject_status track_of_recording(struct track *track, struct report *report,
 {
     const size_t rows = (size_t)file->rows.layout.rows;
     bool has_headings = false;
+    bool are_angles = true;
     memset(track, 0, sizeof *track);
     track->rows = rows;
     track->is_geographic = file->is_geographic;
@@ -50,15 +51,15 @@ sonject_status track_of_recording(struct track *track, struct report *report,
     }
     for (size_t row = 0; row < rows; row++) {
         const struct xtf_ping *ping = &file->pings[row];
-        if (fabsf(ping->heading_deg) <= 360.0f)
-            track->headings_deg[row] = ping->heading_deg;
-        has_headings = has_headings || track->headings_deg[row] != 0.0f;
+        track->headings_deg[row] = ping->heading_deg;
+        has_headings = has_headings || ping->heading_deg != 0.0f;
+        are_angles = are_angles && fabsf(ping->heading_deg) <= 360.0f;
         if (is_new_fix(track, ping)) {
             const struct track_fix fix = {(double)row, ping->easting, ping->northing};
             track->fixes[track->fix_count++] = fix;
         }
     }
-    if (!has_headings) {
+    if (!has_headings || !are_angles) {
         free(track->headings_deg);
         track->headings_deg = NULL;
     }

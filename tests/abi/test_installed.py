@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 
+import numpy
 import pytest
 
 SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
@@ -112,12 +113,16 @@ STATIC = """\
 
 int scene_clear = 1, hash_begin = 2, mesh_load = 3, check_sonar = 4;
 
-int main(void)
+int main(int count, char **words)
 {
     sonject_context *context = NULL;
     sonject_scene *scene = NULL;
     sonject_object_params ball;
+    sonject_convert_params files;
     sonject_object_params_init(&ball);
+    sonject_convert_params_init(&files);
+    files.input = words[1];
+    files.output = words[count - 1];
     sonject_status status = sonject_context_create(NULL, &context);
     if (status == SONJECT_OK)
         status = sonject_scene_create(context, &scene);
@@ -127,6 +132,8 @@ int main(void)
         status = sonject_scene_set_input_file(scene, "none.png");
     if (status == SONJECT_OK && sonject_check(context, scene, NULL) == SONJECT_OK)
         return 1;
+    if (status == SONJECT_OK && count == 3)
+        status = sonject_convert(context, &files);
     sonject_scene_release(&scene);
     sonject_context_release(&context);
     if (status == SONJECT_OK && strcmp(sonject_version(), "0.1.0") == 0)
@@ -144,11 +151,11 @@ def static_library(prefix):
     return found[0]
 
 
-def assert_stands_alone(program):
+def assert_stands_alone(program, *files):
     needed = subprocess.run(["readelf", "-d", program], capture_output=True, text=True,
                             check=True).stdout
     assert "libOpenCL" in needed and "libsonject" not in needed
-    answer = subprocess.run([program], capture_output=True, text=True, check=False)
+    answer = subprocess.run([program, *files], capture_output=True, text=True, check=False)
     assert (answer.returncode, answer.stdout) == (0, "all right\n"), answer.stderr
 
 
@@ -163,7 +170,12 @@ def test_programs_link_the_static_library_by_pkg_config(static_library, prefix, 
     (tmp_path / "program.c").write_text(STATIC)
     subprocess.run([os.environ.get("CC", "cc"), "-std=c99", *WARNINGS, tmp_path / "program.c",
                     *pkg_config_static(prefix), "-o", tmp_path / "program"], check=True)
-    assert_stands_alone(tmp_path / "program")
+    files = []
+    if list(prefix.rglob("openimageio.so")):  # which static libraries do without
+        files = [tmp_path / "a.npy", tmp_path / "a.png"]
+        numpy.save(files[0], numpy.zeros((2, 3), "u1"))
+    assert_stands_alone(tmp_path / "program", *files)
+    assert all(path.exists() for path in files)
 
 
 def test_programs_link_the_static_library_by_cmake(static_library, prefix, tmp_path):
@@ -193,6 +205,74 @@ def command(prefix):
     variables = {**os.environ, "LD_LIBRARY_PATH": str(library_folder(prefix))}
     return lambda *arguments: subprocess.run([program, *arguments], capture_output=True, text=True,
                                              check=True, env=variables).stdout
+
+
+@pytest.fixture
+def convert(prefix, tmp_path):
+    """Runs the installed command's conversion, with a library of which other files are kept away:
+    convert(IN, OUT, module) puts the module, if any, beside it."""
+    program = prefix / "bin" / "sonject"
+    installed = list(prefix.rglob("openimageio.so"))
+    if not program.exists() or not installed:
+        pytest.skip("built without image files")
+    folder = tmp_path / "library"
+    folder.mkdir()
+    (folder / "libsonject.so.0").symlink_to(library_folder(prefix) / "libsonject.so.0")
+    numpy.save(tmp_path / "a.npy", numpy.arange(6, dtype="u1").reshape(2, 3))
+
+    def run(name, result, module=None):
+        (folder / "sonject").mkdir(exist_ok=True)
+        beside = folder / "sonject" / "openimageio.so"
+        beside.unlink(missing_ok=True)
+        if module:
+            beside.write_bytes(module(installed[0]))
+        return subprocess.run([program, "convert", tmp_path / name, tmp_path / result],
+                              capture_output=True, text=True, check=False,
+                              env={**os.environ, "LD_LIBRARY_PATH": str(folder)})
+
+    return run
+
+
+def of_version(version):
+    def change(module):
+        content = module.read_bytes()
+        place = content.index(bytes.fromhex("316a6e73")) + 16
+        assert content[place:place + 6] == b"0.1.0\0"
+        return content[:place] + version + content[place + 5:]
+
+    return change
+
+
+@pytest.mark.parametrize("module, reason", [
+    (None, "No such file"), (lambda _: b"no library", "file too short"),
+    (lambda module: (library_folder(module.parents[1]) / "libsonject.so.0").read_bytes(),
+     "raster_module_openimageio"),
+    (of_version(b"0.2.0"), "another version of sonject")],
+    ids=["missing", "damaged", "foreign", "of another version"])
+def test_images_need_the_module_of_this_library(convert, tmp_path, module, reason):
+    answer = convert("a.npy", "a.png", module)
+    (line,) = answer.stderr.splitlines()
+    assert answer.returncode == 3 and reason in line
+    assert f"{tmp_path}/library/" in line and "openimageio.so" in line and "anew" in line
+    assert not (tmp_path / "a.png").exists()
+
+
+def test_what_is_no_image_needs_no_module(convert, tmp_path):
+    assert convert("a.npy", "a.pgm").returncode == 0
+    assert convert("a.pgm", "b.npy").returncode == 0
+    assert (numpy.load(tmp_path / "b.npy") == numpy.load(tmp_path / "a.npy")).all()
+
+
+def test_the_module_shows_one_name_and_the_library_none_of_it(prefix):
+    installed = list(prefix.rglob("openimageio.so"))
+    if not installed:
+        pytest.skip("built without image files")
+    listing = subprocess.run(["nm", "-D", "--defined-only", installed[0]], capture_output=True,
+                             text=True, check=True).stdout
+    assert [line.split()[-1] for line in listing.splitlines()] == ["raster_module_openimageio"]
+    needed = subprocess.run(["readelf", "-d", library_folder(prefix) / "libsonject.so.0"],
+                            capture_output=True, text=True, check=True).stdout
+    assert "NEEDED" in needed and "OpenImageIO" not in needed
 
 
 def read_page(path):

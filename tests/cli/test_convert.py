@@ -1,5 +1,6 @@
 """sonject convert: sonar formats to rasters and back, nothing guessed and nothing cut."""
 
+import os
 import struct
 
 import numpy
@@ -54,6 +55,67 @@ def test_a_recording_goes_through_rasters_and_back(sonject, tmp_path, line, side
     assert changed != (tmp_path / "new.xtf").read_bytes()
     done(sonject("convert", "c.npy", "same.xtf", "--into", "new.xtf", "--channel", "port"))
     assert (tmp_path / "same.xtf").read_bytes() == changed
+
+
+TAKEN = """\
+sonject: 1
+input: {{path: {}, {} geometry: from_file}}
+sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: from_file, resolution: 0.2 m}}
+patch: {{row: 2, column: 40, rows: 30, columns: 70}}
+objects: [{{name: ball, shape: sphere, diameter: 1 m}}]
+"""
+
+
+def check_taken(sonject, folder, name, channel=""):
+    """sonject check of a scene that leaves geometry and altitude to the file."""
+    (folder / "taken.yaml").write_text(TAKEN.format(name, channel))
+    return sonject("check", "taken.yaml")
+
+
+def test_scenes_take_what_the_conversion_kept(sonject, tmp_path, line):
+    extensions = [".tif", ".png", ".pgm"] + [".h5"] * (os.environ.get("SONJECT_HAS_HDF5") == "1")
+    expected = done(check_taken(sonject, tmp_path, "line.xtf", "channel: starboard,")).stdout
+    assert "3.00 m along-track" in expected and "starboard" in expected
+    for extension in extensions:
+        done(sonject("convert", "line.xtf", "a" + extension, "--channel", "starboard"))
+        assert done(check_taken(sonject, tmp_path, "a" + extension)).stdout == expected
+
+
+def test_scenes_take_nothing_that_a_file_does_not_say(sonject, tmp_path, line):
+    numpy.save(tmp_path / "a.npy", numpy.ones((ROWS, COLUMNS), "u1"))
+    assert_refused(check_taken(sonject, tmp_path, "a.npy"), 3, "does not say where its pixels lie",
+                   "row_spacing, column_spacing and first_slant_range")
+    notes = {"row_spacing_m": 0.1, "column_spacing_m": 0.25, "first_along_track_m": 0,
+             "first_slant_range_m": 0.125, "altitude_m": 6, "side": "port", "range_axis": "slant"}
+
+    def refused(words, **changes):
+        lines = {name: value for name, value in {**notes, **changes}.items() if value is not None}
+        head = "".join(f"# sonject:{name}={value}\n" for name, value in lines.items())
+        (tmp_path / "a.pgm").write_bytes(f"P5\n{head}{COLUMNS} {ROWS}\n255\n".encode()
+                                         + bytes(ROWS * COLUMNS))
+        answer = check_taken(sonject, tmp_path, "a.pgm")
+        assert_refused(answer, 3, words) if words else done(answer)
+
+    refused(None)
+    refused("does not say where its pixels lie", side=None)
+    refused("does not say where its pixels lie", side="left")
+    refused("does not say where its pixels lie", range_axis=None)
+    refused("does not say where its pixels lie", row_spacing_m="1e999")
+    refused("does not say where its pixels lie", column_spacing_m=-0.25)
+    refused("does not say the sonar's altitude", altitude_m=None)
+    refused("its altitude must be", altitude_m="1e30")
+    refused("--range-axis slant", range_axis="ground")
+
+
+def test_numbers_beyond_single_precision_are_refused(sonject, tmp_path):
+    scipy_io = pytest.importorskip("scipy.io")
+    h5py = pytest.importorskip("h5py")
+    image = numpy.array([[1.0, numpy.inf, numpy.nan], [3.4e38, 1e-300, 1e300]])
+    with h5py.File(tmp_path / "a.h5", "w") as file:
+        file["image"] = image
+    scipy_io.savemat(tmp_path / "a.mat", {"image": image})
+    for name in ["a.mat"] + ["a.h5"] * (os.environ.get("SONJECT_HAS_HDF5") == "1"):
+        assert_refused(sonject("convert", name, "b.npy"), 3, "row 1, column 2", "float32")
 
 
 def test_hdf5_keeps_samples_and_geometry(sonject, tmp_path, line, sides):
@@ -121,6 +183,8 @@ def test_ground_range_and_back(sonject, tmp_path, line, sides):
     assert sum(same) == back.shape[1] - 62
     assert_refused(sonject("convert", "g.tif", "x.tif", "--range-axis", "ground"), 3,
                    "in ground range already")
+    assert_refused(sonject("convert", "g.tif", "x.tif", "--row-spacing", 0.1, "--column-spacing",
+                           0.25, "--first-range", 7), 3, "says that it is in ground range")
     scene = tmp_path / "scene.yaml"
     scene.write_text("sonject: 1\ninput: {path: g.tif, geometry: {row_spacing: 0.1 m, "
                      "column_spacing: 0.25 m, first_slant_range: 7 m}}\nsonar: {frequency: 600 kHz, "

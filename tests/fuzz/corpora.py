@@ -57,9 +57,27 @@ def arrays(_):
     }
 
 
-def netpbm(_):
+def _bmp(samples):
+    rows, columns = samples.shape
+    palette = b"".join(bytes([i, i, i, 0]) for i in range(16))
+    head = struct.pack("<IiiHHIIiiII", 40, columns, rows, 1, 8, 0, 0, 0, 0, 16, 0)
+    lines = b"".join(row.tobytes().ljust((columns + 3) // 4 * 4, b"\0") for row in samples)
+    return b"BM" + struct.pack("<III", 54 + 64 + len(lines), 0, 54 + 64) + head + palette + lines
+
+
+def _fits(kind, numbers, *cards):
+    cards = ["SIMPLE  = T", f"BITPIX  = {kind}", "NAXIS   = 2", "NAXIS1  = 3", "NAXIS2  = 2", *cards,
+             "END"]
+    head = "".join(card.ljust(80) for card in cards).ljust(2880)
+    return head.encode() + numbers.tobytes()
+
+
+def rows(_):
     samples = numpy.arange(6)
     return {
+        "bmp": _bmp(samples.reshape(2, 3).astype("u1")),
+        "fits": _fits(16, samples.astype(">i2"), "BZERO   = 32768 / offset", "BSCALE  = 1"),
+        "real": _fits(-32, samples.astype(">f4")),
         "pgm": b"P5\n# name=a\n3 2\n255\n" + samples.astype("u1").tobytes(),
         "wide": b"P5 3 2 65535\n" + samples.astype(">u2").tobytes(),
         "pfm": b"Pf\n3 2\n-1.0\n" + samples.astype("<f4").tobytes(),
@@ -196,7 +214,7 @@ def snippets(source):
     return {"boulder": code, "short": short}
 
 
-MAKERS = {"scene": scenes, "target": targets, "xtf": recordings, "npy": arrays, "pnm": netpbm,
+MAKERS = {"scene": scenes, "target": targets, "xtf": recordings, "npy": arrays, "rows": rows,
           "mat": matlab, "stl": stl, "obj": obj, "ply": ply, "image": images, "table": tables,
           "snippet": snippets}
 TEXTS = {"scene", "target", "npy", "stl", "obj", "ply", "table", "snippet"}

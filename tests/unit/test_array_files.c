@@ -1,6 +1,6 @@
-/* PGM and PFM images and arrays of MATLAB and HDF5 files: which sample is where, what a copy keeps,
- * and files that are damaged. */
-#include "damaged_files.h"
+/* Arrays of MATLAB and HDF5 files: which sample is where, what a copy keeps, and files that are
+ * damaged. */
+#include "file_drafts.h"
 
 #include <sys/wait.h>
 
@@ -10,200 +10,7 @@
 #include "base/hdf5_values.h"
 #endif
 
-#define ROWS    3
-#define COLUMNS 4
-#define LEAKS   9 /* a child's exit status where valgrind finds them */
-
-#ifndef MUTATIONS
-#define MUTATIONS 600
-#endif
-
-/* A file in the making. */
-struct draft {
-    unsigned char bytes[LARGEST_FILE];
-    size_t count;
-};
-
-static void add(struct draft *draft, const void *bytes, size_t count)
-{
-    assert_true(draft->count + count <= sizeof draft->bytes);
-    memcpy(draft->bytes + draft->count, bytes, count);
-    draft->count += count;
-}
-
-static void add_number(struct draft *draft, uint64_t number, size_t size)
-{
-    unsigned char bytes[8];
-    number_to_bytes(number, bytes, size, false);
-    add(draft, bytes, size);
-}
-
-static const char *file_in(const char *folder, const char *name)
-{
-    static char path[2][512];
-    static int turn;
-    turn = !turn;
-    snprintf(path[turn], sizeof path[turn], "%s/%s", folder, name);
-    return path[turn];
-}
-
-static struct swath_file *open_draft(const char *folder, const char *name, const char *array,
-                                     const struct draft *draft)
-{
-    struct report report = {{0}, NULL, NULL};
-    struct swath_file *file = NULL;
-    const char *path = file_in(folder, name);
-    if (draft)
-        write_file(path, draft->bytes, draft->count);
-    if (swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, array, &file) != SONJECT_OK)
-        fail_msg("%s", report.message);
-    return file;
-}
-
-static void expect_refused(const char *folder, const char *name, const char *array,
-                           const struct draft *draft, const char *words)
-{
-    struct report report = {{0}, NULL, NULL};
-    struct swath_file *file = NULL;
-    const char *path = file_in(folder, name);
-    if (draft)
-        write_file(path, draft->bytes, draft->count);
-    assert_int_equal(swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, array, &file),
-                     SONJECT_ERROR_INPUT);
-    if (!strstr(report.message, words))
-        fail_msg("'%s' is not in '%s'", words, report.message);
-}
-
-static void expect_layout(const struct swath_file *file, uint32_t channels, enum pixel_type type)
-{
-    struct raster_layout layout;
-    swath_file_layout(file, &layout);
-    assert_int_equal(layout.rows, ROWS);
-    assert_int_equal(layout.columns, COLUMNS);
-    assert_int_equal(layout.channels, channels);
-    assert_int_equal(layout.type, type);
-}
-
-static const struct region whole = {0, 0, ROWS, COLUMNS};
-static const struct region inside = {1, 2, 2, 2};
-
-/* Replaces the samples inside, reads the copy as a file, and gives its bytes. */
-static void patch(struct swath_file *file, const char *folder, const char *copy,
-                  const void *samples, struct draft *back)
-{
-    struct report report = {{0}, NULL, NULL};
-    const char *path = file_in(folder, copy);
-    if (swath_file_copy_with_patch(&report, file, path, &inside, samples, NULL, NULL) != SONJECT_OK)
-        fail_msg("%s", report.message);
-    FILE *stream = fopen(path, "rb");
-    assert_non_null(stream);
-    back->count = fread(back->bytes, 1, sizeof back->bytes, stream);
-    fclose(stream);
-}
-
-static void read_all(struct swath_file *file, void *samples)
-{
-    struct report report = {{0}, NULL, NULL};
-    if (swath_file_read(&report, file, &whole, samples) != SONJECT_OK)
-        fail_msg("%s", report.message);
-}
-
-static void make_pgm(struct draft *draft, unsigned largest)
-{
-    char head[100];
-    snprintf(head, sizeof head, "P5\n# sonject:side=port\n%d %d # width, height\n%u\n", COLUMNS,
-             ROWS, largest);
-    draft->count = 0;
-    add(draft, head, strlen(head));
-    for (unsigned i = 0; i < ROWS * COLUMNS; i++) {
-        const unsigned char sample[2] = {(unsigned char)(3 * i >> 8), (unsigned char)(3 * i)};
-        add(draft, sample + (largest < 256), largest < 256 ? 1 : 2);
-    }
-}
-
-static void test_pgm(void **state)
-{
-    struct draft draft, back;
-    struct report report = {{0}, NULL, NULL};
-    uint16_t wide[ROWS * COLUMNS];
-    uint8_t narrow[ROWS * COLUMNS];
-    char side[8] = "";
-    make_pgm(&draft, 4095);
-    struct swath_file *file = open_draft(*state, "a.pgm", NULL, &draft);
-    expect_layout(file, 1, PIXEL_UINT16);
-    assert_int_equal(swath_file_largest(file), 4095);
-    assert_true(swath_file_attribute(file, "sonject:side", side, sizeof side));
-    assert_string_equal(side, "port");
-    read_all(file, wide);
-    for (unsigned i = 0; i < ROWS * COLUMNS; i++)
-        assert_int_equal(wide[i], 3 * i);
-    patch(file, *state, "b.pgm", (uint16_t[]){1000, 1001, 1002, 4095}, &back);
-    assert_int_equal(back.count, draft.count);
-    const size_t first = draft.count - 2 * ROWS * COLUMNS;
-    for (size_t i = 0; i < draft.count; i++) {
-        const size_t sample = i < first ? 0 : (i - first) / 2;
-        if (i < first || sample / COLUMNS < 1 || sample % COLUMNS < 2)
-            assert_int_equal(back.bytes[i], draft.bytes[i]);
-    }
-    assert_memory_equal(back.bytes + first + 2 * 6, "\x03\xE8\x03\xE9", 4);
-    assert_memory_equal(back.bytes + first + 2 * 10, "\x03\xEA\x0F\xFF", 4);
-    const uint16_t too_large[4] = {1, 2, 3, 4096};
-    assert_int_equal(swath_file_copy_with_patch(&report, file, file_in(*state, "c.pgm"), &inside,
-                                                too_large, NULL, NULL),
-                     SONJECT_ERROR_INPUT);
-    assert_non_null(strstr(report.message, "row 2, column 3 is 4096"));
-    swath_file_close(&file);
-    make_pgm(&draft, 200);
-    file = open_draft(*state, "a.pgm", NULL, &draft);
-    expect_layout(file, 1, PIXEL_UINT8);
-    read_all(file, narrow);
-    assert_int_equal(narrow[11], 33);
-    swath_file_close(&file);
-}
-
-static void make_pfm(struct draft *draft, bool is_big_endian)
-{
-    const char *head = is_big_endian ? "Pf\n4 3\n1.0\n" : "Pf\n4 3\n-1.0\n";
-    draft->count = 0;
-    add(draft, head, strlen(head));
-    for (unsigned i = 0; i < ROWS * COLUMNS; i++) {
-        const float sample = 0.1f * (float)i;
-        unsigned char bytes[4];
-        uint32_t word;
-        memcpy(&word, &sample, sizeof word);
-        number_to_bytes(word, bytes, 4, is_big_endian);
-        add(draft, bytes, 4);
-    }
-}
-
-/* The file's first row is the image's last. */
-static void test_pfm(void **state)
-{
-    for (int order = 0; order < 2; order++) {
-        struct draft draft, back;
-        float samples[ROWS * COLUMNS];
-        make_pfm(&draft, order);
-        struct swath_file *file = open_draft(*state, "a.pfm", NULL, &draft);
-        expect_layout(file, 1, PIXEL_FLOAT32);
-        read_all(file, samples);
-        for (unsigned i = 0; i < ROWS * COLUMNS; i++)
-            assert_true(samples[i] ==
-                        0.1f * (float)((ROWS - 1 - i / COLUMNS) * COLUMNS + i % COLUMNS));
-        patch(file, *state, "b.pfm", (float[]){7.0f, 8.0f, 9.0f, 10.0f}, &back);
-        swath_file_close(&file);
-        assert_int_equal(back.count, draft.count);
-        file = open_draft(*state, "b.pfm", NULL, NULL);
-        read_all(file, samples);
-        assert_true(samples[6] == 7.0f && samples[11] == 10.0f && samples[5] == 0.1f * 5.0f);
-        swath_file_close(&file);
-    }
-    struct draft draft = {"Pf 4 3 2.0\n", 11};
-    expect_refused(*state, "a.pfm", NULL, &draft, "scaled");
-    draft = (struct draft){"P5 4 3 255\nabc", 14};
-    expect_refused(*state, "a.pgm", NULL, &draft, "cut short");
-    draft = (struct draft){"P5 4294967296 4294967296 255\n", 29};
-    expect_refused(*state, "a.pgm", NULL, &draft, "width or height");
-}
+#define LEAKS 9 /* a child's exit status where valgrind finds them */
 
 static void begin_mat(struct draft *draft)
 {
@@ -551,13 +358,9 @@ static void keep_two(struct draft *draft)
     draft->count = place;
 }
 
-static void test_damaged_images_and_arrays(void **state)
+static void test_damaged_matlab_arrays(void **state)
 {
     struct draft draft, compressed;
-    make_pgm(&draft, 4095);
-    mutate(*state, "line.pgm", SONJECT_CHANNEL_ONLY, draft.bytes, draft.count, MUTATIONS);
-    make_pfm(&draft, false);
-    mutate(*state, "line.pfm", SONJECT_CHANNEL_ONLY, draft.bytes, draft.count, MUTATIONS);
     make_mat(&draft, true);
     keep_two(&draft);
     mutate(*state, "line.mat", SONJECT_CHANNEL_ONLY, draft.bytes, draft.count, MUTATIONS);
@@ -591,31 +394,6 @@ static void test_matlab_sizes_that_lie(void **state)
     expect_refused(*state, "a.mat", NULL, &compressed, "damaged");
 }
 
-/* Formats that sonject does not read are named, and those that it reads. */
-static void test_foreign_formats(void **state)
-{
-    static const struct {
-        const char *bytes, *words;
-    } foreign[] = {{"SDPX and more of it", "is a DPX file"},
-                   {"8BPS and more of it", "is a PSD file"},
-                   {"SIMPLE  =           ", "is a FITS file"},
-                   {"BM and more of it all", "is a BMP file"},
-                   {"P6 and more of it all", "is a PPM file"},
-                   {"\x76\x2F\x31\x01 and more of it", "is an OpenEXR file"},
-                   {"nothing that is known", "of no format that sonject knows"}};
-    for (size_t i = 0; i < sizeof foreign / sizeof *foreign; i++) {
-        struct draft draft = {{0}, 0};
-        add(&draft, foreign[i].bytes, 19);
-#ifdef HAS_RASTER_FILES
-        expect_refused(*state, "a.bin", NULL, &draft, foreign[i].words);
-        expect_refused(*state, "a.bin", NULL, &draft,
-                       "TIFF, PNG, JPEG, PGM (P5), PFM (Pf), XTF, NumPy (.npy), HDF5 and MATLAB");
-#else
-        (void)state;
-#endif
-    }
-}
-
 int main(void)
 {
 #ifdef HAS_HDF5
@@ -624,8 +402,6 @@ int main(void)
     hdf5_leave(&session);
 #endif
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pgm),
-        cmocka_unit_test(test_pfm),
         cmocka_unit_test(test_matlab_array),
         cmocka_unit_test(test_packed_matlab_array),
         cmocka_unit_test(test_complex_matlab_array),
@@ -636,9 +412,8 @@ int main(void)
         cmocka_unit_test(test_hdf5_names),
         cmocka_unit_test(test_damaged_hdf5),
 #endif
-        cmocka_unit_test(test_damaged_images_and_arrays),
+        cmocka_unit_test(test_damaged_matlab_arrays),
         cmocka_unit_test(test_matlab_sizes_that_lie),
-        cmocka_unit_test(test_foreign_formats),
     };
     return cmocka_run_group_tests(tests, make_temporary_folder, remove_temporary_folder);
 }

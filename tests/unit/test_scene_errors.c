@@ -76,12 +76,12 @@ static void test_missing_keys(void **state)
          ":3:8: sonar.bandwidth: missing; add it (sets the range resolution, c / (2 bandwidth))"},
         {START INPUT "sonar: {frequency: 100e3, bandwidth: 30e3}\n",
          ":3:8: sonar.altitude: missing; add it (height of the track over the mean seabed, "
-         "or from_file (XTF))"},
+         "or from_file)"},
         {START INPUT "sonar:\n", ":3:7: sonar: frequency, bandwidth, altitude are missing; add "
                                  "them"},
         {START "input: {uniform: {rows: 1, columns: 1}}\n" SONAR,
          ":2:8: input.geometry: missing; add it (where the pixels lie: row_spacing, column_spacing "
-         "and first_slant_range, or from_file (XTF))"},
+         "and first_slant_range, or from_file)"},
         {START "input:\n  uniform: {rows: 1, columns: 1}\n  geometry:\n    row_spacing: 1\n" SONAR,
          ":5:5: input.geometry: column_spacing, first_slant_range are missing; add them"},
         {START "input:\n  uniform: {rows: 1, columns: 1}\n  geometry: {row_spacing: {speed: 2}, "

@@ -28,7 +28,8 @@ def _candidates() -> Iterator[str]:
     """Names to load, in order: SONJECT_LIBRARY alone if it is set, beside the package, system."""
     chosen = os.environ.get("SONJECT_LIBRARY")
     if chosen:
-        yield chosen
+        # The library looks for its module of image files beside itself, wherever we go meanwhile.
+        yield os.path.abspath(chosen) if os.path.dirname(chosen) else chosen
         return
     package = pathlib.Path(__file__).resolve().parent
     for folder in (package, package.parent):

@@ -1,9 +1,11 @@
-/* Netpbm's grey images: header, samples and comments. */
+/* Images of plain rows: header and samples of PGM, PFM, BMP and FITS, comments of PGM. */
 #include "fuzz.h"
 
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "io/bmp_file.h"
+#include "io/fits_file.h"
 #include "io/pnm_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
@@ -12,9 +14,12 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     struct sample_rows rows;
     char value[16];
     size_t size;
-    fuzz_write("fuzz.pgm", bytes, count);
-    (void)pnm_begins(bytes, count);
-    const sonject_status status = pnm_file_open(&report, "fuzz.pgm", &rows);
+    fuzz_write("fuzz.image", bytes, count);
+    const bool is_netpbm = pnm_begins(bytes, count);
+    const sonject_status status = is_netpbm ? pnm_file_open(&report, "fuzz.image", &rows)
+                                  : fits_begins(bytes, count)
+                                      ? fits_file_open(&report, "fuzz.image", &rows)
+                                      : bmp_file_open(&report, "fuzz.image", &rows);
     fuzz_expect(status, &report);
     if (status != SONJECT_OK)
         return 0;
@@ -26,7 +31,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     if (!pixels)
         abort();
     fuzz_expect(sample_rows_read(&report, &rows, &whole, pixels), &report);
-    (void)pnm_file_attribute(&rows, "name", value, sizeof value);
+    if (is_netpbm)
+        (void)pnm_file_attribute(&rows, "name", value, sizeof value);
     free(pixels);
     sample_rows_clear(&rows);
     return 0;

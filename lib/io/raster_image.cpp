@@ -13,7 +13,7 @@ namespace
 {
 
 /* OpenImageIO reads a JPEG from its own file or from memory. */
-void choose_view(struct raster_file &file)
+void choose_view(struct raster_image &file)
 {
     std::unique_ptr<file_view> view = std::make_unique<file_view>(file.path, file.parts);
     if (file.kind == IMAGE_JPEG) {
@@ -26,7 +26,7 @@ void choose_view(struct raster_file &file)
     }
 }
 
-void open_input(struct report *report, struct raster_file &file)
+void open_input(struct report *report, struct raster_image &file)
 {
     const char *path = file.path.c_str();
     OIIO::ImageSpec configuration;
@@ -51,7 +51,7 @@ void open_input(struct report *report, struct raster_file &file)
                                      reason.c_str())};
 }
 
-void take_layout(struct report *report, struct raster_file &file)
+void take_layout(struct report *report, struct raster_image &file)
 {
     const OIIO::ImageSpec &spec = file.spec;
     const char *path = file.path.c_str();
@@ -83,7 +83,7 @@ void take_layout(struct report *report, struct raster_file &file)
 
 /* Rows that are decoded together. From within a strip libtiff does not start where channels are
  * stored apart. */
-uint64_t rows_of_strip(const struct raster_file &file)
+uint64_t rows_of_strip(const struct raster_image &file)
 {
     const bool is_compressed = file.spec.get_string_attribute("compression") != "none";
     const int rows = file.spec.get_int_attribute("tiff:RowsPerStrip", 1);
@@ -91,7 +91,7 @@ uint64_t rows_of_strip(const struct raster_file &file)
 }
 
 /* Rows of an image without tiles: whole ones, of which the region's columns are kept. */
-void read_by_rows(struct report *report, struct raster_file &file, const struct region &region,
+void read_by_rows(struct report *report, struct raster_image &file, const struct region &region,
                   unsigned char *pixels)
 {
     const uint64_t pixel = file.layout.channels * pixel_bytes(file.layout.type);
@@ -118,7 +118,7 @@ void read_by_rows(struct report *report, struct raster_file &file, const struct 
 }
 
 /* One tile after the other. */
-void read_by_tiles(struct report *report, struct raster_file &file, const struct region &region,
+void read_by_tiles(struct report *report, struct raster_image &file, const struct region &region,
                    unsigned char *pixels)
 {
     const uint64_t pixel = file.layout.channels * pixel_bytes(file.layout.type);
@@ -152,7 +152,7 @@ void read_by_tiles(struct report *report, struct raster_file &file, const struct
 namespace raster
 {
 
-void read_region(struct report *report, struct raster_file &file, const struct region &region,
+void read_region(struct report *report, struct raster_image &file, const struct region &region,
                  void *pixels)
 {
     if (!region_is_inside(&file.layout, &region))
@@ -164,9 +164,9 @@ void read_region(struct report *report, struct raster_file &file, const struct r
         read_by_rows(report, file, region, static_cast<unsigned char *>(pixels));
 }
 
-std::unique_ptr<struct raster_file> open_file(struct report *report, const char *path)
+std::unique_ptr<struct raster_image> open_file(struct report *report, const char *path)
 {
-    std::unique_ptr<struct raster_file> file(new struct raster_file);
+    std::unique_ptr<struct raster_image> file(new struct raster_image);
     file->path = path;
     require(image_kind_of(report, path, &file->kind));
     require(image_kind_check(report, path, file->kind, &file->parts));
@@ -177,41 +177,37 @@ std::unique_ptr<struct raster_file> open_file(struct report *report, const char 
 
 } // namespace raster
 
-sonject_status raster_file_open(struct report *report, const char *path, struct raster_file **file)
+sonject_status raster_image_open(struct report *report, const char *path,
+                                 struct raster_image **image, struct raster_layout *layout,
+                                 bool *is_lossless)
 {
-    *file = nullptr;
-    return guarded(report, path, [&] { *file = open_file(report, path).release(); });
+    *image = nullptr;
+    return guarded(report, path, [&] {
+        *image = open_file(report, path).release();
+        *layout = (*image)->layout;
+        *is_lossless = (*image)->kind != IMAGE_JPEG;
+    });
 }
 
-void raster_file_close(struct raster_file **file)
+void raster_image_close(struct raster_image **image)
 {
-    if (!file || !*file)
+    if (!image || !*image)
         return;
     try {
-        (*file)->input->close();
-        (*file)->input->geterror();
+        (*image)->input->close();
+        (*image)->input->geterror();
     } catch (...) {
         /* nothing is lost by a file that was only read */
     }
-    delete *file;
-    *file = nullptr;
+    delete *image;
+    *image = nullptr;
 }
 
-void raster_file_layout(const struct raster_file *file, struct raster_layout *layout)
-{
-    *layout = file->layout;
-}
-
-bool raster_file_is_lossless(const struct raster_file *file)
-{
-    return file->kind != IMAGE_JPEG;
-}
-
-bool raster_file_attribute(const struct raster_file *file, const char *name, char *value,
-                           size_t capacity)
+bool raster_image_attribute(const struct raster_image *image, const char *name, char *value,
+                            size_t capacity)
 {
     try {
-        const std::string description(file->spec.get_string_attribute(description_name));
+        const std::string description(image->spec.get_string_attribute(description_name));
         const std::string lines = "\n" + description + "\n";
         const std::string start = "\n" + std::string(name) + "=";
         const size_t line = lines.find(start);
@@ -229,9 +225,9 @@ bool raster_file_attribute(const struct raster_file *file, const char *name, cha
     }
 }
 
-sonject_status raster_file_read(struct report *report, struct raster_file *file,
-                                const struct region *region, void *pixels)
+sonject_status raster_image_read(struct report *report, struct raster_image *image,
+                                 const struct region *region, void *pixels)
 {
-    return guarded(report, file->path.c_str(),
-                   [&] { read_region(report, *file, *region, pixels); });
+    return guarded(report, image->path.c_str(),
+                   [&] { read_region(report, *image, *region, pixels); });
 }

@@ -1,0 +1,97 @@
+/* Loads the module of image files. It lies in the folder sonject beside the library, or, as in
+ * Python's package and where it was built, right beside it; tests are told where (RASTER_MODULE).
+ */
+#define _GNU_SOURCE /* dladdr */
+#include "io/raster_module.h"
+
+#include <dlfcn.h>
+#include <pthread.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <sonject/version.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/text.h"
+
+static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
+static const struct raster_module *loaded;
+
+#ifdef RASTER_MODULE
+static char *module_path(void)
+{
+    return copy_text(RASTER_MODULE);
+}
+#else
+/* For free(); NULL when memory is out. */
+static char *module_path(void)
+{
+    Dl_info library;
+    char *folder = dladdr(&loaded, &library) != 0 && library.dli_fname
+                       ? path_folder(library.dli_fname)
+                       : copy_text("");
+    char *within = folder ? path_join(folder, "sonject/openimageio.so") : NULL;
+    char *beside = folder ? path_join(folder, "openimageio.so") : NULL;
+    const bool is_known = folder && *folder != '\0'; /* else the system looks where it looks */
+    char *path = is_known && within && file_exists(within) ? within : beside;
+    free(path == within ? beside : within);
+    free(folder);
+    return path;
+}
+#endif
+
+static sonject_status refuse(struct report *report, const char *path, const char *module_file,
+                             const char *why)
+{
+    char excerpt[REPORT_CAPACITY / 4];
+    return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                          "%s: sonject reads and writes images by %s, which cannot be used: %s: "
+                          "install sonject and OpenImageIO anew",
+                          path, module_file, text_excerpt(excerpt, sizeof excerpt, why));
+}
+
+/* NULL if the module was built with this library. */
+static const char *what_is_wrong_with(const struct raster_module *module)
+{
+    if (module->mark != RASTER_MODULE_MARK)
+        return "it is of something else";
+    if (strncmp(module->version, sonject_version(), sizeof module->version) != 0 ||
+        module->module_bytes != sizeof *module || module->report_bytes != sizeof(struct report) ||
+        module->layout_bytes != sizeof(struct raster_layout))
+        return "it is of another version of sonject";
+    return NULL;
+}
+
+/* Its libraries stay out of sight of the host's others. It is never unloaded: what they keep until
+ * the process ends needs their code then. */
+static sonject_status load(struct report *report, const char *path, const char *module_file)
+{
+    void *handle = dlopen(module_file, RTLD_LAZY | RTLD_LOCAL);
+    const struct raster_module *module = handle ? dlsym(handle, "raster_module_openimageio") : NULL;
+    if (!module) {
+        const char *reason = dlerror();
+        return refuse(report, path, module_file, reason ? reason : "it cannot be loaded");
+    }
+    const char *fault = what_is_wrong_with(module);
+    if (fault)
+        return refuse(report, path, module_file, fault);
+    loaded = module;
+    return SONJECT_OK;
+}
+
+sonject_status raster_module_find(struct report *report, const char *path,
+                                  const struct raster_module **module)
+{
+    sonject_status status = SONJECT_OK;
+    pthread_mutex_lock(&one_at_a_time);
+    if (!loaded) {
+        char *module_file = module_path();
+        status =
+            module_file ? load(report, path, module_file) : report_out_of_memory(report, "a path");
+        free(module_file);
+    }
+    *module = loaded;
+    pthread_mutex_unlock(&one_at_a_time);
+    return status;
+}
