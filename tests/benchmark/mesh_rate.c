@@ -2,8 +2,8 @@
  * lanes, and Embree in packets of 16 where it is installed; same rays, same number of cores, same
  * run; by the processors' time, since other programs may run too (on a GPU: by the clock). Primary
  * rays come from a fan as a sonar's do, strip by strip; bounced ones leave where these hit, by
- * Lambert's law. Prints a line a kind of ray; fails only if device and native C disagree in a bit.
- */
+ * Lambert's law. Prints a line a kind of ray, and how the device's time grows with the triangles;
+ * fails only if device and native C disagree in a bit. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -171,22 +171,32 @@ static int compare(struct bench_set *set, const char *name, bool is_coherent, co
     return differs;
 }
 
-static void set_up(struct bench_set *set)
+/* Returns how long it took from triangles to mesh, s. */
+static double build_mesh(struct bench_set *set, uint32_t around, uint32_t across)
 {
     struct mesh_sample sample;
     struct mesh_options options;
+    mesh_options_init(&options);
+    sample_ring(&sample, around, across);
+    const double start = clock_seconds();
+    if (mesh_from_arrays(&set->report, "ring", sample.positions, sample.vertices, sample.corners,
+                         sample.triangles, &options, &set->mesh) != SONJECT_OK)
+        benchmark_fail(&set->report, "mesh");
+    const double taken = clock_seconds() - start;
+    sample_clear(&sample);
+    return taken;
+}
+
+static void set_up(struct bench_set *set)
+{
     sonject_context_params params;
     double build_s;
     sonject_context_params_init(&params);
-    mesh_options_init(&options);
-    sample_ring(&sample, 730, 366);
-    const double start = clock_seconds();
-    if (mesh_from_arrays(&set->report, "ring", sample.positions, sample.vertices, sample.corners,
-                         sample.triangles, &options, &set->mesh) != SONJECT_OK ||
-        device_open(&set->report, &params, &set->device) != SONJECT_OK)
-        benchmark_fail(&set->report, "set-up");
+    if (device_open(&set->report, &params, &set->device) != SONJECT_OK)
+        benchmark_fail(&set->report, "device");
+    const double ready_s = build_mesh(set, 730, 366);
     printf("mesh of %zu triangles: ready after %.2f s on one core", set->mesh.triangle_count,
-           clock_seconds() - start);
+           ready_s);
     set->embree = embree_open(&set->mesh, &build_s);
     if (set->embree)
         printf(" (Embree's hierarchy alone %.2f s)", build_s);
@@ -194,7 +204,29 @@ static void set_up(struct bench_set *set)
     printf("\ndevice: %s, %u lanes, %u cores\n", set->device->name, (unsigned)set->device->width,
            set->threads);
     probe_device_begin(&set->probe, &set->report, set->device, set->device->width, &set->mesh);
-    sample_clear(&sample);
+}
+
+/* The device's time for each ray on rings of ever more triangles. */
+static void print_growth(struct bench_set *set, float *input, float *output)
+{
+    static const uint32_t around[] = {24, 74, 232, 730, 2310};
+    const uint32_t rays = SIDE * SIDE;
+    printf("triangles  primary ns  bounced ns\n");
+    for (size_t i = 0; i < sizeof around / sizeof *around; i++) {
+        build_mesh(set, around[i], around[i] / 2);
+        probe_device_begin(&set->probe, &set->report, set->device, set->device->width, &set->mesh);
+        lay_fan(input, rays);
+        const double primary_s =
+            probe_device_run(&set->probe, "nearest", input, output, rays, REPEATS);
+        probe_device_run(&set->probe, "surface", input, output, rays, 1);
+        const uint32_t bounces = lay_bounces(output, rays, input);
+        const double bounced_s =
+            probe_device_run(&set->probe, "nearest", input, output, bounces, REPEATS);
+        printf("%9zu %11.1f %11.1f\n", set->mesh.triangle_count, 1e9 * primary_s / rays,
+               1e9 * bounced_s / bounces);
+        probe_device_end(&set->probe);
+        mesh_clear(&set->mesh);
+    }
 }
 
 int main(void)
@@ -214,8 +246,9 @@ int main(void)
     printf("device and native C agree in every bit: %s\n", differs ? "NO" : "yes");
     probe_device_end(&set.probe);
     embree_close(set.embree);
-    device_close(&set.device);
     mesh_clear(&set.mesh);
+    print_growth(&set, input, output);
+    device_close(&set.device);
     free(input);
     free(output);
     return differs;
