@@ -14,11 +14,17 @@ import sys
 
 
 def left_out(folder):
-    """(folder, command) of each source without an object file."""
+    """(folder, command) of each source without an object file; once where programs share it."""
+    commands = {}
     for entry in json.loads((folder / "compile_commands.json").read_text(encoding="utf-8")):
         directory = pathlib.Path(entry["directory"])
+        command = shlex.split(entry["command"])
+        # what a program makes of it is in PROGRAM.p
+        key = tuple(word for word in command
+                    if not word.endswith(".p") and ".p/" not in word)
         if not (directory / entry["output"]).exists():
-            yield directory, shlex.split(entry["command"])
+            commands.setdefault(key, (directory, command))
+    return commands.values()
 
 
 def check(directory, command):
