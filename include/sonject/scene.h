@@ -118,6 +118,11 @@ SONJECT_API sonject_status sonject_scene_set_motion(sonject_scene *scene,
 SONJECT_API sonject_status sonject_scene_set_motion_table(sonject_scene *scene,
                                                           const double *along_track_m,
                                                           const double *sway_m, size_t count);
+/* The same for measured yaw, within 0.1 rad (sonject_motion_params tells its sign). It counts where
+ * sonject_scene_set_motion gave the pings' advance; without that, runs are refused. */
+SONJECT_API sonject_status sonject_scene_set_yaw_table(sonject_scene *scene,
+                                                       const double *along_track_m,
+                                                       const double *yaw_rad, size_t count);
 SONJECT_API sonject_status sonject_scene_set_medium(sonject_scene *scene,
                                                     const sonject_medium_params *medium);
 /* Replaces the water by level layers with refraction at the planes between them. bottoms_m: height

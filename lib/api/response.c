@@ -86,8 +86,8 @@ sonject_status sonject_scene_set_motion(sonject_scene *scene, const sonject_moti
     if (!scene)
         return SONJECT_ERROR_ARGUMENT;
     sonject_motion_params taken = scene->scene.motion.params;
-    sonject_status status =
-        params_take(scene->report, &taken, sizeof taken, motion, sizeof taken, "motion");
+    sonject_status status = params_take(scene->report, &taken, sizeof taken, motion,
+                                        offsetof(sonject_motion_params, yaw_advance_m), "motion");
     if (status == SONJECT_OK)
         status = check_motion(&taken, scene->report, NULL);
     if (status == SONJECT_OK)
@@ -95,22 +95,38 @@ sonject_status sonject_scene_set_motion(sonject_scene *scene, const sonject_moti
     return status;
 }
 
-sonject_status sonject_scene_set_motion_table(sonject_scene *scene, const double *along_track_m,
-                                              const double *sway_m, size_t count)
+static sonject_status set_motion_samples(sonject_scene *scene, enum motion_kind kind,
+                                         const double *along_track_m, const double *values,
+                                         size_t count)
 {
+    const bool is_sway = kind == MOTION_SWAY;
     size_t sample;
     const char *what;
     if (!scene)
         return SONJECT_ERROR_ARGUMENT;
+    struct aperture_motion *motion = &scene->scene.motion;
+    struct motion_table *table = is_sway ? &motion->sway_table : &motion->yaw_table;
     if (count == 0) {
-        aperture_motion_clear(&scene->scene.motion);
+        motion_table_clear(table);
         return SONJECT_OK;
     }
-    if (!along_track_m || !sway_m)
-        return null_argument(scene->report, "along_track_m and sway_m of the motion table");
-    if (!motion_samples_are_good(along_track_m, sway_m, count, &sample, &what))
-        return report_failure(scene->report, SONJECT_ERROR_INPUT, "motion table: sample %zu: %s",
-                              sample, what);
-    return aperture_motion_set_table(&scene->scene.motion, scene->report, along_track_m, sway_m,
-                                     count);
+    if (!along_track_m || !values)
+        return null_argument(scene->report, is_sway ? "along_track_m and sway_m of the motion table"
+                                                    : "along_track_m and yaw_rad of the yaw table");
+    if (!motion_samples_are_good(kind, along_track_m, values, count, &sample, &what))
+        return report_failure(scene->report, SONJECT_ERROR_INPUT, "%s table: sample %zu: %s",
+                              is_sway ? "motion" : "yaw", sample, what);
+    return motion_table_set(table, scene->report, along_track_m, values, count);
+}
+
+sonject_status sonject_scene_set_motion_table(sonject_scene *scene, const double *along_track_m,
+                                              const double *sway_m, size_t count)
+{
+    return set_motion_samples(scene, MOTION_SWAY, along_track_m, sway_m, count);
+}
+
+sonject_status sonject_scene_set_yaw_table(sonject_scene *scene, const double *along_track_m,
+                                           const double *yaw_rad, size_t count)
+{
+    return set_motion_samples(scene, MOTION_YAW, along_track_m, yaw_rad, count);
 }

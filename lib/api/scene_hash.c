@@ -80,10 +80,37 @@ static void add_response_table(struct hash *hash, const struct response_table *t
     hash_add(hash, table->values, table->count * sizeof *table->values);
 }
 
+static void add_motion_table(struct hash *hash, const struct motion_table *table)
+{
+    const uint64_t count = table->count;
+    ADD(hash, count);
+    hash_add(hash, table->along_track_m, table->count * sizeof *table->along_track_m);
+    hash_add(hash, table->values, table->count * sizeof *table->values);
+}
+
+/* Only where there is some: scenes that know of none keep their hashes. */
+static void add_yaw(struct hash *hash, const struct aperture_motion *motion)
+{
+    const sonject_motion_params *params = &motion->params;
+    if (!aperture_motion_has_yaw(motion))
+        return;
+    ADD(hash, params->yaw_advance_m);
+    ADD(hash, params->yaw_bias_rad);
+    ADD(hash, params->yaw_random_rms_rad);
+    ADD(hash, params->yaw_random_correlation_m);
+    ADD(hash, params->yaw_seed);
+    ADD(hash, params->yaw_count);
+    for (uint32_t i = 0; i < params->yaw_count && i < SONJECT_YAWS_CAPACITY; i++) {
+        ADD(hash, params->yaws[i].amplitude_rad);
+        ADD(hash, params->yaws[i].wavelength_m);
+        ADD(hash, params->yaws[i].phase_rad);
+    }
+    add_motion_table(hash, &motion->yaw_table);
+}
+
 static void add_motion(struct hash *hash, const struct aperture_motion *motion)
 {
     const sonject_motion_params *params = &motion->params;
-    const uint64_t count = motion->count;
     ADD(hash, params->sway_count);
     for (uint32_t i = 0; i < params->sway_count && i < SONJECT_SWAYS_CAPACITY; i++) {
         ADD(hash, params->sways[i].amplitude_m);
@@ -93,9 +120,8 @@ static void add_motion(struct hash *hash, const struct aperture_motion *motion)
     ADD(hash, params->random_rms_m);
     ADD(hash, params->random_correlation_m);
     ADD(hash, params->seed);
-    ADD(hash, count);
-    hash_add(hash, motion->along_track_m, motion->count * sizeof *motion->along_track_m);
-    hash_add(hash, motion->sway_m, motion->count * sizeof *motion->sway_m);
+    add_motion_table(hash, &motion->sway_table);
+    add_yaw(hash, motion);
 }
 
 static void add_responses(struct hash *hash, const struct scene *scene)

@@ -10,6 +10,7 @@
 #include "inject/coherent_seabed.h"
 #include "inject/injection_setup.h"
 #include "inject/traced_impulses.h"
+#include "scene/sonar_array.h"
 
 #define TRACE_SHARE 0.5 /* of a run's progress */
 
@@ -126,8 +127,16 @@ static int tell_tracing(void *user, double fraction, const char *stage)
     return outer->progress ? outer->progress(outer->user, TRACE_SHARE * fraction, stage) : 0;
 }
 
-static sonject_status check_estimator(struct report *report, const struct scene *scene)
+static sonject_status check_scene(struct report *report, const struct scene *scene)
 {
+    if (!aperture_motion_is_still(&scene->motion))
+        return report_failure(
+            report, SONJECT_ERROR_INPUT,
+            "sonar.motion moves images alone: take it away for the element level");
+    if (scene->sonar.kind == SONJECT_SONAR_REAL && sonar_array_is_turned(&scene->sonar))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the element level's array lies along the track: set sonar.array's "
+                              "heading and pitch to 0");
     if (scene->injection.estimator == SONJECT_ESTIMATOR_CONNECT)
         return SONJECT_OK;
     return report_failure(report, SONJECT_ERROR_INPUT,
@@ -177,7 +186,7 @@ sonject_status element_echoes_describe(struct report *report, const struct scene
                                        sonject_element_layout *layout)
 {
     struct injection_setup setup;
-    sonject_status status = check_estimator(report, scene);
+    sonject_status status = check_scene(report, scene);
     if (status != SONJECT_OK)
         return status;
     status = injection_setup_lay(&setup, report, NULL, scene, input);
@@ -194,7 +203,7 @@ sonject_status element_echoes_compute(struct report *report, struct device *devi
                                       const sonject_element_layout *layout, float *series)
 {
     struct injection_setup setup;
-    sonject_status status = check_estimator(report, scene);
+    sonject_status status = check_scene(report, scene);
     if (status != SONJECT_OK)
         return status;
     status = injection_setup_init(&setup, report, device, scene, input);

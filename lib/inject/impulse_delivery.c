@@ -1,10 +1,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/hdf5_values.h"
 #include "base/memory.h"
 #include "inject/beam_shadows.h"
 #include "inject/echoes.h"
-#include "base/hdf5_values.h"
 #include "inject/impulse_reading.h"
 #include "inject/reimaging.h"
 

@@ -2,8 +2,8 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "base/memory.h"
 #include "base/hdf5_values.h"
+#include "base/memory.h"
 #include "inject/impulse_reading.h"
 #include "inject/impulse_seal.h"
 

@@ -5,8 +5,8 @@
 #include <sonject/version.h>
 
 #include "base/file.h"
-#include "base/memory.h"
 #include "base/hdf5_values.h"
+#include "base/memory.h"
 #include "inject/impulse_file.h"
 #include "inject/impulse_seal.h"
 

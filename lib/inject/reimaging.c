@@ -54,12 +54,14 @@ static sonject_status check_strips(const struct line_grid *grid, const struct tr
     /* half of what is not within the margin lies beyond it */
     const double farthest = view_apparent_range(&tracer->view, (double)tracer->view.columns - 1.0);
     const double reach = cross_range_energy_reach(&tracer->response, farthest, 2.0 * EDGE_LOSS);
+    const bool is_moved = tracer->response.motion != NULL;
     if (reach <= margin)
         return SONJECT_OK;
     return report_failure(tracer->report, SONJECT_ERROR_INPUT,
-                          "sonar.resolution: the response reaches %.4g m, but %s was traced to "
-                          "%.4g m beyond the patch: trace again with a coarser resolution",
-                          reach, file, margin);
+                          "%s: the response reaches %.4g m, but %s was traced to %.4g m beyond the "
+                          "patch: trace again with %s",
+                          is_moved ? "sonar.motion" : "sonar.resolution", reach, file, margin,
+                          is_moved ? "this motion" : "a coarser resolution");
 }
 
 /* A span that begins at or before the first of `count` and ends at or behind the last. */

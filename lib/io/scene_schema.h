@@ -173,7 +173,8 @@ sonject_status read_relief_heights(struct reader *reader, const struct tree_node
 
 /* The array of the element level, in scene_elements.c. */
 extern const struct section elements_section;
-/* Pulse, measured cross-range response and residual motion, in scene_response.c. */
+/* Pulse and measured cross-range response, in scene_response.c, and residual motion, in
+ * scene_motion.c. */
 extern const struct section pulse_section;
 extern const struct section motion_section;
 sonject_status read_pulse(struct reader *reader, const struct tree_node *node, void *structure);

@@ -11,17 +11,51 @@
 
 #define PI           3.14159265358979323846
 #define SWAY_MAX_M   1e3
-#define SCALE_MIN_M  0.1        /* sway from one centimetre to the next is no motion of a sonar */
+#define YAW_MAX_RAD  0.1 /* its sine is the angle to 2 parts in 1000 */
+#define SCALE_MIN_M  0.1 /* sway from one centimetre to the next is no motion of a sonar */
+#define SCALE_MAX_M  1e6
 #define RANDOM_WAVES 256        /* whose sum is as good as Gaussian */
-#define RANDOM_WAVE  0x73776179 /* stream of random numbers that no other part uses */
+#define RANDOM_SWAY  0x73776179 /* streams of random numbers that no other part uses */
+#define RANDOM_YAW   0x79617721
 
 void sonject_motion_params_init(sonject_motion_params *motion)
 {
     memset(motion, 0, sizeof *motion);
     motion->struct_size = sizeof *motion;
     motion->random_correlation_m = 1.0;
+    motion->yaw_random_correlation_m = 1.0;
     for (int i = 0; i < SONJECT_SWAYS_CAPACITY; i++)
         motion->sways[i].wavelength_m = 1.0;
+    for (int i = 0; i < SONJECT_YAWS_CAPACITY; i++)
+        motion->yaws[i].wavelength_m = 1.0;
+}
+
+static void check_sine(struct check *check, double wavelength, double phase)
+{
+    check_within(check, "wavelength", wavelength, SCALE_MIN_M, SCALE_MAX_M, " m");
+    check_within(check, "phase", phase, -1e3, 1e3, " rad");
+}
+
+static bool params_have_yaw(const sonject_motion_params *motion)
+{
+    return motion->yaw_count > 0 || motion->yaw_bias_rad != 0.0 ||
+           motion->yaw_random_rms_rad != 0.0;
+}
+
+static void check_yaw(struct check *check, const sonject_motion_params *motion)
+{
+    check_within(check, "yaw.bias", motion->yaw_bias_rad, -YAW_MAX_RAD, YAW_MAX_RAD, " rad");
+    check_within(check, "yaw.sines", motion->yaw_count, 0.0, SONJECT_YAWS_CAPACITY, " entries");
+    for (uint32_t i = 0; i < motion->yaw_count && i < SONJECT_YAWS_CAPACITY; i++) {
+        check_within(check, "amplitude", motion->yaws[i].amplitude_rad, -YAW_MAX_RAD, YAW_MAX_RAD,
+                     " rad");
+        check_sine(check, motion->yaws[i].wavelength_m, motion->yaws[i].phase_rad);
+    }
+    check_within(check, "yaw.random.rms", motion->yaw_random_rms_rad, 0.0, YAW_MAX_RAD, " rad");
+    check_within(check, "yaw.random.correlation", motion->yaw_random_correlation_m, SCALE_MIN_M,
+                 SCALE_MAX_M, " m");
+    if (motion->yaw_advance_m != 0.0 || params_have_yaw(motion))
+        check_within(check, "yaw.advance", motion->yaw_advance_m, SCALE_MIN_M, SWAY_MAX_M, " m");
 }
 
 sonject_status check_motion(const sonject_motion_params *motion, struct report *report,
@@ -32,18 +66,19 @@ sonject_status check_motion(const sonject_motion_params *motion, struct report *
     for (uint32_t i = 0; i < motion->sway_count && i < SONJECT_SWAYS_CAPACITY; i++) {
         check_within(&check, "amplitude", motion->sways[i].amplitude_m, -SWAY_MAX_M, SWAY_MAX_M,
                      " m");
-        check_within(&check, "wavelength", motion->sways[i].wavelength_m, SCALE_MIN_M, 1e6, " m");
-        check_within(&check, "phase", motion->sways[i].phase_rad, -1e3, 1e3, " rad");
+        check_sine(&check, motion->sways[i].wavelength_m, motion->sways[i].phase_rad);
     }
     check_within(&check, "random.rms", motion->random_rms_m, 0.0, SWAY_MAX_M, " m");
-    check_within(&check, "random.correlation", motion->random_correlation_m, SCALE_MIN_M, 1e6,
-                 " m");
+    check_within(&check, "random.correlation", motion->random_correlation_m, SCALE_MIN_M,
+                 SCALE_MAX_M, " m");
+    check_yaw(&check, motion);
     return check.status;
 }
 
-bool motion_samples_are_good(const double *along_track_m, const double *sway_m, size_t count,
-                             size_t *sample, const char **what)
+bool motion_samples_are_good(enum motion_kind kind, const double *along_track_m,
+                             const double *values, size_t count, size_t *sample, const char **what)
 {
+    const bool is_sway = kind == MOTION_SWAY;
     *sample = count;
     *what = "must have 2...65536 samples";
     if (count < 2 || count > MOTION_SAMPLES_MAX)
@@ -51,109 +86,131 @@ bool motion_samples_are_good(const double *along_track_m, const double *sway_m, 
     for (*sample = 0; *sample < count; ++*sample) {
         const size_t i = *sample;
         *what = "its position must be within +-1000 km";
-        if (!(fabs(along_track_m[i]) <= 1e6))
+        if (!(fabs(along_track_m[i]) <= SCALE_MAX_M))
             return false;
         *what = "its position must be above that of the sample before";
         if (i > 0 && !(along_track_m[i] > along_track_m[i - 1]))
             return false;
-        *what = "its sway must be within +-1000 m";
-        if (!(fabs(sway_m[i]) <= SWAY_MAX_M))
+        *what = is_sway ? "its sway must be within +-1000 m" : "its yaw must be within +-0.1 rad";
+        if (!(fabs(values[i]) <= (is_sway ? SWAY_MAX_M : YAW_MAX_RAD)))
             return false;
     }
     return true;
 }
 
-sonject_status aperture_motion_set_table(struct aperture_motion *motion, struct report *report,
-                                         const double *along_track_m, const double *sway_m,
-                                         size_t count)
+sonject_status motion_table_set(struct motion_table *table, struct report *report,
+                                const double *along_track_m, const double *values, size_t count)
 {
     double *positions = allocate_array(count, sizeof *positions);
-    double *sways = allocate_array(count, sizeof *sways);
-    if (!positions || !sways) {
+    double *copies = allocate_array(count, sizeof *copies);
+    if (!positions || !copies) {
         free(positions);
-        free(sways);
+        free(copies);
         return report_out_of_memory(report, "a table of motion");
     }
-    for (size_t i = 0; i < count; i++) {
-        positions[i] = along_track_m[i];
-        sways[i] = sway_m[i];
-    }
-    aperture_motion_clear(motion);
-    motion->along_track_m = positions;
-    motion->sway_m = sways;
-    motion->count = count;
+    memcpy(positions, along_track_m, count * sizeof *positions);
+    memcpy(copies, values, count * sizeof *copies);
+    motion_table_clear(table);
+    table->along_track_m = positions;
+    table->values = copies;
+    table->count = count;
     return SONJECT_OK;
+}
+
+void motion_table_clear(struct motion_table *table)
+{
+    free(table->along_track_m);
+    free(table->values);
+    memset(table, 0, sizeof *table);
 }
 
 void aperture_motion_clear(struct aperture_motion *motion)
 {
-    free(motion->along_track_m);
-    free(motion->sway_m);
-    motion->along_track_m = NULL;
-    motion->sway_m = NULL;
-    motion->count = 0;
+    motion_table_clear(&motion->sway_table);
+    motion_table_clear(&motion->yaw_table);
+}
+
+bool aperture_motion_has_yaw(const struct aperture_motion *motion)
+{
+    return params_have_yaw(&motion->params) || motion->yaw_table.count > 0;
 }
 
 bool aperture_motion_is_still(const struct aperture_motion *motion)
 {
     return motion->params.sway_count == 0 && motion->params.random_rms_m == 0.0 &&
-           motion->count == 0;
+           motion->sway_table.count == 0 && !aperture_motion_has_yaw(motion);
 }
 
 double aperture_motion_step(const struct aperture_motion *motion)
 {
+    const struct motion_table *table = &motion->sway_table;
     double step = HUGE_VAL;
     for (uint32_t i = 0; i < motion->params.sway_count; i++)
         step = fmin(step, motion->params.sways[i].wavelength_m / 200.0);
     if (motion->params.random_rms_m > 0.0)
         step = fmin(step, motion->params.random_correlation_m / 100.0);
-    for (size_t i = 0; i + 1 < motion->count; i++)
-        step = fmin(step, (motion->along_track_m[i + 1] - motion->along_track_m[i]) / 4.0);
+    for (size_t i = 0; i + 1 < table->count; i++)
+        step = fmin(step, (table->along_track_m[i + 1] - table->along_track_m[i]) / 4.0);
     return fmax(step, SCALE_MIN_M / 200.0);
 }
 
-static double sway_of_table(const struct aperture_motion *motion, double x)
+static double value_of_table(const struct motion_table *table, double x)
 {
     size_t low = 0;
-    size_t high = motion->count - 1;
-    if (x <= motion->along_track_m[0])
-        return motion->sway_m[0];
-    if (x >= motion->along_track_m[high])
-        return motion->sway_m[high];
+    size_t high = table->count - 1;
+    if (x <= table->along_track_m[0])
+        return table->values[0];
+    if (x >= table->along_track_m[high])
+        return table->values[high];
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
-        if (motion->along_track_m[middle] <= x)
+        if (table->along_track_m[middle] <= x)
             low = middle;
         else
             high = middle;
     }
-    const double share = (x - motion->along_track_m[low]) /
-                         (motion->along_track_m[high] - motion->along_track_m[low]);
-    return motion->sway_m[low] + share * (motion->sway_m[high] - motion->sway_m[low]);
+    const double share =
+        (x - table->along_track_m[low]) / (table->along_track_m[high] - table->along_track_m[low]);
+    return table->values[low] + share * (table->values[high] - table->values[low]);
 }
 
-static void add_wave(double amplitude, double wavenumber, double phase, double start, double step,
-                     size_t count, double *sway)
+/* Positions along-track, start + i step, and what is added up there. */
+struct places {
+    double start, step;
+    size_t count;
+    double *values;
+};
+
+static void begin_with_table(const struct places *places, const struct motion_table *table)
 {
-    for (size_t i = 0; i < count; i++)
-        sway[i] += amplitude * sin(wavenumber * (start + (double)i * step) + phase);
+    for (size_t i = 0; i < places->count; i++)
+        places->values[i] = table->count > 0
+                                ? value_of_table(table, places->start + (double)i * places->step)
+                                : 0.0;
+}
+
+static void add_wave(const struct places *places, double amplitude, double wavenumber, double phase)
+{
+    for (size_t i = 0; i < places->count; i++)
+        places->values[i] +=
+            amplitude * sin(wavenumber * (places->start + (double)i * places->step) + phase);
 }
 
 /* Waves of random phases whose wavenumbers are normal deviates: their spectrum is Gaussian, and so
  * is the autocorrelation. */
-static void add_random(const sonject_motion_params *params, double start, double step, size_t count,
-                       double *sway)
+static void add_random(const struct places *places, double rms, double correlation, uint64_t seed,
+                       uint32_t stream)
 {
-    const struct random_key key = random_key_of((uint32_t)(params->seed & 0xffffffffu),
-                                                (uint32_t)(params->seed >> 32), RANDOM_WAVE, 0);
+    const struct random_key key =
+        random_key_of((uint32_t)(seed & 0xffffffffu), (uint32_t)(seed >> 32), stream, 0);
+    if (!(rms > 0.0))
+        return;
     for (uint32_t wave = 0; wave < RANDOM_WAVES; wave++) {
         float u, v, phase, unused;
         two_uniforms(key, wave, 0, &u, &v);
         two_uniforms(key, wave, 1, &phase, &unused);
         const double deviate = sqrt(-2.0 * log(u)) * cos(2.0 * PI * v);
-        add_wave(params->random_rms_m * sqrt(2.0 / RANDOM_WAVES),
-                 deviate / params->random_correlation_m, 2.0 * PI * phase, start, step, count,
-                 sway);
+        add_wave(places, rms * sqrt(2.0 / RANDOM_WAVES), deviate / correlation, 2.0 * PI * phase);
     }
 }
 
@@ -161,11 +218,26 @@ void aperture_motion_sway(const struct aperture_motion *motion, double start_m, 
                           size_t count, double *sway_m)
 {
     const sonject_motion_params *params = &motion->params;
-    for (size_t i = 0; i < count; i++)
-        sway_m[i] = motion->count > 0 ? sway_of_table(motion, start_m + (double)i * step_m) : 0.0;
+    const struct places places = {start_m, step_m, count, sway_m};
+    begin_with_table(&places, &motion->sway_table);
     for (uint32_t i = 0; i < params->sway_count; i++)
-        add_wave(params->sways[i].amplitude_m, 2.0 * PI / params->sways[i].wavelength_m,
-                 params->sways[i].phase_rad, start_m, step_m, count, sway_m);
-    if (params->random_rms_m > 0.0)
-        add_random(params, start_m, step_m, count, sway_m);
+        add_wave(&places, params->sways[i].amplitude_m, 2.0 * PI / params->sways[i].wavelength_m,
+                 params->sways[i].phase_rad);
+    add_random(&places, params->random_rms_m, params->random_correlation_m, params->seed,
+               RANDOM_SWAY);
+}
+
+void aperture_motion_yaw(const struct aperture_motion *motion, double start_m, double step_m,
+                         size_t count, double *yaw_rad)
+{
+    const sonject_motion_params *params = &motion->params;
+    const struct places places = {start_m, step_m, count, yaw_rad};
+    begin_with_table(&places, &motion->yaw_table);
+    for (size_t i = 0; i < count; i++)
+        yaw_rad[i] += params->yaw_bias_rad;
+    for (uint32_t i = 0; i < params->yaw_count; i++)
+        add_wave(&places, params->yaws[i].amplitude_rad, 2.0 * PI / params->yaws[i].wavelength_m,
+                 params->yaws[i].phase_rad);
+    add_random(&places, params->yaw_random_rms_rad, params->yaw_random_correlation_m,
+               params->yaw_seed, RANDOM_YAW);
 }

@@ -1,6 +1,11 @@
 #include "scene/cross_range.h"
 
 #include <math.h>
+#include <string.h>
+
+#include "scene/motion_response.h"
+#include "scene/relief.h"
+#include "scene/sonar_array.h"
 
 #define PI               3.14159265358979323846
 #define BEAM_LOBES       8.0  /* of the pattern; 4e-6 of its energy lies beyond */
@@ -19,12 +24,28 @@ bool cross_range_is_plain(const struct point_response *response)
     return response->array_length_m == 0.0 && !response->cross_range_table && !response->motion;
 }
 
-/* Two-way amplitude of the beam at the tangent x / range. */
-static double beam_at(const struct point_response *response, double tangent)
+/* Cosine between the array's long side and the way abreast to the seabed at a range. */
+static double lean_of_array(const struct point_response *response, double range)
 {
-    const double one_way = sinc(response->array_length_m / response->wavelength_m * tangent /
+    const double down = fmin(response->array_altitude_m / range, 1.0);
+    return response->array_along[1] * sqrt(1.0 - down * down) - response->array_along[2] * down;
+}
+
+/* Two-way amplitude of the beam at the tangent x / range, x ahead of the array. */
+static double beam_at(const struct point_response *response, double lean, double tangent)
+{
+    const double along = response->array_along[0] * tangent + lean;
+    const double one_way = sinc(response->array_length_m / response->wavelength_m * along /
                                 sqrt(1.0 + tangent * tangent));
     return one_way * one_way;
+}
+
+/* How far from abreast the beam of a turned array looks at most, along the track, to a range. */
+static double largest_shift(const struct point_response *response, double range)
+{
+    return (range * fabs(response->array_along[1]) +
+            response->array_altitude_m * fabs(response->array_along[2])) /
+           response->array_along[0];
 }
 
 /* The beam's half width as a tangent, of a pattern's argument z. */
@@ -34,19 +55,23 @@ static double tangent_at(const struct point_response *response, double z)
     return sine / sqrt(1.0 - sine * sine);
 }
 
-void point_response_set_array(struct point_response *response, double array_length_m,
-                              double wavelength_m, double range_ratio)
+void point_response_set_array(struct point_response *response, const sonject_sonar_params *sonar,
+                              const struct patch_view *view)
 {
-    response->array_length_m = array_length_m;
-    response->wavelength_m = wavelength_m;
-    response->range_ratio = range_ratio;
+    double axes[3][3];
+    sonar_array_axes(axes, sonar, view->is_mirrored);
+    memcpy(response->array_along, axes[0], sizeof response->array_along);
+    response->array_altitude_m = view->altitude_m;
+    response->array_length_m = sonar->array_length_m;
+    response->wavelength_m = view->wavelength_m;
+    response->range_ratio = view->range_ratio;
     /* its band of spatial frequencies, 2 sin(aspect) / wavelength, is 4 / length wide at the foot
      */
-    response->strip_m = 0.25 * array_length_m;
+    response->strip_m = 0.25 * sonar->array_length_m;
     const double step = tangent_at(response, BEAM_LOBES) / BEAM_STEPS;
     response->beam_energy = 0.0;
     for (int i = 0; i < BEAM_STEPS; i++)
-        response->beam_energy += 2.0 * pow(beam_at(response, (i + 0.5) * step), 2.0) * step;
+        response->beam_energy += 2.0 * pow(beam_at(response, 0.0, (i + 0.5) * step), 2.0) * step;
 }
 
 struct complex_number cross_range_response(const struct point_response *response, double range_m,
@@ -63,7 +88,7 @@ struct complex_number cross_range_response(const struct point_response *response
     const double detour =
         distance_m * distance_m / (sqrt(range * range + distance_m * distance_m) + range);
     const double phase = 4.0 * PI / response->wavelength_m * detour;
-    const double amplitude = beam_at(response, distance_m / range);
+    const double amplitude = beam_at(response, lean_of_array(response, range), -distance_m / range);
     w.real_part = amplitude * cos(phase);
     w.imaginary_part = amplitude * sin(phase);
     return w;
@@ -84,7 +109,7 @@ static double beam_energy_reach(const struct point_response *response, double sh
     double inside = 0.0;
     int i = 0;
     for (; i < BEAM_STEPS && inside < (1.0 - share) * response->beam_energy; i++)
-        inside += 2.0 * pow(beam_at(response, (i + 0.5) * step), 2.0) * step;
+        inside += 2.0 * pow(beam_at(response, 0.0, (i + 0.5) * step), 2.0) * step;
     return i * step;
 }
 
@@ -93,15 +118,48 @@ double cross_range_energy_reach(const struct point_response *response, double ra
     if (response->cross_range_table)
         return response_table_reach(response->cross_range_table, share);
     if (response->array_length_m > 0.0)
-        return range_m / response->range_ratio * beam_energy_reach(response, share);
-    return along_track_energy_reach(response, share) + response->motion_spread_m;
+        return range_m / response->range_ratio * beam_energy_reach(response, share) +
+               largest_shift(response, range_m / response->range_ratio);
+    return along_track_energy_reach(response, share) + motion_spread(response, share);
 }
 
 double cross_range_tail(const struct point_response *response, double range_m)
 {
     if (response->array_length_m == 0.0)
         return HUGE_VAL;
-    return range_m / response->range_ratio * tangent_at(response, TAIL_LOBES);
+    return range_m / response->range_ratio * tangent_at(response, TAIL_LOBES) +
+           largest_shift(response, range_m / response->range_ratio);
+}
+
+/* What a turned array's images leave out: its shadows over relief, ways by which sound comes in at
+ * another angle than from the seabed there, and the map, whose pixels are seen from abreast. */
+static sonject_status check_turned(struct report *report, const struct scene *scene,
+                                   const struct patch_view *view)
+{
+    const char *what = NULL;
+    if (scene_has_relief(scene))
+        what = "the seabed's relief";
+    else if (!view->water.is_straight)
+        what = "the layers of water";
+    else if (scene->injection.interactions > 1)
+        what = "interactions above 1";
+    else if (scene->injection.mode == SONJECT_MODE_RESYNTHESISE)
+        what = "mode: resynthesise";
+    if (!what)
+        return SONJECT_OK;
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "images of an array that is turned from the track are not formed with "
+                          "%s: take that away, or set sonar.array's heading and pitch to 0",
+                          what);
+}
+
+/* By how much the range of an echo at an apparent range changes within the beam's half power. */
+static double migration_at(const struct point_response *response, double apparent)
+{
+    const double range = apparent / response->range_ratio;
+    const double tangent = tangent_at(response, HALF_POWER_POINT) +
+                           fabs(lean_of_array(response, range)) / response->array_along[0];
+    return apparent * (sqrt(1.0 + tangent * tangent) - 1.0);
 }
 
 sonject_status cross_range_check(const struct point_response *response, struct report *report,
@@ -109,20 +167,23 @@ sonject_status cross_range_check(const struct point_response *response, struct r
 {
     if (response->array_length_m == 0.0)
         return SONJECT_OK;
-    if (scene->sonar.array_heading_rad != 0.0 || scene->sonar.array_pitch_rad != 0.0)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "images of an array that is turned from the track are not formed: "
-                              "set its heading and pitch to 0");
-    const double range = view_apparent_range(view, (double)view->columns - 1.0);
-    const double tangent = tangent_at(response, HALF_POWER_POINT);
-    const double migration = range * (sqrt(1.0 + tangent * tangent) - 1.0);
+    const bool is_turned = sonar_array_is_turned(&scene->sonar);
+    const sonject_status status = is_turned ? check_turned(report, scene, view) : SONJECT_OK;
+    if (status != SONJECT_OK)
+        return status;
     const double most = MIGRATION_SHARE * response->range_resolution_m;
-    if (migration > most)
-        return report_failure(
-            report, SONJECT_ERROR_INPUT,
-            "echoes at %.4g m move by %.3g m in range over the beam of an array of %.3g m, which "
-            "is more than a quarter of the range cell: use a longer array, less bandwidth or a "
-            "nearer patch",
-            range, migration, response->array_length_m);
+    const double ends[2] = {view_apparent_range(view, (double)view->columns - 1.0),
+                            view_apparent_range(view, 0.0)};
+    for (int i = 0; i < 2; i++) {
+        const double migration = migration_at(response, ends[i]);
+        if (migration > most)
+            return report_failure(
+                report, SONJECT_ERROR_INPUT,
+                "echoes at %.4g m move by %.3g m in range over the beam of an array of %.3g m, "
+                "which is more than a quarter of the range cell: use a longer array, %sless "
+                "bandwidth or a nearer patch",
+                ends[i], migration, response->array_length_m,
+                is_turned ? "less heading and pitch, " : "");
+    }
     return SONJECT_OK;
 }

@@ -28,8 +28,9 @@ double cross_range_energy_reach(const struct point_response *response, double ra
  * infinite for a synthetic aperture. */
 double cross_range_tail(const struct point_response *response, double range_m);
 
-/* Whether images can be formed so: a real aperture's beam must look abreast, and echoes stay within
- * their range cell over it, out to the patch's last column. Errors: INPUT. */
+/* Whether images can be formed so: echoes must stay within their range cell over a real aperture's
+ * beam, in all columns of the patch, and a turned array has level ground, straight rays, one
+ * interaction and a measured seabed. Errors: INPUT. */
 sonject_status cross_range_check(const struct point_response *response, struct report *report,
                                  const struct scene *scene, const struct patch_view *view);
 

@@ -15,13 +15,17 @@ struct motion_response {
     int reach;                             /* j from -reach to reach */
     size_t aspects;                        /* of the transform, a power of two */
     double *root_real, *root_imaginary, *real_part, *imaginary_part; /* owned */
-    double first_sway_m, sway_step_m; /* along-track positions of the table that follows */
-    double *sway_m;                   /* owned */
+    double first_m, length_m; /* the track that the aperture of all rows holds */
+    double sway_step_m;       /* from first_m on */
+    double *sway_m;           /* owned */
     size_t sways;
+    double advance_m, first_ping; /* a ping's number is its place along-track over the advance */
+    double *yaw_rad;              /* of pings; owned */
+    size_t pings;                 /* 0: no yaw */
 };
 
 /* Prepares responses of rows of the view at the distances. To be given to motion_response_end on
- * success. Errors: MEMORY. */
+ * success. Errors: INPUT (too many pings), MEMORY. */
 sonject_status motion_response_begin(struct motion_response *motion, struct report *report,
                                      const struct point_response *response,
                                      const struct patch_view *view, double strip_m, double offset_m,
@@ -32,9 +36,13 @@ void motion_response_end(struct motion_response *motion);
 void motion_response_row(struct motion_response *motion, double row, double *real_part,
                          double *imaginary_part);
 
-/* How much farther than the window's response the energy of the moved one reaches, m: over nine
- * rows of the view, to the shares that margins and taps leave out. Errors: MEMORY. */
-sonject_status motion_response_spread(struct report *report, const struct point_response *response,
-                                      const struct patch_view *view, double *spread_m);
+/* How much farther than the window's response the energy of the moved one reaches, m, over nine
+ * rows of the view: into response->motion_spread_m, for motion_spread. Errors: INPUT (it reaches
+ * farther than responses are worked out), MEMORY. */
+sonject_status motion_response_spread(struct report *report, struct point_response *response,
+                                      const struct patch_view *view);
+
+/* The same, where `share` of the energy may lie beyond; 0 without motion. */
+double motion_spread(const struct point_response *response, double share);
 
 #endif

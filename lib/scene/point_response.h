@@ -13,6 +13,7 @@
 #include "scene/response_table.h"
 
 #define MARGIN_ENERGY_SHARE 0.005 /* of |W|^2 and |G|^2 that lies beyond a grid's margins */
+#define MOTION_SHARES       3
 
 struct point_response {
     double resolution_m; /* delta: the aspects integrated are within +-wavelength/(4 delta) */
@@ -34,14 +35,17 @@ struct point_response {
     const struct response_table *cross_range_table; /* a measured W; borrowed; NULL: none */
     double cross_range_energy_m;
 
-    double array_length_m; /* of a real aperture; 0: synthetic */
+    double array_length_m;   /* of a real aperture; 0: synthetic */
+    double array_along[3];   /* its long side, in the view's axes */
+    double array_altitude_m; /* over the mean seabed */
     double wavelength_m, range_ratio;
     double beam_energy; /* integral of |W|^2 over x / range */
 
-    const struct aperture_motion *motion; /* residual; borrowed; NULL: none */
-    double motion_range_m;                /* straight range that it is worked out for */
-    double motion_phase_per_m;            /* of the echo, rad per m of sway */
-    double motion_spread_m;               /* how much farther the energy of W reaches */
+    const struct aperture_motion *motion;  /* residual; borrowed; NULL: none */
+    double motion_range_m;                 /* straight range that it is worked out for */
+    double motion_phase_per_m;             /* of the echo, rad per m of sway */
+    double motion_spread_m[MOTION_SHARES]; /* how much farther the energy of W reaches: see
+                                              motion_spread */
 };
 
 struct scene;
@@ -67,10 +71,9 @@ void point_response_set_widths(struct point_response *response, double resolutio
 void point_response_set_pulse(struct point_response *response, const sonject_pulse_params *pulse,
                               const struct response_table *table, double reference_sound_speed_mps);
 
-/* The beam of a real aperture of uniform weighting in place of the window; range_ratio: apparent
- * over true range. */
-void point_response_set_array(struct point_response *response, double array_length_m,
-                              double wavelength_m, double range_ratio);
+/* The beam of the sonar's array, a real aperture of uniform weighting, in place of the window. */
+void point_response_set_array(struct point_response *response, const sonject_sonar_params *sonar,
+                              const struct patch_view *view);
 
 /* A measured W in place of the window's; borrowed. */
 void point_response_set_cross_range_table(struct point_response *response,

@@ -55,10 +55,14 @@ static sonject_status set_motion(struct point_response *response, struct report 
                                  const struct scene *scene, const struct patch_view *view)
 {
     const double middle = view_apparent_range(view, 0.5 * (double)(view->columns - 1));
+    if (aperture_motion_has_yaw(&scene->motion) && scene->motion.params.yaw_advance_m == 0.0)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "sonar.motion.yaw: a table of yaw is given without the advance from "
+                              "ping to ping: give that too");
     response->motion = &scene->motion;
     response->motion_range_m = middle / view->range_ratio;
     response->motion_phase_per_m = -4.0 * PI / view->wavelength_m * cos(view_grazing(view, middle));
-    return motion_response_spread(report, response, view, &response->motion_spread_m);
+    return motion_response_spread(report, response, view);
 }
 
 sonject_status point_response_of_scene(struct point_response *response, struct report *report,
@@ -79,8 +83,7 @@ sonject_status point_response_of_scene(struct point_response *response, struct r
     if (has_table)
         point_response_set_cross_range_table(response, &scene->cross_range_table);
     if (is_real_aperture)
-        point_response_set_array(response, scene->sonar.array_length_m, view->wavelength_m,
-                                 view->range_ratio);
+        point_response_set_array(response, &scene->sonar, view);
     const double patch_m = (double)view->columns * view->column_spacing_m;
     response->pulse_tail_m = fmin(response->pulse_tail_m, fmax(response->pulse_reach_m, patch_m));
     sonject_status status = check_size(response, report, view);

@@ -2,17 +2,11 @@
 
 #include <math.h>
 
-#include "scene/pose.h"
+#include "scene/sonar_array.h"
 #include "trace/patch_fan.h"
 
 #define NULLS         2.0  /* main lobe and first side lobes: all but 3e-4 of the energy */
 #define STEEPEST_SINE 0.95 /* of kernels/aspects.h */
-
-/* Axes of the array in the view: long side, beam, other side. */
-static void array_axes(double axes[3][3], const sonject_sonar_params *sonar)
-{
-    turn_axes(axes, sonar->array_heading_rad, sonar->array_pitch_rad, -sonar->array_depression_rad);
-}
 
 /* Direction cosines off the middle that rays go out to, along the long side. */
 static double reach_of_beam(const struct tracer *tracer)
@@ -23,7 +17,7 @@ static double reach_of_beam(const struct tracer *tracer)
 double beam_largest_sine(const struct tracer *tracer)
 {
     double axes[3][3];
-    array_axes(axes, &tracer->scene->sonar);
+    sonar_array_axes(axes, &tracer->scene->sonar, tracer->view.is_mirrored);
     const double slope = hypot(axes[0][1], axes[0][2]) / axes[0][0];
     return fmin(slope / hypot(1.0, slope) + reach_of_beam(tracer) / axes[0][0], STEEPEST_SINE);
 }
@@ -42,7 +36,7 @@ sonject_status beam_record_init(struct fan_record *fan, const struct tracer *tra
     const struct patch_view *view = &tracer->view;
     const double sine = beam_largest_sine(tracer);
     double axes[3][3];
-    array_axes(axes, sonar);
+    sonar_array_axes(axes, sonar, view->is_mirrored);
     fan->beam.reach = (float)reach_of_beam(tracer);
     fan->beam.length = (float)(sonar->array_length_m / view->wavelength_m);
     fan->beam.height = (float)(sonar->array_height_m / view->wavelength_m);

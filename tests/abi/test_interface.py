@@ -86,7 +86,7 @@ SIZES = {
     "sonject_contact_measures": 232,
     "sonject_contact_file_params": 88,
     "sonject_pulse_params": 24,
-    "sonject_motion_params": 224,
+    "sonject_motion_params": 464,
 }
 
 

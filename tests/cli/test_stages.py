@@ -69,10 +69,11 @@ def test_the_stages_leave_what_a_run_leaves(sonject, scene, tmp_path, interactio
 @pytest.mark.parametrize(
     "chosen",
     [
-        ["sonar.kind=real", "sonar.array={length: 1.2 m}"],
+        ["sonar.kind=real", "sonar.array={length: 1.2 m, heading: 0.2 deg}"],
         ["sonar.aperture=10 deg", "injection.mode=resynthesise"],
         ["sonar.pulse={kind: chirp, window: hann}"],
-        ["sonar.motion={sway: [{amplitude: 1 mm, wavelength: 2 m}]}"],
+        ["sonar.motion={sway: [{amplitude: 1 mm, wavelength: 2 m}], "
+         "yaw: {advance: 50 cm, bias: 0.05 deg}}"],
     ],
     ids=lambda chosen: chosen[0],
 )

@@ -123,20 +123,24 @@ static void test_edges_widen_with_range(void **unused)
 static void test_heading_moves_shadows(void **unused)
 {
     (void)unused;
-    double width, middle, line[ROWS];
-    struct bench bench;
-    open_sidescan(&bench, 40.0);
-    bench.scene.sonar.array_heading_rad = 0.08;
-    add_screen(&bench, 40.0);
-    line_behind(&bench, line);
-    hidden(line, &width, &middle);
-    expect_close("shadow's width, m", width, SCREEN_W, 0.05);
-    /* heading turns the bow towards the imaged side, and the beam backwards: pings that see the
-     * screen are ahead of it. The long side has a cosine off the slant plane as well: x at the
-     * array's ground range. The patch's columns lie 1 m behind the screen */
-    const double ground = sqrt(39.0 * 39.0 - 100.0);
-    expect_close("shadow's middle, m", middle, ground * tan(0.08), 0.03);
-    bench_close(&bench);
+    for (int i = 0; i < 2; i++) {
+        double width, middle, line[ROWS];
+        struct bench bench;
+        open_sidescan(&bench, 40.0);
+        bench.scene.geometry.side = i ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
+        bench.scene.sonar.array_heading_rad = 0.08;
+        add_screen(&bench, 40.0);
+        line_behind(&bench, line);
+        hidden(line, &width, &middle);
+        expect_close("shadow's width, m", width, SCREEN_W, 0.05);
+        /* heading turns the bow towards the imaged side, and the beam backwards: pings that see the
+         * screen are ahead of it, which to starboard is before it in the view's rows. The long side
+         * has a cosine off the slant plane as well: x at the array's ground range. The patch's
+         * columns lie 1 m behind the screen */
+        const double ground = sqrt(39.0 * 39.0 - 100.0);
+        expect_close("shadow's middle, m", middle, (i ? -1.0 : 1.0) * ground * tan(0.08), 0.03);
+        bench_close(&bench);
+    }
 }
 
 /* Energy of the patch's middle bins, a strip. */

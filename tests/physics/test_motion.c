@@ -134,12 +134,54 @@ static void test_paired_echoes(void **unused)
     bench_close(&bench);
 }
 
+static double sine_ratio(double x)
+{
+    return x == 0.0 ? 1.0 : sin(PI * x) / (PI * x);
+}
+
+/* A constant yaw makes the sway a sawtooth, as long as the pings' advance A: phases of period A,
+ * whose harmonics are c_m = sinc(m + 2 yaw A cos(grazing) / wavelength). Each moves W by
+ * -m wavelength range / 2A, the lobes of a grating of this spacing; of the two beside the main one,
+ * that on the side where the array looks is the higher. */
+static void test_lobes_of_a_constant_yaw(void **unused)
+{
+    struct bench bench;
+    double complex cut[ROWS];
+    (void)unused;
+    open_aperture(&bench);
+    bench.scene.sonar.response_window = SONJECT_WINDOW_TAYLOR; /* see test_paired_echoes */
+    bench.scene.sonar.taylor_sidelobe_db = 70.0;
+    bench.scene.sonar.taylor_terms = 10;
+    cut_of(&bench, cut);
+    const double advance = 0.6;
+    const double steps = 0.3; /* of a phase of 2 pi, within a ping */
+    const double wavelength = bench.tracer.view.wavelength_m;
+    bench.scene.motion.params.yaw_advance_m = advance;
+    bench.scene.motion.params.yaw_bias_rad =
+        steps * wavelength / (2.0 * advance * cosine_of_grazing(&bench));
+    print_message("yaw: %.3g rad\n", bench.scene.motion.params.yaw_bias_rad);
+    cut_of(&bench, cut);
+    const double spacing = wavelength * bench.tracer.response.motion_range_m / (2.0 * advance);
+    for (int m = -1; m <= 1; m++) {
+        const double expected = MIDDLE - m * spacing / SPACING;
+        double row;
+        const double peak =
+            peak_between(cut, (size_t)(expected - 3.0), (size_t)(expected + 3.0), &row);
+        /* the tangent of an aspect is up to 0.3 % above the sine */
+        expect_close("place of the lobe, resolutions", (row - expected) * SPACING / RESOLUTION, 0.0,
+                     0.02);
+        expect_close("level of the lobe over sinc, dB",
+                     decibels_of_amplitude(peak / fabs(sine_ratio(m + steps))), 0.0, LEVEL_DB);
+    }
+    bench_close(&bench);
+}
+
 /* W of a row by its definition, over the straight one's peak: the mean over aspects. */
 static double complex moved_response(const struct bench *bench, double row, double distance,
                                      double (*sway)(double))
 {
     enum {
-        STEPS = 4000
+        STEPS = 20000
     };
     const double k = bench_wavenumber(bench);
     const double steepest = PI / k / (2.0 * RESOLUTION); /* wavelength / 4 resolution */
@@ -151,7 +193,8 @@ static double complex moved_response(const struct bench *bench, double row, doub
         const double sine = 2.0 * v * steepest;
         const double weight = 0.54 + 0.46 * cos(2.0 * PI * v);
         const double place = row * SPACING + range * tan(asin(sine));
-        const double error = -2.0 * k * cosine_of_grazing(bench) * sway(place);
+        const double error =
+            -2.0 * k * cosine_of_grazing(bench) * sqrt(1.0 - sine * sine) * sway(place);
         sum += weight * cexp(I * (error + 2.0 * k * sine * distance));
         total += weight;
     }
@@ -173,7 +216,7 @@ static void give_sway(struct bench *bench, double (*sway)(double))
         x[i] = -8.0 + 0.01 * i;
         y[i] = sway(x[i]);
     }
-    assert_int_equal(aperture_motion_set_table(&bench->scene.motion, &bench->report, x, y, COUNT),
+    assert_int_equal(motion_table_set(&bench->scene.motion.sway_table, &bench->report, x, y, COUNT),
                      SONJECT_OK);
 }
 
@@ -200,6 +243,132 @@ static void test_quadratic_error(void **unused)
     bench_close(&bench);
 }
 
+#define ADVANCE 0.4
+
+static double yaw_of_ping(double x)
+{
+    return 8e-3 * sin(2.0 * PI * x / 1.7 + 0.4) - 2e-3;
+}
+
+/* That yaw, which each ping has anew, as the sway of its phase centres. */
+static double sway_of_a_yaw(double x)
+{
+    const double ping = floor(x / ADVANCE + 0.5) * ADVANCE;
+    return yaw_of_ping(ping) * (x - ping);
+}
+
+static void give_yaw(struct bench *bench)
+{
+    sonject_motion_params *motion = &bench->scene.motion.params;
+    motion->yaw_advance_m = ADVANCE;
+    motion->yaw_bias_rad = -2e-3;
+    motion->yaw_count = 1;
+    motion->yaws[0].amplitude_rad = 8e-3;
+    motion->yaws[0].wavelength_m = 1.7;
+    motion->yaws[0].phase_rad = 0.4;
+}
+
+static void test_changing_yaw(void **unused)
+{
+    struct bench bench;
+    double complex cut[ROWS];
+    (void)unused;
+    open_aperture(&bench);
+    cut_of(&bench, cut);
+    give_yaw(&bench);
+    cut_of(&bench, cut);
+    double worst = 0.0;
+    double faintest = 1.0;
+    for (int row = 0; row < ROWS; row++) {
+        const double complex expected =
+            moved_response(&bench, row, (row - MIDDLE) * SPACING, sway_of_a_yaw);
+        worst = fmax(worst, cabs(cut[row] - expected));
+        faintest = fmin(faintest, row == MIDDLE ? cabs(cut[row]) : 1.0);
+    }
+    print_message("peak %.3f of the straight track's\n", faintest);
+    assert_true(faintest < 0.95);
+    expect_below("cut less the transform", worst, 0.01); /* two strips of 3 mm hold the ball */
+    bench_close(&bench);
+}
+
+/* From the transmitter in the array's middle to a point of the seabed, at x along the track, and
+ * back to the hydrophone at e on the array. */
+static double way_of(const struct bench *bench, double ping, double e, double yaw, double x)
+{
+    const double range = bench->tracer.response.motion_range_m;
+    const double height = bench->tracer.view.altitude_m;
+    const double across = sqrt(range * range - height * height) - e * sin(yaw);
+    const double along = x - (ping + e * cos(yaw));
+    return sqrt(range * range + (x - ping) * (x - ping)) +
+           sqrt(along * along + across * across + height * height);
+}
+
+/* Amplitude of a point, `distance` before the pixel, from all hydrophones of all pings of the
+ * aperture, focused as if the array had kept its heading. */
+static double heard_amplitude(const struct bench *bench, double pixel, double distance)
+{
+    enum {
+        HYDROPHONES = 200
+    };
+    const double k = bench_wavenumber(bench);
+    const double range = bench->tracer.response.motion_range_m;
+    const double steepest = PI / k / (2.0 * RESOLUTION);
+    double complex sum = 0.0;
+    double total = 0.0;
+    for (int p = -20; p <= 20; p++)
+        for (int i = 0; i < HYDROPHONES; i++) {
+            const double ping = (floor(pixel / ADVANCE) + p) * ADVANCE;
+            const double e = ((i + 0.5) / HYDROPHONES - 0.5) * 2.0 * ADVANCE;
+            const double sine = sin(atan((ping + 0.5 * e - pixel) / range));
+            if (fabs(sine) > steepest)
+                continue;
+            /* even in the sine */
+            const double weight =
+                (0.54 + 0.46 * cos(PI * sine / steepest)) * pow(1.0 - sine * sine, 1.5);
+            const double way = way_of(bench, ping, e, yaw_of_ping(ping), pixel - distance) -
+                               way_of(bench, ping, e, 0.0, pixel);
+            sum += weight * cexp(I * k * way);
+            total += weight;
+        }
+    return cabs(sum) / total;
+}
+
+/* The response that yaw gives a row is what hydrophones at their true places would make of it. */
+static void test_yaw_of_hydrophones(void **unused)
+{
+    enum {
+        REACH = 100
+    };
+    static double real_part[2 * REACH + 1], imaginary_part[2 * REACH + 1];
+    struct bench bench;
+    struct motion_response motion;
+    (void)unused;
+    open_aperture(&bench);
+    give_yaw(&bench);
+    bench_ready(&bench);
+    assert_int_equal(motion_response_begin(&motion, &bench.report, &bench.tracer.response,
+                                           &bench.tracer.view, SPACING, 0.0, REACH),
+                     SONJECT_OK);
+    double worst = 0.0;
+    double straight = 0.0;
+    for (int row = 7; row < ROWS; row += 50) {
+        motion_response_row(&motion, row, real_part, imaginary_part);
+        for (int j = -REACH; j <= REACH; j += 3) {
+            const double heard = heard_amplitude(&bench, row * SPACING, j * SPACING);
+            const double model = hypot(real_part[j + REACH], imaginary_part[j + REACH]);
+            worst = fmax(worst, fabs(heard - model));
+            straight = fmax(
+                straight, fabs(heard - along_track_response(&bench.tracer.response, j * SPACING)));
+        }
+    }
+    motion_response_end(&motion);
+    print_message("a straight track's differs by %.3f\n", straight);
+    assert_true(straight > 0.1);
+    /* hydrophones 4 mm apart; at x beside the pixel ranges are curved: k x^2 aspect^2 / r */
+    expect_below("response less what hydrophones hear", worst, 0.004);
+    bench_close(&bench);
+}
+
 static double wander(double x)
 {
     return 1e-3 * sin(1.7 * x) + 4e-4 * cos(5.1 * x + 0.3);
@@ -221,7 +390,7 @@ static void test_energy_stays(void **unused)
     give_sway(&bench, wander);
     bench.scene.motion.params.random_rms_m = 1e-3;
     bench_ready(&bench);
-    print_message("energy reaches %.3g m farther\n", bench.tracer.response.motion_spread_m);
+    print_message("energy reaches %.3g m farther\n", bench.tracer.response.motion_spread_m[1]);
     assert_int_equal(motion_response_begin(&motion, &bench.report, &bench.tracer.response,
                                            &bench.tracer.view, SPACING, 0.0, REACH),
                      SONJECT_OK);
@@ -264,6 +433,9 @@ static void test_starboard(void **unused)
         bench.scene.geometry.side = side ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
         cut_of(&bench, cuts[side]);
         give_sway(&bench, side ? wander_of_starboard : wander);
+        /* the bow is at the other end; pings lie at the same places */
+        bench.scene.motion.params.yaw_advance_m = 0.25;
+        bench.scene.motion.params.yaw_bias_rad = side ? -0.02 : 0.02;
         cut_of(&bench, cuts[side]);
         bench_close(&bench);
     }
@@ -271,6 +443,43 @@ static void test_starboard(void **unused)
     for (int row = 0; row < ROWS; row++)
         worst = fmax(worst, cabs(cuts[0][row] - cuts[1][row]));
     expect_below("port less starboard", worst, 1e-3);
+}
+
+static sonject_status try_motion(struct bench *bench)
+{
+    struct point_response response;
+    const sonject_status status = point_response_of_scene(&response, &bench->report, &bench->scene,
+                                                          &bench->tracer.view, 1500.0);
+    print_message("%s\n", status == SONJECT_OK ? "taken" : bench->report.message);
+    return status;
+}
+
+/* Sway that turns sound by more than the aspects, so that no response is long enough; yaw whose
+ * pings are unknown, or too many. */
+static void test_motion_that_is_refused(void **unused)
+{
+    static const double x[] = {0.0, 1.0};
+    static const double yaw[] = {1e-3, 2e-3};
+    struct bench bench;
+    (void)unused;
+    open_aperture(&bench);
+    sonject_motion_params *motion = &bench.scene.motion.params;
+    motion->random_rms_m = 1e-3;
+    assert_int_equal(try_motion(&bench), SONJECT_OK);
+    motion->random_rms_m = 10.0;
+    assert_int_equal(try_motion(&bench), SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(bench.report.message, "lessen it"));
+    motion->random_rms_m = 0.0;
+    assert_int_equal(motion_table_set(&bench.scene.motion.yaw_table, &bench.report, x, yaw, 2),
+                     SONJECT_OK);
+    assert_int_equal(try_motion(&bench), SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(bench.report.message, "without the advance"));
+    motion->yaw_advance_m = 0.5;
+    assert_int_equal(try_motion(&bench), SONJECT_OK);
+    bench.tracer.view.rows = 1000000000;
+    assert_int_equal(try_motion(&bench), SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(bench.report.message, "pings"));
+    bench_close(&bench);
 }
 
 /* The random sway's autocorrelation, by an average over seeds. */
@@ -353,9 +562,16 @@ static void test_measured_response(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_paired_echoes), cmocka_unit_test(test_quadratic_error),
-        cmocka_unit_test(test_energy_stays),  cmocka_unit_test(test_starboard),
-        cmocka_unit_test(test_random_sway),   cmocka_unit_test(test_measured_response),
+        cmocka_unit_test(test_paired_echoes),
+        cmocka_unit_test(test_quadratic_error),
+        cmocka_unit_test(test_lobes_of_a_constant_yaw),
+        cmocka_unit_test(test_changing_yaw),
+        cmocka_unit_test(test_yaw_of_hydrophones),
+        cmocka_unit_test(test_energy_stays),
+        cmocka_unit_test(test_starboard),
+        cmocka_unit_test(test_motion_that_is_refused),
+        cmocka_unit_test(test_random_sway),
+        cmocka_unit_test(test_measured_response),
     };
     return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

@@ -116,6 +116,67 @@ static void test_point_widens_with_range(void **unused)
     }
 }
 
+/* A turned array's, from the ball's own place: the cosine between its long side, ahead in the
+ * image's rows, and the way. side: +-1, the way along which rows run. */
+static double complex turned_beam(const struct bench *bench, double x, double side)
+{
+    const double heading = bench->scene.sonar.array_heading_rad;
+    const double pitch = bench->scene.sonar.array_pitch_rad;
+    const double *ball = bench->placements[0].centre;
+    const double down = bench->tracer.view.altitude_m - ball[2];
+    const double range = hypot(ball[1], down);
+    const double distance = hypot(range, x);
+    const double along = side * -x * cos(heading) * cos(pitch) +
+                         ball[1] * sin(heading) * cos(pitch) - down * sin(pitch);
+    const double z = PI * ARRAY * along / distance / WAVELENGTH;
+    const double one_way = sin(z) / z;
+    return one_way * one_way * cexp(I * 4.0 * PI / WAVELENGTH * (distance - range));
+}
+
+/* Pings ahead of a ball see it where the bow is turned towards it. Rows of the view run the other
+ * way to starboard. */
+static void test_turned_array(void **unused)
+{
+    static const double sides[] = {1.0, -1.0};
+    (void)unused;
+    for (int i = 0; i < 2; i++) {
+        struct bench bench;
+        struct echoes echoes;
+        bench_open(&bench, ROWS, COLUMNS, 40.0);
+        choose_sidescan(&bench, 40.0);
+        bench.scene.geometry.side = i ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
+        bench.scene.sonar.array_heading_rad = 0.006;
+        bench.scene.sonar.array_pitch_rad = -0.004;
+        hang_ball(&bench, 40.0, 0.002);
+        bench_ready(&bench);
+        assert_int_equal(cross_range_check(&bench.tracer.response, &bench.report, &bench.scene,
+                                           &bench.tracer.view),
+                         SONJECT_OK);
+        bench_echoes(&bench, NULL, SEABED_FIELD_NONE, &echoes);
+        const size_t column = brightest_column(&echoes, 80);
+        const double complex middle =
+            pixel_at(&echoes, 80, column) / turned_beam(&bench, 1e-9, sides[i]);
+        double worst = 0.0;
+        size_t brightest = 0;
+        for (size_t row = 0; row < ROWS; row++) {
+            const double complex pixel = pixel_at(&echoes, row, column) / middle;
+            const double x = ((double)row - 80.0) * SPACING + 1e-9;
+            worst = fmax(worst, cabs(pixel - turned_beam(&bench, x, sides[i])));
+            brightest =
+                cabs(pixel_at(&echoes, row, column)) > cabs(pixel_at(&echoes, brightest, column))
+                    ? row
+                    : brightest;
+        }
+        expect_close("rows ahead of the ball", sides[i] * ((double)brightest - 80.0),
+                     40.0 * (0.006 * cos(asin(0.25)) + 0.004 * 0.25) / SPACING, 0.6);
+        /* as for the one along the track; a ball 10 cm over the seabed is seen 1e-5 rad elsewhere
+         */
+        expect_below("along-track cut less the beam", worst, 0.03);
+        echoes_clear(&echoes);
+        bench_close(&bench);
+    }
+}
+
 static void test_synthetic_aperture_does_not(void **unused)
 {
     (void)unused;
@@ -294,6 +355,20 @@ static void test_beams_that_are_refused(void **unused)
     assert_int_equal(try_array(&bench, 0.34, 0.0), SONJECT_OK);
     assert_int_equal(try_array(&bench, 0.34, 0.01), SONJECT_ERROR_INPUT);
     print_message("%s\n", bench.report.message);
+    assert_int_equal(try_array(&bench, 1.0, 0.008), SONJECT_OK);
+    bench.scene.injection.interactions = 2;
+    assert_int_equal(try_array(&bench, 1.0, 0.0), SONJECT_OK);
+    assert_int_equal(try_array(&bench, 1.0, 0.008), SONJECT_ERROR_INPUT);
+    print_message("%s\n", bench.report.message);
+    bench.scene.injection.interactions = 1;
+    bench.scene.injection.mode = SONJECT_MODE_RESYNTHESISE;
+    assert_int_equal(try_array(&bench, 1.0, 0.008), SONJECT_ERROR_INPUT);
+    bench.scene.injection.mode = SONJECT_MODE_COMPOSITE;
+    struct relief_feature *mound = bench_add_relief(&bench, RELIEF_MOUND);
+    mound->radius_m = 1.0;
+    mound->height_m = 0.2;
+    assert_int_equal(try_array(&bench, 1.0, 0.008), SONJECT_ERROR_INPUT);
+    print_message("%s\n", bench.report.message);
     bench_close(&bench);
 }
 
@@ -301,6 +376,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_point_widens_with_range),
+        cmocka_unit_test(test_turned_array),
         cmocka_unit_test(test_synthetic_aperture_does_not),
         cmocka_unit_test(test_glint_of_a_sphere),
         cmocka_unit_test(test_autocorrelation_far_away),

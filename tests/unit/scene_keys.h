@@ -100,6 +100,7 @@ static const struct key_case {
     ((index) * sizeof(struct water_layer) + offsetof(struct water_layer, member))
 #define RELIEF(member) offsetof(struct relief_feature, member)
 #define GRID(member)   offsetof(sonject_relief_params, member)
+#define YAW            "sonar.motion.yaw={advance: 1}"
 #define CAST           SOURCE_ROOT "/tests/unit/cast.csv"
 #define HEIGHTS        SOURCE_ROOT "/tests/unit/heights.png"
 #define ARRAYS         SOURCE_ROOT "/tests/unit/heights.mat" /* two arrays of 2 x 3 bytes */
@@ -221,8 +222,31 @@ static const struct key_case {
      SCENE(motion.params.random_correlation_m), 2.0, NULL, "sonar.motion={random: {rms: 1 mm}}"},
     {"sonar.motion.random.seed", small, "9", TYPE_U64, SCENE(motion.params.seed), 9.0, NULL,
      "sonar.motion={random: {rms: 1 mm, correlation: 2 m}}"},
-    {"sonar.motion.file", small, SOURCE_ROOT "/tests/unit/sway.csv", TYPE_U64, SCENE(motion.count),
-     3.0, NULL, NULL},
+    {"sonar.motion.file", small, SOURCE_ROOT "/tests/unit/sway.csv", TYPE_U64,
+     SCENE(motion.sway_table.count), 3.0, NULL, NULL},
+    {"sonar.motion.yaw.advance", small, "40 cm", TYPE_DOUBLE, SCENE(motion.params.yaw_advance_m),
+     0.4, NULL, NULL},
+    {"sonar.motion.yaw.bias", small, "-0.009 rad", TYPE_DOUBLE, SCENE(motion.params.yaw_bias_rad),
+     -0.009, NULL, YAW},
+    {"sonar.motion.yaw.sines[].amplitude", small, "0.02 rad", TYPE_DOUBLE,
+     SCENE(motion.params.yaws[0].amplitude_rad), 0.02, NULL,
+     "sonar.motion.yaw={advance: 1, sines: [{wavelength: 3 m}]}"},
+    {"sonar.motion.yaw.sines[].wavelength", small, "3 m", TYPE_DOUBLE,
+     SCENE(motion.params.yaws[0].wavelength_m), 3.0, NULL,
+     "sonar.motion.yaw={advance: 1, sines: [{amplitude: 2e-3 rad}]}"},
+    {"sonar.motion.yaw.sines[].phase", small, "2 rad", TYPE_DOUBLE,
+     SCENE(motion.params.yaws[0].phase_rad), 2.0, NULL,
+     "sonar.motion.yaw={advance: 1, sines: [{amplitude: 2e-3 rad, wavelength: 3 m}]}"},
+    {"sonar.motion.yaw.random.rms", small, "0.01 rad", TYPE_DOUBLE,
+     SCENE(motion.params.yaw_random_rms_rad), 0.01, NULL,
+     "sonar.motion.yaw={advance: 1, random: {correlation: 2 m}}"},
+    {"sonar.motion.yaw.random.correlation", small, "2 m", TYPE_DOUBLE,
+     SCENE(motion.params.yaw_random_correlation_m), 2.0, NULL,
+     "sonar.motion.yaw={advance: 1, random: {rms: 0.01 rad}}"},
+    {"sonar.motion.yaw.random.seed", small, "9", TYPE_U64, SCENE(motion.params.yaw_seed), 9.0, NULL,
+     "sonar.motion.yaw={advance: 1, random: {rms: 0.01 rad, correlation: 2 m}}"},
+    {"sonar.motion.yaw.file", small, SOURCE_ROOT "/tests/unit/yaw.csv", TYPE_U64,
+     SCENE(motion.yaw_table.count), 2.0, NULL, YAW},
     {"medium.sound_speed", small, "1.48 km/s", TYPE_DOUBLE, SCENE(medium.sound_speed_mps), 1480.0,
      NULL, NULL},
     {"medium.reference_sound_speed", small, "1490 m/s", TYPE_DOUBLE,

@@ -54,6 +54,7 @@ static void expect_refused_table(struct scene_folder *folder, const char *key, c
 #define PULSE  "pulse: {kind: table, file: table.csv}"
 #define CROSS  "measured_response: table.csv"
 #define MOTION "motion: {file: table.csv}"
+#define YAW    "motion: {yaw: {advance: 1, file: table.csv}}"
 
 static void test_hostile_tables(void **state)
 {
@@ -85,6 +86,8 @@ static void test_hostile_tables(void **state)
          ":1: this line must name the columns, among them along_track_m, and real"},
         {CROSS, "along_track_m,real\n-1,0\n1,0\n0,1\n2,0\n",
          ":4: along_track_m: its position must be above that of the sample before"},
+        {YAW, "along_track_m,yaw_rad\n1,0\n2,0.2\n",
+         ":3: along_track_m: its yaw must be within +-0.1 rad"},
         {MOTION, "along_track_m\n",
          ":1: this line must name the columns, among them along_track_m, and sway_m"},
         {MOTION, "along_track_m,sway_m\n1,2\n", ":2: along_track_m: must have 2...65536 samples"},
@@ -118,6 +121,16 @@ static void test_hostile_keys(void **state)
         {"motion: {random: {rms: -1, correlation: 1}}",
          "sonar.motion.random.rms: must be 0...1000 m, not -1"},
         {"motion: {file: nothing.csv}", "there is no file"},
+        {"motion: {yaw: {bias: 1 deg}}", "sonar.motion.yaw.advance: missing"},
+        {"motion: {yaw: {advance: 0}}", "sonar.motion.yaw.advance: must be 0.1...1000 m, not 0"},
+        {"motion: {yaw: {advance: 1 cm}}",
+         "sonar.motion.yaw.advance: must be 0.1...1000 m, not 0.01"},
+        {"motion: {yaw: {advance: 1, bias: -9 deg}}",
+         "sonar.motion.yaw.bias: must be -0.1...0.1 rad, not -0.15"},
+        {"motion: {yaw: {advance: 1, sines: [{amplitude: 1 rad, wavelength: 1}]}}",
+         "sonar.motion.yaw.sines[0].amplitude: must be -0.1...0.1 rad, not 1"},
+        {"motion: {yaw: {advance: 1, random: {rms: 1 deg, correlation: 0}}}",
+         "sonar.motion.yaw.random.correlation: must be 0.1...1e+06 m, not 0"},
     };
     for (size_t i = 0; i < COUNT(cases); i++) {
         struct scene_folder *folder = *state;
@@ -233,6 +246,17 @@ static void test_public_functions(void **state)
     assert_int_equal(sonject_scene_set_motion(scene, &motion), SONJECT_OK);
     assert_int_equal(sonject_scene_set_motion_table(scene, x, y, 4), SONJECT_OK);
     assert_int_equal(sonject_scene_set_motion_table(scene, NULL, NULL, 0), SONJECT_OK);
+    motion.yaw_count = 1;
+    expect_message(context, sonject_scene_set_motion(scene, &motion),
+                   "yaw.advance must be 0.1...1000 m, not 0");
+    motion.yaw_advance_m = 0.5;
+    assert_int_equal(sonject_scene_set_motion(scene, &motion), SONJECT_OK);
+    motion.yaw_count = 9;
+    assert_int_equal(sonject_scene_set_motion(scene, &motion), SONJECT_ERROR_INPUT);
+    expect_message(context, sonject_scene_set_yaw_table(scene, x, y, 4),
+                   "yaw table: sample 1: its yaw must be within +-0.1 rad");
+    assert_int_equal(sonject_scene_set_yaw_table(scene, x, NULL, 4), SONJECT_ERROR_ARGUMENT);
+    assert_int_equal(sonject_scene_set_yaw_table(scene, NULL, NULL, 0), SONJECT_OK);
     sonject_scene_release(&scene);
     sonject_context_release(&context);
 }

@@ -240,10 +240,35 @@ static void test_measured_responses_and_motion_count(void **state)
         for (size_t j = 0; j < COUNT(of_value); j++)
             expect_counted(&scene, &tables[i]->values[3], &of_value[j]);
     }
-    assert_int_equal(aperture_motion_set_table(&scene.motion, &report, positions, values, 4),
-                     SONJECT_OK);
-    hash_of(&scene, NULL, other);
-    assert_string_not_equal(one, other);
+    static const struct member of_yaw[] = {
+        {"amplitude_rad", offsetof(sonject_yaw, amplitude_rad), sizeof(double)},
+        {"wavelength_m", offsetof(sonject_yaw, wavelength_m), sizeof(double)},
+        {"phase_rad", offsetof(sonject_yaw, phase_rad), sizeof(double)},
+    };
+    static const struct member of_yaws[] = {
+        {"yaw_advance_m", offsetof(sonject_motion_params, yaw_advance_m), sizeof(double)},
+        {"yaw_bias_rad", offsetof(sonject_motion_params, yaw_bias_rad), sizeof(double)},
+        {"yaw_random_rms_rad", offsetof(sonject_motion_params, yaw_random_rms_rad), sizeof(double)},
+        {"yaw_random_correlation_m", offsetof(sonject_motion_params, yaw_random_correlation_m),
+         sizeof(double)},
+        {"yaw_seed", offsetof(sonject_motion_params, yaw_seed), sizeof(uint64_t)},
+    };
+    struct motion_table *const motions[] = {&scene.motion.sway_table, &scene.motion.yaw_table};
+    for (size_t i = 0; i < COUNT(motions); i++) {
+        const struct member value = {"a table's value", 0, sizeof(double)};
+        hash_of(&scene, NULL, one);
+        assert_int_equal(motion_table_set(motions[i], &report, positions, values, 4), SONJECT_OK);
+        hash_of(&scene, NULL, other);
+        assert_string_not_equal(one, other);
+        expect_counted(&scene, &motions[i]->along_track_m[3], &value);
+        expect_counted(&scene, &motions[i]->values[3], &value);
+    }
+    for (size_t i = 0; i < COUNT(of_yaws); i++)
+        expect_counted(&scene, &scene.motion.params, &of_yaws[i]);
+    scene.motion.params.yaw_count = SONJECT_YAWS_CAPACITY;
+    for (size_t i = 0; i < SONJECT_YAWS_CAPACITY * COUNT(of_yaw); i++)
+        expect_counted(&scene, &scene.motion.params.yaws[i / COUNT(of_yaw)],
+                       &of_yaw[i % COUNT(of_yaw)]);
     scene.motion.params.sway_count = SONJECT_SWAYS_CAPACITY;
     for (size_t i = 0; i < SONJECT_SWAYS_CAPACITY * COUNT(of_sway); i++)
         expect_counted(&scene, &scene.motion.params.sways[i / COUNT(of_sway)],

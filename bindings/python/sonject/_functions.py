@@ -124,6 +124,10 @@ FUNCTIONS: dict[str, tuple[Any, list[Any]]] = {
         _status,
         [_scene, POINTER(c_double), POINTER(c_double), c_size_t],
     ),
+    "sonject_scene_set_yaw_table": (
+        _status,
+        [_scene, POINTER(c_double), POINTER(c_double), c_size_t],
+    ),
     "sonject_surface_params_init": (None, [POINTER(s.sonject_surface_params)]),
     "sonject_scene_set_surface": (_status, [_scene, POINTER(s.sonject_surface_params)]),
     "sonject_scene_set_medium": (_status, [_scene, POINTER(s.sonject_medium_params)]),

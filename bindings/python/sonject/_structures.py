@@ -23,6 +23,7 @@ from ctypes import (
 NAME_CAPACITY = 64
 CUTS_CAPACITY = 2
 SWAYS_CAPACITY = 8
+YAWS_CAPACITY = 8
 USER_PARAMETERS_CAPACITY = 16
 
 sonject_log_function = CFUNCTYPE(None, c_void_p, c_char_p)
@@ -277,6 +278,14 @@ class sonject_sway(Structure):
     ]
 
 
+class sonject_yaw(Structure):
+    _fields_ = [
+        ("amplitude_rad", c_double),
+        ("wavelength_m", c_double),
+        ("phase_rad", c_double),
+    ]
+
+
 class sonject_motion_params(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
@@ -285,6 +294,14 @@ class sonject_motion_params(Structure):
         ("random_rms_m", c_double),
         ("random_correlation_m", c_double),
         ("seed", c_uint64),
+        ("yaw_advance_m", c_double),
+        ("yaw_bias_rad", c_double),
+        ("yaw_random_rms_rad", c_double),
+        ("yaw_random_correlation_m", c_double),
+        ("yaw_seed", c_uint64),
+        ("yaw_count", c_uint32),
+        ("reserved", c_uint32),
+        ("yaws", sonject_yaw * YAWS_CAPACITY),
     ]
 
 

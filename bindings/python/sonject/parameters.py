@@ -120,10 +120,12 @@ class Pulse(Parameters):
 
 @dataclass(kw_only=True)
 class Motion(Parameters):
-    """Residual motion of a synthetic aperture's sonar: sway, which defocuses.
+    """Residual motion of a synthetic aperture's sonar: sway and yaw, which defocus.
 
     sways: up to 8 sines of amplitude_m, wavelength_m (along-track) and phase_rad, added together;
-    random_rms_m, random_correlation_m: of a Gaussian random sway; seed: of that one.
+    random_rms_m, random_correlation_m: of a Gaussian random sway; seed: of that one. yaw_*, yaws: of
+    an array of hydrophones whose pings are yaw_advance_m apart, in the same way, amplitudes in rad;
+    yaw_bias_rad: of all pings.
     """
 
     _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_motion_params
@@ -132,21 +134,35 @@ class Motion(Parameters):
     random_rms_m: float = library_default()
     random_correlation_m: float = library_default()
     seed: int = library_default()
+    yaw_advance_m: float = library_default()
+    yaw_bias_rad: float = library_default()
+    yaw_random_rms_rad: float = library_default()
+    yaw_random_correlation_m: float = library_default()
+    yaw_seed: int = library_default()
+    yaws: Sequence[tuple[float, float, float]] = ()
 
     def to_structure(self) -> Any:
         values = self._values()
-        sways = [tuple(sway) for sway in values.pop("sways")]
-        if len(sways) > s.SWAYS_CAPACITY:
-            raise ValueError(f"sways must be at most {s.SWAYS_CAPACITY}, not {len(sways)}")
+        sways = list(values.pop("sways"))
+        yaws = list(values.pop("yaws"))
         structure = initialised(self._structure)
-        values["sway_count"] = len(sways)
-        fill(structure, values)
-        for i, sway in enumerate(sways):
-            if len(sway) != 3:
-                raise ValueError("a sway has amplitude_m, wavelength_m and phase_rad")
-            for name, value in zip(("amplitude_m", "wavelength_m", "phase_rad"), sway):
-                setattr(structure.sways[i], name, real_number(name, value))
+        fill(structure, {**values, "sway_count": len(sways), "yaw_count": len(yaws)})
+        _fill_sines("sway", sways, structure.sways, s.sonject_sway)
+        _fill_sines("yaw", yaws, structure.yaws, s.sonject_yaw)
         return structure
+
+
+def _fill_sines(
+    name: str, sines: Sequence[Sequence[float]], room: Any, structure: Type[ctypes.Structure]
+) -> None:
+    if len(sines) > len(room):
+        raise ValueError(f"{name}s must be at most {len(room)}, not {len(sines)}")
+    members = [field[0] for field in structure._fields_]
+    for i, sine in enumerate(sines):
+        if len(sine) != len(members):
+            raise ValueError(f"a {name} has {members[0]}, {members[1]} and {members[2]}")
+        for member, value in zip(members, sine):
+            setattr(room[i], member, real_number(member, value))
 
 
 @dataclass(kw_only=True)

@@ -209,6 +209,13 @@ class Scene(Handle):
         """
         self._set_samples("motion_table", {"along_track_m": along_track_m, "sway_m": sway_m})
 
+    def set_yaw_table(self, along_track_m: Any, yaw_rad: Any) -> None:
+        """Measured residual yaw in the same way, the bow towards the imaged side positive.
+
+        It counts together with the yaw_advance_m of set_motion.
+        """
+        self._set_samples("yaw_table", {"along_track_m": along_track_m, "yaw_rad": yaw_rad})
+
     def set_medium(self, medium: Medium) -> None:
         self._set("medium", medium, Medium)
 

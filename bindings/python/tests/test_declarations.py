@@ -91,6 +91,7 @@ def test_name_capacity_and_version_are_the_headers():
     assert int(numbers["NAME_CAPACITY"]) == _structures.NAME_CAPACITY
     assert int(numbers["CUTS_CAPACITY"]) == _structures.CUTS_CAPACITY
     assert int(numbers["SWAYS_CAPACITY"]) == _structures.SWAYS_CAPACITY
+    assert int(numbers["YAWS_CAPACITY"]) == _structures.YAWS_CAPACITY
     version = tuple(int(numbers["VERSION_" + part]) for part in ("MAJOR", "MINOR", "PATCH"))
     assert version == _library.VERSION
 

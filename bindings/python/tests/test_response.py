@@ -49,6 +49,13 @@ def test_pulse_and_motion_change_the_target(make_scene, amplitude_patch):
     moved.set_motion_table([-10.0, 0.0, 10.0], [0.0, 2e-3, 0.0])
     assert not numpy.array_equal(field(moved, amplitude_patch), plain)
     moved.set_motion_table([], [])
+    moved.set_motion(sonject.Motion(yaw_advance_m=0.4, yaws=[(2e-3, 2.0, 0.0)]))
+    assert not numpy.array_equal(field(moved, amplitude_patch), plain)
+    moved.set_motion(sonject.Motion(yaw_advance_m=0.4))
+    assert numpy.array_equal(field(moved, amplitude_patch), plain)
+    moved.set_yaw_table([-10.0, 10.0], [2e-3, 2e-3])
+    assert not numpy.array_equal(field(moved, amplitude_patch), plain)
+    moved.set_yaw_table([], [])
     distances_m = numpy.arange(-20, 21) * 0.01
     moved.set_cross_range_table(distances_m, numpy.exp(-0.5 * (distances_m / 0.03) ** 2))
     assert not numpy.array_equal(field(moved, amplitude_patch), plain)
@@ -72,3 +79,7 @@ def test_refusals(make_scene):
         scene.set_motion(sonject.Motion(sways=[(0.0, 0.0, 0.0)]))
     with pytest.raises(sonject.SonjectError, match="motion table: sample 1"):
         scene.set_motion_table([0.0, 0.0], [0.0, 0.0])
+    with pytest.raises(sonject.SonjectError, match="yaw table: sample 1: its yaw must be"):
+        scene.set_yaw_table([0.0, 1.0], [0.0, 1.0])
+    with pytest.raises(ValueError, match="yaws must be at most 8, not 9"):
+        scene.set_motion(sonject.Motion(yaws=[(0.0, 1.0, 0.0)] * 9))

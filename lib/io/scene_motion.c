@@ -1,0 +1,218 @@
+/* Residual motion: sway and yaw as sines, at random, or by tables, which are files of text with
+ * named columns. */
+#include <stdlib.h>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "io/number_table.h"
+#include "io/scene_fields.h"
+
+#define TABLE_BYTES_MAX (16 * 1024 * 1024)
+
+/* Checks one sine, in a motion that has no other. */
+static sonject_status check_sine(struct reader *reader, const struct tree_node *node,
+                                 const sonject_motion_params *motion)
+{
+    struct report report = {{0}, NULL, NULL};
+    const char *key = "";
+    if (check_motion(motion, &report, &key) != SONJECT_OK)
+        return place_check(reader, node, key, &report);
+    return SONJECT_OK;
+}
+
+static sonject_status finish_sway(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    sonject_motion_params motion;
+    sonject_motion_params_init(&motion);
+    motion.sways[0] = *(const sonject_sway *)structure;
+    motion.sway_count = 1;
+    return check_sine(reader, node, &motion);
+}
+
+static sonject_status finish_yaw(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    sonject_motion_params motion;
+    sonject_motion_params_init(&motion);
+    motion.yaws[0] = *(const sonject_yaw *)structure;
+    motion.yaw_count = 1;
+    motion.yaw_advance_m = 1.0;
+    return check_sine(reader, node, &motion);
+}
+
+#define STRUCTURE sonject_sway
+static const struct field sway_fields[] = {
+    {"amplitude", "of the sine", QUANTITY(STRUCTURE, amplitude_m, QUANTITY_LENGTH), REQUIRED},
+    {"wavelength", "of the sine, along-track", QUANTITY(STRUCTURE, wavelength_m, QUANTITY_LENGTH),
+     REQUIRED},
+    {"phase", "of the sine at along-track 0", QUANTITY(STRUCTURE, phase_rad, QUANTITY_ANGLE)},
+};
+static const struct section sway_section = {sway_fields, COUNT(sway_fields), finish_sway};
+#undef STRUCTURE
+
+#define STRUCTURE sonject_yaw
+static const struct field yaw_sine_fields[] = {
+    {"amplitude", "of the sine", QUANTITY(STRUCTURE, amplitude_rad, QUANTITY_ANGLE), REQUIRED},
+    {"wavelength", "of the sine, along-track", QUANTITY(STRUCTURE, wavelength_m, QUANTITY_LENGTH),
+     REQUIRED},
+    {"phase", "of the sine at along-track 0", QUANTITY(STRUCTURE, phase_rad, QUANTITY_ANGLE)},
+};
+static const struct section yaw_sine_section = {yaw_sine_fields, COUNT(yaw_sine_fields),
+                                                finish_yaw};
+#undef STRUCTURE
+
+typedef char yaws_are_as_many_as_sways[SONJECT_YAWS_CAPACITY == SONJECT_SWAYS_CAPACITY ? 1 : -1];
+
+/* A list of sines; each section's structure is one of `size` bytes from `sines` on. */
+static sonject_status read_sines(struct reader *reader, const struct tree_node *node,
+                                 const struct section *section, void *sines, size_t size,
+                                 uint32_t *count)
+{
+    const size_t most = SONJECT_SWAYS_CAPACITY;
+    sonject_status status = SONJECT_OK;
+    if (node->kind != TREE_LIST)
+        return refuse_value(reader, node, "must be a list; start each sine with '- '");
+    if (node->count > most)
+        return refuse_value(reader, node, "has %zu entries; at most %zu are possible", node->count,
+                            most);
+    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
+        const size_t before = key_path_add_index(&reader->path, i);
+        status = read_section(reader, section, &node->entries[i].value, (char *)sines + i * size);
+        if (status == SONJECT_OK)
+            *count = (uint32_t)i + 1;
+        key_path_shorten(&reader->path, before);
+    }
+    return status;
+}
+
+static sonject_status read_sways(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    sonject_motion_params *motion = structure;
+    return read_sines(reader, node, &sway_section, motion->sways, sizeof *motion->sways,
+                      &motion->sway_count);
+}
+
+static sonject_status read_yaws(struct reader *reader, const struct tree_node *node,
+                                void *structure)
+{
+    sonject_motion_params *motion = structure;
+    return read_sines(reader, node, &yaw_sine_section, motion->yaws, sizeof *motion->yaws,
+                      &motion->yaw_count);
+}
+
+static sonject_status read_motion_table(struct reader *reader, const struct tree_node *node,
+                                        enum motion_kind kind, const struct table_format *format,
+                                        struct motion_table *motion)
+{
+    struct number_table table;
+    char *path = NULL;
+    char excerpt[400];
+    size_t sample;
+    const char *what;
+    sonject_status status = read_path(reader, node, &path);
+    if (status == SONJECT_OK && !file_exists(path))
+        status = refuse_value(reader, node, "there is no file %s; check its name",
+                              text_excerpt(excerpt, sizeof excerpt, path));
+    if (status == SONJECT_OK)
+        status = number_table_read(reader->report, path, format, &table);
+    free(path);
+    if (status != SONJECT_OK)
+        return status;
+    if (!motion_samples_are_good(kind, table.values[0], table.values[2], table.count, &sample,
+                                 &what))
+        status = number_table_refuse(&table, reader->report, sample, 0, what);
+    else
+        status =
+            motion_table_set(motion, reader->report, table.values[0], table.values[2], table.count);
+    number_table_clear(&table);
+    return status;
+}
+
+static sonject_status read_sway_file(struct reader *reader, const struct tree_node *node,
+                                     void *structure)
+{
+    static const struct table_format format = {
+        {"along_track_m", NULL, "sway_m", NULL}, 1, MOTION_SAMPLES_MAX, TABLE_BYTES_MAX};
+    (void)structure;
+    return read_motion_table(reader, node, MOTION_SWAY, &format, &reader->scene->motion.sway_table);
+}
+
+static sonject_status read_yaw_file(struct reader *reader, const struct tree_node *node,
+                                    void *structure)
+{
+    static const struct table_format format = {
+        {"along_track_m", NULL, "yaw_rad", NULL}, 1, MOTION_SAMPLES_MAX, TABLE_BYTES_MAX};
+    (void)structure;
+    return read_motion_table(reader, node, MOTION_YAW, &format, &reader->scene->motion.yaw_table);
+}
+
+static sonject_status finish_motion(struct reader *reader, const struct tree_node *node,
+                                    void *structure)
+{
+    struct report report = {{0}, NULL, NULL};
+    const char *key = "";
+    if (check_motion(structure, &report, &key) != SONJECT_OK)
+        return place_check(reader, node, key, &report);
+    return SONJECT_OK;
+}
+
+/* An advance of 0, which would mean that there is no yaw. */
+static sonject_status finish_yaws(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    const sonject_motion_params *motion = structure;
+    if (motion->yaw_advance_m == 0.0)
+        return refuse_key(reader, node, "advance", "must be 0.1...1000 m, not 0");
+    return SONJECT_OK;
+}
+
+#define STRUCTURE sonject_motion_params
+static const struct field random_fields[] = {
+    {"rms", "of the sway", QUANTITY(STRUCTURE, random_rms_m, QUANTITY_LENGTH), REQUIRED},
+    {"correlation", "length, along-track",
+     QUANTITY(STRUCTURE, random_correlation_m, QUANTITY_LENGTH), REQUIRED},
+    {"seed", "of the random sway", COUNT64(STRUCTURE, seed, UINT64_MAX)},
+};
+static const struct section random_section = {random_fields, COUNT(random_fields), NULL};
+
+static const struct field random_yaw_fields[] = {
+    {"rms", "of the yaw", QUANTITY(STRUCTURE, yaw_random_rms_rad, QUANTITY_ANGLE), REQUIRED},
+    {"correlation", "length, along-track",
+     QUANTITY(STRUCTURE, yaw_random_correlation_m, QUANTITY_LENGTH), REQUIRED},
+    {"seed", "of the random yaw", COUNT64(STRUCTURE, yaw_seed, UINT64_MAX)},
+};
+static const struct section random_yaw_section = {random_yaw_fields, COUNT(random_yaw_fields),
+                                                  NULL};
+
+static const struct field yaw_fields[] = {
+    {"advance", "from ping to ping: what a ping's phase centres fill, half the array",
+     QUANTITY(STRUCTURE, yaw_advance_m, QUANTITY_LENGTH), REQUIRED},
+    {"bias", "of all pings, bow towards the imaged side",
+     QUANTITY(STRUCTURE, yaw_bias_rad, QUANTITY_ANGLE)},
+    {"sines", "list of them", .kind = FIELD_SPECIAL, .section = &yaw_sine_section, .is_list = true,
+     .read = read_yaws},
+    {"random", "yaw of Gaussian autocorrelation", SAME(random_yaw_section)},
+    {"file", "table with columns along_track_m and yaw_rad", .kind = FIELD_SPECIAL,
+     .read = read_yaw_file, .unit = "file name"},
+};
+static const struct section yaw_section = {yaw_fields, COUNT(yaw_fields), finish_yaws};
+
+static const struct field motion_fields[] = {
+    {"sway", "list of sines, across the track", .kind = FIELD_SPECIAL, .section = &sway_section,
+     .is_list = true, .read = read_sways},
+    {"random", "sway of Gaussian autocorrelation", SAME(random_section)},
+    {"file", "table with columns along_track_m and sway_m", .kind = FIELD_SPECIAL,
+     .read = read_sway_file, .unit = "file name"},
+    {"yaw", "of an array of hydrophones, whose heading the processor does not know",
+     SAME(yaw_section)},
+};
+const struct section motion_section = {motion_fields, COUNT(motion_fields), finish_motion};
+#undef STRUCTURE
+
+sonject_status read_motion(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    (void)structure;
+    return read_section(reader, &motion_section, node, &reader->scene->motion.params);
+}
