@@ -2,7 +2,6 @@
 #include "api/stint_tracing.h"
 
 #include "base/clock.h"
-#include "base/file.h"
 #include "inject/traced_impulses.h"
 
 #define CHECKPOINT_S 60.0
@@ -52,8 +51,7 @@ static sonject_status keep_stint(struct tracing *tracing)
     const struct stint *stint = &tracing->stint;
     if (stint->next == stint->first && stint->next < stint->strips)
         return SONJECT_OK;
-    const sonject_status status = folder_make(tracing->report, tracing->folder);
-    return status == SONJECT_OK ? stint_publish(&tracing->stint) : status;
+    return stint_publish(&tracing->stint);
 }
 
 /* After a stint: publishes it where tracing was cut short or is a shard's; CANCELLED where the call

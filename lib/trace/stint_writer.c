@@ -52,6 +52,9 @@ static char *name_in(const struct stint_writer *writer, const char *rest)
 static sonject_status spill(struct stint_writer *writer)
 {
     if (!writer->file) {
+        const sonject_status made = folder_make(writer->report, writer->folder);
+        if (made != SONJECT_OK)
+            return made;
         char *name = name_in(writer, "");
         writer->private_name = name ? file_part_name(name) : NULL;
         free(name);
