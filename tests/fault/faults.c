@@ -8,6 +8,9 @@ static bool is_armed, does_stay;
 static long due, calls, blocks, objects;
 static int chosen_error;
 
+static __thread bool arms_libraries;
+static __thread int looks_away;
+
 void fault_arm(enum fault_kind kind, long n, bool stays, int error)
 {
     pthread_mutex_lock(&lock);
@@ -18,10 +21,12 @@ void fault_arm(enum fault_kind kind, long n, bool stays, int error)
     calls = 0;
     chosen_error = error;
     pthread_mutex_unlock(&lock);
+    arms_libraries = kind == FAULT_LIBRARIES;
 }
 
 long fault_disarm(void)
 {
+    arms_libraries = false;
     pthread_mutex_lock(&lock);
     const long count = calls;
     is_armed = false;
@@ -39,6 +44,21 @@ bool fault_is_due(enum fault_kind kind, int *error)
     *error = chosen_error;
     pthread_mutex_unlock(&lock);
     return is_due;
+}
+
+void fault_look_away(void)
+{
+    looks_away++;
+}
+
+void fault_look_again(void)
+{
+    looks_away--;
+}
+
+bool fault_is_watched(void)
+{
+    return arms_libraries && looks_away == 0;
 }
 
 static long read_count(const long *count)

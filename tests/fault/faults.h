@@ -6,9 +6,10 @@
 #include <stdbool.h>
 
 enum fault_kind {
-    FAULT_MEMORY, /* allocations */
-    FAULT_OPENCL, /* calls of OpenCL other than releases */
-    FAULT_FILE    /* calls that make, write, flush, close or rename files */
+    FAULT_MEMORY,   /* allocations */
+    FAULT_OPENCL,   /* calls of OpenCL other than releases */
+    FAULT_FILE,     /* calls that make, write, flush, close or rename files */
+    FAULT_LIBRARIES /* allocations of the libraries below, in the thread that arms them */
 };
 
 /* Counts calls of that kind from 0 on, of which number n (1: the next) fails, and where `stays`
@@ -20,6 +21,13 @@ long fault_disarm(void);
 
 /* Whether this call fails; *error gets the chosen error. For the calls' own wrappers. */
 bool fault_is_due(enum fault_kind kind, int *error);
+
+/* Around what is not a library's own doing: within, its allocations count as nobody's. */
+void fault_look_away(void);
+void fault_look_again(void);
+
+/* Whether this thread armed FAULT_LIBRARIES and is not within what is looked away from. */
+bool fault_is_watched(void);
 
 /* Blocks of memory that are held, and OpenCL objects. */
 long fault_blocks(void);

@@ -33,19 +33,27 @@ static void *counted(void *block)
 
 void *__wrap_malloc(size_t bytes)
 {
-    return is_out_of_memory() ? NULL : counted(__real_malloc(bytes));
+    fault_look_away();
+    void *block = is_out_of_memory() ? NULL : counted(__real_malloc(bytes));
+    fault_look_again();
+    return block;
 }
 
 void *__wrap_calloc(size_t count, size_t bytes)
 {
-    return is_out_of_memory() ? NULL : counted(__real_calloc(count, bytes));
+    fault_look_away();
+    void *block = is_out_of_memory() ? NULL : counted(__real_calloc(count, bytes));
+    fault_look_again();
+    return block;
 }
 
 void *__wrap_realloc(void *block, size_t bytes)
 {
     if (is_out_of_memory())
         return NULL;
+    fault_look_away();
     void *larger = __real_realloc(block, bytes);
+    fault_look_again();
     return block ? larger : counted(larger);
 }
 

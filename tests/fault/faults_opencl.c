@@ -12,7 +12,12 @@
     cl_int __wrap_##name parameters                                                                \
     {                                                                                              \
         int error;                                                                                 \
-        return fault_is_due(FAULT_OPENCL, &error) ? error : __real_##name arguments;               \
+        if (fault_is_due(FAULT_OPENCL, &error))                                                    \
+            return error;                                                                          \
+        fault_look_away();                                                                         \
+        const cl_int done = __real_##name arguments;                                               \
+        fault_look_again();                                                                        \
+        return done;                                                                               \
     }
 
 /* A call that makes an object; its last parameter is `cl_int *answer`. */
@@ -26,7 +31,9 @@
             *answer = error;                                                                       \
             return NULL;                                                                           \
         }                                                                                          \
+        fault_look_away();                                                                         \
         type object = __real_##name arguments;                                                     \
+        fault_look_again();                                                                        \
         if (object)                                                                                \
             fault_count_object(1);                                                                 \
         return object;                                                                             \
@@ -39,7 +46,10 @@
     cl_int __wrap_##name(type object)                                                              \
     {                                                                                              \
         fault_count_object(-1);                                                                    \
-        return __real_##name(object);                                                              \
+        fault_look_away();                                                                         \
+        const cl_int done = __real_##name(object);                                                 \
+        fault_look_again();                                                                        \
+        return done;                                                                               \
     }
 
 ANSWERS(clGetPlatformIDs, (cl_uint room, cl_platform_id *platforms, cl_uint *count),
@@ -128,5 +138,9 @@ cl_int __wrap_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem buffer, voi
                                       cl_uint count, const cl_event *before, cl_event *event)
 {
     fault_count_object(-1);
-    return __real_clEnqueueUnmapMemObject(queue, buffer, contents, count, before, event);
+    fault_look_away();
+    const cl_int done =
+        __real_clEnqueueUnmapMemObject(queue, buffer, contents, count, before, event);
+    fault_look_again();
+    return done;
 }

@@ -1,5 +1,6 @@
-/* The n-th call fails, of those that the library makes for memory, of OpenCL, or of files: a status
- * and a message, nothing held, no file that is not whole, and the next call works.
+/* The n-th call fails, of those that the library makes for memory, of OpenCL, or of files, or that
+ * libraries under it make for memory: a status and a message, nothing held, no file that is not
+ * whole, and the next call works.
  *
  * SONJECT_FAULT_POINTS: how many n are tried of each piece of work (0: all). KIND: the calls. */
 #define _POSIX_C_SOURCE 200809L
@@ -41,8 +42,9 @@ static bool is_right_status(sonject_status status)
         return status == SONJECT_ERROR_MEMORY;
     case FAULT_OPENCL:
         return status == SONJECT_ERROR_DEVICE || status == SONJECT_ERROR_MEMORY;
-    default: /* where an input cannot be opened, INPUT */
-        return status == SONJECT_ERROR_STORAGE || status == SONJECT_ERROR_INPUT;
+    default: /* where an input cannot be opened or read, INPUT */
+        return status == SONJECT_ERROR_STORAGE || status == SONJECT_ERROR_INPUT ||
+               (KIND == FAULT_LIBRARIES && status == SONJECT_ERROR_MEMORY);
     }
 }
 
@@ -170,6 +172,8 @@ static void test_forming(void **state)
 }
 #endif
 
+/* Without memory OpenImageIO 2.4 ends the process (where functions that may not throw do), and HDF5
+ * 1.10 loses what all its later calls need: what uses them is left out where libraries lack it. */
 int main(void)
 {
     const struct CMUnitTest with_device[] = {
@@ -187,7 +191,14 @@ int main(void)
         cmocka_unit_test(test_measuring),       cmocka_unit_test(test_drawing),
         cmocka_unit_test(test_making_a_seabed),
     };
+    const struct CMUnitTest without_files[] = {
+        cmocka_unit_test(test_injecting),
+        cmocka_unit_test(test_reading_a_scene),
+        cmocka_unit_test(test_checking),
+    };
     fault_take_jansson();
+    if (KIND == FAULT_LIBRARIES)
+        return cmocka_run_group_tests(without_files, work_prepare, work_remove);
     int failed = cmocka_run_group_tests(with_device, work_prepare, work_remove);
     if (KIND != FAULT_OPENCL)
         failed += cmocka_run_group_tests(without_device, work_prepare, work_remove);

@@ -4,6 +4,7 @@ import hashlib
 import os
 import random
 import resource
+import shutil
 import subprocess
 import time
 
@@ -20,7 +21,8 @@ WITHOUT_RIGHTS = ["setpriv", "--bounding-set=-dac_override,-dac_read_search", "-
 
 def digests(folder):
     """Of each file by its name; run.json tells times, so that only its presence counts."""
-    files = {path.name: path.read_bytes() for path in folder.iterdir()} if folder.is_dir() else {}
+    paths = [path for path in folder.iterdir() if path.is_file()] if folder.is_dir() else []
+    files = {path.name: path.read_bytes() for path in paths}
     return {
         name: "" if name == "run.json" else hashlib.sha256(content).hexdigest()
         for name, content in files.items()
@@ -41,10 +43,14 @@ def reference(sonject, scene, tmp_path):
     return digests(tmp_path / "reference"), time.monotonic() - start
 
 
-def begin(scene, folder, tmp_path, environment):
+def start(arguments, tmp_path, environment):
     return subprocess.Popen(
-        [COMMAND, "run", str(scene), "-o", folder], cwd=tmp_path, env=environment,
+        [COMMAND, *map(str, arguments)], cwd=tmp_path, env=environment,
         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+
+def begin(scene, folder, tmp_path, environment):
+    return start(["run", scene, "-o", folder], tmp_path, environment)
 
 
 def test_killed_at_any_moment(reference, scene, tmp_path, environment, sonject):
@@ -65,6 +71,25 @@ def test_killed_at_any_moment(reference, scene, tmp_path, environment, sonject):
             (tmp_path / "result").rename(tmp_path / f"finished{finished}")
     assert sonject("run", scene, "-o", "result").returncode == 0
     assert finals(tmp_path / "result") == expected
+
+
+def test_a_merge_killed_at_any_moment(reference, scene, tmp_path, environment, sonject):
+    """Before it is done the parts are there, and after it the result."""
+    expected, duration = reference
+    for part in ("1/2", "2/2"):
+        assert sonject("run", scene, "-o", "parts", "--shard", part).returncode == 0
+    moments = random.Random(20240503)
+    for number in range(KILLS // 2):
+        folder = tmp_path / f"merged{number}"
+        shutil.copytree(tmp_path / "parts", folder)
+        process = start(["merge", folder], tmp_path, environment)
+        time.sleep(duration * (0.5 * moments.random() + 0.5 * (number % 2)))
+        process.kill()
+        process.communicate()
+        assert finals(folder).items() <= expected.items()
+        answer = sonject("merge", folder)
+        assert answer.returncode == 0, answer.stderr
+        assert finals(folder) == expected
 
 
 def test_two_at_once_in_one_folder(reference, scene, tmp_path, environment):

@@ -58,10 +58,30 @@ static void expect_case(struct scene_folder *folder, const struct key_case *key)
     expect_arrived(key, structure_of(&folder->scene, key->path));
 }
 
+/* A value that the key's place holds anyway would show nothing. */
+static void expect_not_the_default(struct scene_folder *folder, const struct key_case *key)
+{
+    const char *name = strrchr(key->path, '.');
+    if (key->type == TYPE_NOTHING || key->type == TYPE_TEXT || key->type == TYPE_PATH)
+        return;
+    if (name && (strcmp(name, ".position") == 0 || strcmp(name, ".level") == 0))
+        return; /* the only word for it is the default; its keys have cases of their own */
+    write_scene(folder, key->base, strlen(key->base));
+    scene_clear(&folder->scene);
+    if (scene_file_read_with(&folder->report, folder->file, &key->other, key->other != NULL, true,
+                             &folder->scene) != SONJECT_OK)
+        return; /* the section cannot do without the key */
+    const void *structure = structure_of(&folder->scene, key->path);
+    if (structure && number_at(structure, key) == key->number)
+        fail_msg("%s: %s is there without the key, too", key->path, key->value);
+}
+
 static void test_every_key_arrives(void **state)
 {
-    for (size_t i = 0; i < COUNT(cases); i++)
+    for (size_t i = 0; i < COUNT(cases); i++) {
         expect_case(*state, &cases[i]);
+        expect_not_the_default(*state, &cases[i]);
+    }
 }
 
 /* So that a key cannot be added to the tables without a case above. */
