@@ -72,7 +72,9 @@ def test_the_wheel_holds_package_and_library(core):
         pytest.skip("SONJECT_READERS does not name a Python that has meson-python")
     with zipfile.ZipFile(core[1]) as wheel:
         names = {name for name in wheel.namelist() if ".dist-info/" not in name}
-    sources = {f"sonject/{path.name}" for path in PACKAGE.iterdir() if path.is_file()}
+    sources = {f"sonject/{path.relative_to(PACKAGE)}" for path in PACKAGE.rglob("*")
+               if path.is_file() and "__pycache__" not in path.parts}
+    assert {"sonject/_structures/__init__.py", "sonject/py.typed"} <= sources
     assert names == sources | {"sonject/libsonject.so"}
 
 

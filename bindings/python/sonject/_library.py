@@ -12,7 +12,7 @@ from typing import Iterator
 
 from ._functions import declare
 
-# Of the headers that _structures.py and _functions.py mirror.
+# Of the headers that _structures and _functions.py mirror.
 VERSION = (0, 1, 0)
 
 

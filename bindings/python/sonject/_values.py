@@ -7,7 +7,7 @@ import enum
 import numbers
 import operator
 import os
-from typing import Any, Iterable, Mapping, Optional, Type, TypeVar, Union
+from typing import Any, Iterable, Mapping, Optional, Tuple, Type, TypeVar, Union
 
 import numpy
 
@@ -64,13 +64,20 @@ def choice(name: str, kind: Type[AnyEnum], value: Any) -> AnyEnum:
     raise ValueError(f"{name} must be one of {names}, not {value!r}")
 
 
-def short_text(name: str, value: Any, capacity: int) -> bytes:
-    """value in UTF-8 with room for the terminator."""
+def plain_text(name: str, value: Any) -> bytes:
+    """value in UTF-8; a NUL would end it early."""
     if not isinstance(value, str):
         raise TypeError(f"{name} must be a text, not {value!r}")
-    encoded = value.encode("utf-8")
-    if len(encoded) >= capacity or b"\0" in encoded:
-        raise ValueError(f"{name} must have at most {capacity - 1} bytes and no NUL: {value!r}")
+    if "\0" in value:
+        raise ValueError(f"{name} contains a NUL: {value!r}")
+    return value.encode("utf-8")
+
+
+def short_text(name: str, value: Any, capacity: int) -> bytes:
+    """value in UTF-8 with room for the terminator."""
+    encoded = plain_text(name, value)
+    if len(encoded) >= capacity:
+        raise ValueError(f"{name} must have at most {capacity - 1} bytes: {value!r}")
     return encoded
 
 
@@ -87,6 +94,13 @@ def file_name(name: str, value: Any) -> bytes:
 
 def optional_file_name(name: str, value: Any) -> Optional[bytes]:
     return None if value is None else file_name(name, value)
+
+
+def set_shard(params: Any, shard: Tuple[int, int]) -> None:
+    """shard (i, K) into the structure; whether i is one of K is the library's to say."""
+    index, count = shard
+    params.shard_index = whole_number("shard", index, 2**32 - 1)
+    params.shard_count = whole_number("shard", count, 2**32 - 1)
 
 
 def initialised(kind: Type[AnyStructure]) -> AnyStructure:

@@ -18,7 +18,9 @@ from ._values import (
     file_name,
     initialised,
     override_texts,
+    plain_text,
     real_number,
+    set_shard,
     sized,
     whole_number,
 )
@@ -64,6 +66,12 @@ def inject(patch: Any, scene: Scene, progress: Optional[Progress] = None) -> Res
     return Result(context, pointer, count)
 
 
+def _context_of(scene: Optional[Scene], context: Optional[Context]) -> Context:
+    if scene is not None:
+        return scene.context
+    return default_context() if context is None else context
+
+
 def _label_sum(labels: Iterable[Union[str, LabelFormat]]) -> int:
     if isinstance(labels, str):
         raise TypeError("labels must be a sequence of formats, such as ['yolo', 'voc']")
@@ -93,24 +101,12 @@ def run(
     params.folder = file_name("folder", folder)
     params.labels = _label_sum(labels)
     if shard is not None:
-        index, count = shard
-        params.shard_index = whole_number("shard", index, 0xFFFFFFFF)
-        params.shard_count = whole_number("shard", count, 0xFFFFFFFF)
+        set_shard(params, shard)
     params.exit_after_s = real_number("exit_after_s", exit_after_s)
     params.checkpoint_s = real_number("checkpoint_s", checkpoint_s)
-    bridge = ProgressBridge(progress)
-    was_finished = ctypes.c_int()
-    context.call(
-        "sonject_run",
-        context,
-        scene,
-        ctypes.byref(params),
-        bridge.callback,
-        None,
-        ctypes.byref(was_finished),
-        bridge=bridge,
+    return context.complete(
+        "sonject_run", context, scene, ctypes.byref(params), progress=progress
     )
-    return not was_finished.value
 
 
 def merge(
@@ -118,34 +114,23 @@ def merge(
     scene: Optional[Scene] = None,
     progress: Optional[Progress] = None,
     context: Optional[Context] = None,
-    allow_user_shapes: bool = False,
+    allows_user_shapes: bool = False,
     labels: Iterable[Union[str, LabelFormat]] = (),
 ) -> bool:
     """Makes the result of all shards in folder, as run would have without shards.
 
-    scene: where it was traced from no scene file; else the shards know their scene.
+    scene: where it was traced from no scene file; else the shards know their scene;
+    allows_user_shapes: as of Scene.read; labels: as of run.
     False, with nothing done, if folder already held the finished result.
     """
-    if scene is not None:
-        context = scene.context
-    context = default_context() if context is None else context
+    context = _context_of(scene, context)
     params = initialised(s.sonject_merge_params)
     params.folder = file_name("folder", folder)
-    params.allows_user_shapes = bool(allow_user_shapes)
+    params.allows_user_shapes = int(bool(allows_user_shapes))
     params.labels = _label_sum(labels)
-    bridge = ProgressBridge(progress)
-    was_finished = ctypes.c_int()
-    context.call(
-        "sonject_merge",
-        context,
-        scene,
-        ctypes.byref(params),
-        bridge.callback,
-        None,
-        ctypes.byref(was_finished),
-        bridge=bridge,
+    return context.complete(
+        "sonject_merge", context, scene, ctypes.byref(params), progress=progress
     )
-    return not was_finished.value
 
 
 def trace(scene: Scene, file: PathLike, progress: Optional[Progress] = None) -> None:
@@ -153,16 +138,7 @@ def trace(scene: Scene, file: PathLike, progress: Optional[Progress] = None) -> 
     context = scene.context
     params = initialised(s.sonject_trace_params)
     params.file = file_name("file", file)
-    bridge = ProgressBridge(progress)
-    context.call(
-        "sonject_trace",
-        context,
-        scene,
-        ctypes.byref(params),
-        bridge.callback,
-        None,
-        bridge=bridge,
-    )
+    context.work("sonject_trace", context, scene, ctypes.byref(params), progress=progress)
 
 
 def form(
@@ -183,9 +159,7 @@ def form(
     allows_user_shapes: as of Scene.read; labels: as of run.
     False, with nothing done, if folder already held the finished result of the same inputs.
     """
-    if scene is not None:
-        context = scene.context
-    context = default_context() if context is None else context
+    context = _context_of(scene, context)
     texts = override_texts(overrides)
     array = (ctypes.c_char_p * len(texts))(*texts)
     params = initialised(s.sonject_form_params)
@@ -195,19 +169,9 @@ def form(
     params.override_count = len(texts)
     params.allows_user_shapes = int(bool(allows_user_shapes))
     params.labels = _label_sum(labels)
-    bridge = ProgressBridge(progress)
-    was_finished = ctypes.c_int()
-    context.call(
-        "sonject_form",
-        context,
-        scene,
-        ctypes.byref(params),
-        bridge.callback,
-        None,
-        ctypes.byref(was_finished),
-        bridge=bridge,
+    return context.complete(
+        "sonject_form", context, scene, ctypes.byref(params), progress=progress
     )
-    return not was_finished.value
 
 
 def check(scene: Scene) -> str:
@@ -288,7 +252,7 @@ def convert(
         params.into = file_name("into", into)
     params.channel = Recording(source, channel).number()
     if array is not None:
-        params.array = array.encode()
+        params.array = plain_text("array", array)
     params.magnitude = bool(magnitude)
     params.samples = choice("samples", Samples, samples)
     params.scale = real_number("scale", scale)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import ctypes
+import operator
+import os
 from dataclasses import dataclass
-from typing import Iterator, Optional, Tuple
+from typing import Any, Iterator, Optional, Tuple
 
 from . import _structures as s
 from ._callbacks import Progress, ProgressBridge, text
@@ -16,6 +18,7 @@ from ._values import (
     initialised,
     override_texts,
     real_number,
+    set_shard,
     sized,
 )
 from .context import Context, default_context
@@ -48,7 +51,9 @@ class Campaign(Handle):
 
     As a sequence it makes images in memory, without files: campaign[17] is the Result of image 17,
     the same however often and in whatever order it is asked for, so that
-    ``for result in campaign`` or a loader with workers of its own can train on it.
+    ``for result in campaign`` or a loader with workers of its own can train on it: the workers are
+    threads, or processes that are spawned and not forked, for which it can be pickled: they read
+    the file again.
 
     overrides: as of Scene.read, but of the campaign's keys: ``{"images": 100}``.
     """
@@ -78,6 +83,14 @@ class Campaign(Handle):
             ctypes.byref(params),
         )
         super().__init__(context, pointer)
+        self._source = (
+            os.path.abspath(os.fsdecode(path)),
+            [os.fsdecode(text) for text in texts],
+            bool(allows_user_shapes),
+        )
+
+    def __reduce__(self) -> Any:
+        return _read_again, self._source
 
     def __len__(self) -> int:
         count = ctypes.c_uint64()
@@ -86,9 +99,10 @@ class Campaign(Handle):
 
     def _id(self, number: int) -> int:
         count = len(self)
-        if not -count <= number < count:
-            raise IndexError(f"there is no image {number}: the campaign has {count}")
-        return number % count
+        index = operator.index(number)
+        if not -count <= index < count:
+            raise IndexError(f"there is no image {index}: the campaign has {count}")
+        return index % count
 
     def describe(self, number: int) -> CampaignImage:
         """What is drawn for an image."""
@@ -155,24 +169,18 @@ class Campaign(Handle):
         """
         params = initialised(s.sonject_campaign_run_params)
         params.folder = file_name("folder", folder)
-        params.shard_index, params.shard_count = shard
+        set_shard(params, shard)
         if only is not None:
             params.only_one = 1
             params.only = self._id(only)
         params.exit_after_s = real_number("exit_after_s", exit_after_s)
-        bridge = ProgressBridge(progress)
-        was_finished = ctypes.c_int()
-        self._context.call(
-            "sonject_campaign_run",
-            self._context,
-            self,
-            ctypes.byref(params),
-            bridge.callback,
-            None,
-            ctypes.byref(was_finished),
-            bridge=bridge,
+        return self._context.complete(
+            "sonject_campaign_run", self._context, self, ctypes.byref(params), progress=progress
         )
-        return not was_finished.value
+
+
+def _read_again(path: str, overrides: list[str], allows_user_shapes: bool) -> Campaign:
+    return Campaign(path, overrides, allows_user_shapes=allows_user_shapes)
 
 
 def merge_campaign(
@@ -183,12 +191,4 @@ def merge_campaign(
     Raises SonjectError, which names what is missing.
     """
     context = default_context() if context is None else context
-    bridge = ProgressBridge(progress)
-    context.call(
-        "sonject_campaign_merge",
-        context,
-        file_name("folder", folder),
-        bridge.callback,
-        None,
-        bridge=bridge,
-    )
+    context.work("sonject_campaign_merge", context, file_name("folder", folder), progress=progress)

@@ -9,10 +9,10 @@ import os
 import threading
 import weakref
 from dataclasses import dataclass
-from typing import Any, Callable, Iterator, Optional, Type
+from typing import Any, Callable, Iterator, Optional, Sequence, Type
 
 from . import _structures as s
-from ._callbacks import LogBridge, ProgressBridge, text
+from ._callbacks import LogBridge, Progress, ProgressBridge, text
 from ._handle import Handle
 from ._library import load
 from ._values import PathLike, initialised, optional_file_name
@@ -144,6 +144,23 @@ class Context:
             raise Cancelled(Status.CANCELLED, message)
         if status != Status.OK:
             raise SonjectError(Status(status), message)
+
+    def work(
+        self,
+        name: str,
+        *arguments: Any,
+        progress: Optional[Progress],
+        outputs: Sequence[Any] = (),
+    ) -> None:
+        """Calls a function that takes a progress callback behind its arguments, outputs last."""
+        bridge = ProgressBridge(progress)
+        self.call(name, *arguments, bridge.callback, None, *outputs, bridge=bridge)
+
+    def complete(self, name: str, *arguments: Any, progress: Optional[Progress]) -> bool:
+        """Work that may have been finished before; whether there was anything to do."""
+        was_finished = ctypes.c_int()
+        self.work(name, *arguments, progress=progress, outputs=[ctypes.byref(was_finished)])
+        return not was_finished.value
 
     def make(
         self,

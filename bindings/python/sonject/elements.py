@@ -9,7 +9,7 @@ from typing import Any, Optional
 import numpy
 
 from . import _structures as s
-from ._callbacks import Progress, ProgressBridge
+from ._callbacks import Progress
 from ._elements import Elements
 from ._pixels import library_pixels
 from ._values import PathLike, file_name, initialised, sized, whole_number
@@ -89,8 +89,8 @@ def element_layout(scene: Scene, shape: tuple[int, int] = (0, 0)) -> ElementLayo
 def element_series(patch: Any, scene: Scene, progress: Optional[Progress] = None) -> Array:
     """What each hydrophone of the scene's array hears: pings x hydrophones x samples.
 
-    complex64, or float32 in pass band; relative to the source's pressure at 1 m. Heard is what
-    inject draws: targets and, where it resynthesises, the seabed; in composite mode the seabed is
+    complex64, or float32 in pass band; over the source's pressure at 1 m, or in Pa where the array
+    has a source_level_db. Heard is what inject draws: targets and, where it resynthesises, the seabed; in composite mode the seabed is
     the measured patch, which has no element data. patch, progress, and what is raised: as for
     inject.
     """
@@ -101,17 +101,13 @@ def element_series(patch: Any, scene: Scene, progress: Optional[Progress] = None
     layout = _find_layout(scene, *((0, 0) if array is None else array.shape))
     is_complex = layout.elements.form == SeriesForm.BASEBAND
     series = numpy.empty(layout.shape, numpy.complex64 if is_complex else numpy.float32)
-    bridge = ProgressBridge(progress)
-    scene.context.call(
+    scene.context.work(
         "sonject_element_series",
         scene.context,
         scene,
         None if pixels is None else ctypes.byref(pixels),
-        bridge.callback,
-        None,
-        series.ctypes.data_as(ctypes.POINTER(ctypes.c_float)),
-        series.nbytes,
-        bridge=bridge,
+        progress=progress,
+        outputs=[series.ctypes.data_as(ctypes.POINTER(ctypes.c_float)), series.nbytes],
     )
     return series
 
@@ -120,13 +116,6 @@ def run_elements(scene: Scene, folder: PathLike, progress: Optional[Progress] = 
     """Reads the scene's input, and writes series.npy and elements.json into folder."""
     params = initialised(s.sonject_run_params)
     params.folder = file_name("folder", folder)
-    bridge = ProgressBridge(progress)
-    scene.context.call(
-        "sonject_elements_run",
-        scene.context,
-        scene,
-        ctypes.byref(params),
-        bridge.callback,
-        None,
-        bridge=bridge,
+    scene.context.work(
+        "sonject_elements_run", scene.context, scene, ctypes.byref(params), progress=progress
     )

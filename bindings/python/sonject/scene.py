@@ -17,6 +17,7 @@ from ._values import (
     fill,
     initialised,
     override_texts,
+    plain_text,
     real_numbers,
     whole_number,
 )
@@ -351,7 +352,7 @@ class Scene(Handle):
             path = file_name("input", source.path)
             self._context.call("sonject_scene_set_input_file", self, path)
             self._context.call("sonject_scene_set_input_channel", self, number)
-            array = None if source.array is None else source.array.encode()
+            array = None if source.array is None else plain_text("array", source.array)
             self._context.call("sonject_scene_set_input_array", self, array)
         else:
             path = file_name("input", source)
@@ -422,11 +423,8 @@ class Scene(Handle):
         count = len(parameters)
         if count > s.USER_PARAMETERS_CAPACITY:
             raise ValueError(f"parameters must be at most {s.USER_PARAMETERS_CAPACITY}, not {count}")
-        for label, text in (("name", name), ("code", code)):
-            if not isinstance(text, str) or "\0" in text:
-                raise TypeError(f"{label} must be a text without zeros")
-        params.name = name.encode()
-        params.code = code.encode()
+        params.name = plain_text("name", name)
+        params.code = plain_text("code", code)
         fill(
             params,
             {

@@ -1,5 +1,7 @@
 """Campaigns in memory and as files."""
 
+import pickle
+
 import numpy
 import pytest
 
@@ -50,6 +52,21 @@ def test_images_are_made_in_memory_in_any_order(campaign):
     assert sum(whole.describe(number).object_count for number in range(6)) == 4
     with pytest.raises(IndexError):
         whole[6]
+    with pytest.raises(TypeError):
+        whole[1.0]
+
+
+def test_loaders_may_pickle_a_campaign(campaign, tmp_path, monkeypatch):
+    """And number its images as NumPy counts."""
+    _, swath = campaign
+    monkeypatch.chdir(tmp_path)
+    written = pickle.dumps(sonject.Campaign("campaign.yaml", {"images": 3, "empty": 0}))
+    monkeypatch.chdir("/")
+    again = pickle.loads(written)
+    assert len(again) == 3
+    number = numpy.arange(3)[2]
+    assert again.describe(number) == again.describe(-1)
+    assert not numpy.array_equal(again[number].image, swath[:64, :64])
 
 
 def test_the_scene_of_an_image_is_one_to_inject(campaign):
@@ -76,6 +93,8 @@ def test_a_data_set_is_made_once(campaign, tmp_path):
     assert (tmp_path / "set" / "all" / "coco.json").exists()
     with pytest.raises(sonject.SonjectError, match="shard_index"):
         whole.run(tmp_path / "set", shard=(3, 2))
+    with pytest.raises(ValueError, match="shard must lie within"):
+        whole.run(tmp_path / "set", shard=(2**32 + 1, 2))
 
 
 def test_mistakes_say_where(tmp_path, campaign):

@@ -22,4 +22,6 @@ def test_what_does_not_fit_is_refused(tmp_path):
     numpy.save(tmp_path / "a.npy", numpy.full((3, 4), 300, numpy.uint16))
     with pytest.raises(sonject.SonjectError, match="would become 300"):
         sonject.convert(tmp_path / "a.npy", tmp_path / "b.pgm", samples=sonject.Samples.UINT8)
-    assert not (tmp_path / "b.pgm").exists()
+    with pytest.raises(ValueError, match="array contains a NUL"):
+        sonject.convert(tmp_path / "a.npy", tmp_path / "b.npy", array="swath\0of another day")
+    assert [path.name for path in tmp_path.iterdir()] == ["a.npy"]

@@ -235,8 +235,10 @@ def test_user_shapes_are_taken_and_injected(make_scene, complex_patch):
         )
     with pytest.raises(ValueError, match="at most 16, not 17"):
         scene.add_user_shape(SPHERE, bounding_radius_m=1, parameters=range(17))
-    with pytest.raises(TypeError, match="code must be a text"):
+    with pytest.raises(ValueError, match="code contains a NUL"):
         scene.add_user_shape("\0", bounding_radius_m=1)
+    with pytest.raises(TypeError, match="name must be a text"):
+        scene.add_user_shape(SPHERE, bounding_radius_m=1, name=b"ball.cl")
 
 
 def test_scene_files_with_code_need_consent(tmp_path, context):
@@ -343,7 +345,7 @@ def test_numpy_scalars_are_numbers():
         (lambda: sonject.Sonar(taylor_terms=2**32), "taylor_terms must lie within"),
         (lambda: sonject.Patch(first_row=-1, first_column=0, rows=1, columns=1), "first_row"),
         (lambda: sonject.Sphere(diameter_m=1, name="x" * 64), "at most 63 bytes"),
-        (lambda: sonject.Sphere(diameter_m=1, class_name="a\0b"), "no NUL"),
+        (lambda: sonject.Sphere(diameter_m=1, class_name="a\0b"), "contains a NUL"),
     ],
 )
 def test_what_a_field_would_cut_or_wrap_is_refused(make, message):

@@ -1,17 +1,100 @@
-"""The example of the README runs as it stands."""
+"""The examples of the README and of the package's documentation run as they stand."""
 
+import ast
 import re
 
+import numpy
+import pytest
+
+import sonject
 from conftest import PACKAGE_FOLDER
 
+README = (PACKAGE_FOLDER / "README.md").read_text(encoding="utf-8")
+SPANS = list(dict.fromkeys(re.findall(r"(?<!`)`([^`\n]+)`(?!`)", README)))
+# Run elsewhere: shells' by tests/cli/test_readme.py, pictures by test_plotting.py.
+ELSEWHERE = ("SONJECT_LIBRARY", "sonject.plotting.draw_result(", "examples/")
 
-def test_the_example_runs(capsys):
-    text = (PACKAGE_FOLDER / "README.md").read_text(encoding="utf-8")
-    (example,) = re.findall(r"```python\n(.*?)```", text, flags=re.S)
-    names = {}
+
+@pytest.fixture(scope="module")
+def names():
+    """What the README's program leaves, and what the text under it means by its words."""
+    (example,) = re.findall(r"```python\n(.*?)```", README, flags=re.S)
+    names = dict(vars(sonject))
     exec(compile(example, "README.md", "exec"), names)
+    return {**names, "sonject": sonject}
+
+
+def test_the_example_runs(names, capsys):
+    (example,) = re.findall(r"```python\n(.*?)```", README, flags=re.S)
+    exec(compile(example, "README.md", "exec"), {})
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "(128, 160) float32"
     assert len(lines) == 3
-    truth = names["result"].objects[0]
-    assert truth.is_visible
+    assert names["result"].objects[0].is_visible
+
+
+def calls():
+    """Spans that say more than a name."""
+    found = [span for span in SPANS if not span.startswith(ELSEWHERE)]
+    return [span for span in found if re.search(r"[(\[.]", span)]
+
+
+def is_expression(span):
+    try:
+        ast.parse(span, mode="eval")
+    except SyntaxError:
+        return False
+    return True
+
+
+@pytest.mark.parametrize("span", calls())
+def test_what_the_text_calls_can_be_called(names, span, tmp_path, monkeypatch):
+    assert is_expression(span)
+    monkeypatch.chdir(PACKAGE_FOLDER.parents[1])
+    scene = sonject.Scene(
+        geometry=sonject.Geometry(first_slant_range_m=25.0),
+        objects=[sonject.Sphere(diameter_m=0.3)],
+        input=sonject.Uniform(rows=32, columns=40),
+    )
+    if "element" in span:
+        scene.set_elements(sonject.Elements(hydrophones=8))
+    with_orders = sonject.Scene(
+        geometry=sonject.Geometry(first_slant_range_m=25.0),
+        objects=[sonject.Sphere(diameter_m=0.3)],
+        injection=sonject.Injection(interactions=2, order_energies=True),
+    )
+    patch = numpy.full((32, 40), 0.1, numpy.float32)
+    meant = {
+        "scene": scene,
+        "patch": patch,
+        "heights": [0.0, 10.0],
+        "bottoms": [0.0, 10.0],
+        "speeds": [1490.0, 1500.0],
+        "folder": tmp_path / "results",
+    }
+    if span.startswith("result.order"):
+        meant["result"] = sonject.inject(patch, with_orders)
+    try:
+        eval(span, {**names, **meant})
+    except sonject.SonjectError as error:
+        if error.status is not sonject.Status.ERROR_UNSUPPORTED:  # run, without image files
+            raise
+
+
+def test_names_in_the_text_exist(names):
+    """Of the package, of its classes, or of its functions' parameters."""
+    source = "".join(path.read_text(encoding="utf-8")
+                     for path in (PACKAGE_FOLDER / "sonject").glob("*.py"))
+    words = set(re.findall(r"\w+", source)) | {"float32", "complex64"}
+    plain = [span.rstrip("=") for span in SPANS
+             if not span.startswith(ELSEWHERE) and span not in calls()]
+    assert len(plain) > 30
+    assert sorted(set(plain) - words) == []
+
+
+def test_the_example_of_the_package_runs():
+    lines = re.findall(r"^(?:>>>|\.\.\.) ?(.*)$", sonject.__doc__, flags=re.M)
+    assert len(lines) > 4
+    meant = {"patch": numpy.full((32, 40), 0.1, numpy.float32)}
+    exec("\n".join(lines), meant)
+    assert meant["result"].objects[0].is_visible
