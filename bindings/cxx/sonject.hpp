@@ -21,6 +21,7 @@
 #ifndef SONJECT_HPP
 #define SONJECT_HPP
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <exception>
@@ -114,15 +115,22 @@ template <typename Structure> void fill_defaults(Structure &structure);
     }
 SONJECT_CXX_DEFAULTS(sonject_campaign_read_params)
 SONJECT_CXX_DEFAULTS(sonject_campaign_run_params)
+SONJECT_CXX_DEFAULTS(sonject_contact_file_params)
+SONJECT_CXX_DEFAULTS(sonject_contact_params)
 SONJECT_CXX_DEFAULTS(sonject_convert_params)
+SONJECT_CXX_DEFAULTS(sonject_elements_params)
+SONJECT_CXX_DEFAULTS(sonject_form_params)
 SONJECT_CXX_DEFAULTS(sonject_geometry_params)
 SONJECT_CXX_DEFAULTS(sonject_injection_params)
 SONJECT_CXX_DEFAULTS(sonject_material_params)
+SONJECT_CXX_DEFAULTS(sonject_measure_params)
 SONJECT_CXX_DEFAULTS(sonject_medium_params)
 SONJECT_CXX_DEFAULTS(sonject_merge_params)
 SONJECT_CXX_DEFAULTS(sonject_mesh_params)
+SONJECT_CXX_DEFAULTS(sonject_motion_params)
 SONJECT_CXX_DEFAULTS(sonject_object_params)
 SONJECT_CXX_DEFAULTS(sonject_part_params)
+SONJECT_CXX_DEFAULTS(sonject_pulse_params)
 SONJECT_CXX_DEFAULTS(sonject_quicklook_params)
 SONJECT_CXX_DEFAULTS(sonject_relief_params)
 SONJECT_CXX_DEFAULTS(sonject_run_params)
@@ -132,6 +140,7 @@ SONJECT_CXX_DEFAULTS(sonject_seabed_params)
 SONJECT_CXX_DEFAULTS(sonject_sonar_params)
 SONJECT_CXX_DEFAULTS(sonject_surface_params)
 SONJECT_CXX_DEFAULTS(sonject_synthetic_params)
+SONJECT_CXX_DEFAULTS(sonject_trace_params)
 SONJECT_CXX_DEFAULTS(sonject_transfer_params)
 SONJECT_CXX_DEFAULTS(sonject_user_shape_params)
 #undef SONJECT_CXX_DEFAULTS
@@ -148,6 +157,41 @@ inline void check(sonject_context *context, sonject_status status)
         throw cancelled(sonject_context_message(context));
     if (status != SONJECT_OK)
         throw error(status, sonject_context_message(context));
+}
+
+/* A text that the library made, which it gets back. */
+class text
+{
+  public:
+    text() : text_(nullptr)
+    {
+    }
+    text(const text &) = delete;
+    text &operator=(const text &) = delete;
+    ~text()
+    {
+        sonject_text_release(&text_);
+    }
+    char **out() noexcept
+    {
+        return &text_;
+    }
+    std::string copy() const
+    {
+        return text_;
+    }
+
+  private:
+    char *text_;
+};
+
+/* Texts as C takes an array of them; the originals must stay. */
+inline std::vector<const char *> pointers_to(const std::vector<std::string> &texts)
+{
+    std::vector<const char *> pointers;
+    for (const std::string &each : texts)
+        pointers.push_back(each.c_str());
+    return pointers;
 }
 
 /* Carries a progress callback through C, and what it throws around it. */
@@ -320,11 +364,14 @@ class scene
           const sonject_scene_read_params &params = defaults<sonject_scene_read_params>())
         : context_(context.get()), handle_(nullptr)
     {
-        std::vector<const char *> texts;
-        for (const std::string &override_text : overrides)
-            texts.push_back(override_text.c_str());
+        const std::vector<const char *> texts = detail::pointers_to(overrides);
         check(sonject_scene_read_with(context_, path.c_str(), texts.data(), texts.size(), &params,
                                       &handle_));
+    }
+    /* Takes over what the C interface made with that context. */
+    scene(sonject_context *context, sonject_scene *handle) noexcept
+        : context_(context), handle_(handle)
+    {
     }
     scene(scene &&other) noexcept : context_(other.context_), handle_(other.handle_)
     {
@@ -356,6 +403,18 @@ class scene
     {
         check(sonject_scene_set_sonar(handle_, &sonar));
     }
+    void set(const sonject_pulse_params &pulse)
+    {
+        check(sonject_scene_set_pulse(handle_, &pulse));
+    }
+    void set(const sonject_motion_params &motion)
+    {
+        check(sonject_scene_set_motion(handle_, &motion));
+    }
+    void set(const sonject_elements_params &elements)
+    {
+        check(sonject_scene_set_elements(handle_, &elements));
+    }
     void set(const sonject_medium_params &medium)
     {
         check(sonject_scene_set_medium(handle_, &medium));
@@ -383,6 +442,42 @@ class scene
     void set(const sonject_patch_params &patch)
     {
         check(sonject_scene_set_patch(handle_, &patch));
+    }
+
+    /* Measured pulse: samples at positions that the axis tells; imaginary_part: of that number, or
+     * none where all are 0. */
+    void set_pulse_table(sonject_pulse_axis axis, span<const double> positions,
+                         span<const double> real_part,
+                         span<const double> imaginary_part = span<const double>())
+    {
+        require_samples(positions, real_part, imaginary_part);
+        check(sonject_scene_set_pulse_table(handle_, axis, positions.data(), real_part.data(),
+                                            imaginary_part.size() ? imaginary_part.data() : nullptr,
+                                            positions.size()));
+    }
+    /* Measured cross-range response of a synthetic aperture, likewise. */
+    void set_cross_range_table(span<const double> distances_m, span<const double> real_part,
+                               span<const double> imaginary_part = span<const double>())
+    {
+        require_samples(distances_m, real_part, imaginary_part);
+        check(sonject_scene_set_cross_range_table(
+            handle_, distances_m.data(), real_part.data(),
+            imaginary_part.size() ? imaginary_part.data() : nullptr, distances_m.size()));
+    }
+    /* Measured residual sway at positions along the track. */
+    void set_motion_table(span<const double> along_track_m, span<const double> sway_m)
+    {
+        require(sway_m.size() == along_track_m.size(), "motion needs as many sways as positions");
+        check(sonject_scene_set_motion_table(handle_, along_track_m.data(), sway_m.data(),
+                                             along_track_m.size()));
+    }
+
+    /* Measured residual yaw, likewise. */
+    void set_yaw_table(span<const double> along_track_m, span<const double> yaw_rad)
+    {
+        require(yaw_rad.size() == along_track_m.size(), "motion needs as many yaws as positions");
+        check(sonject_scene_set_yaw_table(handle_, along_track_m.data(), yaw_rad.data(),
+                                          along_track_m.size()));
     }
 
     /* Level layers of water: bottoms_m, rising from 0, and sound speeds of equal number; densities
@@ -493,17 +588,9 @@ class scene
     /* Checks the scene against its input and describes the geometry. */
     std::string check() const
     {
-        char *text = nullptr;
-        check(sonject_check(context_, handle_, &text));
-        std::string description;
-        try {
-            description = text;
-        } catch (...) {
-            sonject_text_release(&text);
-            throw;
-        }
-        sonject_text_release(&text);
-        return description;
+        detail::text description;
+        check(sonject_check(context_, handle_, description.out()));
+        return description.copy();
     }
 
     /* Does the whole run on files into the folder; true if it was finished already. labels: sum of
@@ -538,6 +625,40 @@ class scene
         check(status);
     }
 
+    /* Traces alone, and keeps the impulses in the file, for sonject::form. */
+    void trace(const std::string &file, const progress &callback = progress()) const
+    {
+        sonject_trace_params params = defaults<sonject_trace_params>();
+        detail::progress_bridge bridge(callback);
+        params.file = file.c_str();
+        const sonject_status status =
+            sonject_trace(context_, handle_, &params, bridge.function(), &bridge);
+        bridge.rethrow();
+        check(status);
+    }
+
+    /* What the series of a patch of rows x columns are; both 0: of the patch that the scene makes.
+     */
+    sonject_element_layout describe_elements(std::uint64_t rows = 0,
+                                             std::uint64_t columns = 0) const
+    {
+        sonject_element_layout layout = {};
+        layout.struct_size = sizeof layout;
+        check(sonject_elements_describe(context_, handle_, rows, columns, &layout));
+        return layout;
+    }
+    /* Writes what the array's hydrophones hear of the scene's own input into the folder. */
+    void run_elements(const std::string &folder, const progress &callback = progress()) const
+    {
+        sonject_run_params params = defaults<sonject_run_params>();
+        detail::progress_bridge bridge(callback);
+        params.folder = folder.c_str();
+        const sonject_status status =
+            sonject_elements_run(context_, handle_, &params, bridge.function(), &bridge);
+        bridge.rethrow();
+        check(status);
+    }
+
     /* Makes the result of all shards in the folder; true if it was finished already. */
     bool merge(const std::string &folder, const progress &callback = progress()) const
     {
@@ -562,9 +683,50 @@ class scene
         if (!is_good)
             throw error(SONJECT_ERROR_ARGUMENT, message);
     }
+    static void require_samples(span<const double> positions, span<const double> real_part,
+                                span<const double> imaginary_part)
+    {
+        require(real_part.size() == positions.size() &&
+                    (imaginary_part.size() == 0 || imaginary_part.size() == positions.size()),
+                "a table needs as many samples as positions");
+    }
     sonject_context *context_;
     sonject_scene *handle_;
 };
+
+/* The bands of a scene file that are to be chosen by an override such as "band=low". */
+inline std::vector<std::string> bands(
+    const context &context, const std::string &path,
+    const std::vector<std::string> &overrides = std::vector<std::string>())
+{
+    const std::vector<const char *> texts = detail::pointers_to(overrides);
+    detail::text lines;
+    context.check(
+        sonject_scene_bands(context.get(), path.c_str(), texts.data(), texts.size(), lines.out()));
+    const std::string all = lines.copy();
+    std::vector<std::string> names;
+    for (std::size_t start = 0; start < all.size();) {
+        const std::size_t end = std::min(all.find('\n', start), all.size());
+        names.push_back(all.substr(start, end - start));
+        start = end + 1;
+    }
+    return names;
+}
+
+/* Forms the image of what scene::trace kept; params.folder gets it. other: a scene that differs in
+ * what another image may differ, nullptr: the one that the file keeps. True if the result was
+ * finished already. */
+inline bool form(const context &context, const sonject_form_params &params,
+                 const scene *other = nullptr, const progress &callback = progress())
+{
+    detail::progress_bridge bridge(callback);
+    int was_finished = 0;
+    const sonject_status status = sonject_form(context.get(), other ? other->get() : nullptr,
+                                               &params, bridge.function(), &bridge, &was_finished);
+    bridge.rethrow();
+    context.check(status);
+    return was_finished != 0;
+}
 
 /* A patch in the caller's memory: linear amplitudes, or pairs of real and imaginary part. */
 struct pixels {
@@ -742,9 +904,7 @@ class campaign
              const sonject_campaign_read_params &params = defaults<sonject_campaign_read_params>())
         : context_(context.get()), handle_(nullptr)
     {
-        std::vector<const char *> texts;
-        for (const std::string &override_text : overrides)
-            texts.push_back(override_text.c_str());
+        const std::vector<const char *> texts = detail::pointers_to(overrides);
         check(sonject_campaign_read(context_, path.c_str(), texts.data(), texts.size(), &params,
                                     &handle_));
     }
@@ -782,6 +942,13 @@ class campaign
         check(sonject_campaign_describe(handle_, id, &image));
         return image;
     }
+    /* The scene of an image: its input is the swath's file, its patch the image. */
+    sonject::scene scene(std::uint64_t id) const
+    {
+        sonject_scene *made = nullptr;
+        check(sonject_campaign_scene(context_, handle_, id, &made));
+        return sonject::scene(context_, made);
+    }
     /* Makes an image in memory. */
     result inject(std::uint64_t id, const progress &callback = progress()) const
     {
@@ -794,7 +961,7 @@ class campaign
         check(status);
         return result(made, context_, objects);
     }
-    /* Makes the images that the folder lacks; false if there was nothing left to do. */
+    /* Makes the images that the folder lacks; true if there was nothing left to do. */
     bool run(const sonject_campaign_run_params &params, const progress &callback = progress()) const
     {
         detail::progress_bridge bridge(callback);
@@ -803,7 +970,7 @@ class campaign
             context_, handle_, &params, bridge.function(), &bridge, &was_finished);
         bridge.rethrow();
         check(status);
-        return !was_finished;
+        return was_finished != 0;
     }
 
   private:
@@ -824,6 +991,72 @@ inline void merge_campaign(const context &context, const std::string &folder,
         sonject_campaign_merge(context.get(), folder.c_str(), bridge.function(), &bridge);
     bridge.rethrow();
     context.check(status);
+}
+
+/* What the hydrophones of the scene's array hear: pings x hydrophones x samples of
+ * scene::describe_elements, in base band pairs of real and imaginary part. */
+inline std::vector<float> element_series(const scene &scene, const pixels &patch,
+                                         const progress &callback = progress())
+{
+    const sonject_element_layout layout =
+        scene.describe_elements(patch.value.rows, patch.value.columns);
+    const sonject_elements_params &elements = layout.elements;
+    const std::size_t parts = elements.form == SONJECT_SERIES_BASEBAND ? 2 : 1;
+    std::vector<float> series(static_cast<std::size_t>(layout.samples) * elements.hydrophones *
+                              elements.pings * parts);
+    detail::progress_bridge bridge(callback);
+    sonject_context *context = scene.context_handle();
+    const sonject_status status =
+        sonject_element_series(context, scene.get(), &patch.value, bridge.function(), &bridge,
+                               series.data(), series.size() * sizeof(float));
+    bridge.rethrow();
+    detail::check(context, status);
+    return series;
+}
+
+/* What an image file says of its seabed and of the seam; see sonject_measure. */
+inline sonject_measurement measure(const context &context, const sonject_measure_params &params)
+{
+    sonject_measurement measurement = {};
+    measurement.struct_size = sizeof measurement;
+    context.check(sonject_measure(context.get(), &params, &measurement));
+    return measurement;
+}
+
+/* The same of pixels in memory; masks: rows x columns bytes, or none. */
+inline sonject_measurement measure(const context &context, const pixels &image,
+                                   span<const std::uint8_t> influence = span<const std::uint8_t>(),
+                                   span<const std::uint8_t> labels = span<const std::uint8_t>())
+{
+    const std::uint64_t size = image.value.rows * image.value.columns;
+    sonject_measurement measurement = {};
+    measurement.struct_size = sizeof measurement;
+    if ((influence.size() && influence.size() != size) || (labels.size() && labels.size() != size))
+        throw error(SONJECT_ERROR_ARGUMENT, "a mask needs rows x columns bytes");
+    context.check(sonject_measure_pixels(context.get(), &image.value,
+                                         influence.size() ? influence.data() : nullptr,
+                                         labels.size() ? labels.data() : nullptr, &measurement));
+    return measurement;
+}
+
+/* Contacts of an image file as JSON; see sonject_measure_contacts. */
+inline std::string measure_contacts(const context &context,
+                                    const sonject_contact_file_params &params)
+{
+    detail::text text;
+    context.check(sonject_measure_contacts(context.get(), &params, text.out()));
+    return text.copy();
+}
+
+/* Two such sets compared, as JSON; picture "": none. */
+inline std::string compare_contacts(const context &context, const std::string &first,
+                                    const std::string &second, const std::string &picture = "")
+{
+    detail::text text;
+    context.check(sonject_compare_contacts(context.get(), first.c_str(), second.c_str(),
+                                           picture.empty() ? nullptr : picture.c_str(),
+                                           text.out()));
+    return text.copy();
 }
 
 /* Lengths and levels of a contact; see sonject_measure_contact. */

@@ -1,4 +1,5 @@
 /* What sonject.hpp promises beyond the C interface. Prints "all right", or what is not. */
+#include <algorithm>
 #include <cstdio>
 #include <stdexcept>
 #include <string>
@@ -91,6 +92,99 @@ static void check_results(const sonject::context &context)
     }
 }
 
+/* Tables of samples whose numbers differ, and what they do to a scene. */
+static void check_tables(const sonject::context &context)
+{
+    const std::vector<double> places = {-0.2, -0.1, 0.0, 0.1, 0.2}, few = {1.0};
+    const std::vector<double> samples = {0.0, 0.5, 1.0, 0.5, 0.0};
+    sonject::scene scene = scene_with_ball(context);
+    scene.set_pulse_table(SONJECT_PULSE_AXIS_RANGE, places, samples, samples);
+    scene.set(sonject::defaults<sonject_pulse_params>());
+    scene.set_cross_range_table(places, samples);
+    scene.set_cross_range_table(sonject::span<const double>(), sonject::span<const double>());
+    scene.set_motion_table(places, samples);
+    auto motion = sonject::defaults<sonject_motion_params>();
+    motion.random_rms_m = 1e-4;
+    scene.set(motion);
+    int refused = 0;
+    for (int number = 0; number < 4; number++)
+        try {
+            if (number == 0)
+                scene.set_pulse_table(SONJECT_PULSE_AXIS_RANGE, places, few);
+            else if (number == 1)
+                scene.set_pulse_table(SONJECT_PULSE_AXIS_RANGE, places, samples, few);
+            else if (number == 2)
+                scene.set_cross_range_table(few, samples);
+            else
+                scene.set_motion_table(places, few);
+        } catch (const sonject::error &error) {
+            refused += error.status() == SONJECT_ERROR_ARGUMENT;
+        }
+    expect(refused == 4, "tables of other sizes throw");
+}
+
+static void check_elements(const sonject::context &context)
+{
+    const std::vector<float> seabed(32 * 40, 0.1f);
+    sonject::scene scene = scene_with_ball(context);
+    auto elements = sonject::defaults<sonject_elements_params>();
+    elements.hydrophones = 2;
+    scene.set(elements);
+    const sonject_element_layout layout = scene.describe_elements(32, 40);
+    const std::vector<float> series = sonject::element_series(scene, {seabed.data(), 32, 40});
+    expect(series.size() == 2 * 2 * layout.elements.pings * layout.samples, "series fill a layout");
+    float loudest = 0.0f;
+    for (float sample : series)
+        loudest = std::max(loudest, sample);
+    expect(loudest > 0.0f, "the ball is heard");
+}
+
+static void check_measures(const sonject::context &context)
+{
+    std::vector<float> image(64 * 64);
+    unsigned state = 1;
+    for (float &pixel : image) {
+        state = state * 1664525u + 1013904223u;
+        pixel = 0.05f + static_cast<float>(state >> 8) / 16777216.0f;
+    }
+    const sonject_measurement told = sonject::measure(context, {image.data(), 64, 64});
+    expect(told.amplitude_contrast > 0.4 && told.amplitude_contrast < 0.7,
+           "the contrast of uniform amplitudes, 1 / sqrt(3)");
+    try {
+        const std::vector<std::uint8_t> mask(3);
+        sonject::measure(context, {image.data(), 64, 64}, mask);
+        expect(false, "masks of another size throw");
+    } catch (const sonject::error &) {
+    }
+    auto contact = sonject::defaults<sonject_contact_params>();
+    contact.row_spacing_m = contact.column_spacing_m = 0.1;
+    expect(sonject::measure_contact(context, {image.data(), 64, 64}, contact).seabed_db < 0.0,
+           "the seabed's level");
+}
+
+static void check_files(const sonject::context &context)
+{
+    static const char text[] =
+        "sonject: 1\ninput: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, "
+        "column_spacing: 1, first_slant_range: 40}}\n"
+        "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
+        "bands: {low: {}, high: {sonar: {frequency: 400e3}}}\n";
+    std::FILE *file = std::fopen("bands.yaml", "w");
+    expect(file && std::fputs(text, file) >= 0 && std::fclose(file) == 0, "a scene is written");
+    const std::vector<std::string> both = {"low", "high"};
+    expect(sonject::bands(context, "bands.yaml") == both, "bands are listed");
+    expect(sonject::bands(context, "bands.yaml", {"band=low"}).empty(), "and chosen");
+    expect(sonject::scene(context, "bands.yaml", {"band=high"}).object_count() == 0, "and read");
+    try {
+        auto forming = sonject::defaults<sonject_form_params>();
+        forming.file = "bands.yaml";
+        forming.folder = "formed";
+        sonject::form(context, forming);
+        expect(false, "what holds no impulses throws");
+    } catch (const sonject::error &) {
+    }
+}
+
 static void check_progress(const sonject::context &context)
 {
     const std::vector<float> seabed(64 * 80, 0.1f);
@@ -127,6 +221,10 @@ int main()
     expect(sonject::version().find('.') != std::string::npos, "the version");
     check_errors(context);
     check_results(context);
+    check_tables(context);
+    check_elements(context);
+    check_measures(context);
+    check_files(context);
     check_progress(context);
     expect(!lines.empty(), "news reach the log, also after the context has moved");
     if (failures == 0)

@@ -54,6 +54,7 @@ def library_folder(prefix):
 
 def run_program(program, prefix):
     answer = subprocess.run([program, "short"], capture_output=True, text=True, check=False,
+                            cwd=program.parent,
                             env={**os.environ, "LD_LIBRARY_PATH": str(library_folder(prefix))})
     assert answer.returncode == 0, answer.stderr
     assert "right" in answer.stdout
@@ -63,6 +64,44 @@ def test_headers_and_library_are_there(root, prefix):
     assert (prefix / "include" / "sonject" / "sonject.h").exists()
     assert (library_folder(prefix) / "cmake" / "sonject" / "sonjectConfig.cmake").exists()
     assert str(root) in " ".join(pkg_config_flags(root))
+
+
+# What C++ needs no wrapper for: enough by itself, or in one that does more.
+LEFT_TO_C = {"sonject_absorption", "sonject_material_name", "sonject_scene_read"}
+
+
+def test_cxx_has_every_function():
+    header = (SOURCE / "bindings" / "cxx" / "sonject.hpp").read_text(encoding="utf-8")
+    used = set(re.findall(r"\bsonject_\w+(?=\()", header))
+    used |= {name + "_init" for name in re.findall(r"CXX_DEFAULTS\((sonject_\w+)\)", header)}
+    functions = set((SOURCE / "tests" / "abi" / "symbols.txt").read_text().split())
+    assert functions - used == LEFT_TO_C
+
+
+# The example at the head of the header, in a program.
+HEAD = """\
+#include <cstdio>
+#include <sonject.hpp>
+
+int main()
+{
+    const std::uint32_t rows = 64, columns = 80;
+    std::vector<float> pixels(rows * columns, 0.1f);
+    const std::vector<float> before = pixels;
+%s
+    std::puts(pixels != before ? "all right" : "nothing changed");
+}
+"""
+
+
+def test_the_example_of_the_header_runs(root, prefix, tmp_path):
+    header = (SOURCE / "bindings" / "cxx" / "sonject.hpp").read_text(encoding="utf-8")
+    example = re.findall(r"^ \*     (.*)$", header[: header.index("*/")], flags=re.M)
+    assert len(example) > 5
+    (tmp_path / "example.cpp").write_text(HEAD % "\n".join(example))
+    subprocess.run([CXX_COMPILER, "-std=c++11", *WARNINGS, tmp_path / "example.cpp",
+                    *pkg_config_flags(root), "-o", tmp_path / "program"], check=True)
+    run_program(tmp_path / "program", prefix)
 
 
 @pytest.mark.parametrize("standard", ["c++11", "c++20"])

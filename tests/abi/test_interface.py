@@ -87,7 +87,19 @@ SIZES = {
     "sonject_contact_file_params": 88,
     "sonject_pulse_params": 24,
     "sonject_motion_params": 464,
+    "sonject_sway": 24,
+    "sonject_yaw": 24,
+    "sonject_campaign_read_params": 8,
+    "sonject_campaign_run_params": 40,
+    "sonject_campaign_image": 192,
 }
+
+
+def test_every_structure_has_its_size_above():
+    declared = set()
+    for header in HEADERS:
+        declared |= set(re.findall(r"^typedef struct (\w+) \{", header.read_text(), flags=re.M))
+    assert declared == set(SIZES)
 
 
 def test_structures_keep_their_sizes(tmp_path):
