@@ -2,8 +2,6 @@
 
 import base64
 import json
-import os
-import pathlib
 import random
 import re
 import signal
@@ -15,6 +13,7 @@ import pytest
 
 import images
 from conftest import COMMAND, assert_refused, files_below
+from documents import SOURCE, comment_commands
 from measured_images import read_png
 
 ROWS, COLUMNS, CHIP = 110, 150, 64
@@ -330,16 +329,16 @@ def test_a_grid_draws_every_cell(command, ground):
                      for heading in (0, 30, 60, 90)}
 
 
-def test_the_example_runs_as_it_says(command, ground):
-    example = pathlib.Path(os.environ["SONJECT_SOURCE"]) / "tools" / "campaigns" / "minefield.yaml"
-    settings = []
-    for number in (1, 2, 3):
-        name = f"seabed_{number}.tif"
-        assert command("seabed", "-o", name, "--seed", number, "--rows", 600, "--columns",
-                       800).returncode == 0
-        settings += ["--set", f"swaths[{number - 1}].path={name}"]
-    answer = command("campaign", example, "-o", "minefield", *settings, "--shard", "2/20")
-    assert (answer.returncode, answer.stderr) == (0, "sonject: these images are in minefield\n")
+def test_the_example_runs_as_it_says(ground, environment):
+    """Every twentieth image of it."""
+    seabeds, campaign = comment_commands("tools/campaigns/minefield.yaml")
+    (ground / "tools").symlink_to(SOURCE / "tools")
+    (ground / "sonject").symlink_to(COMMAND)
+    answer = subprocess.run(["bash", "-euc", f"{seabeds}; {campaign} --shard 2/20"], cwd=ground,
+                            env={**environment, "PATH": f"{ground}:{environment['PATH']}"},
+                            capture_output=True, text=True, check=False)
+    assert answer.returncode == 0, answer.stderr
+    assert answer.stderr.endswith("sonject: these images are in minefield\n")
     assert sorted(record["id"] for record in records(ground / "minefield")) == [1, 21, 41]
 
 

@@ -1,38 +1,271 @@
-"""The commands of the README do what it says."""
+"""All that the documents tell a reader to type is typed here, or the list below says where else. A
+command or a fragment that is new in a document fails until it is run."""
 
 import os
 import pathlib
 import re
-import shlex
+import subprocess
+import sys
 
+import numpy
 import pytest
 
-SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
-README = (SOURCE / "README.md").read_text(encoding="utf-8")
-# Commands on a line of their own, or within the text, that name a scene which is there.
-COMMANDS = sorted(set(re.findall(r"(?:build/tools/)?(sonject (?:run|check) tools/[^`\n]+)", README)))
+import images
+import recordings
+from conftest import COMMAND, SCENE
+from documents import MARKDOWN, SOURCE, comment_commands, markdown_commands, spans, suggested_settings
+
+sys.path.insert(0, str(SOURCE / "bindings" / "python"))
+
+BUILD = pathlib.Path(COMMAND).resolve().parent.parent
+SCENES = sorted(f"tools/scenes/{path.name}" for path in (SOURCE / "tools" / "scenes").glob("*.yaml"))
+
+# What takes the place of a command that stands for many, in the order in which they are run.
+TYPED = {
+    "sonject run SCENE.yaml -o DIR": "sonject run scene.yaml -o whole",
+    "sonject run SCENE.yaml -o DIR --shard I/K":
+        "for i in 1 2; do sonject run scene.yaml -o parts --shard $i/2; done",
+    "sonject merge DIR": "sonject merge parts && cmp parts/image.tif whole/image.tif",
+    "sonject trace SCENE.yaml -o FILE": "sonject trace scene.yaml -o impulses.h5",
+    "sonject form FILE -o DIR":
+        "sonject form impulses.h5 -o formed && cmp formed/image.tif whole/image.tif",
+    "sonject campaign CAMPAIGN.yaml -o DIR": "sonject campaign campaign.yaml -o whole_set",
+    "sonject elements SCENE.yaml -o DIR":
+        "sonject elements scene.yaml -o series --set injection.mode=resynthesise",
+    "sonject check SCENE.yaml": "sonject check scene.yaml",
+    "sonject measure IMAGE": "sonject measure swath.tif",
+    "sonject quicklook IMAGE -o PNG": "sonject quicklook whole/image.tif -o look.png",
+    "sonject convert IN OUT": "sonject convert swath.tif swath.npy",
+    "sonject convert --range-axis slant":
+        "sonject convert swath.tif ground.tif --range-axis ground --row-spacing 0.025 "
+        "--column-spacing 0.025 --first-range 25 --altitude 10 && "
+        "sonject convert ground.tif slant.tif --range-axis slant",
+    "sonject seabed -o IMAGE": "sonject seabed -o seabed.tif",
+    "sonject VERB --help": "sonject measure --help",
+    "build/tools/sonject run tools/scenes/figure6.yaml -o out --set input.path=swath.png":
+        "build/tools/sonject run tools/scenes/figure6.yaml -o out --set input.path=image.png",
+    "SONJECT_MUTATIONS=100000 build/tests/unit/unit_scene_hostile":
+        "SONJECT_MUTATIONS=500 build/tests/unit/unit_scene_hostile",
+    "build/tests/unit/unit_scene_reference tools/scenes/KEYS.md":
+        "build/tests/unit/unit_scene_reference KEYS.md && cmp KEYS.md tools/scenes/KEYS.md",
+    "export PYTHONPATH=bindings/python SONJECT_LIBRARY=build/lib/libsonject.so.0":
+        "export PYTHONPATH=bindings/python SONJECT_LIBRARY=build/lib/libsonject.so.0; "
+        "python3 -c 'import sonject; print(sonject.version())'",
+    "array=$(sbatch --parsable --array=1-4 tools/slurm/shards.sh 4 campaign campaign.yaml -o data)":
+        "array=$(sbatch --parsable --array=1-4 tools/slurm/shards.sh 4 campaign campaign.yaml "
+        "-o data); sbatch --dependency=afterany:$array tools/slurm/merge.sh data; "
+        "cmp data/all/coco.json whole_set/all/coco.json",
+}
+# Run by another test, which is named, or not by tests, for a reason.
+ELSEWHERE = {
+    "sh tools/first-run.sh": "tools/test.sh installs and builds likewise; demo.yaml is run here",
+    "sh tools/test.sh": "runs this test",
+    ".ci/run": "calls tools/test.sh",
+    "meson setup build && ninja -C build && meson test -C build": "tools/test.sh",
+    "meson test -C build --suite unit": "tools/test.sh runs all of them",
+    "meson test -C build --benchmark -v": "not run: takes minutes, and nothing of it is wrong or right",
+    "meson install -C build": "tests/abi/test_installed.py",
+    "pkg-config --cflags --libs sonject": "tests/abi/test_installed.py",
+    "man sonject-VERB": "tests/abi/test_installed.py",
+    "doxygen include/Doxyfile": "tests/abi/test_documents.py",
+    "python3 tests/physics/report.py build": "tests/abi/test_report.py",
+    "tools/fuzz.sh SECONDS": "not run: needs a build of its own; .ci/run runs the same fuzzers",
+    "python3 -m venv env": "tools/setup.sh",
+    "env/bin/pip install .": "tests/abi/test_core.py",
+    "pip install .": "tests/abi/test_core.py",
+    "SONJECT_LIBRARY=... python3 -m pytest bindings/python/tests": "tests/meson.build",
+    "sbatch --dependency=afterany:$array tools/slurm/merge.sh out": "tests/cli/test_job_scripts.py",
+    "sbatch --dependency=afterany:$array tools/slurm/merge.sh data": "behind the campaign's parts, above",
+    "array=$(sbatch --parsable --array=1-4 tools/slurm/shards.sh 4 run scene.yaml -o out)":
+        "tests/cli/test_job_scripts.py",
+    "array=$(sbatch --parsable --array=2,4 tools/slurm/shards.sh 4 run scene.yaml -o out)":
+        "tests/cli/test_job_scripts.py",
+    "scontrol update jobid=JOB_TASK StartTime=now": "tests/cli/cluster.py",
+    "scontrol show config": "tests/cli/cluster.py has a configuration of its own",
+    "scontrol requeue": "tests/cli/test_job_scripts.py",
+    "RequeueExit=85,137": "tests/cli/cluster.py",
+    "parallel --jobs 1 --retries 3 sonject run scene.yaml -o out --shard {}/4 ::: 1 2 3 4 && "
+    "sonject merge out": "tests/cli/test_job_scripts.py",
+    "parallel --jobs 1 --retries 3 sonject campaign campaign.yaml -o data --shard {}/4 ::: 1 2 3 4 && "
+    "sonject merge data": "tests/cli/test_job_scripts.py",
+    "condor_submit tools/slurm/shards.condor && condor_wait shards.log && sonject merge out":
+        "not run, and said to be not",
+    "dask scheduler --port 8786": "not run, and said to be not",
+    "dask worker tcp://HOST:8786 --nthreads 1": "not run, and said to be not",
+    "python3 tools/slurm/dask_shards.py tcp://HOST:8786 4 run scene.yaml -o out":
+        "not run, and said to be not",
+    "sonject run tools/scenes/user_shape.yaml --allow-user-shapes -o boulder":
+        "tests/cli/test_user_shapes.py runs such scenes; this one is compiled and tried by check, here",
+    "sonject campaign tools/campaigns/minefield.yaml -o minefield --set 'swaths[0].path=seabed_1.tif' "
+    "--set 'swaths[1].path=seabed_2.tif' --set 'swaths[2].path=seabed_3.tif'":
+        "tests/cli/test_campaign.py, every twentieth image",
+    "for i in 1 2 3; do sonject seabed -o seabed_$i.tif --seed $i --rows 600 --columns 800; done":
+        "tests/cli/test_campaign.py",
+}
+
+CAMPAIGN = """\
+sonject_campaign: 1
+scene: scene.yaml
+images: 4
+chip: {rows: 64, columns: 64}
+splits: {all: 1}
+swaths: [{path: swath.tif}]
+targets: [{class: ball, object: {shape: sphere, diameter: 0.3 m}}]
+"""
+
+# Runs what Slurm's would put into its queue, at once.
+SBATCH = """\
+#!/bin/bash
+tasks=
+while [[ $1 == --* ]]; do
+    [[ $1 == --array=* ]] && tasks=$(eval "echo {${1#--array=}}" | sed 's/-/../; s/^/echo /')
+    shift
+done
+for task in $(eval "${tasks:-echo 0}"); do
+    SLURM_ARRAY_TASK_ID=$task sh "$@" >&2 || exit 1
+done
+echo 7
+"""
 
 
-@pytest.fixture
-def project(tmp_path):
-    """The working folder with the project's scenes and targets, and a swath."""
-    (tmp_path / "tools").mkdir()
-    for folder in ("scenes", "targets"):
-        (tmp_path / "tools" / folder).symlink_to(SOURCE / "tools" / folder)
-    return tmp_path
+def documented_commands():
+    found = [text for name in MARKDOWN for text in markdown_commands(name)]
+    found += [text for name in [*SCENES, "tools/campaigns/minefield.yaml"]
+              for text in comment_commands(name)]
+    return list(dict.fromkeys(found))
 
 
-def test_the_readme_has_commands():
-    assert len(COMMANDS) >= 2
+COMMANDS = documented_commands()
+TO_TYPE = [text for text in TYPED if text in COMMANDS]
+TO_TYPE += [text for text in COMMANDS if text not in TYPED and text not in ELSEWHERE]
 
 
-@pytest.mark.parametrize("command", COMMANDS)
-def test_scenes_of_the_readme_are_good(sonject, project, command):
-    words = shlex.split(command)[1:]
-    if "input.path=swath.png" in words:
-        seabed = sonject("seabed", "-o", "swath.png", "--rows", "800", "--columns", "900")
-        assert seabed.returncode == 0, seabed.stderr
-    if "-o" in words:  # what check does not take
-        del words[words.index("-o") : words.index("-o") + 2]
-    answer = sonject("check", *words[1:])
-    assert answer.returncode == 0, answer.stderr
+@pytest.fixture(scope="module")
+def project(tmp_path_factory, environment):
+    """A folder like the project's, with what the commands expect to find, and how to type there."""
+    folder = tmp_path_factory.mktemp("project")
+    programs = folder / "programs"
+    programs.mkdir()
+    for name in ("tools", "bindings"):
+        (folder / name).symlink_to(SOURCE / name)
+    (folder / "build").symlink_to(BUILD)
+    (programs / "sonject").symlink_to(COMMAND)
+    (programs / "sbatch").write_text(SBATCH)
+    (programs / "sbatch").chmod(0o755)
+    (programs / "python3").write_text(f'#!/bin/sh\nexec {sys.executable} "$@"\n')
+    (programs / "python3").chmod(0o755)
+    swath = numpy.random.default_rng(1).rayleigh(0.07, (96, 128)).astype(numpy.float32)
+    (folder / "swath.tif").write_bytes(images.tiff_bytes(swath))
+    (folder / "scene.yaml").write_text(SCENE)
+    (folder / "campaign.yaml").write_text(CAMPAIGN)
+    variables = {**environment, "PATH": f"{programs}:{environment['PATH']}",
+                 "PYTHONPATH": str(SOURCE / "bindings" / "python")}
+
+    def type_in(line):
+        answer = subprocess.run(["bash", "-euc", line], cwd=folder, env=variables, text=True,
+                                capture_output=True, timeout=600, check=False)
+        assert answer.returncode == 0, answer.stdout + answer.stderr
+
+    type_in("sonject seabed -o image.png --rows 472 --columns 512 --first-range 43.6125")
+    return folder, type_in
+
+
+def test_what_is_said_of_commands_is_of_commands_that_are_there():
+    assert sorted(set([*TYPED, *ELSEWHERE]) - set(COMMANDS)) == []
+    for reason in ELSEWHERE.values():
+        for name in re.findall(r"tests/[\w./]+|tools/[\w./]+", reason):
+            assert (SOURCE / name.rstrip(".,;")).exists(), name
+
+
+@pytest.mark.parametrize("command", TO_TYPE)
+def test_commands_do_what_they_should(project, command):
+    folder, type_in = project
+    line = TYPED.get(command, command)
+    if "impulses.h5" in line and os.environ.get("SONJECT_HAS_HDF5") != "1":
+        pytest.skip("built without HDF5")
+    type_in(line)
+    if "--shard" not in line:  # all else leaves results alone
+        assert not list(folder.glob("*/work"))
+
+
+def test_every_example_scene_is_run():
+    for name in SCENES:
+        assert [text for text in comment_commands(name) if name in text], name
+
+
+def test_every_option_exists():
+    tables = "".join(path.read_text(encoding="utf-8") for path in (SOURCE / "tools").glob("*.[ch]"))
+    known = set(re.findall(r'\{"(--[a-z-]+)"', tables)) | {"--help"}
+    named = {option for name in ("README.md", "tools/slurm/README.md") for span in spans(name)
+             if span.startswith("--") or span.startswith("sonject ")
+             for option in re.findall(r"(?<!\S)--[a-z-]+", span)}
+    assert len(named) > 10
+    of_others = {"--array", "--cpus-per-task", "--mem", "--time", "--sshlogin", "--workdir"}
+    assert sorted(named - known - of_others) == []
+
+
+GEOMETRY = "input.geometry={row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 25 m}"
+XTF = ["input={path: line.xtf, channel: port}"]
+ROCK = f"objects=[{{shape: mesh, mesh: {{file: {SOURCE}/tools/targets/rock.obj}}}}]"
+# Where a fragment of the README belongs: the key that it is the value of, "" where it tells that
+# itself, and what else the scene needs before or behind it.
+FRAGMENTS = {
+    "input: {path: line.xtf, channel: port}": ("", [], [GEOMETRY]),
+    "input: {path: line.mat, array: swath}": ("", [], [GEOMETRY]),
+    "bands: {low: {sonar: {frequency: 100 kHz}, input: {channel: 0}}, high: ...}":
+        ("", ["input.path=line.xtf"], ["band=low"]),
+    "{speed: 2 m/s, ping_rate: 20 Hz}": ("input.geometry.row_spacing", [], []),
+    "input.geometry: from_file": ("", XTF, []),
+    "sonar.altitude: from_file": ("", [*XTF, "input.geometry=from_file"], []),
+    "level: {over_seabed: 14 dB}": ("objects[0].", [], []),
+    "{target_strength: -20 dB}": ("objects[0].level", [], []),
+    "mesh: {file: rock.obj, unit: cm, up: y}": ("objects[0].", [ROCK], []),
+    "smooth: 40 deg": ("objects[0].mesh.", [ROCK], []),
+    "open: true": ("objects[0].mesh.", [ROCK], []),
+    "order_energies: true": ("injection.", [], []),
+    "estimator: brute_force": ("injection.", ["injection.mode=resynthesise", "sonar.transducer=5 cm"],
+                               []),
+    "sonar.pulse: {kind: chirp, window: hann}": ("", [], []),
+    "{kind: table, file: pulse.csv}": ("sonar.pulse", [], []),
+    "sonar.kind: real": ("", ["sonar.array={length: 1 m}"], []),
+    "aperture: none": ("sonar.", [], []),
+}
+# A campaign's, and what ends where a value would begin.
+OTHER_FRAGMENTS = {"labels: [yolo, voc]", "target:"}
+
+
+def test_fragments_of_scene_files_are_read(project):
+    import sonject
+
+    folder, _ = project
+    written = {span for span in spans("README.md") if re.match(r"[\w.]+:(?: |$)|\{", span)}
+    assert written == set(FRAGMENTS) | OTHER_FRAGMENTS
+    for source in ("tools/targets/rock.obj", "tests/unit/pulse.csv"):
+        (folder / pathlib.Path(source).name).write_bytes((SOURCE / source).read_bytes())
+    samples = numpy.arange(24, dtype="<u2").reshape(3, 8)
+    (folder / "line.xtf").write_bytes(recordings.xtf_bytes(samples, samples))
+    here = os.getcwd()
+    os.chdir(folder)
+    try:
+        for fragment, (place, before, after) in FRAGMENTS.items():
+            key, value = place, fragment.replace("...", "{}")
+            if not fragment.startswith("{"):
+                name, value = value.split(": ", 1)
+                key = place + name
+            overrides = [*before, f"{key}={value}", *after]
+            try:
+                sonject.Scene.read("scene.yaml", overrides).close()
+            except sonject.SonjectError as error:
+                pytest.fail(f"{fragment}: {error}")
+    finally:
+        os.chdir(here)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_settings_that_scenes_propose_are_taken(scene):
+    import sonject
+
+    settings = suggested_settings(scene)
+    if settings:
+        sonject.Scene.read(SOURCE / scene, [text for text in settings if "path" not in text],
+                           allows_user_shapes=True).close()
