@@ -110,26 +110,31 @@ static sonject_status write_pixels(struct sonject_campaign *campaign, const stru
     return status;
 }
 
-/* Masks and energies. */
+static sonject_status write_mask(struct sonject_campaign *campaign, const struct swath *swath,
+                                 const struct injection_result *result, uint32_t output,
+                                 const char *path)
+{
+    const struct raster_layout layout = {swath->layout.rows, swath->layout.columns, 1, PIXEL_UINT8};
+    const struct region all = {0, 0, layout.rows, layout.columns};
+    const void *pixels = output == OUTPUT_HIGHLIGHT ? result->highlight
+                         : output == OUTPUT_SHADOW  ? result->shadow
+                                                    : result->labels;
+    return raster_file_write_placed(campaign->report, path, &layout, &all, pixels);
+}
+
+/* Energy and field. */
 static sonject_status write_layer(struct sonject_campaign *campaign, const struct scene *scene,
                                   const struct swath *swath, const struct injection_result *result,
-                                  const struct output_file *output, const char *path)
+                                  uint32_t output, const char *path)
 {
     static const char *const complex_names[] = {"real", "imag"};
     struct geometry_notes notes;
     struct raster_layout layout = {swath->layout.rows, swath->layout.columns, 1, PIXEL_FLOAT32};
-    const void *pixels = output->output == OUTPUT_ENERGY      ? (const void *)result->energy
-                         : output->output == OUTPUT_FIELD     ? (const void *)result->field
-                         : output->output == OUTPUT_HIGHLIGHT ? (const void *)result->highlight
-                         : output->output == OUTPUT_SHADOW    ? (const void *)result->shadow
-                                                              : (const void *)result->labels;
-    const bool is_float = output->output == OUTPUT_ENERGY || output->output == OUTPUT_FIELD;
-    layout.channels = output->output == OUTPUT_FIELD ? 2 : 1;
-    layout.type = is_float ? PIXEL_FLOAT32 : PIXEL_UINT8;
+    layout.channels = output == OUTPUT_FIELD ? 2 : 1;
     geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
     return raster_file_write(campaign->report, path, &layout,
                              layout.channels == 2 ? complex_names : NULL, notes.attributes,
-                             is_float ? notes.count : 0, pixels);
+                             notes.count, output == OUTPUT_FIELD ? result->field : result->energy);
 }
 
 /* Annotations are numbered when all images are known. */
@@ -191,13 +196,6 @@ static sonject_status take_classes(const struct campaign *campaign, struct repor
     return status;
 }
 
-static sonject_status write_label(struct report *report, const struct image_labels *labels,
-                                  struct class_names *classes, uint32_t output, const char *path)
-{
-    return output == OUTPUT_YOLO ? yolo_write(report, labels, classes, path)
-                                 : voc_write(report, labels, path);
-}
-
 static sonject_status write_truth_of(struct sonject_campaign *campaign, const struct scene *scene,
                                      const struct swath *swath,
                                      const struct injection_result *result, const char *image_name,
@@ -212,6 +210,24 @@ static sonject_status write_truth_of(struct sonject_campaign *campaign, const st
     return write_truth(campaign->report, &facts, path);
 }
 
+static sonject_status write_output(struct sonject_campaign *campaign,
+                                   const struct campaign_image *image, const struct scene *scene,
+                                   const struct swath *swath, const struct image_labels *labels,
+                                   struct class_names *classes, uint32_t output, const char *path)
+{
+    switch (output) {
+    case OUTPUT_YOLO:
+        return yolo_write(campaign->report, labels, classes, path);
+    case OUTPUT_VOC:
+        return voc_write(campaign->report, labels, path);
+    case OUTPUT_ENERGY:
+    case OUTPUT_FIELD:
+        return write_layer(campaign, scene, swath, &image->result, output, path);
+    default:
+        return write_mask(campaign, swath, &image->result, output, path);
+    }
+}
+
 /* All but the image itself. */
 static sonject_status write_rest(struct sonject_campaign *campaign,
                                  const struct campaign_image *image, const struct scene *scene,
@@ -220,14 +236,9 @@ static sonject_status write_rest(struct sonject_campaign *campaign,
 {
     struct class_names classes = {NULL, 0, 0};
     sonject_status status = take_classes(&campaign->campaign, campaign->report, &classes);
-    for (size_t i = 0; status == SONJECT_OK && i < files->output_count; i++) {
-        const uint32_t output = files->outputs[i].kind->output;
-        const char *path = files->outputs[i].path;
-        status =
-            output >= OUTPUT_YOLO
-                ? write_label(campaign->report, labels, &classes, output, path)
-                : write_layer(campaign, scene, swath, &image->result, files->outputs[i].kind, path);
-    }
+    for (size_t i = 0; status == SONJECT_OK && i < files->output_count; i++)
+        status = write_output(campaign, image, scene, swath, labels, &classes,
+                              files->outputs[i].kind->output, files->outputs[i].path);
     if (status == SONJECT_OK)
         status =
             write_truth_of(campaign, scene, swath, &image->result, labels->file_name, files->truth);

@@ -140,6 +140,8 @@ def test_classes_are_balanced_in_each_split(whole):
         targets = [record["target"] for record in records(whole) if record["split"] == split]
         assert {name: targets.count(name) for name in [None, *TARGETS]} == {
             None: 2, TARGETS[0]: 4, TARGETS[1]: 4}
+        # and come mixed, so that shards and the first images have all
+        assert sum(one != other for one, other in zip(targets, targets[1:])) > 2
 
 
 def test_images_keep_away_from_contacts(whole):
@@ -293,6 +295,12 @@ def test_it_stops_by_itself(command, ground, whole):
         assert (answer.returncode, answer.stderr) == (
             85, "sonject: stopped; run the same command again\n")
         assert len(records(ground / "timed")) == count
+    # What is lost of an image is made again.
+    before = contents(ground / "timed")
+    for kind in ("masks", "images"):
+        next((ground / "timed").glob(f"*/{kind}/00000001.png")).unlink()
+        answer = command("campaign", "campaign.yaml", "-o", "timed", "--exit-after", "1e-9")
+        assert answer.returncode == 85 and contents(ground / "timed") == before
     assert contents(ground / "timed").items() <= contents(whole).items()
 
 

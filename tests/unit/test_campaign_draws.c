@@ -11,7 +11,7 @@
 
 #include "base/memory.h"
 #include "base/text.h"
-#include "campaign/chip_room.h"
+#include "campaign/campaign.h"
 #include "campaign/design.h"
 #include "campaign/distribution.h"
 
@@ -189,6 +189,62 @@ static void test_places_are_all_that_boxes_leave(void **state)
     chip_room_clear(&room);
 }
 
+/* Whether a chip at that place keeps so many pixels from the box. */
+static bool is_clear(const struct campaign *campaign, const struct region *box, uint64_t row,
+                     uint64_t column)
+{
+    return row + campaign->chip_rows + campaign->clearance <= box->first_row ||
+           row >= box->first_row + box->rows + campaign->clearance ||
+           column + campaign->chip_columns + campaign->clearance <= box->first_column ||
+           column >= box->first_column + box->columns + campaign->clearance;
+}
+
+static void test_images_keep_from_edges_contacts_and_ranges(void **state)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct region boxes[] = {{25, 40, 5, 7}, {0, 0, 2, 2}, {58, 0, 99, 3}};
+    struct swath_plan swath;
+    struct campaign campaign;
+    uint64_t places = 0;
+    (void)state;
+    memset(&swath, 0, sizeof swath);
+    memset(&campaign, 0, sizeof campaign);
+    sonject_geometry_params geometry;
+    sonject_geometry_params_init(&geometry);
+    geometry.column_spacing_m = 0.5;
+    geometry.first_slant_range_m = 20.0;
+    campaign.swaths = &swath;
+    campaign.chip_rows = 16;
+    campaign.chip_columns = 17;
+    campaign.edge = 1;
+    campaign.clearance = 3;
+    campaign.has_range = true;
+    campaign.nearest_range_m = 26.0;  /* columns 12, where the middle is that of a chip at 4... */
+    campaign.farthest_range_m = 52.0; /* ...and 64 */
+    swath.layout.rows = 60;
+    swath.layout.columns = 90;
+    swath.avoid = boxes;
+    swath.avoid_count = 3;
+    assert_int_equal(campaign_measure(&report, &campaign, 0, &geometry), SONJECT_OK);
+    for (uint64_t row = 1; row + 16 < 60; row++)
+        for (uint64_t column = 4; column <= 56; column++) {
+            bool is_free = true;
+            for (int i = 0; i < 3; i++)
+                is_free = is_free && is_clear(&campaign, &boxes[i], row, column);
+            places += is_free;
+        }
+    assert_int_equal(swath.room.places, places);
+    for (int i = 0; i < 100; i++)
+        for (int j = 0; j < 100; j++) {
+            uint64_t row, column;
+            chip_room_choose(&swath.room, (i + 0.5) / 100, (j + 0.5) / 100, &row, &column);
+            assert_true(row >= 1 && row + 16 < 60 && column >= 4 && column <= 56);
+            for (int k = 0; k < 3; k++)
+                assert_true(is_clear(&campaign, &boxes[k], row, column));
+        }
+    chip_room_clear(&swath.room);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -199,6 +255,7 @@ int main(void)
         cmocka_unit_test(test_strata_hold_one_each),
         cmocka_unit_test(test_shares_are_whole_and_add_up),
         cmocka_unit_test(test_places_are_all_that_boxes_leave),
+        cmocka_unit_test(test_images_keep_from_edges_contacts_and_ranges),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -454,6 +454,7 @@ static void test_only_what_goes_together_is_added_up(void **state)
         SONJECT_OK);
     const struct stint_file *files[] = {&file};
     assert_int_equal(stint_begin_adding(&stint, &report, files, 1), SONJECT_OK);
+    stint.record = 2;
     assert_int_equal(stint_finish(&stint, &counts), SONJECT_ERROR_INPUT);
     assert_non_null(strstr(report.message, "traced other rays"));
     stint_clear(&stint);
