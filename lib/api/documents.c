@@ -25,7 +25,7 @@ static double level_ground_range(const struct run_facts *facts, double slant_ran
 }
 
 /* Boxes of truth files count swath pixels, and say where they lie in metres. */
-static json_t *box_document(const struct run_facts *facts, const sonject_box *box)
+static json_t *swath_box_document(const struct run_facts *facts, const sonject_box *box)
 {
     if (box->rows == 0)
         return json_null();
@@ -148,9 +148,9 @@ static json_t *object_document(const struct run_facts *facts, uint32_t index)
     json_add(&document, "position",
              position_document(facts, truth->row + (double)facts->swath->patch.first_row,
                                truth->ground_range_m));
-    json_add(&document, "highlight", box_document(facts, &truth->highlight));
-    json_add(&document, "shadow", box_document(facts, &truth->shadow));
-    json_add(&document, "box", box_document(facts, &truth->both));
+    json_add(&document, "highlight", swath_box_document(facts, &truth->highlight));
+    json_add(&document, "shadow", swath_box_document(facts, &truth->shadow));
+    json_add(&document, "box", swath_box_document(facts, &truth->both));
     json_add(&document, "highlight_pixels", json_count(truth->highlight_pixels));
     json_add(&document, "shadow_pixels", json_count(truth->shadow_pixels));
     json_add(&document, "target_strength_db", json_number(truth->target_strength_db));

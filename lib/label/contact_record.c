@@ -17,8 +17,10 @@ json_t *place_document(bool is_geographic, const struct place *place)
     return document;
 }
 
-static json_t *box_document(const sonject_box *box)
+json_t *box_document(const sonject_box *box)
 {
+    if (box->rows == 0)
+        return json_null();
     json_t *document = json_object();
     json_add(&document, "row", json_count(box->first_row));
     json_add(&document, "column", json_count(box->first_column));
@@ -50,7 +52,7 @@ static json_t *contact_document(const struct image_labels *labels, const struct 
              contact->has_place ? json_number(contact->place.heading_deg) : json_null());
     json_add(&document, "dimensions", dimensions);
     json_add(&document, "heading_deg", json_number(contact->heading_deg));
-    json_add(&document, "box", contact->pixels > 0 ? box_document(&contact->box) : json_null());
+    json_add(&document, "box", box_document(&contact->box));
     json_add(&document, "pixels", json_count(contact->pixels));
     json_add(&document, "truncated", json_boolean(contact->is_truncated));
     json_add(&document, "occluded", json_boolean(contact->is_occluded));

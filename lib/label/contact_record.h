@@ -10,6 +10,9 @@
 /* A place on the track's map: longitude_deg and latitude_deg, or easting_m and northing_m. */
 json_t *place_document(bool is_geographic, const struct place *place);
 
+/* Rows and columns; null where it has no rows. */
+json_t *box_document(const sonject_box *box);
+
 /* The contacts of an image. Errors: STORAGE, MEMORY. */
 sonject_status contacts_write_json(struct report *report, const struct image_labels *labels,
                                    const char *path);

@@ -8,29 +8,31 @@
 
 #define DEGREES_PER_RADIAN 57.29577951308232
 
-/* Box and number of the pixels that carry a contact's number, in pixels of the patch. */
-static void find_box(struct contact *contact, const struct injection_result *result)
+/* Widens a contact's box by a pixel of the patch. */
+static void add_pixel(struct contact *contact, uint64_t row, uint64_t column)
 {
-    size_t first_row = result->rows;
-    size_t last_row = 0;
-    size_t first_column = result->columns;
-    size_t last_column = 0;
+    sonject_box *box = &contact->box;
+    if (contact->pixels++ == 0) {
+        box->first_row = row;
+        box->first_column = column;
+        box->columns = 1;
+    }
+    const uint64_t last_column = box->first_column + box->columns - 1;
+    box->rows = row - box->first_row + 1; /* rows come in order */
+    box->columns = (column > last_column ? column : last_column) + 1;
+    box->first_column = column < box->first_column ? column : box->first_column;
+    box->columns -= box->first_column;
+}
+
+/* Boxes and numbers of the pixels that carry contacts' numbers, in pixels of the patch. */
+static void find_boxes(struct image_labels *labels, const struct injection_result *result)
+{
     for (size_t row = 0; row < result->rows; row++)
         for (size_t column = 0; column < result->columns; column++) {
-            if (result->labels[row * result->columns + column] != contact->number)
-                continue;
-            first_row = row < first_row ? row : first_row;
-            last_row = row;
-            first_column = column < first_column ? column : first_column;
-            last_column = column > last_column ? column : last_column;
-            contact->pixels++;
+            const uint32_t number = result->labels[row * result->columns + column];
+            if (number > 0 && number <= labels->count)
+                add_pixel(&labels->contacts[number - 1], row, column);
         }
-    if (contact->pixels > 0) {
-        contact->box.first_row = first_row;
-        contact->box.first_column = first_column;
-        contact->box.rows = last_row - first_row + 1;
-        contact->box.columns = last_column - first_column + 1;
-    }
 }
 
 /* Runs being written: all pixels up to `reached` are told. */
@@ -77,7 +79,6 @@ static size_t write_runs(const struct contact *contact, const struct label_reque
 static sonject_status find_pixels(struct contact *contact, struct report *report,
                                   const struct label_request *request)
 {
-    find_box(contact, request->result);
     if (contact->pixels == 0)
         return SONJECT_OK;
     contact->run_count = write_runs(contact, request, NULL);
@@ -130,6 +131,7 @@ sonject_status image_labels_find(struct image_labels *labels, struct report *rep
     labels->columns = request->columns;
     labels->is_geographic = request->track && request->track->is_geographic;
     labels->count = result->object_count;
+    find_boxes(labels, result);
     for (uint32_t i = 0; status == SONJECT_OK && i < labels->count; i++) {
         struct contact *contact = &labels->contacts[i];
         const sonject_object_truth *truth = &result->objects[i];

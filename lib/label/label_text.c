@@ -1,7 +1,6 @@
 #include "label/label_text.h"
 
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 #include "base/text.h"
@@ -9,14 +8,8 @@
 void label_text_number(struct growing_text *text, double value)
 {
     char digits[40];
-    if (!isfinite(value))
-        return;
-    snprintf(digits, sizeof digits, "%.12g", value);
-    /* a host may run under a locale that writes commas */
-    char *comma = strchr(digits, ',');
-    if (comma)
-        *comma = '.';
-    growing_text_add(text, "%s", digits);
+    if (isfinite(value))
+        growing_text_add(text, "%s", text_of_number(digits, sizeof digits, value, 12));
 }
 
 /* U+FFFE and U+FFFF are UTF-8, but no characters of XML. */
