@@ -22,11 +22,15 @@ struct measure_options {
     const char *transfer;
     struct text_list boxes;
     bool finds;
+    struct number_argument find_contrast;
+    struct whole_argument find_most;
     const char *truth;
     struct number_argument row_spacing, column_spacing;
     const char *compared;
     const char *picture;
 };
+
+#define FIND_MOST_LIMIT 100000
 
 #define MEMBER(name) offsetof(struct measure_options, name)
 
@@ -45,7 +49,12 @@ static const struct argument arguments[] = {
      ARGUMENT_TEXTS, false, MEMBER(boxes)},
     {"--truth", NULL, "FILE", "measures the contacts of a run's truth.json", ARGUMENT_TEXT, false,
      MEMBER(truth)},
-    {"--find", NULL, NULL, "measures the brightest contact", ARGUMENT_FLAG, false, MEMBER(finds)},
+    {"--find", NULL, NULL, "looks for contacts and measures them, the brightest first",
+     ARGUMENT_FLAG, false, MEMBER(finds)},
+    {"--find-contrast", NULL, "DB", "of the faintest over the seabed, 6...100, see below (12)",
+     ARGUMENT_NUMBER, false, MEMBER(find_contrast)},
+    {"--find-most", NULL, "N", "contacts, 1...100000 (100)", ARGUMENT_WHOLE, false,
+     MEMBER(find_most)},
     {"--row-spacing", NULL, "M", "of contacts' lengths in metres", ARGUMENT_NUMBER, false,
      MEMBER(row_spacing)},
     {"--column-spacing", NULL, "M", "likewise, of slant range", ARGUMENT_NUMBER, false,
@@ -132,26 +141,23 @@ static bool box_parse(const char *text, sonject_box *box)
     return box->rows > 0 && box->columns > 0;
 }
 
-/* What contacts have in common; the boxes are for free(). */
+/* What contacts have in common; boxes: as many as there are options. */
 static bool fill_contacts(const struct measure_options *options,
-                          sonject_contact_file_params *params, sonject_box **boxes)
+                          sonject_contact_file_params *params, sonject_box *boxes)
 {
     sonject_contact_file_params_init(params);
-    *boxes = calloc(options->boxes.count + 1, sizeof **boxes);
-    if (!*boxes) {
-        message("measure: memory is out");
-        return false;
-    }
     for (size_t i = 0; i < options->boxes.count; i++)
-        if (!box_parse(options->boxes.texts[i], &(*boxes)[i])) {
+        if (!box_parse(options->boxes.texts[i], &boxes[i])) {
             message("measure: --box takes ROW,COLUMN,ROWS,COLUMNS in pixels, not \"",
                     options->boxes.texts[i], "\"");
             return false;
         }
     params->image = options->image;
     params->truth = options->truth;
-    params->boxes = *boxes;
+    params->boxes = boxes;
     params->box_count = (uint32_t)options->boxes.count;
+    params->find_contrast_db = options->find_contrast.value; /* 0: as usual */
+    params->find_most = (uint32_t)options->find_most.value;
     params->row_spacing_m = options->row_spacing.value;
     params->column_spacing_m = options->column_spacing.value;
     params->has_transfer = options->transfer != NULL;
@@ -162,11 +168,14 @@ static bool fill_contacts(const struct measure_options *options,
 static int work_on_contacts(const struct measure_options *options)
 {
     sonject_contact_file_params params;
-    sonject_box *boxes = NULL;
+    sonject_box *boxes = calloc(options->boxes.count + 1, sizeof *boxes);
     sonject_context *context = NULL;
     char *text = NULL;
     int code = EXIT_CODE_USAGE;
-    if (options->compared || fill_contacts(options, &params, &boxes)) {
+    if (!boxes) {
+        message("measure: memory is out");
+        code = EXIT_CODE_STORAGE;
+    } else if (options->compared || fill_contacts(options, &params, boxes)) {
         sonject_status status = sonject_context_create(NULL, &context);
         if (status == SONJECT_OK)
             status = options->compared
@@ -197,7 +206,15 @@ static const char *conflict(const struct measure_options *options)
         (options->wants_seam || options->before || options->influence || options->labels))
         return "measure: contacts and the seam are measured one at a time";
     if (options->finds && (options->truth || options->boxes.count > 0))
-        return "measure: --find looks for a contact that --box and --truth do not tell";
+        return "measure: --find looks for contacts that --box and --truth do not tell";
+    if ((options->find_contrast.is_given || options->find_most.is_given) && !options->finds)
+        return "measure: --find-contrast and --find-most are for --find; give it too";
+    if (options->find_contrast.is_given &&
+        !(options->find_contrast.value >= 6.0 && options->find_contrast.value <= 100.0))
+        return "measure: --find-contrast must be 6...100 dB";
+    if (options->find_most.is_given &&
+        (options->find_most.value < 1 || options->find_most.value > FIND_MOST_LIMIT))
+        return "measure: --find-most must be 1...100000";
     if ((options->row_spacing.is_given && !(options->row_spacing.value > 0.0)) ||
         (options->column_spacing.is_given && !(options->column_spacing.value > 0.0)))
         return "measure: --row-spacing and --column-spacing must be above 0";
@@ -238,8 +255,17 @@ const struct verb measure_verb = {
     .operand_offset = MEMBER(image),
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
-    .notes = "The seabed is what neither mask holds. The seam is the area under the curve of a\n"
-             "classifier: 0.5 is chance, 1 a seam that is always seen.\n" TRANSFER_NOTES,
+    .notes =
+        "The seabed is what neither mask holds. The seam is the area under the curve of a\n"
+        "classifier: 0.5 is chance, 1 a seam that is always seen.\n"
+        "A contact that --find finds has a mean of 3 x 3 pixels that is so far over the seabed\n"
+        "around it, and touches no brighter one's box; \"left_off\" counts what more is as\n"
+        "bright. Lengths have standard errors by speckle. \"gap\" is what is lit between "
+        "highlight\n"
+        "and shadow, such as a thick target's top, \"dim\" the first part of the shadow if that "
+        "is\n"
+        "brighter than the rest; \"cut\" says that the box or the image ends "
+        "there.\n" TRANSFER_NOTES,
     .options_size = sizeof(struct measure_options),
     .work = work,
 };

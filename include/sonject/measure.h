@@ -79,18 +79,33 @@ SONJECT_API void sonject_contact_params_init(sonject_contact_params *params);
 
 /* One ruler for measured and injected contacts. NaN: not there, or not known. A highlight are
  * pixels whose mean with their neighbours is 6 dB over the seabed (and less than 20 dB under the
- * contact's brightest), a shadow those that are 6 dB under it. Along-track lengths are taken across
- * the whole part, range lengths across the middle third of its rows; edges lie at 0.6 of
- * the seabed's mean for shadows, and at 0.15 of the way from it to the highlight's. On single-look
- * speckle they are good to a pixel or two. */
+ * contact's brightest), a shadow those that are 6 dB under it.
+ *
+ * Edges are the likeliest ones amid speckle, to fractions of a pixel. A highlight's lie where what
+ * is at least 6 dB over the seabed goes over into what is no brighter than that, less what the
+ * point response spreads. Its length along the track is that of lines laid along it, between the
+ * ends of its outermost columns; its range length is across the middle third of its rows. A shadow
+ * begins where the last that is lit ends: that is brighter than the geometric mean of shadow and
+ * seabed, and than side lobes of the highlight may be. It ends half way up the penumbra towards the
+ * seabed. Its range length is the mean across the middle third of its rows.
+ *
+ * What a thick target leaves between its bright face and its shadow is told apart: `gap` if it is
+ * lit, such as a level top, and no part of the shadow's length; `dim` if it is nearly as dark as
+ * the shadow, and then it is the first part of that length, which may be the target's or side lobes
+ * in range. A face that is no brighter than the shadow is not seen, nor is the upper side of a
+ * round target where sound grazes it: it counts as shadow.
+ *
+ * Errors are standard errors by speckle alone; that a highlight fades towards its ends, or that a
+ * shadow's rows are of unlike lengths, is not in them. */
 typedef struct sonject_contact_measures {
     uint32_t struct_size;
-    uint32_t reserved;
+    uint32_t is_cut; /* 1: highlight or shadow reaches the edge of the image or of the box, and
+                        lengths may be too short */
     sonject_box highlight; /* around its pixels; rows 0: there is none */
     sonject_box shadow;    /* beyond the highlight's near edge, in its rows */
     double highlight_along_pixels;
     double highlight_range_pixels;
-    double shadow_along_pixels;
+    double shadow_along_pixels; /* across its darkest columns */
     double shadow_range_pixels; /* its length */
     double highlight_along_m;
     double highlight_range_m;
@@ -105,10 +120,23 @@ typedef struct sonject_contact_measures {
     double seabed_db;             /* around the box */
     double highlight_contrast_db; /* over the seabed */
     double shadow_contrast_db;
-    double seabed_shape; /* of the whole image without the contact, as in sonject_measurement */
+    double seabed_shape; /* of the whole image without the contacts that are measured with it, as in
+                            sonject_measurement */
     double seabed_looks;
     double row_length_pixels;
     double column_length_pixels;
+    double gap_range_pixels; /* from the highlight's far edge to where the shadow begins */
+    double gap_range_m;
+    double dim_range_pixels; /* of the shadow's length, the first part if it is brighter than the
+                                rest; 0: it is not */
+    double dim_range_m;
+    double highlight_along_error_pixels;
+    double highlight_range_error_pixels;
+    double shadow_along_error_pixels;
+    double shadow_range_error_pixels;
+    double gap_range_error_pixels;
+    double dim_range_error_pixels;
+    sonject_box box; /* that was measured */
 } sonject_contact_measures;
 
 /* Measures a contact in pixels in memory, linear. measures->struct_size must be set. Errors:
@@ -125,20 +153,25 @@ typedef struct sonject_contact_file_params {
     const char *image;
     const char *truth; /* a run's truth.json: its boxes, and the spacing that they tell; or NULL
                         */
-    const sonject_box *boxes; /* box_count of them, beside those of truth; where there are none of
-                                 either, the contact is looked for in the whole image */
+    const sonject_box *boxes; /* box_count of them, beside those of truth; where neither is given,
+                                 contacts are looked for in the whole image */
     uint32_t box_count;
-    uint32_t reserved;
+    uint32_t find_most;   /* of the contacts that are looked for, the brightest; 0: 100 */
     double row_spacing_m; /* 0: unknown, or as truth tells */
     double column_spacing_m;
     sonject_transfer_params transfer;
+    double find_contrast_db; /* a contact's brightest mean of 3 x 3 pixels is at least so far over
+                                the seabed within some 64 pixels of it; 6...100, 0: 12 */
 } sonject_contact_file_params;
 
 SONJECT_API void sonject_contact_file_params_init(sonject_contact_file_params *params);
 
-/* Measures contacts of an image file. *text gets JSON, {"contacts": [...]} with the members of
- * sonject_contact_measures (null where they are not known), the caller's for sonject_text_release;
- * NULL on failure. Errors: ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED. */
+/* Measures contacts of an image file. *text gets JSON, {"contacts": [...], "left_off": N} with the
+ * members of sonject_contact_measures (null where they are not known), the caller's for
+ * sonject_text_release; NULL on failure. Contacts are those of boxes, then of truth, in their
+ * order. Ones that were looked for come the brightest first; none touches the box of a brighter
+ * one, nor is it 20 dB fainter than one in its columns within 64 rows, as side lobes are. N tells
+ * how many more areas are bright enough. Errors: ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED. */
 SONJECT_API sonject_status sonject_measure_contacts(sonject_context *context,
                                                     const sonject_contact_file_params *params,
                                                     char **text);

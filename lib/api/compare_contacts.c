@@ -10,6 +10,7 @@
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
+#include "base/text.h"
 #include "image/canvas.h"
 #include "image/font.h"
 #include "image/sample_comparison.h"
@@ -34,12 +35,12 @@ struct sample {
 };
 
 struct contact_set {
-    struct sample samples[CONTACT_NUMBERS];
+    struct sample samples[COMPARED_NUMBERS];
 };
 
 static void contact_set_clear(struct contact_set *set)
 {
-    for (size_t i = 0; i < CONTACT_NUMBERS; i++)
+    for (size_t i = 0; i < COMPARED_NUMBERS; i++)
         free(set->samples[i].values);
 }
 
@@ -59,7 +60,7 @@ static bool append(struct sample *sample, double value)
 
 static bool take_contact(struct contact_set *set, const json_t *contact)
 {
-    for (size_t i = 0; i < CONTACT_NUMBERS; i++) {
+    for (size_t i = 0; i < COMPARED_NUMBERS; i++) {
         const json_t *value = json_object_get(contact, contact_numbers[i].name);
         if (json_is_number(value) && !append(&set->samples[i], json_number_value(value)))
             return false;
@@ -112,7 +113,7 @@ static json_t *summary_document(const struct sample_summary *summary)
 static char *comparison_text(const struct sample_comparison *comparisons)
 {
     json_t *document = json_object();
-    for (size_t i = 0; i < CONTACT_NUMBERS; i++) {
+    for (size_t i = 0; i < COMPARED_NUMBERS; i++) {
         json_t *entry = json_object();
         json_add(&entry, "first", summary_document(&comparisons[i].first));
         json_add(&entry, "second", summary_document(&comparisons[i].second));
@@ -155,7 +156,11 @@ static void draw_panel(struct canvas *canvas, int64_t left, int64_t top, const c
     canvas_frame(canvas, left, plot_top, PLOT_WIDTH, PLOT_HEIGHT, ink);
     draw_curve(canvas, left, plot_top, first, low - margin, high + margin, blue);
     draw_curve(canvas, left, plot_top, second, low - margin, high + margin, red);
-    snprintf(line, sizeof line, "%.3g...%.3g, p %.2g", low, high, comparison->probability);
+    char numbers[3][20];
+    snprintf(line, sizeof line, "%s...%s, p %s",
+             text_of_number(numbers[0], sizeof numbers[0], low, 3),
+             text_of_number(numbers[1], sizeof numbers[1], high, 3),
+             text_of_number(numbers[2], sizeof numbers[2], comparison->probability, 2));
     draw_text(canvas, left, plot_top + PLOT_HEIGHT + FONT_ASCENT + 5, line, sizeof line,
               TEXT_RIGHTWARDS, ink);
 }
@@ -166,12 +171,12 @@ static sonject_status draw(struct report *report, const struct contact_set sets[
 {
     struct canvas canvas;
     uint32_t panels = 0;
-    const uint32_t lines = (CONTACT_NUMBERS + PANELS_ACROSS - 1) / PANELS_ACROSS;
+    const uint32_t lines = (COMPARED_NUMBERS + PANELS_ACROSS - 1) / PANELS_ACROSS;
     if (!canvas_create(&canvas, lines * PANEL_HEIGHT + 40, PANELS_ACROSS * PANEL_WIDTH + 20, paper))
         return report_out_of_memory(report, path);
     draw_text(&canvas, 20, 26, "first set", 96, TEXT_RIGHTWARDS, blue);
     draw_text(&canvas, 180, 26, "second set", 96, TEXT_RIGHTWARDS, red);
-    for (size_t i = 0; i < CONTACT_NUMBERS; i++) {
+    for (size_t i = 0; i < COMPARED_NUMBERS; i++) {
         const struct sample *first = &sets[0].samples[i];
         const struct sample *second = &sets[1].samples[i];
         if (first->count == 0 || second->count == 0)
@@ -199,12 +204,12 @@ sonject_status sonject_compare_contacts(sonject_context *context, const char *fi
     if (!first || !second)
         return null_argument(report, "first and second");
     struct contact_set sets[2];
-    struct sample_comparison comparisons[CONTACT_NUMBERS];
+    struct sample_comparison comparisons[COMPARED_NUMBERS];
     memset(sets, 0, sizeof sets);
     sonject_status status = read_set(&sets[0], report, first);
     if (status == SONJECT_OK)
         status = read_set(&sets[1], report, second);
-    for (size_t i = 0; status == SONJECT_OK && i < CONTACT_NUMBERS; i++)
+    for (size_t i = 0; status == SONJECT_OK && i < COMPARED_NUMBERS; i++)
         comparisons[i] = compare_samples(sets[0].samples[i].values, sets[0].samples[i].count,
                                          sets[1].samples[i].values, sets[1].samples[i].count);
     if (status == SONJECT_OK && picture)

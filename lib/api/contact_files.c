@@ -9,16 +9,22 @@
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
+#include "image/contact_search.h"
+#include "label/contact_record.h"
 
 #define TRUTH_BYTES_MAX ((size_t)1 << 26)
-#define TRUTH_MARGIN    6 /* pixels around a truth's box: its masks end where they are half dark */
 #define BOXES_MAX       100000
+#define LENGTH_MOST     1e6 /* m */
+#define FIND_MOST       100
+#define FIND_CONTRAST   12.0 /* dB */
 
 void sonject_contact_file_params_init(sonject_contact_file_params *params)
 {
     memset(params, 0, sizeof *params);
     params->struct_size = sizeof *params;
     sonject_transfer_params_init(&params->transfer);
+    params->find_most = FIND_MOST;
+    params->find_contrast_db = FIND_CONTRAST;
 }
 
 /* The contacts to measure. */
@@ -42,7 +48,7 @@ static bool read_count(const json_t *object, const char *key, uint64_t *value)
     return json_is_integer(member) && number >= 0 && number <= (json_int_t)1 << 31;
 }
 
-/* A truth's box with a margin, within the image. */
+/* A truth's box with a margin, within the image: its masks end where they are half dark. */
 static bool take_truth_box(const json_t *box, size_t rows, size_t columns, sonject_box *taken)
 {
     uint64_t row, column, box_rows, box_columns;
@@ -51,10 +57,10 @@ static bool take_truth_box(const json_t *box, size_t rows, size_t columns, sonje
         box_rows == 0 || box_columns == 0 || row + box_rows > rows ||
         column + box_columns > columns)
         return false;
-    const uint64_t last_row = row + box_rows + TRUTH_MARGIN;
-    const uint64_t last_column = column + box_columns + TRUTH_MARGIN;
-    taken->first_row = row > TRUTH_MARGIN ? row - TRUTH_MARGIN : 0;
-    taken->first_column = column > TRUTH_MARGIN ? column - TRUTH_MARGIN : 0;
+    const uint64_t last_row = row + box_rows + CONTACT_MARGIN;
+    const uint64_t last_column = column + box_columns + CONTACT_MARGIN;
+    taken->first_row = row > CONTACT_MARGIN ? row - CONTACT_MARGIN : 0;
+    taken->first_column = column > CONTACT_MARGIN ? column - CONTACT_MARGIN : 0;
     taken->rows = (last_row < rows ? last_row : rows) - taken->first_row;
     taken->columns = (last_column < columns ? last_column : columns) - taken->first_column;
     return true;
@@ -87,6 +93,8 @@ static sonject_status take_truth(struct contact_list *list, struct report *repor
             status = bad_truth(report, path, "a box is not inside the image");
         const double length = json_number_value(json_object_get(box, "length_m"));
         const double width = json_number_value(json_object_get(box, "width_m"));
+        if (!(length >= 0.0 && length <= LENGTH_MOST && width >= 0.0 && width <= LENGTH_MOST))
+            status = bad_truth(report, path, "a box has impossible lengths in metres");
         if (!(list->row_spacing_m > 0.0))
             list->row_spacing_m = length / json_number_value(json_object_get(box, "rows"));
         if (!(list->column_spacing_m > 0.0))
@@ -97,24 +105,14 @@ static sonject_status take_truth(struct contact_list *list, struct report *repor
     return status;
 }
 
-static json_t *box_document(const sonject_box *box)
-{
-    if (box->rows == 0)
-        return json_null();
-    json_t *document = json_object();
-    json_add(&document, "row", json_count(box->first_row));
-    json_add(&document, "column", json_count(box->first_column));
-    json_add(&document, "rows", json_count(box->rows));
-    json_add(&document, "columns", json_count(box->columns));
-    return document;
-}
-
 static json_t *measures_document(const char *image, const sonject_contact_measures *measures)
 {
     json_t *document = json_object();
     json_add(&document, "image", json_text(image));
+    json_add(&document, "box", box_document(&measures->box));
     json_add(&document, "highlight", box_document(&measures->highlight));
     json_add(&document, "shadow", box_document(&measures->shadow));
+    json_add(&document, "cut", json_boolean(measures->is_cut));
     for (size_t i = 0; i < CONTACT_NUMBERS; i++) {
         double value;
         memcpy(&value, (const char *)measures + contact_numbers[i].offset, sizeof value);
@@ -124,29 +122,84 @@ static json_t *measures_document(const char *image, const sonject_contact_measur
 }
 
 /* *text is NULL where memory is out. */
-static sonject_status measure_list(struct report *report, const char *image,
-                                   const struct contact_list *list, const float *intensity,
-                                   size_t rows, size_t columns, char **text)
+static sonject_status write_list(struct report *report, const char *image,
+                                 const sonject_contact_measures *measures, size_t count,
+                                 size_t left_off, char **text)
 {
     json_t *contacts = json_array();
-    sonject_status status = SONJECT_OK;
-    for (size_t i = 0; status == SONJECT_OK && i < list->count; i++) {
-        sonject_contact_params params;
-        sonject_contact_measures measures;
-        sonject_contact_params_init(&params);
-        params.box = list->boxes[i];
-        params.row_spacing_m = list->row_spacing_m;
-        params.column_spacing_m = list->column_spacing_m;
-        status = contact_measure(report, intensity, rows, columns, &params, &measures);
-        if (status == SONJECT_OK)
-            json_append(&contacts, measures_document(image, &measures));
-    }
+    for (size_t i = 0; i < count; i++)
+        json_append(&contacts, measures_document(image, &measures[i]));
     json_t *document = json_object();
     json_add(&document, "contacts", contacts);
-    *text =
-        status == SONJECT_OK ? json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
+    json_add(&document, "left_off", json_count(left_off));
+    *text = document ? json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
     json_decref(document);
-    return status == SONJECT_OK && !*text ? report_out_of_memory(report, image) : status;
+    return *text ? SONJECT_OK : report_out_of_memory(report, image);
+}
+
+/* Those of the list; measures: as many. */
+static sonject_status measure_list(struct report *report, const struct contact_list *list,
+                                   struct contact_image *image, sonject_contact_measures *measures)
+{
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; status == SONJECT_OK && i < list->count; i++) {
+        struct contact_place place;
+        status = place_in_box(report, &list->boxes[i], image->rows, image->columns, &place);
+        if (status == SONJECT_OK)
+            status = contact_measure(report, image, &place, list->row_spacing_m,
+                                     list->column_spacing_m, &measures[i]);
+    }
+    return status;
+}
+
+/* The brightest of the image; measures: `most` of them. */
+static sonject_status find_contacts(struct report *report, const struct contact_list *list,
+                                    double contrast, struct contact_image *image, size_t most,
+                                    sonject_contact_measures *measures, size_t *count,
+                                    size_t *left_off)
+{
+    struct contact_search search;
+    struct contact_place place;
+    sonject_status status = contact_search_begin(&search, report, image);
+    *count = 0;
+    while (status == SONJECT_OK && *count < most) {
+        status = contact_search_next(&search, report, image, contrast, &place);
+        if (status != SONJECT_OK || place.box.rows == 0)
+            break;
+        status = contact_measure(report, image, &place, list->row_spacing_m, list->column_spacing_m,
+                                 &measures[*count]);
+        ++*count;
+    }
+    *left_off = contact_search_left(&search, image, contrast);
+    contact_search_clear(&search);
+    return status;
+}
+
+/* The contacts of an image whose intensities are at hand. */
+static sonject_status measure_all(struct report *report, const struct contact_list *list,
+                                  const sonject_contact_file_params *params, const float *intensity,
+                                  size_t rows, size_t columns, char **text)
+{
+    const bool looks = !params->truth && list->count == 0;
+    const double contrast = pow(10.0, 0.1 * params->find_contrast_db);
+    size_t count = looks ? params->find_most : list->count;
+    size_t left_off = 0;
+    struct contact_image image;
+    sonject_contact_measures *measures = allocate_array(count, sizeof *measures);
+    sonject_status status = contact_image_create(&image, report, intensity, rows, columns);
+    if (status == SONJECT_OK && !measures)
+        status = report_out_of_memory(report, params->image);
+    if (status == SONJECT_OK)
+        status = looks ? find_contacts(report, list, contrast, &image, count, measures, &count,
+                                       &left_off)
+                       : measure_list(report, list, &image, measures);
+    if (status == SONJECT_OK)
+        status = contacts_add_seabed(report, &image, measures, count);
+    if (status == SONJECT_OK)
+        status = write_list(report, params->image, measures, count, left_off, text);
+    contact_image_clear(&image);
+    free(measures);
+    return status;
 }
 
 static sonject_status take_boxes(struct contact_list *list, struct report *report,
@@ -161,11 +214,29 @@ static sonject_status take_boxes(struct contact_list *list, struct report *repor
     if (params->box_count > 0)
         memcpy(list->boxes, params->boxes, params->box_count * sizeof *list->boxes);
     list->count = params->box_count;
-    if (params->truth)
-        return take_truth(list, report, params->truth, rows, columns);
-    if (list->count == 0)
-        list->count = 1; /* its box, all zeros, is the whole image */
-    return SONJECT_OK;
+    return params->truth ? take_truth(list, report, params->truth, rows, columns) : SONJECT_OK;
+}
+
+/* Fills in what 0 stands for. */
+static sonject_status check_params(struct report *report, sonject_contact_file_params *params)
+{
+    if (params->find_most == 0)
+        params->find_most = FIND_MOST;
+    if (params->find_contrast_db == 0.0)
+        params->find_contrast_db = FIND_CONTRAST;
+    if (params->box_count > BOXES_MAX || params->find_most > BOXES_MAX)
+        return report_failure(report, SONJECT_ERROR_INPUT, "at most %d contacts are measured",
+                              BOXES_MAX);
+    if (!(params->find_contrast_db >= 6.0 && params->find_contrast_db <= 100.0))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "contacts are looked for by contrasts of 6...100 dB, not %g dB",
+                              params->find_contrast_db);
+    if (params->has_transfer) {
+        const sonject_status status = check_transfer(&params->transfer, report, NULL);
+        if (status != SONJECT_OK)
+            return status;
+    }
+    return check_spacings(report, params->row_spacing_m, params->column_spacing_m);
 }
 
 sonject_status sonject_measure_contacts(sonject_context *context,
@@ -187,15 +258,14 @@ sonject_status sonject_measure_contacts(sonject_context *context,
         return status;
     if (!taken.image || (taken.box_count > 0 && !taken.boxes))
         return null_argument(report, "image and boxes");
-    if (taken.has_transfer)
-        status = check_transfer(&taken.transfer, report, NULL);
+    status = check_params(report, &taken);
     if (status == SONJECT_OK)
         status =
             read_intensities(report, taken.image, &taken.transfer, &rows, &columns, &intensity);
     if (status == SONJECT_OK)
         status = take_boxes(&list, report, &taken, rows, columns);
     if (status == SONJECT_OK)
-        status = measure_list(report, taken.image, &list, intensity, rows, columns, text);
+        status = measure_all(report, &list, &taken, intensity, rows, columns, text);
     free(intensity);
     free(list.boxes);
     return status;

@@ -36,6 +36,16 @@ const struct contact_number contact_numbers[CONTACT_NUMBERS] = {
     NUMBER(seabed_looks),
     NUMBER(row_length_pixels),
     NUMBER(column_length_pixels),
+    NUMBER(gap_range_pixels),
+    NUMBER(gap_range_m),
+    NUMBER(dim_range_pixels),
+    NUMBER(dim_range_m),
+    NUMBER(highlight_along_error_pixels),
+    NUMBER(highlight_range_error_pixels),
+    NUMBER(shadow_along_error_pixels),
+    NUMBER(shadow_range_error_pixels),
+    NUMBER(gap_range_error_pixels),
+    NUMBER(dim_range_error_pixels),
 };
 
 void sonject_contact_params_init(sonject_contact_params *params)
@@ -57,8 +67,8 @@ static double decibels(double intensity)
 
 /* A bar of uniform energy has the variance length^2 / 12 along itself. */
 static void measure_axis(const float *intensity, size_t columns, const uint8_t *marks,
-                         const struct contact_sizes *sizes, const sonject_contact_params *params,
-                         sonject_contact_measures *measures)
+                         const struct contact_sizes *sizes, double row_spacing_m,
+                         double column_spacing_m, sonject_contact_measures *measures)
 {
     const struct window_box *box = &sizes->highlight.box;
     double sum = 0.0;
@@ -72,8 +82,8 @@ static void measure_axis(const float *intensity, size_t columns, const uint8_t *
              column++) {
             const size_t i = row * columns + column;
             const double weight = marks[i] == PART_HIGHLIGHT ? (double)intensity[i] : 0.0;
-            const double along = (double)(row - box->first_row) * params->row_spacing_m;
-            const double range = (double)(column - box->first_column) * params->column_spacing_m;
+            const double along = (double)(row - box->first_row) * row_spacing_m;
+            const double range = (double)(column - box->first_column) * column_spacing_m;
             sum += weight;
             x += weight * along;
             y += weight * range;
@@ -90,36 +100,36 @@ static void measure_axis(const float *intensity, size_t columns, const uint8_t *
     measures->axis_width_m = sqrt(12.0 * fmax(0.0, 0.5 * (vx + vy) - spread));
 }
 
-static void fill(const struct contact_sizes *sizes, const sonject_contact_params *params,
+static void fill(const struct contact_sizes *sizes, double row_spacing_m, double column_spacing_m,
                  sonject_contact_measures *measures)
 {
-    const double row = params->row_spacing_m > 0.0 ? params->row_spacing_m : NAN;
-    const double column = params->column_spacing_m > 0.0 ? params->column_spacing_m : NAN;
+    const double row = row_spacing_m > 0.0 ? row_spacing_m : NAN;
+    const double column = column_spacing_m > 0.0 ? column_spacing_m : NAN;
     measures->highlight = public_box(&sizes->highlight.box);
     measures->shadow = public_box(&sizes->shadow.box);
-    measures->highlight_along_pixels = sizes->highlight_rows;
-    measures->highlight_range_pixels = sizes->highlight_columns;
-    measures->shadow_along_pixels = sizes->shadow_rows;
-    measures->shadow_range_pixels = sizes->shadow_columns;
-    measures->highlight_along_m = sizes->highlight_rows * row;
-    measures->highlight_range_m = sizes->highlight_columns * column;
-    measures->shadow_along_m = sizes->shadow_rows * row;
-    measures->shadow_range_m = sizes->shadow_columns * column;
+    measures->highlight_along_pixels = sizes->highlight_rows.pixels;
+    measures->highlight_range_pixels = sizes->highlight_columns.pixels;
+    measures->shadow_along_pixels = sizes->shadow_rows.pixels;
+    measures->shadow_range_pixels = sizes->shadow_columns.pixels;
+    measures->gap_range_pixels = sizes->gap_columns.pixels;
+    measures->highlight_along_error_pixels = sizes->highlight_rows.error;
+    measures->highlight_range_error_pixels = sizes->highlight_columns.error;
+    measures->shadow_along_error_pixels = sizes->shadow_rows.error;
+    measures->shadow_range_error_pixels = sizes->shadow_columns.error;
+    measures->gap_range_error_pixels = sizes->gap_columns.error;
+    measures->highlight_along_m = sizes->highlight_rows.pixels * row;
+    measures->highlight_range_m = sizes->highlight_columns.pixels * column;
+    measures->shadow_along_m = sizes->shadow_rows.pixels * row;
+    measures->shadow_range_m = sizes->shadow_columns.pixels * column;
+    measures->gap_range_m = sizes->gap_columns.pixels * column;
+    measures->dim_range_pixels = sizes->dim_columns.pixels;
+    measures->dim_range_m = sizes->dim_columns.pixels * column;
+    measures->dim_range_error_pixels = sizes->dim_columns.error;
     measures->highlight_db = decibels(sizes->highlight_intensity);
     measures->shadow_db = decibels(sizes->shadow_intensity);
     measures->seabed_db = decibels(sizes->seabed);
     measures->highlight_contrast_db = measures->highlight_db - measures->seabed_db;
     measures->shadow_contrast_db = measures->shadow_db - measures->seabed_db;
-}
-
-static void fill_seabed(const struct speckle_statistics *seabed, sonject_contact_measures *measures)
-{
-    if (seabed->blocks == 0)
-        return;
-    measures->seabed_shape = seabed->shape;
-    measures->seabed_looks = seabed->looks;
-    measures->row_length_pixels = seabed->along_track.length_pixels;
-    measures->column_length_pixels = seabed->range.length_pixels;
 }
 
 /* Everything that is a number is not known yet. */
@@ -132,59 +142,102 @@ static void forget(sonject_contact_measures *measures)
         memcpy((char *)measures + contact_numbers[i].offset, &unknown, sizeof unknown);
 }
 
-static sonject_status check_box(struct report *report, const sonject_box *box, size_t rows,
-                                size_t columns)
+/* Whether an area touches an edge of the box around it. */
+static bool is_cut_by(const struct contact_area *area, const struct window_box *box)
 {
-    if (box->first_row < rows && box->rows <= rows - box->first_row &&
-        box->first_column < columns && box->columns <= columns - box->first_column &&
-        box->columns > 0)
-        return SONJECT_OK;
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "the box at row %llu, column %llu of %llu x %llu pixels is not inside "
-                          "the image of %zu x %zu",
-                          (unsigned long long)box->first_row, (unsigned long long)box->first_column,
-                          (unsigned long long)box->rows, (unsigned long long)box->columns, rows,
-                          columns);
+    const struct window_box *inner = &area->box;
+    return area->pixels > 0 &&
+           (inner->first_row == box->first_row || inner->first_column == box->first_column ||
+            inner->first_row + inner->rows == box->first_row + box->rows ||
+            inner->first_column + inner->columns == box->first_column + box->columns);
 }
 
-sonject_status contact_measure(struct report *report, const float *intensity, size_t rows,
-                               size_t columns, const sonject_contact_params *params,
-                               sonject_contact_measures *measures)
+sonject_status check_spacings(struct report *report, double row_spacing_m, double column_spacing_m)
 {
-    const sonject_box *asked = &params->box;
-    struct window_box box = {0, 0, rows, columns};
+    const double spacings[2] = {row_spacing_m, column_spacing_m};
+    for (int i = 0; i < 2; i++)
+        if (!(spacings[i] >= 0.0 && spacings[i] <= 1e6))
+            return report_failure(report, SONJECT_ERROR_INPUT,
+                                  "row and column spacing must be 0...1000 km");
+    return SONJECT_OK;
+}
+
+sonject_status place_in_box(struct report *report, const sonject_box *box, size_t rows,
+                            size_t columns, struct contact_place *place)
+{
+    if (box->first_row >= rows || box->rows > rows - box->first_row ||
+        box->first_column >= columns || box->columns > columns - box->first_column ||
+        box->rows == 0 || box->columns == 0)
+        return report_failure(
+            report, SONJECT_ERROR_INPUT,
+            "the box at row %llu, column %llu of %llu x %llu pixels is not inside "
+            "the image of %zu x %zu",
+            (unsigned long long)box->first_row, (unsigned long long)box->first_column,
+            (unsigned long long)box->rows, (unsigned long long)box->columns, rows, columns);
+    memset(place, 0, sizeof *place);
+    place->box.first_row = (size_t)box->first_row;
+    place->box.first_column = (size_t)box->first_column;
+    place->box.rows = (size_t)box->rows;
+    place->box.columns = (size_t)box->columns;
+    place->bright = place->box;
+    return SONJECT_OK;
+}
+
+sonject_status contact_measure(struct report *report, struct contact_image *image,
+                               const struct contact_place *place, double row_spacing_m,
+                               double column_spacing_m, sonject_contact_measures *measures)
+{
     struct contact_sizes sizes;
-    struct speckle_statistics seabed;
     forget(measures);
-    if (asked->rows > 0) {
-        const sonject_status inside = check_box(report, asked, rows, columns);
-        if (inside != SONJECT_OK)
-            return inside;
-        box.first_row = (size_t)asked->first_row;
-        box.first_column = (size_t)asked->first_column;
-        box.rows = (size_t)asked->rows;
-        box.columns = (size_t)asked->columns;
+    const sonject_status status = measure_contact_sizes(image, report, place, &sizes);
+    if (status != SONJECT_OK)
+        return status;
+    fill(&sizes, row_spacing_m, column_spacing_m, measures);
+    measures->box = public_box(&place->box);
+    measures->is_cut =
+        is_cut_by(&sizes.highlight, &place->box) || is_cut_by(&sizes.shadow, &place->box);
+    if (sizes.highlight.pixels > 0 && row_spacing_m > 0.0 && column_spacing_m > 0.0)
+        measure_axis(image->intensity, image->columns, image->marks, &sizes, row_spacing_m,
+                     column_spacing_m, measures);
+    return SONJECT_OK;
+}
+
+sonject_status contacts_add_seabed(struct report *report, const struct contact_image *image,
+                                   sonject_contact_measures *measures, size_t count)
+{
+    struct speckle_statistics seabed;
+    const sonject_status status =
+        measure_speckle(report, image->intensity, image->taken, image->rows, image->columns,
+                        image->columns, &seabed);
+    for (size_t i = 0; status == SONJECT_OK && seabed.blocks > 0 && i < count; i++) {
+        measures[i].seabed_shape = seabed.shape;
+        measures[i].seabed_looks = seabed.looks;
+        measures[i].row_length_pixels = seabed.along_track.length_pixels;
+        measures[i].column_length_pixels = seabed.range.length_pixels;
     }
-    uint8_t *marks = allocate_array(rows * columns, 1);
-    sonject_status status =
-        marks ? measure_contact_sizes(report, intensity, rows, columns, &box, marks, &sizes)
-              : report_out_of_memory(report, "a contact's measures");
-    if (status == SONJECT_OK) {
-        fill(&sizes, params, measures);
-        if (sizes.highlight.pixels > 0 && params->row_spacing_m > 0.0 &&
-            params->column_spacing_m > 0.0)
-            measure_axis(intensity, columns, marks, &sizes, params, measures);
-        status = measure_speckle(report, intensity, marks, rows, columns, columns, &seabed);
-    }
-    if (status == SONJECT_OK)
-        fill_seabed(&seabed, measures);
-    free(marks);
     return status;
 }
 
-static bool is_length(double value)
+static sonject_status measure_asked(struct report *report, const float *intensity, size_t rows,
+                                    size_t columns, const sonject_contact_params *params,
+                                    sonject_contact_measures *found)
 {
-    return value >= 0.0 && value <= 1e6;
+    const sonject_box whole = {0, 0, rows, columns};
+    struct contact_place place;
+    struct contact_image image;
+    sonject_status status =
+        place_in_box(report, params->box.rows > 0 ? &params->box : &whole, rows, columns, &place);
+    if (status != SONJECT_OK)
+        return status;
+    place.is_near = params->box.rows == 0;
+    status = contact_image_create(&image, report, intensity, rows, columns);
+    if (status == SONJECT_OK)
+        status = contact_measure(report, &image, &place, params->row_spacing_m,
+                                 params->column_spacing_m, found);
+    if (status == SONJECT_OK)
+        status = contacts_add_seabed(report, &image, found, 1);
+    contact_image_clear(&image);
+    return status;
 }
 
 sonject_status sonject_measure_contact(sonject_context *context, const sonject_pixels *pixels,
@@ -197,7 +250,7 @@ sonject_status sonject_measure_contact(sonject_context *context, const sonject_p
     struct report *report = &context->report;
     sonject_contact_params taken;
     sonject_contact_measures found;
-    float *packed = NULL;
+    float *intensity = NULL;
     size_t rows, columns;
     sonject_contact_params_init(&taken);
     sonject_status status =
@@ -206,13 +259,12 @@ sonject_status sonject_measure_contact(sonject_context *context, const sonject_p
         return status;
     if (!pixels || !measures)
         return null_argument(report, "pixels and measures");
-    if (!is_length(taken.row_spacing_m) || !is_length(taken.column_spacing_m))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "row and column spacing must be 0...1000 km");
-    status = take_intensities(report, pixels, &rows, &columns, &packed);
+    status = check_spacings(report, taken.row_spacing_m, taken.column_spacing_m);
     if (status == SONJECT_OK)
-        status = contact_measure(report, packed, rows, columns, &taken, &found);
-    free(packed);
+        status = take_intensities(report, pixels, &rows, &columns, &intensity);
+    if (status == SONJECT_OK)
+        status = measure_asked(report, intensity, rows, columns, &taken, &found);
+    free(intensity);
     return status == SONJECT_OK ? params_give(report, measures, &found, sizeof found, sizeof found,
                                               "contact measures")
                                 : status;

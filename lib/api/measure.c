@@ -50,6 +50,20 @@ static void fill_seabed(const struct speckle_statistics *seabed, sonject_measure
     measurement->column_length_pixels = is_known ? seabed->range.length_pixels : NAN;
 }
 
+/* Changes the amplitudes to intensities. Errors: INPUT. */
+static sonject_status square(struct report *report, struct measured *measured)
+{
+    for (size_t i = 0; i < measured->rows * measured->columns; i++) {
+        measured->amplitudes[i] *= measured->amplitudes[i];
+        if (!isfinite(measured->amplitudes[i]))
+            return report_failure(report, SONJECT_ERROR_INPUT,
+                                  "the pixel at row %zu, column %zu is too large to be squared: "
+                                  "scale the image down",
+                                  i / measured->columns, i % measured->columns);
+    }
+    return SONJECT_OK;
+}
+
 /* Changes the amplitudes to intensities. */
 static sonject_status measure(struct report *report, struct measured *measured,
                               sonject_measurement *to)
@@ -67,11 +81,11 @@ static sonject_status measure(struct report *report, struct measured *measured,
     if (status == SONJECT_OK && measured->influence && measured->before)
         status = measure_seam(report, measured->before, measured->influence, measured->labels,
                               measured->rows, measured->columns, &before);
-    for (size_t i = 0; i < measured->rows * measured->columns; i++) {
-        measured->amplitudes[i] *= measured->amplitudes[i];
+    for (size_t i = 0; i < measured->rows * measured->columns; i++)
         if (measured->influence && measured->labels && measured->labels[i])
             measured->influence[i] = 255;
-    }
+    if (status == SONJECT_OK)
+        status = square(report, measured);
     if (status == SONJECT_OK)
         status = measure_speckle(report, measured->amplitudes,
                                  measured->influence ? measured->influence : measured->labels,
@@ -283,12 +297,6 @@ static sonject_status take_amplitudes(struct report *report, const sonject_pixel
     return SONJECT_OK;
 }
 
-static void square(float *values, size_t count)
-{
-    for (size_t i = 0; values && i < count; i++)
-        values[i] *= values[i];
-}
-
 sonject_status take_intensities(struct report *report, const sonject_pixels *pixels, size_t *rows,
                                 size_t *columns, float **intensity)
 {
@@ -298,9 +306,7 @@ sonject_status take_intensities(struct report *report, const sonject_pixels *pix
     *rows = measured.rows;
     *columns = measured.columns;
     *intensity = measured.amplitudes;
-    if (status == SONJECT_OK)
-        square(measured.amplitudes, measured.rows * measured.columns);
-    return status;
+    return status == SONJECT_OK ? square(report, &measured) : status;
 }
 
 sonject_status read_intensities(struct report *report, const char *path,
@@ -313,9 +319,7 @@ sonject_status read_intensities(struct report *report, const char *path,
     *rows = measured.rows;
     *columns = measured.columns;
     *intensity = measured.amplitudes;
-    if (status == SONJECT_OK)
-        square(measured.amplitudes, measured.rows * measured.columns);
-    return status;
+    return status == SONJECT_OK ? square(report, &measured) : status;
 }
 
 sonject_status sonject_measure_pixels(sonject_context *context, const sonject_pixels *pixels,

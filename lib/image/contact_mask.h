@@ -2,6 +2,7 @@
 #ifndef SONJECT_IMAGE_CONTACT_MASK_H
 #define SONJECT_IMAGE_CONTACT_MASK_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -22,6 +23,15 @@ struct window_box {
     size_t first_row, first_column, rows, columns;
 };
 
+/* The box with so many pixels around it, within the image. */
+struct window_box box_with_margin(const struct window_box *box, size_t margin, size_t rows,
+                                  size_t columns);
+
+/* The smallest box around both, and what both have in common; they must overlap for that. */
+struct window_box box_around(const struct window_box *a, const struct window_box *b);
+struct window_box box_within(const struct window_box *a, const struct window_box *b);
+bool boxes_overlap(const struct window_box *a, const struct window_box *b);
+
 /* A connected set of pixels (by sides). */
 struct contact_area {
     struct window_box box; /* around it; rows 0: there is none */
@@ -32,11 +42,20 @@ struct contact_area {
 /* Mean over 3 x 3 pixels, fewer at the image's edges. */
 void mean_of_neighbours(const float *intensity, size_t rows, size_t columns, float *mean);
 
-/* Marks with `part` the area of pixels of `box` for which means lie beyond the threshold (above it
- * for a highlight, below it for a shadow), marks[] still 0: of all such areas the one of most
- * energy, or for a shadow of most pixels. stack: box->rows * box->columns places. */
-struct contact_area mark_largest_area(const float *means, const float *intensity, size_t columns,
-                                      const struct window_box *box, enum contact_part part,
-                                      double threshold, uint8_t *marks, size_t *stack);
+/* Areas of pixels of `box` for which means lie beyond the threshold: above it for a highlight,
+ * below it for a shadow. */
+struct area_search {
+    const float *means, *intensity; /* of the image */
+    size_t columns;                 /* of the image */
+    struct window_box box;
+    size_t start_columns; /* of the box, its first ones: an area must have a pixel in them */
+    enum contact_part part;
+    double threshold;
+    uint8_t *marks; /* of the image: where one is not 0 no area is */
+    size_t *stack;  /* box.rows * box.columns places */
+};
+
+/* Marks with the part that area which has the most energy, or for a shadow the most pixels. */
+struct contact_area mark_largest_area(const struct area_search *search);
 
 #endif

@@ -1,193 +1,35 @@
 #include "image/contact_ruler.h"
 
+#include <limits.h>
 #include <math.h>
-#include <stdbool.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "base/memory.h"
+#include "image/contact_lines.h"
 
-#define SEABED_MARGIN 24 /* pixels around the box that are taken for seabed */
-#define SEABED_BLOCK  6  /* pixels on a side, of whose means the median is taken */
-#define EDGE_REACH    8  /* pixels beyond a part in which its edge is looked for */
-#define PIECE_GAP     6  /* pixels between pieces of one highlight, at most */
-#define PIECES_MAX    32
-/* Of the highlight over the seabed, where its profiles are cut off: an edge then lies at half of
- * it, and fainter faces count. */
-#define HIGHLIGHT_FRACTION 0.3
-/* Of the seabed, where a shadow's profiles are cut off, so that its edges lie at 0.6 of it: the
- * tail of the echo before it makes it look shorter, most at low thresholds. */
-#define SHADOW_FRACTION 1.2
-
-/* The image, and what is made of it. */
-struct ruler {
-    const float *intensity;
-    size_t rows, columns;
-    double seabed;
-    /* Lines in range that are looked at together begin so many columns later a row, counted from a
-     * middle row: along a highlight that lies askew. */
-    double slant, middle_row;
-};
+#define EDGE_REACH 8 /* pixels beyond a part in which its edge is looked for */
+#define END_ROWS   4 /* of a highlight, whose columns tell where its end is looked for */
+#define BANDS      3 /* of rows, in each of which a shadow's edges are taken for straight */
+#define TILTS      8 /* to either side, that a far edge may have along the highlight */
+#define TILT_STEP  0.125
+/* Of the seabed: a shadow darker than that counts as that dark, since side lobes of the seabed
+ * around it fill its edges. */
+#define SHADOW_LEAST 0.03
+/* Of a shadow's level: noise makes a shadow no brighter than that. */
+#define SHADOW_CEILING 2.0
+#define EDGE_MARGIN    3.0  /* columns of a shadow at its edges that may not be as dark as it is */
+#define DIM_GAIN       10.0 /* from which on a shadow is taken to have two levels */
 
 static size_t smaller(size_t a, size_t b)
 {
     return a < b ? a : b;
 }
 
-static int by_size(const void *a, const void *b)
+static struct contact_length length_between(const struct profile_edge *a,
+                                            const struct profile_edge *b)
 {
-    const float x = *(const float *)a;
-    const float y = *(const float *)b;
-    return (x > y) - (x < y);
-}
-
-static struct window_box widen(const struct ruler *ruler, const struct window_box *box,
-                               size_t margin)
-{
-    struct window_box wide;
-    wide.first_row = box->first_row > margin ? box->first_row - margin : 0;
-    wide.first_column = box->first_column > margin ? box->first_column - margin : 0;
-    wide.rows = smaller(box->first_row + box->rows + margin, ruler->rows) - wide.first_row;
-    wide.columns =
-        smaller(box->first_column + box->columns + margin, ruler->columns) - wide.first_column;
-    return wide;
-}
-
-static size_t larger(size_t a, size_t b)
-{
-    return a > b ? a : b;
-}
-
-static bool overlap(const struct window_box *a, const struct window_box *b)
-{
-    return a->first_row < b->first_row + b->rows && b->first_row < a->first_row + a->rows &&
-           a->first_column < b->first_column + b->columns &&
-           b->first_column < a->first_column + a->columns;
-}
-
-/* Of the pixels of the box, slanted, that are inside the image; NaN if none is. */
-static double mean_in(const struct ruler *ruler, const struct window_box *box)
-{
-    double sum = 0.0;
-    size_t count = 0;
-    for (size_t row = box->first_row; row < box->first_row + box->rows; row++) {
-        const long shift = lround(ruler->slant * ((double)row - ruler->middle_row));
-        for (size_t k = 0; k < box->columns; k++) {
-            const long column = (long)(box->first_column + k) + shift;
-            if (column < 0 || column >= (long)ruler->columns)
-                continue;
-            sum += (double)ruler->intensity[row * ruler->columns + (size_t)column];
-            count++;
-        }
-    }
-    return sum / (double)count;
-}
-
-/* The median of blocks around the box, and within it too if none is around: stones and other
- * shadows there do not count. A mean of 36 exponential values has its median 1 % below its mean. */
-static sonject_status find_seabed(struct ruler *ruler, struct report *report,
-                                  const struct window_box *box)
-{
-    const struct window_box wide = widen(ruler, box, SEABED_MARGIN);
-    const size_t most = (wide.rows / SEABED_BLOCK) * (wide.columns / SEABED_BLOCK);
-    float *means = allocate_array(most + 1, sizeof *means);
-    size_t count = 0;
-    if (!means)
-        return report_out_of_memory(report, "the seabed's level");
-    for (int takes_all = 0; takes_all < 2 && count == 0; takes_all++)
-        for (size_t row = 0; row + SEABED_BLOCK <= wide.rows; row += SEABED_BLOCK)
-            for (size_t column = 0; column + SEABED_BLOCK <= wide.columns; column += SEABED_BLOCK) {
-                const struct window_box block = {wide.first_row + row, wide.first_column + column,
-                                                 SEABED_BLOCK, SEABED_BLOCK};
-                if (takes_all || !overlap(&block, box))
-                    means[count++] = (float)mean_in(ruler, &block);
-            }
-    qsort(means, count, sizeof *means, by_size);
-    ruler->seabed = count > 0 ? (double)means[count / 2] : mean_in(ruler, &wide);
-    free(means);
-    return ruler->seabed > 0.0
-               ? SONJECT_OK
-               : report_failure(report, SONJECT_ERROR_INPUT,
-                                "the image is dark around row %zu, column %zu: there is no seabed "
-                                "to measure a contact against",
-                                box->first_row, box->first_column);
-}
-
-/* Mean intensity across a box, for each of its rows or columns. */
-static double profile_at(const struct ruler *ruler, const struct window_box *box, bool is_along,
-                         size_t index)
-{
-    struct window_box line = *box;
-    if (is_along) {
-        line.first_row = index;
-        line.rows = 1;
-    } else {
-        line.first_column = index;
-        line.columns = 1;
-    }
-    return mean_in(ruler, &line);
-}
-
-/* How far a line of the profile is from the level `inner` (0) to `outer` (1, either may be the
- * larger one); values beyond the levels are cut to them. */
-static double outer_share(const struct ruler *ruler, const struct window_box *box, bool is_along,
-                          size_t index, const double levels[2])
-{
-    const double share =
-        (profile_at(ruler, box, is_along, index) - levels[0]) / (levels[1] - levels[0]);
-    return fmin(fmax(share, 0.0), 1.0);
-}
-
-/* Where a profile steps from levels[0] to levels[1], from `start` in steps of `step` for at most
- * `count` pixels: the edge with the least sum of squares, and around it where the profile passes
- * half way. In pixels from start's centre; half a pixel before it if the step is there already. */
-static double find_edge(const struct ruler *ruler, const struct window_box *box, bool is_along,
-                        size_t start, int step, size_t count, const double levels[2])
-{
-    double cost = 0.0; /* of an edge behind pixel k, over that of one before pixel 0 */
-    double best = 0.0;
-    double share_before = 0.0; /* of the pixels on both sides of the best edge */
-    double share_behind = 1.0;
-    size_t edge = 0;
-    for (size_t k = 0; k < count; k++) {
-        const size_t index = step > 0 ? start + k : start - k;
-        const double share = outer_share(ruler, box, is_along, index, levels);
-        cost += share * share - (1.0 - share) * (1.0 - share);
-        if (k == edge)
-            share_behind = share;
-        if (cost < best) {
-            best = cost;
-            edge = k + 1;
-            share_before = share;
-            share_behind = 1.0;
-        }
-    }
-    if (edge == 0)
-        return -0.5;
-    return (double)edge - 1.0 + (0.5 - share_before) / (share_behind - share_before);
-}
-
-/* Pixels from `start` to an end of the image in a direction, start's included, at most `most`. */
-static size_t room(size_t start, int step, size_t size, size_t most)
-{
-    return smaller(step > 0 ? size - start : start + 1, most);
-}
-
-/* From edge to edge through the middle of the part, across the lines of `across`. */
-static double length_between_edges(const struct ruler *ruler, const struct window_box *part,
-                                   const struct window_box *across, bool is_along, double inner,
-                                   double outer)
-{
-    const double levels[2] = {inner, outer};
-    const size_t first = is_along ? part->first_row : part->first_column;
-    const size_t extent = is_along ? part->rows : part->columns;
-    const size_t size = is_along ? ruler->rows : ruler->columns;
-    const size_t middle = first + extent / 2;
-    const size_t reach = extent / 2 + EDGE_REACH + 1;
-    const double length =
-        find_edge(ruler, across, is_along, middle, 1, room(middle, 1, size, reach), levels) +
-        find_edge(ruler, across, is_along, middle, -1, room(middle, -1, size, reach), levels);
-    return fmax(0.0, length);
+    const struct contact_length length = {fmax(0.0, a->place + b->place),
+                                          hypot(a->error, b->error)};
+    return length;
 }
 
 /* The middle third of a part's rows, at least one. */
@@ -199,20 +41,28 @@ static struct window_box middle_rows(const struct window_box *part)
     return middle;
 }
 
-/* The straight line through the marked pixels of each row, all rows alike, as the ruler's slant;
- * *part gets the columns that they take at the middle row, as wide as the mean row. */
-static void lie_along(struct ruler *ruler, const uint8_t *marks, const struct contact_area *area,
+/* Of what is bright against the seabed and what is darker. */
+static struct end_levels levels_of_highlight(const struct contact_lines *lines)
+{
+    const struct end_levels levels = {HIGHLIGHT_OVER_SEABED * lines->seabed, lines->seabed};
+    return levels;
+}
+
+/* Lays lines along the straight line through the marked pixels of each row; *part gets the columns
+ * that they take at the middle row, as many as in the mean row. */
+static void lie_along(struct contact_lines *lines, const struct contact_area *area,
                       struct window_box *part)
 {
+    const struct contact_image *image = lines->image;
     const double count = (double)area->pixels;
     double x = 0.0;
     double y = 0.0;
     double xx = 0.0;
     double xy = 0.0;
-    for (size_t row = area->box.first_row; row < area->box.first_row + area->box.rows; row++)
-        for (size_t k = 0; k < area->box.columns; k++) {
-            const size_t column = area->box.first_column + k;
-            if (marks[row * ruler->columns + column] != PART_HIGHLIGHT)
+    for (size_t row = 0; row < area->box.rows; row++)
+        for (size_t column = 0; column < area->box.columns; column++) {
+            if (image->marks[(area->box.first_row + row) * image->columns + area->box.first_column +
+                             column] != PART_HIGHLIGHT)
                 continue;
             x += (double)row / count;
             y += (double)column / count;
@@ -220,140 +70,275 @@ static void lie_along(struct ruler *ruler, const uint8_t *marks, const struct co
             xy += (double)row * (double)column / count;
         }
     const double width = count / (double)area->box.rows;
-    ruler->slant = xx - x * x > 0.0 ? (xy - x * y) / (xx - x * x) : 0.0;
-    ruler->middle_row = x;
+    lines->slant = xx - x * x > 0.0 ? (xy - x * y) / (xx - x * x) : 0.0;
+    lines->middle_row = (double)area->box.first_row + x;
     *part = area->box;
-    part->first_column = (size_t)fmax(0.0, floor(y - 0.5 * width + 0.5));
-    part->columns = (size_t)(width + 0.5) > 0 ? (size_t)(width + 0.5) : 1;
+    part->first_column += (size_t)fmax(0.0, floor(y - 0.5 * width + 0.5));
+    part->columns = (size_t)fmax(1.0, width + 0.5);
 }
 
-/* Leaves the ruler lying along the highlight. */
-static void measure_highlight(struct ruler *ruler, const uint8_t *marks,
-                              struct contact_sizes *sizes)
+/* The columns, along the lines, of a highlight's marks in some of its rows. */
+static struct window_box columns_marked(const struct contact_lines *lines,
+                                        const struct window_box *highlight, size_t first_row,
+                                        size_t rows)
 {
-    struct window_box along;
-    lie_along(ruler, marks, &sizes->highlight, &along);
-    const struct window_box *part = &along;
-    const struct window_box middle = middle_rows(part);
-    const double level = sizes->seabed * (1.0 - HIGHLIGHT_FRACTION) +
-                         HIGHLIGHT_FRACTION * fmax(sizes->seabed, mean_in(ruler, &middle));
-    sizes->highlight_intensity = sizes->highlight.energy / (double)sizes->highlight.pixels;
-    sizes->highlight_rows = length_between_edges(ruler, part, part, true, level, sizes->seabed);
-    sizes->highlight_columns =
-        length_between_edges(ruler, part, &middle, false, level, sizes->seabed);
+    const struct contact_image *image = lines->image;
+    long low = LONG_MAX;
+    long high = 0;
+    for (size_t row = first_row; row < first_row + rows; row++)
+        for (size_t k = 0; k < highlight->columns; k++) {
+            const size_t column = highlight->first_column + k;
+            const long place = (long)column - line_shift(lines, row);
+            if (image->marks[row * image->columns + column] != PART_HIGHLIGHT || place < 0)
+                continue;
+            low = place < low ? place : low;
+            high = place > high ? place : high;
+        }
+    const struct window_box columns = {first_row, (size_t)(low < high ? low : high), rows,
+                                       low < high ? (size_t)(high - low + 1) : 1};
+    return columns;
 }
 
-static void measure_shadow(const struct ruler *ruler, struct contact_sizes *sizes)
+/* Where a highlight ends along the track, in rows: its last ones if step is 1, its first ones if
+ * -1. */
+static struct profile_edge end_along_track(const struct contact_lines *lines,
+                                           const struct window_box *highlight, int step)
+{
+    const struct end_levels levels = levels_of_highlight(lines);
+    const size_t rows = smaller(END_ROWS, highlight->rows);
+    const size_t inner = smaller(EDGE_REACH, (highlight->rows - 1) / 2);
+    const size_t last =
+        step > 0 ? highlight->first_row + highlight->rows - 1 : highlight->first_row;
+    const struct window_box box =
+        columns_marked(lines, highlight, step > 0 ? last + 1 - rows : last, rows);
+    const struct profile_path path = {box, true, step > 0 ? last - inner : last + inner, step,
+                                      inner + 1 + EDGE_REACH};
+    const struct profile profile = profile_with_skirt(lines, &path);
+    struct profile_edge end = find_profile_end(&profile, &levels);
+    end.place = (double)path.start + (double)step * end.place;
+    return end;
+}
+
+/* In range, across some rows. */
+static struct contact_length width_of_highlight(const struct contact_lines *lines,
+                                                const struct window_box *rows)
+{
+    const struct end_levels levels = levels_of_highlight(lines);
+    struct profile_path path = {*rows, false, rows->first_column + rows->columns / 2, 1,
+                                rows->columns / 2 + EDGE_REACH + 1};
+    struct profile profile = profile_with_skirt(lines, &path);
+    const struct profile_edge far = find_profile_end(&profile, &levels);
+    path.step = -1;
+    profile = profile_with_skirt(lines, &path);
+    const struct profile_edge near = find_profile_end(&profile, &levels);
+    return length_between(&near, &far);
+}
+
+/* Leaves the lines along the highlight; *along gets its columns there. */
+static void measure_highlight(struct contact_lines *lines, struct contact_sizes *sizes,
+                              struct window_box *along)
+{
+    lie_along(lines, &sizes->highlight, along);
+    const struct window_box middle = middle_rows(along);
+    const struct profile_edge first = end_along_track(lines, &sizes->highlight.box, -1);
+    const struct profile_edge last = end_along_track(lines, &sizes->highlight.box, 1);
+    sizes->highlight_rows.pixels = fmax(0.0, last.place - first.place);
+    sizes->highlight_rows.error = hypot(first.error, last.error);
+    sizes->highlight_columns = width_of_highlight(lines, &middle);
+    sizes->highlight_intensity = sizes->highlight.energy / (double)sizes->highlight.pixels;
+}
+
+/* The darkest third of a shadow's columns, at least three; *level gets its mean. */
+static struct window_box darkest_columns(const struct contact_lines *lines,
+                                         const struct window_box *middle, double *level)
+{
+    struct window_box darkest = *middle;
+    darkest.columns = smaller(middle->columns, middle->columns > 9 ? middle->columns / 3 : 3);
+    struct window_box tried = darkest;
+    *level = INFINITY;
+    for (; tried.first_column + tried.columns <= middle->first_column + middle->columns;
+         tried.first_column++) {
+        const double mean = mean_along_lines(lines, &tried);
+        if (mean < *level) {
+            *level = mean;
+            darkest = tried;
+        }
+    }
+    return darkest;
+}
+
+/* From `start`, in a shadow, to where the seabed begins, on an edge that may be tilted. */
+static struct profile_edge edge_in_seabed(const struct contact_lines *lines,
+                                          const struct profile_path *path, double dark)
+{
+    struct edge_belief belief = {0.0, 0.0, 0.0, 0.0};
+    struct contact_lines tilted = *lines;
+    const int tilts = path->box.rows > 1 && !path->is_along_track ? TILTS : 0;
+    tilted.tilt_row = (double)path->box.first_row + 0.5 * (double)(path->box.rows - 1);
+    for (int i = -tilts; i <= tilts; i++) {
+        tilted.tilt = TILT_STEP * i;
+        const struct profile profile = profile_along(&tilted, path);
+        weigh_profile_step(&belief, &profile, dark, lines->seabed);
+    }
+    return edge_believed(&belief);
+}
+
+/* A shadow as it is measured in range. */
+struct shadow_view {
+    struct window_box part;
+    size_t highlight; /* a column of it, or core if there is none */
+    size_t core;      /* a column in the dark */
+    double dark;      /* level */
+};
+
+/* Where it begins and ends, and where what is bright ends before it: columns from its core. */
+struct shadow_edges {
+    struct profile_edge bright, near, far;
+};
+
+static struct shadow_edges find_shadow_edges(const struct contact_lines *lines,
+                                             const struct shadow_view *shadow,
+                                             const struct window_box *rows)
+{
+    struct shadow_edges edges;
+    struct profile_path path = {*rows, false, shadow->core, 1, 0};
+    path.most = shadow->part.first_column + shadow->part.columns - shadow->core + EDGE_REACH;
+    edges.far = edge_in_seabed(lines, &path, shadow->dark);
+    if (shadow->highlight < shadow->core) {
+        const struct end_levels bright = levels_of_highlight(lines);
+        const struct end_levels lit = {sqrt(lines->seabed * shadow->dark),
+                                       SHADOW_CEILING * shadow->dark};
+        path.start = shadow->highlight;
+        path.most = shadow->core - shadow->highlight;
+        const struct profile profile = profile_with_skirt(lines, &path);
+        edges.bright = find_profile_end(&profile, &bright);
+        edges.near = find_profile_end(&profile, &lit);
+        edges.bright.place -= (double)path.most;
+        edges.near.place -= (double)path.most;
+    } else {
+        path.step = -1;
+        path.most = shadow->core - shadow->part.first_column + EDGE_REACH;
+        edges.near = edge_in_seabed(lines, &path, shadow->dark);
+        edges.near.place = -edges.near.place;
+        edges.bright.place = edges.bright.error = NAN;
+    }
+    return edges;
+}
+
+/* Whether the shadow begins with what is brighter than its rest, from its mean edges. */
+static void measure_dim_part(const struct contact_lines *lines, const struct shadow_view *shadow,
+                             const struct window_box *middle, double near,
+                             struct contact_sizes *sizes)
+{
+    const double first = (double)shadow->core + near + EDGE_MARGIN;
+    const double columns = sizes->shadow_columns.pixels - 2.0 * EDGE_MARGIN;
+    const struct contact_length none = {0.0, 0.0};
+    sizes->dim_columns = none;
+    if (!(first >= 0.0 && first < (double)lines->image->columns && columns >= 2.0))
+        return;
+    const struct profile_path path = {*middle, false, (size_t)first, 1, (size_t)columns};
+    const struct profile profile = profile_with_skirt(lines, &path);
+    double gain;
+    for (size_t k = 0; k < profile.count; k++)
+        lines->skirt[k] /= sizes->shadow_intensity;
+    const struct profile_edge change = find_profile_change(&profile, &gain);
+    if (gain < DIM_GAIN)
+        return;
+    sizes->dim_columns.pixels = (double)path.start + change.place - (double)shadow->core - near;
+    sizes->dim_columns.error = change.error;
+}
+
+/* Means over bands of the rows. */
+static void measure_in_range(const struct contact_lines *lines, const struct shadow_view *shadow,
+                             const struct window_box *middle, struct contact_sizes *sizes)
+{
+    const size_t bands = smaller(BANDS, middle->rows);
+    double length = 0.0;
+    double gap = 0.0;
+    double near = 0.0;
+    double length_variance = 0.0;
+    double gap_variance = 0.0;
+    for (size_t band = 0; band < bands; band++) {
+        struct window_box rows = *middle;
+        rows.first_row += band * middle->rows / bands;
+        rows.rows = (band + 1) * middle->rows / bands - band * middle->rows / bands;
+        const struct shadow_edges edges = find_shadow_edges(lines, shadow, &rows);
+        const double near_variance = edges.near.error * edges.near.error;
+        near += edges.near.place;
+        length += edges.far.place - edges.near.place;
+        gap += edges.near.place - edges.bright.place;
+        length_variance += edges.far.error * edges.far.error + near_variance;
+        gap_variance += edges.bright.error * edges.bright.error + near_variance;
+    }
+    const double count = (double)bands;
+    sizes->shadow_columns.pixels = fmax(0.0, length / count);
+    sizes->shadow_columns.error = sqrt(length_variance) / count;
+    sizes->gap_columns.pixels = shadow->highlight < shadow->core ? fmax(0.0, gap / count) : NAN;
+    sizes->gap_columns.error = sqrt(gap_variance) / count;
+    measure_dim_part(lines, shadow, middle, near / count, sizes);
+}
+
+/* highlight: a column of it along the lines; NULL: there is none. */
+static void measure_shadow(const struct contact_lines *lines, const size_t *highlight,
+                           struct contact_sizes *sizes)
 {
     const struct window_box *part = &sizes->shadow.box;
     const struct window_box middle = middle_rows(part);
-    struct window_box heart = middle; /* of the columns likewise */
-    heart.columns = (part->columns + 2) / 3;
-    heart.first_column = part->first_column + (part->columns - heart.columns) / 2;
-    struct window_box core = *part;
-    core.first_column = heart.first_column;
-    core.columns = heart.columns;
-    const double dark = fmin(mean_in(ruler, &heart), SHADOW_UNDER_SEABED * sizes->seabed);
-    const double bright = SHADOW_FRACTION * sizes->seabed;
+    double level;
+    const struct window_box darkest = darkest_columns(lines, &middle, &level);
+    struct shadow_view view = {*part, 0, darkest.first_column + darkest.columns / 2, 0.0};
+    view.highlight = highlight ? *highlight : view.core;
+    view.dark =
+        fmin(fmax(level, SHADOW_LEAST * lines->seabed), SHADOW_UNDER_SEABED * lines->seabed);
     sizes->shadow_intensity = sizes->shadow.energy / (double)sizes->shadow.pixels;
-    sizes->shadow_columns = length_between_edges(ruler, part, &middle, false, dark, bright);
-    sizes->shadow_rows = length_between_edges(ruler, part, &core, true, dark, bright);
+    measure_in_range(lines, &view, &middle, sizes);
+    struct profile_path across = {darkest, true, part->first_row + part->rows / 2, 1,
+                                  part->rows / 2 + 1 + EDGE_REACH};
+    const struct profile_edge last = edge_in_seabed(lines, &across, view.dark);
+    across.step = -1;
+    const struct profile_edge first = edge_in_seabed(lines, &across, view.dark);
+    sizes->shadow_rows = length_between(&first, &last);
 }
 
-static struct window_box common_box(const struct window_box *a, const struct window_box *b)
+static sonject_status measure(struct contact_lines *lines, struct contact_image *image,
+                              struct report *report, const struct contact_place *place,
+                              struct contact_sizes *sizes)
 {
-    struct window_box box;
-    const size_t last_row = larger(a->first_row + a->rows, b->first_row + b->rows);
-    const size_t last_column = larger(a->first_column + a->columns, b->first_column + b->columns);
-    box.first_row = smaller(a->first_row, b->first_row);
-    box.first_column = smaller(a->first_column, b->first_column);
-    box.rows = last_row - box.first_row;
-    box.columns = last_column - box.first_column;
-    return box;
-}
-
-static struct window_box box_within(const struct window_box *a, const struct window_box *b)
-{
-    struct window_box box;
-    box.first_row = larger(a->first_row, b->first_row);
-    box.first_column = larger(a->first_column, b->first_column);
-    box.rows = smaller(a->first_row + a->rows, b->first_row + b->rows) - box.first_row;
-    box.columns =
-        smaller(a->first_column + a->columns, b->first_column + b->columns) - box.first_column;
-    return box;
-}
-
-/* The brightest area, and those near it that speckle has cut off. */
-static void find_highlight(const struct ruler *ruler, const float *means,
-                           const struct window_box *box, double threshold, uint8_t *marks,
-                           size_t *stack, struct contact_area *highlight)
-{
-    *highlight = mark_largest_area(means, ruler->intensity, ruler->columns, box, PART_HIGHLIGHT,
-                                   threshold, marks, stack);
-    for (int piece = 0; highlight->pixels > 0 && piece < PIECES_MAX; piece++) {
-        const struct window_box wide = widen(ruler, &highlight->box, PIECE_GAP);
-        const struct window_box near = box_within(&wide, box);
-        const struct contact_area area =
-            mark_largest_area(means, ruler->intensity, ruler->columns, &near, PART_HIGHLIGHT,
-                              threshold, marks, stack);
-        if (area.pixels == 0)
-            return;
-        highlight->box = common_box(&highlight->box, &area.box);
-        highlight->pixels += area.pixels;
-        highlight->energy += area.energy;
-    }
-}
-
-/* The highlight, and the shadow that lies beyond its near edge and beside it in the same rows. */
-static void find_parts(const struct ruler *ruler, const float *means, const struct window_box *box,
-                       uint8_t *marks, size_t *stack, struct contact_sizes *sizes)
-{
-    double peak = 0.0;
-    for (size_t row = box->first_row; row < box->first_row + box->rows; row++)
-        for (size_t column = box->first_column; column < box->first_column + box->columns; column++)
-            peak = fmax(peak, (double)means[row * ruler->columns + column]);
-    const double threshold =
-        fmax(HIGHLIGHT_OVER_SEABED * ruler->seabed, HIGHLIGHT_UNDER_PEAK * peak);
-    find_highlight(ruler, means, box, threshold, marks, stack, &sizes->highlight);
-    struct window_box beyond = *box;
-    if (sizes->highlight.pixels > 0) {
-        beyond.first_column = sizes->highlight.box.first_column;
-        beyond.columns -= beyond.first_column - box->first_column;
-        const size_t last = box->first_row + box->rows;
-        const size_t reach = sizes->highlight.box.rows / 2 + EDGE_REACH;
-        const struct window_box near = widen(ruler, &sizes->highlight.box, reach);
-        beyond.first_row = near.first_row > box->first_row ? near.first_row : box->first_row;
-        beyond.rows = smaller(near.first_row + near.rows, last) - beyond.first_row;
-    }
-    sizes->shadow = mark_largest_area(means, ruler->intensity, ruler->columns, &beyond, PART_SHADOW,
-                                      SHADOW_UNDER_SEABED * ruler->seabed, marks, stack);
-}
-
-sonject_status measure_contact_sizes(struct report *report, const float *intensity, size_t rows,
-                                     size_t columns, const struct window_box *box, uint8_t *marks,
-                                     struct contact_sizes *sizes)
-{
-    struct ruler ruler = {intensity, rows, columns, 0.0, 0.0, 0.0};
-    float *means = allocate_array(rows * columns, sizeof *means);
-    size_t *stack = allocate_array(box->rows * box->columns, sizeof *stack);
-    memset(sizes, 0, sizeof *sizes);
-    memset(marks, PART_NONE, rows * columns);
-    sizes->highlight_rows = sizes->highlight_columns = sizes->highlight_intensity = NAN;
-    sizes->shadow_rows = sizes->shadow_columns = sizes->shadow_intensity = NAN;
-    sonject_status status =
-        means && stack ? SONJECT_OK : report_out_of_memory(report, "a contact's measures");
+    sonject_status status = find_seabed_level(image, report, &place->box, &lines->seabed);
+    if (status == SONJECT_OK && !(lines->seabed > 0.0))
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "the image is dark around row %zu, column %zu: there is no seabed "
+                                "to measure a contact against",
+                                place->box.first_row, place->box.first_column);
     if (status == SONJECT_OK)
-        status = find_seabed(&ruler, report, box);
-    if (status == SONJECT_OK) {
-        mean_of_neighbours(intensity, rows, columns, means);
-        sizes->seabed = ruler.seabed;
-        find_parts(&ruler, means, box, marks, stack, sizes);
-        if (sizes->highlight.pixels > 0)
-            measure_highlight(&ruler, marks, sizes);
-        if (sizes->shadow.pixels > 0)
-            measure_shadow(&ruler, sizes);
+        status = find_contact_parts(image, report, place, lines->seabed, &sizes->highlight,
+                                    &sizes->shadow);
+    if (status != SONJECT_OK)
+        return status;
+    size_t bright_column = 0;
+    sizes->seabed = lines->seabed;
+    if (sizes->highlight.pixels > 0) {
+        struct window_box along;
+        measure_highlight(lines, sizes, &along);
+        bright_column = along.first_column + along.columns / 2;
     }
-    free(means);
-    free(stack);
+    if (sizes->shadow.pixels > 0)
+        measure_shadow(lines, sizes->highlight.pixels > 0 ? &bright_column : NULL, sizes);
+    return SONJECT_OK;
+}
+
+sonject_status measure_contact_sizes(struct contact_image *image, struct report *report,
+                                     const struct contact_place *place, struct contact_sizes *sizes)
+{
+    const struct contact_length unknown = {NAN, NAN};
+    struct contact_lines lines;
+    memset(sizes, 0, sizeof *sizes);
+    sizes->highlight_rows = sizes->highlight_columns = unknown;
+    sizes->shadow_rows = sizes->shadow_columns = sizes->gap_columns = sizes->dim_columns = unknown;
+    sizes->highlight_intensity = sizes->shadow_intensity = NAN;
+    sonject_status status = contact_lines_create(&lines, report, image);
+    if (status == SONJECT_OK)
+        status = measure(&lines, image, report, place, sizes);
+    contact_lines_clear(&lines);
     return status;
 }

@@ -162,6 +162,61 @@ def test_lengths_of_a_contact(sonject, tmp_path):
         assert_refused(sonject("measure", "image.tif", f"--box={bad}"), 2, "--box")
 
 
+def add_contact(pixels, row, column, rows, gain, shadow):
+    pixels[row : row + rows, column : column + 8] *= gain
+    pixels[row : row + rows, column + 8 : column + 8 + shadow] *= 0.05
+
+
+def test_contacts_are_looked_for(sonject, tmp_path):
+    """The brightest first; what lies in another's shadow and what is faint is none. A gap between
+    highlight and shadow is told, and that a shadow leaves the image."""
+    pixels = speckle(seed=7)
+    add_contact(pixels, 40, 60, 21, 20, 50)
+    pixels[40:61, 76:118] /= 0.05  # the shadow goes away, and comes again further off
+    pixels[40:61, 80:118] *= 0.05
+    add_contact(pixels, 120, 150, 21, 10, 50)
+    add_contact(pixels, 200, 290, 21, 6, 50)
+    add_contact(pixels, 124, 180, 9, 120, 0)
+    add_contact(pixels, 120, 40, 21, 2.5, 30)
+    write(tmp_path / "image.tif", pixels)
+    answer = told(sonject("measure", "image.tif", "--find"))
+    places = [(entry["box"]["row"], entry["box"]["column"]) for entry in answer["contacts"]]
+    assert answer["left_off"] == 0
+    expected = [(34, 54), (114, 144), (194, 284)]
+    assert numpy.abs(numpy.subtract(places, expected)).max() <= 8, places
+    first = answer["contacts"][0]
+    assert first["shadow_range_pixels"] == pytest.approx(38, abs=1.5)
+    assert first["gap_range_pixels"] == pytest.approx(12, abs=1.5)
+    assert 0 < first["shadow_range_error_pixels"] < 1
+    assert [entry["cut"] for entry in answer["contacts"]] == [False, False, True]
+    box = first["box"]
+    again = told(sonject("measure", "image.tif", "--box",
+                         ",".join(str(box[key]) for key in ("row", "column", "rows", "columns"))))
+    assert again["contacts"][0]["shadow_range_pixels"] == first["shadow_range_pixels"]
+    limited = told(sonject("measure", "image.tif", "--find", "--find-most=1"))
+    assert [entry["box"] for entry in limited["contacts"]] == [first["box"]]
+    assert limited["left_off"] == 3  # with the one in the second contact's shadow
+    bright = told(sonject("measure", "image.tif", "--find", "--find-contrast=20"))
+    assert len(bright["contacts"]) == 2
+    for bad in (["--find-most=0"], ["--find-contrast=5"], ["--find-contrast=nan"]):
+        assert_refused(sonject("measure", "image.tif", "--find", *bad), 2, bad[0].split("=")[0])
+    assert_refused(sonject("measure", "image.tif", "--find-most=2"), 2, "--find")
+
+
+def test_numbers_that_cannot_be_measured(sonject, tmp_path):
+    pixels = speckle()
+    pixels[3, 4] = 3e19
+    write(tmp_path / "image.tif", pixels)
+    assert_refused(sonject("measure", "image.tif"), 3, "row 3, column 4", "scale")
+    assert_refused(sonject("measure", "image.tif", "--find"), 3, "row 3, column 4", "scale")
+    write(tmp_path / "image.tif", speckle())
+    for key, value in (("length_m", -1.0), ("width_m", 1e300)):
+        box = {"row": 70, "column": 150, "rows": 21, "columns": 67, "length_m": 2, "width_m": 3}
+        truth = {"objects": [{"box": {**box, key: value}}]}
+        (tmp_path / "truth.json").write_text(json.dumps(truth))
+        assert_refused(sonject("measure", "image.tif", "--truth", "truth.json"), 3, "lengths")
+
+
 def test_two_sets_of_contacts(sonject, tmp_path):
     """Sets of equal shadows, and of shadows a third longer in one of them."""
     for name, columns, seed in (("a", 55, 10), ("b", 55, 30), ("c", 75, 50)):

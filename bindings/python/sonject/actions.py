@@ -356,6 +356,7 @@ def measure_contact(
     )
     del array
     values = _copied(ContactMeasures, measures)
-    for name in ("highlight", "shadow"):
+    for name in ("highlight", "shadow", "box"):
         values[name] = Box(**_copied(Box, values[name]))
+    values["is_cut"] = bool(values["is_cut"])
     return ContactMeasures(**values)

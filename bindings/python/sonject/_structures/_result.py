@@ -120,7 +120,7 @@ class sonject_contact_params(Structure):
 class sonject_contact_measures(Structure):
     _fields_ = [
         ("struct_size", c_uint32),
-        ("reserved", c_uint32),
+        ("is_cut", c_uint32),
         ("highlight", sonject_box),
         ("shadow", sonject_box),
         ("highlight_along_pixels", c_double),
@@ -143,6 +143,17 @@ class sonject_contact_measures(Structure):
         ("seabed_looks", c_double),
         ("row_length_pixels", c_double),
         ("column_length_pixels", c_double),
+        ("gap_range_pixels", c_double),
+        ("gap_range_m", c_double),
+        ("dim_range_pixels", c_double),
+        ("dim_range_m", c_double),
+        ("highlight_along_error_pixels", c_double),
+        ("highlight_range_error_pixels", c_double),
+        ("shadow_along_error_pixels", c_double),
+        ("shadow_range_error_pixels", c_double),
+        ("gap_range_error_pixels", c_double),
+        ("dim_range_error_pixels", c_double),
+        ("box", sonject_box),
     ]
 
 
@@ -154,8 +165,9 @@ class sonject_contact_file_params(Structure):
         ("truth", c_char_p),
         ("boxes", POINTER(sonject_box)),
         ("box_count", c_uint32),
-        ("reserved", c_uint32),
+        ("find_most", c_uint32),
         ("row_spacing_m", c_double),
         ("column_spacing_m", c_double),
         ("transfer", sonject_transfer_params),
+        ("find_contrast_db", c_double),
     ]

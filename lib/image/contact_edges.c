@@ -1,0 +1,175 @@
+#include "image/contact_edges.h"
+
+#include <math.h>
+
+#define STEPS_PER_PIXEL 4
+#define BEFORE_END      3    /* pixels: of the largest mean of the last ones, */
+#define SPREADS         3    /* shares are tried as what spreads, */
+#define SPREAD_RATIO    0.71 /* each so many times the last; the first is all of it */
+#define REACH           6 /* deviations of the point response beyond which nothing of it is left */
+#define WIDTHS          7 /* of penumbras that are tried, */
+#define WIDTH_RATIO     1.6 /* each so many times the last; the first is the point response's */
+#define SKIRT_RATIO     2.0
+#define FAINTEST        1e-9 /* of a dark level: there are means of 0 */
+
+/* share: of the places that this one stands for, in pixels. */
+static void weigh(struct edge_belief *belief, double place, double share, double cost)
+{
+    if (belief->weight == 0.0 || cost < belief->least) {
+        const double factor = belief->weight > 0.0 ? exp(cost - belief->least) : 0.0;
+        belief->weight *= factor;
+        belief->sum *= factor;
+        belief->squares *= factor;
+        belief->least = cost;
+    }
+    const double weight = share * exp(belief->least - cost);
+    belief->weight += weight;
+    belief->sum += weight * place;
+    belief->squares += weight * place * place;
+}
+
+struct profile_edge edge_believed(const struct edge_belief *belief)
+{
+    const double place = belief->sum / belief->weight;
+    const double variance = belief->squares / belief->weight - place * place;
+    const struct profile_edge edge = {place, sqrt(fmax(0.0, variance))};
+    return edge;
+}
+
+/* Of a step's energy, the share that comes so many deviations beyond it. */
+static double spread(double deviations)
+{
+    return 0.5 * erfc(deviations / 1.4142135623730951);
+}
+
+/* Negative log likelihood of a mean > 0, a sample, where any level of a range is expected. */
+static double cost_within(double mean, double least, double most)
+{
+    const double ratio = mean / fmin(fmax(mean, least), most);
+    return ratio - 1.0 - log(ratio);
+}
+
+static double mean_at(const struct profile *profile, const struct end_levels *levels, size_t k)
+{
+    return fmax(profile->means[k], FAINTEST * levels->dark);
+}
+
+static double cost_of_lit(const struct profile *profile, const struct end_levels *levels, size_t k)
+{
+    return cost_within(mean_at(profile, levels, k), levels->lit + SKIRT_RATIO * profile->skirt[k],
+                       INFINITY);
+}
+
+/* spread_there: of what is lit. */
+static double cost_of_dark(const struct profile *profile, const struct end_levels *levels, size_t k,
+                           double spread_there)
+{
+    return cost_within(mean_at(profile, levels, k), spread_there,
+                       spread_there + levels->dark + profile->skirt[k]);
+}
+
+/* Pixels whose centres lie before a place >= -0.5. */
+static size_t pixels_before(double place, size_t count)
+{
+    const size_t before = (size_t)(place + 1.0);
+    return before < count ? before : count;
+}
+
+/* Of an end at `place`, what the spread of that share of the pixels before it adds to the cost of
+ * those behind. */
+static double cost_of_spread(const struct profile *profile, const struct end_levels *levels,
+                             double place, double share)
+{
+    const size_t first = pixels_before(place, profile->count);
+    double before = 0.0;
+    double cost = 0.0;
+    for (size_t k = first > BEFORE_END ? first - BEFORE_END : 0; k < first; k++)
+        before = fmax(before, profile->means[k]);
+    for (size_t k = first; k < profile->count; k++) {
+        const double deviations = ((double)k - place) / profile->deviation;
+        if (deviations > REACH)
+            break;
+        cost += cost_of_dark(profile, levels, k, share * before * spread(deviations)) -
+                cost_of_dark(profile, levels, k, 0.0);
+    }
+    return cost;
+}
+
+struct profile_edge find_profile_end(const struct profile *profile, const struct end_levels *levels)
+{
+    struct edge_belief belief = {0.0, 0.0, 0.0, 0.0};
+    double cost = 0.0; /* of an end behind pixel `first`, over that of one before all pixels */
+    size_t first = 0;
+    for (size_t step = 0; step <= profile->count * STEPS_PER_PIXEL; step++) {
+        const double place = (double)step / STEPS_PER_PIXEL - 0.5;
+        for (; first < pixels_before(place, profile->count); first++)
+            cost += cost_of_lit(profile, levels, first) - cost_of_dark(profile, levels, first, 0.0);
+        double share = 1.0;
+        for (int i = 0; i < SPREADS; i++, share *= SPREAD_RATIO)
+            weigh(&belief, place, 1.0,
+                  profile->samples * (cost + cost_of_spread(profile, levels, place, share)));
+    }
+    return edge_believed(&belief);
+}
+
+/* Likewise, so that profiles of other means compare: of all the pixels that a profile's mean is of,
+ * a sample. */
+static double whole_cost_of(double mean, double expected)
+{
+    return mean / expected + log(expected);
+}
+
+/* Adds the places of a step whose penumbra has that deviation; wider ones are less likely before.
+ */
+static void weigh_steps(struct edge_belief *belief, const struct profile *profile, double before,
+                        double behind, double width)
+{
+    const double stride = fmax(1.0, width) / STEPS_PER_PIXEL;
+    double all_cost = 0.0; /* of all pixels behind the step */
+    size_t settled = 0;    /* pixels well before it */
+    for (size_t k = 0; k < profile->count; k++)
+        all_cost += whole_cost_of(profile->means[k], behind);
+    for (double place = -0.5; place <= (double)profile->count - 0.5; place += stride) {
+        for (; (double)settled < place - REACH * width; settled++)
+            all_cost += whole_cost_of(profile->means[settled], before) -
+                        whole_cost_of(profile->means[settled], behind);
+        double cost = all_cost;
+        for (size_t k = settled; k < profile->count && (double)k < place + REACH * width; k++) {
+            const double share = spread(((double)k - place) / width);
+            cost += whole_cost_of(profile->means[k], behind + (before - behind) * share) -
+                    whole_cost_of(profile->means[k], behind);
+        }
+        weigh(belief, place, stride / width, profile->samples * cost);
+    }
+}
+
+void weigh_profile_step(struct edge_belief *belief, const struct profile *profile, double before,
+                        double behind)
+{
+    double width = profile->deviation;
+    for (int i = 0; i < WIDTHS; i++, width *= WIDTH_RATIO)
+        weigh_steps(belief, profile, before, behind, width);
+}
+
+struct profile_edge find_profile_change(const struct profile *profile, double *gain)
+{
+    struct edge_belief belief = {0.0, 0.0, 0.0, 0.0};
+    const double count = (double)profile->count;
+    double all = 0.0;
+    double first = 0.0;
+    for (size_t k = 0; k < profile->count; k++)
+        all += profile->means[k] / (1.0 + profile->skirt[k]);
+    const double plain = count * log(fmax(all, FAINTEST) / count);
+    for (size_t k = 1; k < profile->count; k++) {
+        first += profile->means[k - 1] / (1.0 + profile->skirt[k - 1]);
+        const double before = fmax(first, FAINTEST * all) / (double)k;
+        const double behind = fmax(all - first, FAINTEST * all) / (count - (double)k);
+        if (before > behind)
+            weigh(&belief, (double)k - 0.5, 1.0,
+                  profile->samples *
+                      ((double)k * log(before) + (count - (double)k) * log(behind) - plain));
+    }
+    const struct profile_edge none = {-0.5, 0.0};
+    *gain = belief.weight > 0.0 ? -belief.least : 0.0;
+    return belief.weight > 0.0 ? edge_believed(&belief) : none;
+}

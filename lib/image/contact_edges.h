@@ -1,0 +1,54 @@
+/* Where profiles of mean intensity end or step, amid speckle. A mean over n independent samples of
+ * speckle has the gamma distribution of shape n: where m is expected, a mean p has the negative log
+ * likelihood n (p/m - 1 - ln p/m), over that of m = p. Places are means over that likelihood, all
+ * places alike likely before. */
+#ifndef SONJECT_IMAGE_CONTACT_EDGES_H
+#define SONJECT_IMAGE_CONTACT_EDGES_H
+
+#include <stddef.h>
+
+/* Mean intensities of pixels one after the other. */
+struct profile {
+    const double *means;
+    const double *skirt; /* what side lobes of what is bright may add, at most */
+    size_t count;
+    double samples;   /* independent ones, a pixel */
+    double deviation; /* of the point response's energy, taken for Gaussian; pixels, > 0 */
+};
+
+/* In pixels from the first one's centre; the error is standard, and of speckle alone. */
+struct profile_edge {
+    double place, error;
+};
+
+/* What is expected on either side of an end; both > 0. */
+struct end_levels {
+    double lit;  /* at least that before it, and SKIRT_RATIO times the skirt */
+    double dark; /* at most that and the skirt behind it, beside what the point response spreads
+                    there */
+};
+
+/* Where a profile that is lit at its first pixels becomes dark, and stays so: what is lit may have
+ * any levels. */
+struct profile_edge find_profile_end(const struct profile *profile,
+                                     const struct end_levels *levels);
+
+/* Sums over places, each weighted with its likelihood over the largest one's. */
+struct edge_belief {
+    double least; /* negative log likelihood */
+    double weight, sum, squares;
+};
+
+/* Weighs where a profile steps from one level to another, both > 0: half way up a penumbra of any
+ * width. Several profiles through an edge, such as ones along different slants, may be weighed one
+ * after the other, the belief all zeros at first. */
+void weigh_profile_step(struct edge_belief *belief, const struct profile *profile, double before,
+                        double behind);
+struct profile_edge edge_believed(const struct edge_belief *belief);
+
+/* Where the first part of a profile, brighter than its rest, ends; each has one level. The skirt is
+ * what side lobes may add of that level. *gain: how much more likely that is than one level for
+ * all, the logarithm; 0: no first part is brighter. */
+struct profile_edge find_profile_change(const struct profile *profile, double *gain);
+
+#endif

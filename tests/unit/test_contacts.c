@@ -1,0 +1,320 @@
+/* Edges in speckle against what drew them, and contacts that are looked for in an image. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "image/contact_edges.h"
+#include "image/contact_ruler.h"
+#include "image/contact_search.h"
+
+#define PIXELS  60
+#define DRAWS   400
+#define ROWS    200
+#define COLUMNS 300
+
+static struct report report;
+static uint64_t random_state;
+
+static double draw(void)
+{
+    random_state = random_state * 6364136223846793005u + 1442695040888963407u;
+    return ((double)(random_state >> 11) + 0.5) * 0x1p-53;
+}
+
+/* Mean of n exponential values of mean 1. */
+static double speckle(int n)
+{
+    double sum = 0.0;
+    for (int i = 0; i < n; i++)
+        sum -= log(draw()) / n;
+    return sum;
+}
+
+static double share_behind(double distance, double deviation)
+{
+    return 0.5 * erfc(-distance / (sqrt(2.0) * deviation));
+}
+
+/* Mean and spread of (measured - true) over the error that each measure states. */
+struct pulls {
+    double sum, squares, offset;
+    int count;
+};
+
+static void add_pull(struct pulls *pulls, const struct profile_edge *edge, double truth)
+{
+    const double pull = (edge->place - truth) / edge->error;
+    pulls->sum += pull;
+    pulls->squares += pull * pull;
+    pulls->offset += edge->place - truth;
+    pulls->count++;
+}
+
+/* Errors are what they say: over DRAWS edges the spread of pulls is known to 1/sqrt(2 DRAWS) = 4 %.
+ * Likelihoods are no normal ones; 30 % are allowed for that. Soft
+ * edges fit sharp steps too if they lie further out, by a fraction of a pixel. */
+static void expect_pulls(const char *what, const struct pulls *pulls)
+{
+    const double spread = sqrt(pulls->squares / pulls->count);
+    const double offset = pulls->offset / pulls->count;
+    print_message("%s: offset %.3f pixels, pulls %.2f\n", what, offset, spread);
+    if (!(spread > 0.7 && spread < 1.3))
+        fail_msg("%s: pulls of %.2f standard errors", what, spread);
+    if (!(fabs(offset) < 0.25))
+        fail_msg("%s: edges are off by %.2f pixels on average", what, offset);
+}
+
+/* From a highlight of levels that come and go to a shadow, all through a point response. */
+static void test_ends_in_speckle(void **unused)
+{
+    (void)unused;
+    const double deviation = 0.42;
+    double means[PIXELS];
+    const double skirt[PIXELS] = {0.0};
+    const struct end_levels levels = {0.2, 0.06};
+    struct pulls pulls = {0.0, 0.0, 0.0, 0};
+    random_state = 1;
+    for (int i = 0; i < DRAWS; i++) {
+        const double truth = 10.0 + 5.0 * draw();
+        for (int k = 0; k < PIXELS; k++) {
+            const double lit = 1.0 - share_behind(k - truth, deviation);
+            means[k] = (0.03 + (k < 6 ? 8.0 : 30.0) * lit) * speckle(6);
+        }
+        const struct profile profile = {means, skirt, PIXELS, 6.0, deviation};
+        const struct profile_edge edge = find_profile_end(&profile, &levels);
+        add_pull(&pulls, &edge, truth);
+    }
+    expect_pulls("ends", &pulls);
+}
+
+/* From a shadow to the seabed, through penumbras of several widths. */
+static void test_steps_in_speckle(void **unused)
+{
+    (void)unused;
+    double means[PIXELS];
+    const double skirt[PIXELS] = {0.0};
+    const double widths[2] = {0.42, 2.5};
+    random_state = 2;
+    for (int i = 0; i < 2; i++) {
+        struct pulls pulls = {0.0, 0.0, 0.0, 0};
+        for (int j = 0; j < DRAWS; j++) {
+            const double truth = 25.0 + 5.0 * draw();
+            for (int k = 0; k < PIXELS; k++)
+                means[k] = (0.03 + 0.97 * share_behind(k - truth, widths[i])) * speckle(6);
+            const struct profile profile = {means, skirt, PIXELS, 6.0, 0.42};
+            struct edge_belief belief = {0.0, 0.0, 0.0, 0.0};
+            weigh_profile_step(&belief, &profile, 0.03, 1.0);
+            const struct profile_edge edge = edge_believed(&belief);
+            add_pull(&pulls, &edge, truth);
+        }
+        expect_pulls(i == 0 ? "steps" : "soft steps", &pulls);
+    }
+}
+
+/* Twice the level in the first third: told where 6 samples a pixel tell it, but not where one level
+ * is all there is: e^10 times as likely is one in some 200 (see contact_ruler.h). */
+static void test_changes_in_shadows(void **unused)
+{
+    (void)unused;
+    double means[PIXELS];
+    const double skirt[PIXELS] = {0.0};
+    const struct profile profile = {means, skirt, PIXELS, 6.0, 0.42};
+    struct pulls pulls = {0.0, 0.0, 0.0, 0};
+    int told = 0;
+    double gain;
+    random_state = 7;
+    for (int i = 0; i < 2 * DRAWS; i++) {
+        const int first = i < DRAWS ? 20 : 0;
+        for (int k = 0; k < PIXELS; k++)
+            means[k] = (k < first ? 0.02 : 0.01) * speckle(6);
+        const struct profile_edge change = find_profile_change(&profile, &gain);
+        if (i < DRAWS)
+            add_pull(&pulls, &change, 19.5);
+        told += i < DRAWS ? gain >= 10.0 : -(gain >= 10.0);
+        assert_true(i < DRAWS || gain < 14.0);
+    }
+    assert_true(told > DRAWS * 9 / 10);
+    expect_pulls("changes", &pulls);
+}
+
+/* All dark, all lit, nothing but zeros, and a single pixel. */
+static void test_profiles_without_an_edge(void **unused)
+{
+    (void)unused;
+    double means[PIXELS] = {0.0};
+    const double skirt[PIXELS] = {0.0};
+    const struct end_levels levels = {4.0, 1.0};
+    const struct profile profile = {means, skirt, PIXELS, 20.0, 0.5};
+    const struct profile single = {means, skirt, 1, 1.0, 0.5};
+    struct profile_edge edge = find_profile_end(&profile, &levels);
+    assert_true(fabs(edge.place + 0.5) < 0.5);
+    edge = find_profile_end(&single, &levels);
+    assert_true(edge.place >= -0.5 && edge.place <= 0.5 && edge.error >= 0.0);
+    for (int k = 0; k < PIXELS; k++)
+        means[k] = 9.0;
+    edge = find_profile_end(&profile, &levels);
+    assert_true(fabs(edge.place - (PIXELS - 0.5)) < 0.5);
+}
+
+/* A bright rectangle with a shadow behind it. */
+static void add_contact(float *intensity, size_t row, size_t column, size_t rows, float level,
+                        size_t shadow)
+{
+    for (size_t i = row; i < row + rows; i++)
+        for (size_t k = column; k < COLUMNS && k < column + 5 + shadow; k++)
+            intensity[i * COLUMNS + k] *= k < column + 5 ? level : 0.01f;
+}
+
+static void fill_with_speckle(float *intensity)
+{
+    for (size_t i = 0; i < (size_t)ROWS * COLUMNS; i++)
+        intensity[i] = (float)speckle(1);
+}
+
+static size_t find(const float *intensity, double contrast, size_t most,
+                   struct contact_place *places, size_t *left)
+{
+    struct contact_image image;
+    struct contact_search search;
+    size_t count = 0;
+    assert_int_equal(contact_image_create(&image, &report, intensity, ROWS, COLUMNS), SONJECT_OK);
+    assert_int_equal(contact_search_begin(&search, &report, &image), SONJECT_OK);
+    while (count < most) {
+        assert_int_equal(contact_search_next(&search, &report, &image, contrast, &places[count]),
+                         SONJECT_OK);
+        if (places[count].box.rows == 0)
+            break;
+        count++;
+    }
+    *left = contact_search_left(&search, &image, contrast);
+    contact_search_clear(&search);
+    contact_image_clear(&image);
+    return count;
+}
+
+/* Four contacts, the brightest first. The fifth lies in the first one's shadow, the sixth is
+ * fainter than what is asked for. Half of the image is 20 dB brighter: contrasts are against what
+ * is around.
+ */
+static void test_contacts_are_found(void **unused)
+{
+    (void)unused;
+    static float intensity[ROWS * COLUMNS];
+    struct contact_place places[10];
+    size_t left;
+    random_state = 3;
+    fill_with_speckle(intensity);
+    for (size_t i = 0; i < (size_t)ROWS * COLUMNS; i++)
+        intensity[i] *= i % COLUMNS < 150 ? 1.0f : 100.0f;
+    add_contact(intensity, 30, 30, 16, 400.0f, 40);
+    add_contact(intensity, 90, 200, 16, 200.0f, 30);
+    add_contact(intensity, 90, 40, 16, 100.0f, 40);
+    add_contact(intensity, 150, 60, 12, 50.0f, 0);
+    add_contact(intensity, 36, 60, 6, 4000.0f, 0);
+    add_contact(intensity, 150, 220, 12, 8.0f, 20);
+    assert_int_equal(find(intensity, 25.0, 10, places, &left), 4);
+    assert_int_equal(left, 0);
+    const size_t firsts[4][2] = {{30, 30}, {90, 200}, {90, 40}, {150, 60}};
+    const size_t widths[4] = {45, 35, 45, 5};
+    for (int i = 0; i < 4; i++) {
+        const struct window_box *box = &places[i].box;
+        assert_true(labs((long)box->first_row + CONTACT_MARGIN - (long)firsts[i][0]) <= 2);
+        assert_true(labs((long)box->first_column + CONTACT_MARGIN - (long)firsts[i][1]) <= 2);
+        assert_true(labs((long)box->columns - 2 * CONTACT_MARGIN - (long)widths[i]) <= 4);
+    }
+    assert_int_equal(find(intensity, 25.0, 2, places, &left), 2);
+    assert_int_equal(left, 2);
+    assert_int_equal(find(intensity, 1e4, 10, places, &left), 0);
+}
+
+/* A side lobe 30 dB under its contact, in its columns, is none; elsewhere it is one. */
+static void test_side_lobes_are_no_contacts(void **unused)
+{
+    (void)unused;
+    static float intensity[ROWS * COLUMNS];
+    struct contact_place places[4];
+    size_t left;
+    random_state = 6;
+    fill_with_speckle(intensity);
+    add_contact(intensity, 60, 40, 10, 1e5f, 30);
+    add_contact(intensity, 100, 40, 10, 1e2f, 0);
+    add_contact(intensity, 100, 140, 10, 1e2f, 0);
+    assert_int_equal(find(intensity, 16.0, 4, places, &left), 2);
+    assert_true(places[1].bright.first_column > 130);
+}
+
+/* Plain speckle has no contacts of 12 dB: a mean of 9 is over 16 once in e-50; nor has the dark. */
+static void test_nothing_is_found_in_speckle(void **unused)
+{
+    (void)unused;
+    static float intensity[ROWS * COLUMNS];
+    struct contact_place places[1];
+    size_t left;
+    random_state = 4;
+    fill_with_speckle(intensity);
+    assert_int_equal(find(intensity, 16.0, 1, places, &left), 0);
+    memset(intensity, 0, sizeof intensity);
+    assert_int_equal(find(intensity, 16.0, 1, places, &left), 0);
+}
+
+/* Images of any size, bright pixels at any place of them, boxes of any size. */
+static void test_small_images(void **unused)
+{
+    (void)unused;
+    random_state = 5;
+    for (size_t rows = 1; rows < 40; rows += rows < 8 ? 1 : 7)
+        for (size_t columns = 1; columns < 40; columns += columns < 8 ? 1 : 7)
+            for (int i = 0; i < 8; i++) {
+                float *intensity = malloc(rows * columns * sizeof *intensity);
+                struct contact_image image;
+                struct contact_place place = {{0, 0, rows, columns}, {0, 0, 0, 0}, i % 2 == 0};
+                struct contact_sizes sizes;
+                assert_non_null(intensity);
+                for (size_t k = 0; k < rows * columns; k++)
+                    intensity[k] = (float)(draw() < 0.6 ? speckle(1) : i < 4 ? 0.0 : 1e-3);
+                for (int k = 0; k < i; k++)
+                    intensity[(size_t)(draw() * (double)(rows * columns))] = 1e4f;
+                place.box.first_row = (size_t)(draw() * (double)rows);
+                place.box.first_column = (size_t)(draw() * (double)columns);
+                place.box.rows -= place.box.first_row;
+                place.box.columns -= place.box.first_column;
+                place.bright = place.box;
+                assert_int_equal(contact_image_create(&image, &report, intensity, rows, columns),
+                                 SONJECT_OK);
+                const sonject_status status =
+                    measure_contact_sizes(&image, &report, &place, &sizes);
+                assert_true(status == SONJECT_OK || status == SONJECT_ERROR_INPUT);
+                if (status == SONJECT_OK && sizes.highlight.pixels > 0)
+                    assert_true(sizes.highlight_rows.pixels >= 0.0 &&
+                                sizes.highlight_rows.pixels < (double)rows + 1.0 &&
+                                sizes.highlight_columns.pixels >= 0.0);
+                if (status == SONJECT_OK && sizes.shadow.pixels > 0)
+                    assert_true(sizes.shadow_rows.pixels >= 0.0 &&
+                                sizes.shadow_columns.pixels >= 0.0 &&
+                                sizes.shadow_columns.error >= 0.0);
+                contact_image_clear(&image);
+                free(intensity);
+            }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_ends_in_speckle),
+        cmocka_unit_test(test_steps_in_speckle),
+        cmocka_unit_test(test_changes_in_shadows),
+        cmocka_unit_test(test_profiles_without_an_edge),
+        cmocka_unit_test(test_contacts_are_found),
+        cmocka_unit_test(test_side_lobes_are_no_contacts),
+        cmocka_unit_test(test_nothing_is_found_in_speckle),
+        cmocka_unit_test(test_small_images),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
