@@ -70,6 +70,7 @@ ELSEWHERE = {
     "doxygen include/Doxyfile": "tests/abi/test_documents.py",
     "python3 tests/physics/report.py build": "tests/abi/test_report.py",
     "tools/fuzz.sh SECONDS": "not run: needs a build of its own; .ci/run runs the same fuzzers",
+    "apt install python3-venv # as root, on Debian": "tools/setup.sh",
     "python3 -m venv env": "tools/setup.sh",
     "env/bin/pip install .": "tests/abi/test_core.py",
     "pip install .": "tests/abi/test_core.py",
