@@ -73,8 +73,10 @@ sonject_status raster_image_write(struct report *report, const char *path,
     return guarded(report, path, [&] {
         const enum image_kind kind = kind_to_write(report, path, *layout);
         const part_file part(path);
+        const bool is_picture = layout->channels == 3;
         image_writer output(report, part.name, path, kind, *layout,
-                            describe(*layout, channel_names, attributes, attribute_count));
+                            describe(*layout, channel_names, attributes, attribute_count),
+                            is_picture);
         const uint64_t at_once = rows_at_once(*layout);
         const unsigned char *rows = static_cast<const unsigned char *>(pixels);
         for (uint64_t row = 0; row < layout->rows; row += at_once) {

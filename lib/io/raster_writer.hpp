@@ -89,10 +89,11 @@ inline void overlay(const struct raster_layout &layout, const struct region &reg
 class image_writer
 {
   public:
-    /* description: a text that the file keeps; name: of the finished file, for messages */
+    /* description: a text that the file keeps; name: of the finished file, for messages; is_drawn:
+     * a mask or a picture, not an image of measured pixels */
     image_writer(struct report *where, const char *path, const char *name, enum image_kind kind,
                  const struct raster_layout &image, const std::string &description,
-                 bool is_mask = false)
+                 bool is_drawn = false)
         : report(where), final_name(name), layout(image), sink(path)
     {
         if (sink.error_so_far() != 0)
@@ -100,7 +101,7 @@ class image_writer
         if (kind == IMAGE_TIFF)
             write_head(description);
         else
-            open_encoder(path, kind, description, is_mask);
+            open_encoder(path, kind, description, is_drawn);
     }
 
     image_writer(const image_writer &) = delete;
@@ -137,7 +138,7 @@ class image_writer
     }
 
     void open_encoder(const char *path, enum image_kind kind, const std::string &description,
-                      bool is_mask)
+                      bool is_drawn)
     {
         OIIO::ImageSpec spec(int(layout.columns), int(layout.rows), int(layout.channels),
                              stored_type(layout.type));
@@ -147,7 +148,8 @@ class image_writer
             spec.attribute("Compression", jpeg_quality);
         if (!description.empty())
             spec.attribute(description_name, description);
-        if (is_mask) { /* mostly zeros: nothing is gained by trying hard */
+        if (is_drawn) { /* few values, or noise by way of a colour map: filters and searching for
+                         * longer matches cost much time, and make files no smaller */
             spec.attribute("png:filter", png_filter_none);
             spec.attribute("png:compressionLevel", 1);
         }
