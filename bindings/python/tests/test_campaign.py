@@ -97,6 +97,19 @@ def test_a_data_set_is_made_once(campaign, tmp_path):
         whole.run(tmp_path / "set", shard=(2**32 + 1, 2))
 
 
+def test_a_data_set_stops_by_itself_and_one_image_is_made_alone(campaign, tmp_path):
+    whole, _ = campaign
+    folder = tmp_path / "set"
+    with pytest.raises(sonject.Cancelled):
+        whole.run(folder, exit_after_s=1e-9)
+    assert [path.stem for path in folder.glob("all/records/*")] == ["00000000"]
+    assert whole.run(folder, only=4)
+    assert sorted(path.stem for path in folder.glob("all/records/*")) == ["00000000", "00000004"]
+    assert not (folder / "all" / "coco.json").exists()
+    with pytest.raises(sonject.SonjectError, match="not below 0"):
+        whole.run(folder, exit_after_s=-1)
+
+
 def test_mistakes_say_where(tmp_path, campaign):
     with pytest.raises(sonject.SonjectError, match="images: must be at most"):
         sonject.Campaign(tmp_path / "campaign.yaml", {"images": 10**18})
