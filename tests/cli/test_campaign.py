@@ -390,6 +390,8 @@ HOSTILE = [
     (["empty=1.5"], "empty", "from 0 to 1"),
     (["clutter.number=51"], "clutter.number", "0 to 50"),
     (["outputs=[shadows]"], "outputs", "did you mean 'shadow'?"),
+    (["draw={seabed.lambert: {choice: [" + "0.1, " * 20000 + "0.1]}}"], "campaign.yaml",
+     "more than 20000 scenes"),
     (["sonject_campaign=2"], "sonject_campaign", "must be 1"),
 ]
 

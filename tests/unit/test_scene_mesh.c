@@ -152,6 +152,57 @@ static void test_meshes_are_shared(void **state)
     assert_int_equal(rmdir(file_in(folder, "parts")), 0);
 }
 
+/* Reads a scene of one mesh, which comes from the store and goes back to it; its vertices. */
+static const float *read_stored(const struct scene_folder *folder, struct mesh_store *store,
+                                const char *keys)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct scene scene;
+    char text[512];
+    snprintf(text, sizeof text, SCENE "  - {shape: mesh, mesh: %s}\n", keys);
+    const struct scene_text source = {.path = folder->file, .text = text, .bytes = strlen(text)};
+    scene_init(&scene);
+    scene.mesh_store = store;
+    if (scene_text_read(&report, &source, &scene) != SONJECT_OK)
+        fail_msg("refused: %s", report.message);
+    assert_int_equal(scene.mesh_count, 1);
+    const float *vertices = scene.meshes[0].vertices;
+    scene_clear(&scene);
+    return vertices;
+}
+
+static void test_meshes_are_kept_from_scene_to_scene(void **state)
+{
+    struct scene_folder *folder = *state;
+    struct mesh_store store;
+    memset(&store, 0, sizeof store);
+    write_file(folder, "corner.obj", corner, sizeof corner - 1);
+    const float *first = read_stored(folder, &store, "corner.obj");
+    assert_ptr_equal(read_stored(folder, &store, "corner.obj"), first);
+    assert_int_equal(store.count, 1);
+    const uint64_t bytes = store.bytes;
+    /* with other options, and once the file has changed, it is another mesh */
+    assert_ptr_not_equal(read_stored(folder, &store, "{file: corner.obj, unit: cm}"), first);
+    assert_int_equal(store.count, 2);
+    write_file(folder, "corner.obj", corner, sizeof corner - 2);
+    assert_ptr_not_equal(read_stored(folder, &store, "corner.obj"), first);
+    assert_int_equal(store.count, 3);
+    assert_int_equal(store.bytes, 3 * bytes);
+    /* where it is full, the oldest gives way */
+    for (int i = 0; i < MESH_STORE_MESHES; i++) {
+        char keys[64];
+        snprintf(keys, sizeof keys, "{file: corner.obj, unit: %d}", i + 2);
+        (void)read_stored(folder, &store, keys);
+    }
+    assert_int_equal(store.count, MESH_STORE_MESHES);
+    assert_int_equal(store.bytes, MESH_STORE_MESHES * bytes);
+    for (size_t i = 0; i < store.count; i++)
+        assert_true(store.meshes[i].options.unit_m > 1.5);
+    mesh_store_clear(&store);
+    assert_int_equal(store.bytes, 0);
+    remove_file(folder, "corner.obj");
+}
+
 #define MESH(keys) SCENE "  - shape: mesh\n    mesh: " keys "\n"
 
 static void test_what_is_refused(void **state)
@@ -330,6 +381,7 @@ int main(void)
         cmocka_unit_test(test_units_and_axes),
         cmocka_unit_test(test_axes_turn),
         cmocka_unit_test(test_meshes_are_shared),
+        cmocka_unit_test(test_meshes_are_kept_from_scene_to_scene),
         cmocka_unit_test(test_what_is_refused),
         cmocka_unit_test(test_meshes_that_cannot_be_read),
         cmocka_unit_test(test_too_many_meshes),
