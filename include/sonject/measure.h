@@ -96,7 +96,9 @@ SONJECT_API void sonject_contact_params_init(sonject_contact_params *params);
  * round target where sound grazes it: it counts as shadow.
  *
  * Errors are standard errors by speckle alone; that a highlight fades towards its ends, or that a
- * shadow's rows are of unlike lengths, is not in them. */
+ * shadow's rows are of unlike lengths, is not in them. Of slabs in random poses, whose geometry is
+ * known, shadows are off by 1.6 of them (rms), and highlights by 1.0
+ * (tests/physics/test_contact_measures.c). */
 typedef struct sonject_contact_measures {
     uint32_t struct_size;
     uint32_t is_cut; /* 1: highlight or shadow reaches the edge of the image or of the box, and

@@ -394,16 +394,20 @@ static struct tally measure_poses(const char *what, void (*draw_pose)(struct pos
     return tally;
 }
 
-/* Every one: their standard errors by speckle are 0.3 and 0.5 pixels on average, a fifth of what is
- * allowed. Those told are what they say to a factor of 2. */
+/* Speckle leaves standard errors of 0.3 pixels to a shadow and of 0.4 to 1 to a highlight, which is
+ * more than a third of what is allowed in some poses. Of 600 poses with this seed and 8001 to 8005,
+ * which the ruler was not made with, 1 shadow and 2 highlights miss it: more than 2 in 100 would be
+ * once in 70 such tests. The errors that are told are what they say to a factor of 2. */
 static void test_random_poses(void **unused)
 {
     (void)unused;
     const struct tally tally = measure_poses("slabs", draw_slab, POSES);
     print_message("%d highlights (mean error %.2f pixels, %.2f standard errors rms)\n",
                   tally.good_highlights, tally.highlight_bias, tally.pulls[1]);
-    assert_int_equal(tally.good_shadows, POSES);
-    assert_int_equal(tally.good_highlights, POSES);
+    assert_true(tally.good_shadows >= POSES - 2);
+    assert_true(tally.good_highlights >= POSES - 2);
+    expect_below("mean error of shadows", fabs(tally.shadow_bias), 0.5);
+    expect_below("mean error of highlights", fabs(tally.highlight_bias), 0.5);
     for (int i = 0; i < 2; i++)
         assert_true(tally.pulls[i] > 0.5 && tally.pulls[i] < 2.0);
 }
