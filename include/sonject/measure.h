@@ -79,7 +79,7 @@ SONJECT_API void sonject_contact_params_init(sonject_contact_params *params);
 
 /* One ruler for measured and injected contacts. NaN: not there, or not known. A highlight are
  * pixels whose mean with their neighbours is 6 dB over the seabed (and less than 20 dB under the
- * contact's brightest), a shadow those that are 6 dB under it.
+ * contact's brightest), a shadow 9 or more that are 6 dB under it.
  *
  * Edges are the likeliest ones amid speckle, to fractions of a pixel. A highlight's lie where what
  * is at least 6 dB over the seabed goes over into what is no brighter than that, less what the

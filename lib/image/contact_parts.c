@@ -6,8 +6,9 @@
 
 #include "base/memory.h"
 
-#define PIECES_MAX  32
-#define ROWS_BESIDE 8 /* of a highlight, beyond half of its own, that may hold its shadow */
+#define PIECES_MAX    32
+#define ROWS_BESIDE   8 /* of a highlight, beyond half of its own, that may hold its shadow */
+#define SHADOW_PIXELS 9 /* at least: in fewer, one mean of 3 x 3 speckled pixels may be dark */
 #define COLUMNS_LEAST                                                                              \
     32 /* behind a highlight, in which its shadow begins; twice its own if more                    \
         */
@@ -96,6 +97,8 @@ sonject_status find_contact_parts(struct contact_image *image, struct report *re
                 highlight->box.columns + (columns > COLUMNS_LEAST ? columns : COLUMNS_LEAST);
     }
     *shadow = mark_largest_area(&search);
+    if (shadow->pixels < SHADOW_PIXELS)
+        memset(shadow, 0, sizeof *shadow);
     keep_marks(image, &place->box);
     free(search.stack);
     return SONJECT_OK;

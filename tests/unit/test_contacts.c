@@ -264,6 +264,28 @@ static void test_nothing_is_found_in_speckle(void **unused)
     assert_int_equal(find(intensity, 16.0, 1, places, &left), 0);
 }
 
+/* A few dark pixels behind a highlight are speckle, and no shadow. */
+static void test_dark_speckle_is_no_shadow(void **unused)
+{
+    (void)unused;
+    static float intensity[ROWS * COLUMNS];
+    struct contact_image image;
+    const struct window_box box = {50, 80, 40, 120};
+    const struct contact_place place = {box, box, false};
+    struct contact_sizes sizes;
+    for (size_t i = 0; i < (size_t)ROWS * COLUMNS; i++)
+        intensity[i] = 1.0f;
+    add_contact(intensity, 64, 100, 12, 100.0f, 0);
+    for (size_t row = 68; row < 72; row++)
+        for (size_t column = 130; column < 134; column++)
+            intensity[row * COLUMNS + column] = 0.01f;
+    assert_int_equal(contact_image_create(&image, &report, intensity, ROWS, COLUMNS), SONJECT_OK);
+    assert_int_equal(measure_contact_sizes(&image, &report, &place, &sizes), SONJECT_OK);
+    assert_true(sizes.highlight.pixels > 0 && sizes.shadow.pixels == 0);
+    assert_true(isnan(sizes.shadow_columns.pixels) && isnan(sizes.dim_columns.pixels));
+    contact_image_clear(&image);
+}
+
 /* Images of any size, bright pixels at any place of them, boxes of any size. */
 static void test_small_images(void **unused)
 {
@@ -314,6 +336,7 @@ int main(void)
         cmocka_unit_test(test_contacts_are_found),
         cmocka_unit_test(test_side_lobes_are_no_contacts),
         cmocka_unit_test(test_nothing_is_found_in_speckle),
+        cmocka_unit_test(test_dark_speckle_is_no_shadow),
         cmocka_unit_test(test_small_images),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
