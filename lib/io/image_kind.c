@@ -25,7 +25,6 @@ struct foreign {
 };
 
 static const struct foreign foreign_kinds[] = {
-    {"an OpenEXR", "\x76\x2F\x31\x01", 0, 4},
     {"a DPX", "SDPX", 0, 4},
     {"a DPX", "XPDS", 0, 4},
     {"a Cineon", "\x80\x2A\x5F\xD7", 0, 4},
@@ -44,9 +43,10 @@ static const struct foreign foreign_kinds[] = {
 };
 
 static const struct beginning beginnings[] = {
-    {IMAGE_TIFF, {'I', 'I', 42, 0}, 4},    {IMAGE_TIFF, {'M', 'M', 0, 42}, 4},
-    {IMAGE_TIFF, {'I', 'I', 43, 0}, 4},    {IMAGE_TIFF, {'M', 'M', 0, 43}, 4},
-    {IMAGE_PNG, {0x89, 'P', 'N', 'G'}, 4}, {IMAGE_JPEG, {0xFF, 0xD8, 0xFF, 0}, 3}};
+    {IMAGE_TIFF, {'I', 'I', 42, 0}, 4},          {IMAGE_TIFF, {'M', 'M', 0, 42}, 4},
+    {IMAGE_TIFF, {'I', 'I', 43, 0}, 4},          {IMAGE_TIFF, {'M', 'M', 0, 43}, 4},
+    {IMAGE_PNG, {0x89, 'P', 'N', 'G'}, 4},       {IMAGE_JPEG, {0xFF, 0xD8, 0xFF, 0}, 3},
+    {IMAGE_OPENEXR, {0x76, 0x2F, 0x31, 0x01}, 4}};
 
 struct extension {
     enum image_kind kind;
@@ -73,8 +73,8 @@ static const char *foreign_name(const unsigned char *head, size_t count)
 static sonject_status refuse_kind(struct report *report, const char *path,
                                   const unsigned char *head, size_t count)
 {
-    static const char readable[] =
-        "TIFF, PNG, JPEG, PGM (P5), PFM (Pf), BMP, FITS, XTF, NumPy (.npy), HDF5 and MATLAB (.mat)";
+    static const char readable[] = "TIFF, PNG, JPEG, OpenEXR, PGM (P5), PFM (Pf), BMP, FITS, XTF, "
+                                   "NumPy (.npy), HDF5 and MATLAB (.mat)";
     const char *name = foreign_name(head, count);
     if (name)
         return report_failure(report, SONJECT_ERROR_INPUT,
@@ -148,6 +148,8 @@ sonject_status image_kind_check(struct report *report, const char *path, enum im
         return png_check(report, path, parts);
     case IMAGE_JPEG:
         return jpeg_check(report, path, parts);
+    case IMAGE_OPENEXR:
+        return SONJECT_OK; /* its library checks as it reads */
     case IMAGE_TIFF:
         break;
     }

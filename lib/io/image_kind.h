@@ -14,7 +14,8 @@ extern "C" {
 enum image_kind {
     IMAGE_TIFF,
     IMAGE_PNG,
-    IMAGE_JPEG
+    IMAGE_JPEG,
+    IMAGE_OPENEXR
 };
 
 /* Told by the file's first bytes. Errors: INPUT (cannot be opened, another kind). */

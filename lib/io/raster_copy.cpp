@@ -6,6 +6,7 @@
 
 #include "io/jpeg_segments.h"
 #include "io/png_chunks.h"
+#include "io/raster_openexr.hpp"
 #include "io/raster_writer.hpp"
 #include "io/tiff_patch.h"
 
@@ -13,21 +14,6 @@ using namespace raster;
 
 namespace
 {
-
-struct copy_order {
-    struct report *report;
-    const char *source, *path;
-    const struct region *region;
-    const void *pixels;
-    sonject_progress_function progress;
-    void *user;
-
-    void tell(double fraction) const
-    {
-        if (progress && progress(user, fraction, "write") != 0)
-            throw failure{report_failure(report, SONJECT_CANCELLED, "cancelled")};
-    }
-};
 
 /* Decodes and encodes the image, a strip of rows at a time. */
 void encode_copy(const copy_order &order, struct raster_image &source, const char *encoded)
@@ -115,14 +101,21 @@ sonject_status raster_image_copy_with_patch(struct report *report, const char *s
                                             void *user)
 {
     return guarded(report, path, [&] {
-        const copy_order order = {report, source, path, region, pixels, progress, user};
+        copy_order order = {report, source, path, region, pixels, progress, user};
         const std::unique_ptr<struct raster_image> file = open_file(report, source);
         if (!region_is_inside(&file->layout, region))
             throw failure{report_failure(report, SONJECT_ERROR_INPUT,
                                          "%s: the region is not inside the image", source)};
+        std::vector<float> halves;
+        if (file->is_half) {
+            halves = rounded_to_halves(order, file->layout);
+            order.pixels = halves.data();
+        }
         const part_file part(path);
         if (file->kind == IMAGE_TIFF)
             copy_tiff(order, *file, part.name);
+        else if (file->kind == IMAGE_OPENEXR)
+            copy_openexr(order, *file, part.name);
         else
             copy_encoded(order, *file, part.name);
         check_copy(order, part.name);

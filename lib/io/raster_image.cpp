@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "io/raster_openexr.hpp"
 #include "io/raster_streams.hpp"
 #include "io/raster_writer.hpp"
 
@@ -72,7 +73,7 @@ void take_layout(struct report *report, struct raster_image &file)
         file.layout.type = PIXEL_UINT8;
     else if (spec.format == OIIO::TypeDesc::UINT16)
         file.layout.type = PIXEL_UINT16;
-    else if (spec.format == OIIO::TypeDesc::FLOAT)
+    else if (spec.format == OIIO::TypeDesc::FLOAT || file.is_half)
         file.layout.type = PIXEL_FLOAT32;
     else
         throw failure{report_failure(report, SONJECT_ERROR_INPUT,
@@ -171,6 +172,8 @@ std::unique_ptr<struct raster_image> open_file(struct report *report, const char
     require(image_kind_of(report, path, &file->kind));
     require(image_kind_check(report, path, file->kind, &file->parts));
     open_input(report, *file);
+    if (file->kind == IMAGE_OPENEXR)
+        check_openexr(report, *file);
     take_layout(report, *file);
     return file;
 }

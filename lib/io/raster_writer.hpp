@@ -52,6 +52,8 @@ inline const char *format_name(enum image_kind kind)
         return "png";
     case IMAGE_JPEG:
         return "jpeg";
+    case IMAGE_OPENEXR:
+        return "openexr";
     case IMAGE_TIFF:
         break;
     }

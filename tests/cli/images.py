@@ -90,3 +90,34 @@ def read_tiff(path):
     channels = tags.get(277, (1,))[0]
     pixels = numpy.frombuffer(data, order + kind).reshape(tags[257][0], tags[256][0], channels)
     return pixels[:, :, 0] if channels == 1 else pixels
+
+
+def exr_bytes(channels, compression=0, note=b""):
+    """An OpenEXR image of scanlines; channels: arrays by their names, float32 or float16."""
+    names = sorted(channels)
+    pixels = {name: numpy.ascontiguousarray(channels[name]) for name in names}
+    rows, columns = pixels[names[0]].shape
+
+    def attribute(name, kind, content):
+        return name + b"\0" + kind + b"\0" + struct.pack("<I", len(content)) + content
+
+    listed = b"".join(
+        name.encode() + b"\0" + struct.pack("<I4B2I", 1 if pixels[name].itemsize == 2 else 2, 0, 0,
+                                            0, 0, 1, 1) for name in names)
+    window = struct.pack("<4i", 0, 0, columns - 1, rows - 1)
+    head = struct.pack("<II", 20000630, 2) + b"".join([
+        attribute(b"channels", b"chlist", listed + b"\0"),
+        attribute(b"compression", b"compression", bytes([compression])),
+        attribute(b"dataWindow", b"box2i", window),
+        attribute(b"displayWindow", b"box2i", window),
+        attribute(b"lineOrder", b"lineOrder", b"\0"),
+        attribute(b"note", b"string", note),
+        attribute(b"pixelAspectRatio", b"float", struct.pack("<f", 1)),
+        attribute(b"screenWindowCenter", b"v2f", bytes(8)),
+        attribute(b"screenWindowWidth", b"float", struct.pack("<f", 1))]) + b"\0"
+    lines = []
+    for row in range(rows):
+        data = b"".join(pixels[name][row].tobytes() for name in names)
+        lines.append(struct.pack("<iI", row, len(data)) + data)
+    places = [len(head) + 8 * rows + row * len(lines[0]) for row in range(rows)]
+    return head + struct.pack(f"<{rows}Q", *places) + b"".join(lines)

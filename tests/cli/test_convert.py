@@ -118,6 +118,49 @@ def test_numbers_beyond_single_precision_are_refused(sonject, tmp_path):
         assert_refused(sonject("convert", name, "b.npy"), 3, "row 1, column 2", "float32")
 
 
+@pytest.mark.parametrize("kind", ["f4", "f2", "c8"])
+def test_openexr_keeps_its_type_and_attributes(sonject, tmp_path, swath, kind):
+    """Complex parts lie in the file as their names sort: the imaginary one first."""
+    image = swath * numpy.exp(2j * swath) if kind == "c8" else swath
+    image = image.astype(kind)
+    parts = {"real": image.real, "imag": image.imag} if kind == "c8" else {"Y": image}
+    (tmp_path / "a.exr").write_bytes(images.exr_bytes(parts, note=b"of the operator"))
+    done(sonject("convert", "a.exr", "a.npy"))
+    read = numpy.load(tmp_path / "a.npy")
+    assert read.dtype == ("c8" if kind == "c8" else "f4") and numpy.array_equal(read, image)
+    fresh = (read[::-1] * numpy.float32(1 / 3)).astype(read.dtype)
+    numpy.save(tmp_path / "b.npy", fresh)
+    done(sonject("convert", "b.npy", "b.exr", "--into", "a.exr"))
+    assert b"of the operator" in (tmp_path / "b.exr").read_bytes()
+    done(sonject("convert", "b.exr", "c.npy"))
+    assert numpy.array_equal(numpy.load(tmp_path / "c.npy"), fresh.astype(kind))
+    if kind == "f2":
+        fresh[3, 5] = 65520
+        numpy.save(tmp_path / "b.npy", fresh)
+        assert_refused(sonject("convert", "b.npy", "d.exr", "--into", "a.exr"), 3,
+                       "row 3, column 5 is 65520, more than")
+
+
+@pytest.mark.parametrize("names, compression, words", [
+    (["Y"], 5, "compressed by pxr24, which changes pixels"),
+    (["R", "G"], 0, "name them real and imag"),
+    (["R", "G", "B"], 0, "has 3 channels"),
+])
+def test_openexr_that_is_refused(sonject, tmp_path, swath, names, compression, words):
+    (tmp_path / "a.exr").write_bytes(images.exr_bytes(dict.fromkeys(names, swath), compression))
+    assert_refused(sonject("convert", "a.exr", "b.npy"), 3, words)
+
+
+def test_openexr_whose_size_lies(sonject, tmp_path, swath):
+    data = bytearray(images.exr_bytes({"Y": swath}))
+    place = data.index(b"box2i\0") + 6 + 4 + 8
+    data[place:place + 4] = struct.pack("<i", 2**22)
+    (tmp_path / "a.exr").write_bytes(data)
+    assert_refused(sonject("convert", "a.exr", "b.npy"), 3, "more than the 1048576 columns")
+    (tmp_path / "a.exr").write_bytes(images.exr_bytes({"Y": swath})[:-100])
+    assert_refused(sonject("convert", "a.exr", "b.npy"), 3, "a.exr: cut short or damaged at rows")
+
+
 def test_hdf5_keeps_samples_and_geometry(sonject, tmp_path, line, sides):
     h5py = pytest.importorskip("h5py")
     done(sonject("convert", "line.xtf", "a.h5", "--channel", "starboard"))

@@ -294,7 +294,7 @@ static void test_foreign_formats(void **state)
                    {"8BPS and more of it", "is a PSD file"},
                    {"BM and more of it all", "of no format that sonject knows"},
                    {"P6 and more of it all", "is a PPM file"},
-                   {"\x76\x2F\x31\x01 and more of it", "is an OpenEXR file"},
+                   {"#?RADIANCE and more", "is a Radiance file"},
                    {"nothing that is known", "of no format that sonject knows"}};
     for (size_t i = 0; i < sizeof foreign / sizeof *foreign; i++) {
         struct draft draft = {{0}, 0};
@@ -302,7 +302,7 @@ static void test_foreign_formats(void **state)
         expect_refused(*state, "a.bin", NULL, &draft, foreign[i].words);
         expect_refused(
             *state, "a.bin", NULL, &draft,
-            "TIFF, PNG, JPEG, PGM (P5), PFM (Pf), BMP, FITS, XTF, NumPy (.npy), HDF5 and "
+            "TIFF, PNG, JPEG, OpenEXR, PGM (P5), PFM (Pf), BMP, FITS, XTF, NumPy (.npy), HDF5 and "
             "MATLAB");
     }
 }
