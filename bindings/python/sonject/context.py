@@ -40,7 +40,7 @@ class Context:
     opencl_context, opencl_device: addresses of a host's cl_context and cl_device_id to work in.
 
     Calls from several threads on one context wait for each other; use a context per thread to work
-    at once. A context does not survive os.fork in the child.
+    at once. OpenCL does not survive os.fork in the child, where nothing works any more.
     """
 
     def __init__(
@@ -52,7 +52,7 @@ class Context:
         opencl_device: Optional[int] = None,
     ) -> None:
         self._library = load()
-        self._process = os.getpid()
+        self._process = _claim_driver()
         self._lock = threading.Lock()
         self._owner: Optional[int] = None
         self._waiting: collections.deque[Any] = collections.deque()
@@ -204,7 +204,7 @@ class Context:
     @contextlib.contextmanager
     def _exclusive(self) -> Iterator[None]:
         if os.getpid() != self._process:
-            raise RuntimeError("this sonject context belongs to the parent process: make a new one")
+            raise RuntimeError("this sonject context belongs to the parent process")
         if self._owner == threading.get_ident():
             raise RuntimeError("a sonject context cannot be used within its own callbacks")
         with self._lock:
@@ -214,6 +214,22 @@ class Context:
             finally:
                 self._owner = None
                 self._release_waiting()
+
+
+_driver_process: Optional[int] = None  # in which OpenCL was used first
+
+
+def _claim_driver() -> int:
+    """This process; refuses one that was forked from it, where a driver's threads are missing."""
+    global _driver_process
+    if _driver_process is None:
+        _driver_process = os.getpid()
+    if _driver_process != os.getpid():
+        raise RuntimeError(
+            "OpenCL was in use when this process was forked, and its calls would wait for ever: "
+            "spawn processes instead"
+        )
+    return _driver_process
 
 
 def _release_context(pointer: Any, process: int, _log: Optional[LogBridge]) -> None:

@@ -41,7 +41,7 @@ def test_closing_the_context_closes_what_it_made(amplitude_patch):
         context.devices()
 
 
-def test_a_child_process_is_told_to_make_its_own(context):
+def test_a_forked_process_is_told_that_it_cannot(context):
     child = os.fork()
     if child == 0:
         code = 1
@@ -49,6 +49,11 @@ def test_a_child_process_is_told_to_make_its_own(context):
             context.devices()
         except RuntimeError as error:
             code = 0 if "parent process" in str(error) else 2
+        try:
+            sonject.devices()
+            code = 3
+        except RuntimeError as error:
+            code += 0 if "spawn processes" in str(error) else 4
         os._exit(code)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
 

@@ -12,7 +12,7 @@ from conftest import PACKAGE_FOLDER
 README = (PACKAGE_FOLDER / "README.md").read_text(encoding="utf-8")
 SPANS = list(dict.fromkeys(re.findall(r"(?<!`)`([^`\n]+)`(?!`)", README)))
 # Run elsewhere: shells' by tests/cli/test_readme.py, pictures by test_plotting.py.
-ELSEWHERE = ("SONJECT_LIBRARY", "sonject.plotting.draw_result(", "examples/")
+ELSEWHERE = ("SONJECT_LIBRARY", "sonject.plotting.draw_result(", "examples/", "multiprocessing")
 
 
 @pytest.fixture(scope="module")
