@@ -22,7 +22,7 @@ struct coco_file {
 static sonject_status add_entry(const struct data_set *set, FILE *file, json_t *entry,
                                 bool is_first)
 {
-    char *text = entry ? json_dumps(entry, JSON_COMPACT | JSON_REAL_PRECISION(9)) : NULL;
+    char *text = json_document_text(entry, JSON_COMPACT | JSON_REAL_PRECISION(9));
     json_decref(entry);
     if (!text)
         return report_out_of_memory(set->report, "coco.json");

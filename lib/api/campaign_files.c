@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/json_document.h"
 #include "base/memory.h"
 
 #define DOCUMENT_BYTES_MAX ((size_t)64 << 20)
@@ -149,7 +150,7 @@ void split_folders_tidy(const char *folder, const char *split, uint32_t outputs)
 
 sonject_status campaign_write_json(struct report *report, json_t *document, const char *path)
 {
-    char *text = document ? json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
+    char *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     json_decref(document);
     if (!text)
         return report_out_of_memory(report, path);

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/growing_text.h"
 #include "base/memory.h"
 #include "base/text.h"
 
@@ -61,9 +62,24 @@ void json_append(json_t **array, json_t *value)
         give_up(array);
 }
 
+static int add_piece(const char *piece, size_t length, void *text)
+{
+    struct growing_text *whole = text;
+    growing_text_add(whole, "%.*s", (int)length, piece);
+    return whole->failed ? -1 : 0;
+}
+
+char *json_document_text(const json_t *document, size_t flags)
+{
+    struct growing_text text = {NULL, 0, 0, false};
+    if (json_dump_callback(document, add_piece, &text, flags) != 0)
+        text.failed = true;
+    return growing_text_end(&text);
+}
+
 sonject_status json_document_write(struct report *report, json_t *document, const char *path)
 {
-    char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
+    char *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
     json_decref(document);
     if (!text)
         return report_out_of_memory(report, path);

@@ -27,6 +27,10 @@ json_t *json_text(const char *text);
 void json_add(json_t **object, const char *key, json_t *value);
 void json_append(json_t **array, json_t *value);
 
+/* The document's text, by the flags of json_dumps, for free(); NULL where memory is out, which
+ * json_dumps overlooks among keys, or where the document is NULL. */
+char *json_document_text(const json_t *document, size_t flags);
+
 /* Writes the document, indented, whole or not at all, and releases it. Errors: STORAGE, MEMORY
  * (also where the document is NULL). */
 sonject_status json_document_write(struct report *report, json_t *document, const char *path);
