@@ -1,4 +1,4 @@
-"""Compiles for warnings alone what a build folder has not built: warnings.py FOLDER
+"""Compiles for warnings alone what a build folder has not built: compile_rest.py FOLDER
 
 Takes each source's command from compile_commands.json, without making code: the tests that take
 long are compiled in a fraction of their build's time. Exits with 1 where a compiler complains.
