@@ -6,7 +6,8 @@ import re
 
 SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
 MARKDOWN = ("README.md", "CONTRIBUTING.md", "bindings/python/README.md", "tools/slurm/README.md")
-SPAN = re.compile(r"(?<!`)`([^`\n]+)`(?!`)")
+# A paragraph may be wrapped within one.
+SPAN = re.compile(r"(?<!`)`((?:[^`\n]|\n(?!\n))+)`(?!`)")
 # What begins so is typed into a shell.
 PROGRAM = re.compile(
     r"(?:[A-Z_]+=\S+ )+\S+|(?:\w+=\$\()?"
@@ -21,7 +22,7 @@ def read(name):
 
 def spans(name):
     """All that stands between single backquotes, each once, in order."""
-    return list(dict.fromkeys(SPAN.findall(read(name))))
+    return list(dict.fromkeys(" ".join(span.split()) for span in SPAN.findall(read(name))))
 
 
 def is_command(text):
