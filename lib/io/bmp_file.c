@@ -56,10 +56,11 @@ static sonject_status read_header(struct report *report, struct sample_rows *row
     const int64_t width = (int32_t)(uint32_t)word_at(head, 18, 4);
     const int64_t height = (int32_t)(uint32_t)word_at(head, 22, 4);
     const uint64_t levels = word_at(head, 46, 4);
+    const uint64_t palette_place = FILE_HEAD_BYTES + head_bytes;
     if (head_bytes < IMAGE_HEAD_BYTES || head_bytes > IMAGE_HEAD_MAX || width <= 0 || height == 0)
         return refuse(report, rows, "is damaged, or older than Windows 3: write it anew");
     if (word_at(head, 28, 2) != 8 || word_at(head, 30, 4) != 0 ||
-        !is_grey(rows, FILE_HEAD_BYTES + head_bytes, levels))
+        !is_grey(rows, palette_place, levels))
         return refuse(report, rows,
                       "is not a plain grey image: write it as 8 bit grey without compression");
     rows->layout.columns = (uint64_t)width;
@@ -70,6 +71,8 @@ static sonject_status read_header(struct report *report, struct sample_rows *row
     rows->largest = levels > 0 ? (uint32_t)levels - 1 : 0;
     rows->row_bytes = (rows->layout.columns + 3) / 4 * 4;
     rows->first_place = word_at(head, 10, 4);
+    if (rows->first_place < palette_place + LEVEL_BYTES * (levels > 0 ? levels : LEVELS))
+        return refuse(report, rows, "is damaged: its pixels begin within its head");
     const struct region whole = {0, 0, rows->layout.rows, rows->row_bytes};
     const struct raster_layout stored = {rows->layout.rows, rows->row_bytes, 1, PIXEL_UINT8};
     if (!region_bytes(&stored, &whole, &bytes) || rows->first_place > rows->file_bytes ||

@@ -7,18 +7,17 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "io/byte_file.h"
+#include "io/fits_sums.h"
 
-#define BLOCK_BYTES 2880
-#define CARD_BYTES  80
-#define BLOCKS_MAX  1000 /* of a header: 36000 cards */
-#define SIDE_MAX    2147483647.0
-#define OFFSET_16   32768.0 /* which files add to signed numbers, since FITS has no unsigned ones */
+#define BLOCKS_MAX 1000 /* of a header: 36000 cards */
+#define SIDE_MAX   2147483647.0
+#define OFFSET_16  32768.0 /* which files add to signed numbers, since FITS has no unsigned ones */
 
 static const char first_card[] = "SIMPLE  =";
 
 /* What a header says: NaN where it says nothing that is a number. */
 struct header {
-    double bits, axes, columns, rows, planes, zero, scale;
+    double bits, axes, columns, rows, planes, zero, scale, blank;
     bool is_ended;
 };
 
@@ -36,11 +35,11 @@ static sonject_status refuse(struct report *report, const struct sample_rows *ro
 /* The number that stands behind a card's "= "; NaN if it is none. */
 static double number_of_card(const char *card)
 {
-    char text[CARD_BYTES];
+    char text[FITS_CARD_BYTES];
     const char *rest;
     double number;
-    memcpy(text, card + 10, CARD_BYTES - 10);
-    text[CARD_BYTES - 10] = '\0';
+    memcpy(text, card + 10, FITS_CARD_BYTES - 10);
+    text[FITS_CARD_BYTES - 10] = '\0';
     if (!text_to_number(text + strspn(text, " "), &number, &rest))
         return NAN;
     rest += strspn(rest, " ");
@@ -55,7 +54,7 @@ static void take_card(struct header *header, const char *card)
     } numbers[] = {{"BITPIX  ", &header->bits},    {"NAXIS   ", &header->axes},
                    {"NAXIS1  ", &header->columns}, {"NAXIS2  ", &header->rows},
                    {"NAXIS3  ", &header->planes},  {"BZERO   ", &header->zero},
-                   {"BSCALE  ", &header->scale}};
+                   {"BSCALE  ", &header->scale},   {"BLANK   ", &header->blank}};
     header->is_ended = memcmp(card, "END     ", 8) == 0;
     for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++)
         if (memcmp(card, numbers[i].name, 8) == 0 && memcmp(card + 8, "= ", 2) == 0)
@@ -65,12 +64,12 @@ static void take_card(struct header *header, const char *card)
 /* Says where the numbers begin, too. */
 static bool read_cards(struct sample_rows *rows, struct header *header)
 {
-    char block[BLOCK_BYTES];
+    char block[FITS_BLOCK_BYTES];
     for (int i = 0; i < BLOCKS_MAX && !header->is_ended; i++) {
         if (!byte_file_read(rows->file, rows->first_place, block, sizeof block))
             return false;
         rows->first_place += sizeof block;
-        for (size_t card = 0; card < sizeof block && !header->is_ended; card += CARD_BYTES)
+        for (size_t card = 0; card < sizeof block && !header->is_ended; card += FITS_CARD_BYTES)
             take_card(header, block + card);
     }
     return header->is_ended;
@@ -95,6 +94,9 @@ static sonject_status take_samples(struct report *report, const struct header *h
     if (!is_number(header->scale, 1.0) || (!has_offset && !is_number(header->zero, 0.0)))
         return refuse(report, rows,
                       "says that its numbers are scaled (BSCALE, BZERO): write it without a scale");
+    if (!isnan(header->blank) && header->bits > 0.0)
+        return refuse(report, rows,
+                      "says that samples of one number mean none (BLANK): write it without them");
     if (is_number(header->bits, 8.0)) {
         rows->layout.type = PIXEL_UINT8;
     } else if (is_number(header->bits, 16.0)) {
@@ -112,9 +114,16 @@ static sonject_status take_samples(struct report *report, const struct header *h
     return SONJECT_OK;
 }
 
+static sonject_status put_sums_right(struct report *report, const struct sample_rows *rows,
+                                     FILE *copy, const char *path)
+{
+    return fits_sums_update(report, rows->file, copy, rows->first_place,
+                            rows->row_bytes * rows->layout.rows, rows->path, path);
+}
+
 static sonject_status read_header(struct report *report, struct sample_rows *rows)
 {
-    struct header header = {NAN, NAN, NAN, NAN, NAN, 0.0, 1.0, false};
+    struct header header = {NAN, NAN, NAN, NAN, NAN, 0.0, 1.0, NAN, false};
     size_t bytes = 0;
     if (!read_cards(rows, &header))
         return refuse(report, rows, "is cut short or damaged: its header does not end");
@@ -135,6 +144,7 @@ static sonject_status read_header(struct report *report, struct sample_rows *row
         rows->file_bytes - rows->first_place < bytes)
         return refuse(report, rows, "is cut short: copy it again");
     rows->row_bytes = bytes / rows->layout.rows;
+    rows->finish_copy = put_sums_right;
     return SONJECT_OK;
 }
 

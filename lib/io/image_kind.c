@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "io/exr_chunks.h"
 #include "io/jpeg_segments.h"
 #include "io/png_chunks.h"
 #include "io/tiff_structure.h"
@@ -149,7 +150,7 @@ sonject_status image_kind_check(struct report *report, const char *path, enum im
     case IMAGE_JPEG:
         return jpeg_check(report, path, parts);
     case IMAGE_OPENEXR:
-        return SONJECT_OK; /* its library checks as it reads */
+        return exr_check(report, path);
     case IMAGE_TIFF:
         break;
     }

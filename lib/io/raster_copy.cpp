@@ -4,6 +4,7 @@
 #include <cstring>
 #include <new>
 
+#include "io/exr_chunks.h"
 #include "io/jpeg_segments.h"
 #include "io/png_chunks.h"
 #include "io/raster_openexr.hpp"
@@ -39,6 +40,12 @@ void encode_copy(const copy_order &order, struct raster_image &source, const cha
 void copy_encoded(const copy_order &order, struct raster_image &source, const char *result)
 {
     const part_file encoded(result);
+    if (source.kind == IMAGE_OPENEXR) {
+        encode_openexr(order, source, encoded.name);
+        require(
+            exr_join(order.report, order.source, encoded.name, order.region, result, order.path));
+        return;
+    }
     encode_copy(order, source, encoded.name);
     if (source.kind == IMAGE_PNG)
         require(png_join(order.report, order.source, encoded.name, result, order.path));
@@ -114,8 +121,6 @@ sonject_status raster_image_copy_with_patch(struct report *report, const char *s
         const part_file part(path);
         if (file->kind == IMAGE_TIFF)
             copy_tiff(order, *file, part.name);
-        else if (file->kind == IMAGE_OPENEXR)
-            copy_openexr(order, *file, part.name);
         else
             copy_encoded(order, *file, part.name);
         check_copy(order, part.name);

@@ -9,9 +9,6 @@
 namespace raster
 {
 
-/* The library holds 32 rows at a time, and believes what the file says of its width. */
-constexpr int columns_max = 1 << 20;
-
 /* "real" of "real" and of "layer.real"; the letters' case does not matter. */
 static std::string part_of_channel(const std::string &name)
 {
@@ -37,47 +34,37 @@ static void check_parts(struct report *report, struct raster_image &file)
 
 void check_openexr(struct report *report, struct raster_image &file)
 {
-    const std::string compression(file.spec.get_string_attribute("compression", "none"));
-    const char *path = file.path.c_str();
-    bool is_exact = compression == "none";
-    for (const char *name : {"rle", "zip", "zips", "piz"})
-        is_exact = is_exact || compression == name;
-    if (!is_exact)
-        throw failure{report_failure(report, SONJECT_ERROR_INPUT,
-                                     "%s: is compressed by %s, which changes pixels: store it with "
-                                     "zip, piz, rle or none",
-                                     path, compression.c_str())};
-    if (file.spec.width > columns_max)
-        throw failure{report_failure(report, SONJECT_ERROR_INPUT,
-                                     "%s: has more than the %d columns that are read of OpenEXR: "
-                                     "cut it into several",
-                                     path, columns_max)};
-    if (file.spec.deep || file.spec.tile_width > 0 ||
-        file.spec.get_int_attribute("oiio:subimages", 1) > 1)
-        throw failure{report_failure(report, SONJECT_ERROR_INPUT,
-                                     "%s: has tiles, several parts or depths: store one image in "
-                                     "scanlines",
-                                     path)};
     for (const OIIO::TypeDesc &type : file.spec.channelformats)
         if (type != file.spec.format)
             throw failure{report_failure(report, SONJECT_ERROR_INPUT,
                                          "%s: has channels of different types: store them in one",
-                                         path)};
+                                         file.path.c_str())};
     file.is_half = file.spec.format == OIIO::TypeDesc::HALF;
     if (file.spec.nchannels == 2)
         check_parts(report, file);
 }
 
-void copy_openexr(const copy_order &order, struct raster_image &source, const char *result)
+/* What decides how chunks are coded. The rest of the header is the source's. */
+static OIIO::ImageSpec chunk_spec(const OIIO::ImageSpec &source)
+{
+    OIIO::ImageSpec spec(source.width, source.height, source.nchannels, source.format);
+    spec.x = source.x;
+    spec.y = source.y;
+    spec.channelnames = source.channelnames;
+    spec.attribute("compression", source.get_string_attribute("compression", "none"));
+    return spec;
+}
+
+void encode_openexr(const copy_order &order, struct raster_image &source, const char *encoded)
 {
     const struct raster_layout &layout = source.layout;
     const uint64_t at_once = rows_at_once(layout);
-    file_sink sink(result);
+    file_sink sink(encoded);
     OIIO::Filesystem::IOProxy *proxy = &sink;
-    OIIO::ImageSpec spec = source.spec;
+    OIIO::ImageSpec spec = chunk_spec(source.spec);
     spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
     std::unique_ptr<OIIO::ImageOutput> output = OIIO::ImageOutput::create("openexr");
-    bool is_written = output && (output->threads(1), output->open(result, spec));
+    bool is_written = output && (output->threads(1), output->open(encoded, spec));
     std::vector<unsigned char> strip(
         size_t((at_once < layout.rows ? at_once : layout.rows) * row_bytes(layout)));
     for (uint64_t row = 0; is_written && row < layout.rows; row += at_once) {

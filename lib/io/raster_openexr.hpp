@@ -25,12 +25,12 @@ struct copy_order {
     }
 };
 
-/* Refuses what sonject does not read or cannot keep as it is, and finds out how the numbers are
- * stored. */
+/* Refuses channels that sonject does not read, beside what exr_check refused, and finds out how the
+ * numbers are stored. */
 void check_openexr(struct report *report, struct raster_image &file);
 
-/* Writes at result a copy of the source with other pixels in the region. */
-void copy_openexr(const copy_order &order, struct raster_image &source, const char *result);
+/* Writes an image of the source's pixels but in the region, whose chunks fit into the source. */
+void encode_openexr(const copy_order &order, struct raster_image &source, const char *encoded);
 
 /* The order's pixels as 16-bit floating point holds them; refuses those beyond. */
 std::vector<float> rounded_to_halves(const copy_order &order, const struct raster_layout &layout);

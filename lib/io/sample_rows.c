@@ -197,6 +197,8 @@ sonject_status sample_rows_copy_with_patch(struct report *report, const struct s
                                 : file_failure(report, path, "write", errno);
     if (status == SONJECT_OK)
         status = put_patch(report, rows, out, path, region, pixels);
+    if (status == SONJECT_OK && rows->finish_copy)
+        status = rows->finish_copy(report, rows, out, path);
     if (out && fclose(out) != 0 && status == SONJECT_OK)
         status = file_failure(report, path, "write", errno);
     if (status == SONJECT_OK)

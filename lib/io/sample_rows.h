@@ -1,7 +1,6 @@
 /* Files whose rows are runs of plain samples at known places: channels of XTF files, NumPy arrays,
- * PGM, PFM, BMP and FITS images. Copies differ from their source in the replaced samples alone,
- * byte for byte.
- */
+ * PGM, PFM, BMP and FITS images. Copies differ from their source in the replaced samples and in
+ * sums over them alone, byte for byte. */
 #ifndef SONJECT_IO_SAMPLE_ROWS_H
 #define SONJECT_IO_SAMPLE_ROWS_H
 
@@ -23,6 +22,9 @@ struct sample_rows {
     bool is_offset;         /* stored as signed 16-bit numbers, 32768 less than they are */
     uint32_t largest;       /* larger samples are refused; 0: none are */
     bool above_is_negative; /* what is larger are negative numbers */
+    /* Puts right what a copy says of its samples; NULL: it says nothing. path: of the copy. */
+    sonject_status (*finish_copy)(struct report *report, const struct sample_rows *rows, FILE *copy,
+                                  const char *path);
 };
 
 /* Opens a file and has its header read, which fills the rest of rows. On failure rows is cleared.

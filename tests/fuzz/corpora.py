@@ -192,11 +192,17 @@ def _jpeg():
             + segment(0xDA, bytes([1, 1, 0, 0, 63, 0])) + b"\x12\xff\x00\x34\xff\xd9")
 
 
-def images(_):
+def images(source):
+    sys.path.insert(0, str(source / "tests" / "cli"))
+    import images as writer
+
+    samples = numpy.arange(12, dtype="<f4").reshape(3, 4)
+    openexr = {f"openexr{kind}": writer.exr_bytes({"Y": samples.repeat(9, 0)}, kind)
+               for kind in (0, 3)}
     files = {f"{order}{is_big}{tiled}".replace("<", "le").replace(">", "be"):
              _tiff(order, is_big, tiled)
              for order in "<>" for is_big in (False, True) for tiled in (False, True)}
-    return {**files, "png": _png(), "jpeg": _jpeg()}
+    return {**files, **openexr, "png": _png(), "jpeg": _jpeg()}
 
 
 def tables(_):

@@ -1,10 +1,11 @@
 /* What sonject itself reads of image files: where a TIFF keeps its pixels, the chunks of a PNG, the
- * segments of a JPEG. Decoding is OpenImageIO's. */
+ * segments of a JPEG, the chunks of an OpenEXR file. Decoding is OpenImageIO's. */
 #include "fuzz.h"
 
 #include <stdlib.h>
 
 #include "io/byte_file.h"
+#include "io/exr_chunks.h"
 #include "io/jpeg_segments.h"
 #include "io/png_chunks.h"
 #include "io/tiff_structure.h"
@@ -42,6 +43,21 @@ static void check_blocks(uint64_t file_bytes)
     tiff_structure_clear(&structure);
 }
 
+/* With itself as what was coded anew. */
+static void check_chunks(void)
+{
+    static const struct region region = {1, 0, 1, 1};
+    struct report report = {{0}, NULL, NULL};
+    const sonject_status status = exr_check(&report, "fuzz.image");
+    fuzz_expect(status, &report);
+    if (status != SONJECT_OK)
+        return;
+    if (exr_join(&report, "fuzz.image", "fuzz.image", &region, "fuzz.copy", "fuzz.copy") !=
+            SONJECT_OK ||
+        exr_check(&report, "fuzz.copy") != SONJECT_OK)
+        abort();
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
     fuzz_write("fuzz.image", bytes, count);
@@ -49,6 +65,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
         check_parts(png_check, count);
     else if (count > 0 && bytes[0] == 0xFF)
         check_parts(jpeg_check, count);
+    else if (count > 0 && bytes[0] == 0x76)
+        check_chunks();
     else
         check_blocks(count);
     return 0;

@@ -162,6 +162,9 @@ static void test_bmp(void **state)
     expect_refused(*state, "a.bmp", NULL, &draft, "not a plain grey image");
     make_bmp(&draft, COLUMNS, ROWS, 257);
     expect_refused(*state, "a.bmp", NULL, &draft, "not a plain grey image");
+    make_bmp(&draft, COLUMNS, ROWS, 0);
+    draft.bytes[11] = 0; /* pixels from byte 54 on, where the palette is */
+    expect_refused(*state, "a.bmp", NULL, &draft, "pixels begin within its head");
     make_bmp(&draft, 0x7FFFFFFF, INT32_MIN, 0);
     expect_refused(*state, "a.bmp", NULL, &draft, "cut short");
 }
@@ -262,6 +265,7 @@ static void test_refused_fits(void **state)
         {BITS_8, "NAXIS2  = 2147483647", "cut short"},
         {BITS_16, "NAXIS2  = 1e300", "no image of rows and columns"},
         {"BITPIX  = eight", "", "lacks BITPIX"},
+        {BITS_16, "BLANK   = -32768", "samples of one number mean none"},
     };
     struct draft draft;
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
@@ -270,6 +274,81 @@ static void test_refused_fits(void **state)
     }
     draft.count = 2880 - 1;
     expect_refused(*state, "a.fits", NULL, &draft, "header does not end");
+}
+
+static uint32_t sum_words(const unsigned char *bytes, size_t count)
+{
+    uint64_t sum = 0;
+    for (size_t i = 0; i < count; i += 4)
+        sum += number_from_bytes(bytes + i, 4, true);
+    while (sum >> 32)
+        sum = (sum & 0xFFFFFFFF) + (sum >> 32);
+    return (uint32_t)sum;
+}
+
+static void put_card(struct draft *draft, size_t number, const char *card)
+{
+    char text[81];
+    snprintf(text, sizeof text, "%-80s", card);
+    memcpy(draft->bytes + 80 * number, text, 80);
+}
+
+/* With sums that are right: a number in card 8 makes them so. */
+static void make_summed_fits(struct draft *draft)
+{
+    char card[81];
+    make_fits(draft, BITS_16, "BZERO   = 32768", 100, 2);
+    const uint32_t data = sum_words(draft->bytes + 2880, 2880);
+    snprintf(card, sizeof card, "DATASUM = '%lu' / of the numbers", (unsigned long)data);
+    put_card(draft, 6, card);
+    put_card(draft, 7, "CHECKSUM= 'abcdefghijklmnop'   / of all");
+    put_card(draft, 8, "");
+    put_card(draft, 9, "END");
+    number_to_bytes(0, draft->bytes + 80 * 8 + 40, 4, true);
+    number_to_bytes(~sum_words(draft->bytes, draft->count) & 0xFFFFFFFF, draft->bytes + 80 * 8 + 40,
+                    4, true);
+}
+
+/* A copy's sums are those of its numbers, and of all its words all ones, as the standard wants it;
+ * sums that are wrong before are not made right. */
+static void test_sums_of_fits(void **state)
+{
+    struct draft draft, back;
+    struct report report = {{0}, NULL, NULL};
+    make_summed_fits(&draft);
+    assert_int_equal(sum_words(draft.bytes, draft.count), 0xFFFFFFFF);
+    struct swath_file *file = open_draft(*state, "a.fits", NULL, &draft);
+    for (unsigned i = 0; i < 40; i++) {
+        const uint16_t fresh[4] = {(uint16_t)(7919 * i), (uint16_t)(104729 * i), 0,
+                                   (uint16_t)(31 * i)};
+        char card[81];
+        patch(file, *state, "b.fits", fresh, &back);
+        assert_int_equal(sum_words(back.bytes, back.count), 0xFFFFFFFF);
+        assert_int_equal(back.count, draft.count);
+        assert_memory_equal(back.bytes, draft.bytes, 80 * 6);
+        snprintf(card, sizeof card, "DATASUM = '%lu'",
+                 (unsigned long)sum_words(back.bytes + 2880, 2880));
+        assert_memory_equal(back.bytes + 80 * 6, card, strlen(card) - 1);
+        assert_non_null(memchr(back.bytes + 80 * 6 + strlen(card) - 1, '\'', 4));
+        assert_memory_equal(back.bytes + 80 * 7, draft.bytes + 80 * 7, 11);
+        for (size_t k = 80 * 7 + 11; k < 80 * 7 + 27; k++)
+            assert_true((back.bytes[k] >= '0' && back.bytes[k] <= '9') ||
+                        (back.bytes[k] >= 'A' && back.bytes[k] <= 'Z') ||
+                        (back.bytes[k] >= 'a' && back.bytes[k] <= 'z'));
+        assert_memory_equal(back.bytes + 80 * 7 + 27, draft.bytes + 80 * 7 + 27,
+                            2880 - 80 * 7 - 27);
+    }
+    swath_file_close(&file);
+    for (size_t i = 0; i < 2; i++) { /* in the numbers, in the sum over them */
+        make_summed_fits(&draft);
+        draft.bytes[i ? 80 * 6 + 11 : 2880 + 3] ^= 1;
+        file = open_draft(*state, "a.fits", NULL, &draft);
+        assert_int_equal(swath_file_copy_with_patch(&report, file, file_in(*state, "b.fits"),
+                                                    &inside, draft.bytes, NULL, NULL),
+                         SONJECT_ERROR_INPUT);
+        assert_non_null(strstr(report.message, "its sums (DATASUM, CHECKSUM)"));
+        swath_file_close(&file);
+    }
 }
 
 static void test_damaged_images(void **state)
@@ -281,7 +360,7 @@ static void test_damaged_images(void **state)
     mutate(*state, "line.pfm", SONJECT_CHANNEL_ONLY, draft.bytes, draft.count, MUTATIONS);
     make_bmp(&draft, 3, ROWS, 0);
     mutate(*state, "line.bmp", SONJECT_CHANNEL_ONLY, draft.bytes, draft.count, MUTATIONS);
-    make_fits(&draft, BITS_16, "BZERO   = 32768", 0, 2);
+    make_summed_fits(&draft);
     mutate(*state, "line.fits", SONJECT_CHANNEL_ONLY, draft.bytes, draft.count, MUTATIONS);
 }
 
@@ -315,6 +394,7 @@ int main(void)
         cmocka_unit_test(test_bmp),
         cmocka_unit_test(test_fits),
         cmocka_unit_test(test_refused_fits),
+        cmocka_unit_test(test_sums_of_fits),
         cmocka_unit_test(test_damaged_images),
         cmocka_unit_test(test_foreign_formats),
     };
