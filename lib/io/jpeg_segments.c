@@ -16,6 +16,8 @@
 #define MARKER_APPLICATION 0xE0 /* ...0xEF */
 #define MARKER_COMMENT     0xFE
 
+#define FILL_MAX 4096 /* bytes before a marker */
+
 /* An image that is sent in several scans is decoded whole. */
 #define PROGRESSIVE_PIXELS_MAX ((uint64_t)1 << 29)
 
@@ -53,8 +55,8 @@ static bool next_segment(struct jpeg_reader *reader)
     reader->place += reader->segment_bytes;
     if (!byte_file_read(reader->file, reader->place, head, sizeof head) || head[0] != 0xFF)
         return false;
-    while (head[1] == 0xFF) /* markers may be preceded by any number of these */
-        if (!byte_file_read(reader->file, ++reader->place, head, sizeof head))
+    for (int i = 0; head[1] == 0xFF; i++) /* markers may be preceded by some of these */
+        if (i == FILL_MAX || !byte_file_read(reader->file, ++reader->place, head, sizeof head))
             return false;
     reader->marker = head[1];
     reader->segment_bytes = 2 + number_from_bytes(head + 2, 2, true);
@@ -193,6 +195,7 @@ sonject_status jpeg_join(struct report *report, const char *source, const char *
 {
     struct jpeg_reader from;
     struct jpeg_reader pixels;
+    errno = 0;
     FILE *to = fopen(result, "wb");
     bool is_good = to != NULL;
     is_good = open_jpeg(&from, source) && is_good;
@@ -203,5 +206,5 @@ sonject_status jpeg_join(struct report *report, const char *source, const char *
     const int error = errno;
     close_jpeg(&from);
     close_jpeg(&pixels);
-    return is_good ? SONJECT_OK : file_failure(report, name, "write", error);
+    return is_good ? SONJECT_OK : file_failure(report, name, "write", error != 0 ? error : EIO);
 }

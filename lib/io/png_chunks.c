@@ -234,6 +234,7 @@ sonject_status png_join(struct report *report, const char *source, const char *e
 {
     struct png_reader from;
     struct png_reader pixels;
+    errno = 0;
     FILE *to = fopen(result, "wb");
     bool is_good = to != NULL;
     is_good = open_png(&from, source) && is_good;
@@ -244,5 +245,5 @@ sonject_status png_join(struct report *report, const char *source, const char *e
     const int error = errno;
     close_png(&from);
     close_png(&pixels);
-    return is_good ? SONJECT_OK : file_failure(report, name, "write", error);
+    return is_good ? SONJECT_OK : file_failure(report, name, "write", error != 0 ? error : EIO);
 }

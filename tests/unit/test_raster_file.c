@@ -790,6 +790,30 @@ static void test_a_jpeg_that_ends_early(void **state)
     free(pixels);
 }
 
+/* Which would be read one after the other. */
+static void test_a_jpeg_of_filling(void **state)
+{
+    struct temporary_folder *folder = *state;
+    unsigned char bytes[2 + 5000];
+    memset(bytes, 0xFF, sizeof bytes);
+    bytes[1] = 0xD8;
+    const char *path = temporary_file(folder, "a.jpg");
+    const struct region everything = whole_of(&grey8);
+    unsigned char *pixels = make_pixels(&grey8, &everything, 1);
+    size_t count;
+    expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
+    unsigned char *jpeg = bytes_of_file(path, &count);
+    unsigned char *longer = calloc(sizeof bytes + count, 1);
+    assert_non_null(longer);
+    memcpy(longer, bytes, sizeof bytes);
+    memcpy(longer + sizeof bytes, jpeg + 2, count - 2);
+    write_bytes(path, longer, sizeof bytes + count - 2);
+    expect_no_open(path, "damaged JPEG");
+    free(longer);
+    free(jpeg);
+    free(pixels);
+}
+
 /* What a damaged file may lead to. */
 struct damage {
     const char *source, *copy;
@@ -1087,6 +1111,7 @@ int main(void)
         WITH_FOLDER(test_more_than_4_gb),
         WITH_FOLDER(test_files_that_are_no_images),
         WITH_FOLDER(test_a_jpeg_that_ends_early),
+        WITH_FOLDER(test_a_jpeg_of_filling),
         WITH_FOLDER(test_files_that_are_cut_short),
         WITH_FOLDER(test_files_that_are_damaged),
         WITH_FOLDER(test_cancelling),
