@@ -43,7 +43,7 @@ sonject_status hdf5_set_choose(struct report *report, const char *path, hid_t fi
 sonject_status hdf5_set_check_storage(struct report *report, const char *path, hid_t dataset,
                                       const struct hdf5_set *set, uint64_t file_bytes);
 
-/* The type in memory: floats, doubles or whole numbers, or pairs of them. To be closed by H5Tclose. */
+/* The type in memory: numbers, or pairs of them. To be closed by H5Tclose. */
 hid_t hdf5_set_memory_type(const struct hdf5_set *set);
 
 #endif
