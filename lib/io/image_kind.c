@@ -33,7 +33,15 @@ static const struct foreign foreign_kinds[] = {
     {"a GIF", "GIF8", 0, 4},
     {"a JPEG 2000", "\x00\x00\x00\x0CjP  ", 0, 8},
     {"a WebP", "WEBP", 8, 4},
+    {"a JPEG 2000", "\xFF\x4F\xFF\x51", 0, 4},
     {"a Radiance", "#?RADIANCE", 0, 10},
+    {"a Radiance", "#?RGBE", 0, 6},
+    {"an SGI", "\x01\xDA", 0, 2},
+    {"an IFF", "FOR4", 0, 4},
+    {"a DDS", "DDS ", 0, 4},
+    {"a Softimage", "\x53\x80\xF6\x34", 0, 4},
+    {"a HEIF", "ftyphei", 4, 7},
+    {"a HEIF", "ftypmif1", 4, 8},
     {"a colour PFM", "PF\n", 0, 3},
     {"a PBM", "P4", 0, 2},
     {"a PPM", "P6", 0, 2},
@@ -79,8 +87,9 @@ static sonject_status refuse_kind(struct report *report, const char *path,
     const char *name = foreign_name(head, count);
     if (name)
         return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: is %s file, which sonject does not read; it reads %s", path,
-                              name, readable);
+                              "%s: is %s file, which sonject does not read; it reads %s: convert "
+                              "it to one of these",
+                              path, name, readable);
     return report_failure(report, SONJECT_ERROR_INPUT,
                           "%s: is %s; sonject reads %s: convert it to one of these", path,
                           count == 0 ? "empty" : "of no format that sonject knows", readable);

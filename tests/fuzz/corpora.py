@@ -1,5 +1,6 @@
 """First inputs of the fuzzers, small and made here: make(kind, folder, source) fills a folder, and
-words(kind, source) lists what a mutation may put in."""
+words(kind, source) lists what a mutation may put in. Some are files that a reader must refuse, where
+a fuzzer would take long to think of them."""
 
 import re
 import struct
@@ -19,6 +20,14 @@ def scenes(source):
         b"sonject: 1\ninput: {path: line.xtf, channel: port, geometry: from_file}\n"
         b"sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: from_file}\n"
     )
+    start = (b"sonject: 1\ninput: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, "
+             b"column_spacing: 1, first_slant_range: 40}}\n"
+             b"sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10")
+    sines = b", ".join([b"{amplitude: 1 mm, wavelength: 1 m}"] * 200)
+    cuts = b", ".join([b"{distance: 0}"] * 200)
+    texts["sines.yaml"] = start + b", motion: {sway: [" + sines + b"]}}\n"
+    texts["cuts.yaml"] = start + b"}\nobjects: [{shape: sphere, diameter: 1, cuts: [" + cuts + b"]}]\n"
+    texts["key.yaml"] = b"sonject: 1\n? [a]\n: b\n"
     return texts
 
 
@@ -35,7 +44,9 @@ def recordings(source):
     one = writer.file_header([writer.PORT], sample_bytes=1)
     for row in range(3):
         one += writer.ping([(0, samples[row].astype("u1"))], number=row)
-    return {"both": both, "port": one, "degrees": writer.xtf_bytes(samples, samples, units=3),
+    liar = bytearray(writer.file_header([writer.PORT]) + writer.ping([(0, samples[0])]))
+    struct.pack_into("<I", liar, 1024 + 256 + 42, 1000)  # samples of a ping that holds 8
+    return {"both": both, "port": one, "liar": bytes(liar), "degrees": writer.xtf_bytes(samples, samples, units=3),
             "empty": writer.file_header([writer.PORT])}
 
 
@@ -89,14 +100,15 @@ def _mat_element(kind, data):
     return struct.pack("<II", kind, len(data)) + data + bytes(-len(data) % 8)
 
 
-def _mat_array(name, kind, numbers, imaginary=None):
-    """kind: MATLAB's class; the type of the numbers goes with it."""
+def _mat_array(name, kind, numbers, imaginary=None, kept=None):
+    """kind: MATLAB's class; the type of the numbers goes with it. kept: bytes of the array."""
     stored = {6: (9, "<f8"), 7: (7, "<f4"), 9: (2, "u1"), 10: (3, "<i2"), 11: (4, "<u2")}[kind]
     flags = struct.pack("<II", kind | (0x800 if imaginary is not None else 0), 0)
     body = _mat_element(6, flags) + _mat_element(5, struct.pack("<ii", *numbers.shape))
     body += _mat_element(1, name)
     for part in [numbers] + ([imaginary] if imaginary is not None else []):
         body += _mat_element(stored[0], part.astype(stored[1]).tobytes(order="F"))
+    body = body[:kept]
     return struct.pack("<II", 14, len(body)) + body
 
 
@@ -110,6 +122,8 @@ def matlab(_):
         "complex": head + _mat_array(b"swath", 7, numbers, numbers),
         "two": head + arrays[7] + _mat_array(b"other", 6, numbers),
         "compressed": head + struct.pack("<II", 15, len(packed)) + packed,
+        "name": head + _mat_array(b"n" * 100, 9, numbers),
+        "liar": head + _mat_array(b"swath", 9, numpy.ones((20, 30)), kept=100),
     }
 
 
@@ -199,6 +213,11 @@ def images(source):
     samples = numpy.arange(12, dtype="<f4").reshape(3, 4)
     openexr = {f"openexr{kind}": writer.exr_bytes({"Y": samples.repeat(9, 0)}, kind)
                for kind in (0, 3)}
+    start = openexr["openexr0"].index(b"compression\0compression\0") + 24
+    openexr["liar"] = (openexr["openexr0"][:start] + struct.pack("<I", 4200) + bytes(4200)
+                       + openexr["openexr0"][start + 5:])
+    start = openexr["openexr0"].index(b"channels\0chlist\0") + 16
+    openexr["list"] = openexr["openexr0"][:start] + struct.pack("<I", 4096) + b"x" * 4096
     files = {f"{order}{is_big}{tiled}".replace("<", "le").replace(">", "be"):
              _tiff(order, is_big, tiled)
              for order in "<>" for is_big in (False, True) for tiled in (False, True)}
@@ -210,6 +229,7 @@ def tables(_):
         "commas": b"depth,speed\n0,1500\n10,1490.5\n",
         "spaces": b"# a\ntime speed other\n0 1e3 2\n1\t-2 3 # b\n",
         "semicolons": b"depth;speed;note\r\n0;1500;x\r\n",
+        "many": b"depth,speed\n" + b"0,1\n" * 101,
     }
 
 
@@ -217,7 +237,7 @@ def snippets(source):
     code = (source / "tools" / "targets" / "boulder_relief.cl").read_bytes()
     short = (b"#define R 1.0f\nreal shape_distance(real3 o, real3 d)\n{\n    /* a */ return R;\n}\n"
              b"real3 shape_normal(real3 p)\n{\n    return p; // b\n}\n")
-    return {"boulder": code, "short": short}
+    return {"boulder": code, "short": short, "deep": b"(" * 300}
 
 
 MAKERS = {"scene": scenes, "target": targets, "xtf": recordings, "npy": arrays, "rows": rows,

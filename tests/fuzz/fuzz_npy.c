@@ -19,7 +19,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
         return 0;
     const struct region whole = {0, 0, rows.layout.rows, rows.layout.columns};
     /* All that it says to hold is in the file. */
-    if (!region_bytes(&rows.layout, &whole, &size) || size > count)
+    if (!region_bytes(&rows.layout, &whole, &size) || rows.first_place > count ||
+        size > count - rows.first_place)
         abort();
     void *pixels = allocate_array(size, 1);
     if (!pixels)

@@ -21,6 +21,10 @@ static void read_channel(int32_t channel)
     /* All that it says to hold is in the file. */
     if (!region_bytes(layout, &whole, &bytes) || bytes > file.rows.file_bytes)
         abort();
+    for (uint64_t row = 0; row < layout->rows; row++)
+        if (file.rows.places[row] > file.rows.file_bytes ||
+            bytes / layout->rows > file.rows.file_bytes - file.rows.places[row])
+            abort();
     void *pixels = allocate_array(bytes, 1);
     if (!pixels)
         abort();

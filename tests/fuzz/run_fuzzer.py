@@ -14,7 +14,8 @@ import corpora
 
 # One triangle pyramid in place of a rock's hundreds.
 ROCK = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
-LONGEST = {"scene": 8192, "target": 8192, "xtf": 4096, "snippet": 4096, "rows": 3072}
+LONGEST = {"scene": 8192, "target": 8192, "xtf": 4096, "snippet": 4096, "rows": 3072,
+           "image": 6144}
 
 
 def fill(folder, kind, source):
