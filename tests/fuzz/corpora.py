@@ -10,6 +10,9 @@ import zlib
 import numpy
 
 
+CUTS = b", ".join([b"{distance: 0}"] * 200)  # more than a shape may have
+
+
 def _yaml(folder):
     return {path.name: path.read_bytes() for path in sorted(folder.glob("*.yaml"))}
 
@@ -24,15 +27,16 @@ def scenes(source):
              b"column_spacing: 1, first_slant_range: 40}}\n"
              b"sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10")
     sines = b", ".join([b"{amplitude: 1 mm, wavelength: 1 m}"] * 200)
-    cuts = b", ".join([b"{distance: 0}"] * 200)
     texts["sines.yaml"] = start + b", motion: {sway: [" + sines + b"]}}\n"
-    texts["cuts.yaml"] = start + b"}\nobjects: [{shape: sphere, diameter: 1, cuts: [" + cuts + b"]}]\n"
+    texts["cuts.yaml"] = start + b"}\nobjects: [{shape: sphere, diameter: 1, cuts: [" + CUTS + b"]}]\n"
     texts["key.yaml"] = b"sonject: 1\n? [a]\n: b\n"
     return texts
 
 
 def targets(source):
-    return _yaml(source / "tools" / "targets")
+    texts = _yaml(source / "tools" / "targets")
+    texts["cuts.yaml"] = b"sonject_target: 1\nshape: sphere\ndiameter: 1\ncuts: [" + CUTS + b"]\n"
+    return texts
 
 
 def recordings(source):
