@@ -1,19 +1,30 @@
 """Shows doxygen the headers' plain comments: doxygen_comments.py HEADER
 
-A comment documents what follows it, or what stands before it on its line. Nothing in one is a
-command of doxygen's or of HTML.
+A comment documents what follows it, or what stands before it on its line; at the head of a file, the
+file. Nothing in one is a command of doxygen's or of HTML; what stands further in stays as it is.
 """
 
 import re
 import sys
 
 MARKS = {"\\": "\\\\", "@": "\\@", "<": "\\<", ">": "\\>", "&": "\\&", "#": "\\#", "%": "\\%"}
+INDENTED = r"((?:^ \*     .*\n)+)"
+
+
+def escaped(comment):
+    lines = re.split(INDENTED, comment, flags=re.M)
+    for i in range(0, len(lines), 2):
+        lines[i] = re.sub(r"[\\@<>&#%]", lambda mark: MARKS[mark[0]], lines[i])
+    for i in range(1, len(lines), 2):
+        indented = re.sub(r"^ \*", "", lines[i], flags=re.M)
+        lines[i] = f" * \\verbatim\n{indented}\\endverbatim\n"
+    return "".join(lines)
 
 
 def documenting(found):
     before, comment = found.groups()
-    text = re.sub(r"[\\@<>&#%]", lambda mark: MARKS[mark[0]], comment)
-    return f"{before}/**{'<' if before.strip() else ''}{text}*/"
+    kind = "\\file\n" if found.start() == 0 else "<" if before.strip() else ""
+    return f"{before}/**{kind}{escaped(comment)}*/"
 
 
 def main():

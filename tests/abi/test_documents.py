@@ -50,7 +50,10 @@ def test_the_reference_of_the_interface_is_made_without_warnings(tmp_path):
     answer = subprocess.run(["doxygen", "-"], input=settings, cwd=SOURCE, capture_output=True,
                             text=True, check=False)
     assert (answer.returncode, answer.stderr) == (0, "")
-    pages = "".join(path.read_text() for path in (tmp_path / "html").glob("*.html"))
+    folder = tmp_path / "html"
+    head = (folder / "sonject_8hpp.html").read_text()
+    assert "must not outlive the context" in head and "\n     sonject::scene scene(context);\n" in head
+    pages = "".join(path.read_text() for path in folder.glob("*.html"))
     for name in (SOURCE / "tests" / "abi" / "symbols.txt").read_text().split():
         assert f"{name}()</h2>" in pages, name
     # what stands before a declaration and what stands behind one

@@ -61,7 +61,11 @@ def run_program(program, prefix):
 
 
 def test_headers_and_library_are_there(root, prefix):
-    assert (prefix / "include" / "sonject" / "sonject.h").exists()
+    def headers(folder):
+        return {path.relative_to(folder) for path in folder.rglob("*.h*")}
+
+    sources = headers(SOURCE / "include") | headers(SOURCE / "bindings" / "cxx")
+    assert headers(prefix / "include") == sources
     assert (library_folder(prefix) / "cmake" / "sonject" / "sonjectConfig.cmake").exists()
     assert str(root) in " ".join(pkg_config_flags(root))
 
@@ -71,9 +75,10 @@ LEFT_TO_C = {"sonject_absorption", "sonject_material_name", "sonject_scene_read"
 
 
 def test_cxx_has_every_function():
-    header = (SOURCE / "bindings" / "cxx" / "sonject.hpp").read_text(encoding="utf-8")
-    used = set(re.findall(r"\bsonject_\w+(?=\()", header))
-    used |= {name + "_init" for name in re.findall(r"CXX_DEFAULTS\((sonject_\w+)\)", header)}
+    headers = "".join(path.read_text(encoding="utf-8")
+                      for path in (SOURCE / "bindings" / "cxx").rglob("*.hpp"))
+    used = set(re.findall(r"\bsonject_\w+(?=\()", headers))
+    used |= {name + "_init" for name in re.findall(r"CXX_DEFAULTS\((sonject_\w+)\)", headers)}
     functions = set((SOURCE / "tests" / "abi" / "symbols.txt").read_text().split())
     assert functions - used == LEFT_TO_C
 

@@ -9,6 +9,7 @@ import pytest
 SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
 LIBRARY = pathlib.Path(os.environ["SONJECT_LIBRARY"])
 HEADERS = sorted((SOURCE / "include" / "sonject").glob("*.h"))
+CXX_HEADERS = sorted((SOURCE / "bindings" / "cxx" / "sonject").glob("*.hpp"))
 COMPILER = os.environ.get("CC", "cc")
 CXX_COMPILER = os.environ.get("CXX", "c++")
 
@@ -34,16 +35,32 @@ def test_exports_are_the_declared_functions():
     assert exported_symbols(LIBRARY) == functions
 
 
-@pytest.mark.parametrize("header", HEADERS, ids=lambda header: header.name)
-@pytest.mark.parametrize("language", ["c99", "c++11", "c++17", "c++20"])
-def test_headers_compile_alone(header, language, tmp_path):
+def compile_alone(header, language, source):
+    """Twice, so that it has to guard itself."""
     is_c = language == "c99"
-    source = tmp_path / ("alone.c" if is_c else "alone.cpp")
     source.write_text(f"#include <sonject/{header.name}>\n"
                       f"#include <sonject/{header.name}>\nint main(void) {{ return 0; }}\n")
     subprocess.run([COMPILER if is_c else CXX_COMPILER, f"-std={language}", "-Wall", "-Wextra",
-                    "-Wpedantic", "-Werror", "-fsyntax-only", "-I", SOURCE / "include", source],
-                   check=True)
+                    "-Wpedantic", "-Wconversion", "-Wshadow", "-Werror", "-fsyntax-only", "-I",
+                    SOURCE / "include", "-I", SOURCE / "bindings" / "cxx", source], check=True)
+
+
+@pytest.mark.parametrize("header", HEADERS, ids=lambda header: header.name)
+@pytest.mark.parametrize("language", ["c99", "c++11", "c++17", "c++20"])
+def test_headers_compile_alone(header, language, tmp_path):
+    compile_alone(header, language, tmp_path / ("alone.c" if language == "c99" else "alone.cpp"))
+
+
+@pytest.mark.parametrize("header", CXX_HEADERS, ids=lambda header: header.name)
+def test_cxx_headers_compile_alone(header, tmp_path):
+    compile_alone(header, "c++11", tmp_path / "alone.cpp")
+
+
+def test_the_whole_cxx_header_includes_each():
+    whole = (SOURCE / "bindings" / "cxx" / "sonject.hpp").read_text(encoding="utf-8")
+    assert CXX_HEADERS
+    assert set(re.findall(r"^#include <sonject/(\w+\.hpp)>$", whole, flags=re.M)) == {
+        header.name for header in CXX_HEADERS}
 
 
 # Sizes on 64-bit machines. A structure may only grow, at its end, in a release that says so.

@@ -1,0 +1,133 @@
+/* Contexts, and what needs no more than one. */
+#ifndef SONJECT_CONTEXT_HPP
+#define SONJECT_CONTEXT_HPP
+
+#include <cstddef>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <sonject/context.h>
+#include <sonject/convert.h>
+#include <sonject/error.hpp>
+#include <sonject/run.h>
+#include <sonject/version.h>
+
+namespace sonject
+{
+
+/* Called with a line of news. Must not throw. */
+using log = std::function<void(const char *line)>;
+
+/* What a context is made from; empty texts and null handles: the defaults. */
+struct context_options {
+    std::string device_name;
+    std::string cache_folder; /* for compiled programs; uses_cache false: none is kept */
+    bool uses_cache = true;
+    void *opencl_context = nullptr; /* a host's cl_context and cl_device_id */
+    void *opencl_device = nullptr;
+    sonject::log log;
+};
+
+/* One OpenCL device and what is compiled for it. */
+class context
+{
+  public:
+    explicit context(context_options options = context_options())
+        : log_(new sonject::log(std::move(options.log))), handle_(nullptr)
+    {
+        sonject_context_params params;
+        sonject_context_params_init(&params);
+        params.device_name = options.device_name.empty() ? nullptr : options.device_name.c_str();
+        if (!options.uses_cache)
+            params.cache_folder = "";
+        else if (!options.cache_folder.empty())
+            params.cache_folder = options.cache_folder.c_str();
+        params.opencl_context = options.opencl_context;
+        params.opencl_device = options.opencl_device;
+        params.log = *log_ ? &context::tell : nullptr;
+        params.log_user = log_;
+        const sonject_status status = sonject_context_create(&params, &handle_);
+        if (status != SONJECT_OK) {
+            delete log_;
+            throw error(status, sonject_status_name(status));
+        }
+    }
+    context(context &&other) noexcept : log_(other.log_), handle_(other.handle_)
+    {
+        other.log_ = nullptr;
+        other.handle_ = nullptr;
+    }
+    context &operator=(context &&other) noexcept
+    {
+        std::swap(log_, other.log_);
+        std::swap(handle_, other.handle_);
+        return *this;
+    }
+    context(const context &) = delete;
+    context &operator=(const context &) = delete;
+    ~context()
+    {
+        sonject_context_release(&handle_);
+        delete log_;
+    }
+
+    /* For calls of the C interface. */
+    sonject_context *get() const noexcept
+    {
+        return handle_;
+    }
+
+    std::vector<sonject_device_info> devices() const
+    {
+        std::size_t count = 0;
+        check(sonject_devices(handle_, nullptr, 0, &count));
+        std::vector<sonject_device_info> list(count);
+        check(sonject_devices(handle_, list.data(), list.size(), &count));
+        list.resize(count < list.size() ? count : list.size());
+        return list;
+    }
+
+    /* Draws an image file as a PNG. */
+    void quicklook(const sonject_quicklook_params &params) const
+    {
+        check(sonject_quicklook(handle_, &params));
+    }
+
+    /* Makes a file of one format from a file of another. */
+    void convert(const sonject_convert_params &params) const
+    {
+        check(sonject_convert(handle_, &params));
+    }
+
+    /* Writes a synthetic seabed. */
+    void write_seabed(const sonject_seabed_file_params &params) const
+    {
+        check(sonject_seabed_write(handle_, &params));
+    }
+
+    /* Throws what a status of a call on this context means. */
+    void check(sonject_status status) const
+    {
+        detail::check(handle_, status);
+    }
+
+  private:
+    static void tell(void *user, const char *line) noexcept
+    {
+        (*static_cast<sonject::log *>(user))(line);
+    }
+    sonject::log *log_; /* owned, apart, so that moving keeps its place */
+    sonject_context *handle_;
+};
+
+/* The library's version, such as "0.1.0". */
+inline std::string version()
+{
+    return sonject_version();
+}
+
+} // namespace sonject
+
+#endif

@@ -1,0 +1,75 @@
+/* What images and contacts measure. */
+#ifndef SONJECT_MEASURE_HPP
+#define SONJECT_MEASURE_HPP
+
+#include <cstdint>
+#include <string>
+
+#include <sonject/context.hpp>
+#include <sonject/error.hpp>
+#include <sonject/injection.hpp>
+#include <sonject/measure.h>
+#include <sonject/span.hpp>
+#include <sonject/text.hpp>
+
+namespace sonject
+{
+
+/* What an image file says of its seabed and of the seam; see sonject_measure. */
+inline sonject_measurement measure(const context &context, const sonject_measure_params &params)
+{
+    sonject_measurement measurement = {};
+    measurement.struct_size = sizeof measurement;
+    context.check(sonject_measure(context.get(), &params, &measurement));
+    return measurement;
+}
+
+/* The same of pixels in memory; masks: rows x columns bytes, or none. */
+inline sonject_measurement measure(const context &context, const pixels &image,
+                                   span<const std::uint8_t> influence = span<const std::uint8_t>(),
+                                   span<const std::uint8_t> labels = span<const std::uint8_t>())
+{
+    const std::uint64_t size = image.value.rows * image.value.columns;
+    sonject_measurement measurement = {};
+    measurement.struct_size = sizeof measurement;
+    if ((influence.size() && influence.size() != size) || (labels.size() && labels.size() != size))
+        throw error(SONJECT_ERROR_ARGUMENT, "a mask needs rows x columns bytes");
+    context.check(sonject_measure_pixels(context.get(), &image.value,
+                                         influence.size() ? influence.data() : nullptr,
+                                         labels.size() ? labels.data() : nullptr, &measurement));
+    return measurement;
+}
+
+/* Contacts of an image file as JSON; see sonject_measure_contacts. */
+inline std::string measure_contacts(const context &context,
+                                    const sonject_contact_file_params &params)
+{
+    detail::text text;
+    context.check(sonject_measure_contacts(context.get(), &params, text.out()));
+    return text.copy();
+}
+
+/* Two such sets compared, as JSON; picture "": none. */
+inline std::string compare_contacts(const context &context, const std::string &first,
+                                    const std::string &second, const std::string &picture = "")
+{
+    detail::text text;
+    context.check(sonject_compare_contacts(context.get(), first.c_str(), second.c_str(),
+                                           picture.empty() ? nullptr : picture.c_str(),
+                                           text.out()));
+    return text.copy();
+}
+
+/* Lengths and levels of a contact; see sonject_measure_contact. */
+inline sonject_contact_measures measure_contact(const context &context, const pixels &image,
+                                                const sonject_contact_params &params)
+{
+    sonject_contact_measures measures = {};
+    measures.struct_size = sizeof measures;
+    context.check(sonject_measure_contact(context.get(), &image.value, &params, &measures));
+    return measures;
+}
+
+} // namespace sonject
+
+#endif

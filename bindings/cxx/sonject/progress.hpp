@@ -1,0 +1,79 @@
+/* Callbacks: progress, and what they throw. */
+#ifndef SONJECT_PROGRESS_HPP
+#define SONJECT_PROGRESS_HPP
+
+#include <exception>
+#include <functional>
+
+#include <sonject/error.hpp>
+#include <sonject/status.h>
+
+namespace sonject
+{
+
+/* Called with the finished fraction 0...1 and the stage's name; false cancels. What it throws ends
+ * the call and comes out of it. */
+using progress = std::function<bool(double fraction, const char *stage)>;
+
+namespace detail
+{
+
+/* Carries a progress callback through C, and what it throws around it. */
+class progress_bridge
+{
+  public:
+    explicit progress_bridge(const progress &callback) : callback_(callback)
+    {
+    }
+    sonject_progress_function function() const
+    {
+        return callback_ ? &progress_bridge::tell : nullptr;
+    }
+    void rethrow() const
+    {
+        if (thrown_)
+            std::rethrow_exception(thrown_);
+    }
+
+  private:
+    static int tell(void *user, double fraction, const char *stage)
+    {
+        progress_bridge *bridge = static_cast<progress_bridge *>(user);
+        try {
+            return bridge->callback_(fraction, stage) ? 0 : 1;
+        } catch (...) {
+            bridge->thrown_ = std::current_exception();
+            return 1;
+        }
+    }
+    const progress &callback_;
+    std::exception_ptr thrown_;
+};
+
+/* Makes a call that tells its progress: call(function, user) answers with the status. Throws what
+ * the callback threw, or what the status means. */
+template <typename Call>
+void tell_progress(sonject_context *context, const progress &callback, const Call &call)
+{
+    progress_bridge bridge(callback);
+    const sonject_status status = call(bridge.function(), static_cast<void *>(&bridge));
+    bridge.rethrow();
+    check(context, status);
+}
+
+/* The same of one that tells whether its result was finished before. */
+template <typename Call>
+bool was_finished(sonject_context *context, const progress &callback, const Call &call)
+{
+    int answer = 0;
+    tell_progress(context, callback, [&](sonject_progress_function tell, void *user) {
+        return call(tell, user, &answer);
+    });
+    return answer != 0;
+}
+
+} // namespace detail
+
+} // namespace sonject
+
+#endif

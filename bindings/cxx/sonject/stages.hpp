@@ -1,0 +1,41 @@
+/* Results of what was traced before: of the shards of a run, or of impulses in a file. */
+#ifndef SONJECT_STAGES_HPP
+#define SONJECT_STAGES_HPP
+
+#include <sonject/context.hpp>
+#include <sonject/progress.hpp>
+#include <sonject/run.h>
+#include <sonject/scene.hpp>
+#include <sonject/stages.h>
+
+namespace sonject
+{
+
+/* Makes the result of all shards in params.folder, of all bands too. scene: the one that was
+ * traced, nullptr: that which the shards keep. True if it was finished already. */
+inline bool merge(const context &context, const sonject_merge_params &params,
+                  const scene *traced = nullptr, const progress &callback = progress())
+{
+    return detail::was_finished(
+        context.get(), callback, [&](sonject_progress_function tell, void *user, int *answer) {
+            return sonject_merge(context.get(), traced ? traced->get() : nullptr, &params, tell,
+                                 user, answer);
+        });
+}
+
+/* Forms the image of what scene::trace kept; params.folder gets it. other: a scene that differs in
+ * what another image may differ, nullptr: the one that the file keeps. True if the result was
+ * finished already. */
+inline bool form(const context &context, const sonject_form_params &params,
+                 const scene *other = nullptr, const progress &callback = progress())
+{
+    return detail::was_finished(
+        context.get(), callback, [&](sonject_progress_function tell, void *user, int *answer) {
+            return sonject_form(context.get(), other ? other->get() : nullptr, &params, tell, user,
+                                answer);
+        });
+}
+
+} // namespace sonject
+
+#endif
