@@ -1,12 +1,14 @@
 """Counts the results in meson's test logs: count.py [--require SUITE ... --] LOG ...
 
-Prints what failed, and at the end "N passed, N failed, N skipped". A missing log and a required
-suite that no log mentions count as failed. Exits with 1 if anything failed.
+Prints what pytest skipped within a test, and why, what failed, and at the end "N passed, N failed,
+N skipped". A missing log and a required suite that no log mentions count as failed. Exits with 1 if
+anything failed.
 """
 
 import argparse
 import json
 import pathlib
+import re
 import sys
 
 PASSED = {"OK", "EXPECTEDFAIL"}
@@ -21,12 +23,17 @@ def suites_of(name):
 
 
 def read_log(path):
-    """(name, result) of each test in the log."""
+    """(name, result, output) of each test in the log."""
     with open(path, encoding="utf-8") as file:
         for line in file:
             if line.strip():
                 test = json.loads(line)
-                yield test["name"], test["result"]
+                yield test["name"], test["result"], test.get("stdout", "")
+
+
+def skipped_within(output):
+    """What "pytest -rs" says that it skipped."""
+    return re.findall(r"^SKIPPED (\[\d+\] .*)$", output, flags=re.M)
 
 
 def main():
@@ -39,7 +46,9 @@ def main():
         if not log.is_file():
             failures.append(f"{log}: there is no such log: the build failed or no test was run")
             continue
-        for name, result in read_log(log):
+        for name, result, output in read_log(log):
+            for what in skipped_within(output):
+                print(f"{log.parent.parent}: {name}: skipped within it: {what}")
             if result == "SKIP":
                 skipped += 1
                 continue

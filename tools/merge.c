@@ -8,6 +8,7 @@
 
 #include "exit_code.h"
 #include "labels_argument.h"
+#include "message.h"
 #include "stage.h"
 #include "verbs.h"
 
@@ -70,6 +71,10 @@ static int work(const void *verb_options)
     uint32_t labels;
     if (!labels_parse("merge", options->labels, &labels))
         return EXIT_CODE_USAGE;
+    if (options->labels && holds_campaign(options->stage.output)) {
+        message("merge: a campaign's labels are those that its file names: take --labels out");
+        return EXIT_CODE_USAGE;
+    }
     return stage_work(&options->stage, merge, verb_options, "the result is in ");
 }
 

@@ -84,8 +84,7 @@ typedef struct sonject_campaign_run_params {
     uint32_t only_one;    /* 1: only the image `only`, anew if it is there */
     uint64_t only;        /* id */
     const char *folder;   /* for the data set; made where missing */
-    double
-        exit_after_s; /* stops after the image that is being made then, as if cancelled; 0: never */
+    double exit_after_s;  /* stops as if cancelled, after the image of that moment; 0: never */
 } sonject_campaign_run_params;
 
 SONJECT_API void sonject_campaign_run_params_init(sonject_campaign_run_params *params);

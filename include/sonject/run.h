@@ -67,7 +67,7 @@ SONJECT_API void sonject_merge_params_init(sonject_merge_params *params);
  * again). Where that scene has bands, each with its shards in a folder of its name below the
  * folder, all of them are merged, once each has a shard at least. Every file is that of a whole run
  * byte for byte, but for times, memory and the device in run.json. *was_finished as of sonject_run,
- * also where the folder has a result and no shards.
+ * also where the folder has a result and no shards; INPUT where that lacks labels that are wanted.
  * Errors: ARGUMENT, INPUT (shards that are missing, not finished, damaged, of another scene, image
  * or version: the message names them), DEVICE, STORAGE, MEMORY, UNSUPPORTED, CANCELLED. */
 SONJECT_API sonject_status sonject_merge(sonject_context *context, const sonject_scene *scene,
@@ -89,8 +89,8 @@ SONJECT_API sonject_status sonject_check(sonject_context *context, const sonject
 SONJECT_API void sonject_text_release(char **text);
 
 typedef enum sonject_range_axis {
-    SONJECT_AXIS_SLANT = 0,
-    SONJECT_AXIS_GROUND = 1 /* the image is resampled to ground range; needs the altitude */
+    SONJECT_AXIS_SLANT = 0, /* as the image is */
+    SONJECT_AXIS_GROUND = 1 /* a slant range image is resampled; needs geometry and altitude */
 } sonject_range_axis;
 
 typedef struct sonject_quicklook_params {
@@ -98,14 +98,13 @@ typedef struct sonject_quicklook_params {
     uint32_t range_axis; /* sonject_range_axis */
     const char *image;   /* file to look at */
     const char *picture; /* PNG to write */
-    double minimum_db;   /* of the grey scale; both 0: chosen from the image */
+    double minimum_db;   /* of the grey scale, below maximum_db; both 0: chosen from the image */
     double maximum_db;
     double altitude_m;     /* 0: from the image's metadata */
     uint32_t has_geometry; /* 1: geometry below is used; 0: the image's metadata, and without any
                               the axes count pixels */
-    uint32_t
-        has_transfer; /* 1: transfer below is used; 0: the image's metadata, or plain amplitude */
-    sonject_geometry_params geometry;
+    uint32_t has_transfer; /* 1: transfer below is used; 0: plain amplitude */
+    sonject_geometry_params geometry; /* of slant range */
     sonject_transfer_params transfer;
     int32_t channel; /* of an XTF file, SONJECT_CHANNEL_ONLY by default; its metadata are those of
                         all its pings */
@@ -114,8 +113,9 @@ typedef struct sonject_quicklook_params {
 
 SONJECT_API void sonject_quicklook_params_init(sonject_quicklook_params *params);
 
-/* Draws an image file with axes in metres. Errors: ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED.
- */
+/* Draws an image file with axes in metres. Errors: ARGUMENT, INPUT (such as an axis of ground range
+ * for an image that has it already, or does not tell where its columns lie), STORAGE, MEMORY,
+ * UNSUPPORTED. */
 SONJECT_API sonject_status sonject_quicklook(sonject_context *context,
                                              const sonject_quicklook_params *params);
 

@@ -231,12 +231,12 @@ static sonject_status check_params(struct report *report, sonject_contact_file_p
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "contacts are looked for by contrasts of 6...100 dB, not %g dB",
                               params->find_contrast_db);
-    if (params->has_transfer) {
-        const sonject_status status = check_transfer(&params->transfer, report, NULL);
-        if (status != SONJECT_OK)
-            return status;
-    }
-    return check_spacings(report, params->row_spacing_m, params->column_spacing_m);
+    if (!params->has_transfer)
+        sonject_transfer_params_init(&params->transfer);
+    const sonject_status status = check_transfer(&params->transfer, report, NULL);
+    return status == SONJECT_OK
+               ? check_spacings(report, params->row_spacing_m, params->column_spacing_m)
+               : status;
 }
 
 sonject_status sonject_measure_contacts(sonject_context *context,

@@ -380,6 +380,16 @@ json_t *run_document(const char *path)
     return document;
 }
 
+uint32_t labels_of_result(const char *folder)
+{
+    char *path = path_join(folder, "run.json");
+    json_t *document = path ? run_document(path) : NULL;
+    const uint32_t formats = label_formats_of(document);
+    json_decref(document);
+    free(path);
+    return formats;
+}
+
 bool run_is_finished(const char *path, const char *scene_hash, uint32_t label_formats)
 {
     json_t *document = run_document(path);

@@ -25,6 +25,9 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
 /* Whether a run's results are in the folder: run.json, the last of them. */
 bool folder_has_result(const char *folder);
 
+/* The formats of labels that the run's results in the folder have. */
+uint32_t labels_of_result(const char *folder);
+
 /* The run.json at path, for json_decref; NULL where there is none that can be read. */
 json_t *run_document(const char *path);
 

@@ -248,6 +248,8 @@ sonject_status sonject_measure(sonject_context *context, const sonject_measure_p
         return null_argument(report, "image and measurement");
     if (taken.has_transfer)
         status = check_transfer(&taken.transfer, report, NULL);
+    else
+        sonject_transfer_params_init(&taken.transfer);
     if (status == SONJECT_OK)
         status = read_image(report, taken.image, &taken.transfer, &measured);
     if (status == SONJECT_OK)

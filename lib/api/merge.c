@@ -37,6 +37,17 @@ static sonject_status read_kept_scene(struct report *report, const struct stint_
     return status;
 }
 
+/* A result whose shards are gone cannot get other labels. */
+static sonject_status check_merged_labels(struct report *report, const struct run_request *request)
+{
+    if ((request->label_formats & ~labels_of_result(request->folder)) == 0)
+        return SONJECT_OK;
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "%s: is merged already, without those labels: run its scene into it once "
+                          "more with them",
+                          request->folder);
+}
+
 /* A run whose scene its shards keep. */
 static sonject_status merge_kept(struct sonject_context *context, const struct run_request *asked,
                                  bool allows_user_shapes, int *was_finished)
@@ -67,8 +78,10 @@ static sonject_status merge_kept(struct sonject_context *context, const struct r
     stint_folder_clear(&folder);
     request->scene = &scene;
     request->scene_hash = hash;
+    if (is_merged)
+        status = check_merged_labels(report, request);
     if (is_merged && was_finished)
-        *was_finished = 1;
+        *was_finished = status == SONJECT_OK;
     if (status == SONJECT_OK && !is_merged)
         status = run_scene(context, request, was_finished);
     scene_clear(&scene);

@@ -99,10 +99,20 @@ static sonject_status read_reduced(struct report *report, const char *path, stru
     return status;
 }
 
-/* Resamples slant range columns at equal steps of ground range, nearest pixel. */
-static sonject_status to_ground_range(struct report *report, struct view_image *image,
-                                      struct plot_frame *frame, double altitude)
+/* Resamples slant range columns at equal steps of ground range, nearest pixel. axis: that they are
+ * of. */
+static sonject_status to_ground_range(struct report *report, const char *path, enum range_axis axis,
+                                      struct view_image *image, struct plot_frame *frame,
+                                      double altitude)
 {
+    if (axis == RANGE_GROUND)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: is in ground range already: take the range axis out", path);
+    if (axis == RANGE_UNKNOWN)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: does not say where its columns lie: give row spacing, column "
+                              "spacing and first slant range",
+                              path);
     if (!(altitude > 0.0))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "a ground range axis needs the altitude: give --altitude");
@@ -153,14 +163,18 @@ static sonject_status draw(struct report *report, const struct plot_frame *frame
     return status;
 }
 
-/* Axes: what the caller says, else what the file says, else pixels. */
-static void fill_frame(struct plot_frame *frame, const sonject_quicklook_params *params,
-                       const struct swath_file *file, const struct view_image *image,
-                       double *altitude)
+/* Axes: what the caller says, else what the file says, else pixels. Returns which range axis it is.
+ */
+static enum range_axis fill_frame(struct plot_frame *frame, const sonject_quicklook_params *params,
+                                  const struct swath_file *file, const struct view_image *image,
+                                  double *altitude)
 {
     sonject_geometry_params geometry = params->geometry;
     struct noted_geometry noted;
     geometry_notes_read(file, &noted);
+    const bool is_ground = noted.axis == RANGE_GROUND && !params->has_geometry;
+    if (is_ground) /* such numbers are checked as slant ranges are */
+        noted.axis = RANGE_SLANT;
     const bool has_metres = params->has_geometry || geometry_notes_tell(&noted, &geometry);
     *altitude = params->altitude_m > 0.0 ? params->altitude_m
                 : noted.altitude_m > 0.0 ? noted.altitude_m
@@ -173,10 +187,37 @@ static void fill_frame(struct plot_frame *frame, const sonject_quicklook_params 
     frame->column_spacing_m = (has_metres ? geometry.column_spacing_m : 1.0) * block;
     frame->first_along_track_m = has_metres ? geometry.first_along_track_m : 0.0;
     frame->first_range_m = has_metres ? geometry.first_slant_range_m : 0.0;
-    frame->range_label = has_metres ? "slant range, m" : "column";
+    frame->range_label = !has_metres ? "column" : is_ground ? "ground range, m" : "slant range, m";
     frame->minimum_db = params->minimum_db;
     frame->maximum_db = params->maximum_db;
     frame->difference_db = 20.0;
+    return is_ground ? RANGE_GROUND : has_metres ? RANGE_SLANT : RANGE_UNKNOWN;
+}
+
+/* Fills in what is not given. */
+static sonject_status check_params(struct report *report, sonject_quicklook_params *params)
+{
+    const bool has_scale = params->minimum_db != 0.0 || params->maximum_db != 0.0;
+    sonject_status status = SONJECT_OK;
+    if (!params->image || !params->picture)
+        return null_argument(report, "image and picture");
+    if (params->range_axis > SONJECT_AXIS_GROUND)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT, "range_axis: no such choice");
+    if (has_scale && !(isfinite(params->minimum_db) && isfinite(params->maximum_db) &&
+                       params->minimum_db < params->maximum_db))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "minimum_db must be a number below maximum_db, not %g and %g",
+                              params->minimum_db, params->maximum_db);
+    if (!(params->altitude_m >= 0.0) || !isfinite(params->altitude_m))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "altitude must be a number of m above 0, not %g", params->altitude_m);
+    if (params->has_geometry)
+        status = check_geometry(&params->geometry, report, NULL);
+    if (status == SONJECT_OK && params->has_transfer)
+        status = check_transfer(&params->transfer, report, NULL);
+    if (!params->has_transfer)
+        sonject_transfer_params_init(&params->transfer);
+    return status;
 }
 
 sonject_status sonject_quicklook(sonject_context *context, const sonject_quicklook_params *params)
@@ -189,14 +230,8 @@ sonject_status sonject_quicklook(sonject_context *context, const sonject_quicklo
     sonject_quicklook_params_init(&taken);
     sonject_status status =
         params_take(report, &taken, sizeof taken, params, sizeof taken, "quicklook parameters");
-    if (status != SONJECT_OK)
-        return status;
-    if (!taken.image || !taken.picture)
-        return null_argument(report, "image and picture");
-    if (taken.has_geometry)
-        status = check_geometry(&taken.geometry, report, NULL);
-    if (status == SONJECT_OK && taken.has_transfer)
-        status = check_transfer(&taken.transfer, report, NULL);
+    if (status == SONJECT_OK)
+        status = check_params(report, &taken);
     struct swath_file *file = NULL;
     struct view_image image = {0, 0, 1, NULL};
     struct plot_frame frame;
@@ -206,9 +241,9 @@ sonject_status sonject_quicklook(sonject_context *context, const sonject_quicklo
     if (status == SONJECT_OK)
         status = read_reduced(report, taken.image, file, &taken.transfer, &image);
     if (status == SONJECT_OK) {
-        fill_frame(&frame, &taken, file, &image, &altitude);
+        const enum range_axis axis = fill_frame(&frame, &taken, file, &image, &altitude);
         if (taken.range_axis == SONJECT_AXIS_GROUND)
-            status = to_ground_range(report, &image, &frame, altitude);
+            status = to_ground_range(report, taken.image, axis, &image, &frame, altitude);
     }
     if (status == SONJECT_OK)
         status = draw(report, &frame, &image, taken.picture);

@@ -1,5 +1,6 @@
 /* What sonject.hpp promises beyond the C interface. Prints "all right", or what is not. */
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <stdexcept>
 #include <string>
@@ -183,6 +184,60 @@ static void check_files(const sonject::context &context)
         expect(false, "what holds no impulses throws");
     } catch (const sonject::error &) {
     }
+    try {
+        auto merging = sonject::defaults<sonject_merge_params>();
+        merging.folder = "merged";
+        sonject::merge(context, merging);
+        expect(false, "what holds no shards throws");
+    } catch (const sonject::error &error) {
+        expect(std::string(error.what()).find("shards") != std::string::npos, "and says so");
+    }
+    auto half = sonject::defaults<sonject_run_params>();
+    half.folder = "shared";
+    half.shard_index = 3;
+    half.shard_count = 2;
+    try {
+        sonject::scene(context, "bands.yaml", {"band=low"}).run(half);
+        expect(false, "a third half throws");
+    } catch (const sonject::error &) {
+    }
+}
+
+/* A transfer counts where it is said to be there. */
+static void check_transfer(const sonject::context &context)
+{
+    auto seabed = sonject::defaults<sonject_seabed_file_params>();
+    seabed.image = "swath.tif";
+    seabed.synthetic.rows = seabed.synthetic.columns = 64;
+    try {
+        context.write_seabed(seabed);
+    } catch (const sonject::error &error) {
+        expect(error.status() == SONJECT_ERROR_UNSUPPORTED, "without image files alone");
+        return;
+    }
+    auto measuring = sonject::defaults<sonject_measure_params>();
+    auto contacts = sonject::defaults<sonject_contact_file_params>();
+    contacts.image = measuring.image = "swath.tif";
+    const sonject_measurement plain = sonject::measure(context, measuring);
+    const std::string found = sonject::measure_contacts(context, contacts);
+    contacts.transfer.kind = measuring.transfer.kind = SONJECT_TRANSFER_GAMMA;
+    contacts.transfer.parameter = measuring.transfer.parameter = 0.0;
+    expect(std::abs(sonject::measure(context, measuring).intensity_contrast -
+                    plain.intensity_contrast) <= 0.0,
+           "measures of plain amplitudes");
+    expect(sonject::measure_contacts(context, contacts) == found, "and contacts");
+    measuring.has_transfer = contacts.has_transfer = 1;
+    int refused = 0;
+    for (int number = 0; number < 2; number++)
+        try {
+            if (number == 0)
+                sonject::measure(context, measuring);
+            else
+                sonject::measure_contacts(context, contacts);
+        } catch (const sonject::error &error) {
+            refused += error.status() == SONJECT_ERROR_INPUT;
+        }
+    expect(refused == 2, "transfers that are given are checked");
 }
 
 static void check_progress(const sonject::context &context)
@@ -225,6 +280,7 @@ int main()
     check_elements(context);
     check_measures(context);
     check_files(context);
+    check_transfer(context);
     check_progress(context);
     expect(!lines.empty(), "news reach the log, also after the context has moved");
     if (failures == 0)

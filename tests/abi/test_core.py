@@ -1,8 +1,10 @@
 """The core alone: a library that loads no C++ runtime, and the Python package that pip makes of it."""
+import json
 import os
 import pathlib
 import shutil
 import subprocess
+import tomllib
 import zipfile
 
 import pytest
@@ -21,13 +23,9 @@ mesonpy.build_wheel(sys.argv[1], {"build-dir": sys.argv[2], "setup-args": sys.ar
 
 
 def build_wheel(folder):
-    if not READERS or subprocess.run([READERS, "-c", "import mesonpy"], capture_output=True,
-                                     check=False).returncode != 0:
-        return None
-    subprocess.run([READERS, "-c", BUILD_WHEEL, folder, folder / "build", *CORE], cwd=SOURCE,
-                   check=True, capture_output=True)
-    (wheel,) = folder.glob("*.whl")
-    return wheel
+    answer = subprocess.run([READERS, "-c", BUILD_WHEEL, folder, folder / "build", *CORE],
+                            cwd=SOURCE, check=False, capture_output=True, text=True)
+    assert answer.returncode == 0, answer.stdout + answer.stderr
 
 
 def build_library(folder):
@@ -41,41 +39,67 @@ def build_library(folder):
 
 @pytest.fixture(scope="module")
 def core(tmp_path_factory):
-    """The library, and the wheel with it: None where PyPI was out of reach."""
+    """The folder of its build: by pip, where SONJECT_READERS names a Python with meson-python."""
     folder = tmp_path_factory.mktemp("core")
-    wheel = build_wheel(folder)
-    if not wheel:
+    if READERS:
+        build_wheel(folder)
+    else:
         build_library(folder)
-    return folder / "build" / "lib" / "libsonject.so", wheel
+    return folder
+
+
+@pytest.fixture(scope="module")
+def library(core):
+    return core / "build" / "lib" / "libsonject.so"
+
+
+@pytest.fixture(scope="module")
+def wheel(core):
+    if not READERS:
+        pytest.skip("SONJECT_READERS does not name a Python that has meson-python")
+    (found,) = core.glob("*.whl")
+    return found
 
 
 @pytest.fixture
-def installed(core, tmp_path):
+def installed(wheel, tmp_path):
     """Where pip put the package."""
-    if not core[1]:
-        pytest.skip("SONJECT_READERS does not name a Python that has meson-python")
     subprocess.run([READERS, "-m", "pip", "-q", "install", "--no-index", "--no-deps", "--target",
-                    tmp_path, core[1]], check=True)
+                    tmp_path, wheel], check=True)
     return tmp_path
 
 
-def test_core_loads_no_cxx_runtime(core):
-    needed = subprocess.run(["readelf", "-d", core[0]], check=True, capture_output=True,
+def test_core_loads_no_cxx_runtime(library):
+    needed = subprocess.run(["readelf", "-d", library], check=True, capture_output=True,
                             text=True).stdout
     assert "NEEDED" in needed and "libstdc++" not in needed and "OpenImageIO" not in needed
     assert "hdf5" not in needed
-    assert exported_symbols(core[0]) == exported_symbols(LIBRARY)
+    assert exported_symbols(library) == exported_symbols(LIBRARY)
 
 
-def test_the_wheel_holds_package_and_library(core):
-    if not core[1]:
-        pytest.skip("SONJECT_READERS does not name a Python that has meson-python")
-    with zipfile.ZipFile(core[1]) as wheel:
-        names = {name for name in wheel.namelist() if ".dist-info/" not in name}
+def test_the_wheel_holds_package_and_library(wheel):
+    with zipfile.ZipFile(wheel) as archive:
+        names = {name for name in archive.namelist() if ".dist-info/" not in name}
     sources = {f"sonject/{path.relative_to(PACKAGE)}" for path in PACKAGE.rglob("*")
                if path.is_file() and "__pycache__" not in path.parts}
     assert {"sonject/_structures/__init__.py", "sonject/py.typed"} <= sources
     assert names == sources | {"sonject/libsonject.so"}
+
+
+def test_a_wheel_with_image_files_has_their_module(tmp_path):
+    """By what meson would install; building it all again would show no more."""
+    if not (LIBRARY.parent / "openimageio.so").exists():
+        pytest.skip("built without image files")
+    project = tomllib.loads((SOURCE / "pyproject.toml").read_text(encoding="utf-8"))
+    settings = project["tool"]["meson-python"]["args"]
+    subprocess.run(["meson", "setup", tmp_path, SOURCE, *settings["setup"]], check=True,
+                   capture_output=True)
+    plan = json.loads((tmp_path / "meson-info" / "intro-install_plan.json").read_text())
+    entries = [entry for kind in plan.values() for entry in kind.values()]
+    assert settings["install"] == ["--tags=python-runtime"]
+    assert {entry["destination"] for entry in entries if entry["tag"] == "python-runtime"} == {
+        "{py_platlib}/sonject", "{py_platlib}/sonject/libsonject.so",
+        "{py_platlib}/sonject/openimageio.so"}
 
 
 def test_the_installed_package_finds_its_library(installed):

@@ -250,6 +250,7 @@ def test_shards_and_merge_are_one_run(command, whole, ground):
         assert command("campaign", "campaign.yaml", "-o", "shards", "--shard", shard).returncode == 0
         made = {record["id"] % 2 for record in records(ground / "shards")}
         assert made == ({1} if shard == "2/2" else {0, 1})
+    assert_refused(command("merge", "shards", "--labels", "voc"), 2, "take --labels out")
     assert command("merge", "shards").returncode == 0
     assert contents(ground / "shards") == contents(whole)
 

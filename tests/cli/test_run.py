@@ -321,6 +321,21 @@ def test_seabed_and_quicklook_belong_together(sonject, tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bed.png", "bed.tif"]
 
 
+def test_ground_range_is_drawn_of_what_tells_its_slant_range(sonject, tmp_path):
+    numpy.save(tmp_path / "plain.npy", numpy.full((8, 9), 0.1, "f4"))
+    assert sonject("seabed", "-o", "slant.tif", "--rows=16", "--columns=20").returncode == 0
+    assert sonject("convert", "slant.tif", "ground.tif", "--range-axis=ground").returncode == 0
+    for name, what in (("ground.tif", "already"), ("plain.npy", "where its columns lie")):
+        asked = ["--range-axis=ground", "--altitude=5"]
+        assert_refused(sonject("quicklook", name, "-o", "look.png", *asked), 3, name, what)
+        assert not (tmp_path / "look.png").exists()
+    assert sonject("convert", "ground.tif", "bare.npy").returncode == 0
+    for name in ("ground.tif", "bare.npy"):
+        assert sonject("quicklook", name, "-o", f"{name}.png").returncode == 0
+    # the same pixels, once with axes in metres
+    assert (tmp_path / "ground.tif.png").read_bytes() != (tmp_path / "bare.npy.png").read_bytes()
+
+
 def test_a_seabed_is_the_same_for_the_same_seed(sonject, tmp_path):
     for name, seed in (("a", 1), ("b", 1), ("c", 2)):
         answer = sonject("seabed", "-o", f"{name}.tif", "--rows=16", "--columns=16", "--seed", seed)

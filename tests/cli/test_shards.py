@@ -60,6 +60,8 @@ def test_what_shards_lack_is_named_and_the_rest_is_a_run(sonject, scene, tmp_pat
                   ["run", scene, "-o", "result", "--shard", "1/4"]):
         answer = sonject(*again)
         assert answer.returncode == 0 and "already" in answer.stderr
+    labelled = sonject("merge", "result", "--labels", "yolo")
+    assert_refused(labelled, 3, "result: is merged already, without those labels")
     assert {path.name for path in folder.iterdir()} == RESULTS
 
 

@@ -198,8 +198,8 @@ def quicklook(
 ) -> None:
     """Draws an image file, or a channel of an XTF file (see Recording), as a PNG.
 
-    decibels: ends of the grey scale, None: chosen from the image; altitude_m, geometry, transfer:
-    None for what the image's metadata says.
+    decibels: ends of the grey scale, None: chosen from the image; altitude_m, geometry: None for
+    what the image's metadata says; transfer: None for plain amplitudes.
     """
     context = default_context() if context is None else context
     params = initialised(s.sonject_quicklook_params)

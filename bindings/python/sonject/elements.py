@@ -90,9 +90,9 @@ def element_series(patch: Any, scene: Scene, progress: Optional[Progress] = None
     """What each hydrophone of the scene's array hears: pings x hydrophones x samples.
 
     complex64, or float32 in pass band; over the source's pressure at 1 m, or in Pa where the array
-    has a source_level_db. Heard is what inject draws: targets and, where it resynthesises, the seabed; in composite mode the seabed is
-    the measured patch, which has no element data. patch, progress, and what is raised: as for
-    inject.
+    has a source_level_db. Heard is what inject draws: targets and, where it resynthesises, the
+    seabed; in composite mode the seabed is the measured patch, which has no element data. patch,
+    progress, and what is raised: as for inject.
     """
     pixels = None
     array = None  # must live until the call is over: pixels points into it

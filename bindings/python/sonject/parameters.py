@@ -190,7 +190,8 @@ class Seabed(Parameters):
     angle at normal incidence, linear, at most 1/pi; level_radius_m: of the smooth local mean that
     lambert stands for; despeckle_radius_m: of the despeckled map; forward: the surface for sound
     that does not go straight back, as between seabed and target, whose lambert is NaN for the
-    seabed's own, as in ``Material.named("fine sand", lambert=math.nan)``; forward_rule: whether the map counts there too.
+    seabed's own, as in ``Material.named("fine sand", lambert=math.nan)``; forward_rule: whether the
+    map counts there too.
     """
 
     _structure: ClassVar[Type[ctypes.Structure]] = s.sonject_seabed_params

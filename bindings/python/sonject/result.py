@@ -162,10 +162,10 @@ class Measurement:
 class ContactMeasures:
     """Lengths and levels of a contact's highlight and shadow, NaN where there is none or it is not
     known. along: along the track; range: slant range, the shadow's length; axis: of the highlight's
-    energy; gap: what is lit between highlight and shadow, such as the top of a thick target; dim: the first
-    part of the shadow if it is brighter than the rest; error: standard, by speckle alone; levels in dB of squared amplitude; the rest is of the seabed, as in
-    Measurement. is_cut: highlight or shadow reaches the edge of the image or of the box, which is
-    what was measured."""
+    energy; gap: what is lit between highlight and shadow, such as the top of a thick target; dim:
+    the first part of the shadow if it is brighter than the rest; error: standard, by speckle alone;
+    levels in dB of squared amplitude; the rest is of the seabed, as in Measurement. is_cut:
+    highlight or shadow reaches the edge of the image or of the box, which is what was measured."""
 
     highlight: Box
     shadow: Box

@@ -48,9 +48,9 @@ class Scene(Handle):
     """What the sonar sees. Each setting is checked, and copied, when it is made.
 
     sonar, pulse, motion, medium, seabed, surface, geometry, injection: None for the defaults (but
-    geometry needs at least the first slant range before anything can be injected); objects: up to 250; input: an image
-    file, Uniform or Synthetic, None where inject is given an array; transfer, patch: of an image
-    file; context: None for the thread's own one.
+    geometry needs at least the first slant range before anything can be injected); objects: up to
+    250; input: an image file, Uniform or Synthetic, None where inject is given an array; transfer,
+    patch: of an image file; context: None for the thread's own one.
     """
 
     _noun = "scene"

@@ -46,15 +46,13 @@ def test_a_forked_process_is_told_that_it_cannot(context):
     if child == 0:
         code = 1
         try:
-            context.devices()
-        except RuntimeError as error:
-            code = 0 if "parent process" in str(error) else 2
-        try:
-            sonject.devices()
-            code = 3
-        except RuntimeError as error:
-            code += 0 if "spawn processes" in str(error) else 4
-        os._exit(code)
+            with pytest.raises(RuntimeError, match="parent process"):
+                context.devices()
+            with pytest.raises(RuntimeError, match="spawn processes"):
+                sonject.devices()
+            code = 0
+        finally:  # whatever is raised must not go on as a second run of the tests
+            os._exit(code)
     assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
 
 

@@ -341,7 +341,7 @@ def test_another_thread_cancels(amplitude_patch, make_scene):
         is_running.set()
         return is_asked.wait()
 
-    thread = threading.Thread(target=ask)
+    thread = threading.Thread(target=ask, daemon=True)
     thread.start()
     with pytest.raises(sonject.Cancelled):
         sonject.inject(amplitude_patch, make_scene(), progress=progress)

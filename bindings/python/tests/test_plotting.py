@@ -42,8 +42,7 @@ except ValueError:
 
 def test_results_are_drawn(tmp_path):
     reader = os.environ.get("SONJECT_READERS")
-    if not reader or subprocess.run([reader, "-c", "import matplotlib"], stderr=subprocess.DEVNULL,
-                                    check=False).returncode != 0:
+    if not reader:
         pytest.skip("SONJECT_READERS does not name a Python that has matplotlib")
     variables = {**os.environ, "PYTHONPATH": str(PACKAGE_FOLDER), "MPLCONFIGDIR": str(tmp_path)}
     answer = subprocess.run([reader, "-c", PROGRAM], cwd=tmp_path, env=variables,

@@ -11,8 +11,7 @@ TOP = pathlib.Path(__file__).resolve().parents[3]
 
 def test_mypy_finds_nothing(tmp_path):
     reader = os.environ.get("SONJECT_READERS")
-    if not reader or subprocess.run([reader, "-c", "import mypy"], stderr=subprocess.DEVNULL,
-                                    check=False).returncode != 0:
+    if not reader:
         pytest.skip("SONJECT_READERS does not name a Python that has mypy")
     answer = subprocess.run([reader, "-m", "mypy", "--cache-dir", tmp_path], cwd=TOP,
                             capture_output=True, text=True, check=False)
