@@ -4,27 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <sonject/version.h>
-
 #include "api/campaign_handle.h"
 #include "api/scene_hash.h"
 #include "base/memory.h"
-#include "cl/sources.h"
 
 #define HASH_STEP  ((size_t)1 << 20)
 #define TRIALS_MAX 20000 /* scenes, about as many milliseconds at the most */
-
-sonject_status code_hash(struct report *report, char text[HASH_TEXT_CAPACITY])
-{
-    struct hash *hash = hash_begin();
-    if (!hash)
-        return report_out_of_memory(report, "a hash");
-    hash_add_text(hash, sonject_version());
-    for (size_t i = 0; i < PROGRAM_COUNT; i++)
-        hash_add(hash, embedded_sources[i].text, embedded_sources[i].bytes);
-    hash_end(hash, text);
-    return SONJECT_OK;
-}
 
 static sonject_status hash_file(struct report *report, const char *path,
                                 char text[HASH_TEXT_CAPACITY])
@@ -73,11 +58,11 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
     scene.mesh_store = &campaign->meshes;
     sonject_status status =
         hash_file(campaign->report, swath->path, campaign->swath_hashes[number]);
+    if (status == SONJECT_ERROR_MEMORY)
+        return status;
     if (status != SONJECT_OK)
         return tree_failure(&campaign->campaign.tree, swath->place, "swaths",
-                            "there is no %s that "
-                            "can be read; check its name",
-                            swath->path);
+                            "there is no %s that can be read; check its name", swath->path);
     status =
         image_plan_try(campaign->report, &campaign->campaign, number, CATEGORY_EMPTY, 0, 0, &plan);
     if (status == SONJECT_OK)
@@ -111,6 +96,7 @@ static sonject_status try_scene(struct sonject_campaign *campaign, struct hash *
         status = place_free_hash(campaign->report, &scene, NULL, text);
     if (status == SONJECT_OK)
         hash_add_text(hash, text);
+    campaign->has_user_shapes = campaign->has_user_shapes || scene.user_shapes.count > 0;
     scene_clear(&scene);
     image_plan_clear(&plan);
     return status;

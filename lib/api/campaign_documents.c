@@ -7,6 +7,7 @@
 
 #include "base/file.h"
 #include "base/growing_text.h"
+#include "base/json_document.h"
 
 const char *member_text(const json_t *object, const char *key)
 {
@@ -140,10 +141,10 @@ static sonject_status write_data_set(const struct data_set *set)
     if (!path)
         return report_out_of_memory(set->report, "a file name");
     json_t *document = json_object();
-    static const char *const kept[] = {"sonject", "hash",    "images",  "rows",  "columns",
-                                       "splits",  "classes", "outputs", "swaths"};
+    static const char *const kept[] = {"sonject", "hash",   "device",  "images",  "rows",
+                                       "columns", "splits", "classes", "outputs", "swaths"};
     for (size_t i = 0; i < sizeof kept / sizeof *kept; i++)
-        json_object_set(document, kept[i], json_object_get(set->head, kept[i]));
+        json_add(&document, kept[i], json_incref(json_object_get(set->head, kept[i])));
     const sonject_status status = campaign_write_json(set->report, document, path);
     free(path);
     return status;

@@ -23,9 +23,11 @@ struct data_set {
     void *user;
 };
 
-/* Publishes campaign.json, or checks that the folder's is this campaign's. Errors: INPUT (it is
- * another's, or another version's), STORAGE, MEMORY. */
-sonject_status data_set_begin(struct sonject_campaign *campaign, const char *folder);
+/* Publishes campaign.json, or checks that the folder's is this campaign's. device: what images are
+ * made on if they depend on that, or NULL. Errors: INPUT (it is another's, another version's, or of
+ * another device), STORAGE, MEMORY. */
+sonject_status data_set_begin(struct sonject_campaign *campaign, const struct device *device,
+                              const char *folder);
 
 /* Opens a folder by its campaign.json. Errors: INPUT, STORAGE, MEMORY. */
 sonject_status data_set_open(struct data_set *set, struct report *report, const char *folder);

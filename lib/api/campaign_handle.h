@@ -16,6 +16,7 @@ struct sonject_campaign {
     char *scene_text; /* of the base scene's file; owned */
     size_t scene_bytes;
     bool allows_user_shapes;
+    bool has_user_shapes;                     /* among what may be drawn */
     char (*swath_hashes)[HASH_TEXT_CAPACITY]; /* of the swaths' files; owned */
     char hash[HASH_TEXT_CAPACITY];            /* of all that images depend on */
     struct swath_store store;
@@ -33,9 +34,6 @@ sonject_status campaign_check(struct sonject_campaign *campaign);
 
 /* Whether the campaign has an image of that id. Errors: ARGUMENT. */
 sonject_status campaign_check_id(const struct sonject_campaign *campaign, uint64_t id);
-
-/* The hash of the code: the library's version and the kernels' sources. Errors: MEMORY. */
-sonject_status code_hash(struct report *report, char text[HASH_TEXT_CAPACITY]);
 
 /* scene_hash without the name of the input's file, so that it is the same wherever that lies. */
 sonject_status place_free_hash(struct report *report, const struct scene *scene,

@@ -4,6 +4,8 @@
 #include <sonject/version.h>
 
 #include "api/campaign_documents.h"
+#include "api/documents.h"
+#include "api/scene_hash.h"
 #include "base/file.h"
 #include "base/json_document.h"
 
@@ -64,40 +66,66 @@ static json_t *outputs_of(uint32_t outputs)
     return names;
 }
 
-static json_t *head_of(const struct sonject_campaign *campaign, const char *code)
+static json_t *head_of(const struct sonject_campaign *campaign, const struct device *device,
+                       const char *code)
 {
     const struct campaign *plan = &campaign->campaign;
-    return json_pack("{s:i, s:s, s:s, s:s, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "sonject_campaign",
-                     FORMAT_VERSION, "sonject", sonject_version(), "code_hash", code, "hash",
-                     campaign->hash, "images", (json_int_t)plan->images, "rows",
-                     (json_int_t)plan->chip_rows, "columns", (json_int_t)plan->chip_columns,
-                     "splits", splits_of(plan), "classes", classes_of(plan), "outputs",
-                     outputs_of(plan->outputs), "swaths", swaths_of(campaign));
+    return json_pack(
+        "{s:i, s:s, s:s, s:s, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "sonject_campaign",
+        FORMAT_VERSION, "sonject", sonject_version(), "code_hash", code, "hash", campaign->hash,
+        "device", device ? device_document(device) : json_null(), "images",
+        (json_int_t)plan->images, "rows", (json_int_t)plan->chip_rows, "columns",
+        (json_int_t)plan->chip_columns, "splits", splits_of(plan), "classes", classes_of(plan),
+        "outputs", outputs_of(plan->outputs), "swaths", swaths_of(campaign));
 }
 
-sonject_status data_set_begin(struct sonject_campaign *campaign, const char *folder)
+static bool has_same_text(const json_t *head, const json_t *own, const char *key)
+{
+    return strcmp(member_text(head, key), member_text(own, key)) == 0;
+}
+
+/* The head that the folder has against the one that it would get. */
+static sonject_status check_head(struct report *report, const char *folder, const json_t *head,
+                                 const json_t *own)
+{
+    if (!has_same_text(head, own, "code_hash"))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: holds images that another version of sonject made (%s); "
+                              "choose another folder",
+                              folder, member_text(head, "sonject"));
+    if (!has_same_text(head, own, "hash"))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: holds the images of another campaign, or of this one before "
+                              "its file, scene, targets or swaths changed; choose another folder",
+                              folder);
+    if (!json_equal(json_object_get(head, "device"), json_object_get(own, "device")))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: holds images of another device, on which code of shapes may "
+                              "answer differently; choose that device or another folder",
+                              folder);
+    return SONJECT_OK;
+}
+
+sonject_status data_set_begin(struct sonject_campaign *campaign, const struct device *device,
+                              const char *folder)
 {
     struct report *report = campaign->report;
     json_t *head = NULL;
+    json_t *own = NULL;
     char code[HASH_TEXT_CAPACITY];
     char *path = path_join(folder, "campaign.json");
     if (!path)
         return report_out_of_memory(report, "a file name");
     sonject_status status = code_hash(report, code);
+    if (status == SONJECT_OK && !(own = head_of(campaign, device, code)))
+        status = report_out_of_memory(report, path);
     if (status == SONJECT_OK && !file_exists(path))
-        status = campaign_write_json(report, head_of(campaign, code), path);
+        status = campaign_write_json(report, json_incref(own), path);
     else if (status == SONJECT_OK)
         status = campaign_read_json(report, path, &head);
-    if (status == SONJECT_OK && head && strcmp(member_text(head, "code_hash"), code) != 0)
-        status = report_failure(report, SONJECT_ERROR_INPUT,
-                                "%s: holds images that another version of sonject made (%s); "
-                                "choose another folder",
-                                folder, member_text(head, "sonject"));
-    else if (status == SONJECT_OK && head && strcmp(member_text(head, "hash"), campaign->hash) != 0)
-        status = report_failure(report, SONJECT_ERROR_INPUT,
-                                "%s: holds the images of another campaign, or of this one before "
-                                "its file, scene, targets or swaths changed; choose another folder",
-                                folder);
+    if (status == SONJECT_OK && head)
+        status = check_head(report, folder, head, own);
+    json_decref(own);
     json_decref(head);
     free(path);
     return status;
@@ -147,13 +175,25 @@ static void take_outputs(struct data_set *set, const json_t *outputs)
     }
 }
 
+/* What documents take over as it is. */
+static bool has_facts(const json_t *head)
+{
+    return json_is_string(json_object_get(head, "sonject")) &&
+           json_is_string(json_object_get(head, "hash")) &&
+           json_is_integer(json_object_get(head, "images")) &&
+           json_is_integer(json_object_get(head, "rows")) &&
+           json_is_integer(json_object_get(head, "columns")) &&
+           json_is_array(json_object_get(head, "swaths")) && json_object_get(head, "device");
+}
+
 /* True if what documents need of the head is as it should be. */
 static bool take_head(struct data_set *set)
 {
     const json_t *outputs = json_object_get(set->head, "outputs");
     take_outputs(set, outputs);
     return json_integer_value(json_object_get(set->head, "sonject_campaign")) == FORMAT_VERSION &&
-           json_is_array(outputs) && has_classes(json_object_get(set->head, "classes")) &&
+           has_facts(set->head) && json_is_array(outputs) &&
+           has_classes(json_object_get(set->head, "classes")) &&
            take_splits(set, json_object_get(set->head, "splits"));
 }
 

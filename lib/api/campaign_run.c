@@ -95,11 +95,18 @@ static sonject_status sweep_images(struct sweep *sweep, bool only_counts)
     return status;
 }
 
-static sonject_status make_folders(struct sonject_campaign *campaign, const char *folder)
+static sonject_status make_folders(const struct sweep *sweep)
 {
-    sonject_status status = folder_make(campaign->report, folder);
+    struct sonject_campaign *campaign = sweep->campaign;
+    const char *folder = sweep->params->folder;
+    struct device *device = NULL;
+    sonject_status status = SONJECT_OK;
+    if (campaign->has_user_shapes)
+        status = context_device(sweep->context, &device);
     if (status == SONJECT_OK)
-        status = data_set_begin(campaign, folder);
+        status = folder_make(campaign->report, folder);
+    if (status == SONJECT_OK)
+        status = data_set_begin(campaign, device, folder);
     for (size_t i = 0; status == SONJECT_OK && i < campaign->campaign.split_count; i++)
         status = split_folders_make(campaign->report, folder, campaign->campaign.splits[i].name,
                                     campaign->campaign.outputs);
@@ -142,7 +149,7 @@ static sonject_status finish_whole(struct sweep *sweep, int *was_finished)
 static sonject_status run_campaign(struct sweep *sweep, int *was_finished)
 {
     const bool is_whole = sweep->params->shard_count == 1 && !sweep->params->only_one;
-    sonject_status status = make_folders(sweep->campaign, sweep->params->folder);
+    sonject_status status = make_folders(sweep);
     if (status == SONJECT_OK)
         status = sweep_images(sweep, true);
     sweep->start_s = clock_seconds();

@@ -121,7 +121,7 @@ static char *comparison_text(const struct sample_comparison *comparisons)
         json_add(&entry, "p_value", json_number(comparisons[i].probability));
         json_add(&document, contact_numbers[i].name, entry);
     }
-    char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
+    char *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     json_decref(document);
     return text;
 }

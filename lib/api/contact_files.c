@@ -132,7 +132,7 @@ static sonject_status write_list(struct report *report, const char *image,
     json_t *document = json_object();
     json_add(&document, "contacts", contacts);
     json_add(&document, "left_off", json_count(left_off));
-    *text = document ? json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
+    *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     json_decref(document);
     return *text ? SONJECT_OK : report_out_of_memory(report, image);
 }

@@ -306,19 +306,24 @@ static json_t *bands_document(const struct scene *scene)
     return names;
 }
 
+json_t *device_document(const struct device *device)
+{
+    json_t *document = json_object();
+    json_add(&document, "name", json_text(device->name));
+    json_add(&document, "platform", json_text(device->platform));
+    json_add(&document, "driver", json_text(device->driver));
+    json_add(&document, "width", json_count(device->width));
+    return document;
+}
+
 sonject_status write_run(struct report *report, const struct run_facts *facts, const char *path)
 {
     const sonject_statistics *statistics = &facts->result->statistics;
-    json_t *device = json_object();
-    json_add(&device, "name", json_text(facts->device->name));
-    json_add(&device, "platform", json_text(facts->device->platform));
-    json_add(&device, "driver", json_text(facts->device->driver));
-    json_add(&device, "width", json_count(facts->device->width));
     json_t *document = json_object();
     json_add(&document, "sonject", json_string(sonject_version()));
     json_add(&document, "scene_hash", json_string(facts->scene_hash));
     json_add(&document, "seed", json_seed(facts->scene->injection.seed));
-    json_add(&document, "device", device);
+    json_add(&document, "device", device_document(facts->device));
     json_add(&document, "options", options_document(facts->scene));
     if (facts->scene->band) {
         json_add(&document, "band", json_text(facts->scene->band));

@@ -22,6 +22,9 @@ struct run_facts {
 sonject_status write_truth(struct report *report, const struct run_facts *facts, const char *path);
 sonject_status write_run(struct report *report, const struct run_facts *facts, const char *path);
 
+/* Which device that is; NULL when memory is out. */
+json_t *device_document(const struct device *device);
+
 /* Whether a run's results are in the folder: run.json, the last of them. */
 bool folder_has_result(const char *folder);
 

@@ -98,7 +98,7 @@ static json_t *series_document(const struct scene *scene, const struct injection
 
 static sonject_status write_document(struct report *report, json_t *document, const char *path)
 {
-    char *text = json_dumps(document, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
+    char *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
     json_decref(document);
     if (!text)
         return report_out_of_memory(report, path);

@@ -5,6 +5,7 @@
 
 #include <sonject/version.h>
 
+#include "cl/sources.h"
 #include "inject/impulse_file.h"
 
 /* Members one by one: the padding of a structure is not part of its value. */
@@ -312,4 +313,16 @@ sonject_status traced_scene_hash(struct report *report, const struct scene *scen
     memset(&traced.motion, 0, sizeof traced.motion);
     traced.input_path = NULL;
     return scene_hash(report, &traced, input_identity, text);
+}
+
+sonject_status code_hash(struct report *report, char hash_text[HASH_TEXT_CAPACITY])
+{
+    struct hash *hash = hash_begin();
+    if (!hash)
+        return report_out_of_memory(report, "a hash");
+    hash_add_text(hash, sonject_version());
+    for (size_t i = 0; i < PROGRAM_COUNT; i++)
+        hash_add(hash, embedded_sources[i].text, embedded_sources[i].bytes);
+    hash_end(hash, hash_text);
+    return SONJECT_OK;
 }

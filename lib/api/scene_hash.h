@@ -17,4 +17,7 @@ sonject_status scene_hash(struct report *report, const struct scene *scene,
 sonject_status traced_scene_hash(struct report *report, const struct scene *scene,
                                  const char *input_identity, char hash[HASH_TEXT_CAPACITY]);
 
+/* Of the library's version and the kernels' sources. Errors: MEMORY. */
+sonject_status code_hash(struct report *report, char hash[HASH_TEXT_CAPACITY]);
+
 #endif

@@ -3,20 +3,16 @@
 
 #include <sonject/version.h>
 
+#include "api/scene_hash.h"
 #include "api/stint_tracing.h"
-#include "cl/sources.h"
 
 static sonject_status take_code(struct report *report, char code[STINT_DIGEST_CAPACITY])
 {
     char digest[HASH_TEXT_CAPACITY];
-    struct hash *hash = hash_begin();
-    if (!hash)
-        return report_out_of_memory(report, "a hash");
-    for (int i = 0; i < PROGRAM_COUNT; i++)
-        hash_add(hash, embedded_sources[i].text, embedded_sources[i].bytes);
-    hash_end(hash, digest);
-    memcpy(code, digest, sizeof digest);
-    return SONJECT_OK;
+    const sonject_status status = code_hash(report, digest);
+    if (status == SONJECT_OK)
+        memcpy(code, digest, sizeof digest);
+    return status;
 }
 
 /* Code of users may answer differently on another device. */

@@ -6,7 +6,6 @@
 
 #include "base/memory.h"
 
-#define PIECES_MAX    32
 #define ROWS_BESIDE   8 /* of a highlight, beyond half of its own, that may hold its shadow */
 #define SHADOW_PIXELS 9 /* at least: in fewer, one mean of 3 x 3 speckled pixels may be dark */
 #define COLUMNS_LEAST                                                                              \

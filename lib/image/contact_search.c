@@ -91,10 +91,10 @@ static bool add_found(struct contact_search *search, const struct contact_place 
     return true;
 }
 
-/* The place of an area's contact, no larger than it must be. */
+/* The place of an area's contact, no larger than it must be, and the seabed's level around it. */
 static sonject_status find_place(struct contact_search *search, struct report *report,
                                  struct contact_image *image, const struct bright_area *area,
-                                 struct contact_place *place)
+                                 struct contact_place *place, double *level)
 {
     struct contact_area highlight, shadow;
     double seabed;
@@ -107,9 +107,9 @@ static sonject_status find_place(struct contact_search *search, struct report *r
         return status;
     place->box = shadow.pixels > 0 ? box_around(&bright, &shadow.box) : bright;
     place->box = box_with_margin(&place->box, CONTACT_MARGIN, image->rows, image->columns);
-    return add_found(search, place, area->contrast)
-               ? SONJECT_OK
-               : report_out_of_memory(report, "the search for contacts");
+    if (!add_found(search, place, area->contrast))
+        return report_out_of_memory(report, "the search for contacts");
+    return find_seabed_level(image, report, &place->box, level);
 }
 
 sonject_status contact_search_next(struct contact_search *search, struct report *report,
@@ -119,8 +119,13 @@ sonject_status contact_search_next(struct contact_search *search, struct report 
     memset(place, 0, sizeof *place);
     while (search->next < search->count && search->areas[search->next].contrast >= contrast) {
         const struct bright_area *area = &search->areas[search->next++];
-        if (!belongs_to_found(search, image, area))
-            return find_place(search, report, image, area, place);
+        double level;
+        if (belongs_to_found(search, image, area))
+            continue;
+        const sonject_status status = find_place(search, report, image, area, place, &level);
+        if (status != SONJECT_OK || level > 0.0)
+            return status;
+        memset(place, 0, sizeof *place); /* nothing but black is around it */
     }
     return SONJECT_OK;
 }

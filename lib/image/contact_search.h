@@ -26,9 +26,9 @@ sonject_status contact_search_begin(struct contact_search *search, struct report
 void contact_search_clear(struct contact_search *search);
 
 /* Goes on to the next contact whose contrast is at least that, which touches the box of none found
- * before, and is not fainter than HIGHLIGHT_UNDER_PEAK of one that lies in its columns some rows
- * away, as side lobes are. *place: with a margin around highlight and shadow; no rows: there are no
- * more. Errors: MEMORY. */
+ * before, is not fainter than HIGHLIGHT_UNDER_PEAK of one that lies in its columns some rows away,
+ * as side lobes are, and has a seabed around it. *place: with a margin around highlight and shadow;
+ * no rows: there are no more. Errors: MEMORY. */
 sonject_status contact_search_next(struct contact_search *search, struct report *report,
                                    struct contact_image *image, double contrast,
                                    struct contact_place *place);

@@ -57,13 +57,13 @@ def why_not():
     return None if os.geteuid() == 0 else "Slurm's daemons are started as root only"
 
 
-def wait_for(what, found):
-    """What found() gives as soon as that is true."""
-    for _ in range(POLLS_MOST):
+def wait_for(what, found, polls_at_once=1):
+    """What found() gives as soon as that is true; looks so many times as often as elsewhere."""
+    for _ in range(POLLS_MOST * polls_at_once):
         answer = found()
         if answer:
             return answer
-        time.sleep(POLL_S)
+        time.sleep(POLL_S / polls_at_once)
     raise AssertionError(f"in vain waited for {what}")
 
 
@@ -89,12 +89,18 @@ def processes_with(*variables):
     return found
 
 
+def send(process, number):
+    """A signal; whether there still is such a process."""
+    try:
+        os.kill(process, number)
+    except ProcessLookupError:
+        return False
+    return True
+
+
 def kill(processes):
     for process in processes:
-        try:
-            os.kill(process, signal.SIGKILL)
-        except ProcessLookupError:
-            pass
+        send(process, signal.SIGKILL)
 
 
 class Cluster:

@@ -123,6 +123,7 @@ def test_every_image_has_its_files(whole):
         expected |= {of_image(record, kind, ".json") for kind in ("truth", "records")}
         expected |= {of_image(record, "labels", ".txt"), of_image(record, "voc", ".xml")}
     assert set(contents(whole)) == expected
+    assert json.loads((whole / "dataset.json").read_text())["device"] is None  # any makes the same
     assert len({record["seed"] for record in found}) == IMAGES
 
 
@@ -277,17 +278,26 @@ def test_killed_ten_times_it_goes_on(ground, environment, whole):
     assert contents(ground / "killed") == contents(whole)
 
 
-def test_sigterm_keeps_finished_images(ground, environment, whole):
-    arguments = [COMMAND, "campaign", "campaign.yaml", "-o", "stopped"]
-    process = subprocess.Popen(arguments, cwd=ground, env=environment, stderr=subprocess.PIPE,
-                               text=True)
-    wait_for_files(process, ground / "stopped", 15)
+def stop_after_an_image(ground, environment, name):
+    """Sends SIGTERM once the folder has the files of one image and more; code and message."""
+    process = subprocess.Popen([COMMAND, "campaign", "campaign.yaml", "-o", name], cwd=ground,
+                               env=environment, stderr=subprocess.PIPE, text=True)
+    wait_for_files(process, ground / name, 15)
     process.send_signal(signal.SIGTERM)
     _, message = process.communicate(timeout=300)
-    assert process.returncode == 85 and "run the same command again" in message
-    made = records(ground / "stopped")
-    assert 0 < len(made) < IMAGES
-    assert contents(ground / "stopped").items() <= contents(whole).items()
+    return process.returncode, message
+
+
+def test_sigterm_keeps_finished_images(ground, environment, whole):
+    # Where this process has to wait for the machine, that one may be done before the signal.
+    for attempt in range(5):
+        folder = ground / f"stopped{attempt}"
+        code, message = stop_after_an_image(ground, environment, folder.name)
+        assert contents(folder).items() <= contents(whole).items()
+        if code != 0:
+            break
+    assert code == 85 and "run the same command again" in message
+    assert 0 < len(records(folder)) < IMAGES
 
 
 def test_it_stops_by_itself(command, ground, whole):
@@ -308,7 +318,8 @@ def test_it_stops_by_itself(command, ground, whole):
 @pytest.mark.parametrize("change", [{"classes": [1, 2, 3]}, {"classes": {}}, {"splits": []},
                                     {"splits": [{"name": "<b>", "images": 20}]},
                                     {"splits": [{"name": "train", "images": -1}]},
-                                    {"outputs": None}, {"sonject_campaign": 2}])
+                                    {"outputs": None}, {"swaths": None}, {"rows": "64"},
+                                    {"sonject_campaign": 2}])
 def test_a_head_that_was_tampered_with_is_refused(command, whole, ground, change):
     head = json.loads((whole / "campaign.json").read_text())
     (ground / "odd").mkdir(exist_ok=True)

@@ -97,6 +97,7 @@ class Parts:
         said = slurm.call("bash", "-euc", script + "\necho $array", cwd=folder)
         self.merge, self.array = re.fullmatch(r"Submitted batch job (\d+)\n(\d+)\n", said).groups()
         self.slurm, self.folder = slurm, folder
+        self.stopped = []
 
     def task(self, shard):
         return self.slurm.job(f"{self.array}_{shard}")
@@ -111,20 +112,33 @@ class Parts:
         return next((process for process in found if is_sonject(process)), None)
 
     def freeze(self, *shards):
-        """Stops tasks' sonjects as soon as each has kept its first slice; their process numbers."""
-        running = [wait_for("a renderer", lambda: self.renderer(shard)) for shard in shards]
-        frozen = set()
+        """Stops tasks' sonjects as soon as each has kept its first slice. Their process numbers;
+        None where one had kept more by then, since this process had to wait for the machine."""
+        stopped = {}
 
-        def are_frozen():
-            for shard, process in zip(shards, running):
-                if shard not in frozen and stints(self.folder, shard):
-                    os.kill(process, signal.SIGSTOP)
-                    frozen.add(shard)
-            return len(frozen) == len(shards)
+        def are_stopped():
+            for shard in set(shards) - set(stopped):
+                if stints(self.folder, shard):
+                    process = stopped[shard] = self.renderer(shard)
+                    if process:
+                        cluster.send(process, signal.SIGSTOP)
+            return len(stopped) == len(shards)
 
-        wait_for("checkpoints", are_frozen)
-        assert all(len(stints(self.folder, shard)) == 1 for shard in shards)
-        return running
+        wait_for("checkpoints", are_stopped, 10)
+        in_time = all(process and has_stopped(process) and len(stints(self.folder, shard)) == 1
+                      for shard, process in stopped.items())
+        self.stopped = [process for process in stopped.values() if process]
+        return [stopped[shard] for shard in shards] if in_time else None
+
+    def withdraw(self, shards):
+        """As if these parts had never been begun."""
+        self.slurm.try_call("scancel", self.array, self.merge)
+        cluster.kill(self.stopped)
+        wait_for("the end of an array", lambda: not (self.slurm.queue(self.array) or
+                                                     self.slurm.queue(self.merge)))
+        for shard in shards:
+            for path in stints(self.folder, shard):
+                path.unlink()
 
     def merge_early(self):
         """Has the merge started and put back while tasks are left."""
@@ -146,6 +160,36 @@ class Parts:
         return (self.folder / f"slurm-{self.merge}.out").read_text(), code
 
 
+def start_and_freeze(slurm, folder, tasks, *shards):
+    """The parts of a run, and the process numbers of those that are stopped after one slice."""
+    for _ in range(5):
+        parts = Parts(slurm, folder, tasks)
+        processes = parts.freeze(*shards)
+        if processes:
+            return parts, processes
+        parts.withdraw(tasks_of(tasks))
+    raise AssertionError("parts were never stopped in time")
+
+
+def tasks_of(text):
+    """Of "1,3" and of "1-4"."""
+    numbers = [int(number) for number in re.findall(r"\d+", text)]
+    return range(numbers[0], numbers[1] + 1) if "-" in text else numbers
+
+
+def has_stopped(process):
+    """Once a signal has stopped a process; False if it has ended instead."""
+
+    def state():
+        try:
+            told = pathlib.Path(f"/proc/{process}/stat").read_text()
+        except OSError:
+            return "ended"
+        return told.rpartition(")")[2].split()[0].replace("Z", "ended")
+
+    return wait_for("a stopped process", lambda: state() in ("T", "ended") and state()) == "T"
+
+
 def is_sonject(process):
     try:
         return os.path.samefile(f"/proc/{process}/exe", COMMAND)
@@ -154,8 +198,7 @@ def is_sonject(process):
 
 
 def test_the_parts_of_a_lost_node_go_on_elsewhere(slurm, project, whole):
-    parts = Parts(slurm, project, "1-4")
-    parts.freeze(2)
+    parts, _ = start_and_freeze(slurm, project, "1-4", 2)
     node = parts.task(2)["NodeList"]
     slurm.lose(node)
     slurm.start_again(f"{parts.array}_2")
@@ -169,8 +212,7 @@ def test_the_parts_of_a_lost_node_go_on_elsewhere(slurm, project, whole):
 
 
 def test_evicted_and_killed_parts_go_on_and_missing_ones_are_named(slurm, project, whole):
-    parts = Parts(slurm, project, "1,3")
-    evicted, killed = parts.freeze(1, 3)
+    parts, (evicted, killed) = start_and_freeze(slurm, project, "1,3", 1, 3)
     slurm.call("scontrol", "requeue", f"{parts.array}_1")
     os.kill(evicted, signal.SIGCONT)
     os.kill(killed, signal.SIGKILL)
@@ -183,8 +225,7 @@ def test_evicted_and_killed_parts_go_on_and_missing_ones_are_named(slurm, projec
         assert parts.task(shard)["Restarts"] == "1"
         assert parts.log(shard).count("goes on with what is in out/work") == 1
     # The others, one asked to stop as Slurm does before the time limit.
-    parts = Parts(slurm, project, "2,4")
-    (asked,) = parts.freeze(2)
+    parts, (asked,) = start_and_freeze(slurm, project, "2,4", 2)
     parts.merge_early()
     slurm.call("scancel", "--batch", "--signal=USR1", f"{parts.array}_2")
     os.kill(asked, signal.SIGCONT)

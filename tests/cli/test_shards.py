@@ -137,23 +137,26 @@ def test_a_stopped_run_goes_on(sonject, scene, tmp_path, environment):
 
 
 def test_killed_shards_go_on_with_what_they_had_kept(scene, tmp_path, environment, sonject):
+    """Killed each time once it has kept some more, or is done, by chance a little later."""
     chance = random.Random(5)
     command(sonject, "run", scene, "-o", "whole", *MANY_RAYS)
-    kept = 0
+    folder = tmp_path / "result"
     for shard in ("1/2", "2/2"):
         arguments = ["run", scene, "-o", "result", "--quiet", *MANY_RAYS, "--shard", shard]
         for _ in range(4):
+            before = len(stints(folder))
             process = subprocess.Popen([COMMAND, *map(str, arguments), "--checkpoint", "1e-9"],
                                        cwd=tmp_path, env=environment)
-            time.sleep(chance.uniform(0.1, 0.6))
+            while process.poll() is None and len(stints(folder)) == before:
+                time.sleep(0.002)
+            time.sleep(chance.uniform(0, 0.05))
             process.kill()
             process.wait()
-            kept = max(kept, len(stints(tmp_path / "result")))
+        assert stints(folder)
         command(sonject, *arguments)
     command(sonject, "merge", "result")
-    assert kept > 0
-    assert contents(tmp_path / "result") == contents(tmp_path / "whole")
-    assert {path.name for path in files_below(tmp_path / "result")} == RESULTS
+    assert contents(folder) == contents(tmp_path / "whole")
+    assert {path.name for path in files_below(folder)} == RESULTS
 
 
 def test_shards_know_their_scene_from_elsewhere(sonject, scene, tmp_path, whole):

@@ -145,3 +145,20 @@ def test_code_that_impulses_name_needs_consent(sonject, scene, tmp_path):
     assert_refused(sonject(*form), 3, "ball.yaml:3:7: user: ", ALLOW)
     assert_refused(sonject(*form, ALLOW), 3, "is not what was traced")
     assert files_below(tmp_path) == before
+
+
+def test_a_campaign_with_code_names_its_device(sonject, user_scene, tmp_path):
+    (tmp_path / "campaign.yaml").write_text(
+        "sonject_campaign: 1\nscene: scene.yaml\nimages: 2\nsplits: {all: 1}\n"
+        "chip: {rows: 64, columns: 64}\nswaths: [{path: swath.tif}]\n"
+        "targets: [{class: ball, object: {shape: user, user: "
+        "{file: ball.cl, bounding_radius: 25 cm, parameters: [0.25]}}}]\n"
+    )
+    command = ["campaign", "campaign.yaml", "-o", "data", "--only=0"]
+    assert_refused(sonject(*command), 3, "campaign.yaml", ALLOW)
+    assert sonject(*command, ALLOW).returncode == 0
+    path = tmp_path / "data" / "campaign.json"
+    head = json.loads(path.read_text())
+    assert head["device"]["name"] in sonject("devices").stdout
+    path.write_text(json.dumps({**head, "device": {**head["device"], "driver": "another"}}))
+    assert_refused(sonject(*command, ALLOW), 3, "data: ", "another device")

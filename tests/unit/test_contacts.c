@@ -264,6 +264,26 @@ static void test_nothing_is_found_in_speckle(void **unused)
     assert_int_equal(find(intensity, 16.0, 1, places, &left), 0);
 }
 
+/* A contact with little but black around it, as at the end of a recording, has no seabed that it
+ * could be measured against; the others are found all the same. */
+static void test_contacts_amid_black_are_passed_over(void **unused)
+{
+    (void)unused;
+    static float intensity[ROWS * COLUMNS];
+    struct contact_place places[3];
+    size_t left;
+    random_state = 8;
+    fill_with_speckle(intensity);
+    add_contact(intensity, 20, 228, 12, 400.0f, 0);
+    add_contact(intensity, 120, 60, 12, 100.0f, 30);
+    for (size_t i = 0; i < (size_t)ROWS * COLUMNS; i++)
+        if (i % COLUMNS >= 234 || (i % COLUMNS >= 200 && i / COLUMNS < 18))
+            intensity[i] = 0.0f;
+    assert_int_equal(find(intensity, 16.0, 3, places, &left), 1);
+    assert_true(places[0].bright.first_row > 100);
+    assert_int_equal(left, 0);
+}
+
 /* A few dark pixels behind a highlight are speckle, and no shadow. */
 static void test_dark_speckle_is_no_shadow(void **unused)
 {
@@ -336,6 +356,7 @@ int main(void)
         cmocka_unit_test(test_contacts_are_found),
         cmocka_unit_test(test_side_lobes_are_no_contacts),
         cmocka_unit_test(test_nothing_is_found_in_speckle),
+        cmocka_unit_test(test_contacts_amid_black_are_passed_over),
         cmocka_unit_test(test_dark_speckle_is_no_shadow),
         cmocka_unit_test(test_small_images),
     };
