@@ -9,7 +9,7 @@ import pytest
 
 import images
 from conftest import assert_refused, files_below
-from test_run import contents, limit_file_size, read_rest, small_disk, start_and_wait_for_the_bar  # noqa: F401
+from test_run import contents, limit_file_size, small_disk, stop_at_the_bar  # noqa: F401
 
 HAS_HDF5 = os.environ.get("SONJECT_HAS_HDF5") == "1"
 needs_hdf5 = pytest.mark.skipif(not HAS_HDF5, reason="built without HDF5")
@@ -267,10 +267,8 @@ def test_a_folder_that_is_not_there(sonject, scene, tmp_path):
 @pytest.mark.parametrize("number, code", [(signal.SIGTERM, 85), (signal.SIGKILL, -signal.SIGKILL)])
 def test_a_trace_that_is_stopped_leaves_no_file(sonject, scene, tmp_path, environment, number, code):
     arguments = ["trace", scene, "-o", "impulses.h5", "--set", "injection.rays=512"]
-    process, terminal = start_and_wait_for_the_bar(arguments, tmp_path, environment)
-    process.send_signal(number)
-    read_rest(terminal)
-    assert process.wait(60) == code
+    output = tmp_path / "impulses.h5"
+    assert stop_at_the_bar(arguments, output, tmp_path, environment, number)[0] == code
     assert not (tmp_path / "impulses.h5").exists()
     if number == signal.SIGTERM:
         assert not left_by_trace(tmp_path)
