@@ -13,33 +13,14 @@ import subprocess
 import sys
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).parents[1] / "benchmark"))
+from campaign_scene import CAMPAIGN, SCENE, SWATHS, swath_arguments  # noqa: E402
+
 IMAGES = 1000
 KILLS = 10
 
-SCENE = """\
-sonject: 1
-input:
-  geometry: {row_spacing: 2.5 cm, column_spacing: 2.5 cm, first_slant_range: 43.6 m}
-  transfer: {kind: schlick, parameter: 3}
-sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m, resolution: 4 cm}
-"""
-
-CAMPAIGN = """\
-sonject_campaign: 1
-scene: scene.yaml
-images: %d
-chip: {rows: 256, columns: 256}
-empty: 0.1
+MORE = """\
 splits: {train: 0.8, test: 0.2}
-swaths: %s
-draw:
-  seabed.lambert: {uniform: [-30 dB, -24 dB]}
-  objects[].heading: {uniform: [0 deg, 360 deg]}
-  objects[].burial: {uniform: [0 cm, 10 cm]}
-targets:
-  - {class: capsule, object: {shape: capsule, length: 1.8 m, diameter: 0.4 m}}
-  - {class: cylinder, object: {shape: cylinder, length: 1.2 m, diameter: 0.3 m}}
-  - {class: ball, object: {shape: sphere, diameter: 0.5 m}}
 clutter:
   number: {choice: [0, 1, 2]}
   alone: 0.1
@@ -59,10 +40,10 @@ def run(folder, *arguments):
 
 
 def make_swaths(folder):
-    for seed in range(4):
-        subprocess.run([COMMAND, "seabed", "-o", f"swath{seed}.png", "--rows", "472", "--columns",
-                        "512", "--seed", str(seed)], check=True, cwd=folder, capture_output=True)
-    return [f"swath{seed}.png" for seed in range(4)]
+    for seed in range(len(SWATHS)):
+        subprocess.run([COMMAND, *swath_arguments(seed)], check=True, cwd=folder,
+                       capture_output=True)
+    return SWATHS
 
 
 def files_of(folder):
@@ -102,7 +83,7 @@ def main():
     folder.mkdir(parents=True)
     (folder / "scene.yaml").write_text(SCENE)
     swaths = [{"path": path} for path in swaths or make_swaths(folder)]
-    (folder / "campaign.yaml").write_text(CAMPAIGN % (IMAGES, json.dumps(swaths)))
+    (folder / "campaign.yaml").write_text(CAMPAIGN % (IMAGES, json.dumps(swaths)) + MORE)
     run(folder, "campaign", "campaign.yaml", "-o", "warm", "--set", "images=10")
     duration = run(folder, "campaign", "campaign.yaml", "-o", "whole")
     told = json.loads((folder / "whole" / "times.json").read_text())
