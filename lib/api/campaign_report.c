@@ -28,6 +28,7 @@ struct statistics_page {
     uint64_t empty[CAMPAIGN_SPLITS_MAX];
     size_t class_count;
     uint64_t every; /* image that is taken */
+    bool lacks_memory;
 };
 
 static struct series *series_named(struct statistics_page *page, const char *name, const char *unit)
@@ -44,7 +45,7 @@ static struct series *series_named(struct statistics_page *page, const char *nam
     return series;
 }
 
-/* What cannot be kept is left out of the plot, never of the data. */
+/* Of more names than there is room for, the later ones are left out of the page. */
 static void add_value(struct statistics_page *page, const char *name, const char *unit,
                       double value)
 {
@@ -54,8 +55,10 @@ static void add_value(struct statistics_page *page, const char *name, const char
     if (series->count == series->capacity) {
         const size_t capacity = series->capacity ? 2 * series->capacity : 256;
         double *grown = realloc(series->values, capacity * sizeof *grown);
-        if (!grown)
+        if (!grown) {
+            page->lacks_memory = true;
             return;
+        }
         series->values = grown;
         series->capacity = capacity;
     }
@@ -221,7 +224,9 @@ static sonject_status gather(struct statistics_page *page)
     for (size_t i = 0; status == SONJECT_OK && i < set->split_count; i++)
         for (uint64_t k = 0; status == SONJECT_OK && k < set->split_images[i]; k++)
             status = add_image(page, i, set->split_first[i] + k);
-    return status;
+    return status == SONJECT_OK && page->lacks_memory
+               ? report_out_of_memory(set->report, "the report")
+               : status;
 }
 
 sonject_status write_report_page(const struct data_set *set)

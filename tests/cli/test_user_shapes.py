@@ -155,7 +155,7 @@ def test_a_campaign_with_code_names_its_device(sonject, user_scene, tmp_path):
         "{file: ball.cl, bounding_radius: 25 cm, parameters: [0.25]}}}]\n"
     )
     command = ["campaign", "campaign.yaml", "-o", "data", "--only=0"]
-    assert_refused(sonject(*command), 3, "campaign.yaml", ALLOW)
+    assert_refused(sonject(*command), 3, "objects[0].user", ALLOW)
     assert sonject(*command, ALLOW).returncode == 0
     path = tmp_path / "data" / "campaign.json"
     head = json.loads(path.read_text())
