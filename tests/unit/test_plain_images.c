@@ -374,9 +374,9 @@ static void test_foreign_formats(void **state)
                    {"BM and more of it all", "of no format that sonject knows"},
                    {"P6 and more of it all", "is a PPM file"},
                    {"#?RADIANCE and more", "is a Radiance file"},
-                   {"\xFF\x4F\xFF\x51 and so on it", "is a JPEG 2000 file"},
-                   {"\x01\xDA\x01\x01 and more of it", "is an SGI file"},
-                   {"FOR4 and more of it", "is an IFF file"},
+                   {"\xFF\x4F\xFF\x51 and more of it all", "is a JPEG 2000 file"},
+                   {"\x01\xDA\x01\x01 and more of it all", "is an SGI file"},
+                   {"FOR4 and more of it all", "is an IFF file"},
                    {"DDS and more of it all", "is a DDS file"},
                    {"abcdftypheic and on it", "is a HEIF file"},
                    {"nothing that is known", "of no format that sonject knows"}};
