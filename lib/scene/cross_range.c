@@ -100,7 +100,8 @@ double cross_range_energy_width(const struct point_response *response, double ra
         return response->cross_range_energy_m;
     if (response->array_length_m > 0.0)
         return range_m / response->range_ratio * response->beam_energy;
-    return along_track_energy_width(response);
+    return along_track_energy_width(response) *
+           (response->motion ? response->motion_energy_share : 1.0);
 }
 
 static double beam_energy_reach(const struct point_response *response, double share)

@@ -17,7 +17,8 @@ bool cross_range_is_plain(const struct point_response *response);
 struct complex_number cross_range_response(const struct point_response *response, double range_m,
                                            double distance_m);
 
-/* Integral of |W|^2 over distance, m. Motion leaves it as it is (Parseval). */
+/* Integral of |W|^2 over distance, m. Motion leaves it as it is (Parseval), but for what comes from
+ * beyond the beam of the elements. */
 double cross_range_energy_width(const struct point_response *response, double range_m);
 
 /* Half width in m beyond which less than `share` of that lies. */

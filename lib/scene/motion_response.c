@@ -12,6 +12,7 @@
 #define ASPECTS_MAX ((size_t)1 << 18)
 #define SWAYS_MAX   ((size_t)1 << 21)
 #define PINGS_MAX   ((size_t)1 << 22)
+#define HEARD_STEPS 32 /* of an integral over the aspects */
 
 /* The steepest aspect that is integrated, as the sine of its angle. */
 static double steepest(const struct motion_response *motion)
@@ -106,6 +107,43 @@ static sonject_status allocate_aspects(struct motion_response *motion, struct re
     return SONJECT_OK;
 }
 
+/* The window's weight at v = -1/2...1/2, over its mean. */
+static double weight_at(const struct point_response *response, double v)
+{
+    double sum = 1.0;
+    for (int m = 1; m <= response->terms; m++)
+        sum += 2.0 * response->weights[m - 1] * cos(2.0 * PI * m * v);
+    return sum;
+}
+
+/* The two-way beam of an element of 2 delta at a sine of v wavelengths over that length. */
+static double two_way_beam(double v)
+{
+    const double one_way = v == 0.0 ? 1.0 : sin(PI * v) / (PI * v);
+    return one_way * one_way;
+}
+
+/* A pixel's aspects look at a point beside it at other angles. */
+static sonject_status find_heard(struct motion_response *motion, struct report *report)
+{
+    const double range = motion->response->motion_range_m;
+    const double length = 2.0 * motion->response->resolution_m / motion->view->wavelength_m;
+    motion->heard = allocate_array(2 * (size_t)motion->reach + 1, sizeof *motion->heard);
+    if (!motion->heard)
+        return report_out_of_memory(report, "motion");
+    for (int j = -motion->reach; j <= motion->reach; j++) {
+        const double distance = j * motion->strip_m + motion->offset_m;
+        const double aside = length * distance / hypot(range, distance);
+        double sum = 0.0;
+        for (int i = 0; i < HEARD_STEPS; i++) {
+            const double v = (i + 0.5) / HEARD_STEPS - 0.5;
+            sum += weight_at(motion->response, v) * two_way_beam(v + aside) / two_way_beam(v);
+        }
+        motion->heard[j + motion->reach] = sum / HEARD_STEPS;
+    }
+    return SONJECT_OK;
+}
+
 sonject_status motion_response_begin(struct motion_response *motion, struct report *report,
                                      const struct point_response *response,
                                      const struct patch_view *view, double strip_m, double offset_m,
@@ -122,6 +160,8 @@ sonject_status motion_response_begin(struct motion_response *motion, struct repo
     if (status == SONJECT_OK)
         status = sample_yaw(motion, report);
     if (status == SONJECT_OK)
+        status = find_heard(motion, report);
+    if (status == SONJECT_OK)
         status = allocate_aspects(motion, report);
     if (status != SONJECT_OK)
         motion_response_end(motion);
@@ -134,6 +174,7 @@ void motion_response_end(struct motion_response *motion)
     free(motion->root_imaginary);
     free(motion->real_part);
     free(motion->imaginary_part);
+    free(motion->heard);
     free(motion->sway_m);
     free(motion->yaw_rad);
     memset(motion, 0, sizeof *motion);
@@ -161,15 +202,6 @@ static double sway_by_yaw(const struct motion_response *motion, double ping, dou
     const double last = (double)motion->pings - 1.0;
     const size_t i = (size_t)fmin(fmax(ping - motion->first_ping, 0.0), last);
     return side_of(motion) * motion->yaw_rad[i] * (x - ping * motion->advance_m);
-}
-
-/* The window's weight at v = -1/2...1/2, over its mean. */
-static double weight_at(const struct point_response *response, double v)
-{
-    double sum = 1.0;
-    for (int m = 1; m <= response->terms; m++)
-        sum += 2.0 * response->weights[m - 1] * cos(2.0 * PI * m * v);
-    return sum;
 }
 
 /* How much of an aspect's cell lies within the band; cells are 1 wide, the band 2 half_band. */
@@ -237,17 +269,41 @@ static void fill_aspects(struct motion_response *motion, double x)
     }
 }
 
-void motion_response_row(struct motion_response *motion, double row, double *real_part,
-                         double *imaginary_part)
+/* What the error makes of the straight response, at the distances. */
+static void find_change(struct motion_response *motion, double row, double *real_part,
+                        double *imaginary_part)
 {
     fill_aspects(motion, view_x_of_row(motion->view, row));
     fourier_transform(motion->real_part, motion->imaginary_part, motion->aspects, motion->root_real,
                       motion->root_imaginary);
     for (int j = -motion->reach; j <= motion->reach; j++) {
         const size_t at = (size_t)(j + (int)motion->aspects) % motion->aspects;
-        const double distance = j * motion->strip_m + motion->offset_m;
-        real_part[j + motion->reach] =
-            motion->real_part[at] + along_track_response(motion->response, distance);
+        real_part[j + motion->reach] = motion->real_part[at];
         imaginary_part[j + motion->reach] = motion->imaginary_part[at];
     }
+}
+
+static void add_straight(const struct motion_response *motion, double *real_part)
+{
+    for (int j = -motion->reach; j <= motion->reach; j++)
+        real_part[j + motion->reach] +=
+            along_track_response(motion->response, j * motion->strip_m + motion->offset_m);
+}
+
+void motion_response_row_all_around(struct motion_response *motion, double row, double *real_part,
+                                    double *imaginary_part)
+{
+    find_change(motion, row, real_part, imaginary_part);
+    add_straight(motion, real_part);
+}
+
+void motion_response_row(struct motion_response *motion, double row, double *real_part,
+                         double *imaginary_part)
+{
+    find_change(motion, row, real_part, imaginary_part);
+    for (int i = 0; i <= 2 * motion->reach; i++) {
+        real_part[i] *= motion->heard[i];
+        imaginary_part[i] *= motion->heard[i];
+    }
+    add_straight(motion, real_part);
 }

@@ -15,6 +15,7 @@ struct motion_response {
     int reach;                             /* j from -reach to reach */
     size_t aspects;                        /* of the transform, a power of two */
     double *root_real, *root_imaginary, *real_part, *imaginary_part; /* owned */
+    double *heard; /* what elements hear at the distances, over what they hear at 0; owned */
     double first_m, length_m; /* the track that the aperture of all rows holds */
     double sway_step_m;       /* from first_m on */
     double *sway_m;           /* owned */
@@ -36,8 +37,13 @@ void motion_response_end(struct motion_response *motion);
 void motion_response_row(struct motion_response *motion, double row, double *real_part,
                          double *imaginary_part);
 
+/* The same if elements heard all around: its energy is that of the straight W. */
+void motion_response_row_all_around(struct motion_response *motion, double row, double *real_part,
+                                    double *imaginary_part);
+
 /* How much farther than the window's response the energy of the moved one reaches, m, over nine
- * rows of the view: into response->motion_spread_m, for motion_spread. Errors: INPUT (it reaches
+ * rows of the view: into response->motion_spread_m, for motion_spread; and, on average, how much of
+ * the window's energy elements hear of it: motion_energy_share. Errors: INPUT (it reaches
  * farther than responses are worked out), MEMORY. */
 sonject_status motion_response_spread(struct report *report, struct point_response *response,
                                       const struct patch_view *view);

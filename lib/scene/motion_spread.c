@@ -47,6 +47,21 @@ static sonject_status spread_row(const struct motion_response *motion, struct re
     return SONJECT_OK;
 }
 
+/* Of a row's energy, what comes from beyond the beam of the elements. */
+static double lost_by_row(const struct motion_response *motion, const double *real_part,
+                          const double *imaginary_part)
+{
+    double lost = 0.0;
+    for (int i = 0; i <= 2 * motion->reach; i++) {
+        const double straight = along_track_response(
+            motion->response, (i - motion->reach) * motion->strip_m + motion->offset_m);
+        const double a = straight + motion->heard[i] * (real_part[i] - straight);
+        const double b = motion->heard[i] * imaginary_part[i];
+        lost += real_part[i] * real_part[i] + imaginary_part[i] * imaginary_part[i] - a * a - b * b;
+    }
+    return lost * motion->strip_m / along_track_energy_width(motion->response);
+}
+
 sonject_status motion_response_spread(struct report *report, struct point_response *response,
                                       const struct patch_view *view)
 {
@@ -60,10 +75,13 @@ sonject_status motion_response_spread(struct report *report, struct point_respon
     double *imaginary_part = allocate_array(2 * (size_t)SPREAD_REACH + 1, sizeof *imaginary_part);
     if (!real_part || !imaginary_part)
         status = report_out_of_memory(report, "motion");
+    response->motion_energy_share = 1.0;
     for (int i = 0; status == SONJECT_OK && i < SPREAD_ROWS; i++) {
-        motion_response_row(&motion, (double)(view->rows - 1) * i / (SPREAD_ROWS - 1), real_part,
-                            imaginary_part);
+        motion_response_row_all_around(&motion, (double)(view->rows - 1) * i / (SPREAD_ROWS - 1),
+                                       real_part, imaginary_part);
         status = spread_row(&motion, report, real_part, imaginary_part, response->motion_spread_m);
+        response->motion_energy_share -=
+            lost_by_row(&motion, real_part, imaginary_part) / SPREAD_ROWS;
     }
     free(real_part);
     free(imaginary_part);

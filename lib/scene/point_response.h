@@ -46,6 +46,7 @@ struct point_response {
     double motion_phase_per_m;             /* of the echo, rad per m of sway */
     double motion_spread_m[MOTION_SHARES]; /* how much farther the energy of W reaches: see
                                               motion_spread */
+    double motion_energy_share;            /* of the straight W's energy */
 };
 
 struct scene;

@@ -153,8 +153,8 @@ static void test_lobes_of_a_constant_yaw(void **unused)
     bench.scene.sonar.taylor_sidelobe_db = 70.0;
     bench.scene.sonar.taylor_terms = 10;
     cut_of(&bench, cut);
-    const double advance = 0.6;
-    const double steps = 0.3; /* of a phase of 2 pi, within a ping */
+    const double advance = 1.2; /* beams of elements leave 0.05 dB less of the lobes */
+    const double steps = 0.3;   /* of a phase of 2 pi, within a ping */
     const double wavelength = bench.tracer.view.wavelength_m;
     bench.scene.motion.params.yaw_advance_m = advance;
     bench.scene.motion.params.yaw_bias_rad =
@@ -176,6 +176,76 @@ static void test_lobes_of_a_constant_yaw(void **unused)
     bench_close(&bench);
 }
 
+/* The same lobes as they leave the beam of elements of 2 delta, whose zero is where lobe A/delta
+ * lies; delta is such that each lobe lies at a zero of all others. The beam leaves the mean over
+ * |v| < 1/2 of sinc(v + t)^2 / sinc(v)^2, t = m delta/A: for whole t that of v^2 / (v + t)^2. */
+static void test_lobes_beyond_the_beam(void **unused)
+{
+    enum {
+        PINGS_ADVANCE = 8, /* resolutions */
+        APART = 5,         /* of lobes, resolutions */
+        STRIPS = 2,        /* in a resolution */
+        LAST = 8,
+        REACH = LAST * APART * STRIPS
+    };
+    static double real_part[2 * REACH + 1], imaginary_part[2 * REACH + 1];
+    static const struct {
+        int lobe;
+        double left;
+    } lobes[] = {
+        {-8, 0.1361087}, /* 1 - 2 ln 3 + 4/3 */
+        {-1, 0.9732098}, /* by the midpoint rule, as is the next but one */
+        {0, 1.0},        {4, 0.6380988}, {8, 0.1361087},
+    };
+    struct bench bench;
+    struct motion_response motion;
+    (void)unused;
+    open_aperture(&bench);
+    const double wavelength = bench.tracer.view.wavelength_m;
+    const double range = 0.5 * (view_apparent_range(&bench.tracer.view, 0.0) +
+                                view_apparent_range(&bench.tracer.view, COLUMNS - 1.0));
+    const double resolution = sqrt(wavelength * range / (2.0 * PINGS_ADVANCE * APART));
+    const double steps = 0.3;
+    bench.scene.sonar.along_track_resolution_m = resolution;
+    bench.scene.sonar.response_window = SONJECT_WINDOW_RECTANGULAR;
+    bench.scene.motion.params.yaw_advance_m = PINGS_ADVANCE * resolution;
+    bench.scene.motion.params.yaw_bias_rad =
+        steps * wavelength / (2.0 * PINGS_ADVANCE * resolution * cosine_of_grazing(&bench));
+    bench_ready(&bench);
+    assert_int_equal(motion_response_begin(&motion, &bench.report, &bench.tracer.response,
+                                           &bench.tracer.view, resolution / STRIPS, 0.0, REACH),
+                     SONJECT_OK);
+    motion_response_row(&motion, MIDDLE, real_part, imaginary_part);
+    motion_response_end(&motion);
+    for (size_t i = 0; i < sizeof lobes / sizeof *lobes; i++) {
+        const int at = REACH - lobes[i].lobe * APART * STRIPS;
+        const double expected = fabs(sine_ratio(lobes[i].lobe + steps)) * lobes[i].left;
+        print_message("lobe %d: ", lobes[i].lobe);
+        expect_close("level over what the elements leave, dB",
+                     decibels_of_amplitude(hypot(real_part[at], imaginary_part[at]) / expected),
+                     0.0, LEVEL_DB);
+    }
+    bench_close(&bench);
+}
+
+/* What elements of two resolutions hear of a point, over what they hear of the pixel `distance`
+ * from it: the mean over aspects under Hamming's weights. */
+static double heard_share(const struct bench *bench, double distance)
+{
+    enum {
+        STEPS = 200
+    };
+    const double aside = 2.0 * RESOLUTION / bench->tracer.view.wavelength_m *
+                         sin(atan(distance / bench->tracer.response.motion_range_m));
+    double sum = 0.0;
+    for (int i = 0; i < STEPS; i++) {
+        const double v = (i + 0.5) / STEPS - 0.5;
+        sum += (0.54 + 0.46 * cos(2.0 * PI * v)) / 0.54 / STEPS *
+               pow(sine_ratio(v + aside) / sine_ratio(v), 2.0);
+    }
+    return sum;
+}
+
 /* W of a row by its definition, over the straight one's peak: the mean over aspects. */
 static double complex moved_response(const struct bench *bench, double row, double distance,
                                      double (*sway)(double))
@@ -186,6 +256,7 @@ static double complex moved_response(const struct bench *bench, double row, doub
     const double k = bench_wavenumber(bench);
     const double steepest = PI / k / (2.0 * RESOLUTION); /* wavelength / 4 resolution */
     const double range = bench->tracer.response.motion_range_m;
+    const double heard = heard_share(bench, distance);
     double complex sum = 0.0;
     double total = 0.0;
     for (int i = 0; i < STEPS; i++) {
@@ -195,7 +266,8 @@ static double complex moved_response(const struct bench *bench, double row, doub
         const double place = row * SPACING + range * tan(asin(sine));
         const double error =
             -2.0 * k * cosine_of_grazing(bench) * sqrt(1.0 - sine * sine) * sway(place);
-        sum += weight * cexp(I * (error + 2.0 * k * sine * distance));
+        sum +=
+            weight * (1.0 + heard * (cexp(I * error) - 1.0)) * cexp(I * 2.0 * k * sine * distance);
         total += weight;
     }
     return sum / total;
@@ -304,7 +376,7 @@ static double way_of(const struct bench *bench, double ping, double e, double ya
 }
 
 /* Amplitude of a point, `distance` before the pixel, from all hydrophones of all pings of the
- * aperture, focused as if the array had kept its heading. */
+ * aperture, focused as if the array had kept its heading. Each hears alike all around. */
 static double heard_amplitude(const struct bench *bench, double pixel, double distance)
 {
     enum {
@@ -333,7 +405,8 @@ static double heard_amplitude(const struct bench *bench, double pixel, double di
     return cabs(sum) / total;
 }
 
-/* The response that yaw gives a row is what hydrophones at their true places would make of it. */
+/* The response that yaw gives a row is what hydrophones at their true places would make of it, but
+ * for their beam. */
 static void test_yaw_of_hydrophones(void **unused)
 {
     enum {
@@ -352,7 +425,7 @@ static void test_yaw_of_hydrophones(void **unused)
     double worst = 0.0;
     double straight = 0.0;
     for (int row = 7; row < ROWS; row += 50) {
-        motion_response_row(&motion, row, real_part, imaginary_part);
+        motion_response_row_all_around(&motion, row, real_part, imaginary_part);
         for (int j = -REACH; j <= REACH; j += 3) {
             const double heard = heard_amplitude(&bench, row * SPACING, j * SPACING);
             const double model = hypot(real_part[j + REACH], imaginary_part[j + REACH]);
@@ -374,8 +447,16 @@ static double wander(double x)
     return 1e-3 * sin(1.7 * x) + 4e-4 * cos(5.1 * x + 0.3);
 }
 
-/* Neither the energy of a row's response nor the seabed's level changes; starboard is port,
- * reversed. */
+static double energy_of(const double *real_part, const double *imaginary_part, int reach)
+{
+    double energy = 0.0;
+    for (int i = 0; i < 2 * reach + 1; i++)
+        energy += SPACING * (real_part[i] * real_part[i] + imaginary_part[i] * imaginary_part[i]);
+    return energy;
+}
+
+/* Neither the energy of a row's response nor the seabed's level changes, but for what the elements'
+ * beam leaves out; starboard is port, reversed. */
 static void test_energy_stays(void **unused)
 {
     struct bench bench;
@@ -391,18 +472,21 @@ static void test_energy_stays(void **unused)
     bench.scene.motion.params.random_rms_m = 1e-3;
     bench_ready(&bench);
     print_message("energy reaches %.3g m farther\n", bench.tracer.response.motion_spread_m[1]);
+    const double straight = along_track_energy_width(&bench.tracer.response);
     assert_int_equal(motion_response_begin(&motion, &bench.report, &bench.tracer.response,
                                            &bench.tracer.view, SPACING, 0.0, REACH),
                      SONJECT_OK);
+    double heard = 0.0;
     for (int row = 0; row < ROWS; row += 40) {
-        double energy = 0.0;
-        motion_response_row(&motion, row, real_part, imaginary_part);
-        for (int i = 0; i < 2 * REACH + 1; i++)
-            energy +=
-                SPACING * (real_part[i] * real_part[i] + imaginary_part[i] * imaginary_part[i]);
+        motion_response_row_all_around(&motion, row, real_part, imaginary_part);
         expect_close("energy of a row's response",
-                     energy / along_track_energy_width(&bench.tracer.response), 1.0, 1e-3);
+                     energy_of(real_part, imaginary_part, REACH) / straight, 1.0, 1e-3);
+        motion_response_row(&motion, row, real_part, imaginary_part);
+        heard += energy_of(real_part, imaginary_part, REACH) / straight / 5.0;
     }
+    assert_true(heard < 0.9995);
+    expect_close("share that elements hear", bench.tracer.response.motion_energy_share, heard,
+                 2e-4);
     motion_response_end(&motion);
     bench_echoes(&bench, NULL, SEABED_FIELD_SPECKLE, &echoes);
     double ratio = 0.0;
@@ -565,6 +649,7 @@ int main(void)
         cmocka_unit_test(test_paired_echoes),
         cmocka_unit_test(test_quadratic_error),
         cmocka_unit_test(test_lobes_of_a_constant_yaw),
+        cmocka_unit_test(test_lobes_beyond_the_beam),
         cmocka_unit_test(test_changing_yaw),
         cmocka_unit_test(test_yaw_of_hydrophones),
         cmocka_unit_test(test_energy_stays),
