@@ -86,10 +86,9 @@ static bool take_end(struct stint_file *file, const struct block_head *block,
            is_terminated(end->course, sizeof end->course);
 }
 
-static bool note_sums(struct stint_file *file, struct report *report, uint64_t records, uint64_t at,
-                      uint64_t bytes)
+/* False where memory lacks. */
+static bool note_sums(struct stint_file *file, uint64_t records, uint64_t at, uint64_t bytes)
 {
-    (void)report;
     if ((records & (records + 1)) == 0) { /* 0, 1, 3, 7...: room for twice as many */
         struct stint_block *more =
             records < SIZE_MAX / sizeof *more / 4
@@ -121,7 +120,7 @@ static sonject_status read_blocks(struct stint_file *file, struct report *report
             if ((unsigned char *)file->source.texts == content)
                 content = NULL; /* handed over */
         } else if (is_sound && block.kind == BLOCK_SUMS && file->source.texts) {
-            if (!note_sums(file, report, records++, size - left + sizeof block, block.bytes))
+            if (!note_sums(file, records++, size - left + sizeof block, block.bytes))
                 status = report_out_of_memory(report, file->path);
         } else if (is_sound && block.kind == BLOCK_END && file->source.texts) {
             is_sound = take_end(file, &block, content, records);
