@@ -120,6 +120,7 @@ static void make_scene(struct bench *bench, enum scene_kind kind)
     bench->scene.sonar.altitude_m = 7.3;
     bench->scene.medium.reference_sound_speed_mps = 1480.0;
     bench->scene.sonar.along_track_resolution_m = 0.03;
+    bench->scene.injection.ray_scale = 0.5;
     if (kind == SCENE_LAYERS)
         bench_set_layers(bench, layers, 2);
     if (kind == SCENE_MORE_SHAPES) {
@@ -365,33 +366,70 @@ static struct tallies trace_smooth_as_c(struct bench *bench, uint32_t object,
 
 typedef void body(struct bench *bench, enum scene_kind kind);
 
-/* Relief and aspects take programs of their own, which compile for long, but no other vectors: they
- * are compared at the ends of the row of widths. */
-static bool has_own_program(enum scene_kind kind)
+/* The same device with kernels of each number of lanes; plain C, which is the same for all, runs
+ * once. */
+static const uint32_t widths[] = {1, 4, 8, 16};
+#define WIDTHS (sizeof widths / sizeof *widths)
+static struct device *devices[WIDTHS];
+
+static void on_all_kinds(body *run)
 {
-    return kind >= SCENE_RELIEF;
+    struct bench bench;
+    bench_open(&bench, ROWS, COLUMNS, 18.0);
+    sonject_context_params params;
+    memset(&params, 0, sizeof params);
+    params.struct_size = sizeof params;
+    params.device_name = bench_device;
+    params.cache_folder = "";
+    struct device *first = bench.tracer.device;
+    for (size_t w = 0; w < WIDTHS; w++) {
+        if (device_open(&bench.report, &params, &devices[w]) != SONJECT_OK)
+            fail_msg("%s", bench.report.message);
+        devices[w]->width = widths[w];
+    }
+    for (int kind = 0; kind < SCENE_KINDS; kind++) {
+        scene_clear(&bench.scene);
+        bench_move(&bench, 18.0);
+        bench.tracer.device = devices[WIDTHS - 1];
+        run(&bench, (enum scene_kind)kind);
+    }
+    for (size_t w = 0; w < WIDTHS; w++)
+        device_close(&devices[w]);
+    bench.tracer.device = first;
+    bench_close(&bench);
 }
 
-/* Runs a body at every width from the least on. */
-static void at_every_width(body *run, uint32_t least_width)
+/* Lets the device have another number of lanes. */
+static void take_width(struct bench *bench, size_t w)
 {
-    static const uint32_t widths[] = {1, 4, 8, 16};
-    for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
-        struct bench bench;
-        bench_open(&bench, ROWS, COLUMNS, 18.0);
-        if (!bench.tracer.device->is_cpu || widths[w] >= least_width) {
-            bench.tracer.device->width = widths[w];
-            print_message("width %u\n", (unsigned)widths[w]);
-            for (int kind = 0; kind < SCENE_KINDS; kind++) {
-                if (has_own_program((enum scene_kind)kind) && widths[w] != 1 && widths[w] != 16)
-                    continue;
-                scene_clear(&bench.scene);
-                bench_move(&bench, 18.0);
-                run(&bench, (enum scene_kind)kind);
-            }
-        }
-        bench_close(&bench);
-    }
+    bench->tracer.device = devices[w];
+}
+
+/* Programs take long to compile, and all are of the same vectors: those of the plain scenes are
+ * compared at the ends of the row of widths, one also amid it, others at the upper end alone. */
+static bool is_at_end(size_t w)
+{
+    return w == 0 || w == WIDTHS - 1;
+}
+
+static bool is_rough_compared(enum scene_kind kind, size_t w)
+{
+    if (kind < SCENE_RELIEF)
+        return is_at_end(w) || widths[w] == 8;
+    return w == WIDTHS - 1 || (w == 0 && kind != SCENE_ASPECTS && kind != SCENE_BEAM);
+}
+
+static bool is_smooth_compared(const struct bench *bench, size_t w)
+{
+    return w == WIDTHS - 1 || (w == 0 && !bench->tracer.relief);
+}
+
+/* Strips that are traced or formed at once: all, twice, and few; at the lower end, where each takes
+ * longest, some of these. */
+#define CHUNKINGS 4
+static size_t chunkings_at(size_t w)
+{
+    return w == 0 ? 2 : CHUNKINGS;
 }
 
 static void compare_rough(struct bench *bench, enum scene_kind kind)
@@ -400,13 +438,20 @@ static void compare_rough(struct bench *bench, enum scene_kind kind)
     float *map = make_map(kind);
     struct tallies expected = trace_rough_as_c(bench, map);
     expect_alive(&expected);
-    static const int32_t chunks[] = {1 << 20, 1 << 20, 37, 1};
-    /* a strip alone would be traced again for each of its many neighbours */
-    const size_t count = sizeof chunks / sizeof *chunks - (kind == SCENE_WIDE_ASPECTS ? 1 : 0);
-    for (size_t i = 0; i < count; i++) {
-        struct tallies measured = trace_rough_on_device(bench, map, chunks[i]);
-        expect_same("rough", &measured, &expected);
-        tallies_clear(&measured);
+    static const int32_t chunks[CHUNKINGS] = {1 << 20, 37, 1 << 20, 1};
+    for (size_t w = 0; w < WIDTHS; w++) {
+        if (!is_rough_compared(kind, w))
+            continue;
+        take_width(bench, w);
+        print_message("scene %d, width %u\n", (int)kind, (unsigned)widths[w]);
+        for (size_t i = 0; i < chunkings_at(w); i++) {
+            /* a strip alone would be traced again for each of its many neighbours */
+            if (chunks[i] == 1 && kind == SCENE_WIDE_ASPECTS)
+                continue;
+            struct tallies measured = trace_rough_on_device(bench, map, chunks[i]);
+            expect_same("rough", &measured, &expected);
+            tallies_clear(&measured);
+        }
     }
     tallies_clear(&expected);
     free(map);
@@ -415,7 +460,7 @@ static void compare_rough(struct bench *bench, enum scene_kind kind)
 static void test_rough_tallies(void **unused)
 {
     (void)unused;
-    at_every_width(compare_rough, 1);
+    on_all_kinds(compare_rough);
 }
 
 /* Whether there was anything to compare. */
@@ -423,11 +468,16 @@ static bool compare_pair(struct bench *bench, uint32_t object, const struct sour
 {
     struct tallies expected = trace_smooth_as_c(bench, object, pair);
     const bool had_echoes = is_alive(&expected);
-    static const int32_t chunks[] = {1 << 20, 1 << 20, 37, 5};
-    for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
-        struct tallies measured = trace_smooth_on_device(bench, object, pair, chunks[i]);
-        expect_same("smooth", &measured, &expected);
-        tallies_clear(&measured);
+    static const int32_t chunks[CHUNKINGS] = {1 << 20, 37, 1 << 20, 5};
+    for (size_t w = 0; w < WIDTHS; w++) {
+        if (!is_smooth_compared(bench, w))
+            continue;
+        take_width(bench, w);
+        for (size_t i = 0; i < chunkings_at(w); i++) {
+            struct tallies measured = trace_smooth_on_device(bench, object, pair, chunks[i]);
+            expect_same("smooth", &measured, &expected);
+            tallies_clear(&measured);
+        }
     }
     tallies_clear(&expected);
     return had_echoes;
@@ -446,7 +496,7 @@ static void compare_smooth(struct bench *bench, enum scene_kind kind)
 static void test_smooth_tallies(void **unused)
 {
     (void)unused;
-    at_every_width(compare_smooth, 1);
+    on_all_kinds(compare_smooth);
 }
 
 /* Over relief the sea surface alone is a mirror. */
@@ -497,7 +547,7 @@ static void compare_mirrored(struct bench *bench, enum scene_kind kind)
 static void test_mirrored_tallies(void **unused)
 {
     (void)unused;
-    at_every_width(compare_mirrored, 1);
+    on_all_kinds(compare_mirrored);
 }
 
 /* Tiles of the rough part by way of mirrors, on a fresh trace. */
@@ -519,35 +569,38 @@ static int64_t *mirrored_tiles(struct bench *bench, size_t *elements)
 
 static void compare_rough_mirrored(struct bench *bench, enum scene_kind kind)
 {
-    static int64_t *all_first[SCENE_KINDS]; /* of the first width */
-    static size_t all_elements[SCENE_KINDS];
-    int64_t *first = all_first[kind];
-    size_t elements;
+    int64_t *first = NULL;
+    size_t first_elements = 0;
     if (kind != SCENE_ALL_SHAPES && kind != SCENE_LAYERS && kind != SCENE_RELIEF)
         return;
     bench->scene.seabed.forward.reflection = kind == SCENE_RELIEF ? 0.0 : 0.9;
     bench->scene.surface.water_depth_m = 7.5;
     bench->scene.injection.interactions = 4;
     make_scene(bench, kind);
-    int64_t *tiles = mirrored_tiles(bench, &elements);
-    if (!first) {
-        size_t filled = 0;
+    for (size_t w = 0; w < WIDTHS; w++) {
+        size_t elements, filled = 0;
+        if (!is_at_end(w))
+            continue;
+        take_width(bench, w);
+        int64_t *tiles = mirrored_tiles(bench, &elements);
         for (size_t i = 0; i < elements; i++)
             filled += tiles[i] != 0;
         assert_true(filled > 1000);
-        all_first[kind] = tiles;
-        all_elements[kind] = elements;
-        return;
+        if (first) {
+            assert_int_equal(elements, first_elements);
+            assert_memory_equal(tiles, first, elements * sizeof *tiles);
+        }
+        free(first);
+        first = tiles;
+        first_elements = elements;
     }
-    assert_int_equal(elements, all_elements[kind]);
-    assert_memory_equal(tiles, first, elements * sizeof *tiles);
-    free(tiles);
+    free(first);
 }
 
 static void test_rough_mirrored_tallies(void **unused)
 {
     (void)unused;
-    at_every_width(compare_rough_mirrored, 1);
+    on_all_kinds(compare_rough_mirrored);
 }
 
 /* Planes of lines or pixels, real part first. */
@@ -774,40 +827,60 @@ static struct planes form_on_device(struct bench *bench, struct form_lines *line
     return pixels;
 }
 
+static void begin_lines(struct form_lines *lines, struct bench *bench, enum form_kind kind,
+                        const struct line_grid *grid)
+{
+    if (form_lines_begin(lines, &bench->report, bench->tracer.device, &bench->tracer.view,
+                         &bench->tracer.response, kind, grid) != SONJECT_OK)
+        fail_msg("%s", bench->report.message);
+}
+
+/* The amplitudes that speckle gives to energies. */
+static struct planes draw_as_c(const struct line_grid *grid, const struct planes *bins)
+{
+    struct planes drawn = planes_of(bins->count);
+    for (size_t i = 0; i < bins->count; i++) {
+        const int32_t strip = grid->strips.first + (int32_t)(i / (size_t)grid->bins.count);
+        const int32_t bin = grid->bins.first + (int32_t)(i % (size_t)grid->bins.count);
+        float a, b;
+        complex_normal(
+            random_key_of(0x76543210u, 0xfedcba98u, STREAM_SEABED_SPECKLE, (uint32_t)strip),
+            (uint32_t)bin, &a, &b);
+        drawn.part[0][i] = sqrtf(bins->part[0][i]) * a;
+        drawn.part[1][i] = sqrtf(bins->part[0][i]) * b;
+    }
+    return drawn;
+}
+
+/* Intel's compiler spreads a scalar sum over lanes, which changes its order. No CPU is given one
+ * lane: every one that OpenCL runs on has at least four. */
 static void compare_forming(struct bench *bench, enum form_kind kind, const struct line_grid *grid,
                             int is_speckle)
 {
     struct form_lines lines;
-    if (form_lines_begin(&lines, &bench->report, bench->tracer.device, &bench->tracer.view,
-                         &bench->tracer.response, kind, grid) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
     struct planes bins = make_bins(grid, 4);
-    struct planes drawn = planes_of(bins.count);
-    for (size_t i = 0; i < bins.count; i++) {
-        const int32_t strip = grid->strips.first + (int32_t)(i / (size_t)grid->bins.count);
-        const int32_t bin = grid->bins.first + (int32_t)(i % (size_t)grid->bins.count);
-        drawn.part[0][i] = bins.part[0][i];
-        drawn.part[1][i] = bins.part[1][i];
-        if (is_speckle) {
-            float a, b;
-            complex_normal(
-                random_key_of(0x76543210u, 0xfedcba98u, STREAM_SEABED_SPECKLE, (uint32_t)strip),
-                (uint32_t)bin, &a, &b);
-            drawn.part[0][i] = sqrtf(bins.part[0][i]) * a;
-            drawn.part[1][i] = sqrtf(bins.part[0][i]) * b;
+    struct planes drawn = {0, {NULL, NULL}};
+    if (is_speckle)
+        drawn = draw_as_c(grid, &bins);
+    begin_lines(&lines, bench, kind, grid);
+    struct planes expected = form_as_c(bench, &lines, is_speckle ? &drawn : &bins);
+    form_lines_end(&lines);
+    static const int32_t chunks[CHUNKINGS] = {1 << 20, 37, 1 << 20, 1};
+    for (size_t w = 0; w < WIDTHS; w++) {
+        take_width(bench, w);
+        if (widths[w] == 1 && bench->tracer.device->is_cpu)
+            continue;
+        begin_lines(&lines, bench, kind, grid);
+        for (size_t i = 0; i < chunkings_at(w); i++) {
+            struct planes measured = form_on_device(bench, &lines, &bins, chunks[i], is_speckle);
+            expect_same_planes(&measured, &expected);
+            planes_clear(&measured);
         }
-    }
-    struct planes expected = form_as_c(bench, &lines, &drawn);
-    static const int32_t chunks[] = {1 << 20, 1 << 20, 37, 1};
-    for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
-        struct planes measured = form_on_device(bench, &lines, &bins, chunks[i], is_speckle);
-        expect_same_planes(&measured, &expected);
-        planes_clear(&measured);
+        form_lines_end(&lines);
     }
     planes_clear(&expected);
     planes_clear(&bins);
     planes_clear(&drawn);
-    form_lines_end(&lines);
 }
 
 static void compare_formation(struct bench *bench, enum scene_kind kind)
@@ -858,15 +931,13 @@ static void compare_varied_formation(struct bench *bench, enum scene_kind kind)
 static void test_varied_image_formation(void **unused)
 {
     (void)unused;
-    at_every_width(compare_varied_formation, 4);
+    on_all_kinds(compare_varied_formation);
 }
 
 static void test_image_formation(void **unused)
 {
     (void)unused;
-    /* Intel's compiler spreads a scalar sum over lanes, which changes its order. No CPU is given
-     * one lane: every one that OpenCL runs on has at least four. */
-    at_every_width(compare_formation, 4);
+    on_all_kinds(compare_formation);
 }
 
 /* One core of a device instead of all. */
@@ -899,7 +970,7 @@ static void test_one_core(void **unused)
     params.cache_folder = "";
     params.opencl_context = context;
     params.opencl_device = core;
-    device_close(&bench.tracer.device);
+    struct device *all_cores = bench.tracer.device;
     if (device_open(&bench.report, &params, &bench.tracer.device) != SONJECT_OK)
         fail_msg("%s", bench.report.message);
     assert_int_equal(bench.tracer.device->compute_units, 1);
@@ -908,6 +979,8 @@ static void test_one_core(void **unused)
     tallies_clear(&measured);
     tallies_clear(&expected);
     free(map);
+    device_close(&bench.tracer.device);
+    bench.tracer.device = all_cores;
     bench_close(&bench);
     clReleaseContext(context);
 }

@@ -22,14 +22,41 @@ static void expect_ok(struct bench *bench, sonject_status status)
 
 const char *bench_device;
 
-void bench_open(struct bench *bench, size_t rows, size_t columns, double middle_range_m)
+/* The one of bench_device that a bench gave back, with its programs. */
+static struct device *free_device;
+
+static void take_device(struct bench *bench)
 {
     sonject_context_params context;
-    memset(bench, 0, sizeof *bench);
     memset(&context, 0, sizeof context);
     context.struct_size = sizeof context;
     context.device_name = bench_device;
     context.cache_folder = "";
+    if (free_device) {
+        bench->tracer.device = free_device;
+        free_device = NULL;
+    } else {
+        expect_ok(bench, device_open(&bench->report, &context, &bench->tracer.device));
+    }
+    bench->device = bench->tracer.device;
+    bench->device_width = bench->device->width;
+}
+
+/* As it was taken, for the next bench. */
+static void give_device_back(struct bench *bench)
+{
+    struct device **device = &bench->tracer.device;
+    if (*device && *device == bench->device && (*device)->width == bench->device_width) {
+        device_close(&free_device);
+        free_device = *device;
+        *device = NULL;
+    }
+    device_close(device);
+}
+
+void bench_open(struct bench *bench, size_t rows, size_t columns, double middle_range_m)
+{
+    memset(bench, 0, sizeof *bench);
     scene_init(&bench->scene);
     bench->scene.sonar.aperture_rad = 0.0; /* closed forms are of one aspect */
     bench->rows = rows;
@@ -37,12 +64,12 @@ void bench_open(struct bench *bench, size_t rows, size_t columns, double middle_
     bench->tracer.report = &bench->report;
     bench->tracer.scene = &bench->scene;
     bench_move(bench, middle_range_m);
-    expect_ok(bench, device_open(&bench->report, &context, &bench->tracer.device));
+    take_device(bench);
 }
 
 void bench_close(struct bench *bench)
 {
-    device_close(&bench->tracer.device);
+    give_device_back(bench);
     placements_clear(&bench->placed);
     water_clear(&bench->water);
     scene_clear(&bench->scene);
@@ -165,6 +192,7 @@ int bench_run_on_devices(const struct CMUnitTest *tests, size_t count)
         bench_device = names[i];
         print_message("device: %s\n", bench_device);
         failures += _cmocka_run_group_tests(bench_device, tests, count, NULL, NULL);
+        device_close(&free_device);
     }
     bench_device = NULL;
     return failures;
