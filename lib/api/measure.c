@@ -10,7 +10,7 @@
 #include "image/seam.h"
 #include "image/speckle_statistics.h"
 #include "image/transfer.h"
-#include "io/raster_file.h"
+#include "io/swath_file.h"
 
 #define NEAR 2 /* pixels around changed ones: rounding hides small changes */
 
@@ -106,19 +106,19 @@ static sonject_status measure(struct report *report, struct measured *measured,
 static sonject_status read_stored(struct report *report, const char *path,
                                   struct raster_layout *layout, void **stored)
 {
-    struct raster_file *file = NULL;
+    struct swath_file *file = NULL;
     size_t bytes = 0;
     *stored = NULL;
-    sonject_status status = raster_file_open(report, path, &file);
+    sonject_status status = swath_file_open(report, path, SONJECT_CHANNEL_ONLY, &file);
     if (status != SONJECT_OK)
         return status;
-    raster_file_layout(file, layout);
+    swath_file_layout(file, layout);
     const struct region whole = {0, 0, layout->rows, layout->columns};
     if (layout->rows * layout->columns <= (uint64_t)1 << 31 && region_bytes(layout, &whole, &bytes))
         *stored = allocate_array(bytes, 1);
-    status = *stored ? raster_file_read(report, file, &whole, *stored)
+    status = *stored ? swath_file_read(report, file, &whole, *stored)
                      : report_out_of_memory(report, path);
-    raster_file_close(&file);
+    swath_file_close(&file);
     return status;
 }
 

@@ -38,6 +38,18 @@ def test_statistics_of_speckle(sonject, tmp_path):
         assert seabed["row_correlation"] < 0.03 and seabed["column_correlation"] < 0.03
 
 
+def test_arrays_are_measured_as_images_are(sonject, tmp_path):
+    mask = numpy.zeros((ROWS, COLUMNS), numpy.uint8)
+    mask[90:170, 100:220] = 255
+    numpy.save(tmp_path / "bed.npy", speckle())
+    numpy.save(tmp_path / "mask.npy", mask)
+    (tmp_path / "mask.png").write_bytes(png_bytes(mask))
+    of_image = sonject("measure", "--seam", write(tmp_path / "bed.tif", speckle()), "--influence",
+                       "mask.png")
+    of_array = sonject("measure", "--seam", "bed.npy", "--influence", "mask.npy")
+    assert told(of_array) == told(of_image)
+
+
 def test_transfer_is_undone(sonject, tmp_path):
     write(tmp_path / "bed.tif", speckle())
     write(tmp_path / "decibels.tif", (20 * numpy.log10(speckle())).astype(numpy.float32))
