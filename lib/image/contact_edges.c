@@ -7,8 +7,7 @@
 #define SPREADS         3    /* shares are tried as what spreads, */
 #define SPREAD_RATIO    0.71 /* each so many times the last; the first is all of it */
 #define REACH           6 /* deviations of the point response beyond which nothing of it is left */
-#define WIDTHS          7 /* of penumbras that are tried, */
-#define WIDTH_RATIO     1.6 /* each so many times the last; the first is the point response's */
+#define WIDTH_RATIO     1.6 /* of penumbras' widths; the first is the point response's */
 #define SKIRT_RATIO     2.0
 #define FAINTEST        1e-9 /* of a dark level: there are means of 0 */
 
@@ -28,7 +27,7 @@ static void weigh(struct edge_belief *belief, double place, double share, double
     belief->squares += weight * place * place;
 }
 
-struct profile_edge edge_believed(const struct edge_belief *belief)
+static struct profile_edge edge_believed(const struct edge_belief *belief)
 {
     const double place = belief->sum / belief->weight;
     const double variance = belief->squares / belief->weight - place * place;
@@ -143,12 +142,40 @@ static void weigh_steps(struct edge_belief *belief, const struct profile *profil
     }
 }
 
-void weigh_profile_step(struct edge_belief *belief, const struct profile *profile, double before,
+void weigh_profile_step(struct step_belief *belief, const struct profile *profile, double before,
                         double behind)
 {
     double width = profile->deviation;
-    for (int i = 0; i < WIDTHS; i++, width *= WIDTH_RATIO)
-        weigh_steps(belief, profile, before, behind, width);
+    for (int i = 0; i < STEP_WIDTHS; i++, width *= WIDTH_RATIO)
+        weigh_steps(&belief->widths[i], profile, before, behind, width);
+}
+
+struct profile_edge mean_step_believed(const struct step_belief *parts, size_t count)
+{
+    struct edge_belief all = {0.0, 0.0, 0.0, 0.0};
+    double variance = 0.0; /* within the widths, weighted as those are */
+    double least = INFINITY;
+    double costs[STEP_WIDTHS];
+    for (int i = 0; i < STEP_WIDTHS; i++) {
+        costs[i] = 0.0;
+        for (size_t part = 0; part < count; part++)
+            costs[i] += parts[part].widths[i].least - log(parts[part].widths[i].weight);
+        least = fmin(least, costs[i]);
+    }
+    for (int i = 0; i < STEP_WIDTHS; i++) {
+        double place = 0.0;
+        double squares = 0.0;
+        for (size_t part = 0; part < count; part++) {
+            const struct profile_edge edge = edge_believed(&parts[part].widths[i]);
+            place += edge.place / (double)count;
+            squares += edge.error * edge.error;
+        }
+        weigh(&all, place, 1.0, costs[i]);
+        variance += exp(least - costs[i]) * squares / ((double)count * (double)count);
+    }
+    struct profile_edge mean = edge_believed(&all);
+    mean.error = sqrt(mean.error * mean.error + variance / all.weight);
+    return mean;
 }
 
 struct profile_edge find_profile_change(const struct profile *profile, double *gain)

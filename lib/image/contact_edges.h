@@ -39,12 +39,21 @@ struct edge_belief {
     double weight, sum, squares;
 };
 
+#define STEP_WIDTHS 7 /* of penumbras that are tried */
+
+struct step_belief {
+    struct edge_belief widths[STEP_WIDTHS];
+};
+
 /* Weighs where a profile steps from one level to another, both > 0: half way up a penumbra of any
  * width. Several profiles through an edge, such as ones along different slants, may be weighed one
  * after the other, the belief all zeros at first. */
-void weigh_profile_step(struct edge_belief *belief, const struct profile *profile, double before,
+void weigh_profile_step(struct step_belief *belief, const struct profile *profile, double before,
                         double behind);
-struct profile_edge edge_believed(const struct edge_belief *belief);
+
+/* The mean place of parts of one edge, whose penumbra is equally wide in all of them: how wide, and
+ * with that how far out they lie, is believed for all together. */
+struct profile_edge mean_step_believed(const struct step_belief *parts, size_t count);
 
 /* Where the first part of a profile, brighter than its rest, ends; each has one level. The skirt is
  * what side lobes may add of that level. *gain: how much more likely that is than one level for

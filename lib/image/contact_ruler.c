@@ -168,19 +168,27 @@ static struct window_box darkest_columns(const struct contact_lines *lines,
 }
 
 /* From `start`, in a shadow, to where the seabed begins, on an edge that may be tilted. */
-static struct profile_edge edge_in_seabed(const struct contact_lines *lines,
-                                          const struct profile_path *path, double dark)
+static struct step_belief weigh_edge_in_seabed(const struct contact_lines *lines,
+                                               const struct profile_path *path, double dark)
 {
-    struct edge_belief belief = {0.0, 0.0, 0.0, 0.0};
+    struct step_belief belief;
     struct contact_lines tilted = *lines;
     const int tilts = path->box.rows > 1 && !path->is_along_track ? TILTS : 0;
+    memset(&belief, 0, sizeof belief);
     tilted.tilt_row = (double)path->box.first_row + 0.5 * (double)(path->box.rows - 1);
     for (int i = -tilts; i <= tilts; i++) {
         tilted.tilt = TILT_STEP * i;
         const struct profile profile = profile_along(&tilted, path);
         weigh_profile_step(&belief, &profile, dark, lines->seabed);
     }
-    return edge_believed(&belief);
+    return belief;
+}
+
+static struct profile_edge edge_in_seabed(const struct contact_lines *lines,
+                                          const struct profile_path *path, double dark)
+{
+    const struct step_belief belief = weigh_edge_in_seabed(lines, path, dark);
+    return mean_step_believed(&belief, 1);
 }
 
 /* A shadow as it is measured in range. */
@@ -191,19 +199,26 @@ struct shadow_view {
     double dark;      /* level */
 };
 
-/* Where it begins and ends, and where what is bright ends before it: columns from its core. */
+/* Where it begins, and where what is bright ends before it: columns from its core. */
 struct shadow_edges {
-    struct profile_edge bright, near, far;
+    struct profile_edge bright, near;
 };
 
-static struct shadow_edges find_shadow_edges(const struct contact_lines *lines,
-                                             const struct shadow_view *shadow,
-                                             const struct window_box *rows)
+static struct step_belief weigh_far_edge(const struct contact_lines *lines,
+                                         const struct shadow_view *shadow,
+                                         const struct window_box *rows)
+{
+    struct profile_path path = {*rows, false, shadow->core, 1, 0};
+    path.most = shadow->part.first_column + shadow->part.columns - shadow->core + EDGE_REACH;
+    return weigh_edge_in_seabed(lines, &path, shadow->dark);
+}
+
+static struct shadow_edges find_near_edges(const struct contact_lines *lines,
+                                           const struct shadow_view *shadow,
+                                           const struct window_box *rows)
 {
     struct shadow_edges edges;
     struct profile_path path = {*rows, false, shadow->core, 1, 0};
-    path.most = shadow->part.first_column + shadow->part.columns - shadow->core + EDGE_REACH;
-    edges.far = edge_in_seabed(lines, &path, shadow->dark);
     if (shadow->highlight < shadow->core) {
         const struct end_levels bright = levels_of_highlight(lines);
         const struct end_levels lit = {sqrt(lines->seabed * shadow->dark),
@@ -248,31 +263,32 @@ static void measure_dim_part(const struct contact_lines *lines, const struct sha
     sizes->dim_columns.error = change.error;
 }
 
-/* Means over bands of the rows. */
+/* Means over bands of the rows; speckle is another in each. */
 static void measure_in_range(const struct contact_lines *lines, const struct shadow_view *shadow,
                              const struct window_box *middle, struct contact_sizes *sizes)
 {
     const size_t bands = smaller(BANDS, middle->rows);
-    double length = 0.0;
+    struct step_belief far_edges[BANDS];
     double gap = 0.0;
     double near = 0.0;
-    double length_variance = 0.0;
+    double near_variance = 0.0;
     double gap_variance = 0.0;
     for (size_t band = 0; band < bands; band++) {
         struct window_box rows = *middle;
         rows.first_row += band * middle->rows / bands;
         rows.rows = (band + 1) * middle->rows / bands - band * middle->rows / bands;
-        const struct shadow_edges edges = find_shadow_edges(lines, shadow, &rows);
-        const double near_variance = edges.near.error * edges.near.error;
+        const struct shadow_edges edges = find_near_edges(lines, shadow, &rows);
+        far_edges[band] = weigh_far_edge(lines, shadow, &rows);
         near += edges.near.place;
-        length += edges.far.place - edges.near.place;
         gap += edges.near.place - edges.bright.place;
-        length_variance += edges.far.error * edges.far.error + near_variance;
-        gap_variance += edges.bright.error * edges.bright.error + near_variance;
+        near_variance += edges.near.error * edges.near.error;
+        gap_variance += edges.bright.error * edges.bright.error;
     }
     const double count = (double)bands;
-    sizes->shadow_columns.pixels = fmax(0.0, length / count);
-    sizes->shadow_columns.error = sqrt(length_variance) / count;
+    const struct profile_edge far = mean_step_believed(far_edges, bands);
+    gap_variance += near_variance;
+    sizes->shadow_columns.pixels = fmax(0.0, far.place - near / count);
+    sizes->shadow_columns.error = hypot(far.error, sqrt(near_variance) / count);
     sizes->gap_columns.pixels = shadow->highlight < shadow->core ? fmax(0.0, gap / count) : NAN;
     sizes->gap_columns.error = sqrt(gap_variance) / count;
     measure_dim_part(lines, shadow, middle, near / count, sizes);

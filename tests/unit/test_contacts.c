@@ -109,9 +109,10 @@ static void test_steps_in_speckle(void **unused)
             for (int k = 0; k < PIXELS; k++)
                 means[k] = (0.03 + 0.97 * share_behind(k - truth, widths[i])) * speckle(6);
             const struct profile profile = {means, skirt, PIXELS, 6.0, 0.42};
-            struct edge_belief belief = {0.0, 0.0, 0.0, 0.0};
+            struct step_belief belief;
+            memset(&belief, 0, sizeof belief);
             weigh_profile_step(&belief, &profile, 0.03, 1.0);
-            const struct profile_edge edge = edge_believed(&belief);
+            const struct profile_edge edge = mean_step_believed(&belief, 1);
             add_pull(&pulls, &edge, truth);
         }
         expect_pulls(i == 0 ? "steps" : "soft steps", &pulls);
