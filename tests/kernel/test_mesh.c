@@ -18,7 +18,7 @@
 #include "kernel/probe_device.h"
 #include "physics/bench.h"
 
-#define RAYS 102400 /* a multiple of 16 */
+#define RAYS 51200 /* a multiple of 16 */
 
 /* Planes of rays and what they find. */
 struct flight {

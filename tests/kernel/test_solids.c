@@ -15,7 +15,7 @@
 #include "trace/object_shape.h"
 
 #define PI   3.14159265358979323846
-#define RAYS 100000
+#define RAYS 40000
 
 /* Positions carry single precision's 6e-8 of a few metres, some of which add up. Whoever passes an
  * outline closer than this may err. */
