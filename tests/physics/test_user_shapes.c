@@ -44,6 +44,26 @@ static uint32_t add_code(struct user_shapes *shapes, struct report *report, cons
     return shapes->count - 1;
 }
 
+enum sound_shape {
+    SPHERE_SHAPE,
+    DISC_SHAPE,
+    PAIR_SHAPE
+};
+
+/* All of them wherever one is: programs, which take long to compile, are then the same. */
+static void add_sound_shapes(struct bench *bench)
+{
+    struct user_shapes *shapes = &bench->scene.user_shapes;
+    struct report *report = &bench->report;
+    add_code(shapes, report, "sphere.cl", SPHERE_CODE, RADIUS, RADIUS, 0.0);
+    add_code(shapes, report, "disc.cl", DISC_CODE, RADIUS, RADIUS, 0.0);
+    add_code(shapes, report, "pair.cl", PAIR_CODE, 0.6, 0.25, 0.3);
+    shapes->shapes[DISC_SHAPE].is_open = true;
+    shapes->shapes[DISC_SHAPE].half_height_m = 1e-9;
+    shapes->shapes[PAIR_SHAPE].half_height_m = 0.25;
+    shapes->shapes[PAIR_SHAPE].half_width_m = 0.25;
+}
+
 /* A sphere of RADIUS, by code or the library's own. */
 static sonject_object_params *add_sphere(struct bench *bench, bool is_user)
 {
@@ -51,8 +71,8 @@ static sonject_object_params *add_sphere(struct bench *bench, bool is_user)
         bench_add(bench, is_user ? SONJECT_SHAPE_USER : SONJECT_SHAPE_SPHERE, 0.0, 0.0,
                   is_user ? 0.0 : 2.0 * RADIUS);
     if (is_user)
-        object->user_shape = add_code(&bench->scene.user_shapes, &bench->report, "sphere.cl",
-                                      SPHERE_CODE, RADIUS, RADIUS, 0.0);
+        add_sound_shapes(bench);
+    object->user_shape = SPHERE_SHAPE;
     return object;
 }
 
@@ -95,10 +115,8 @@ static sonject_object_params *add_disc(struct bench *bench, bool is_user)
     object->burial_m = -0.1;
     if (!is_user)
         return object;
-    object->user_shape = add_code(&bench->scene.user_shapes, &bench->report, "disc.cl", DISC_CODE,
-                                  RADIUS, RADIUS, 0.0);
-    bench->scene.user_shapes.shapes[object->user_shape].is_open = true;
-    bench->scene.user_shapes.shapes[object->user_shape].half_height_m = 1e-9;
+    add_sound_shapes(bench);
+    object->user_shape = DISC_SHAPE;
     return object;
 }
 
@@ -221,13 +239,9 @@ static void test_a_shape_meets_itself(void **state)
                 &bench, is_user ? SONJECT_SHAPE_USER : SONJECT_SHAPE_PARTS, 0.0, 0.0, 0.0);
             make_rough(object);
             object->burial_m = -0.5;
-            object->user_shape = 0;
-            if (is_user) {
-                add_code(&bench.scene.user_shapes, &bench.report, "pair.cl", PAIR_CODE, 0.6, 0.25,
-                         0.3);
-                bench.scene.user_shapes.shapes[0].half_height_m = 0.25;
-                bench.scene.user_shapes.shapes[0].half_width_m = 0.25;
-            }
+            object->user_shape = PAIR_SHAPE;
+            if (is_user)
+                add_sound_shapes(&bench);
             for (int i = 0; !is_user && i < 2; i++) {
                 struct scene_part part;
                 memset(&part, 0, sizeof part);
@@ -414,16 +428,18 @@ static void test_several_codes_and_a_mesh(void **state)
             object->position_along = 40.0 + 60.0 * i;
             object->position_range = 50.0;
             make_rough(object);
-            if (is_dome)
-                object->user_shape = add_code(shapes, &bench.report, "dome.cl", DOME_CODE, 0.6,
-                                              i == 0 ? DOME_A : 0.3, i == 0 ? DOME_H : 0.1);
-            if (is_dome)
+            /* both codes wherever the spheres are from: the program is then the same */
+            object->user_shape = shapes->count;
+            if (is_dome) {
+                add_code(shapes, &bench.report, "dome.cl", DOME_CODE, 0.6, i == 0 ? DOME_A : 0.3,
+                         i == 0 ? DOME_H : 0.1);
                 shapes->shapes[object->user_shape].half_height_m = i == 0 ? DOME_H : 0.1;
-            else if (is_sphere && is_user)
-                object->user_shape = add_code(shapes, &bench.report, "sphere.cl", SPHERE_CODE,
-                                              radii[i - 1], radii[i - 1], 0.0);
+            } else if (is_sphere) {
+                add_code(shapes, &bench.report, "sphere.cl", SPHERE_CODE, radii[i - 1],
+                         radii[i - 1], 0.0);
+            }
         }
-        assert_int_equal(shapes->snippet_count, is_user ? 2 : 1);
+        assert_int_equal(shapes->snippet_count, 2);
         bench_ready(&bench);
         trace_tiles(&bench, sums[is_user]);
         bench_close(&bench);
