@@ -425,6 +425,7 @@ static struct energies trace_beside(uint32_t column_rule, bool is_below_surface,
     bench.scene.surface.material.lambert = is_below_surface ? lambert : 0.0;
     bench.scene.seabed.lambert = is_below_surface ? 1e-9 : lambert;
     bench.scene.injection.interactions = 2;
+    bench.scene.injection.ray_scale = 0.25; /* errors are then up to what is systematic */
     bench.scene.injection.column_rule = column_rule;
     bench_ready(&bench);
     if (is_below_surface) /* higher than objects may be placed */
