@@ -8,13 +8,14 @@
 
 #include "base/file.h"
 #include "io/exr_chunks.h"
+#include "io/jp2_boxes.h"
 #include "io/jpeg_segments.h"
 #include "io/png_chunks.h"
 #include "io/tiff_structure.h"
 
 struct beginning {
     enum image_kind kind;
-    unsigned char bytes[4];
+    unsigned char bytes[8];
     size_t count;
 };
 
@@ -31,9 +32,7 @@ static const struct foreign foreign_kinds[] = {
     {"a Cineon", "\x80\x2A\x5F\xD7", 0, 4},
     {"a PSD", "8BPS", 0, 4},
     {"a GIF", "GIF8", 0, 4},
-    {"a JPEG 2000", "\x00\x00\x00\x0CjP  ", 0, 8},
     {"a WebP", "WEBP", 8, 4},
-    {"a JPEG 2000", "\xFF\x4F\xFF\x51", 0, 4},
     {"a Radiance", "#?RADIANCE", 0, 10},
     {"a Radiance", "#?RGBE", 0, 6},
     {"an SGI", "\x01\xDA", 0, 2},
@@ -52,10 +51,15 @@ static const struct foreign foreign_kinds[] = {
 };
 
 static const struct beginning beginnings[] = {
-    {IMAGE_TIFF, {'I', 'I', 42, 0}, 4},          {IMAGE_TIFF, {'M', 'M', 0, 42}, 4},
-    {IMAGE_TIFF, {'I', 'I', 43, 0}, 4},          {IMAGE_TIFF, {'M', 'M', 0, 43}, 4},
-    {IMAGE_PNG, {0x89, 'P', 'N', 'G'}, 4},       {IMAGE_JPEG, {0xFF, 0xD8, 0xFF, 0}, 3},
-    {IMAGE_OPENEXR, {0x76, 0x2F, 0x31, 0x01}, 4}};
+    {IMAGE_TIFF, {'I', 'I', 42, 0}, 4},
+    {IMAGE_TIFF, {'M', 'M', 0, 42}, 4},
+    {IMAGE_TIFF, {'I', 'I', 43, 0}, 4},
+    {IMAGE_TIFF, {'M', 'M', 0, 43}, 4},
+    {IMAGE_PNG, {0x89, 'P', 'N', 'G'}, 4},
+    {IMAGE_JPEG, {0xFF, 0xD8, 0xFF, 0}, 3},
+    {IMAGE_OPENEXR, {0x76, 0x2F, 0x31, 0x01}, 4},
+    {IMAGE_JPEG2000, {0xFF, 0x4F, 0xFF, 0x51}, 4},
+    {IMAGE_JPEG2000, {0, 0, 0, 12, 'j', 'P', ' ', ' '}, 8}};
 
 struct extension {
     enum image_kind kind;
@@ -82,8 +86,9 @@ static const char *foreign_name(const unsigned char *head, size_t count)
 static sonject_status refuse_kind(struct report *report, const char *path,
                                   const unsigned char *head, size_t count)
 {
-    static const char readable[] = "TIFF, PNG, JPEG, OpenEXR, PGM (P5), PFM (Pf), BMP, FITS, XTF, "
-                                   "NumPy (.npy), HDF5 and MATLAB (.mat)";
+    static const char readable[] =
+        "TIFF, PNG, JPEG, JPEG 2000, OpenEXR, PGM (P5), PFM (Pf), BMP, Targa, FITS, XTF, "
+        "NumPy (.npy), HDF5 and MATLAB (.mat)";
     const char *name = foreign_name(head, count);
     if (name)
         return report_failure(report, SONJECT_ERROR_INPUT,
@@ -158,6 +163,8 @@ sonject_status image_kind_check(struct report *report, const char *path, enum im
         return png_check(report, path, parts);
     case IMAGE_JPEG:
         return jpeg_check(report, path, parts);
+    case IMAGE_JPEG2000:
+        return jp2_check(report, path, parts);
     case IMAGE_OPENEXR:
         return exr_check(report, path);
     case IMAGE_TIFF:

@@ -15,6 +15,7 @@ enum image_kind {
     IMAGE_TIFF,
     IMAGE_PNG,
     IMAGE_JPEG,
+    IMAGE_JPEG2000,
     IMAGE_OPENEXR
 };
 

@@ -1,4 +1,4 @@
-/* An image as it is written: PNG and JPEG by OpenImageIO's encoders, TIFF plainly. */
+/* An image as it is written: PNG, JPEG and JPEG 2000 by OpenImageIO's encoders, TIFF plainly. */
 #ifndef SONJECT_IO_RASTER_WRITER_HPP
 #define SONJECT_IO_RASTER_WRITER_HPP
 
@@ -52,6 +52,8 @@ inline const char *format_name(enum image_kind kind)
         return "png";
     case IMAGE_JPEG:
         return "jpeg";
+    case IMAGE_JPEG2000:
+        return "jpeg2000";
     case IMAGE_OPENEXR:
         return "openexr";
     case IMAGE_TIFF:
@@ -159,7 +161,8 @@ class image_writer
         if (!encoder)
             fail();
         encoder->threads(1);
-        if (!encoder->open(path, spec))
+        /* the encoder of JPEG 2000 tells by the name what to write, and leaves others empty */
+        if (!encoder->open(kind == IMAGE_JPEG2000 ? "encoded.jp2" : path, spec))
             fail();
     }
 

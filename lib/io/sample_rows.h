@@ -1,5 +1,5 @@
 /* Files whose rows are runs of plain samples at known places: channels of XTF files, NumPy arrays,
- * PGM, PFM, BMP and FITS images. Copies differ from their source in the replaced samples and in
+ * PGM, PFM, BMP, Targa and FITS images. Copies differ from their source in the replaced samples and in
  * sums over them alone, byte for byte. */
 #ifndef SONJECT_IO_SAMPLE_ROWS_H
 #define SONJECT_IO_SAMPLE_ROWS_H

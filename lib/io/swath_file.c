@@ -16,6 +16,7 @@
 #include "io/npy_file.h"
 #include "io/pnm_file.h"
 #include "io/raster_file.h"
+#include "io/tga_file.h"
 
 enum swath_kind {
     SWATH_IMAGE,
@@ -24,6 +25,7 @@ enum swath_kind {
     SWATH_PNM,
     SWATH_FITS,
     SWATH_BMP,
+    SWATH_TGA,
     SWATH_HDF5,
     SWATH_MAT
 };
@@ -33,14 +35,14 @@ struct swath_file {
     char *path;
     struct raster_file *image; /* SWATH_IMAGE */
     struct xtf_file xtf;
-    struct sample_rows plain; /* SWATH_NPY, SWATH_PNM, SWATH_FITS, SWATH_BMP */
+    struct sample_rows plain; /* SWATH_NPY, SWATH_PNM, SWATH_FITS, SWATH_BMP, SWATH_TGA */
     struct hdf5_array *hdf5;
     struct mat_file mat;
 };
 
 static sonject_status tell_kind(struct report *report, const char *path, enum swath_kind *kind)
 {
-    unsigned char head[16] = {0};
+    unsigned char head[TGA_HEAD_BYTES] = {0};
     enum image_kind image;
     uint64_t bytes;
     FILE *stream = byte_file_open(path, &bytes);
@@ -58,6 +60,7 @@ static sonject_status tell_kind(struct report *report, const char *path, enum sw
             : mat_begins(head, got)                      ? SWATH_MAT
             : image_kind_of_beginning(head, got, &image) ? SWATH_IMAGE
             : hdf5_mark_is_in(path)                      ? SWATH_HDF5
+            : tga_begins(head, got)                      ? SWATH_TGA
                                                          : SWATH_IMAGE;
     return SONJECT_OK;
 }
@@ -85,6 +88,8 @@ static sonject_status open_kind(struct report *report, struct swath_file *file, 
         return fits_file_open(report, file->path, &file->plain);
     case SWATH_BMP:
         return bmp_file_open(report, file->path, &file->plain);
+    case SWATH_TGA:
+        return tga_file_open(report, file->path, &file->plain);
     case SWATH_HDF5:
         return hdf5_array_open(report, file->path, array, &file->hdf5);
     case SWATH_MAT:

@@ -164,6 +164,61 @@ def test_openexr_whose_size_lies(sonject, tmp_path, swath):
     assert_refused(sonject("convert", "a.exr", "b.npy"), 3, "a.exr: cut short or damaged at rows")
 
 
+IMAGE = """\
+sonject: 1
+input:
+  path: {}
+  geometry: {{row_spacing: 10 cm, column_spacing: 10 cm, side: port, first_slant_range: 15 m}}
+sonar: {{frequency: 600 kHz, bandwidth: 10 kHz, altitude: 6 m, resolution: 0.2 m}}
+patch: {{row: 4, column: 10, rows: 32, columns: 60}}
+objects: [{{name: ball, shape: sphere, diameter: 1 m}}]
+"""
+
+
+def check_injection(sonject, folder, name, before):
+    """The image of a run, which differs from the input's samples within the patch alone."""
+    (folder / "scene.yaml").write_text(IMAGE.format(name))
+    done(sonject("run", "scene.yaml", "-o", "out"))
+    image = folder / "out" / ("image" + os.path.splitext(name)[1])
+    done(sonject("convert", image, "after.npy"))
+    after = numpy.load(folder / "after.npy")
+    assert after.dtype == before.dtype
+    inside = numpy.zeros(before.shape, bool)
+    inside[4:36, 10:70] = True
+    assert numpy.array_equal(after[~inside], before[~inside])
+    assert (after[inside] != before[inside]).any()
+    return image.read_bytes()
+
+
+def test_targa(sonject, tmp_path, sides):
+    before = (sides[0] // 64).astype(numpy.uint8)
+    source = images.tga_bytes(before)
+    (tmp_path / "line.tga").write_bytes(source)
+    done(sonject("convert", "line.tga", "a.npy"))
+    assert numpy.array_equal(numpy.load(tmp_path / "a.npy"), before)
+    after = check_injection(sonject, tmp_path, "line.tga", before)
+    assert len(after) == len(source) and after[:24] == source[:24] and after[-26:] == source[-26:]
+    coded = bytearray(source)
+    coded[2] = 11
+    (tmp_path / "line.tga").write_bytes(coded)
+    assert_refused(sonject("convert", "line.tga", "b.npy"), 3, "line.tga: is coded in runs")
+
+
+@pytest.mark.parametrize("bits", [8, 16])
+def test_jpeg_2000(sonject, tmp_path, sides, bits):
+    before = sides[0] if bits == 16 else (sides[0] // 64).astype(numpy.uint8)
+    source = images.jp2_bytes(ROWS, COLUMNS, bits)
+    (tmp_path / "level.jp2").write_bytes(source)
+    numpy.save(tmp_path / "a.npy", before)
+    done(sonject("convert", "a.npy", "line.jp2", "--into", "level.jp2"))
+    done(sonject("convert", "line.jp2", "b.npy"))
+    assert numpy.array_equal(numpy.load(tmp_path / "b.npy"), before)
+    after = check_injection(sonject, tmp_path, "line.jp2", before)
+    assert after[:77] == source[:77] and after[-36:] == source[-36:]
+    (tmp_path / "line.jp2").write_bytes(after[:-100])
+    assert_refused(sonject("convert", "line.jp2", "c.npy"), 3, "line.jp2: damaged JPEG 2000")
+
+
 def test_hdf5_keeps_samples_and_geometry(sonject, tmp_path, line, sides):
     h5py = pytest.importorskip("h5py")
     done(sonject("convert", "line.xtf", "a.h5", "--channel", "starboard"))

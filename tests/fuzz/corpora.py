@@ -72,6 +72,14 @@ def arrays(_):
     }
 
 
+def _writer(source):
+    """What makes images for the tests of the command."""
+    sys.path.insert(0, str(source / "tests" / "cli"))
+    import images as writer
+
+    return writer
+
+
 def _bmp(samples):
     rows, columns = samples.shape
     palette = b"".join(bytes([i, i, i, 0]) for i in range(16))
@@ -87,12 +95,14 @@ def _fits(kind, numbers, *cards):
     return head.encode() + numbers.tobytes()
 
 
-def rows(_):
+def rows(source):
+    writer = _writer(source)
     samples = numpy.arange(6)
     return {
         "bmp": _bmp(samples.reshape(2, 3).astype("u1")),
         "fits": _fits(16, samples.astype(">i2"), "BZERO   = 32768 / offset", "BSCALE  = 1"),
         "real": _fits(-32, samples.astype(">f4")),
+        "tga": writer.tga_bytes(samples.reshape(2, 3)),
         "pgm": b"P5\n# name=a\n3 2\n255\n" + samples.astype("u1").tobytes(),
         "wide": b"P5 3 2 65535\n" + samples.astype(">u2").tobytes(),
         "pfm": b"Pf\n3 2\n-1.0\n" + samples.astype("<f4").tobytes(),
@@ -211,9 +221,7 @@ def _jpeg():
 
 
 def images(source):
-    sys.path.insert(0, str(source / "tests" / "cli"))
-    import images as writer
-
+    writer = _writer(source)
     samples = numpy.arange(12, dtype="<f4").reshape(3, 4)
     openexr = {f"openexr{kind}": writer.exr_bytes({"Y": samples.repeat(9, 0)}, kind)
                for kind in (0, 3)}
@@ -225,7 +233,9 @@ def images(source):
     files = {f"{order}{is_big}{tiled}".replace("<", "le").replace(">", "be"):
              _tiff(order, is_big, tiled)
              for order in "<>" for is_big in (False, True) for tiled in (False, True)}
-    return {**files, **openexr, "png": _png(), "jpeg": _jpeg()}
+    coded = {"jp2": writer.jp2_bytes(32, 40), "tiles": writer.jp2_bytes(40, 33, 16, (16, 9)),
+             "j2k": writer.jp2_bytes(32, 32, has_boxes=False)}
+    return {**files, **openexr, **coded, "png": _png(), "jpeg": _jpeg()}
 
 
 def tables(_):

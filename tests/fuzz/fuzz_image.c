@@ -1,11 +1,13 @@
 /* What sonject itself reads of image files: where a TIFF keeps its pixels, the chunks of a PNG, the
- * segments of a JPEG, the chunks of an OpenEXR file. Decoding is OpenImageIO's. */
+ * segments of a JPEG, the boxes and the coded image of a JPEG 2000, the chunks of an OpenEXR file.
+ * Decoding is OpenImageIO's. */
 #include "fuzz.h"
 
 #include <stdlib.h>
 
 #include "io/byte_file.h"
 #include "io/exr_chunks.h"
+#include "io/jp2_boxes.h"
 #include "io/jpeg_segments.h"
 #include "io/png_chunks.h"
 #include "io/tiff_structure.h"
@@ -58,11 +60,27 @@ static void check_chunks(void)
         abort();
 }
 
+/* With itself as what was coded anew. */
+static void check_boxes(uint64_t file_bytes)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct byte_ranges parts = {0};
+    check_parts(jp2_check, file_bytes);
+    if (jp2_check(&report, "fuzz.image", &parts) == SONJECT_OK) {
+        if (jp2_join(&report, "fuzz.image", "fuzz.image", "fuzz.copy", "fuzz.copy") != SONJECT_OK)
+            abort();
+        fuzz_expect(jp2_check(&report, "fuzz.copy", &parts), &report);
+    }
+    free(parts.list);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
     fuzz_write("fuzz.image", bytes, count);
     if (count > 0 && bytes[0] == 0x89)
         check_parts(png_check, count);
+    else if (count > 0 && (bytes[0] == 0 || (count > 1 && bytes[0] == 0xFF && bytes[1] == 0x4F)))
+        check_boxes(count);
     else if (count > 0 && bytes[0] == 0xFF)
         check_parts(jpeg_check, count);
     else if (count > 0 && bytes[0] == 0x76)

@@ -1,4 +1,4 @@
-/* Images of plain rows: header and samples of PGM, PFM, BMP and FITS, comments of PGM. */
+/* Images of plain rows: header and samples of PGM, PFM, BMP, Targa and FITS, comments of PGM. */
 #include "fuzz.h"
 
 #include <stdlib.h>
@@ -7,6 +7,7 @@
 #include "io/bmp_file.h"
 #include "io/fits_file.h"
 #include "io/pnm_file.h"
+#include "io/tga_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
@@ -16,10 +17,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     size_t size;
     fuzz_write("fuzz.image", bytes, count);
     const bool is_netpbm = pnm_begins(bytes, count);
-    const sonject_status status = is_netpbm ? pnm_file_open(&report, "fuzz.image", &rows)
-                                  : fits_begins(bytes, count)
-                                      ? fits_file_open(&report, "fuzz.image", &rows)
-                                      : bmp_file_open(&report, "fuzz.image", &rows);
+    const sonject_status status =
+        is_netpbm                   ? pnm_file_open(&report, "fuzz.image", &rows)
+        : fits_begins(bytes, count) ? fits_file_open(&report, "fuzz.image", &rows)
+        : bmp_begins(bytes, count)  ? bmp_file_open(&report, "fuzz.image", &rows)
+                                    : tga_file_open(&report, "fuzz.image", &rows);
     fuzz_expect(status, &report);
     if (status != SONJECT_OK)
         return 0;

@@ -1,5 +1,5 @@
-/* Images of plain rows, PGM, PFM, BMP and FITS: which sample is where, what a copy keeps, and files
- * that are damaged. */
+/* Images of plain rows, PGM, PFM, BMP, Targa and FITS: which sample is where, what a copy keeps,
+ * and files that are damaged. */
 #include "file_drafts.h"
 
 static void make_pgm(struct draft *draft, unsigned largest)
@@ -207,6 +207,90 @@ static void make_fits(struct draft *draft, const char *bits, const char *more, u
 #define BITS_16  "BITPIX  =                   16"
 #define BITS_32F "BITPIX  = -32"
 
+/* corner: where the first sample is, as the head's last byte says. */
+static void make_tga(struct draft *draft, unsigned corner)
+{
+    draft->count = 0;
+    add(draft, "\4\0\3\0\0\0\0\0\0\0\0\0", 12);
+    add_number(draft, COLUMNS, 2);
+    add_number(draft, ROWS, 2);
+    add_number(draft, 8 | corner << 8, 2);
+    add(draft, "note", 4);
+    for (unsigned char i = 0; i < ROWS * COLUMNS; i++)
+        add(draft, &i, 1);
+    add(draft, "\0\0\0\0\0\0\0\0TRUEVISION-XFILE.", 26);
+}
+
+/* Rows go up or down, columns to the right or to the left. */
+static void test_tga(void **state)
+{
+    static const struct {
+        unsigned corner;
+        uint8_t first, last;
+        const char *bottom, *top; /* the replaced samples' rows in the file */
+    } corners[] = {{0x00, 8, 3, "\x66\x67", "\x64\x65"},
+                   {0x10, 11, 0, "\x67\x66", "\x65\x64"},
+                   {0x20, 0, 11, "\x64\x65", "\x66\x67"},
+                   {0x30, 3, 8, "\x65\x64", "\x67\x66"}};
+    struct draft draft, back;
+    uint8_t samples[ROWS * COLUMNS];
+    for (size_t i = 0; i < sizeof corners / sizeof *corners; i++) {
+        const bool is_upright = corners[i].corner & 0x20;
+        const size_t in_row = corners[i].corner & 0x10 ? 0 : 2;
+        make_tga(&draft, corners[i].corner);
+        struct swath_file *file = open_draft(*state, "a.tga", NULL, &draft);
+        expect_layout(file, 1, PIXEL_UINT8);
+        read_all(file, samples);
+        assert_int_equal(samples[0], corners[i].first);
+        assert_int_equal(samples[ROWS * COLUMNS - 1], corners[i].last);
+        patch(file, *state, "b.tga", (uint8_t[]){100, 101, 102, 103}, &back);
+        const size_t row = 22 + in_row + (is_upright ? COLUMNS : 0);
+        memcpy(draft.bytes + row, corners[i].bottom, 2);
+        memcpy(draft.bytes + row + COLUMNS, corners[i].top, 2);
+        assert_int_equal(back.count, draft.count);
+        assert_memory_equal(back.bytes, draft.bytes, draft.count);
+        swath_file_close(&file);
+    }
+}
+
+static void test_refused_tga(void **state)
+{
+    static const struct {
+        size_t place;
+        const char *bytes;
+        size_t count;
+        const char *words;
+    } lies[] = {{1, "\1\1", 2, "not a plain grey Targa"},
+                {1, "\1", 1, "not a plain grey Targa"},
+                {2, "\2", 1, "not a plain grey Targa"},
+                {2, "\x0A", 1, "not a plain grey Targa"},
+                {16, "\x10\x08", 2, "not a plain grey Targa"},
+                {16, "\x18", 1, "not a plain grey Targa"},
+                {17, "\x08", 1, "not a plain grey Targa"},
+                {2, "\x0B", 1, "runs of equal samples"},
+                {2, "\0", 1, "of no format"},
+                {2, "\1", 1, "of no format"},
+                {5, "\1", 1, "of no format"},
+                {12, "\0\0", 2, "of no format"},
+                {14, "\0\0", 2, "of no format"},
+                {16, "\x09", 1, "of no format"},
+                {17, "\x80", 1, "of no format"},
+                {12, "\xFF\xFF\xFF\xFF", 4, "cut short"},
+                {0, "\xFF", 1, "cut short"}};
+    struct draft draft;
+    for (size_t i = 0; i < sizeof lies / sizeof *lies; i++) {
+        make_tga(&draft, 0);
+        memcpy(draft.bytes + lies[i].place, lies[i].bytes, lies[i].count);
+        expect_refused(*state, "a.tga", NULL, &draft, lies[i].words);
+    }
+    make_tga(&draft, 0);
+    for (draft.count = 0; draft.count < 22 + ROWS * COLUMNS; draft.count++)
+        expect_refused(*state, "a.tga", NULL, &draft,
+                       draft.count == 0   ? "is empty"
+                       : draft.count < 18 ? "of no format"
+                                          : "cut short");
+}
+
 static void test_fits(void **state)
 {
     struct draft draft, back;
@@ -360,6 +444,8 @@ static void test_damaged_images(void **state)
     mutate(*state, "line.pfm", SONJECT_CHANNEL_ONLY, draft.bytes, draft.count, MUTATIONS);
     make_bmp(&draft, 3, ROWS, 0);
     mutate(*state, "line.bmp", SONJECT_CHANNEL_ONLY, draft.bytes, draft.count, MUTATIONS);
+    make_tga(&draft, 0x20);
+    mutate(*state, "line.tga", SONJECT_CHANNEL_ONLY, draft.bytes, draft.count, MUTATIONS);
     make_summed_fits(&draft);
     mutate(*state, "line.fits", SONJECT_CHANNEL_ONLY, draft.bytes, draft.count, MUTATIONS);
 }
@@ -374,7 +460,6 @@ static void test_foreign_formats(void **state)
                    {"BM and more of it all", "of no format that sonject knows"},
                    {"P6 and more of it all", "is a PPM file"},
                    {"#?RADIANCE and more", "is a Radiance file"},
-                   {"\xFF\x4F\xFF\x51 and more of it all", "is a JPEG 2000 file"},
                    {"\x01\xDA\x01\x01 and more of it all", "is an SGI file"},
                    {"FOR4 and more of it all", "is an IFF file"},
                    {"DDS and more of it all", "is a DDS file"},
@@ -386,8 +471,8 @@ static void test_foreign_formats(void **state)
         expect_refused(*state, "a.bin", NULL, &draft, foreign[i].words);
         expect_refused(
             *state, "a.bin", NULL, &draft,
-            "TIFF, PNG, JPEG, OpenEXR, PGM (P5), PFM (Pf), BMP, FITS, XTF, NumPy (.npy), HDF5 and "
-            "MATLAB");
+            "TIFF, PNG, JPEG, JPEG 2000, OpenEXR, PGM (P5), PFM (Pf), BMP, Targa, FITS, XTF, NumPy "
+            "(.npy), HDF5 and MATLAB");
     }
 }
 
@@ -397,6 +482,8 @@ int main(void)
         cmocka_unit_test(test_pgm),
         cmocka_unit_test(test_pfm),
         cmocka_unit_test(test_bmp),
+        cmocka_unit_test(test_tga),
+        cmocka_unit_test(test_refused_tga),
         cmocka_unit_test(test_fits),
         cmocka_unit_test(test_refused_fits),
         cmocka_unit_test(test_sums_of_fits),
