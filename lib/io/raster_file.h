@@ -36,7 +36,8 @@ bool raster_file_attribute(const struct raster_file *file, const char *name, cha
                            size_t capacity);
 
 /* Reads a region's stored pixels, row after row, channels interleaved. Holds no more than the tiles
- * or scanlines of the region in memory. Errors: INPUT (cut short, damaged), MEMORY. */
+ * or scanlines of the region in memory, but all of a JPEG 2000. Errors: INPUT (cut short, damaged),
+ * MEMORY. */
 sonject_status raster_file_read(struct report *report, struct raster_file *file,
                                 const struct region *region, void *pixels);
 
