@@ -295,22 +295,20 @@ static void make_coded(const char *folder, struct draft *draft)
 
 static void test_cut_short(void **state)
 {
-    struct draft draft;
+    struct draft draft, shorter;
     make_coded(*state, &draft);
     const size_t count = draft.count;
     for (draft.count = 0; draft.count < count; draft.count++)
         if (draft.count != count - 12) /* without the last box it is whole */
             expect_refused(*state, "c.jp2", NULL, &draft, "c.jp2: ");
-    for (size_t missing = 1; missing < 200; missing += 9) { /* of the coded image, by all lengths */
-        draft.count = count;
-        const size_t left = count - 12 - CODED_PLACE - missing;
-        const uint64_t part = number_from_bytes(draft.bytes + count - 14 - 0, 2, true);
-        assert_int_equal(part, 0xFFD9);
-        memmove(draft.bytes + CODED_PLACE + left - 2, draft.bytes + count - 14, 14);
-        number_to_bytes(left, draft.bytes + CODED_PLACE, 4, true);
-        draft.count -= missing;
-        expect_refused(*state, "c.jp2", NULL, &draft, "c.jp2: ");
-        make_coded(*state, &draft);
+    /* what is missing from the coded image, with lengths that fit: its tile's is too long */
+    for (size_t missing = 1; missing < 200; missing += 9) {
+        const size_t end = count - 14; /* of what is coded: the end's marker and a box follow */
+        memcpy(shorter.bytes, draft.bytes, end - missing);
+        memcpy(shorter.bytes + end - missing, draft.bytes + end, 14);
+        number_to_bytes(count - 12 - CODED_PLACE - missing, shorter.bytes + CODED_PLACE, 4, true);
+        shorter.count = count - missing;
+        expect_refused(*state, "c.jp2", NULL, &shorter, "cut short");
     }
 }
 
@@ -318,7 +316,7 @@ static void test_damaged(void **state)
 {
     struct draft draft;
     make_coded(*state, &draft);
-    mutate(*state, "line.jp2", SONJECT_CHANNEL_ONLY, draft.bytes, draft.count, MUTATIONS);
+    mutate(*state, "line.jp2", SONJECT_CHANNEL_ONLY, draft.bytes, draft.count, MUTATIONS / 3);
 }
 
 int main(void)
