@@ -7,8 +7,8 @@
 #include "base/report.h"
 #include "io/byte_file.h"
 
-#define JP2_SIDE_MIN 32 /* rows and columns: what its encoder needs to halve an image five times   \
-                         */
+/* Rows and columns: the encoder halves each image five times. */
+#define JP2_SIDE_MIN 32
 
 struct jp2_image {
     uint64_t rows, columns;
