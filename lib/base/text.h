@@ -22,6 +22,9 @@ bool text_to_count(const char *text, uint64_t *count);
  * capacity: at least digits + 10. Returns text. */
 const char *text_of_number(char *text, size_t capacity, double number, int digits);
 
+/* How many lines end in the text. */
+unsigned long text_count_lines(const char *text);
+
 /* True if the text is well-formed UTF-8 without control characters. */
 bool text_is_printable(const char *text);
 

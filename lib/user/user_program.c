@@ -4,8 +4,11 @@
 #include <string.h>
 
 #include "base/growing_text.h"
+#include "base/text.h"
 #include "cl/sources.h"
 #include "user/build_log.h"
+
+#define OWN_PIECES 3 /* before the users': kernels, what takes their macros away, calls */
 
 typedef char parameters_are_as_many[USER_PARAMETERS == SONJECT_USER_PARAMETERS_CAPACITY ? 1 : -1];
 typedef char user_record_is_packed[sizeof(struct user_record) == 18 * 4 ? 1 : -1];
@@ -103,11 +106,19 @@ static sonject_status get_program(struct report *report, struct device *device,
     return status;
 }
 
+static unsigned long count_lines(const char *const own_pieces[OWN_PIECES])
+{
+    unsigned long lines = 0;
+    for (size_t i = 0; i < OWN_PIECES; i++)
+        lines += text_count_lines(own_pieces[i]);
+    return lines;
+}
+
 sonject_status user_kernel_create(struct report *report, struct device *device,
                                   const struct user_shapes *shapes, uint32_t variant,
                                   enum device_program number, const char *name, cl_kernel *kernel)
 {
-    const char *pieces[3 + 3 * USER_SNIPPETS_MAX];
+    const char *pieces[OWN_PIECES + 3 * USER_SNIPPETS_MAX];
     char options[PROGRAM_OPTIONS_CAPACITY];
     size_t count = 0;
     cl_program program;
@@ -123,8 +134,9 @@ sonject_status user_kernel_create(struct report *report, struct device *device,
         pieces[count++] = shapes->snippets[i].behind;
     }
     program_options(device, variant, " -DWITH_USER_SHAPES", options);
+    const struct user_text users = {shapes, without_macros && calls ? count_lines(pieces) : 0};
     const struct program_text text = {
-        embedded_sources[number].name, pieces, count, options, explain, shapes};
+        embedded_sources[number].name, pieces, count, options, explain, &users};
     sonject_status status = without_macros && calls
                                 ? get_program(report, device, &text, &program)
                                 : report_out_of_memory(report, "the user shapes' program");

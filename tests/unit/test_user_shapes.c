@@ -193,7 +193,8 @@ static void expect_explained(const char *log, const char *message)
     memset(&shapes, 0, sizeof shapes);
     append(&shapes, "a.cl", GOOD);
     append(&shapes, "path to/b.cl", GOOD " ");
-    assert_int_equal(explain_build_log(&report, &shapes, "some device", log), SONJECT_ERROR_INPUT);
+    const struct user_text text = {&shapes, 1000};
+    assert_int_equal(explain_build_log(&report, &text, "some device", log), SONJECT_ERROR_INPUT);
     assert_string_equal(report.message, message);
     for (const char *c = log; *c != '\0'; c++)
         expected += *c == '\n';
@@ -219,6 +220,64 @@ static void test_build_logs_become_lines(void **state)
     expect_explained("Cannot find symbol user_0_shape_normal in kernel library\n",
                      "device 'some device' cannot build the user shapes' code: Cannot find symbol "
                      "shape_normal in kernel library");
+    expect_explained("f: Warning: k is a kernel\nptxas fatal   : Unresolved extern function "
+                     "'user_0_shape_normal'\n",
+                     "device 'some device' cannot build the user shapes' code: ptxas fatal   : "
+                     "Unresolved extern function 'shape_normal'");
+}
+
+/* The number of the line of a program in which a text stands. */
+static unsigned long line_of(const char *program, const char *text)
+{
+    unsigned long line = 1;
+    const char *end = strstr(program, text);
+    assert_non_null(end);
+    for (; program < end; program++)
+        line += *program == '\n';
+    return line;
+}
+
+static void expect_explained_by_count(const struct user_text *text, unsigned long line,
+                                      const char *message)
+{
+    struct report report = {{0}, NULL, NULL};
+    char log[80];
+    snprintf(log, sizeof log, "<kernel>:%lu:12: error: what\n x\n ^\n", line);
+    assert_int_equal(explain_build_log(&report, text, "some device", log), SONJECT_ERROR_INPUT);
+    assert_string_equal(report.message, message);
+}
+
+static void test_lines_of_the_whole_program_are_told_apart(void **state)
+{
+    static const char own[] = "own text\nin three\nlines\n";
+    struct user_shapes shapes;
+    char program[4096];
+    char unknown[120];
+    (void)state;
+    memset(&shapes, 0, sizeof shapes);
+    append(&shapes, "a.cl", GOOD "int in_a;\n");
+    append(&shapes, "b.cl", "\n" GOOD "int in_b;"); /* its last line does not end */
+    const struct user_snippet *a = &shapes.snippets[0];
+    const struct user_snippet *b = &shapes.snippets[1];
+    const struct user_text text = {&shapes, 3};
+    snprintf(program, sizeof program, "%s%s%s%s%s%s%slast", own, a->before, a->code, a->behind,
+             b->before, b->code, b->behind);
+    expect_explained_by_count(&text, line_of(program, "int in_a"), "a.cl:3: what");
+    expect_explained_by_count(&text, line_of(program, "int in_b"), "b.cl:4: what");
+    expect_explained_by_count(&text, line_of(program, "int in_b") - 3, "b.cl:1: what");
+    expect_explained_by_count(&text, line_of(program, "end of a.cl"), "a.cl: at its end: what");
+    expect_explained_by_count(&text, line_of(program, "last"), "b.cl: at its end: what");
+    const unsigned long unknown_lines[] = {3, line_of(program, a->before),
+                                           line_of(program, "#line 1 \"b.cl"),
+                                           line_of(program, "last") + 1};
+    for (size_t i = 0; i < COUNT(unknown_lines); i++) {
+        snprintf(unknown, sizeof unknown,
+                 "device 'some device' cannot build the user shapes' code: <kernel>:%lu:12: error: "
+                 "what",
+                 unknown_lines[i]);
+        expect_explained_by_count(&text, unknown_lines[i], unknown);
+    }
+    user_shapes_clear(&shapes);
 }
 
 static void test_equal_codes_are_one(void **state)
@@ -386,6 +445,7 @@ int main(void)
         cmocka_unit_test(test_size_and_names_are_limited),
         cmocka_unit_test(test_names_are_kept_apart),
         cmocka_unit_test(test_build_logs_become_lines),
+        cmocka_unit_test(test_lines_of_the_whole_program_are_told_apart),
         cmocka_unit_test(test_equal_codes_are_one),
         cmocka_unit_test(test_code_in_files_needs_consent),
         cmocka_unit_test(test_code_arrives_with_its_lines),
