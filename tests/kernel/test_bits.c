@@ -368,13 +368,14 @@ typedef void body(struct bench *bench, enum scene_kind kind);
 
 /* The same device with kernels of each number of lanes; plain C, which is the same for all, runs
  * once. */
-static const uint32_t widths[] = {1, 4, 8, 16};
-#define WIDTHS (sizeof widths / sizeof *widths)
-static struct device *devices[WIDTHS];
+static uint32_t widths[BENCH_WIDTHS];
+static struct device *devices[BENCH_WIDTHS];
+static size_t width_count;
 
 static void on_all_kinds(body *run)
 {
     struct bench bench;
+    width_count = bench_widths(widths);
     bench_open(&bench, ROWS, COLUMNS, 18.0);
     sonject_context_params params;
     memset(&params, 0, sizeof params);
@@ -382,7 +383,7 @@ static void on_all_kinds(body *run)
     params.device_name = bench_device;
     params.cache_folder = "";
     struct device *first = bench.tracer.device;
-    for (size_t w = 0; w < WIDTHS; w++) {
+    for (size_t w = 0; w < width_count; w++) {
         if (device_open(&bench.report, &params, &devices[w]) != SONJECT_OK)
             fail_msg("%s", bench.report.message);
         devices[w]->width = widths[w];
@@ -390,10 +391,10 @@ static void on_all_kinds(body *run)
     for (int kind = 0; kind < SCENE_KINDS; kind++) {
         scene_clear(&bench.scene);
         bench_move(&bench, 18.0);
-        bench.tracer.device = devices[WIDTHS - 1];
+        bench.tracer.device = devices[width_count - 1];
         run(&bench, (enum scene_kind)kind);
     }
-    for (size_t w = 0; w < WIDTHS; w++)
+    for (size_t w = 0; w < width_count; w++)
         device_close(&devices[w]);
     bench.tracer.device = first;
     bench_close(&bench);
@@ -409,19 +410,19 @@ static void take_width(struct bench *bench, size_t w)
  * compared at the ends of the row of widths, one also amid it, others at the upper end alone. */
 static bool is_at_end(size_t w)
 {
-    return w == 0 || w == WIDTHS - 1;
+    return w == 0 || w == width_count - 1;
 }
 
 static bool is_rough_compared(enum scene_kind kind, size_t w)
 {
     if (kind < SCENE_RELIEF)
         return is_at_end(w) || widths[w] == 8;
-    return w == WIDTHS - 1 || (w == 0 && kind != SCENE_ASPECTS && kind != SCENE_BEAM);
+    return w == width_count - 1 || (w == 0 && kind != SCENE_ASPECTS && kind != SCENE_BEAM);
 }
 
 static bool is_smooth_compared(const struct bench *bench, size_t w)
 {
-    return w == WIDTHS - 1 || (w == 0 && !bench->tracer.relief);
+    return w == width_count - 1 || (w == 0 && !bench->tracer.relief);
 }
 
 /* Strips that are traced or formed at once: all, twice, and few; at the lower end, where each takes
@@ -429,7 +430,7 @@ static bool is_smooth_compared(const struct bench *bench, size_t w)
 #define CHUNKINGS 4
 static size_t chunkings_at(size_t w)
 {
-    return w == 0 ? 2 : CHUNKINGS;
+    return w < width_count - 1 && w == 0 ? 2 : CHUNKINGS;
 }
 
 static void compare_rough(struct bench *bench, enum scene_kind kind)
@@ -439,7 +440,7 @@ static void compare_rough(struct bench *bench, enum scene_kind kind)
     struct tallies expected = trace_rough_as_c(bench, map);
     expect_alive(&expected);
     static const int32_t chunks[CHUNKINGS] = {1 << 20, 37, 1 << 20, 1};
-    for (size_t w = 0; w < WIDTHS; w++) {
+    for (size_t w = 0; w < width_count; w++) {
         if (!is_rough_compared(kind, w))
             continue;
         take_width(bench, w);
@@ -469,7 +470,7 @@ static bool compare_pair(struct bench *bench, uint32_t object, const struct sour
     struct tallies expected = trace_smooth_as_c(bench, object, pair);
     const bool had_echoes = is_alive(&expected);
     static const int32_t chunks[CHUNKINGS] = {1 << 20, 37, 1 << 20, 5};
-    for (size_t w = 0; w < WIDTHS; w++) {
+    for (size_t w = 0; w < width_count; w++) {
         if (!is_smooth_compared(bench, w))
             continue;
         take_width(bench, w);
@@ -577,11 +578,9 @@ static void compare_rough_mirrored(struct bench *bench, enum scene_kind kind)
     bench->scene.surface.water_depth_m = 7.5;
     bench->scene.injection.interactions = 4;
     make_scene(bench, kind);
-    for (size_t w = 0; w < WIDTHS; w++) {
+    for (int end = 0; end < 2; end++) { /* of the row of widths, where that has one alone, twice */
         size_t elements, filled = 0;
-        if (!is_at_end(w))
-            continue;
-        take_width(bench, w);
+        take_width(bench, end == 0 ? 0 : width_count - 1);
         int64_t *tiles = mirrored_tiles(bench, &elements);
         for (size_t i = 0; i < elements; i++)
             filled += tiles[i] != 0;
@@ -866,7 +865,7 @@ static void compare_forming(struct bench *bench, enum form_kind kind, const stru
     struct planes expected = form_as_c(bench, &lines, is_speckle ? &drawn : &bins);
     form_lines_end(&lines);
     static const int32_t chunks[CHUNKINGS] = {1 << 20, 37, 1 << 20, 1};
-    for (size_t w = 0; w < WIDTHS; w++) {
+    for (size_t w = 0; w < width_count; w++) {
         take_width(bench, w);
         if (widths[w] == 1 && bench->tracer.device->is_cpu)
             continue;

@@ -193,11 +193,12 @@ static void compare_variant(struct bench *bench, const struct variant *variant)
 static void test_corner_tallies(void **unused)
 {
     (void)unused;
-    static const uint32_t widths[] = {1, 16};
-    for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
+    uint32_t widths[2];
+    const size_t count = bench_end_widths(widths);
+    for (size_t w = 0; w < count; w++) {
         struct bench bench;
         bench_open(&bench, ROWS, COLUMNS, 18.0);
-        bench.tracer.device->width = widths[w];
+        bench_set_width(&bench, widths[w]);
         print_message("width %u\n", (unsigned)widths[w]);
         for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
             scene_clear(&bench.scene);

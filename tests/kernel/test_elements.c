@@ -186,17 +186,18 @@ static int count_heard(const struct lines *lines)
 static void test_same_bits(void **unused)
 {
     (void)unused;
-    static const uint32_t widths[] = {1, 4, 8, 16};
     static const int32_t segments[] = {1, 2, 7, 500};
     static struct workload work;
     static struct lines expected, measured;
+    uint32_t widths[BENCH_WIDTHS];
+    const size_t count = bench_widths(widths);
     fill_workload(&work);
     compute_as_c(&work, &expected);
     assert_true(count_heard(&expected) > PAIRS * SAMPLES / 20);
-    for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
+    for (size_t w = 0; w < count; w++) {
         struct bench bench;
         bench_open(&bench, 8, 8, 18.0);
-        bench.tracer.device->width = widths[w];
+        bench_set_width(&bench, widths[w]);
         for (size_t i = 0; i < sizeof segments / sizeof *segments; i++) {
             if (bench.tracer.device->is_cpu && widths[w] < 4)
                 continue;

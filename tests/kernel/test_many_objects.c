@@ -335,11 +335,12 @@ static void compare_chains(struct bench *bench)
 static void test_devices(void **unused)
 {
     (void)unused;
-    static const uint32_t widths[] = {1, 16};
-    for (size_t w = 0; w < sizeof widths / sizeof *widths; w++) {
+    uint32_t widths[2];
+    const size_t count = bench_end_widths(widths);
+    for (size_t w = 0; w < count; w++) {
         struct bench bench;
         bench_open(&bench, ROWS, COLUMNS, MIDDLE_M);
-        bench.tracer.device->width = widths[w];
+        bench_set_width(&bench, widths[w]);
         print_message("width %u\n", (unsigned)widths[w]);
         clutter_strew(&bench, 200, 0.4);
         bench.scene.injection.interactions = 3;

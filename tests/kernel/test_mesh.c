@@ -637,9 +637,14 @@ static void test_bits(void **state)
                         flight.rays);
     ask(&mesh, &flight);
     expect_same("16 lanes of plain C", &flight, expected);
-    for (size_t i = 0; i < devices; i++)
-        for (unsigned width = 1; width <= 16; width *= width == 1 ? 4 : 2)
-            compare_device(names[i], width, &mesh, &flight, expected);
+    for (size_t i = 0; i < devices; i++) {
+        uint32_t widths[BENCH_WIDTHS];
+        bench_device = names[i];
+        const size_t count = bench_widths(widths);
+        for (size_t w = 0; w < count; w++)
+            compare_device(names[i], widths[w], &mesh, &flight, expected);
+    }
+    bench_device = NULL;
     free(expected);
     clear_flight(&flight);
     mesh_clear(&mesh);

@@ -117,7 +117,7 @@ static struct tallies trace_scene(uint32_t width, bool is_crowded)
     struct tallies tallies;
     struct bench bench;
     bench_open(&bench, ROWS, COLUMNS, 18.0);
-    bench.tracer.device->width = width;
+    bench_set_width(&bench, width);
     make_scene(&bench, is_crowded);
     if (rough_trace_begin(&trace, &bench.tracer, NULL) != SONJECT_OK)
         fail_msg("%s", bench.report.message);
@@ -165,14 +165,16 @@ static void expect_same(const char *what, const int64_t *measured, const int64_t
 static void test_widths_and_company(void **unused)
 {
     (void)unused;
-    struct tallies wide = trace_scene(16, true);
-    struct tallies narrow = trace_scene(1, true);
-    struct tallies alone = trace_scene(1, false);
+    uint32_t widths[BENCH_WIDTHS];
+    const size_t count = bench_widths(widths);
+    struct tallies wide = trace_scene(widths[count - 1], true);
+    struct tallies narrow = trace_scene(widths[0], true);
+    struct tallies alone = trace_scene(widths[0], false);
     assert_int_equal(wide.tile_elements, narrow.tile_elements);
     assert_int_equal(wide.glint_elements, narrow.glint_elements);
     assert_int_equal(alone.glint_elements, narrow.glint_elements);
-    expect_same("all tiles, widths 16 and 1", wide.tiles, narrow.tiles, narrow.tile_elements);
-    expect_same("glint, widths 16 and 1", wide.glint, narrow.glint, narrow.glint_elements);
+    expect_same("all tiles, most and fewest lanes", wide.tiles, narrow.tiles, narrow.tile_elements);
+    expect_same("glint, most and fewest lanes", wide.glint, narrow.glint, narrow.glint_elements);
     expect_same("the sphere's tile in company", narrow.sphere, alone.sphere, TILE_PLANES);
     expect_same("its glint in company", narrow.glint, alone.glint, alone.glint_elements);
     tallies_clear(&wide);

@@ -25,18 +25,23 @@ const char *bench_device;
 /* The one of bench_device that a bench gave back, with its programs. */
 static struct device *free_device;
 
-static void take_device(struct bench *bench)
+static void open_device(struct bench *bench)
 {
     sonject_context_params context;
     memset(&context, 0, sizeof context);
     context.struct_size = sizeof context;
     context.device_name = bench_device;
     context.cache_folder = "";
+    expect_ok(bench, device_open(&bench->report, &context, &bench->tracer.device));
+}
+
+static void take_device(struct bench *bench)
+{
     if (free_device) {
         bench->tracer.device = free_device;
         free_device = NULL;
     } else {
-        expect_ok(bench, device_open(&bench->report, &context, &bench->tracer.device));
+        open_device(bench);
     }
     bench->device = bench->tracer.device;
     bench->device_width = bench->device->width;
@@ -73,6 +78,19 @@ void bench_close(struct bench *bench)
     placements_clear(&bench->placed);
     water_clear(&bench->water);
     scene_clear(&bench->scene);
+}
+
+void bench_set_width(struct bench *bench, uint32_t width)
+{
+    if (width == bench->tracer.device->width)
+        return;
+    give_device_back(bench);
+    if (width == bench->device_width) {
+        take_device(bench);
+        return;
+    }
+    open_device(bench);
+    bench->tracer.device->width = width;
 }
 
 void bench_move(struct bench *bench, double middle_range_m)
@@ -167,6 +185,31 @@ void bench_ready(struct bench *bench)
 double bench_wavenumber(const struct bench *bench)
 {
     return 2.0 * PI * bench->scene.sonar.centre_frequency_hz / bench->scene.medium.sound_speed_mps;
+}
+
+static uint32_t native_width(void)
+{
+    struct bench bench;
+    bench_open(&bench, 1, 1, 18.0);
+    const uint32_t width = bench.device_width;
+    bench_close(&bench);
+    return width;
+}
+
+size_t bench_widths(uint32_t widths[BENCH_WIDTHS])
+{
+    static const uint32_t all[BENCH_WIDTHS] = {1, 4, 8, 16};
+    memcpy(widths, all, sizeof all);
+    return native_width() > 1 ? BENCH_WIDTHS : 1;
+}
+
+size_t bench_end_widths(uint32_t ends[2])
+{
+    uint32_t widths[BENCH_WIDTHS];
+    const size_t count = bench_widths(widths);
+    ends[0] = widths[0];
+    ends[1] = widths[count - 1];
+    return count > 1 ? 2 : 1;
 }
 
 size_t bench_devices(char names[BENCH_DEVICES][128])

@@ -33,6 +33,9 @@ struct bench {
 void bench_open(struct bench *bench, size_t rows, size_t columns, double middle_range_m);
 void bench_close(struct bench *bench);
 
+/* Gives the bench's device another number of lanes, and none of the programs of before. */
+void bench_set_width(struct bench *bench, uint32_t width);
+
 /* Puts the middle column somewhere else (apparent range), after spacing or size changed. */
 void bench_move(struct bench *bench, double middle_range_m);
 
@@ -61,6 +64,14 @@ double bench_wavenumber(const struct bench *bench);
 
 /* The device that bench_open opens: one whose name contains this; NULL: the default one. */
 extern const char *bench_device;
+
+/* The numbers of lanes to try on bench_device: 1 to 16 where it has vectors; on others 1, since
+ * their drivers take minutes to compile what they are never given. Returns how many there are. */
+#define BENCH_WIDTHS 4
+size_t bench_widths(uint32_t widths[BENCH_WIDTHS]);
+
+/* The least and the most of them; the number of these. */
+size_t bench_end_widths(uint32_t ends[2]);
 
 /* Runs the tests on every device; the number of those that failed, which a program returns. */
 struct CMUnitTest;
