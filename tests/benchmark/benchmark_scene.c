@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 void benchmark_fail(const struct report *report, const char *what)
 {
@@ -65,7 +66,8 @@ void benchmark_clear(struct benchmark_scene *set)
 
 unsigned benchmark_threads(const struct device *device)
 {
-    return device->compute_units < THREADS_MAX ? device->compute_units : THREADS_MAX;
+    const long cores = device->is_cpu ? (long)device->compute_units : sysconf(_SC_NPROCESSORS_ONLN);
+    return cores < 1 ? 1 : cores < THREADS_MAX ? (unsigned)cores : THREADS_MAX;
 }
 
 void benchmark_run_threads(void *(*work)(void *), void *elements, size_t size, unsigned threads)

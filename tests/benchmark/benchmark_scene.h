@@ -24,7 +24,7 @@ void benchmark_place(struct benchmark_scene *set, size_t pixels);
 void benchmark_clear(struct benchmark_scene *set);
 void benchmark_fail(const struct report *report, const char *what);
 
-/* As many threads as the device has cores, for the native side. */
+/* Threads for the native side: a CPU's cores, beside a GPU the host's. */
 unsigned benchmark_threads(const struct device *device);
 
 /* Runs work on each of `threads` elements of `size` bytes, and waits for all. */
