@@ -1,7 +1,7 @@
 """Runs a fuzzer on a corpus of its kind: run_fuzzer.py PROGRAM KIND SOURCE.
 
-SONJECT_FUZZ_SECONDS says for how long (20), SONJECT_FUZZ_FINDINGS where what it finds is kept
-(./findings). Runs begin with the same seed.
+SONJECT_FUZZ_SECONDS says for how long (60 or 20), SONJECT_FUZZ_FINDINGS where what it finds is
+kept (./findings). Runs begin with the same seed.
 """
 
 import os
@@ -14,6 +14,8 @@ import corpora
 
 # One triangle pyramid in place of a rock's hundreds.
 ROCK = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n"
+# Readers of the files that scenes are made of.
+MINUTE = {"scene", "xtf", "npy", "stl", "obj", "ply"}
 LONGEST = {"scene": 8192, "target": 8192, "xtf": 4096, "snippet": 4096, "rows": 3072,
            "image": 6144}
 
@@ -34,7 +36,7 @@ def fill(folder, kind, source):
 def main():
     program, source = (pathlib.Path(sys.argv[i]).resolve() for i in (1, 3))
     kind = sys.argv[2]
-    seconds = os.environ.get("SONJECT_FUZZ_SECONDS", "20")
+    seconds = os.environ.get("SONJECT_FUZZ_SECONDS", "60" if kind in MINUTE else "20")
     findings = pathlib.Path(os.environ.get("SONJECT_FUZZ_FINDINGS", "findings")).absolute()
     findings.mkdir(parents=True, exist_ok=True)
     fast = "/dev/shm" if os.access("/dev/shm", os.W_OK) else None
