@@ -8,6 +8,7 @@
 
 #include <sonject/sonject.h>
 
+#include "channel_argument.h"
 #include "exit_code.h"
 #include "message.h"
 #include "transfer_argument.h"
@@ -20,6 +21,8 @@ struct measure_options {
     const char *influence;
     const char *labels;
     const char *transfer;
+    const char *channel;
+    const char *array;
     struct text_list boxes;
     bool finds;
     struct number_argument find_contrast;
@@ -45,6 +48,10 @@ static const struct argument arguments[] = {
      false, MEMBER(labels)},
     {"--transfer", NULL, "KIND[:P[:OFFSET]]", "how stored numbers came from amplitudes, see below",
      ARGUMENT_TEXT, false, MEMBER(transfer)},
+    {"--channel", NULL, "port|starboard|N", "of an XTF file", ARGUMENT_TEXT, false,
+     MEMBER(channel)},
+    {"--array", NULL, "NAME", "in an HDF5 or MATLAB file of several", ARGUMENT_TEXT, false,
+     MEMBER(array)},
     {"--box", NULL, "ROW,COLUMN,ROWS,COLUMNS", "measures the contact there; may be repeated",
      ARGUMENT_TEXTS, false, MEMBER(boxes)},
     {"--truth", NULL, "FILE", "measures the contacts of a run's truth.json", ARGUMENT_TEXT, false,
@@ -111,7 +118,9 @@ static bool fill(const struct measure_options *options, sonject_measure_params *
         return false;
     }
     params->has_transfer = options->transfer != NULL;
-    return !options->transfer || transfer_parse("measure", options->transfer, &params->transfer);
+    params->array = options->array;
+    return (!options->channel || channel_parse("measure", options->channel, &params->channel)) &&
+           (!options->transfer || transfer_parse("measure", options->transfer, &params->transfer));
 }
 
 static bool wants_contacts(const struct measure_options *options)
@@ -161,7 +170,9 @@ static bool fill_contacts(const struct measure_options *options,
     params->row_spacing_m = options->row_spacing.value;
     params->column_spacing_m = options->column_spacing.value;
     params->has_transfer = options->transfer != NULL;
-    return !options->transfer || transfer_parse("measure", options->transfer, &params->transfer);
+    params->array = options->array;
+    return (!options->channel || channel_parse("measure", options->channel, &params->channel)) &&
+           (!options->transfer || transfer_parse("measure", options->transfer, &params->transfer));
 }
 
 /* Contacts, or two sets of them; prints JSON. */
@@ -198,7 +209,8 @@ static const char *conflict(const struct measure_options *options)
     const bool has_spacing = options->row_spacing.is_given || options->column_spacing.is_given;
     if (options->picture && !options->compared)
         return "measure: --picture is for --compare";
-    if (options->compared && (wants_contacts(options) || options->transfer || has_spacing))
+    if (options->compared && (wants_contacts(options) || options->transfer || has_spacing ||
+                              options->channel || options->array))
         return "measure: --compare takes two files of measures, and no options of an image";
     if (has_spacing && !wants_contacts(options))
         return "measure: --row-spacing and --column-spacing are for --box, --truth and --find";

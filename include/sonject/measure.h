@@ -23,6 +23,9 @@ typedef struct sonject_measure_params {
                               and before differ, and those within 2 of them */
     const char *labels;    /* mask of highlights and shadows; NULL: none */
     sonject_transfer_params transfer;
+    int32_t channel; /* of XTF files: image, before; by default SONJECT_CHANNEL_ONLY */
+    uint32_t reserved;
+    const char *array; /* in an HDF5 or MATLAB file of several, its name; NULL: the only one */
 } sonject_measure_params;
 
 /* Plain amplitude, no masks. */
@@ -166,6 +169,9 @@ typedef struct sonject_contact_file_params {
     sonject_transfer_params transfer;
     double find_contrast_db; /* a contact's brightest mean of 3 x 3 pixels is at least so far over
                                 the seabed within some 64 pixels of it; 6...100, 0: 12 */
+    int32_t channel;         /* of an XTF file, SONJECT_CHANNEL_ONLY by default */
+    uint32_t reserved;
+    const char *array; /* in an HDF5 or MATLAB file of several, its name; NULL: the only one */
 } sonject_contact_file_params;
 
 SONJECT_API void sonject_contact_file_params_init(sonject_contact_file_params *params);

@@ -25,6 +25,7 @@ void sonject_contact_file_params_init(sonject_contact_file_params *params)
     sonject_transfer_params_init(&params->transfer);
     params->find_most = FIND_MOST;
     params->find_contrast_db = FIND_CONTRAST;
+    params->channel = SONJECT_CHANNEL_ONLY;
 }
 
 /* The contacts to measure. */
@@ -259,9 +260,9 @@ sonject_status sonject_measure_contacts(sonject_context *context,
     if (!taken.image || (taken.box_count > 0 && !taken.boxes))
         return null_argument(report, "image and boxes");
     status = check_params(report, &taken);
+    const struct measured_image image = {taken.image, taken.channel, taken.array};
     if (status == SONJECT_OK)
-        status =
-            read_intensities(report, taken.image, &taken.transfer, &rows, &columns, &intensity);
+        status = read_intensities(report, &image, &taken.transfer, &rows, &columns, &intensity);
     if (status == SONJECT_OK)
         status = take_boxes(&list, report, &taken, rows, columns);
     if (status == SONJECT_OK)

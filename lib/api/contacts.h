@@ -29,9 +29,16 @@ sonject_status check_spacings(struct report *report, double row_spacing_m, doubl
 sonject_status take_intensities(struct report *report, const sonject_pixels *pixels, size_t *rows,
                                 size_t *columns, float **intensity);
 
-/* Those of a whole image file. transfer: how amplitudes became stored numbers. Errors: INPUT,
- * STORAGE, MEMORY, UNSUPPORTED. */
-sonject_status read_intensities(struct report *report, const char *path,
+/* What of a file is measured. */
+struct measured_image {
+    const char *path;
+    int32_t channel;   /* of an XTF file */
+    const char *array; /* of an HDF5 or MATLAB file; NULL: the only one */
+};
+
+/* Those of a whole image. transfer: how amplitudes became stored numbers. Errors: INPUT, STORAGE,
+ * MEMORY, UNSUPPORTED. */
+sonject_status read_intensities(struct report *report, const struct measured_image *image,
                                 const sonject_transfer_params *transfer, size_t *rows,
                                 size_t *columns, float **intensity);
 

@@ -18,6 +18,7 @@ void sonject_measure_params_init(sonject_measure_params *params)
 {
     memset(params, 0, sizeof *params);
     params->struct_size = sizeof *params;
+    params->channel = SONJECT_CHANNEL_ONLY;
     sonject_transfer_params_init(&params->transfer);
 }
 
@@ -102,14 +103,15 @@ static sonject_status measure(struct report *report, struct measured *measured,
                        "measurement");
 }
 
-/* A whole file; *stored is for free(). */
-static sonject_status read_stored(struct report *report, const char *path,
+/* All of an image; *stored is for free(). */
+static sonject_status read_stored(struct report *report, const struct measured_image *image,
                                   struct raster_layout *layout, void **stored)
 {
     struct swath_file *file = NULL;
     size_t bytes = 0;
     *stored = NULL;
-    sonject_status status = swath_file_open(report, path, SONJECT_CHANNEL_ONLY, &file);
+    sonject_status status =
+        swath_file_open_array(report, image->path, image->channel, image->array, &file);
     if (status != SONJECT_OK)
         return status;
     swath_file_layout(file, layout);
@@ -117,19 +119,19 @@ static sonject_status read_stored(struct report *report, const char *path,
     if (layout->rows * layout->columns <= (uint64_t)1 << 31 && region_bytes(layout, &whole, &bytes))
         *stored = allocate_array(bytes, 1);
     status = *stored ? swath_file_read(report, file, &whole, *stored)
-                     : report_out_of_memory(report, path);
+                     : report_out_of_memory(report, image->path);
     swath_file_close(&file);
     return status;
 }
 
-static sonject_status read_image(struct report *report, const char *path,
+static sonject_status read_image(struct report *report, const struct measured_image *image,
                                  const sonject_transfer_params *transfer, struct measured *measured)
 {
     struct raster_layout layout;
     void *stored = NULL;
     size_t bad = 0;
     uint64_t clipped = 0;
-    sonject_status status = read_stored(report, path, &layout, &stored);
+    sonject_status status = read_stored(report, image, &layout, &stored);
     if (status != SONJECT_OK) {
         free(stored);
         return status;
@@ -139,12 +141,12 @@ static sonject_status read_image(struct report *report, const char *path,
     const size_t count = measured->rows * measured->columns;
     float *linear = allocate_array(count, layout.channels * sizeof *linear);
     if (!linear)
-        status = report_out_of_memory(report, path);
+        status = report_out_of_memory(report, image->path);
     else if (transfer_to_amplitude(transfer, layout.type, stored, count * layout.channels, linear,
                                    &bad, &clipped) != SONJECT_OK)
         status = report_failure(report, SONJECT_ERROR_INPUT,
-                                "%s: the pixel at row %zu, column %zu is not a finite number", path,
-                                bad / layout.channels / measured->columns,
+                                "%s: the pixel at row %zu, column %zu is not a finite number",
+                                image->path, bad / layout.channels / measured->columns,
                                 bad / layout.channels % measured->columns);
     free(stored);
     for (size_t i = 0; status == SONJECT_OK && i < count; i++)
@@ -172,7 +174,8 @@ static sonject_status read_mask(struct report *report, const char *path,
     void *stored = NULL;
     if (!path)
         return SONJECT_OK;
-    sonject_status status = read_stored(report, path, &layout, &stored);
+    const struct measured_image image = {path, SONJECT_CHANNEL_ONLY, NULL};
+    sonject_status status = read_stored(report, &image, &layout, &stored);
     if (status == SONJECT_OK &&
         (layout.rows != measured->rows || layout.columns != measured->columns))
         status = refuse_size(report, path, &layout, measured);
@@ -201,15 +204,18 @@ static void mark_near(struct measured *measured, size_t i)
 }
 
 /* The image before, and where no mask tells it, what changed since. */
-static sonject_status read_before(struct report *report, const char *path,
-                                  const sonject_transfer_params *transfer,
+static sonject_status read_before(struct report *report, const sonject_measure_params *params,
                                   struct measured *measured)
 {
+    const char *path = params->before;
     struct measured before;
     if (!path)
         return SONJECT_OK;
+    const struct measured_image image = {
+        path, swath_file_has_channels(path) ? params->channel : SONJECT_CHANNEL_ONLY,
+        swath_file_has_names(path) ? params->array : NULL};
     memset(&before, 0, sizeof before);
-    sonject_status status = read_image(report, path, transfer, &before);
+    sonject_status status = read_image(report, &image, &params->transfer, &before);
     measured->before = before.amplitudes;
     if (status == SONJECT_OK &&
         (before.rows != measured->rows || before.columns != measured->columns)) {
@@ -250,14 +256,15 @@ sonject_status sonject_measure(sonject_context *context, const sonject_measure_p
         status = check_transfer(&taken.transfer, report, NULL);
     else
         sonject_transfer_params_init(&taken.transfer);
+    const struct measured_image image = {taken.image, taken.channel, taken.array};
     if (status == SONJECT_OK)
-        status = read_image(report, taken.image, &taken.transfer, &measured);
+        status = read_image(report, &image, &taken.transfer, &measured);
     if (status == SONJECT_OK)
         status = read_mask(report, taken.labels, &measured, &measured.labels);
     if (status == SONJECT_OK)
         status = read_mask(report, taken.influence, &measured, &measured.influence);
     if (status == SONJECT_OK)
-        status = read_before(report, taken.before, &taken.transfer, &measured);
+        status = read_before(report, &taken, &measured);
     if (status == SONJECT_OK)
         status = measure(report, &measured, measurement);
     measured_clear(&measured);
@@ -311,13 +318,13 @@ sonject_status take_intensities(struct report *report, const sonject_pixels *pix
     return status == SONJECT_OK ? square(report, &measured) : status;
 }
 
-sonject_status read_intensities(struct report *report, const char *path,
+sonject_status read_intensities(struct report *report, const struct measured_image *image,
                                 const sonject_transfer_params *transfer, size_t *rows,
                                 size_t *columns, float **intensity)
 {
     struct measured measured;
     memset(&measured, 0, sizeof measured);
-    const sonject_status status = read_image(report, path, transfer, &measured);
+    const sonject_status status = read_image(report, image, transfer, &measured);
     *rows = measured.rows;
     *columns = measured.columns;
     *intensity = measured.amplitudes;

@@ -70,7 +70,7 @@ static sonject_status open_kind(struct report *report, struct swath_file *file, 
 {
     if (channel != SONJECT_CHANNEL_ONLY && file->kind != SWATH_XTF)
         return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: is no XTF file, so it has no channels: take input.channel out",
+                              "%s: is no XTF file, so it has no channels: take the channel out",
                               file->path);
     if (array && file->kind != SWATH_HDF5 && file->kind != SWATH_MAT)
         return report_failure(report, SONJECT_ERROR_INPUT,

@@ -133,7 +133,7 @@ static sonject_status choose_channel(struct opening *opening, int32_t wanted)
                               opening->file->rows.path);
     if (matches != 1)
         return report_failure(opening->report, SONJECT_ERROR_INPUT,
-                              "%s: %s sidescan channel is as input.channel says: choose one of %s",
+                              "%s: has %s such sidescan channel: choose one of %s",
                               opening->file->rows.path, matches == 0 ? "no" : "more than one",
                               list);
     opening->file->channel = found;

@@ -66,6 +66,23 @@ def test_hdf5(sonject, tmp_path, swath, kind, storage):
         assert changed.max() - changed.min() <= image.nbytes
 
 
+def test_named_arrays_are_measured(sonject, tmp_path, swath):
+    arrays = {"low": swath, "more/high": swath ** 2}
+    with h5py.File(tmp_path / "lines.h5", "w") as file:
+        for name, image in arrays.items():
+            file[name] = image
+    measured = {}
+    for name, image in arrays.items():
+        numpy.save(tmp_path / "line.npy", image)
+        answers = [sonject("measure", "lines.h5", "--array", name), sonject("measure", "line.npy")]
+        assert answers[0].returncode == 0, answers[0].stderr
+        assert answers[0].stdout == answers[1].stdout
+        measured[name] = answers[0].stdout
+    assert measured["low"] != measured["more/high"]
+    assert_refused(sonject("measure", "lines.h5"), 3, "low", "more/high")
+    assert_refused(sonject("measure", "line.npy", "--array", "low"), 3, "neither HDF5 nor MATLAB")
+
+
 def write_matlab_73(path, image, compression=None):
     """As MATLAB's -v7.3 lays it out: columns are together, so HDF5 sees the transpose."""
     with h5py.File(path, "w", userblock_size=512) as file:

@@ -6,6 +6,7 @@ import struct
 import numpy
 import pytest
 
+import recordings
 from conftest import assert_refused
 from images import png_bytes, tiff_bytes
 
@@ -57,6 +58,36 @@ def test_transfer_is_undone(sonject, tmp_path):
     undone = told(sonject("measure", "decibels.tif", "--transfer", "decibel:1"))["seabed"]
     for name, value in plain.items():
         assert undone[name] == pytest.approx(value, rel=1e-3, abs=1e-3), name
+
+
+def test_channels_are_measured_as_images_are(sonject, tmp_path):
+    before = [numpy.round(2e4 * speckle(looks, seed=looks)).astype(numpy.uint16) for looks in (1, 2)]
+    after = [side.copy() for side in before]
+    for side in after:
+        side[90:170, 100:220] = numpy.round(2e4 * speckle(3, seed=7))[90:170, 100:220]
+        side[40:44, 60:80] = 60000
+    for name, sides in (("before", before), ("after", after)):
+        (tmp_path / f"{name}.xtf").write_bytes(recordings.xtf_bytes(*sides))
+        for side, pixels in zip(("port", "starboard"), sides):
+            write(tmp_path / f"{name}-{side}.tif", pixels)
+    for side in ("port", "starboard"):
+        for options in ([], ["--find"], ["--box", "30,40,40,80"]):
+            channel = told(sonject("measure", *options, "after.xtf", "--channel", side))
+            image = told(sonject("measure", *options, f"after-{side}.tif"))
+            for contact in channel.get("contacts", []) + image.get("contacts", []):
+                del contact["image"]
+            assert channel == image
+        seam = told(sonject("measure", "--seam", f"after-{side}.tif", "--before",
+                            f"before-{side}.tif"))
+        assert seam["seam"]["auc"] > 0.6
+        for earlier in ("before.xtf", f"before-{side}.tif"):
+            assert seam == told(sonject("measure", "--seam", "after.xtf", "--channel", side,
+                                        "--before", earlier))
+    assert_refused(sonject("measure", "after.xtf"), 3, "after.xtf", "1 (port), 2 (starboard)")
+    assert_refused(sonject("measure", "after-port.tif", "--channel", "port"), 3, "no XTF file")
+    assert_refused(sonject("measure", "after.xtf", "--channel", "left"), 2, "--channel")
+    assert_refused(sonject("measure", "a.json", "--compare", "b.json", "--channel", "port"), 2,
+                   "--compare")
 
 
 def test_seam(sonject, tmp_path):

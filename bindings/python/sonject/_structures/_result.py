@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ctypes import POINTER, Structure, c_char_p, c_double, c_uint32, c_uint64
+from ctypes import POINTER, Structure, c_char_p, c_double, c_int32, c_uint32, c_uint64
 
 from ._image import sonject_box, sonject_transfer_params
 
@@ -84,6 +84,9 @@ class sonject_measure_params(Structure):
         ("influence", c_char_p),
         ("labels", c_char_p),
         ("transfer", sonject_transfer_params),
+        ("channel", c_int32),
+        ("reserved", c_uint32),
+        ("array", c_char_p),
     ]
 
 
@@ -170,4 +173,7 @@ class sonject_contact_file_params(Structure):
         ("column_spacing_m", c_double),
         ("transfer", sonject_transfer_params),
         ("find_contrast_db", c_double),
+        ("channel", c_int32),
+        ("reserved", c_uint32),
+        ("array", c_char_p),
     ]
