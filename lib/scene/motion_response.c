@@ -9,7 +9,7 @@
 #include "scene/aperture_motion.h"
 
 #define PI          3.14159265358979323846
-#define ASPECTS_MAX ((size_t)1 << 18)
+#define ASPECTS_MAX ((size_t)1 << 20)
 #define SWAYS_MAX   ((size_t)1 << 21)
 #define PINGS_MAX   ((size_t)1 << 22)
 #define HEARD_STEPS 32 /* of an integral over the aspects */
@@ -28,15 +28,21 @@ static double shortest_scale(const struct motion_response *motion)
 }
 
 /* As many as separate all distances four times over, and as follow the motion. */
-static size_t aspects_needed(const struct motion_response *motion)
+static sonject_status count_aspects(struct motion_response *motion, struct report *report)
 {
     const double swing = motion->response->motion_range_m * motion->view->wavelength_m /
                          (2.0 * motion->strip_m * shortest_scale(motion));
-    size_t count = 64;
-    while (count < ASPECTS_MAX &&
-           ((double)count < 8.0 * (motion->reach + 1.0) || (double)count < 8.0 * swing))
-        count *= 2;
-    return count;
+    const double needed = 8.0 * fmax(motion->reach + 1.0, swing);
+    if (!(needed <= (double)ASPECTS_MAX))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "sonar.motion: at %.4g m it changes within %.3g m, which more than "
+                              "%zu aspects would have to follow: give longer scales of it",
+                              motion->response->motion_range_m, shortest_scale(motion),
+                              ASPECTS_MAX);
+    motion->aspects = 64;
+    while ((double)motion->aspects < needed)
+        motion->aspects *= 2;
+    return SONJECT_OK;
 }
 
 /* Which way the image's along-track axis runs. */
@@ -58,10 +64,17 @@ static void find_track(struct motion_response *motion)
 static sonject_status sample_sway(struct motion_response *motion, struct report *report)
 {
     const double side = side_of(motion);
-    const double step =
-        fmin(aperture_motion_step(motion->response->motion), motion->view->row_spacing_m);
-    const double wanted = ceil(motion->length_m / step) + 2.0;
-    motion->sways = wanted < (double)SWAYS_MAX ? (size_t)wanted : SWAYS_MAX;
+    const double step = aperture_motion_step(motion->response->motion);
+    const double rows = motion->length_m / motion->view->row_spacing_m;
+    double steps = fmax(1.0, ceil(motion->length_m / step));
+    if (steps > (double)SWAYS_MAX - 2.0)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "sonar.motion: the patch's aperture of %.4g m holds more than %zu "
+                              "steps of the sway: give longer scales of it",
+                              motion->length_m, SWAYS_MAX);
+    if (steps < rows) /* as fine as the image's rows, unless these are too many */
+        steps = fmin(ceil(rows), (double)SWAYS_MAX - 2.0);
+    motion->sways = (size_t)steps + 2;
     motion->sway_step_m = motion->length_m / (double)(motion->sways - 2);
     motion->sway_m = allocate_array(motion->sways, sizeof *motion->sway_m);
     if (!motion->sway_m)
@@ -95,7 +108,9 @@ static sonject_status sample_yaw(struct motion_response *motion, struct report *
 
 static sonject_status allocate_aspects(struct motion_response *motion, struct report *report)
 {
-    motion->aspects = aspects_needed(motion);
+    const sonject_status status = count_aspects(motion, report);
+    if (status != SONJECT_OK)
+        return status;
     motion->root_real = allocate_array(motion->aspects / 2, sizeof(double));
     motion->root_imaginary = allocate_array(motion->aspects / 2, sizeof(double));
     motion->real_part = allocate_array(motion->aspects, sizeof(double));

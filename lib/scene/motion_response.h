@@ -26,7 +26,8 @@ struct motion_response {
 };
 
 /* Prepares responses of rows of the view at the distances. To be given to motion_response_end on
- * success. Errors: INPUT (too many pings), MEMORY. */
+ * success. Errors: INPUT (too many pings, motion over too short scales), MEMORY.
+ */
 sonject_status motion_response_begin(struct motion_response *motion, struct report *report,
                                      const struct point_response *response,
                                      const struct patch_view *view, double strip_m, double offset_m,

@@ -539,7 +539,7 @@ static sonject_status try_motion(struct bench *bench)
 }
 
 /* Sway that turns sound by more than the aspects, so that no response is long enough; yaw whose
- * pings are unknown, or too many. */
+ * pings are unknown, or too many; motion that is too fast to be followed. */
 static void test_motion_that_is_refused(void **unused)
 {
     static const double x[] = {0.0, 1.0};
@@ -560,9 +560,16 @@ static void test_motion_that_is_refused(void **unused)
     assert_non_null(strstr(bench.report.message, "without the advance"));
     motion->yaw_advance_m = 0.5;
     assert_int_equal(try_motion(&bench), SONJECT_OK);
+    motion->yaw_advance_m = 1e-4;
+    assert_int_equal(try_motion(&bench), SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(bench.report.message, "aspects"));
+    motion->yaw_advance_m = 0.5;
     bench.tracer.view.rows = 1000000000;
     assert_int_equal(try_motion(&bench), SONJECT_ERROR_INPUT);
     assert_non_null(strstr(bench.report.message, "pings"));
+    motion->random_rms_m = 1e-3;
+    assert_int_equal(try_motion(&bench), SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(bench.report.message, "steps of the sway"));
     bench_close(&bench);
 }
 
