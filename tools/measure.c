@@ -104,6 +104,14 @@ static int print_measurement(const sonject_measurement *measurement, bool wants_
     return finish_output();
 }
 
+/* What is told of the image as text; each keeps what it holds where nothing is told. */
+static bool parse_image(const struct measure_options *options, int32_t *channel,
+                        sonject_transfer_params *transfer)
+{
+    return (!options->channel || channel_parse("measure", options->channel, channel)) &&
+           (!options->transfer || transfer_parse("measure", options->transfer, transfer));
+}
+
 static bool fill(const struct measure_options *options, sonject_measure_params *params)
 {
     const bool has_band = options->before || options->influence;
@@ -119,8 +127,7 @@ static bool fill(const struct measure_options *options, sonject_measure_params *
     }
     params->has_transfer = options->transfer != NULL;
     params->array = options->array;
-    return (!options->channel || channel_parse("measure", options->channel, &params->channel)) &&
-           (!options->transfer || transfer_parse("measure", options->transfer, &params->transfer));
+    return parse_image(options, &params->channel, &params->transfer);
 }
 
 static bool wants_contacts(const struct measure_options *options)
@@ -171,8 +178,7 @@ static bool fill_contacts(const struct measure_options *options,
     params->column_spacing_m = options->column_spacing.value;
     params->has_transfer = options->transfer != NULL;
     params->array = options->array;
-    return (!options->channel || channel_parse("measure", options->channel, &params->channel)) &&
-           (!options->transfer || transfer_parse("measure", options->transfer, &params->transfer));
+    return parse_image(options, &params->channel, &params->transfer);
 }
 
 /* Contacts, or two sets of them; prints JSON. */

@@ -23,9 +23,10 @@ typedef struct sonject_measure_params {
                               and before differ, and those within 2 of them */
     const char *labels;    /* mask of highlights and shadows; NULL: none */
     sonject_transfer_params transfer;
-    int32_t channel; /* of XTF files: image, before; by default SONJECT_CHANNEL_ONLY */
+    int32_t channel; /* of image and before, where they are XTF; by default SONJECT_CHANNEL_ONLY */
     uint32_t reserved;
-    const char *array; /* in an HDF5 or MATLAB file of several, its name; NULL: the only one */
+    const char *array; /* likewise, in HDF5 or MATLAB files of several, its name; NULL: the only one
+                        */
 } sonject_measure_params;
 
 /* Plain amplitude, no masks. */

@@ -260,7 +260,7 @@ sonject_status sonject_measure_contacts(sonject_context *context,
     if (!taken.image || (taken.box_count > 0 && !taken.boxes))
         return null_argument(report, "image and boxes");
     status = check_params(report, &taken);
-    const struct measured_image image = {taken.image, taken.channel, taken.array};
+    const struct measured_image image = {taken.image, NULL, taken.channel, taken.array};
     if (status == SONJECT_OK)
         status = read_intensities(report, &image, &taken.transfer, &rows, &columns, &intensity);
     if (status == SONJECT_OK)

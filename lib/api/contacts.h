@@ -29,11 +29,12 @@ sonject_status check_spacings(struct report *report, double row_spacing_m, doubl
 sonject_status take_intensities(struct report *report, const sonject_pixels *pixels, size_t *rows,
                                 size_t *columns, float **intensity);
 
-/* What of a file is measured. */
+/* What of a file is measured, as of swath_file_open_beside. */
 struct measured_image {
     const char *path;
-    int32_t channel;   /* of an XTF file */
-    const char *array; /* of an HDF5 or MATLAB file; NULL: the only one */
+    const char *other; /* NULL: none */
+    int32_t channel;
+    const char *array;
 };
 
 /* Those of a whole image. transfer: how amplitudes became stored numbers. Errors: INPUT, STORAGE,

@@ -41,29 +41,9 @@ static sonject_status check_choices(struct report *report, const sonject_convert
     return params->has_geometry ? check_geometry(&params->geometry, report, NULL) : SONJECT_OK;
 }
 
-static sonject_status open_file(struct report *report, const sonject_convert_params *params,
-                                const char *path, struct swath_file **file)
-{
-    return swath_file_open_array(
-        report, path, swath_file_has_channels(path) ? params->channel : SONJECT_CHANNEL_ONLY,
-        swath_file_has_names(path) ? params->array : NULL, file);
-}
-
 /* What is asked for but has nothing to do. */
 static sonject_status check_uses(struct report *report, const sonject_convert_params *params)
 {
-    const char *into = params->into ? params->into : params->input;
-    if (params->channel != SONJECT_CHANNEL_ONLY && !swath_file_has_channels(params->input) &&
-        !swath_file_has_channels(into))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: is no XTF file, so it has no channels: take the channel out",
-                              params->input);
-    if (params->array && !swath_file_has_names(params->input) && !swath_file_has_names(into))
-        return report_failure(
-            report, SONJECT_ERROR_INPUT,
-            "%s: is neither HDF5 nor MATLAB, so its arrays have no names: take the "
-            "array out",
-            params->input);
     const bool keeps_geometry = !params->into && raster_format_keeps_attributes(params->output);
     if ((params->has_geometry || params->altitude_m > 0.0) && !keeps_geometry &&
         params->range_axis == SONJECT_CONVERT_AXIS_KEPT)
@@ -78,7 +58,8 @@ static sonject_status read_input(struct report *report, const sonject_convert_pa
 {
     struct swath_file *file = NULL;
     size_t bytes = 0;
-    sonject_status status = open_file(report, params, params->input, &file);
+    sonject_status status = swath_file_open_beside(report, params->input, params->into,
+                                                   params->channel, params->array, &file);
     if (status != SONJECT_OK)
         return status;
     struct raster_layout *layout = &conversion->layout;
@@ -104,7 +85,8 @@ static sonject_status write_into(struct report *report, const sonject_convert_pa
 {
     struct swath_file *file = NULL;
     struct raster_layout layout;
-    sonject_status status = open_file(report, params, params->into, &file);
+    sonject_status status = swath_file_open_beside(report, params->into, params->input,
+                                                   params->channel, params->array, &file);
     if (status != SONJECT_OK)
         return status;
     swath_file_layout(file, &layout);

@@ -110,8 +110,8 @@ static sonject_status read_stored(struct report *report, const struct measured_i
     struct swath_file *file = NULL;
     size_t bytes = 0;
     *stored = NULL;
-    sonject_status status =
-        swath_file_open_array(report, image->path, image->channel, image->array, &file);
+    sonject_status status = swath_file_open_beside(report, image->path, image->other,
+                                                   image->channel, image->array, &file);
     if (status != SONJECT_OK)
         return status;
     swath_file_layout(file, layout);
@@ -174,7 +174,7 @@ static sonject_status read_mask(struct report *report, const char *path,
     void *stored = NULL;
     if (!path)
         return SONJECT_OK;
-    const struct measured_image image = {path, SONJECT_CHANNEL_ONLY, NULL};
+    const struct measured_image image = {path, NULL, SONJECT_CHANNEL_ONLY, NULL};
     sonject_status status = read_stored(report, &image, &layout, &stored);
     if (status == SONJECT_OK &&
         (layout.rows != measured->rows || layout.columns != measured->columns))
@@ -211,9 +211,7 @@ static sonject_status read_before(struct report *report, const sonject_measure_p
     struct measured before;
     if (!path)
         return SONJECT_OK;
-    const struct measured_image image = {
-        path, swath_file_has_channels(path) ? params->channel : SONJECT_CHANNEL_ONLY,
-        swath_file_has_names(path) ? params->array : NULL};
+    const struct measured_image image = {path, params->image, params->channel, params->array};
     memset(&before, 0, sizeof before);
     sonject_status status = read_image(report, &image, &params->transfer, &before);
     measured->before = before.amplitudes;
@@ -256,7 +254,7 @@ sonject_status sonject_measure(sonject_context *context, const sonject_measure_p
         status = check_transfer(&taken.transfer, report, NULL);
     else
         sonject_transfer_params_init(&taken.transfer);
-    const struct measured_image image = {taken.image, taken.channel, taken.array};
+    const struct measured_image image = {taken.image, taken.before, taken.channel, taken.array};
     if (status == SONJECT_OK)
         status = read_image(report, &image, &taken.transfer, &measured);
     if (status == SONJECT_OK)

@@ -65,14 +65,32 @@ static sonject_status tell_kind(struct report *report, const char *path, enum sw
     return SONJECT_OK;
 }
 
+static bool has_channels(enum swath_kind kind)
+{
+    return kind == SWATH_XTF;
+}
+
+static bool has_names(enum swath_kind kind)
+{
+    return kind == SWATH_HDF5 || kind == SWATH_MAT;
+}
+
+/* SWATH_IMAGE of a file that cannot be read: who opens it says so. */
+static enum swath_kind kind_if_any(const char *path)
+{
+    struct report report = {{0}, NULL, NULL};
+    enum swath_kind kind;
+    return tell_kind(&report, path, &kind) == SONJECT_OK ? kind : SWATH_IMAGE;
+}
+
 static sonject_status open_kind(struct report *report, struct swath_file *file, int32_t channel,
                                 const char *array)
 {
-    if (channel != SONJECT_CHANNEL_ONLY && file->kind != SWATH_XTF)
+    if (channel != SONJECT_CHANNEL_ONLY && !has_channels(file->kind))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: is no XTF file, so it has no channels: take the channel out",
                               file->path);
-    if (array && file->kind != SWATH_HDF5 && file->kind != SWATH_MAT)
+    if (array && !has_names(file->kind))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: is neither HDF5 nor MATLAB, so its arrays have no names: take "
                               "the array out",
@@ -109,6 +127,12 @@ sonject_status swath_file_open(struct report *report, const char *path, int32_t 
 sonject_status swath_file_open_array(struct report *report, const char *path, int32_t channel,
                                      const char *array, struct swath_file **file)
 {
+    return swath_file_open_beside(report, path, NULL, channel, array, file);
+}
+
+sonject_status swath_file_open_beside(struct report *report, const char *path, const char *other,
+                                      int32_t channel, const char *array, struct swath_file **file)
+{
     *file = NULL;
     struct swath_file *opened = allocate_array(1, sizeof *opened);
     char *copy = copy_text(path);
@@ -120,8 +144,14 @@ sonject_status swath_file_open_array(struct report *report, const char *path, in
     }
     opened->path = copy;
     status = tell_kind(report, opened->path, &opened->kind);
-    if (status == SONJECT_OK)
+    if (status == SONJECT_OK) {
+        const enum swath_kind beside = other ? kind_if_any(other) : SWATH_IMAGE;
+        if (!has_channels(opened->kind) && has_channels(beside))
+            channel = SONJECT_CHANNEL_ONLY;
+        if (!has_names(opened->kind) && has_names(beside))
+            array = NULL;
         status = open_kind(report, opened, channel, array);
+    }
     if (status == SONJECT_OK)
         *file = opened;
     else
@@ -189,23 +219,6 @@ enum range_axis swath_file_range_axis(const struct swath_file *file)
     return strcmp(axis, "ground") == 0  ? RANGE_GROUND
            : strcmp(axis, "slant") == 0 ? RANGE_SLANT
                                         : RANGE_UNKNOWN;
-}
-
-static bool is_kind(const char *path, enum swath_kind first, enum swath_kind second)
-{
-    struct report report = {{0}, NULL, NULL};
-    enum swath_kind kind;
-    return tell_kind(&report, path, &kind) == SONJECT_OK && (kind == first || kind == second);
-}
-
-bool swath_file_has_channels(const char *path)
-{
-    return is_kind(path, SWATH_XTF, SWATH_XTF);
-}
-
-bool swath_file_has_names(const char *path)
-{
-    return is_kind(path, SWATH_HDF5, SWATH_MAT);
 }
 
 const struct xtf_file *swath_file_xtf(const struct swath_file *file)

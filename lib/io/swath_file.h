@@ -20,6 +20,11 @@ sonject_status swath_file_open(struct report *report, const char *path, int32_t 
  * for other files. */
 sonject_status swath_file_open_array(struct report *report, const char *path, int32_t channel,
                                      const char *array, struct swath_file **file);
+
+/* The same where channel and array may be meant for another file that is opened too, or for both:
+ * each takes what its kind has. other: NULL for none. */
+sonject_status swath_file_open_beside(struct report *report, const char *path, const char *other,
+                                      int32_t channel, const char *array, struct swath_file **file);
 void swath_file_close(struct swath_file **file);
 
 void swath_file_layout(const struct swath_file *file, struct raster_layout *layout);
@@ -37,10 +42,6 @@ enum range_axis {
     RANGE_GROUND
 };
 enum range_axis swath_file_range_axis(const struct swath_file *file);
-
-/* Whether channels of the file are chosen (XTF), and arrays by their names (HDF5, MATLAB). */
-bool swath_file_has_channels(const char *path);
-bool swath_file_has_names(const char *path);
 
 /* The XTF file behind it; NULL for other kinds. */
 const struct xtf_file *swath_file_xtf(const struct swath_file *file);

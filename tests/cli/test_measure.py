@@ -80,11 +80,15 @@ def test_channels_are_measured_as_images_are(sonject, tmp_path):
         seam = told(sonject("measure", "--seam", f"after-{side}.tif", "--before",
                             f"before-{side}.tif"))
         assert seam["seam"]["auc"] > 0.6
-        for earlier in ("before.xtf", f"before-{side}.tif"):
-            assert seam == told(sonject("measure", "--seam", "after.xtf", "--channel", side,
-                                        "--before", earlier))
+        for later, earlier in (("after.xtf", "before.xtf"), ("after.xtf", f"before-{side}.tif"),
+                               (f"after-{side}.tif", "before.xtf")):
+            assert seam == told(sonject("measure", "--seam", later, "--channel", side, "--before",
+                                        earlier))
     assert_refused(sonject("measure", "after.xtf"), 3, "after.xtf", "1 (port), 2 (starboard)")
     assert_refused(sonject("measure", "after-port.tif", "--channel", "port"), 3, "no XTF file")
+    assert_refused(sonject("measure", "--seam", "after-port.tif", "--before", "before-port.tif",
+                           "--channel", "port"), 3, "no XTF file")
+    assert_refused(sonject("measure", "absent.xtf", "--channel", "port"), 3, "absent.xtf: ")
     assert_refused(sonject("measure", "after.xtf", "--channel", "left"), 2, "--channel")
     assert_refused(sonject("measure", "a.json", "--compare", "b.json", "--channel", "port"), 2,
                    "--compare")
