@@ -73,7 +73,7 @@ static sonject_status build_failure(struct report *report, const struct device *
         CL_SUCCESS)
         log[0] = '\0';
     const sonject_status status = text->explain && error == CL_BUILD_PROGRAM_FAILURE
-                                      ? text->explain(report, device, log, text->user)
+                                      ? text->explain(report, device, text, log)
                                       : explain(report, device, text, log, error);
     free(log);
     return status;

@@ -15,8 +15,8 @@ struct program_text {
     size_t count;
     const char *options; /* of program_options */
     /* Makes the message of a failed build from its log; NULL: that of the library's own kernels. */
-    sonject_status (*explain)(struct report *report, const struct device *device, const char *log,
-                              const void *user);
+    sonject_status (*explain)(struct report *report, const struct device *device,
+                              const struct program_text *text, const char *log);
     const void *user; /* for explain */
 };
 

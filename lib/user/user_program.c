@@ -64,10 +64,13 @@ static char *text_of_calls(unsigned long count)
     return growing_text_end(&text);
 }
 
-static sonject_status explain(struct report *report, const struct device *device, const char *log,
-                              const void *user)
+static sonject_status explain(struct report *report, const struct device *device,
+                              const struct program_text *text, const char *log)
 {
-    return explain_build_log(report, user, device->name, log);
+    struct user_text users = {text->user, 0};
+    for (size_t i = 0; i < OWN_PIECES; i++)
+        users.lines_before += text_count_lines(text->pieces[i]);
+    return explain_build_log(report, &users, device->name, log);
 }
 
 /* The program of a key if the device still has it. */
@@ -106,14 +109,6 @@ static sonject_status get_program(struct report *report, struct device *device,
     return status;
 }
 
-static unsigned long count_lines(const char *const own_pieces[OWN_PIECES])
-{
-    unsigned long lines = 0;
-    for (size_t i = 0; i < OWN_PIECES; i++)
-        lines += text_count_lines(own_pieces[i]);
-    return lines;
-}
-
 sonject_status user_kernel_create(struct report *report, struct device *device,
                                   const struct user_shapes *shapes, uint32_t variant,
                                   enum device_program number, const char *name, cl_kernel *kernel)
@@ -134,9 +129,8 @@ sonject_status user_kernel_create(struct report *report, struct device *device,
         pieces[count++] = shapes->snippets[i].behind;
     }
     program_options(device, variant, " -DWITH_USER_SHAPES", options);
-    const struct user_text users = {shapes, without_macros && calls ? count_lines(pieces) : 0};
     const struct program_text text = {
-        embedded_sources[number].name, pieces, count, options, explain, &users};
+        embedded_sources[number].name, pieces, count, options, explain, shapes};
     sonject_status status = without_macros && calls
                                 ? get_program(report, device, &text, &program)
                                 : report_out_of_memory(report, "the user shapes' program");
