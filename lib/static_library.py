@@ -1,4 +1,4 @@
-"""Makes the static library: static_library.py OUTPUT LD OBJCOPY AR ARCHIVE...
+"""Makes the static library: static_library.py OUTPUT OBJCOPY AR ARCHIVE... -- COMPILER...
 
 All archives together become one object file of which only the interface's names stay global, so that
 nothing of it, and of the C++ in it, meets the names of a program that links it.
@@ -11,14 +11,16 @@ import tempfile
 
 
 def main():
-    output, linker, objcopy, ar, *archives = sys.argv[1:]
+    output, objcopy, ar, *archives = sys.argv[1:]
+    end = archives.index("--")
+    archives, compiler = archives[:end], archives[end + 1:]
     made = pathlib.Path(output)
     made.unlink(missing_ok=True)
     with tempfile.TemporaryDirectory(dir=made.resolve().parent) as folder:
         whole = pathlib.Path(folder) / "sonject.o"
         # Groups that linkers fold with those of other files would take names that are local here.
-        subprocess.run([linker, "-r", "--force-group-allocation", "--whole-archive",
-                        *archives, "-o", whole], check=True)
+        subprocess.run([*compiler, "-r", "-nostdlib", "-Wl,--force-group-allocation",
+                        "-Wl,--whole-archive", *archives, "-o", whole], check=True)
         subprocess.run([objcopy, "--wildcard", "--keep-global-symbol=sonject_*", whole], check=True)
         subprocess.run([ar, "rcsD", output, whole], check=True)
 

@@ -16,7 +16,8 @@ PATH="$PATH:/usr/sbin:/sbin"
 export PATH
 
 is_installed() {
-    [ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
+    # One line for each architecture that has it.
+    dpkg-query -W -f='${db:Status-Status}\n' "$1" 2>/dev/null | grep -qx installed
 }
 
 run_as_root() {
