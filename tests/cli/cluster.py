@@ -205,7 +205,7 @@ class Cluster:
         return self.try_call("squeue", "--noheader", f"--jobs={job}").stdout
 
     def start_again(self, name):
-        """Lets a requeued task start at once, once it is there; the node that it ran on before is
-        up to Slurm."""
+        """Lets a requeued task start soon, once it is there; the node is up to Slurm. A node takes
+        a task for killed that starts within the second in which it was ended there before."""
         wait_for("a requeued task", lambda: self.job(name)["Reason"] == "BeginTime")
-        self.call("scontrol", "update", f"jobid={name}", "StartTime=now")
+        self.call("scontrol", "update", f"jobid={name}", "StartTime=now+2")

@@ -98,6 +98,7 @@ class Parts:
         self.merge, self.array = re.fullmatch(r"Submitted batch job (\d+)\n(\d+)\n", said).groups()
         self.slurm, self.folder = slurm, folder
         self.stopped = []
+        self.started_after = None
 
     def task(self, shard):
         return self.slurm.job(f"{self.array}_{shard}")
@@ -149,8 +150,11 @@ class Parts:
     def is_merged(self):
         """A merge that has gone back into the queue is not held there for two minutes."""
         merge = self.slurm.job(self.merge)
-        if merge["Reason"] == "BeginTime" and not self.slurm.queue(self.array):
+        put_back = merge["Restarts"]
+        if (merge["Reason"] == "BeginTime" and not self.slurm.queue(self.array)
+                and put_back != self.started_after):
             self.slurm.start_again(self.merge)
+            self.started_after = put_back
         return merge["JobState"] in ("COMPLETED", "FAILED")
 
     def wait(self):
@@ -190,6 +194,16 @@ def has_stopped(process):
     return wait_for("a stopped process", lambda: state() in ("T", "ended") and state()) == "T"
 
 
+def was_asked_to_end(process):
+    """Whether SIGTERM waits for a stopped process, or it was continued."""
+    try:
+        told = pathlib.Path(f"/proc/{process}/status").read_text()
+    except OSError:
+        return True
+    waiting = int(re.search(r"^ShdPnd:\s*(\w+)", told, re.M)[1], 16)
+    return waiting >> (signal.SIGTERM - 1) & 1 or not re.search(r"^State:\s*T", told, re.M)
+
+
 def is_sonject(process):
     try:
         return os.path.samefile(f"/proc/{process}/exe", COMMAND)
@@ -214,7 +228,8 @@ def test_the_parts_of_a_lost_node_go_on_elsewhere(slurm, project, whole):
 def test_evicted_and_killed_parts_go_on_and_missing_ones_are_named(slurm, project, whole):
     parts, (evicted, killed) = start_and_freeze(slurm, project, "1,3", 1, 3)
     slurm.call("scontrol", "requeue", f"{parts.array}_1")
-    os.kill(evicted, signal.SIGCONT)
+    wait_for("Slurm's signal", lambda: was_asked_to_end(evicted))
+    cluster.send(evicted, signal.SIGCONT)
     os.kill(killed, signal.SIGKILL)
     slurm.start_again(f"{parts.array}_1")
     slurm.start_again(f"{parts.array}_3")
@@ -228,13 +243,32 @@ def test_evicted_and_killed_parts_go_on_and_missing_ones_are_named(slurm, projec
     parts, (asked,) = start_and_freeze(slurm, project, "2,4", 2)
     parts.merge_early()
     slurm.call("scancel", "--batch", "--signal=USR1", f"{parts.array}_2")
-    os.kill(asked, signal.SIGCONT)
+    wait_for("Slurm's signal", lambda: was_asked_to_end(asked))
+    cluster.send(asked, signal.SIGCONT)
     slurm.start_again(f"{parts.array}_2")
     said, code = parts.wait()
     assert code == 0 and said.endswith("sonject: the result is in out\n")
-    assert said.startswith(f"merge.sh: job {parts.array} is still in the queue")
+    assert said.startswith(f"merge.sh: job {parts.array} may not have ended")
     assert "stopped; run the same command again" in parts.log(2)
     assert contents(project / "out") == whole
+
+
+@pytest.mark.parametrize("squeue, begins", [
+    ("echo COMPLETED; echo FAILED", True),
+    ("echo 'slurm_load_jobs error: Invalid job id specified' >&2; exit 1", True),
+    ("echo COMPLETED; echo PENDING", False),
+    ("echo COMPLETED; echo REQUEUED", False),
+    ("echo 'slurm_load_jobs error: Socket timed out' >&2; exit 1", False),
+])
+def test_a_merge_begins_only_when_every_task_is_known_to_have_ended(tmp_path, squeue, begins):
+    for name, script in (("squeue", squeue), ("scontrol", "echo put back"),
+                         ("sonject", "echo merged")):
+        (tmp_path / name).write_text(f"#!/bin/sh\n{script}\n")
+        (tmp_path / name).chmod(0o755)
+    answer = subprocess.run(["sh", SCRIPTS / "merge.sh", "out"], text=True, capture_output=True,
+                            env={"PATH": f"{tmp_path}:{cluster.PATH}", "SLURM_JOB_ID": "8",
+                                 "SLURM_JOB_DEPENDENCY": "afterany:7"}, check=True)
+    assert answer.stdout == ("merged\n" if begins else "put back\n")
 
 
 @pytest.fixture

@@ -9,10 +9,14 @@
 #SBATCH --requeue
 #SBATCH --open-mode=append
 
-# Slurm also takes a task for ended that is about to be requeued: then this job goes back, too.
+# Slurm also takes a task for ended that is about to be requeued: then this job goes back, too. A task
+# has ended when squeue gives it one of these states, or has forgotten it. Anything else, such as no
+# answer from a busy controller, says that it may go on.
 tasks=$(echo "${SLURM_JOB_DEPENDENCY#afterany:}" | tr : ,)
-if [ -n "$tasks" ] && [ -n "$(squeue --noheader --jobs="$tasks" 2>/dev/null)" ]; then
-    echo "merge.sh: job $tasks is still in the queue, and so the merge is put back into it" >&2
+ended='BOOT_FAIL|CANCELLED|COMPLETED|DEADLINE|FAILED|NODE_FAIL|OUT_OF_MEMORY|PREEMPTED|TIMEOUT'
+if [ -n "$tasks" ] && squeue --noheader --states=all --format=%T --jobs="$tasks" 2>&1 |
+    grep -qvxE "$ended|.*Invalid job id.*"; then
+    echo "merge.sh: job $tasks may not have ended, and so the merge is put back into the queue" >&2
     exec scontrol requeue "$SLURM_JOB_ID"
 fi
 
