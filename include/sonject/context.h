@@ -23,10 +23,9 @@ typedef struct sonject_context_params {
     uint32_t struct_size; /* sizeof(sonject_context_params) */
     uint32_t reserved;    /* 0 */
     const char
-        *device_name; /* part of a device's name, case-insensitive; NULL: the default device */
-    const char *cache_folder; /* for compiled programs; NULL: the user's cache; "": no cache */
-    void *opencl_context;     /* a host's cl_context to work in; NULL: the library makes its own */
-    void *opencl_device;      /* the cl_device_id to use in that context; NULL with no context */
+        *device_name;     /* part of a device's name, case-insensitive; NULL: the default device */
+    void *opencl_context; /* a host's cl_context to work in; NULL: the library makes its own */
+    void *opencl_device;  /* the cl_device_id to use in that context; NULL with no context */
     sonject_log_function log; /* NULL: silent */
     void *log_user;
 } sonject_context_params;
@@ -40,7 +39,10 @@ SONJECT_API void sonject_context_params_init(sonject_context_params *params);
  * On success *context is the caller's, to be given to sonject_context_release. On failure *context
  * is NULL. Errors: ARGUMENT, MEMORY.
  * Threads: a context and whatever was made with it belong to one thread at a time; different
- * contexts may be used by different threads at once. */
+ * contexts may be used by different threads at once, also when these are the first to use OpenCL.
+ * Contexts of one device share what is compiled for it, which is given back with the last of them.
+ * Forks: a child of a process in which a call needed OpenCL (one that opened a device or listed
+ * them) is answered ERROR_DEVICE by all such calls. Where none did, parent and child may both. */
 SONJECT_API sonject_status sonject_context_create(const sonject_context_params *params,
                                                   sonject_context **context);
 
@@ -64,7 +66,7 @@ typedef struct sonject_device_info {
 
 /* Lists the OpenCL devices. devices: room for capacity entries (NULL if capacity is 0); *count gets
  * the number found, which may exceed capacity. Zero devices is not an error here.
- * Errors: ARGUMENT, MEMORY. */
+ * Errors: ARGUMENT, DEVICE (there are drivers, but none answers), MEMORY. */
 SONJECT_API sonject_status sonject_devices(sonject_context *context, sonject_device_info *devices,
                                            size_t capacity, size_t *count);
 

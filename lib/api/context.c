@@ -117,9 +117,7 @@ static sonject_status copy_params(struct sonject_context *context,
     context->report.log_user = taken.log_user;
     context->params = taken;
     context->params.device_name = taken.device_name ? copy_text(taken.device_name) : NULL;
-    context->params.cache_folder = taken.cache_folder ? copy_text(taken.cache_folder) : NULL;
-    if ((taken.device_name && !context->params.device_name) ||
-        (taken.cache_folder && !context->params.cache_folder))
+    if (taken.device_name && !context->params.device_name)
         return SONJECT_ERROR_MEMORY;
     return SONJECT_OK;
 }
@@ -138,7 +136,7 @@ sonject_status sonject_context_create(const sonject_context_params *params,
         sonject_context_release(&made);
         return status;
     }
-    if (made->params.opencl_context)
+    if (made->params.opencl_context && driver_claim(&made->report) == SONJECT_OK)
         clRetainContext(made->params.opencl_context);
     *context = made;
     return SONJECT_OK;
@@ -149,10 +147,9 @@ void sonject_context_release(sonject_context **context)
     if (!context || !*context)
         return;
     device_close(&(*context)->device);
-    if ((*context)->params.opencl_context)
+    if ((*context)->params.opencl_context && !driver_is_inherited())
         clReleaseContext((*context)->params.opencl_context);
     free((char *)(*context)->params.device_name);
-    free((char *)(*context)->params.cache_folder);
     free(*context);
     *context = NULL;
 }
@@ -164,9 +161,9 @@ const char *sonject_context_message(const sonject_context *context)
 
 sonject_status context_device(struct sonject_context *context, struct device **device)
 {
-    sonject_status status = SONJECT_OK;
-    if (!context->device)
-        status = device_open(&context->report, &context->params, &context->device);
+    const sonject_status status =
+        context->device ? driver_claim(&context->report)
+                        : device_open(&context->report, &context->params, &context->device);
     *device = context->device;
     return status;
 }

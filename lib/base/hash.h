@@ -1,5 +1,4 @@
-/* 128-bit hashes (XXH3) for cache keys and for telling whether inputs are the same; not for
- * security. */
+/* 128-bit hashes (XXH3) for telling whether inputs are the same; not for security. */
 #ifndef SONJECT_BASE_HASH_H
 #define SONJECT_BASE_HASH_H
 

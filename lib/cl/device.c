@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cl/cache.h"
 
 #define DEVICES_MAX 64
 
@@ -25,29 +24,44 @@ sonject_status device_failure(struct report *report, const struct device *device
         (int)error);
 }
 
-static size_t find_devices(struct found_device *found)
+/* None may be for want of memory: the loader passes over drivers that cannot be loaded. */
+static sonject_status explain_no_device(struct report *report, cl_int error)
+{
+    if (error == CL_OUT_OF_HOST_MEMORY)
+        return report_failure(report, SONJECT_ERROR_MEMORY,
+                              "too little memory to find OpenCL devices: allow the process more, "
+                              "a gigabyte at least (ulimit -v)");
+    if (error == CL_SUCCESS)
+        return SONJECT_OK;
+    return report_failure(report, SONJECT_ERROR_DEVICE, "no OpenCL device answers: %s (%d)",
+                          cl_error_name(error), (int)error);
+}
+
+/* A platform that fails is passed over where another has a device. */
+static sonject_status find_devices(struct report *report, struct found_device *found, size_t *count)
 {
     cl_platform_id platforms[16];
     cl_uint platform_count = 0;
-    size_t count = 0;
-    if (clGetPlatformIDs(16, platforms, &platform_count) != CL_SUCCESS)
-        return 0; /* also what the loader answers where no driver is installed */
+    cl_int error = clGetPlatformIDs(16, platforms, &platform_count);
+    *count = 0;
+    if (error != CL_SUCCESS)
+        platform_count = 0;
+    if (error == CL_PLATFORM_NOT_FOUND_KHR)
+        error = CL_SUCCESS;
     for (cl_uint p = 0; p < platform_count && p < 16; p++) {
         cl_device_id ids[DEVICES_MAX];
         cl_uint ids_count = 0;
-        if (clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, DEVICES_MAX, ids, &ids_count) !=
-            CL_SUCCESS)
-            continue;
-        for (cl_uint d = 0; d < ids_count && d < DEVICES_MAX && count < DEVICES_MAX; d++) {
-            found[count].platform = platforms[p];
-            found[count].id = ids[d];
-            found[count].type = 0;
-            clGetDeviceInfo(ids[d], CL_DEVICE_TYPE, sizeof found[count].type, &found[count].type,
-                            NULL);
-            count++;
+        const cl_int answer =
+            clGetDeviceIDs(platforms[p], CL_DEVICE_TYPE_ALL, DEVICES_MAX, ids, &ids_count);
+        if (answer != CL_SUCCESS && answer != CL_DEVICE_NOT_FOUND)
+            error = answer;
+        for (cl_uint d = 0; answer == CL_SUCCESS && d < ids_count && *count < DEVICES_MAX; d++) {
+            struct found_device *device = &found[(*count)++];
+            *device = (struct found_device){platforms[p], ids[d], 0};
+            clGetDeviceInfo(ids[d], CL_DEVICE_TYPE, sizeof device->type, &device->type, NULL);
         }
     }
-    return count;
+    return *count > 0 ? SONJECT_OK : explain_no_device(report, error);
 }
 
 /* The first GPU, else the first CPU, else the first. */
@@ -101,15 +115,19 @@ static void describe(cl_device_id id, cl_device_type type, cl_platform_id platfo
 sonject_status device_list(struct report *report, sonject_device_info *devices, size_t capacity,
                            size_t *count)
 {
-    (void)report;
     struct found_device found[DEVICES_MAX];
-    *count = find_devices(found);
+    *count = 0;
+    sonject_status status = driver_enter(report);
+    if (status != SONJECT_OK)
+        return status;
+    status = find_devices(report, found, count);
     const size_t chosen = default_device(found, *count);
     for (size_t i = 0; i < *count && i < capacity; i++) {
         describe(found[i].id, found[i].type, found[i].platform, &devices[i]);
         devices[i].is_default = i == chosen;
     }
-    return SONJECT_OK;
+    driver_leave();
+    return status;
 }
 
 static bool contains_ignoring_case(const char *text, const char *part)
@@ -128,7 +146,10 @@ static sonject_status choose_device(struct report *report, const char *name,
                                     struct found_device *chosen)
 {
     struct found_device found[DEVICES_MAX];
-    const size_t count = find_devices(found);
+    size_t count;
+    const sonject_status status = find_devices(report, found, &count);
+    if (status != SONJECT_OK)
+        return status;
     if (count == 0)
         return report_failure(report, SONJECT_ERROR_DEVICE,
                               "no OpenCL device found: install a driver, such as the package "
@@ -150,16 +171,14 @@ static sonject_status choose_device(struct report *report, const char *name,
                           name);
 }
 
-static sonject_status open_queue(struct report *report, struct device *device)
+static sonject_status open_queue(struct report *report, struct device *device,
+                                 cl_context host_context)
 {
-    cl_int error = CL_SUCCESS;
-    if (!device->context) {
-        device->context = clCreateContext(NULL, 1, &device->id, NULL, NULL, &error);
-        if (error != CL_SUCCESS) {
-            device->context = NULL;
-            return device_failure(report, device, "clCreateContext", error);
-        }
-    }
+    cl_int error;
+    device->shared = shared_device_find(device->id, host_context, &error);
+    if (!device->shared)
+        return device_failure(report, device, "clCreateContext", error);
+    device->context = device->shared->context;
     device->queue = clCreateCommandQueue(device->context, device->id, 0, &error);
     if (error != CL_SUCCESS) {
         device->queue = NULL;
@@ -183,13 +202,11 @@ static sonject_status check_abilities(struct report *report, struct device *devi
     return SONJECT_OK;
 }
 
-sonject_status device_open(struct report *report, const sonject_context_params *params,
-                           struct device **out)
+static sonject_status open_chosen(struct report *report, const sonject_context_params *params,
+                                  struct device *device)
 {
-    *out = NULL;
-    struct found_device chosen = {NULL, NULL, 0};
+    struct found_device chosen = {NULL, params->opencl_device, 0};
     if (params->opencl_context) {
-        chosen.id = params->opencl_device;
         clGetDeviceInfo(chosen.id, CL_DEVICE_TYPE, sizeof chosen.type, &chosen.type, NULL);
         clGetDeviceInfo(chosen.id, CL_DEVICE_PLATFORM, sizeof chosen.platform, &chosen.platform,
                         NULL);
@@ -198,25 +215,31 @@ sonject_status device_open(struct report *report, const sonject_context_params *
         if (status != SONJECT_OK)
             return status;
     }
-    struct device *device = allocate_array(1, sizeof *device);
-    if (!device)
-        return report_out_of_memory(report, "the device");
     sonject_device_info info;
     describe(chosen.id, chosen.type, chosen.platform, &info);
     memcpy(device->name, info.name, sizeof device->name);
     memcpy(device->platform, info.platform, sizeof device->platform);
     memcpy(device->driver, info.driver, sizeof device->driver);
     device->id = chosen.id;
-    device->context = params->opencl_context;
-    if (device->context)
-        clRetainContext(device->context);
     device->is_cpu = (chosen.type & CL_DEVICE_TYPE_CPU) != 0;
     device->width = info.vector_width;
     device->compute_units = info.compute_units;
-    device->cache_folder = cache_folder_for(params->cache_folder);
-    sonject_status status = open_queue(report, device);
-    if (status == SONJECT_OK)
-        status = check_abilities(report, device);
+    const sonject_status status = check_abilities(report, device);
+    return status == SONJECT_OK ? open_queue(report, device, params->opencl_context) : status;
+}
+
+sonject_status device_open(struct report *report, const sonject_context_params *params,
+                           struct device **out)
+{
+    *out = NULL;
+    struct device *device = allocate_array(1, sizeof *device);
+    if (!device)
+        return report_out_of_memory(report, "the device");
+    sonject_status status = driver_enter(report);
+    if (status == SONJECT_OK) {
+        status = open_chosen(report, params, device);
+        driver_leave();
+    }
     if (status != SONJECT_OK) {
         device_close(&device);
         return status;
@@ -229,19 +252,15 @@ sonject_status device_open(struct report *report, const sonject_context_params *
 
 void device_close(struct device **device)
 {
+    struct report ignored = {{0}, NULL, NULL};
     if (!device || !*device)
         return;
-    for (int i = 0; i < PROGRAM_VARIANTS * PROGRAM_COUNT; i++)
-        if ((*device)->programs[i / PROGRAM_VARIANTS][i % PROGRAM_VARIANTS])
-            clReleaseProgram((*device)->programs[i / PROGRAM_VARIANTS][i % PROGRAM_VARIANTS]);
-    for (size_t i = 0; i < USER_PROGRAMS_KEPT; i++)
-        if ((*device)->user_programs[i].program)
-            clReleaseProgram((*device)->user_programs[i].program);
-    if ((*device)->queue)
-        clReleaseCommandQueue((*device)->queue);
-    if ((*device)->context)
-        clReleaseContext((*device)->context);
-    free((*device)->cache_folder);
+    if ((*device)->shared && driver_enter(&ignored) == SONJECT_OK) {
+        if ((*device)->queue)
+            clReleaseCommandQueue((*device)->queue);
+        shared_device_release((*device)->shared);
+        driver_leave();
+    }
     free(*device);
     *device = NULL;
 }

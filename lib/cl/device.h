@@ -6,13 +6,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define CL_TARGET_OPENCL_VERSION 120
-#include <CL/cl.h>
-
 #include <sonject/context.h>
 
-#include "base/hash.h"
-#include "base/report.h"
+#include "cl/driver.h"
 
 enum device_program {
     PROGRAM_TRACE_ROUGH,
@@ -31,24 +27,14 @@ enum device_program {
 enum program_variant {
     PROGRAM_WITH_MESHES = 1,
     PROGRAM_WITH_RELIEF = 2,
-    PROGRAM_WITH_ASPECTS = 4, /* the rough part's */
-    PROGRAM_VARIANTS = 8
-};
-
-/* Programs that hold code of users: the latest ones are kept. */
-#define USER_PROGRAMS_KEPT 16
-struct user_program {
-    cl_program program; /* NULL: none */
-    char key[HASH_TEXT_CAPACITY];
+    PROGRAM_WITH_ASPECTS = 4 /* the rough part's */
 };
 
 struct device {
     cl_device_id id;
-    cl_context context;
+    struct shared_device *shared; /* with all contexts of the device */
+    cl_context context;           /* its */
     cl_command_queue queue;
-    cl_program programs[PROGRAM_COUNT][PROGRAM_VARIANTS]; /* NULL until first used */
-    struct user_program user_programs[USER_PROGRAMS_KEPT];
-    size_t user_program_next; /* the one that gives way */
     bool is_cpu;
     uint32_t width; /* lanes that the kernels are compiled for */
     uint32_t compute_units;
@@ -56,10 +42,10 @@ struct device {
     char name[128];
     char platform[128];
     char driver[128];
-    char *cache_folder; /* owned; NULL: no cache */
 };
 
-/* Names of all devices, the default one first marked: see sonject_devices. Errors: MEMORY. */
+/* Names of all devices, the default one first marked: see sonject_devices. Errors: DEVICE, MEMORY.
+ */
 sonject_status device_list(struct report *report, sonject_device_info *devices, size_t capacity,
                            size_t *count);
 

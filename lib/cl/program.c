@@ -4,11 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <sonject/version.h>
-
 #include "base/clock.h"
 #include "base/memory.h"
-#include "cl/cache.h"
 #include "cl/sources.h"
 
 static bool divides_correctly(const struct device *device)
@@ -31,19 +28,17 @@ void program_options(const struct device *device, uint32_t variant, const char *
              divides_correctly(device) ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", more);
 }
 
-sonject_status program_key(struct report *report, const struct device *device,
-                           const struct program_text *text, char key[HASH_TEXT_CAPACITY])
+/* Digits that stand for what a program is made of, on its device; the first piece is its name's. */
+static sonject_status program_key(struct report *report, const struct program_text *text,
+                                  char key[HASH_TEXT_CAPACITY])
 {
     struct hash *hash = hash_begin();
     if (!hash)
-        return report_out_of_memory(report, "the program cache");
-    hash_add_text(hash, sonject_version());
-    for (size_t i = 0; i < text->count; i++)
-        hash_add_text(hash, text->pieces[i]);
+        return report_out_of_memory(report, "the name of a program");
+    hash_add_text(hash, text->name);
     hash_add_text(hash, text->options);
-    hash_add_text(hash, device->name);
-    hash_add_text(hash, device->platform);
-    hash_add_text(hash, device->driver);
+    for (size_t i = 1; i < text->count; i++)
+        hash_add_text(hash, text->pieces[i]);
     hash_end(hash, key);
     return SONJECT_OK;
 }
@@ -79,117 +74,74 @@ static sonject_status build_failure(struct report *report, const struct device *
     return status;
 }
 
-/* The program from the cache, NULL if there is none that the device accepts. */
-static cl_program from_cache(struct device *device, const char *key, const char *options)
+/* What came of building a program, to be told when the driver is left. */
+struct building {
+    const char *call; /* that failed */
+    cl_int error;
+    cl_program failed; /* has the log; NULL: none */
+    double seconds;    /* 0: it was there */
+};
+
+/* The program stays the device's; NULL: see `building`. */
+static cl_program find_or_build(struct device *device, const struct program_text *text,
+                                const char *key, struct building *building)
 {
-    unsigned char *bytes;
-    size_t count;
-    if (!device->cache_folder || !cache_read(device->cache_folder, key, &bytes, &count))
+    cl_program program = shared_program_find(device->shared, key);
+    if (program)
+        return program;
+    const double start = clock_seconds();
+    building->call = "clCreateProgramWithSource";
+    program = clCreateProgramWithSource(device->context, (cl_uint)text->count,
+                                        (const char **)text->pieces, NULL, &building->error);
+    if (building->error != CL_SUCCESS)
         return NULL;
-    cl_int error = CL_SUCCESS;
-    cl_int accepted = CL_SUCCESS;
-    const unsigned char *binary = bytes;
-    cl_program program = clCreateProgramWithBinary(device->context, 1, &device->id, &count, &binary,
-                                                   &accepted, &error);
-    free(bytes);
-    if (error != CL_SUCCESS)
-        return NULL;
-    if (accepted != CL_SUCCESS ||
-        clBuildProgram(program, 1, &device->id, options, NULL, NULL) != CL_SUCCESS) {
-        clReleaseProgram(program);
+    building->error = clBuildProgram(program, 1, &device->id, text->options, NULL, NULL);
+    if (building->error != CL_SUCCESS) {
+        building->failed = program;
         return NULL;
     }
+    building->seconds = clock_seconds() - start;
+    shared_program_keep(device->shared, key, program);
     return program;
 }
 
-static void into_cache(struct device *device, const char *key, cl_program program)
+sonject_status kernel_of_text(struct report *report, struct device *device,
+                              const struct program_text *text, const char *name, cl_kernel *kernel)
 {
-    size_t count = 0;
-    if (!device->cache_folder ||
-        clGetProgramInfo(program, CL_PROGRAM_BINARY_SIZES, sizeof count, &count, NULL) !=
-            CL_SUCCESS ||
-        count == 0)
-        return;
-    unsigned char *bytes = allocate_array(count, 1);
-    if (bytes &&
-        clGetProgramInfo(program, CL_PROGRAM_BINARIES, sizeof bytes, &bytes, NULL) == CL_SUCCESS)
-        cache_write(device->cache_folder, key, bytes, count);
-    free(bytes);
-}
-
-static sonject_status build(struct report *report, struct device *device,
-                            const struct program_text *text, cl_program *out)
-{
-    cl_int error = CL_SUCCESS;
-    cl_program program = clCreateProgramWithSource(device->context, (cl_uint)text->count,
-                                                   (const char **)text->pieces, NULL, &error);
-    if (error != CL_SUCCESS)
-        return device_failure(report, device, "clCreateProgramWithSource", error);
-    error = clBuildProgram(program, 1, &device->id, text->options, NULL, NULL);
-    if (error != CL_SUCCESS) {
-        const sonject_status status = build_failure(report, device, text, program, error);
-        clReleaseProgram(program);
-        return status;
-    }
-    *out = program;
-    return SONJECT_OK;
-}
-
-sonject_status program_make(struct report *report, struct device *device,
-                            const struct program_text *text, const char *key, cl_program *out)
-{
-    *out = from_cache(device, key, text->options);
-    if (*out) {
-        report_news(report, "%s taken from the cache", text->name);
-        return SONJECT_OK;
-    }
-    const double start = clock_seconds();
-    const sonject_status status = build(report, device, text, out);
+    struct building building = {NULL, CL_SUCCESS, NULL, 0.0};
+    char key[HASH_TEXT_CAPACITY];
+    *kernel = NULL;
+    sonject_status status = program_key(report, text, key);
+    if (status == SONJECT_OK)
+        status = driver_enter(report);
     if (status != SONJECT_OK)
         return status;
-    report_news(report, "%s built in %.1f s", text->name, clock_seconds() - start);
-    into_cache(device, key, *out);
-    return SONJECT_OK;
-}
-
-sonject_status program_get(struct report *report, struct device *device, enum device_program number,
-                           uint32_t variant, cl_program *out)
-{
-    cl_program *program = &device->programs[number][variant];
-    if (!*program) {
-        const char *const pieces[] = {embedded_sources[number].text};
-        char options[PROGRAM_OPTIONS_CAPACITY];
-        char key[HASH_TEXT_CAPACITY];
-        program_options(device, variant, "", options);
-        const struct program_text text = {
-            embedded_sources[number].name, pieces, 1, options, NULL, NULL};
-        sonject_status status = program_key(report, device, &text, key);
-        if (status == SONJECT_OK)
-            status = program_make(report, device, &text, key, program);
-        if (status != SONJECT_OK)
-            return status;
+    cl_program program = find_or_build(device, text, key, &building);
+    if (program) {
+        building.call = "clCreateKernel";
+        *kernel = clCreateKernel(program, name, &building.error);
     }
-    *out = *program;
-    return SONJECT_OK;
-}
-
-sonject_status program_kernel(struct report *report, const struct device *device,
-                              cl_program program, const char *name, cl_kernel *kernel)
-{
-    cl_int error = CL_SUCCESS;
-    *kernel = clCreateKernel(program, name, &error);
-    if (error == CL_SUCCESS)
-        return SONJECT_OK;
-    *kernel = NULL;
-    return device_failure(report, device, "clCreateKernel", error);
+    driver_leave();
+    if (building.seconds > 0.0)
+        report_news(report, "%s built in %.1f s", text->name, building.seconds);
+    if (building.failed) {
+        status = build_failure(report, device, text, building.failed, building.error);
+        clReleaseProgram(building.failed);
+    } else if (building.error != CL_SUCCESS) {
+        *kernel = NULL;
+        status = device_failure(report, device, building.call, building.error);
+    }
+    return status;
 }
 
 sonject_status kernel_create(struct report *report, struct device *device,
                              enum device_program number, uint32_t variant, const char *name,
                              cl_kernel *kernel)
 {
-    cl_program program;
-    *kernel = NULL;
-    const sonject_status status = program_get(report, device, number, variant, &program);
-    return status == SONJECT_OK ? program_kernel(report, device, program, name, kernel) : status;
+    const char *const pieces[] = {embedded_sources[number].text};
+    char options[PROGRAM_OPTIONS_CAPACITY];
+    program_options(device, variant, "", options);
+    const struct program_text text = {
+        embedded_sources[number].name, pieces, 1, options, NULL, NULL};
+    return kernel_of_text(report, device, &text, name, kernel);
 }

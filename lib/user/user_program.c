@@ -73,42 +73,6 @@ static sonject_status explain(struct report *report, const struct device *device
     return explain_build_log(report, &users, device->name, log);
 }
 
-/* The program of a key if the device still has it. */
-static cl_program find_program(const struct device *device, const char *key)
-{
-    for (size_t i = 0; i < USER_PROGRAMS_KEPT; i++)
-        if (device->user_programs[i].program && strcmp(device->user_programs[i].key, key) == 0)
-            return device->user_programs[i].program;
-    return NULL;
-}
-
-/* Takes the program over. */
-static void keep_program(struct device *device, const char *key, cl_program program)
-{
-    struct user_program *place = &device->user_programs[device->user_program_next];
-    device->user_program_next = (device->user_program_next + 1) % USER_PROGRAMS_KEPT;
-    if (place->program)
-        clReleaseProgram(place->program);
-    place->program = program;
-    memcpy(place->key, key, sizeof place->key);
-}
-
-static sonject_status get_program(struct report *report, struct device *device,
-                                  const struct program_text *text, cl_program *program)
-{
-    char key[HASH_TEXT_CAPACITY];
-    sonject_status status = program_key(report, device, text, key);
-    if (status != SONJECT_OK)
-        return status;
-    *program = find_program(device, key);
-    if (*program)
-        return SONJECT_OK;
-    status = program_make(report, device, text, key, program);
-    if (status == SONJECT_OK)
-        keep_program(device, key, *program);
-    return status;
-}
-
 sonject_status user_kernel_create(struct report *report, struct device *device,
                                   const struct user_shapes *shapes, uint32_t variant,
                                   enum device_program number, const char *name, cl_kernel *kernel)
@@ -116,7 +80,6 @@ sonject_status user_kernel_create(struct report *report, struct device *device,
     const char *pieces[OWN_PIECES + 3 * USER_SNIPPETS_MAX];
     char options[PROGRAM_OPTIONS_CAPACITY];
     size_t count = 0;
-    cl_program program;
     char *without_macros = text_without_macros(embedded_sources[number].text);
     char *calls = text_of_calls(shapes->snippet_count);
     *kernel = NULL;
@@ -131,11 +94,9 @@ sonject_status user_kernel_create(struct report *report, struct device *device,
     program_options(device, variant, " -DWITH_USER_SHAPES", options);
     const struct program_text text = {
         embedded_sources[number].name, pieces, count, options, explain, shapes};
-    sonject_status status = without_macros && calls
-                                ? get_program(report, device, &text, &program)
-                                : report_out_of_memory(report, "the user shapes' program");
-    if (status == SONJECT_OK)
-        status = program_kernel(report, device, program, name, kernel);
+    const sonject_status status = without_macros && calls
+                                      ? kernel_of_text(report, device, &text, name, kernel)
+                                      : report_out_of_memory(report, "the user shapes' program");
     free(without_macros);
     free(calls);
     return status;

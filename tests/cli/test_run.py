@@ -170,15 +170,26 @@ def test_verbose_tells_what_happens(sonject, scene, tmp_path):
     *news, last = answer.stderr.splitlines()
     assert last == "sonject: the result is in result"
     assert all(line.startswith("sonject: ") for line in news)
-    for words in ("device '", "trace_rough.cl taken from the cache", "noise floor estimated",
+    for words in ("device '", "trace_rough.cl built in", "noise floor estimated",
                   "3 pixels of the patch are at the image's full scale"):
         assert len([line for line in news if words in line]) == 1, (words, news)
     quiet = sonject("run", scene, "-o", "quiet", *chosen, "--verbose", "--quiet")
     assert (quiet.returncode, quiet.stdout, quiet.stderr) == (0, "", "")
 
 
-def test_no_home_and_no_cache_are_no_reason_to_fail(sonject, scene, tmp_path, environment):
-    drivers_cache = {"POCL_CACHE_DIR": environment["XDG_CACHE_HOME"] + "/pocl/kcache"}
+@pytest.fixture
+def drivers_cache(environment):
+    return {"POCL_CACHE_DIR": environment["XDG_CACHE_HOME"] + "/pocl/kcache"}
+
+
+def test_only_the_driver_keeps_programs(sonject, scene, tmp_path, drivers_cache):
+    changes = {"XDG_CACHE_HOME": str(tmp_path / "caches"), "HOME": str(tmp_path / "home")}
+    answer = sonject("run", scene, "-o", "result", changes={**changes, **drivers_cache})
+    assert answer.returncode == 0, answer.stderr
+    assert not files_below(tmp_path / "caches") + files_below(tmp_path / "home")
+
+
+def test_no_home_and_no_cache_are_no_reason_to_fail(sonject, scene, tmp_path, drivers_cache):
     gone = {"HOME": None, "XDG_CACHE_HOME": None, **drivers_cache}
     assert sonject("run", scene, "-o", "a", changes=gone).returncode == 0
     closed = {"HOME": "/dev/null", "XDG_CACHE_HOME": "/dev/null/cache", **drivers_cache}

@@ -80,19 +80,12 @@ MAKES(cl_program, clCreateProgramWithSource,
       (cl_context context, cl_uint count, const char **texts, const size_t *lengths,
        cl_int *answer),
       (context, count, texts, lengths, answer))
-MAKES(cl_program, clCreateProgramWithBinary,
-      (cl_context context, cl_uint count, const cl_device_id *devices, const size_t *lengths,
-       const unsigned char **binaries, cl_int *each, cl_int *answer),
-      (context, count, devices, lengths, binaries, each, answer))
 MAKES(cl_kernel, clCreateKernel, (cl_program program, const char *name, cl_int *answer),
       (program, name, answer))
 ANSWERS(clBuildProgram,
         (cl_program program, cl_uint count, const cl_device_id *devices, const char *options,
          void(CL_CALLBACK *notify)(cl_program, void *), void *user),
         (program, count, devices, options, notify, user))
-ANSWERS(clGetProgramInfo,
-        (cl_program program, cl_program_info what, size_t room, void *value, size_t *bytes),
-        (program, what, room, value, bytes))
 ANSWERS(clGetProgramBuildInfo,
         (cl_program program, cl_device_id device, cl_program_build_info what, size_t room,
          void *value, size_t *bytes),

@@ -12,6 +12,7 @@
 #include <cmocka.h>
 
 #include <stdlib.h>
+#include <string.h>
 
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
@@ -89,7 +90,7 @@ static void expect_done(struct work *work, const char *name, work_piece *piece)
  * a third of them is done. */
 static void test_piece(struct work *work, const char *name, work_piece *piece)
 {
-    expect_done(work, name, piece); /* fills the cache of programs */
+    expect_done(work, name, piece); /* fills the driver's cache */
     work_expect(work);
     fault_arm(KIND, 0, false, 0);
     expect_done(work, name, piece);
@@ -110,7 +111,6 @@ static void test_piece(struct work *work, const char *name, work_piece *piece)
         }
     }
     print_message("%s: %ld calls, %ld tried, %ld failed the work\n", name, calls, points, failed);
-    /* what concerns the cache of programs alone can be done without */
     assert_true(failed > 0);
 }
 
@@ -159,6 +159,18 @@ static void test_making_a_seabed(void **state)
     test_piece(*state, "seabed", work_seabed);
 }
 
+static void test_discovery_short_of_memory_says_so(void **state)
+{
+    struct work *work = *state;
+    for (long n = 1; n <= 2; n++) { /* platforms, devices */
+        fault_arm(FAULT_OPENCL, n, false, CL_OUT_OF_HOST_MEMORY);
+        const sonject_status status = work_inject(work);
+        (void)fault_disarm();
+        assert_int_equal(status, SONJECT_ERROR_MEMORY);
+        assert_non_null(strstr(work->message, "too little memory"));
+    }
+}
+
 #if defined(HAS_HDF5)
 static void test_tracing(void **state)
 {
@@ -178,6 +190,7 @@ int main(void)
 {
     const struct CMUnitTest with_device[] = {
         cmocka_unit_test(test_injecting),
+        cmocka_unit_test(test_discovery_short_of_memory_says_so),
         cmocka_unit_test(test_running),
 #if defined(HAS_HDF5)
         cmocka_unit_test(test_tracing),

@@ -179,7 +179,6 @@ static void work(const struct opencl *opencl, const char *folder)
     sonject_scene *none;
     char *text = NULL;
     sonject_context_params_init(&params);
-    params.cache_folder = "";
     params.opencl_context = opencl->context;
     params.opencl_device = opencl->device;
     assert_int_equal(sonject_context_create(&params, &context), SONJECT_OK);

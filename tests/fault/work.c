@@ -87,7 +87,6 @@ static sonject_status begin(struct work *work, sonject_context **context)
 {
     sonject_context_params params;
     sonject_context_params_init(&params);
-    params.cache_folder = work->cache;
     work->message[0] = '\0';
     work->digest = UINT64_C(0xCBF29CE484222325);
     return sonject_context_create(&params, context);
@@ -137,15 +136,12 @@ int work_prepare(void **state)
     set_path(work, work->image, "swath.npy");
     set_path(work, work->seabed, "seabed.tif");
     set_path(work, work->impulses, "impulses.h5");
-    set_path(work, work->cache, "cache");
     set_path(work, work->results, "results");
     write_bytes(work->scene, scene_text, strlen(scene_text));
     write_bytes(work->campaign, campaign_text, strlen(campaign_text));
     write_bytes(temporary_file(work->folder, "buoy.yaml"), target_text, strlen(target_text));
     write_image(work->image);
     *state = work;
-    if (mkdir(work->cache, 0777) != 0)
-        return 1;
     return write_seabed(work, work->seabed) != SONJECT_OK;
 }
 

@@ -23,7 +23,6 @@ struct work {
     struct temporary_folder *folder; /* scene, targets and input image */
     char scene[WORK_PATH], campaign[WORK_PATH], image[WORK_PATH], seabed[WORK_PATH],
         impulses[WORK_PATH];
-    char cache[WORK_PATH];   /* of compiled programs */
     char results[WORK_PATH]; /* folder of what the work leaves */
     char message[1024];      /* of the last piece's failure, "" if the context was not made */
     uint64_t digest;         /* of the numbers that the last piece returned */

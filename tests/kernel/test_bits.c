@@ -381,7 +381,6 @@ static void on_all_kinds(body *run)
     memset(&params, 0, sizeof params);
     params.struct_size = sizeof params;
     params.device_name = bench_device;
-    params.cache_folder = "";
     struct device *first = bench.tracer.device;
     for (size_t w = 0; w < width_count; w++) {
         if (device_open(&bench.report, &params, &devices[w]) != SONJECT_OK)
@@ -966,7 +965,6 @@ static void test_one_core(void **unused)
     sonject_context_params params;
     memset(&params, 0, sizeof params);
     params.struct_size = sizeof params;
-    params.cache_folder = "";
     params.opencl_context = context;
     params.opencl_device = core;
     struct device *all_cores = bench.tracer.device;

@@ -31,7 +31,6 @@ static void open_device(struct bench *bench)
     memset(&context, 0, sizeof context);
     context.struct_size = sizeof context;
     context.device_name = bench_device;
-    context.cache_folder = "";
     expect_ok(bench, device_open(&bench->report, &context, &bench->tracer.device));
 }
 

@@ -398,7 +398,6 @@ static struct tally measure_poses(const char *what, void (*draw_pose)(struct pos
     memset(&tally, 0, sizeof tally);
     sonject_context_params_init(&params);
     params.device_name = bench_device;
-    params.cache_folder = "";
     assert_int_equal(sonject_context_create(&params, &context), SONJECT_OK);
     random_state = SEED;
     for (int i = 0; i < poses; i++) {

@@ -23,8 +23,6 @@ using log = std::function<void(const char *line)>;
 /* What a context is made from; empty texts and null handles: the defaults. */
 struct context_options {
     std::string device_name;
-    std::string cache_folder; /* for compiled programs; uses_cache false: none is kept */
-    bool uses_cache = true;
     void *opencl_context = nullptr; /* a host's cl_context and cl_device_id */
     void *opencl_device = nullptr;
     sonject::log log;
@@ -40,10 +38,6 @@ class context
         sonject_context_params params;
         sonject_context_params_init(&params);
         params.device_name = options.device_name.empty() ? nullptr : options.device_name.c_str();
-        if (!options.uses_cache)
-            params.cache_folder = "";
-        else if (!options.cache_folder.empty())
-            params.cache_folder = options.cache_folder.c_str();
         params.opencl_context = options.opencl_context;
         params.opencl_device = options.opencl_device;
         params.log = *log_ ? &context::tell : nullptr;

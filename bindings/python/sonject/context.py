@@ -5,7 +5,6 @@ from __future__ import annotations
 import collections
 import contextlib
 import ctypes
-import os
 import threading
 import weakref
 from dataclasses import dataclass
@@ -15,7 +14,7 @@ from . import _structures as s
 from ._callbacks import LogBridge, Progress, ProgressBridge, text
 from ._handle import Handle
 from ._library import load
-from ._values import PathLike, initialised, optional_file_name
+from ._values import initialised, optional_file_name
 from .enumerations import Status
 from .errors import Cancelled, SonjectError
 
@@ -35,24 +34,22 @@ class Device:
 class Context:
     """Works with one OpenCL device.
 
-    device: part of the device's name, None for the default one; cache_folder: for compiled
-    programs, None for the user's cache, "" for none; log: called with lines of news;
+    device: part of the device's name, None for the default one; log: called with lines of news;
     opencl_context, opencl_device: addresses of a host's cl_context and cl_device_id to work in.
 
     Calls from several threads on one context wait for each other; use a context per thread to work
-    at once. OpenCL does not survive os.fork in the child, where nothing works any more.
+    at once. OpenCL does not survive os.fork: what needs a device is refused in a child whose parent
+    used one before.
     """
 
     def __init__(
         self,
         device: Optional[str] = None,
-        cache_folder: Optional[PathLike] = None,
         log: Optional[Callable[[str], Any]] = None,
         opencl_context: Optional[int] = None,
         opencl_device: Optional[int] = None,
     ) -> None:
         self._library = load()
-        self._process = _claim_driver()
         self._lock = threading.Lock()
         self._owner: Optional[int] = None
         self._waiting: collections.deque[Any] = collections.deque()
@@ -60,7 +57,6 @@ class Context:
         self._log = None if log is None else LogBridge(log)
         params = initialised(s.sonject_context_params)
         params.device_name = optional_file_name("device", device)
-        params.cache_folder = optional_file_name("cache_folder", cache_folder)
         params.opencl_context = opencl_context
         params.opencl_device = opencl_device
         if self._log is not None:
@@ -72,9 +68,7 @@ class Context:
         if status != Status.OK:
             name = text(self._library.sonject_status_name(status))
             raise SonjectError(Status(status), f"the context cannot be made: {name}")
-        self._finalizer = weakref.finalize(
-            self, _release_context, self._pointer, self._process, self._log
-        )
+        self._finalizer = weakref.finalize(self, _release_context, self._pointer, self._log)
 
     def close(self) -> None:
         """Releases the context, after the scenes and results that were made with it."""
@@ -118,8 +112,8 @@ class Context:
 
     @property
     def is_usable(self) -> bool:
-        """False once it is closed, and in a child process."""
-        return self._finalizer.alive and self._process == os.getpid()
+        """False once it is closed."""
+        return self._finalizer.alive
 
     def call(self, name: str, *arguments: Any, bridge: Optional[ProgressBridge] = None) -> None:
         """Calls the library function name, which answers a status.
@@ -197,14 +191,11 @@ class Context:
     def _release_waiting(self) -> None:
         while self._waiting:
             pointer = self._waiting.popleft()
-            if os.getpid() == self._process:
-                release = getattr(self._library, pointer._type_.__name__ + "_release")
-                release(ctypes.byref(pointer))
+            release = getattr(self._library, pointer._type_.__name__ + "_release")
+            release(ctypes.byref(pointer))
 
     @contextlib.contextmanager
     def _exclusive(self) -> Iterator[None]:
-        if os.getpid() != self._process:
-            raise RuntimeError("this sonject context belongs to the parent process")
         if self._owner == threading.get_ident():
             raise RuntimeError("a sonject context cannot be used within its own callbacks")
         with self._lock:
@@ -216,25 +207,8 @@ class Context:
                 self._release_waiting()
 
 
-_driver_process: Optional[int] = None  # in which OpenCL was used first
-
-
-def _claim_driver() -> int:
-    """This process; refuses one that was forked from it, where a driver's threads are missing."""
-    global _driver_process
-    if _driver_process is None:
-        _driver_process = os.getpid()
-    if _driver_process != os.getpid():
-        raise RuntimeError(
-            "OpenCL was in use when this process was forked, and its calls would wait for ever: "
-            "spawn processes instead"
-        )
-    return _driver_process
-
-
-def _release_context(pointer: Any, process: int, _log: Optional[LogBridge]) -> None:
-    if os.getpid() == process:
-        load().sonject_context_release(ctypes.byref(pointer))
+def _release_context(pointer: Any, _log: Optional[LogBridge]) -> None:
+    load().sonject_context_release(ctypes.byref(pointer))
 
 
 _of_thread = threading.local()

@@ -21,8 +21,8 @@ def pytest_sessionstart(session):
 
 
 @pytest.fixture(scope="session")
-def context(tmp_path_factory):
-    with sonject.Context(cache_folder=tmp_path_factory.mktemp("cache")) as context:
+def context():
+    with sonject.Context() as context:
         yield context
 
 

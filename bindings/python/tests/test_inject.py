@@ -253,7 +253,7 @@ def test_other_threads_run_meanwhile(amplitude_patch, make_scene):
     images = []
 
     def work():
-        with sonject.Context(cache_folder="") as context:
+        with sonject.Context() as context:
             scene = make_scene(context=context)
             images.append(sonject.inject(amplitude_patch, scene).image.tobytes())
 

@@ -29,7 +29,6 @@ class sonject_context_params(Structure):
         ("struct_size", c_uint32),
         ("reserved", c_uint32),
         ("device_name", c_char_p),
-        ("cache_folder", c_char_p),
         ("opencl_context", c_void_p),
         ("opencl_device", c_void_p),
         ("log", sonject_log_function),

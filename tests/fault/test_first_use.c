@@ -1,0 +1,247 @@
+/* The first use of OpenCL in a process, by several threads, before and after a fork; and what
+ * contexts hold. This process makes no call of the library, so that each of its children is the
+ * first to use the driver. */
+#define _POSIX_C_SOURCE 200809L
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <sonject/sonject.h>
+
+#define SIDE     16
+#define THREADS  4
+#define CONTEXTS 100
+#ifndef RUNS
+#define RUNS 20 /* processes; a slow checker may be compiled with fewer */
+#endif
+#define SECONDS 300 /* after which a child that waits for ever is ended */
+
+/* A child of this process, or one of its own: nonzero for failure, with a line that says why. */
+typedef int child_work(void);
+
+static int say(const char *what, const sonject_context *context)
+{
+    fprintf(stderr, "%s: %s\n", what, context ? sonject_context_message(context) : "");
+    return 1;
+}
+
+static int exit_of(child_work *work)
+{
+    int status = 0;
+    fflush(NULL);
+    const pid_t child = fork();
+    if (child == 0) {
+        alarm(SECONDS);
+        _exit(work());
+    }
+    return child > 0 && waitpid(child, &status, 0) == child ? status : -1;
+}
+
+static sonject_status inject(sonject_context *context)
+{
+    sonject_scene *scene = NULL;
+    sonject_result *result = NULL;
+    sonject_object_params ball;
+    sonject_object_params_init(&ball);
+    ball.shape = SONJECT_SHAPE_SPHERE;
+    ball.diameter_m = 0.3;
+    sonject_geometry_params geometry;
+    sonject_geometry_params_init(&geometry);
+    geometry.first_slant_range_m = 20.0;
+    sonject_status status = sonject_scene_create(context, &scene);
+    if (status == SONJECT_OK)
+        status = sonject_scene_set_geometry(scene, &geometry);
+    if (status == SONJECT_OK)
+        status = sonject_scene_set_input_uniform(scene, SIDE, SIDE);
+    if (status == SONJECT_OK)
+        status = sonject_scene_add_object(scene, &ball, NULL);
+    if (status == SONJECT_OK)
+        status = sonject_inject(context, scene, NULL, NULL, NULL, &result);
+    sonject_result_release(&result);
+    sonject_scene_release(&scene);
+    return status;
+}
+
+static int inject_once(void)
+{
+    sonject_context *context = NULL;
+    int failed = sonject_context_create(NULL, &context) != SONJECT_OK;
+    if (!failed && inject(context) != SONJECT_OK)
+        failed = say("inject", context);
+    sonject_context_release(&context);
+    return failed;
+}
+
+static pthread_barrier_t all_are_there;
+
+static void *inject_in_thread(void *failed)
+{
+    pthread_barrier_wait(&all_are_there);
+    *(int *)failed = inject_once();
+    return NULL;
+}
+
+static int inject_together(void)
+{
+    pthread_t threads[THREADS];
+    int failed[THREADS];
+    int failures = 0;
+    pthread_barrier_init(&all_are_there, NULL, THREADS);
+    for (int i = 0; i < THREADS; i++)
+        if (pthread_create(&threads[i], NULL, inject_in_thread, &failed[i]) != 0)
+            return say("no thread", NULL);
+    for (int i = 0; i < THREADS; i++) {
+        pthread_join(threads[i], NULL);
+        failures += failed[i];
+    }
+    return failures;
+}
+
+static void test_threads_may_be_the_first_to_use_a_device(void **state)
+{
+    (void)state;
+    for (int run = 0; run < RUNS; run++)
+        assert_int_equal(exit_of(inject_together), 0);
+}
+
+static sonject_context *parents;
+
+/* Refused, with the reason. */
+static int is_let_in(const char *what, sonject_context *context, sonject_status status)
+{
+    return status != SONJECT_ERROR_DEVICE || !strstr(sonject_context_message(context), "forked")
+               ? say(what, context)
+               : 0;
+}
+
+static int expect_refusal(void)
+{
+    size_t count;
+    sonject_context *own = NULL;
+    if (sonject_context_create(NULL, &own) != SONJECT_OK)
+        return 1;
+    const int failures = is_let_in("the parent's context", parents, inject(parents)) +
+                         is_let_in("a context of the child's", own, inject(own)) +
+                         is_let_in("list of devices", own, sonject_devices(own, NULL, 0, &count));
+    sonject_context_release(&own);
+    sonject_context_release(&parents);
+    return failures;
+}
+
+/* The parent may have used the device, or only listed it, and goes on with it. */
+static int fork_after(sonject_status (*use)(sonject_context *context))
+{
+    if (sonject_context_create(NULL, &parents) != SONJECT_OK || use(parents) != SONJECT_OK)
+        return say("parent", parents);
+    if (exit_of(expect_refusal) != 0)
+        return say("child", NULL);
+    const int failed = inject(parents) != SONJECT_OK ? say("parent, afterwards", parents) : 0;
+    sonject_context_release(&parents);
+    return failed;
+}
+
+static sonject_status list(sonject_context *context)
+{
+    size_t count;
+    return sonject_devices(context, NULL, 0, &count);
+}
+
+static int fork_after_injecting(void)
+{
+    return fork_after(inject);
+}
+
+static int fork_after_listing(void)
+{
+    return fork_after(list);
+}
+
+static void test_a_child_of_a_process_that_used_opencl_is_refused(void **state)
+{
+    (void)state;
+    assert_int_equal(exit_of(fork_after_injecting), 0);
+    assert_int_equal(exit_of(fork_after_listing), 0);
+}
+
+static int inject_in_parents(void)
+{
+    const int failed = inject(parents) != SONJECT_OK ? say("child", parents) : 0;
+    sonject_context_release(&parents);
+    return failed;
+}
+
+/* A context that was made but opened no device stands in nobody's way. */
+static int fork_before_injecting(void)
+{
+    if (sonject_context_create(NULL, &parents) != SONJECT_OK)
+        return 1;
+    const int failed = exit_of(inject_in_parents) != 0 || exit_of(inject_once) != 0;
+    return failed + inject_in_parents();
+}
+
+static void test_parent_and_child_may_both_inject_where_none_did_before(void **state)
+{
+    (void)state;
+    assert_int_equal(exit_of(fork_before_injecting), 0);
+}
+
+/* Of this process, in pages that are in memory. */
+static long pages(void)
+{
+    long all, resident = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    if (!file || fscanf(file, "%ld %ld", &all, &resident) != 2)
+        resident = 0;
+    if (file)
+        fclose(file);
+    return resident;
+}
+
+static int hold_contexts(void)
+{
+    sonject_context *contexts[CONTEXTS] = {NULL};
+    long before = 0, after_one = 0;
+    int failed = 0;
+    for (int i = 0; i < CONTEXTS && !failed; i++) {
+        before = i == 0 ? pages() : before;
+        failed = sonject_context_create(NULL, &contexts[i]) != SONJECT_OK ||
+                 inject(contexts[i]) != SONJECT_OK;
+        after_one = i == 0 ? pages() : after_one;
+    }
+    const long after_all = pages();
+    for (int i = 0; i < CONTEXTS; i++)
+        sonject_context_release(&contexts[i]);
+    fprintf(stderr, "one context %ld pages, %d more %ld\n", after_one - before, CONTEXTS - 1,
+            after_all - after_one);
+    return failed || after_all - after_one > after_one - before ? say("contexts hold much", NULL)
+                                                                : 0;
+}
+
+static void test_a_hundred_contexts_hold_less_than_two(void **state)
+{
+    (void)state;
+    if (pages() == 0)
+        skip();
+    assert_int_equal(exit_of(hold_contexts), 0);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_threads_may_be_the_first_to_use_a_device),
+        cmocka_unit_test(test_a_child_of_a_process_that_used_opencl_is_refused),
+        cmocka_unit_test(test_parent_and_child_may_both_inject_where_none_did_before),
+        cmocka_unit_test(test_a_hundred_contexts_hold_less_than_two),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
