@@ -20,6 +20,14 @@ void *allocate_array(size_t count, size_t size)
     return bytes == 0 ? calloc(1, 1) : calloc(count, size);
 }
 
+bool memory_is_short(void)
+{
+    void *volatile much = allocate_array(1, (size_t)512 << 20); /* volatile: that it is tried */
+    const bool is_short = !much;
+    free(much);
+    return is_short;
+}
+
 char *copy_text(const char *text)
 {
     size_t bytes = strlen(text) + 1;

@@ -27,7 +27,7 @@ sonject_status device_failure(struct report *report, const struct device *device
 /* None may be for want of memory: the loader passes over drivers that cannot be loaded. */
 static sonject_status explain_no_device(struct report *report, cl_int error)
 {
-    if (error == CL_OUT_OF_HOST_MEMORY)
+    if (error == CL_OUT_OF_HOST_MEMORY || memory_is_short())
         return report_failure(report, SONJECT_ERROR_MEMORY,
                               "too little memory to find OpenCL devices: allow the process more, "
                               "a gigabyte at least (ulimit -v)");

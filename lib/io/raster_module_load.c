@@ -64,9 +64,14 @@ static const char *what_is_wrong_with(const struct raster_module *module)
 }
 
 /* Its libraries stay out of sight of the host's others. It is never unloaded: what they keep until
- * the process ends needs their code then. */
+ * the process ends needs their code then. Some of them end the process where memory is short. */
 static sonject_status load(struct report *report, const char *path, const char *module_file)
 {
+    if (memory_is_short())
+        return report_failure(report, SONJECT_ERROR_MEMORY,
+                              "%s: too little memory to load what reads and writes images, %s: "
+                              "allow the process more, a gigabyte at least (ulimit -v)",
+                              path, module_file);
     void *handle = dlopen(module_file, RTLD_LAZY | RTLD_LOCAL);
     const struct raster_module *module = handle ? dlsym(handle, "raster_module_openimageio") : NULL;
     if (!module) {

@@ -126,6 +126,16 @@ def test_few_open_files(reference, scene, tmp_path, sonject):
     assert 0 in codes
 
 
+@pytest.mark.parametrize("megabytes", [100, 200])
+def test_little_memory_is_told_as_such(scene, sonject, megabytes):
+    """And not as a driver, or OpenImageIO, that ought to be installed."""
+    limit = (megabytes << 20, megabytes << 20)
+    for arguments in (["devices"], ["run", scene, "-o", "result"], ["seabed", "-o", "seabed.png"]):
+        answer = sonject(
+            *arguments, preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_AS, limit))
+        assert_refused(answer, 5, "too little memory", "ulimit -v")
+
+
 @pytest.mark.parametrize("is_made", [True, False])
 def test_a_folder_that_may_not_be_written(scene, tmp_path, environment, is_made):
     folder = tmp_path / "closed"
