@@ -1,7 +1,5 @@
-#define _POSIX_C_SOURCE 200809L
 #include "api/campaign_files.h"
 
-#include <dirent.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -114,21 +112,6 @@ sonject_status split_folders_make(struct report *report, const char *folder, con
                                   uint32_t outputs)
 {
     return each_folder(report, folder, split, outputs, folder_make);
-}
-
-void folder_tidy(const char *path)
-{
-    DIR *folder = opendir(path);
-    if (!folder)
-        return;
-    for (const struct dirent *entry = readdir(folder); entry; entry = readdir(folder)) {
-        const char *part = strstr(entry->d_name, ".part");
-        char *name = part && strchr("./", part[5]) ? path_join(path, entry->d_name) : NULL;
-        if (name)
-            file_discard(name);
-        free(name);
-    }
-    closedir(folder);
 }
 
 static sonject_status tidy(struct report *report, const char *path)

@@ -44,9 +44,8 @@ bool image_files_exist(const struct image_files *files);
 sonject_status split_folders_make(struct report *report, const char *folder, const char *split,
                                   uint32_t outputs);
 
-/* Removes what killed writers left in them: files named as parts are. Never fails. */
+/* folder_tidy on each of them. */
 void split_folders_tidy(const char *folder, const char *split, uint32_t outputs);
-void folder_tidy(const char *folder);
 
 /* "folder/split/kind/name" for free(); parts may be NULL from the end. NULL when memory is out. */
 char *campaign_file(const char *folder, const char *split, const char *kind, const char *name);

@@ -91,6 +91,8 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
     free(path);
     if (status == SONJECT_OK)
         status = write_documents(report, facts, folder, run_start, start);
+    if (status == SONJECT_OK)
+        folder_tidy(folder);
     return status;
 }
 

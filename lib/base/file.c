@@ -1,9 +1,11 @@
 #define _POSIX_C_SOURCE 200809L
 #include "base/file.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <inttypes.h>
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -50,15 +52,61 @@ static uint64_t unique_number(void)
     return number ^ (uint64_t)(uintptr_t)&now;
 }
 
+/* Names where this process's number means something: the host, and on Linux the space of process
+ * numbers that a container has for itself. */
+static uint32_t process_place(void)
+{
+    char name[512] = "";
+    gethostname(name, 256);
+    name[255] = '\0';
+    const size_t length = strlen(name);
+    const ssize_t got = readlink("/proc/self/ns/pid", name + length, sizeof name - length);
+    uint32_t place = UINT32_C(2166136261); /* FNV-1a */
+    for (size_t i = 0; i < length + (got > 0 ? (size_t)got : 0); i++)
+        place = (place ^ (unsigned char)name[i]) * UINT32_C(16777619);
+    return place;
+}
+
 char *file_part_name(const char *path)
 {
     const char *extension = extension_of(path);
     const size_t capacity = strlen(path) + strlen(extension) + 64;
     char *part = allocate_array(capacity, 1);
     if (part)
-        snprintf(part, capacity, "%s.%ld-%016" PRIx64 ".part%s", path, (long)getpid(),
-                 unique_number(), extension);
+        snprintf(part, capacity, "%s.%08" PRIx32 "-%ld-%016" PRIx64 ".part%s", path,
+                 process_place(), (long)getpid(), unique_number(), extension);
     return part;
+}
+
+/* Whether that is a part's name, of a process of this place that is no more. */
+static bool is_orphan(const char *name)
+{
+    for (const char *dot = strchr(name, '.'); dot; dot = strchr(dot + 1, '.')) {
+        uint32_t place;
+        long process;
+        uint64_t unique;
+        int end = 0;
+        if (sscanf(dot, ".%8" SCNx32 "-%ld-%16" SCNx64 ".part%n", &place, &process, &unique,
+                   &end) == 3 &&
+            end > 0 && (dot[end] == '.' || dot[end] == '\0'))
+            return place == process_place() && process > 0 && kill((pid_t)process, 0) != 0 &&
+                   errno == ESRCH;
+    }
+    return false;
+}
+
+void folder_tidy(const char *path)
+{
+    DIR *folder = opendir(path);
+    if (!folder)
+        return;
+    for (const struct dirent *entry = readdir(folder); entry; entry = readdir(folder)) {
+        char *name = is_orphan(entry->d_name) ? path_join(path, entry->d_name) : NULL;
+        if (name)
+            file_discard(name);
+        free(name);
+    }
+    closedir(folder);
 }
 
 /* 0, or the errno of what failed. */

@@ -16,10 +16,14 @@ extern "C" {
  * ENOMEM. */
 sonject_status file_failure(struct report *report, const char *path, const char *action, int error);
 
-/* A private name beside path for a file in the making: "<path>.<unique>.part<extension of path>",
- * so that writers that choose by extension still work. To be given to free(); NULL when memory is
- * out. */
+/* A private name beside path for a file in the making:
+ * "<path>.<place>-<process>-<unique>.part<extension of path>", so that writers that choose by
+ * extension still work. To be given to free(); NULL when memory is out. */
 char *file_part_name(const char *path);
+
+/* Removes the parts in a folder that dead processes left. Those of other hosts and containers stay:
+ * whether their processes live cannot be known here. Never fails. */
+void folder_tidy(const char *path);
 
 /* Flushes the file part to disk and renames it to path. On failure part is removed and the message
  * names path and the reason (errno text). Errors: STORAGE, MEMORY. */

@@ -200,11 +200,13 @@ void stint_folder_remove(const char *path)
     if (folder_names_read(&list, &ignored, path, PREFIX) != SONJECT_OK)
         return;
     for (size_t i = 0; i < list.count; i++) {
-        char *file = strstr(list.names[i], ".stint") ? path_join(path, list.names[i]) : NULL;
+        struct stint_name name;
+        char *file = parse_name(list.names[i], &name) ? path_join(path, list.names[i]) : NULL;
         if (file)
             file_discard(file);
         free(file);
     }
+    folder_tidy(path);
     folder_names_clear(&list);
     rmdir(path);
 }

@@ -10,6 +10,7 @@
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 
 #include "base/file.h"
 #include "temporary_folder.h"
@@ -198,6 +199,45 @@ static void test_publishing(void **state)
     free(part);
 }
 
+/* A part of a process that is no more: a child's. */
+static char *orphaned_part(const char *path)
+{
+    char name[TEMPORARY_CAPACITY + 400] = "";
+    int ends[2];
+    assert_int_equal(pipe(ends), 0);
+    const pid_t child = fork();
+    if (child == 0) {
+        char *part = file_part_name(path);
+        _exit(part && write(ends[1], part, strlen(part) + 1) > 0 ? 0 : 1);
+    }
+    assert_int_equal(waitpid(child, NULL, 0), child);
+    assert_true(read(ends[0], name, sizeof name - 1) > 0);
+    close(ends[0]);
+    close(ends[1]);
+    return strdup(name);
+}
+
+static void test_only_parts_of_dead_processes_are_tidied_away(void **state)
+{
+    struct temporary_folder *folder = *state;
+    char path[TEMPORARY_CAPACITY + 300];
+    snprintf(path, sizeof path, "%s", temporary_file(folder, "a.part.of.image.tif"));
+    char *orphan = orphaned_part(path);
+    char *elsewhere = strdup(orphan); /* the same process number on another host */
+    elsewhere[strlen(path) + 1] = elsewhere[strlen(path) + 1] == '0' ? '1' : '0';
+    char *kept[] = {file_part_name(path), path, elsewhere};
+    write_bytes(orphan, "", 0);
+    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++)
+        write_bytes(kept[i], "", 0);
+    folder_tidy(folder->path);
+    assert_false(file_exists(orphan));
+    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++)
+        assert_true(file_exists(kept[i]));
+    free(kept[0]);
+    free(elsewhere);
+    free(orphan);
+}
+
 static void test_folders_are_made_with_their_parents(void **state)
 {
     struct temporary_folder *folder = *state;
@@ -233,6 +273,7 @@ int main(void)
         WITH_FOLDER(test_writing_where_nothing_can_be),
         WITH_FOLDER(test_a_full_disk_leaves_the_old_file),
         WITH_FOLDER(test_publishing),
+        WITH_FOLDER(test_only_parts_of_dead_processes_are_tidied_away),
         WITH_FOLDER(test_folders_are_made_with_their_parents),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
