@@ -1,14 +1,21 @@
 #include "message.h"
 
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/text.h"
 
 void message_line(const char *const *texts)
 {
     fputs("sonject: ", stderr);
     for (; *texts; texts++) {
-        /* File names may hold newlines and the codes that steer terminals. */
-        for (const char *c = *texts; *c; c++)
-            fputc((unsigned char)*c < ' ' || *c == 127 ? ' ' : *c, stderr);
+        char *shown = malloc(strlen(*texts) + 1);
+        if (!shown)
+            continue;
+        text_make_printable(strcpy(shown, *texts));
+        fputs(shown, stderr);
+        free(shown);
     }
     fputc('\n', stderr);
 }

@@ -84,7 +84,8 @@ typedef enum sonject_level_kind {
 typedef struct sonject_object_params {
     uint32_t struct_size;
     uint32_t shape;                         /* sonject_shape */
-    char name[SONJECT_NAME_CAPACITY];       /* UTF-8, terminated; "" becomes "object N" */
+    char name[SONJECT_NAME_CAPACITY];       /* "" becomes "object N"; both are terminated UTF-8
+                                               without controls of terminals or text direction */
     char class_name[SONJECT_NAME_CAPACITY]; /* label class; "" becomes the shape's name */
     double length_m;        /* plane, cylinder, capsule (>= diameter), ellipsoid, box, wedge */
     double width_m;         /* plane, ellipsoid, box, wedge */

@@ -3,12 +3,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-static void keep_on_one_line(char *text)
-{
-    for (; *text; text++)
-        if ((unsigned char)*text < 0x20)
-            *text = ' ';
-}
+#include "base/text.h"
 
 sonject_status report_failure(struct report *report, sonject_status status, const char *format, ...)
 {
@@ -16,7 +11,7 @@ sonject_status report_failure(struct report *report, sonject_status status, cons
     va_start(arguments, format);
     vsnprintf(report->message, sizeof report->message, format, arguments);
     va_end(arguments);
-    keep_on_one_line(report->message);
+    text_make_printable(report->message);
     return status;
 }
 
@@ -34,6 +29,6 @@ void report_news(struct report *report, const char *format, ...)
     va_start(arguments, format);
     vsnprintf(line, sizeof line, format, arguments);
     va_end(arguments);
-    keep_on_one_line(line);
+    text_make_printable(line);
     report->log(report->log_user, line);
 }

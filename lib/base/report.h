@@ -25,8 +25,8 @@ struct report {
 #define REPORT_FORMAT(format_index)
 #endif
 
-/* Keeps the message (control characters become spaces, so it stays one line) and returns status, so
- * that a caller can write: return report_failure(report, SONJECT_ERROR_INPUT, "..."). */
+/* Keeps the message, as text_make_printable leaves it, and returns status, so that a caller can
+ * write: return report_failure(report, SONJECT_ERROR_INPUT, "..."). */
 sonject_status report_failure(struct report *report, sonject_status status, const char *format, ...)
     REPORT_FORMAT(3);
 

@@ -197,18 +197,49 @@ static size_t character_length(const unsigned char *text)
     return length;
 }
 
+/* Of a well-formed character: controls (C0, DEL, C1), ends of lines and paragraphs, and what
+ * changes the direction of the text after it, which can make a line read as another. */
+static bool is_control(const unsigned char *byte)
+{
+    if (byte[0] < 0x20 || byte[0] == 0x7F)
+        return true;
+    if (byte[0] == 0xC2)
+        return byte[1] < 0xA0; /* U+0080 to U+009F */
+    if (byte[0] == 0xD8)
+        return byte[1] == 0x9C; /* U+061C */
+    if (byte[0] != 0xE2)
+        return false;
+    return byte[1] == 0x80
+               ? byte[2] == 0x8E || byte[2] == 0x8F || (byte[2] >= 0xA8 && byte[2] <= 0xAE)
+               : byte[1] == 0x81 && byte[2] >= 0xA6 && byte[2] <= 0xA9;
+}
+
 bool text_is_printable(const char *text)
 {
     const unsigned char *byte = (const unsigned char *)text;
     while (*byte) {
         const size_t length = character_length(byte);
-        const bool is_control =
-            byte[0] < 0x20 || byte[0] == 0x7F || (byte[0] == 0xC2 && length == 2 && byte[1] < 0xA0);
-        if (length == 0 || is_control)
+        if (length == 0 || is_control(byte))
             return false;
         byte += length;
     }
     return true;
+}
+
+void text_make_printable(char *text)
+{
+    const unsigned char *byte = (const unsigned char *)text;
+    while (*byte) {
+        const size_t length = character_length(byte);
+        if (length == 0 || is_control(byte)) {
+            *text++ = *byte < 0x20 ? ' ' : '?';
+            byte += length > 0 ? length : 1;
+            continue;
+        }
+        for (size_t i = 0; i < length; i++)
+            *text++ = (char)*byte++;
+    }
+    *text = '\0';
 }
 
 const char *text_excerpt(char *excerpt, size_t capacity, const char *text)

@@ -25,8 +25,15 @@ const char *text_of_number(char *text, size_t capacity, double number, int digit
 /* How many lines end in the text. */
 unsigned long text_count_lines(const char *text);
 
-/* True if the text is well-formed UTF-8 without control characters. */
+/* True if the text is well-formed UTF-8 without control characters (U+0000 to U+001F, U+007F to
+ * U+009F), line and paragraph separators (U+2028, U+2029) and those that set the direction of text
+ * (U+061C, U+200E, U+200F, U+202A to U+202E, U+2066 to U+2069). Names in scenes and campaigns must
+ * be such. */
 bool text_is_printable(const char *text);
+
+/* Makes a text so, as all that goes to a terminal is made: '?' for each other character or byte, a
+ * space below U+0020. */
+void text_make_printable(char *text);
 
 /* Copies text for use in a message; where it does not fit it is cut between characters and ends in
  * "...". capacity: at least 4. Returns excerpt. */

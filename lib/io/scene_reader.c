@@ -203,7 +203,7 @@ sonject_status read_path(struct reader *reader, const struct tree_node *node, ch
     if (!text)
         return SONJECT_ERROR_INPUT;
     if (*text == 0 || !text_is_printable(text))
-        return refuse_value(reader, node, "must be a file name on one line");
+        return refuse_value(reader, node, "must be a file name without control characters");
     char *folder = node->place.override
                        ? copy_text(folder_of_override(reader, node->place.override))
                        : path_folder(reader->tree->file);

@@ -43,7 +43,7 @@ void label_text_xml(struct growing_text *text, const char *words)
 
 void label_text_csv(struct growing_text *text, const char *words)
 {
-    growing_text_add(text, "\"");
+    growing_text_add(text, *words && strchr("=+-@\t\r", *words) ? "\"'" : "\"");
     for (; *words; words++)
         growing_text_add(text, *words == '"' ? "\"\"" : "%c", *words);
     growing_text_add(text, "\"");

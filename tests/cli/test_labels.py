@@ -178,6 +178,31 @@ def test_contact_records(folder):
     assert lines[0]["name"] == 'a "b", <c> & d'
 
 
+def test_names_are_no_formulas_of_spreadsheets(sonject, scene, tmp_path):
+    for name in ("=cmd|' /c calc'!A0", "+1", "-1", "@SUM(1)"):
+        changed = ["--set", f"objects[0].name={json.dumps(name)}"]
+        assert sonject("run", scene, "-o", "out", *changed).returncode == 0
+        with open(tmp_path / "out" / "contacts.csv", newline="", encoding="utf-8") as file:
+            assert [line["name"] for line in csv.DictReader(file)] == ["'" + name]
+        assert read_json(tmp_path / "out" / "contacts.json")["contacts"][0]["name"] == name
+
+
+STEERING = ["\x1b[31m", "\x9b31m", "\u202e", "\u2066", "\u200f", "\u061c", "\u2028"]
+
+
+@pytest.mark.parametrize("steering", STEERING, ids=ascii)
+def test_names_that_steer_terminals_are_refused_and_never_shown(sonject, scene, steering):
+    name = f"a{steering}b"
+    for key in ("objects[0].name", "objects[0].class", "input.path"):
+        answer = sonject("run", scene, "-o", "out", "--set", f"{key}={json.dumps(name)}")
+        assert_refused(answer, 3, key, "control characters")
+    answer = sonject("run", scene, "-o", f"scene.yaml/{name}")
+    assert_refused(answer, 5, "scene.yaml/a")
+    answer = sonject("run", scene, "-o", f"{name}")
+    assert (answer.returncode, len(answer.stderr.splitlines())) == (0, 1)
+    assert steering not in answer.stderr and "result is in a" in answer.stderr
+
+
 def test_pycocotools_reads_the_annotations(folder, seen, tmp_path):
     reader = os.environ.get("SONJECT_READERS")
     if not reader:

@@ -219,11 +219,24 @@ static void test_printable(void **state)
                                        "\xED\x9F\xBF",
                                        "\xF0\x9F\x90\x9F",
                                        "\xF4\x8F\xBF\xBF",
-                                       "\xC2\xA0"};
+                                       "\xC2\xA0",
+                                       "\xD8\x9B",
+                                       "\xE2\x80\x8D",
+                                       "\xE2\x80\xAF",
+                                       "\xE2\x81\xAA"};
     static const char *const bad[] = {"a\nb",
                                       "\x1B[31m",
                                       "\x7F",
-                                      "\xC2\x85",
+                                      "\xC2\x80",
+                                      "\xC2\x9F",
+                                      "\xD8\x9C",
+                                      "\xE2\x80\x8E",
+                                      "\xE2\x80\x8F",
+                                      "\xE2\x80\xA8",
+                                      "\xE2\x80\xAA",
+                                      "\xE2\x80\xAE",
+                                      "\xE2\x81\xA6",
+                                      "\xE2\x81\xA9",
                                       "\x80",
                                       "\xC3",
                                       "\xC0\xAF",
@@ -242,6 +255,16 @@ static void test_printable(void **state)
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         if (text_is_printable(bad[i]))
             fail_msg("bad text %zu was taken", i);
+}
+
+static void test_what_goes_to_a_terminal_is_made_printable(void **state)
+{
+    char text[] = "a\nb \x1B[31m \xC2\x9B"
+                  "31m \xE2\x80\xAEgnp.x \xFF \xC3\xA5 \xE2\x82";
+    (void)state;
+    text_make_printable(text);
+    assert_string_equal(text, "a b  [31m ?31m ?gnp.x ? \xC3\xA5 ??");
+    assert_true(text_is_printable(text));
 }
 
 static void test_excerpts(void **state)
@@ -269,6 +292,7 @@ int main(void)
         cmocka_unit_test(test_a_decimal_comma_changes_nothing),
         cmocka_unit_test(test_counts),
         cmocka_unit_test(test_printable),
+        cmocka_unit_test(test_what_goes_to_a_terminal_is_made_printable),
         cmocka_unit_test(test_excerpts),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
