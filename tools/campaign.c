@@ -13,6 +13,7 @@
 
 struct campaign_options {
     struct stage_options stage;
+    bool overwrites;
     const char *path;
     struct text_list overrides;
     const char *shard;
@@ -34,6 +35,8 @@ static const struct argument arguments[] = {
      false, offsetof(struct campaign_options, exit_after)},
     {"--allow-user-shapes", NULL, NULL, "take shapes that files describe by code", ARGUMENT_FLAG,
      false, offsetof(struct campaign_options, allows_user_shapes)},
+    {"--overwrite", NULL, NULL, OVERWRITE_HELP, ARGUMENT_FLAG, false,
+     offsetof(struct campaign_options, overwrites)},
     STAGE_ARGUMENTS(struct campaign_options),
 };
 
@@ -52,6 +55,7 @@ static sonject_status make(sonject_context *context, const void *verb_options,
     params.only_one = options->only.is_given;
     params.only = options->only.value;
     params.folder = options->stage.output;
+    params.overwrites = options->overwrites;
     sonject_status status = sonject_campaign_read(context, options->path, options->overrides.texts,
                                                   options->overrides.count, &reading, &campaign);
     if (status == SONJECT_OK)

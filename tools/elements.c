@@ -9,6 +9,7 @@
 
 struct elements_options {
     struct stage_options stage;
+    bool overwrites;
     struct scene_arguments scene;
 };
 
@@ -16,6 +17,8 @@ static const struct argument arguments[] = {
     {"--output", "-o", "DIR", "folder for series.npy and elements.json, made where missing",
      ARGUMENT_TEXT, true, offsetof(struct elements_options, stage.output)},
     SCENE_ARGUMENTS(struct elements_options),
+    {"--overwrite", NULL, NULL, OVERWRITE_HELP, ARGUMENT_FLAG, false,
+     offsetof(struct elements_options, overwrites)},
     STAGE_ARGUMENTS(struct elements_options),
 };
 
@@ -28,6 +31,7 @@ static sonject_status write_series(sonject_context *context, const void *verb_op
     sonject_run_params params;
     sonject_run_params_init(&params);
     params.folder = options->stage.output;
+    params.overwrites = options->overwrites;
     sonject_status status = scene_arguments_read(context, &options->scene, &scene);
     if (status == SONJECT_OK)
         status = sonject_elements_run(context, scene, &params, progress_update, progress);

@@ -10,6 +10,7 @@
 
 struct form_options {
     struct stage_options stage;
+    bool overwrites;
     const char *labels;
     const char *file;
     struct text_list overrides;
@@ -25,6 +26,8 @@ static const struct argument arguments[] = {
      ARGUMENT_FLAG, false, offsetof(struct form_options, allows_user_shapes)},
     {"--labels", NULL, "FORMATS", LABELS_HELP, ARGUMENT_TEXT, false,
      offsetof(struct form_options, labels)},
+    {"--overwrite", NULL, NULL, OVERWRITE_HELP, ARGUMENT_FLAG, false,
+     offsetof(struct form_options, overwrites)},
     STAGE_ARGUMENTS(struct form_options),
 };
 
@@ -36,6 +39,7 @@ static sonject_status form(sonject_context *context, const void *verb_options,
     sonject_form_params_init(&params);
     params.file = options->file;
     params.folder = options->stage.output;
+    params.overwrites = options->overwrites;
     labels_parse("form", options->labels, &params.labels);
     params.overrides = (const char *const *)options->overrides.texts;
     params.override_count = (uint32_t)options->overrides.count;

@@ -15,6 +15,7 @@
 
 struct run_options {
     struct stage_options stage;
+    bool overwrites;
     const char *labels;
     struct scene_arguments scene;
     const char *shard;
@@ -33,6 +34,8 @@ static const struct argument arguments[] = {
      ARGUMENT_NUMBER, false, offsetof(struct run_options, exit_after)},
     {"--checkpoint", NULL, "SECONDS", "keeps what was traced so often; 60 by itself",
      ARGUMENT_NUMBER, false, offsetof(struct run_options, checkpoint)},
+    {"--overwrite", NULL, NULL, OVERWRITE_HELP, ARGUMENT_FLAG, false,
+     offsetof(struct run_options, overwrites)},
     STAGE_ARGUMENTS(struct run_options),
 };
 
@@ -46,6 +49,7 @@ static sonject_status inject_band(sonject_context *context, const struct run_opt
     sonject_run_params params;
     sonject_run_params_init(&params);
     params.folder = folder;
+    params.overwrites = options->overwrites;
     labels_parse("run", options->labels, &params.labels);
     params.exit_after_s = options->exit_after.value;
     params.checkpoint_s = options->checkpoint.value;
@@ -114,7 +118,8 @@ const struct verb run_verb = {
     .arguments = arguments,
     .argument_count = sizeof(arguments) / sizeof(arguments[0]),
     .notes =
-        "A folder that already holds the finished result of the same inputs is left as it is.\n"
+        "A folder that already holds the finished result of the same inputs is left as it is; one\n"
+        "with another result is refused unless --overwrite is given.\n"
         "Of a scene with bands each goes to a folder of its name; --set band=NAME takes one.\n"
         "A run that was stopped goes on with what is in DIR/work. Shards of a run need the same\n"
         "DIR and scene; they may run on different machines, at any time, and again.",

@@ -17,6 +17,8 @@ struct stage_options {
     bool is_quiet;
 };
 
+#define OVERWRITE_HELP "replaces a result of other inputs, which else is refused"
+
 /* Lines of a verb's arguments, whose options are a structure with a struct stage_options `stage`.
  */
 #define STAGE_ARGUMENTS(structure)                                                                 \

@@ -85,16 +85,22 @@ typedef struct sonject_campaign_run_params {
     uint64_t only;        /* id */
     const char *folder;   /* for the data set; made where missing */
     double exit_after_s;  /* stops as if cancelled, after the image of that moment; 0: never */
+    uint32_t overwrites;  /* 1: another campaign's images in the folder are removed, not with
+                             shards; 0: they are refused */
+    uint32_t reserved;    /* 0 */
 } sonject_campaign_run_params;
 
 SONJECT_API void sonject_campaign_run_params_init(sonject_campaign_run_params *params);
 
 /* Makes the images that are not in the folder yet, each published file by file with its record
  * last, and, if all were asked for, the documents of the whole. A run that was stopped, or killed,
- * goes on where it was; the bytes do not depend on that. *was_finished (may be NULL) gets 1 if
- * nothing was left to do. A folder of another campaign, or of another version, is refused. progress
- * (may be NULL): fractions of what was missing; its stage tells the rate.
- * Errors: ARGUMENT, INPUT, DEVICE, STORAGE, MEMORY, UNSUPPORTED, CANCELLED (finished images stay).
+ * goes on where it was; the bytes do not depend on that. Records name each file with size and hash
+ * (no time, which would differ from run to run): an image with a file that is not so is made again.
+ * *was_finished (may be NULL) gets 1 if nothing was left to do. A folder of another campaign, or of
+ * another version, is refused unless params->overwrites. progress (may be NULL): fractions of what
+ * was missing; its stage tells the rate.
+ * Errors: ARGUMENT (also a folder of another campaign: the message names what differs), INPUT,
+ * DEVICE, STORAGE, MEMORY, UNSUPPORTED, CANCELLED (finished images stay).
  */
 SONJECT_API sonject_status sonject_campaign_run(sonject_context *context,
                                                 sonject_campaign *campaign,
@@ -102,8 +108,9 @@ SONJECT_API sonject_status sonject_campaign_run(sonject_context *context,
                                                 sonject_progress_function progress, void *user,
                                                 int *was_finished);
 
-/* Checks that all images of a folder's campaign are there, whoever made them, and writes the
- * documents of the whole, as a run of all would. Errors: ARGUMENT, INPUT (names what is missing),
+/* Checks that all images of a folder's campaign are there as their records say, whoever made them,
+ * and writes the documents of the whole, as a run of all would. Records are input, each member of
+ * which is checked. Errors: ARGUMENT, INPUT (names what is missing, changed or damaged),
  * STORAGE, MEMORY, UNSUPPORTED, CANCELLED. */
 SONJECT_API sonject_status sonject_campaign_merge(sonject_context *context, const char *folder,
                                                   sonject_progress_function progress, void *user);

@@ -102,7 +102,8 @@ SONJECT_API sonject_status sonject_element_series(sonject_context *context,
                                                   float *series, size_t bytes);
 
 /* The same on the scene's own input, into the folder: series.npy (NumPy's format, complex64 or
- * float32, [ping, hydrophone, sample]) and then elements.json, which tells the geometry. Each file
+ * float32, [ping, hydrophone, sample]) and then elements.json, which tells the geometry. Series
+ * that the folder has already are kept, or refused, as sonject_run does with its result. Each file
  * appears whole or not at all. Errors: also STORAGE, UNSUPPORTED (no raster files in this build).
  */
 SONJECT_API sonject_status sonject_elements_run(sonject_context *context,

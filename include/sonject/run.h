@@ -25,6 +25,8 @@ typedef struct sonject_run_params {
     uint32_t shard_count; /* at most 9999; 0: the run is not shared out */
     double exit_after_s;  /* the call stops tracing by itself after so long; 0: never */
     double checkpoint_s;  /* what was traced is kept so often at least; 0: every 60 s */
+    uint32_t overwrites;  /* 1: another result in the folder is replaced; 0: it is refused */
+    uint32_t reserved;    /* 0 */
 } sonject_run_params;
 
 SONJECT_API void sonject_run_params_init(sonject_run_params *params);
@@ -41,11 +43,14 @@ SONJECT_API void sonject_run_params_init(sonject_run_params *params);
  * another scene, image or version is refused, that of a whole run is dropped.
  *
  * Reads the scene's input, injects, and writes the result files into params->folder; run.json is
- * published last, so a folder with run.json is complete. *was_finished (may be NULL) gets 1, with
- * nothing done, if the folder already holds the finished result of the same inputs. Each file
+ * published last, so a folder with run.json is complete; it names each file with size, time and
+ * hash. *was_finished (may be NULL) gets 1, with nothing done, if the folder already holds the
+ * finished result of the same inputs: files are compared by size, and by hash where they have less
+ * than 16 MB or another time. What is missing or changed is made again. A result of other inputs is
+ * refused unless params->overwrites, and stays until the new one is there to be written. Each file
  * appears whole or not at all.
- * Errors: ARGUMENT, INPUT, DEVICE, STORAGE, MEMORY, UNSUPPORTED (no raster files in this build),
- * CANCELLED. */
+ * Errors: ARGUMENT (also another result in the folder: the message names what differs), INPUT,
+ * DEVICE, STORAGE, MEMORY, UNSUPPORTED (no raster files in this build), CANCELLED. */
 SONJECT_API sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
                                        const sonject_run_params *params,
                                        sonject_progress_function progress, void *user,

@@ -41,6 +41,8 @@ typedef struct sonject_form_params {
     uint32_t allows_user_shapes;  /* 1: run code of shapes in that scene, or beside it, as
                                      sonject_scene_read_params has it; 0: refuse it */
     uint32_t labels;              /* as of sonject_run_params */
+    uint32_t overwrites;          /* as of sonject_run_params */
+    uint32_t reserved;            /* 0 */
 } sonject_form_params;
 
 SONJECT_API void sonject_form_params_init(sonject_form_params *params);

@@ -125,6 +125,7 @@ void sonject_campaign_release(sonject_campaign **campaign)
     campaign_clear(&(*campaign)->campaign);
     swath_store_close(&(*campaign)->store);
     mesh_store_clear(&(*campaign)->meshes);
+    json_decref((*campaign)->inputs);
     free((*campaign)->scene_text);
     free((*campaign)->swath_hashes);
     free(*campaign);

@@ -1,51 +1,19 @@
 /* Whether all that a campaign may draw can be made, and the hash of what its images depend on. */
-#include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include <sonject/version.h>
+
 #include "api/campaign_handle.h"
 #include "api/scene_hash.h"
+#include "base/file_list.h"
+#include "base/json_document.h"
 #include "base/memory.h"
+#include "base/text.h"
+#include "io/yaml_flow.h"
 
-#define HASH_STEP  ((size_t)1 << 20)
 #define TRIALS_MAX 20000 /* scenes, about as many milliseconds at the most */
-
-static sonject_status hash_file(struct report *report, const char *path,
-                                char text[HASH_TEXT_CAPACITY])
-{
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: cannot be read: %s", path,
-                              strerror(errno));
-    struct hash *hash = hash_begin();
-    char *bytes = malloc(HASH_STEP);
-    if (!hash || !bytes) {
-        if (hash)
-            hash_end(hash, text);
-        free(bytes);
-        fclose(file);
-        return report_out_of_memory(report, "a hash");
-    }
-    size_t count;
-    while ((count = fread(bytes, 1, HASH_STEP, file)) > 0)
-        hash_add(hash, bytes, count);
-    const bool failed = ferror(file) != 0;
-    hash_end(hash, text);
-    free(bytes);
-    fclose(file);
-    return failed ? report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot be read to its end",
-                                   path)
-                  : SONJECT_OK;
-}
-
-sonject_status place_free_hash(struct report *report, const struct scene *scene,
-                               const char *input_identity, char text[HASH_TEXT_CAPACITY])
-{
-    struct scene nameless = *scene;
-    nameless.input_path = NULL;
-    return scene_hash(report, &nameless, input_identity, text);
-}
 
 /* Size and room of a swath, whose scene tells its geometry. */
 static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t number)
@@ -57,7 +25,7 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
     scene_init(&scene);
     scene.mesh_store = &campaign->meshes;
     sonject_status status =
-        hash_file(campaign->report, swath->path, campaign->swath_hashes[number]);
+        file_hash(campaign->report, swath->path, campaign->swath_hashes[number]);
     if (status == SONJECT_ERROR_MEMORY)
         return status;
     if (status != SONJECT_OK)
@@ -93,7 +61,7 @@ static sonject_status try_scene(struct sonject_campaign *campaign, struct hash *
     if (status == SONJECT_OK)
         status = campaign_read_scene(campaign, &plan, &scene);
     if (status == SONJECT_OK)
-        status = place_free_hash(campaign->report, &scene, NULL, text);
+        status = scene_hash(campaign->report, &scene, NULL, text);
     if (status == SONJECT_OK)
         hash_add_text(hash, text);
     campaign->has_user_shapes = campaign->has_user_shapes || scene.user_shapes.count > 0;
@@ -151,10 +119,55 @@ static sonject_status split_swaths(struct sonject_campaign *campaign)
     return status;
 }
 
+/* A key of the campaign's file with its value: a number, or a digest of its text. */
+static void add_key(struct sonject_campaign *campaign, struct hash *hash,
+                    const struct tree_entry *entry)
+{
+    struct growing_text text = {NULL, 0, 0, false};
+    char digest[HASH_TEXT_CAPACITY];
+    uint64_t count;
+    tree_write_flow(&entry->value, &text);
+    char *value = growing_text_end(&text);
+    hash_add_text(hash, value);
+    hash_restart(hash, digest);
+    json_add(&campaign->inputs, entry->key,
+             !value                         ? NULL
+             : text_to_count(value, &count) ? json_seed(count)
+                                            : json_string(digest));
+    free(value);
+}
+
+static void add_inputs(struct sonject_campaign *campaign, struct hash *hash, const char *code,
+                       const char *trials)
+{
+    const struct campaign *plan = &campaign->campaign;
+    const struct tree_node *root = &plan->tree.root;
+    char digest[HASH_TEXT_CAPACITY];
+    char name[48];
+    campaign->inputs = json_object();
+    json_add(&campaign->inputs, "sonject", json_string(sonject_version()));
+    json_add(&campaign->inputs, "sonject's kernels", json_string(code));
+    for (size_t i = 0; i < root->count; i++)
+        add_key(campaign, hash, &root->entries[i]);
+    hash_add(hash, campaign->scene_text, campaign->scene_bytes);
+    hash_restart(hash, digest);
+    json_add(&campaign->inputs, "the scene's file", json_string(digest));
+    for (size_t i = 0; i < plan->swath_count; i++) {
+        snprintf(name, sizeof name, "the file of swaths[%lu]", (unsigned long)i);
+        json_add(&campaign->inputs, name, json_string(campaign->swath_hashes[i]));
+    }
+    json_add(&campaign->inputs, "files that scene or targets name", json_string(trials));
+    char *text = json_document_text(campaign->inputs, JSON_COMPACT | JSON_SORT_KEYS);
+    hash_add_text(hash, text);
+    hash_restart(hash, campaign->hash);
+    free(text);
+}
+
 sonject_status campaign_check(struct sonject_campaign *campaign)
 {
     struct campaign *plan = &campaign->campaign;
     char code[HASH_TEXT_CAPACITY];
+    char trials[HASH_TEXT_CAPACITY];
     struct hash *hash = hash_begin();
     if (!hash)
         return report_out_of_memory(campaign->report, "a hash");
@@ -167,13 +180,12 @@ sonject_status campaign_check(struct sonject_campaign *campaign)
         status = image_plan_check_grid(plan);
     if (status == SONJECT_OK)
         status = try_scenes(campaign, hash);
+    hash_restart(hash, trials);
     if (status == SONJECT_OK) {
-        hash_add_text(hash, code);
-        hash_add_text(hash, plan->canonical);
-        hash_add(hash, campaign->scene_text, campaign->scene_bytes);
-        for (size_t i = 0; i < plan->swath_count; i++)
-            hash_add_text(hash, campaign->swath_hashes[i]);
+        add_inputs(campaign, hash, code, trials);
+        if (!campaign->inputs)
+            status = report_out_of_memory(campaign->report, "the campaign's inputs");
     }
-    hash_end(hash, campaign->hash);
+    hash_end(hash, trials);
     return status;
 }

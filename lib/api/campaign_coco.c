@@ -32,11 +32,6 @@ static sonject_status add_entry(const struct data_set *set, FILE *file, json_t *
                   : SONJECT_OK;
 }
 
-static json_int_t member_whole(const json_t *object, const char *key)
-{
-    return json_integer_value(json_object_get(object, key));
-}
-
 /* An annotation of an image's record, numbered. Takes it by reference. */
 static json_t *numbered(struct coco_file *coco, uint64_t image, const json_t *annotation)
 {
@@ -53,14 +48,13 @@ static sonject_status add_image(struct coco_file *coco, uint64_t id, bool is_fir
     size_t i;
     const json_t *annotation;
     const struct data_set *set = coco->set;
-    sonject_status status = data_set_image(set, coco->split, id, &record, NULL);
+    sonject_status status = data_set_image(set, coco->split, id, &record, NULL, NULL);
     if (status != SONJECT_OK)
         return status;
     status = add_entry(set, coco->images,
                        json_pack("{s:I, s:s, s:I, s:I}", "id", (json_int_t)id, "file_name",
-                                 member_text(record, "image"), "width",
-                                 member_whole(set->head, "columns"), "height",
-                                 member_whole(set->head, "rows")),
+                                 member_text(record, "image"), "width", set->columns, "height",
+                                 set->rows),
                        is_first);
     json_array_foreach(json_object_get(record, "annotations"), i, annotation)
     {

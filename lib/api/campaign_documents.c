@@ -1,80 +1,54 @@
 #include "api/campaign_documents.h"
 
 #include <inttypes.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "api/earlier_result.h"
 #include "base/file.h"
+#include "base/file_list.h"
 #include "base/growing_text.h"
 #include "base/json_document.h"
 
-const char *member_text(const json_t *object, const char *key)
-{
-    const char *text = json_string_value(json_object_get(object, key));
-    return text ? text : "";
-}
+#define DOCUMENT "dataset.json"
 
-double member_number(const json_t *object, const char *key)
-{
-    const json_t *value = json_object_get(object, key);
-    return json_is_number(value) ? json_number_value(value) : NAN;
-}
+/* The documents that are the same for every folder. */
+static const char *const documents[] = {"classes.txt", "contact_sheet.png", "report.html"};
 
-bool data_set_is_finished(const struct data_set *set)
+#define DOCUMENTS (sizeof documents / sizeof *documents)
+
+static void discard(const struct data_set *set, const char *name)
 {
-    char *path = path_join(set->folder, "dataset.json");
-    const bool is_finished = path && file_exists(path);
+    char *path = path_join(set->folder, name);
+    if (path)
+        file_discard(path);
     free(path);
-    return is_finished;
 }
 
-sonject_status data_set_image(const struct data_set *set, size_t split, uint64_t id,
-                              json_t **record, json_t **truth)
+void data_set_remove(const struct data_set *set)
 {
-    struct image_files files;
-    *record = NULL;
-    if (truth)
-        *truth = NULL;
-    sonject_status status = image_files_init(&files, set->report, set->folder,
-                                             set->split_names[split], id, PIXEL_UINT8, false, 0);
+    discard(set, DOCUMENT);
+    for (size_t i = 0; i < DOCUMENTS; i++)
+        discard(set, documents[i]);
+    discard(set, "times.json");
+    for (size_t i = 0; i < set->split_count; i++)
+        split_folders_remove(set->folder, set->split_names[i]);
+    discard(set, "campaign.json");
+}
+
+sonject_status data_set_is_finished(const struct data_set *set, bool *is_finished)
+{
+    const char *changed = NULL;
+    json_t *document;
+    sonject_status status = earlier_document(set->report, set->folder, DOCUMENT, &document);
+    const json_t *files = json_object_get(document, "files");
     if (status == SONJECT_OK)
-        status = campaign_read_json(set->report, files.record, record);
-    if (status == SONJECT_OK && truth)
-        status = campaign_read_json(set->report, files.truth, truth);
-    if (status == SONJECT_OK &&
-        (strcmp(member_text(*record, "campaign_hash"), member_text(set->head, "hash")) != 0 ||
-         (truth && !json_is_array(json_object_get(*truth, "objects")))))
-        status = report_failure(set->report, SONJECT_ERROR_INPUT,
-                                "%s: is not of this campaign; remove it and run the campaign again",
-                                files.record);
-    image_files_clear(&files);
-    if (status != SONJECT_OK) {
-        json_decref(*record);
-        *record = NULL;
-    }
-    if (status != SONJECT_OK && truth) {
-        json_decref(*truth);
-        *truth = NULL;
-    }
+        status = file_list_check(files, set->report, set->folder, true, &changed);
+    *is_finished = status == SONJECT_OK && !changed &&
+                   json_array_size(files) == DOCUMENTS + set->split_count &&
+                   strcmp(member_text(document, "hash"), member_text(set->head, "hash")) == 0;
+    json_decref(document);
     return status;
-}
-
-/* Whether an image has all its files, of either extension. */
-static sonject_status has_image(const struct data_set *set, size_t split, uint64_t id, bool *has)
-{
-    *has = false;
-    for (int type = 0; type < 2 && !*has; type++) {
-        struct image_files files;
-        const sonject_status status =
-            image_files_init(&files, set->report, set->folder, set->split_names[split], id,
-                             type == 0 ? PIXEL_UINT8 : PIXEL_FLOAT32, false, set->outputs);
-        *has = status == SONJECT_OK && image_files_exist(&files);
-        image_files_clear(&files);
-        if (status != SONJECT_OK)
-            return status;
-    }
-    return SONJECT_OK;
 }
 
 /* Ids that are missing, as ranges while they fit. */
@@ -112,12 +86,13 @@ static void add_missing(struct missing *missing, uint64_t id)
 static sonject_status check_complete(const struct data_set *set)
 {
     struct missing missing;
+    char *changed = NULL;
     sonject_status status = SONJECT_OK;
     memset(&missing, 0, sizeof missing);
     for (size_t i = 0; status == SONJECT_OK && i < set->split_count; i++)
         for (uint64_t k = 0; status == SONJECT_OK && k < set->split_images[i]; k++) {
             bool has = false;
-            status = has_image(set, i, set->split_first[i] + k, &has);
+            status = data_set_has_image(set, i, set->split_first[i] + k, &changed, &has);
             if (status == SONJECT_OK && !has)
                 add_missing(&missing, set->split_first[i] + k);
         }
@@ -126,26 +101,49 @@ static sonject_status check_complete(const struct data_set *set)
     char *ids = growing_text_end(&missing.text);
     if (status == SONJECT_OK && missing.count > 0)
         status = report_failure(set->report, SONJECT_ERROR_INPUT,
-                                "%s: %llu of %llu images are missing: %s; run the campaign or its "
-                                "shards again",
+                                "%s: %llu of %llu images are missing%s: %s%s%s; run the campaign "
+                                "or its shards again",
                                 set->folder, (unsigned long long)missing.count,
-                                (unsigned long long)set->images, ids ? ids : "");
+                                (unsigned long long)set->images, changed ? " or changed" : "",
+                                ids ? ids : "", changed ? "; not as it was written: " : "",
+                                changed ? changed : "");
+    free(changed);
     free(ids);
+    return status;
+}
+
+/* Size and hash of the documents of splits and of those of the whole. */
+static sonject_status list_documents(const struct data_set *set, json_t **files)
+{
+    char name[SPLIT_NAME_CAPACITY + 16];
+    sonject_status status = SONJECT_OK;
+    *files = json_array();
+    for (size_t i = 0; status == SONJECT_OK && i < set->split_count; i++) {
+        snprintf(name, sizeof name, "%s/coco.json", set->split_names[i]);
+        status = file_list_add(files, set->report, set->folder, name, false);
+    }
+    for (size_t i = 0; status == SONJECT_OK && i < DOCUMENTS; i++)
+        status = file_list_add(files, set->report, set->folder, documents[i], false);
     return status;
 }
 
 /* What the whole is: the last document, so a folder with dataset.json is complete. */
 static sonject_status write_data_set(const struct data_set *set)
 {
-    char *path = path_join(set->folder, "dataset.json");
-    if (!path)
-        return report_out_of_memory(set->report, "a file name");
+    json_t *files = NULL;
+    char *path = path_join(set->folder, DOCUMENT);
+    sonject_status status =
+        path ? list_documents(set, &files) : report_out_of_memory(set->report, "a file name");
     json_t *document = json_object();
     static const char *const kept[] = {"sonject", "hash",   "device",  "images",  "rows",
                                        "columns", "splits", "classes", "outputs", "swaths"};
     for (size_t i = 0; i < sizeof kept / sizeof *kept; i++)
         json_add(&document, kept[i], json_incref(json_object_get(set->head, kept[i])));
-    const sonject_status status = campaign_write_json(set->report, document, path);
+    json_add(&document, "files", files);
+    if (status == SONJECT_OK)
+        status = campaign_write_json(set->report, document, path);
+    else
+        json_decref(document);
     free(path);
     return status;
 }

@@ -1,14 +1,16 @@
+#define _POSIX_C_SOURCE 200809L
 #include "api/campaign_files.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/file.h"
+#include "base/file_list.h"
+#include "base/folder.h"
 #include "base/json_document.h"
 #include "base/memory.h"
-
-#define DOCUMENT_BYTES_MAX ((size_t)64 << 20)
 
 const struct output_file output_files[OUTPUT_KINDS] = {
     {OUTPUT_HIGHLIGHT, "highlight", ".png"},
@@ -55,6 +57,7 @@ sonject_status image_files_init(struct image_files *files, struct report *report
                                 enum pixel_type type, bool is_complex, uint32_t outputs)
 {
     memset(files, 0, sizeof *files);
+    files->folder_length = strlen(folder) + strlen(split) + 2;
     files->image = numbered(folder, split, "images", id, image_extension(type, is_complex));
     files->truth = numbered(folder, split, "truth", id, ".json");
     files->record = numbered(folder, split, "records", id, ".json");
@@ -80,14 +83,46 @@ void image_files_clear(struct image_files *files)
     memset(files, 0, sizeof *files);
 }
 
-bool image_files_exist(const struct image_files *files)
+static const char *file_at(const struct image_files *files, size_t i)
 {
-    if (!file_exists(files->record) || !file_exists(files->image) || !file_exists(files->truth))
-        return false;
-    for (size_t i = 0; i < files->output_count; i++)
-        if (!file_exists(files->outputs[i].path))
-            return false;
-    return true;
+    return i == 0 ? files->image : i == 1 ? files->truth : files->outputs[i - 2].path;
+}
+
+sonject_status image_files_list(const struct image_files *files, struct report *report,
+                                json_t **list)
+{
+    sonject_status status = SONJECT_OK;
+    *list = json_array();
+    for (size_t i = 0; status == SONJECT_OK && i < files->output_count + 2; i++) {
+        const char *path = file_at(files, i);
+        json_t *entry;
+        status = file_entry(report, path, path + files->folder_length, false, &entry);
+        if (status == SONJECT_OK)
+            json_append(list, entry);
+    }
+    return status == SONJECT_OK && !*list ? report_out_of_memory(report, "a list of files")
+                                          : status;
+}
+
+sonject_status image_files_check(const struct image_files *files, struct report *report,
+                                 const json_t *list, const char **changed)
+{
+    const size_t count = files->output_count + 2;
+    *changed = json_array_size(list) == count ? NULL : files->record;
+    for (size_t i = 0; !*changed && i < count; i++) {
+        const char *path = file_at(files, i);
+        const json_t *entry = json_array_get(list, i);
+        const char *name = json_string_value(json_object_get(entry, "name"));
+        bool holds = false;
+        sonject_status status = SONJECT_OK;
+        if (name && strcmp(name, path + files->folder_length) == 0)
+            status = file_entry_holds(report, entry, path, true, &holds);
+        if (status != SONJECT_OK)
+            return status;
+        if (!holds)
+            *changed = path;
+    }
+    return SONJECT_OK;
 }
 
 /* Calls on each folder of a split. */
@@ -112,6 +147,38 @@ sonject_status split_folders_make(struct report *report, const char *folder, con
                                   uint32_t outputs)
 {
     return each_folder(report, folder, split, outputs, folder_make);
+}
+
+/* Files named as images are, and the folder where that is all. */
+static sonject_status remove_images(struct report *report, const char *path)
+{
+    struct folder_names list;
+    if (folder_names_read(&list, report, path, "") != SONJECT_OK)
+        return SONJECT_OK;
+    for (size_t i = 0; i < list.count; i++) {
+        const bool is_image = strspn(list.names[i], "0123456789") == 8 && list.names[i][8] == '.';
+        char *file = is_image ? path_join(path, list.names[i]) : NULL;
+        if (file)
+            file_discard(file);
+        free(file);
+    }
+    folder_names_clear(&list);
+    rmdir(path);
+    return SONJECT_OK;
+}
+
+void split_folders_remove(const char *folder, const char *split)
+{
+    struct report ignored = {{0}, NULL, NULL};
+    char *path = campaign_file(folder, split, NULL, NULL);
+    char *coco = campaign_file(folder, split, "coco.json", NULL);
+    each_folder(&ignored, folder, split, UINT32_MAX, remove_images);
+    if (coco)
+        file_discard(coco);
+    if (path)
+        rmdir(path);
+    free(coco);
+    free(path);
 }
 
 static sonject_status tidy(struct report *report, const char *path)
@@ -140,41 +207,4 @@ sonject_status campaign_write_json(struct report *report, json_t *document, cons
     const sonject_status status = file_write_whole(report, path, text, strlen(text));
     free(text);
     return status;
-}
-
-/* Where memory is out jansson may find fault with the text: it is asked twice, and memory is. */
-static json_t *load_json(const char *text, size_t bytes, bool *lacks_memory)
-{
-    json_t *document = json_loadb(text, bytes, 0, NULL);
-    *lacks_memory = false;
-    if (document)
-        return document;
-    document = json_loadb(text, bytes, 0, NULL);
-    void *room = document ? NULL : allocate_array(bytes + 1, 2);
-    *lacks_memory = !document && !room;
-    free(room);
-    return document;
-}
-
-sonject_status campaign_read_json(struct report *report, const char *path, json_t **document)
-{
-    char *text;
-    size_t bytes;
-    bool lacks_memory;
-    *document = NULL;
-    const sonject_status status = file_read_whole(report, path, DOCUMENT_BYTES_MAX, &text, &bytes);
-    if (status != SONJECT_OK)
-        return status;
-    *document = load_json(text, bytes, &lacks_memory);
-    free(text);
-    if (lacks_memory)
-        return report_out_of_memory(report, path);
-    if (!json_is_object(*document)) {
-        json_decref(*document);
-        *document = NULL;
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: damaged: no JSON object; remove it and run the campaign again",
-                              path);
-    }
-    return SONJECT_OK;
 }

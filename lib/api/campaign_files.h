@@ -22,6 +22,7 @@ extern const struct output_file output_files[OUTPUT_KINDS];
 
 /* The files of one image; owned. */
 struct image_files {
+    size_t folder_length; /* of "folder/split/", which paths begin with */
     char *image, *truth, *record;
     struct {
         const struct output_file *kind;
@@ -38,11 +39,22 @@ sonject_status image_files_init(struct image_files *files, struct report *report
                                 const char *folder, const char *split, uint64_t id,
                                 enum pixel_type type, bool is_complex, uint32_t outputs);
 void image_files_clear(struct image_files *files);
-bool image_files_exist(const struct image_files *files);
+
+/* Size and hash of all files but the record, for it. Errors: STORAGE, MEMORY. */
+sonject_status image_files_list(const struct image_files *files, struct report *report,
+                                json_t **list);
+
+/* Whether they are all there as the list says; *changed is the path of the first that is not, or
+ * the record's. Errors: STORAGE, MEMORY. */
+sonject_status image_files_check(const struct image_files *files, struct report *report,
+                                 const json_t *list, const char **changed);
 
 /* Makes the folders of a split. Errors: STORAGE, MEMORY. */
 sonject_status split_folders_make(struct report *report, const char *folder, const char *split,
                                   uint32_t outputs);
+
+/* Removes them with the images in them. Never fails. */
+void split_folders_remove(const char *folder, const char *split);
 
 /* folder_tidy on each of them. */
 void split_folders_tidy(const char *folder, const char *split, uint32_t outputs);
@@ -53,8 +65,5 @@ char *campaign_file(const char *folder, const char *split, const char *kind, con
 /* Writes a document, which is given up; NULL counts as memory that was out. Errors: STORAGE,
  * MEMORY. */
 sonject_status campaign_write_json(struct report *report, json_t *document, const char *path);
-
-/* Reads a JSON object of at most 64 MB. Errors: STORAGE, INPUT, MEMORY. */
-sonject_status campaign_read_json(struct report *report, const char *path, json_t **document);
 
 #endif

@@ -2,6 +2,8 @@
 #ifndef SONJECT_API_CAMPAIGN_HANDLE_H
 #define SONJECT_API_CAMPAIGN_HANDLE_H
 
+#include <jansson.h>
+
 #include <sonject/campaign.h>
 
 #include "api/handles.h"
@@ -18,7 +20,8 @@ struct sonject_campaign {
     bool allows_user_shapes;
     bool has_user_shapes;                     /* among what may be drawn */
     char (*swath_hashes)[HASH_TEXT_CAPACITY]; /* of the swaths' files; owned */
-    char hash[HASH_TEXT_CAPACITY];            /* of all that images depend on */
+    json_t *inputs;                           /* all that images depend on, by name; owned */
+    char hash[HASH_TEXT_CAPACITY];            /* of inputs */
     struct swath_store store;
     struct mesh_store meshes; /* of scenes whose mesh_store it is */
 };
@@ -34,10 +37,6 @@ sonject_status campaign_check(struct sonject_campaign *campaign);
 
 /* Whether the campaign has an image of that id. Errors: ARGUMENT. */
 sonject_status campaign_check_id(const struct sonject_campaign *campaign, uint64_t id);
-
-/* scene_hash without the name of the input's file, so that it is the same wherever that lies. */
-sonject_status place_free_hash(struct report *report, const struct scene *scene,
-                               const char *input_identity, char text[HASH_TEXT_CAPACITY]);
 
 /* An image as it is made. Starts as all zeros, is for campaign_image_clear. */
 struct campaign_image {
@@ -59,9 +58,5 @@ void campaign_image_clear(struct campaign_image *image);
  * UNSUPPORTED. */
 sonject_status campaign_image_write(struct sonject_campaign *campaign, struct campaign_image *image,
                                     const char *folder);
-
-/* Whether all files of an image are there. Errors: MEMORY. */
-sonject_status campaign_image_exists(const struct sonject_campaign *campaign, uint64_t id,
-                                     const char *folder, bool *exists);
 
 #endif

@@ -5,11 +5,13 @@
 
 #include "api/campaign_documents.h"
 #include "api/documents.h"
-#include "api/scene_hash.h"
+#include "api/earlier_result.h"
 #include "base/file.h"
 #include "base/json_document.h"
+#include "base/text.h"
 
-#define FORMAT_VERSION 1
+#define FORMAT_VERSION 2
+#define HEAD_FILE      "campaign.json"
 
 static void add_class(json_t **classes, const char *name)
 {
@@ -67,66 +69,49 @@ static json_t *outputs_of(uint32_t outputs)
 }
 
 static json_t *head_of(const struct sonject_campaign *campaign, const struct device *device,
-                       const char *code)
+                       json_t *inputs)
 {
     const struct campaign *plan = &campaign->campaign;
     return json_pack(
-        "{s:i, s:s, s:s, s:s, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "sonject_campaign",
-        FORMAT_VERSION, "sonject", sonject_version(), "code_hash", code, "hash", campaign->hash,
+        "{s:i, s:s, s:s, s:O, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "sonject_campaign",
+        FORMAT_VERSION, "sonject", sonject_version(), "hash", campaign->hash, "inputs", inputs,
         "device", device ? device_document(device) : json_null(), "images",
         (json_int_t)plan->images, "rows", (json_int_t)plan->chip_rows, "columns",
         (json_int_t)plan->chip_columns, "splits", splits_of(plan), "classes", classes_of(plan),
         "outputs", outputs_of(plan->outputs), "swaths", swaths_of(campaign));
 }
 
-static bool has_same_text(const json_t *head, const json_t *own, const char *key)
+/* Whose images the folder holds; those of another campaign are removed where they may be. */
+static sonject_status check_head(struct sonject_campaign *campaign, const json_t *inputs,
+                                 const char *folder, bool overwrites, bool *is_same)
 {
-    return strcmp(member_text(head, key), member_text(own, key)) == 0;
-}
-
-/* The head that the folder has against the one that it would get. */
-static sonject_status check_head(struct report *report, const char *folder, const json_t *head,
-                                 const json_t *own)
-{
-    if (!has_same_text(head, own, "code_hash"))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: holds images that another version of sonject made (%s); "
-                              "choose another folder",
-                              folder, member_text(head, "sonject"));
-    if (!has_same_text(head, own, "hash"))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: holds the images of another campaign, or of this one before "
-                              "its file, scene, targets or swaths changed; choose another folder",
-                              folder);
-    if (!json_equal(json_object_get(head, "device"), json_object_get(own, "device")))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: holds images of another device, on which code of shapes may "
-                              "answer differently; choose that device or another folder",
-                              folder);
-    return SONJECT_OK;
+    struct data_set set;
+    memset(&set, 0, sizeof set);
+    sonject_status status = data_set_open(&set, campaign->report, folder);
+    if (status == SONJECT_OK)
+        status = inputs_check(campaign->report, folder, json_object_get(set.head, "inputs"), inputs,
+                              NULL, overwrites, is_same);
+    if (status == SONJECT_OK && !*is_same)
+        data_set_remove(&set);
+    data_set_clear(&set);
+    return status;
 }
 
 sonject_status data_set_begin(struct sonject_campaign *campaign, const struct device *device,
-                              const char *folder)
+                              const char *folder, bool overwrites)
 {
     struct report *report = campaign->report;
-    json_t *head = NULL;
-    json_t *own = NULL;
-    char code[HASH_TEXT_CAPACITY];
-    char *path = path_join(folder, "campaign.json");
-    if (!path)
-        return report_out_of_memory(report, "a file name");
-    sonject_status status = code_hash(report, code);
-    if (status == SONJECT_OK && !(own = head_of(campaign, device, code)))
-        status = report_out_of_memory(report, path);
-    if (status == SONJECT_OK && !file_exists(path))
-        status = campaign_write_json(report, json_incref(own), path);
-    else if (status == SONJECT_OK)
-        status = campaign_read_json(report, path, &head);
-    if (status == SONJECT_OK && head)
-        status = check_head(report, folder, head, own);
-    json_decref(own);
-    json_decref(head);
+    bool is_same = false;
+    json_t *inputs = json_copy(campaign->inputs);
+    char *path = path_join(folder, HEAD_FILE);
+    if (device)
+        json_add(&inputs, "device", device_document(device));
+    sonject_status status = path && inputs ? SONJECT_OK : report_out_of_memory(report, "inputs");
+    if (status == SONJECT_OK && file_exists(path))
+        status = check_head(campaign, inputs, folder, overwrites, &is_same);
+    if (status == SONJECT_OK && !is_same)
+        status = campaign_write_json(report, head_of(campaign, device, inputs), path);
+    json_decref(inputs);
     free(path);
     return status;
 }
@@ -151,16 +136,43 @@ static bool take_splits(struct data_set *set, const json_t *splits)
     return set->images > 0;
 }
 
+/* A text that may stand in documents and on terminals. */
+static bool is_plain(const json_t *value)
+{
+    return json_is_string(value) && *json_string_value(value) &&
+           text_is_printable(json_string_value(value));
+}
+
 static bool has_classes(const json_t *classes)
 {
     size_t i;
     const json_t *name;
     json_array_foreach(classes, i, name)
     {
-        if (!json_is_string(name))
+        if (!is_plain(name))
             return false;
     }
     return json_is_array(classes) && json_array_size(classes) <= CLASSES_MAX;
+}
+
+static bool has_swaths(const json_t *swaths)
+{
+    size_t i;
+    const json_t *swath;
+    json_array_foreach(swaths, i, swath)
+    {
+        if (!is_plain(json_object_get(swath, "path")) ||
+            !is_plain(json_object_get(swath, "hash")) ||
+            !is_split_name(member_text(swath, "split")))
+            return false;
+    }
+    return json_is_array(swaths);
+}
+
+static bool is_side(const json_t *pixels)
+{
+    return json_is_integer(pixels) && json_integer_value(pixels) >= 1 &&
+           json_integer_value(pixels) <= CAMPAIGN_CHIP_MAX;
 }
 
 static void take_outputs(struct data_set *set, const json_t *outputs)
@@ -178,12 +190,11 @@ static void take_outputs(struct data_set *set, const json_t *outputs)
 /* What documents take over as it is. */
 static bool has_facts(const json_t *head)
 {
-    return json_is_string(json_object_get(head, "sonject")) &&
-           json_is_string(json_object_get(head, "hash")) &&
-           json_is_integer(json_object_get(head, "images")) &&
-           json_is_integer(json_object_get(head, "rows")) &&
-           json_is_integer(json_object_get(head, "columns")) &&
-           json_is_array(json_object_get(head, "swaths")) && json_object_get(head, "device");
+    const json_t *device = json_object_get(head, "device");
+    return is_plain(json_object_get(head, "sonject")) && is_plain(json_object_get(head, "hash")) &&
+           is_side(json_object_get(head, "rows")) && is_side(json_object_get(head, "columns")) &&
+           has_swaths(json_object_get(head, "swaths")) &&
+           (json_is_null(device) || json_is_object(device));
 }
 
 /* True if what documents need of the head is as it should be. */
@@ -191,15 +202,18 @@ static bool take_head(struct data_set *set)
 {
     const json_t *outputs = json_object_get(set->head, "outputs");
     take_outputs(set, outputs);
+    set->rows = json_integer_value(json_object_get(set->head, "rows"));
+    set->columns = json_integer_value(json_object_get(set->head, "columns"));
     return json_integer_value(json_object_get(set->head, "sonject_campaign")) == FORMAT_VERSION &&
            has_facts(set->head) && json_is_array(outputs) &&
            has_classes(json_object_get(set->head, "classes")) &&
-           take_splits(set, json_object_get(set->head, "splits"));
+           take_splits(set, json_object_get(set->head, "splits")) &&
+           json_integer_value(json_object_get(set->head, "images")) == (json_int_t)set->images;
 }
 
 sonject_status data_set_open(struct data_set *set, struct report *report, const char *folder)
 {
-    char *path = path_join(folder, "campaign.json");
+    char *path = path_join(folder, HEAD_FILE);
     set->report = report;
     set->folder = folder;
     if (!path)
@@ -209,7 +223,7 @@ sonject_status data_set_open(struct data_set *set, struct report *report, const 
         status = report_failure(report, SONJECT_ERROR_INPUT,
                                 "%s: holds no campaign: there is no campaign.json", folder);
     if (status == SONJECT_OK)
-        status = campaign_read_json(report, path, &set->head);
+        status = json_document_read(report, path, &set->head);
     if (status == SONJECT_OK && !take_head(set))
         status = report_failure(report, SONJECT_ERROR_INPUT,
                                 "%s: damaged; remove it and run the campaign again", path);

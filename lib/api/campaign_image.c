@@ -10,6 +10,7 @@
 #include "api/campaign_files.h"
 #include "api/campaign_handle.h"
 #include "api/documents.h"
+#include "api/scene_hash.h"
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
@@ -140,7 +141,7 @@ static sonject_status write_layer(struct sonject_campaign *campaign, const struc
 /* Annotations are numbered when all images are known. */
 static json_t *record_of(const struct sonject_campaign *campaign,
                          const struct campaign_image *image, const char *image_name,
-                         const char *scene_hash_text, json_t *annotations)
+                         const char *scene_hash_text, json_t *files, json_t *annotations)
 {
     const struct image_plan *plan = &image->plan;
     const struct swath_plan *swath = &campaign->campaign.swaths[plan->swath];
@@ -150,7 +151,7 @@ static json_t *record_of(const struct sonject_campaign *campaign,
         json_append(&keys, json_string(plan->keys[i].text));
     return json_pack(
         "{s:I, s:s, s:s, s:s?, s:{s:s, s:s, s:I, s:I, s:I, s:I}, s:o, s:s, s:o, s:s, s:s, s:s, "
-        "s:o}",
+        "s:o, s:o}",
         "id", (json_int_t)plan->id, "split", campaign->campaign.splits[plan->split].name, "image",
         image_name, "target",
         has_target ? campaign->campaign.targets[plan->category - CATEGORY_TARGET].class_name : NULL,
@@ -159,26 +160,30 @@ static json_t *record_of(const struct sonject_campaign *campaign,
         (json_int_t)plan->chip.rows, "columns", (json_int_t)plan->chip.columns, "seed",
         json_seed(image->scene.injection.seed), "scene", campaign->campaign.scene_written, "set",
         keys, "scene_hash", scene_hash_text, "campaign_hash", campaign->hash, "sonject",
-        sonject_version(), "annotations", annotations);
+        sonject_version(), "files", files, "annotations", annotations);
 }
 
 static sonject_status write_record(struct sonject_campaign *campaign,
                                    const struct campaign_image *image,
                                    const struct image_labels *labels, struct class_names *classes,
-                                   const char *path)
+                                   const struct image_files *files)
 {
     char hash[HASH_TEXT_CAPACITY];
+    json_t *list = NULL;
     struct coco coco;
     memset(&coco, 0, sizeof coco);
     sonject_status status =
-        place_free_hash(campaign->report, &image->scene, image->swath.identity, hash);
+        scene_hash(campaign->report, &image->scene, image->swath.identity, hash);
     if (status == SONJECT_OK)
         status = coco_add(&coco, campaign->report, labels, classes);
     if (status == SONJECT_OK)
-        status = campaign_write_json(
-            campaign->report,
-            record_of(campaign, image, labels->file_name, hash, json_incref(coco.annotations)),
-            path);
+        status = image_files_list(files, campaign->report, &list);
+    if (status == SONJECT_OK)
+        status = campaign_write_json(campaign->report,
+                                     record_of(campaign, image, labels->file_name, hash,
+                                               json_incref(list), json_incref(coco.annotations)),
+                                     files->record);
+    json_decref(list);
     coco_clear(&coco);
     return status;
 }
@@ -243,7 +248,7 @@ static sonject_status write_rest(struct sonject_campaign *campaign,
         status =
             write_truth_of(campaign, scene, swath, &image->result, labels->file_name, files->truth);
     if (status == SONJECT_OK)
-        status = write_record(campaign, image, labels, &classes, files->record);
+        status = write_record(campaign, image, labels, &classes, files);
     class_names_clear(&classes);
     return status;
 }
@@ -274,19 +279,5 @@ sonject_status campaign_image_write(struct sonject_campaign *campaign, struct ca
         status = write_rest(campaign, image, &scene, &swath, &labels, &files);
     image_files_clear(&files);
     image_labels_clear(&labels);
-    return status;
-}
-
-sonject_status campaign_image_exists(const struct sonject_campaign *campaign, uint64_t id,
-                                     const char *folder, bool *exists)
-{
-    const struct campaign *plan = &campaign->campaign;
-    const struct raster_layout *layout = &plan->swaths[image_swath(plan, id)].layout;
-    struct image_files files;
-    const sonject_status status =
-        image_files_init(&files, campaign->report, folder, plan->splits[image_split(plan, id)].name,
-                         id, layout->type, layout->channels == 2, plan->outputs);
-    *exists = status == SONJECT_OK && image_files_exist(&files);
-    image_files_clear(&files);
     return status;
 }

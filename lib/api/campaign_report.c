@@ -92,6 +92,13 @@ static void add_set_value(struct statistics_page *page, const char *text)
     add_value(page, key, rest, value);
 }
 
+/* A number, NAN if there is none. */
+static double member_number(const json_t *object, const char *key)
+{
+    const json_t *value = json_object_get(object, key);
+    return json_is_number(value) ? json_number_value(value) : NAN;
+}
+
 static void count_object(struct statistics_page *page, size_t split, const json_t *object)
 {
     size_t i;
@@ -122,12 +129,12 @@ static sonject_status add_image(struct statistics_page *page, size_t split, uint
     size_t i;
     const json_t *entry;
     const bool is_taken = id % page->every == 0;
-    const sonject_status status = data_set_image(page->set, split, id, &record, &truth);
+    const sonject_status status = data_set_image(page->set, split, id, &record, &truth, NULL);
     if (status != SONJECT_OK)
         return status;
     json_array_foreach(json_object_get(record, "set"), i, entry)
     {
-        if (is_taken && json_string_value(entry))
+        if (is_taken)
             add_set_value(page, json_string_value(entry));
     }
     const json_t *objects = json_object_get(truth, "objects");

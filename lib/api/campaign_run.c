@@ -8,6 +8,7 @@
 #include "api/campaign_documents.h"
 #include "base/clock.h"
 #include "base/file.h"
+#include "base/memory.h"
 
 void sonject_campaign_run_params_init(sonject_campaign_run_params *params)
 {
@@ -27,6 +28,8 @@ struct sweep {
     double start_s;
     uint64_t made, missing; /* images of this run */
     double begin_s;         /* of the call; start_s: of the first image */
+    struct data_set set;    /* the folder's */
+    uint8_t *is_missing;    /* of each image whether it was when the call began; owned */
 };
 
 /* Within an image, so that it can be cancelled there. */
@@ -77,25 +80,42 @@ static uint64_t next_id(const struct sweep *sweep, uint64_t id)
                                    : id + sweep->params->shard_count;
 }
 
-static sonject_status sweep_images(struct sweep *sweep, bool only_counts)
+/* Images that are not there, or not as they were written. */
+static sonject_status find_missing(struct sweep *sweep)
 {
+    const struct campaign *plan = &sweep->campaign->campaign;
     sonject_status status = SONJECT_OK;
-    for (uint64_t id = first_id(sweep->params);
-         status == SONJECT_OK && id < sweep->campaign->campaign.images; id = next_id(sweep, id)) {
-        bool exists = false;
+    sweep->is_missing = allocate_array(plan->images, 1);
+    if (!sweep->is_missing)
+        return report_out_of_memory(sweep->campaign->report, "the images");
+    for (uint64_t id = first_id(sweep->params); status == SONJECT_OK && id < plan->images;
+         id = next_id(sweep, id)) {
+        bool has = false;
         if (!sweep->params->only_one)
-            status = campaign_image_exists(sweep->campaign, id, sweep->params->folder, &exists);
-        if (status != SONJECT_OK || exists)
-            continue;
-        if (only_counts)
-            sweep->missing++;
-        else
+            status = data_set_has_image(&sweep->set, image_split(plan, id), id, NULL, &has);
+        sweep->is_missing[id] = !has;
+        sweep->missing += !has;
+    }
+    return status;
+}
+
+/* Another process may be at the same campaign: what it made meanwhile is not made again. */
+static sonject_status make_missing(struct sweep *sweep)
+{
+    const struct campaign *plan = &sweep->campaign->campaign;
+    sonject_status status = SONJECT_OK;
+    for (uint64_t id = first_id(sweep->params); status == SONJECT_OK && id < plan->images;
+         id = next_id(sweep, id)) {
+        bool has = !sweep->is_missing[id];
+        if (!has && !sweep->params->only_one)
+            status = data_set_has_image(&sweep->set, image_split(plan, id), id, NULL, &has);
+        if (status == SONJECT_OK && !has)
             status = make_image(sweep, id);
     }
     return status;
 }
 
-static sonject_status make_folders(const struct sweep *sweep)
+static sonject_status make_folders(struct sweep *sweep)
 {
     struct sonject_campaign *campaign = sweep->campaign;
     const char *folder = sweep->params->folder;
@@ -106,7 +126,9 @@ static sonject_status make_folders(const struct sweep *sweep)
     if (status == SONJECT_OK)
         status = folder_make(campaign->report, folder);
     if (status == SONJECT_OK)
-        status = data_set_begin(campaign, device, folder);
+        status = data_set_begin(campaign, device, folder, sweep->params->overwrites != 0);
+    if (status == SONJECT_OK)
+        status = data_set_open(&sweep->set, campaign->report, folder);
     for (size_t i = 0; status == SONJECT_OK && i < campaign->campaign.split_count; i++)
         status = split_folders_make(campaign->report, folder, campaign->campaign.splits[i].name,
                                     campaign->campaign.outputs);
@@ -131,16 +153,14 @@ static sonject_status write_times(const struct sweep *sweep)
 
 static sonject_status finish_whole(struct sweep *sweep, int *was_finished)
 {
-    struct data_set set;
-    memset(&set, 0, sizeof set);
-    sonject_status status = data_set_open(&set, sweep->campaign->report, sweep->params->folder);
-    set.progress = sweep->progress;
-    set.user = sweep->user;
-    const bool is_finished =
-        status == SONJECT_OK && sweep->missing == 0 && data_set_is_finished(&set);
+    bool is_finished = false;
+    sweep->set.progress = sweep->progress;
+    sweep->set.user = sweep->user;
+    sonject_status status = SONJECT_OK;
+    if (sweep->missing == 0)
+        status = data_set_is_finished(&sweep->set, &is_finished);
     if (status == SONJECT_OK && !is_finished)
-        status = data_set_finish(&set);
-    data_set_clear(&set);
+        status = data_set_finish(&sweep->set);
     if (was_finished)
         *was_finished = is_finished;
     return status;
@@ -151,16 +171,18 @@ static sonject_status run_campaign(struct sweep *sweep, int *was_finished)
     const bool is_whole = sweep->params->shard_count == 1 && !sweep->params->only_one;
     sonject_status status = make_folders(sweep);
     if (status == SONJECT_OK)
-        status = sweep_images(sweep, true);
+        status = find_missing(sweep);
     sweep->start_s = clock_seconds();
     if (status == SONJECT_OK)
-        status = sweep_images(sweep, false);
+        status = make_missing(sweep);
     if (status == SONJECT_OK && sweep->made > 0)
         status = write_times(sweep);
     if (was_finished)
         *was_finished = sweep->missing == 0;
     if (status == SONJECT_OK && is_whole)
         status = finish_whole(sweep, was_finished);
+    data_set_clear(&sweep->set);
+    free(sweep->is_missing);
     return status;
 }
 
@@ -175,6 +197,10 @@ static sonject_status check_params(const struct sonject_campaign *campaign,
         return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
                               "shard_index must be from 1 to shard_count, %u",
                               (unsigned)params->shard_count);
+    if (params->overwrites && params->shard_count > 1)
+        return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
+                              "shards overwrite no other campaign, since they would remove each "
+                              "other's images: make image 0 alone so first (--only 0 --overwrite)");
     if (!(params->exit_after_s >= 0.0) || !isfinite(params->exit_after_s))
         return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
                               "times are seconds, not below 0");
@@ -201,7 +227,13 @@ sonject_status sonject_campaign_run(sonject_context *context, sonject_campaign *
     if (status != SONJECT_OK)
         return status;
     const double begin_s = clock_seconds();
-    struct sweep sweep = {context, campaign, &taken, progress, user, begin_s, 0, 0, begin_s};
+    struct sweep sweep = {.context = context,
+                          .campaign = campaign,
+                          .params = &taken,
+                          .progress = progress,
+                          .user = user,
+                          .start_s = begin_s,
+                          .begin_s = begin_s};
     return run_campaign(&sweep, was_finished);
 }
 

@@ -135,17 +135,15 @@ static void draw_thumbnail(struct canvas *canvas, const struct thumbnail *small,
         }
 }
 
-/* False where there is no box, or none within the picture. */
+/* False where there is no box. */
 static bool find_box(const json_t *box, double scale, int64_t sides[4])
 {
     static const char *const keys[] = {"column", "row", "columns", "rows"};
     for (size_t i = 0; i < 4; i++) {
-        const double side = scale * member_number(box, keys[i]);
-        if (!(side >= 0.0 && side <= CELL_SIDE))
-            return false;
+        const double side = scale * (double)json_integer_value(json_object_get(box, keys[i]));
         sides[i] = (int64_t)(i < 2 ? side : ceil(side));
     }
-    return true;
+    return json_is_object(box);
 }
 
 static void draw_boxes(struct canvas *canvas, const json_t *truth, const struct thumbnail *small,
@@ -171,13 +169,11 @@ static sonject_status draw_cell(const struct data_set *set, struct canvas *canva
     json_t *record, *truth;
     struct thumbnail small = {0, 0, 0.0, NULL};
     char caption[96];
-    sonject_status status = data_set_image(set, split, id, &record, &truth);
+    char *path;
+    sonject_status status = data_set_image(set, split, id, &record, &truth, &path);
     if (status != SONJECT_OK)
         return status;
-    char *path =
-        campaign_file(set->folder, set->split_names[split], member_text(record, "image"), NULL);
-    status = path ? load_thumbnail(set->report, path, &small)
-                  : report_out_of_memory(set->report, "a file name");
+    status = load_thumbnail(set->report, path, &small);
     if (status == SONJECT_OK) {
         const char *target = member_text(record, "target");
         draw_thumbnail(canvas, &small, x, y);

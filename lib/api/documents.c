@@ -9,9 +9,10 @@
 
 #include <jansson.h>
 
-#include <sonject/run.h>
 #include <sonject/version.h>
 
+#include "api/earlier_result.h"
+#include "api/label_files.h"
 #include "base/file.h"
 #include "base/json_document.h"
 #include "label/contact_record.h"
@@ -280,20 +281,6 @@ static json_t *comparison_document(const sonject_statistics *statistics)
     return document;
 }
 
-static const struct {
-    const char *name;
-    uint32_t format;
-} label_names[] = {{"yolo", SONJECT_LABELS_YOLO}, {"voc", SONJECT_LABELS_VOC}};
-
-static json_t *labels_document(uint32_t formats)
-{
-    json_t *names = json_array();
-    for (size_t i = 0; i < sizeof label_names / sizeof *label_names; i++)
-        if (formats & label_names[i].format)
-            json_append(&names, json_string(label_names[i].name));
-    return names;
-}
-
 /* All bands of the scene's file. */
 static json_t *bands_document(const struct scene *scene)
 {
@@ -347,60 +334,10 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
              facts->scene->injection.mode == SONJECT_MODE_RESYNTHESISE
                  ? comparison_document(statistics)
                  : json_null());
-    return json_document_write(report, document, path);
-}
-
-/* The formats that a run.json names. */
-static uint32_t label_formats_of(const json_t *document)
-{
-    const json_t *names = json_object_get(document, "labels");
-    uint32_t formats = 0;
-    for (size_t i = 0; i < json_array_size(names); i++) {
-        const char *name = json_string_value(json_array_get(names, i));
-        for (size_t k = 0; name && k < sizeof label_names / sizeof *label_names; k++)
-            if (strcmp(name, label_names[k].name) == 0)
-                formats |= label_names[k].format;
-    }
-    return formats;
-}
-
-bool folder_has_result(const char *folder)
-{
-    char *path = path_join(folder, "run.json");
-    const bool is_there = path && file_exists(path);
-    free(path);
-    return is_there;
-}
-
-json_t *run_document(const char *path)
-{
-    struct report ignored = {{0}, NULL, NULL};
-    char *text = NULL;
-    size_t bytes = 0;
-    if (!file_exists(path) ||
-        file_read_whole(&ignored, path, (size_t)1 << 20, &text, &bytes) != SONJECT_OK)
-        return NULL;
-    json_t *document = json_loads(text, 0, NULL);
-    free(text);
-    return document;
-}
-
-uint32_t labels_of_result(const char *folder)
-{
-    char *path = path_join(folder, "run.json");
-    json_t *document = path ? run_document(path) : NULL;
-    const uint32_t formats = label_formats_of(document);
+    const sonject_status status =
+        earlier_describe(report, &document, facts->inputs, facts->files, facts->scene);
+    if (status == SONJECT_OK)
+        return json_document_write(report, document, path);
     json_decref(document);
-    free(path);
-    return formats;
-}
-
-bool run_is_finished(const char *path, const char *scene_hash, uint32_t label_formats)
-{
-    json_t *document = run_document(path);
-    const char *hash = json_string_value(json_object_get(document, "scene_hash"));
-    const bool is_same =
-        hash && strcmp(hash, scene_hash) == 0 && (label_formats & ~label_formats_of(document)) == 0;
-    json_decref(document);
-    return is_same;
+    return status;
 }

@@ -10,8 +10,11 @@
 #include <sonject/elements.h>
 #include <sonject/version.h>
 
+#include "api/earlier_result.h"
+#include "api/scene_hash.h"
 #include "api/swath.h"
 #include "base/file.h"
+#include "base/file_list.h"
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "inject/element_echoes.h"
@@ -19,6 +22,7 @@
 #include "scene/element_plan.h"
 
 #define SERIES_FILE "series.npy"
+#define DOCUMENT    "elements.json"
 
 static json_t *array_document(const sonject_elements_params *elements)
 {
@@ -107,50 +111,107 @@ static sonject_status write_document(struct report *report, json_t *document, co
     return status;
 }
 
+/* The scene's inputs, and what elements.json says of the array and of what is asked of it. */
+static sonject_status find_inputs(struct report *report, const struct scene *scene,
+                                  const struct swath *swath, const json_t *document,
+                                  json_t **inputs)
+{
+    char digest[HASH_TEXT_CAPACITY];
+    sonject_status status = scene_inputs(report, scene, swath->identity, digest, inputs);
+    struct hash *hash = hash_begin();
+    char *text = json_document_text(document, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    if (hash && text)
+        hash_add_text(hash, text);
+    else if (status == SONJECT_OK)
+        status = report_out_of_memory(report, "a hash");
+    if (hash)
+        hash_end(hash, digest);
+    free(text);
+    if (status == SONJECT_OK)
+        json_add(inputs, "elements", json_string(digest));
+    return status != SONJECT_OK || *inputs ? status : report_out_of_memory(report, "inputs");
+}
+
+/* elements.json comes last: a folder that has one is complete. Gives up the document. */
 static sonject_status write_files(struct report *report, const struct scene *scene,
-                                  const struct injection_input *input,
-                                  const sonject_element_layout *layout, const float *series,
-                                  const char *folder)
+                                  const sonject_element_layout *layout, json_t *inputs,
+                                  json_t *document, const float *series, const char *folder)
 {
     const uint64_t shape[3] = {layout->elements.pings, layout->elements.hydrophones,
                                layout->samples};
     char *series_path = path_join(folder, SERIES_FILE);
-    char *document_path = path_join(folder, "elements.json");
+    char *document_path = path_join(folder, DOCUMENT);
+    json_t *earlier = NULL;
+    json_t *files = json_array();
     sonject_status status = series_path && document_path ? folder_make(report, folder)
                                                          : report_out_of_memory(report, "a path");
     if (status == SONJECT_OK) {
-        /* elements.json comes last: a folder that has one is complete */
-        file_discard(document_path);
+        earlier = earlier_withdraw(folder, DOCUMENT);
         status = numpy_file_write(report, series_path, shape,
                                   layout->elements.form == SONJECT_SERIES_BASEBAND, series);
     }
     if (status == SONJECT_OK)
-        status = write_document(report, series_document(scene, input, layout), document_path);
+        status = file_list_add(&files, report, folder, SERIES_FILE, true);
+    if (status == SONJECT_OK)
+        status = earlier_describe(report, &document, inputs, files, scene);
+    if (status == SONJECT_OK)
+        status = write_document(report, document, document_path);
+    else
+        json_decref(document);
+    earlier_tidy(folder, earlier, files);
+    json_decref(files);
     free(series_path);
     free(document_path);
     return status;
 }
 
-static sonject_status compute_and_write(struct sonject_context *context, const struct scene *scene,
-                                        const struct injection_input *input, const char *folder,
-                                        sonject_progress_function progress, void *user)
+static sonject_status compute(struct sonject_context *context, const struct scene *scene,
+                              const struct injection_input *input,
+                              sonject_progress_function progress, void *user,
+                              sonject_element_layout *layout, float **series)
 {
     struct report *report = &context->report;
     struct device *device = NULL;
-    sonject_element_layout layout;
-    sonject_status status = element_echoes_describe(report, scene, input, &layout);
-    if (status == SONJECT_OK)
-        status = context_device(context, &device);
+    const sonject_status status = context_device(context, &device);
     if (status != SONJECT_OK)
         return status;
-    float *series = allocate_array(element_plan_samples(&layout), 2 * sizeof *series);
-    status =
-        series
-            ? element_echoes_compute(report, device, scene, input, progress, user, &layout, series)
-            : report_out_of_memory(report, "the time series: narrow the window of times, or "
-                                           "give fewer pings");
-    if (status == SONJECT_OK)
-        status = write_files(report, scene, input, &layout, series, folder);
+    *series = allocate_array(element_plan_samples(layout), 2 * sizeof **series);
+    if (!*series)
+        return report_out_of_memory(report, "the time series: narrow the window of times, or "
+                                            "give fewer pings");
+    return element_echoes_compute(report, device, scene, input, progress, user, layout, *series);
+}
+
+static sonject_status run_elements(struct sonject_context *context, const struct scene *scene,
+                                   const struct swath *swath, const sonject_run_params *params,
+                                   sonject_progress_function progress, void *user)
+{
+    struct report *report = &context->report;
+    const struct injection_input input = swath_input(swath);
+    sonject_element_layout layout;
+    json_t *inputs = NULL;
+    float *series = NULL;
+    bool is_finished = false;
+    sonject_status status = element_echoes_describe(report, scene, &input, &layout);
+    if (status != SONJECT_OK)
+        return status;
+    json_t *document = series_document(scene, &input, &layout);
+    status = find_inputs(report, scene, swath, document, &inputs);
+    if (status == SONJECT_OK) {
+        const struct earlier_request earlier = {.folder = params->folder,
+                                                .document = DOCUMENT,
+                                                .inputs = inputs,
+                                                .scene = scene,
+                                                .overwrites = params->overwrites != 0};
+        status = earlier_check(report, &earlier, &is_finished);
+    }
+    if (status == SONJECT_OK && !is_finished)
+        status = compute(context, scene, &input, progress, user, &layout, &series);
+    if (status == SONJECT_OK && !is_finished)
+        status = write_files(report, scene, &layout, inputs, json_incref(document), series,
+                             params->folder);
+    json_decref(document);
+    json_decref(inputs);
     free(series);
     return status;
 }
@@ -182,8 +243,7 @@ sonject_status sonject_elements_run(sonject_context *context, const sonject_scen
     status = swath_open(report, &scene->scene, &swath);
     if (status != SONJECT_OK)
         return status;
-    const struct injection_input input = swath_input(&swath);
-    status = compute_and_write(context, &scene->scene, &input, taken.folder, progress, user);
+    status = run_elements(context, &scene->scene, &swath, &taken, progress, user);
     swath_close(&swath);
     return status;
 }

@@ -6,6 +6,8 @@
 #include <sonject/run.h>
 
 #include "base/file.h"
+#include "base/file_list.h"
+#include "base/json_document.h"
 #include "label/coco.h"
 #include "label/contact_record.h"
 #include "label/voc.h"
@@ -32,6 +34,33 @@ static const struct {
     {"classes.txt", SONJECT_LABELS_YOLO},
     {"image.xml", SONJECT_LABELS_VOC},
 };
+
+static const struct {
+    const char *name;
+    uint32_t format;
+} label_names[] = {{"yolo", SONJECT_LABELS_YOLO}, {"voc", SONJECT_LABELS_VOC}};
+
+json_t *labels_document(uint32_t formats)
+{
+    json_t *names = json_array();
+    for (size_t i = 0; i < sizeof label_names / sizeof *label_names; i++)
+        if (formats & label_names[i].format)
+            json_append(&names, json_string(label_names[i].name));
+    return names;
+}
+
+uint32_t labels_of_document(const json_t *run)
+{
+    const json_t *names = json_object_get(run, "labels");
+    uint32_t formats = 0;
+    for (size_t i = 0; i < json_array_size(names); i++) {
+        const char *name = json_string_value(json_array_get(names, i));
+        for (size_t k = 0; name && k < sizeof label_names / sizeof *label_names; k++)
+            if (strcmp(name, label_names[k].name) == 0)
+                formats |= label_names[k].format;
+    }
+    return formats;
+}
 
 static sonject_status write_coco(struct report *report, const struct image_labels *labels,
                                  struct class_names *classes, const char *path)
@@ -66,8 +95,7 @@ static sonject_status write_file(struct report *report, const struct image_label
     }
 }
 
-sonject_status write_labels(struct report *report, const struct run_facts *facts,
-                            const char *folder)
+sonject_status write_labels(struct report *report, struct run_facts *facts, const char *folder)
 {
     const struct swath *swath = facts->swath;
     const struct label_request request = {facts->scene,
@@ -90,8 +118,11 @@ sonject_status write_labels(struct report *report, const struct run_facts *facts
             status = report_out_of_memory(report, "a path");
         else if (files[file].format && !(files[file].format & facts->label_formats))
             file_discard(path);
-        else
+        else {
             status = write_file(report, &labels, &classes, (enum label_file)file, path);
+            if (status == SONJECT_OK)
+                status = file_list_add(&facts->files, report, folder, files[file].name, true);
+        }
         free(path);
     }
     class_names_clear(&classes);

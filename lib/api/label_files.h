@@ -4,9 +4,14 @@
 
 #include "api/documents.h"
 
-/* Writes coco.json, contacts.json, contacts.csv, and what formats (sum of sonject_labels) asks for;
- * label files of other formats that an earlier run left are removed. Errors: STORAGE, MEMORY. */
-sonject_status write_labels(struct report *report, const struct run_facts *facts,
-                            const char *folder);
+/* Writes coco.json, contacts.json, contacts.csv, and what facts->label_formats asks for, and lists
+ * them in facts->files; label files of other formats that an earlier run left are removed. Errors:
+ * STORAGE, MEMORY. */
+sonject_status write_labels(struct report *report, struct run_facts *facts, const char *folder);
+
+/* The names of formats (sum of sonject_labels), as run.json has them under "labels", and those that
+ * a run.json names. */
+json_t *labels_document(uint32_t formats);
+uint32_t labels_of_document(const json_t *run);
 
 #endif

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/file.h"
+#include "base/file_list.h"
 #include "base/memory.h"
 #include "image/plot.h"
 #include "io/geometry_notes.h"
@@ -102,10 +103,9 @@ static sonject_status write_quicklook(struct report *report, const struct scene 
 /* Orders that this result has not may be there from a run before. */
 static sonject_status write_order_energies(struct report *report,
                                            const struct geometry_notes *notes,
-                                           const struct swath *swath,
-                                           const struct injection_result *result,
-                                           const char *folder)
+                                           struct run_facts *facts, const char *folder)
 {
+    const struct injection_result *result = facts->result;
     sonject_status status = SONJECT_OK;
     for (uint32_t i = 0; status == SONJECT_OK && i < SCENE_INTERACTIONS_MAX; i++) {
         char name[32];
@@ -113,22 +113,26 @@ static sonject_status write_order_energies(struct report *report,
         char *path = path_join(folder, name);
         if (!path)
             return report_out_of_memory(report, "a path");
-        if (i < result->orders)
-            status = write_float_layer(report, notes, swath, 1, result->order_energy[i], path);
-        else
+        if (i >= result->orders)
             file_discard(path);
+        else
+            status =
+                write_float_layer(report, notes, facts->swath, 1, result->order_energy[i], path);
         free(path);
+        if (status == SONJECT_OK && i < result->orders)
+            status = file_list_add(&facts->files, report, folder, name, true);
     }
     return status;
 }
 
-sonject_status write_layers(struct report *report, const struct scene *scene,
-                            const struct swath *swath, const struct injection_result *result,
-                            const char *folder)
+sonject_status write_layers(struct report *report, struct run_facts *facts, const char *folder)
 {
     static const char *const names[] = {"patch.tif",    "energy.tif", "highlight.png",
                                         "shadow.png",   "labels.png", "influence.png",
                                         "quicklook.png"};
+    const struct scene *scene = facts->scene;
+    const struct swath *swath = facts->swath;
+    const struct injection_result *result = facts->result;
     struct geometry_notes notes;
     geometry_notes_init(&notes, &scene->sonar, &scene->geometry, (double)swath->patch.first_row,
                         (double)swath->patch.first_column);
@@ -151,8 +155,10 @@ sonject_status write_layers(struct report *report, const struct scene *scene,
                                          : result->influence,
                                 path);
         free(path);
+        if (status == SONJECT_OK)
+            status = file_list_add(&facts->files, report, folder, names[i], true);
     }
     if (status == SONJECT_OK)
-        status = write_order_energies(report, &notes, swath, result, folder);
+        status = write_order_energies(report, &notes, facts, folder);
     return status;
 }

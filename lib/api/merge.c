@@ -5,7 +5,7 @@
 #include <sonject/run.h>
 #include <sonject/version.h>
 
-#include "api/documents.h"
+#include "api/earlier_result.h"
 #include "api/merged_bands.h"
 #include "api/run_scene.h"
 #include "api/stint_source.h"
@@ -37,17 +37,6 @@ static sonject_status read_kept_scene(struct report *report, const struct stint_
     return status;
 }
 
-/* A result whose shards are gone cannot get other labels. */
-static sonject_status check_merged_labels(struct report *report, const struct run_request *request)
-{
-    if ((request->label_formats & ~labels_of_result(request->folder)) == 0)
-        return SONJECT_OK;
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: is merged already, without those labels: run its scene into it once "
-                          "more with them",
-                          request->folder);
-}
-
 /* A run whose scene its shards keep. */
 static sonject_status merge_kept(struct sonject_context *context, const struct run_request *asked,
                                  bool allows_user_shapes, int *was_finished)
@@ -72,14 +61,10 @@ static sonject_status merge_kept(struct sonject_context *context, const struct r
                            work);
     if (status == SONJECT_OK && !is_merged)
         status = read_kept_scene(report, &folder.files[0], allows_user_shapes, &scene);
-    char hash[STINT_DIGEST_CAPACITY] = "";
-    if (status == SONJECT_OK && !is_merged)
-        memcpy(hash, folder.files[0].head.result, sizeof hash);
     stint_folder_clear(&folder);
     request->scene = &scene;
-    request->scene_hash = hash;
     if (is_merged)
-        status = check_merged_labels(report, request);
+        status = earlier_check_merged(report, request->folder, request->label_formats);
     if (is_merged && was_finished)
         *was_finished = status == SONJECT_OK;
     if (status == SONJECT_OK && !is_merged)
@@ -151,6 +136,7 @@ sonject_status sonject_merge(sonject_context *context, const sonject_scene *scen
                               "labels must be a sum of sonject_labels");
     request.label_formats = taken.labels;
     request.merges = true;
+    request.overwrites = true; /* the shards were asked whether they may */
     request.progress = progress;
     request.user = user;
     if (was_finished)

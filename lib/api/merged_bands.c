@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "api/documents.h"
+#include "api/earlier_result.h"
 #include "api/stint_source.h"
 #include "api/stints.h"
 #include "base/file.h"
@@ -82,13 +82,12 @@ static sonject_status find_in_result(struct report *report, const char *folder, 
     struct growing_text text = {NULL, 0, 0, false};
     size_t i;
     const json_t *name;
-    char *path = path_join(folder, "run.json");
-    if (!path)
-        return report_out_of_memory(report, "a file name");
-    json_t *document = run_document(path);
+    json_t *document;
+    const sonject_status status = earlier_document(report, folder, RUN_DOCUMENT, &document);
+    if (status != SONJECT_OK)
+        return status;
     const char *own = json_string_value(json_object_get(document, "band"));
     const bool is_of_band = own && strcmp(own, band) == 0;
-    free(path);
     if (is_of_band) {
         json_array_foreach(json_object_get(document, "bands"), i, name)
         {

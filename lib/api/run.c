@@ -7,6 +7,7 @@
 #include <sonject/run.h>
 
 #include "api/documents.h"
+#include "api/earlier_result.h"
 #include "api/label_files.h"
 #include "api/layers.h"
 #include "api/run_scene.h"
@@ -15,6 +16,8 @@
 #include "api/swath.h"
 #include "base/clock.h"
 #include "base/file.h"
+#include "base/file_list.h"
+#include "base/json_document.h"
 
 /* Shares of a run's progress. */
 #define TRACE_START 0.1
@@ -57,10 +60,12 @@ static sonject_status write_documents(struct report *report, struct run_facts *f
                                       const char *folder, double run_start, double write_start)
 {
     char *truth = path_join(folder, "truth.json");
-    char *run = path_join(folder, "run.json");
+    char *run = path_join(folder, RUN_DOCUMENT);
     sonject_status status = truth && run ? SONJECT_OK : report_out_of_memory(report, "a path");
     if (status == SONJECT_OK)
         status = write_truth(report, facts, truth);
+    if (status == SONJECT_OK)
+        status = file_list_add(&facts->files, report, folder, "truth.json", true);
     if (status == SONJECT_OK)
         status = write_labels(report, facts, folder);
     if (status == SONJECT_OK) {
@@ -74,6 +79,8 @@ static sonject_status write_documents(struct report *report, struct run_facts *f
     return status;
 }
 
+/* An earlier result stays whole until this one is there to be written. A folder with run.json is
+ * always complete. */
 static sonject_status write_results(struct report *report, struct run_facts *facts,
                                     struct injection_result *result, const char *folder,
                                     double run_start, sonject_progress_function progress,
@@ -84,33 +91,24 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
     char *path = path_join(folder, facts->image_name);
     if (!path)
         return report_out_of_memory(report, "a path");
-    sonject_status status = write_layers(report, facts->scene, facts->swath, result, folder);
+    json_t *earlier = earlier_withdraw(folder, RUN_DOCUMENT);
+    facts->files = json_array();
+    sonject_status status = write_layers(report, facts, folder);
     if (status == SONJECT_OK)
         status = swath_write(report, facts->scene, facts->swath, result, path, tell_stage, &writing,
                              &result->statistics.output_clipped);
     free(path);
     if (status == SONJECT_OK)
-        status = write_documents(report, facts, folder, run_start, start);
+        status = file_list_add(&facts->files, report, folder, facts->image_name, true);
     if (status == SONJECT_OK)
-        folder_tidy(folder);
+        status = write_documents(report, facts, folder, run_start, start);
+    earlier_tidy(folder, earlier, facts->files);
+    json_decref(facts->files);
+    facts->files = NULL;
     return status;
 }
 
-/* Tallies are the same whatever the image file's name is. */
-static sonject_status inject_traced(const struct stint_job *job, const struct swath *swath,
-                                    struct injection_result *result, bool *is_formed)
-{
-    char hash[HASH_TEXT_CAPACITY];
-    struct scene scene = *job->request->scene;
-    struct stint_job named = *job;
-    scene.input_path = NULL;
-    named.traced_hash = hash;
-    const sonject_status status = scene_hash(&job->context->report, &scene, swath->identity, hash);
-    return status == SONJECT_OK ? inject_by_stints(&named, result, is_formed) : status;
-}
-
-/* Traces and writes; the folder has no run.json of an earlier run while this goes on, so that a
- * folder with run.json is always complete. */
+/* Traces and writes. */
 static sonject_status run_swath(struct sonject_context *context, const struct run_request *request,
                                 const struct swath *swath, struct run_facts *facts, double start)
 {
@@ -127,9 +125,9 @@ static sonject_status run_swath(struct sonject_context *context, const struct ru
         status = injection_form(&context->report, device, scene, &input, &source, tell_stage,
                                 &stage, &result);
     } else if (status == SONJECT_OK) {
-        const struct stint_job job = {context, device,     request, facts->scene_hash, NULL, &input,
-                                      start,   tell_stage, &stage};
-        status = inject_traced(&job, swath, &result, &is_formed);
+        const struct stint_job job = {context, device, request,    facts->scene_hash,
+                                      &input,  start,  tell_stage, &stage};
+        status = inject_by_stints(&job, &result, &is_formed);
     }
     if (status != SONJECT_OK || !is_formed)
         return status;
@@ -164,46 +162,61 @@ static sonject_status open_swath(struct report *report, const struct run_request
     return same;
 }
 
+/* What the result is made of, and whether the folder holds it. facts->inputs is the caller's. */
+static sonject_status check_earlier(struct sonject_context *context,
+                                    const struct run_request *request, const struct swath *swath,
+                                    struct run_facts *facts, char hash[HASH_TEXT_CAPACITY],
+                                    bool *is_finished)
+{
+    struct report *report = &context->report;
+    struct device *device = NULL;
+    sonject_status status =
+        scene_inputs(report, request->scene, swath->identity, hash, &facts->inputs);
+    if (status == SONJECT_OK && request->scene->user_shapes.count > 0)
+        status = context_device(context, &device);
+    if (status != SONJECT_OK)
+        return status;
+    json_add(&facts->inputs, "image", json_text(facts->image_name));
+    if (device)
+        json_add(&facts->inputs, "device", device_document(device));
+    const struct earlier_request earlier = {
+        request->folder,        RUN_DOCUMENT,        facts->inputs,  request->scene,
+        request->label_formats, request->overwrites, request->merges};
+    return facts->inputs ? earlier_check(report, &earlier, is_finished)
+                         : report_out_of_memory(report, "a run's inputs");
+}
+
 sonject_status run_scene(struct sonject_context *context, const struct run_request *request,
                          int *was_finished)
 {
     struct report *report = &context->report;
     const double start = clock_seconds();
-    const struct scene *scene = request->scene;
     struct swath swath;
     struct run_facts facts;
     char hash[HASH_TEXT_CAPACITY];
+    bool is_finished = false;
     memset(&facts, 0, sizeof facts);
     sonject_status status = open_swath(report, request, &swath);
     if (status != SONJECT_OK)
         return status;
-    char *image_name = swath_image_name(scene);
-    char *run_path = path_join(request->folder, "run.json");
-    if (!image_name || !run_path)
-        status = report_out_of_memory(report, "a path");
-    if (status == SONJECT_OK)
-        status = scene_hash(report, scene, swath.identity, hash);
-    if (status == SONJECT_OK && request->scene_hash)
-        memcpy(hash, request->scene_hash, sizeof hash);
-    const bool is_finished =
-        status == SONJECT_OK && run_is_finished(run_path, hash, request->label_formats);
+    char *image_name = swath_image_name(request->scene);
+    facts.scene = request->scene;
+    facts.swath = &swath;
+    facts.scene_hash = hash;
+    facts.image_name = image_name;
+    facts.label_formats = request->label_formats;
+    status = image_name ? check_earlier(context, request, &swath, &facts, hash, &is_finished)
+                        : report_out_of_memory(report, "a path");
     if (status == SONJECT_OK && !is_finished)
         status = folder_make(report, request->folder);
-    if (status == SONJECT_OK && !is_finished && request->shards == 0)
-        file_discard(run_path);
     if (status == SONJECT_OK && !is_finished) {
-        facts.scene = scene;
-        facts.swath = &swath;
-        facts.scene_hash = hash;
-        facts.image_name = image_name;
-        facts.label_formats = request->label_formats;
         facts.read_s = clock_seconds() - start;
         status = run_swath(context, request, &swath, &facts, start);
     }
     if (was_finished)
         *was_finished = is_finished;
+    json_decref(facts.inputs);
     free(image_name);
-    free(run_path);
     swath_close(&swath);
     return status;
 }
@@ -264,6 +277,7 @@ sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
     request.exit_after_s = taken.exit_after_s;
     request.checkpoint_s = taken.checkpoint_s;
     request.label_formats = taken.labels;
+    request.overwrites = taken.overwrites != 0;
     request.progress = progress;
     request.user = user;
     return run_scene(context, &request, was_finished);

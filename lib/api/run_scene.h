@@ -17,13 +17,13 @@ struct run_request {
     struct impulse_file *impulses;     /* NULL: they are traced */
     uint32_t shard, shards;            /* 1...shards; shards 0: all is traced */
     bool merges;                       /* nothing is traced: all shards' tallies are there */
-    const char *scene_hash;            /* that the shards' run has; NULL: found */
     double exit_after_s;               /* 0: never */
     double checkpoint_s;
     const char *folder;
     sonject_progress_function progress; /* may be NULL */
     void *user;
     uint32_t label_formats; /* sum of sonject_labels */
+    bool overwrites;        /* another result in the folder may be given up */
 };
 
 /* Injects and writes the folder's files: sonject_run and sonject_form. */

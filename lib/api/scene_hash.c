@@ -1,15 +1,32 @@
 #include "api/scene_hash.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 #include <sonject/version.h>
 
+#include "base/json_document.h"
 #include "cl/sources.h"
 #include "inject/impulse_file.h"
 
 /* Members one by one: the padding of a structure is not part of its value. */
 #define ADD(hash, member) hash_add(hash, &(member), sizeof(member))
+
+/* A digest in the making: of a section of the scene's keys, and of all sections. */
+struct digest {
+    struct hash *section, *whole;
+    json_t **inputs; /* that get each section's; NULL: they are not asked for */
+};
+
+static void end_section(struct digest *digest, const char *name)
+{
+    char text[HASH_TEXT_CAPACITY];
+    hash_restart(digest->section, text);
+    hash_add_text(digest->whole, text);
+    if (digest->inputs)
+        json_add(digest->inputs, name, json_string(text));
+}
 
 static void add_material(struct hash *hash, const sonject_material_params *material)
 {
@@ -41,8 +58,9 @@ static void add_water_layers(struct hash *hash, const struct scene *scene)
     }
 }
 
-static void add_sonar(struct hash *hash, const struct scene *scene)
+static void add_sonar(struct digest *digest, const struct scene *scene)
 {
+    struct hash *hash = digest->section;
     const sonject_sonar_params *sonar = &scene->sonar;
     ADD(hash, sonar->response_window);
     ADD(hash, sonar->centre_frequency_hz);
@@ -59,17 +77,7 @@ static void add_sonar(struct hash *hash, const struct scene *scene)
     ADD(hash, sonar->array_heading_rad);
     ADD(hash, sonar->array_pitch_rad);
     ADD(hash, sonar->array_depression_rad);
-    ADD(hash, scene->medium.sound_speed_mps);
-    ADD(hash, scene->medium.reference_sound_speed_mps);
-    ADD(hash, scene->medium.absorption_db_per_m);
-    ADD(hash, scene->seabed.map);
-    ADD(hash, scene->seabed.lambert);
-    ADD(hash, scene->seabed.level_radius_m);
-    ADD(hash, scene->seabed.despeckle_radius_m);
-    ADD(hash, scene->seabed.forward_rule);
-    add_material(hash, &scene->seabed.forward);
-    ADD(hash, scene->surface.water_depth_m);
-    add_material(hash, &scene->surface.material);
+    end_section(digest, "sonar");
 }
 
 static void add_response_table(struct hash *hash, const struct response_table *table)
@@ -125,15 +133,19 @@ static void add_motion(struct hash *hash, const struct aperture_motion *motion)
     add_yaw(hash, motion);
 }
 
-static void add_responses(struct hash *hash, const struct scene *scene)
+static void add_responses(struct digest *digest, const struct scene *scene)
 {
+    struct hash *hash = digest->section;
     ADD(hash, scene->pulse.kind);
     ADD(hash, scene->pulse.window);
     ADD(hash, scene->pulse.taylor_terms);
     ADD(hash, scene->pulse.taylor_sidelobe_db);
     add_response_table(hash, &scene->pulse_table);
+    end_section(digest, "sonar.pulse");
     add_response_table(hash, &scene->cross_range_table);
+    end_section(digest, "sonar.measured_response");
     add_motion(hash, &scene->motion);
+    end_section(digest, "sonar.motion");
 }
 
 /* Only where there is some: scenes that know of none keep their hashes. */
@@ -168,26 +180,53 @@ static void add_relief(struct hash *hash, const struct relief_features *relief)
              (size_t)relief->grid.rows * relief->grid.columns * sizeof *relief->heights_m);
 }
 
-static void add_image(struct hash *hash, const struct scene *scene)
+static void add_sea(struct digest *digest, const struct scene *scene)
 {
+    struct hash *hash = digest->section;
+    ADD(hash, scene->medium.sound_speed_mps);
+    ADD(hash, scene->medium.reference_sound_speed_mps);
+    ADD(hash, scene->medium.absorption_db_per_m);
+    add_water_layers(hash, scene);
+    end_section(digest, "medium");
+    ADD(hash, scene->seabed.map);
+    ADD(hash, scene->seabed.lambert);
+    ADD(hash, scene->seabed.level_radius_m);
+    ADD(hash, scene->seabed.despeckle_radius_m);
+    ADD(hash, scene->seabed.forward_rule);
+    add_material(hash, &scene->seabed.forward);
+    end_section(digest, "seabed");
+    add_relief(hash, &scene->relief);
+    end_section(digest, "seabed.relief");
+    ADD(hash, scene->surface.water_depth_m);
+    add_material(hash, &scene->surface.material);
+    end_section(digest, "surface");
+}
+
+static void add_image(struct digest *digest, const struct scene *scene)
+{
+    struct hash *hash = digest->section;
     const sonject_geometry_params *geometry = &scene->geometry;
     ADD(hash, geometry->side);
     ADD(hash, geometry->row_spacing_m);
     ADD(hash, geometry->column_spacing_m);
     ADD(hash, geometry->first_along_track_m);
     ADD(hash, geometry->first_slant_range_m);
+    end_section(digest, "input.geometry");
     ADD(hash, scene->transfer.kind);
     ADD(hash, scene->transfer.parameter);
     ADD(hash, scene->transfer.offset);
     ADD(hash, scene->transfer.full_scale);
+    end_section(digest, "input.transfer");
     ADD(hash, scene->patch.first_row);
     ADD(hash, scene->patch.first_column);
     ADD(hash, scene->patch.rows);
     ADD(hash, scene->patch.columns);
+    end_section(digest, "patch");
     ADD(hash, scene->input_kind);
     ADD(hash, scene->input_is_complex);
     ADD(hash, scene->channel);
     hash_add_text(hash, scene->array ? scene->array : "");
+    end_section(digest, "input");
 }
 
 static void add_object(struct hash *hash, const sonject_object_params *object)
@@ -228,6 +267,26 @@ static void add_object(struct hash *hash, const sonject_object_params *object)
     add_material(hash, &object->material);
 }
 
+/* Objects by their numbers, and what they are made of all together. */
+static void add_objects(struct digest *digest, const struct scene *scene)
+{
+    struct hash *hash = digest->section;
+    char name[32];
+    for (uint32_t i = 0; i < scene->object_count; i++) {
+        add_object(hash, &scene->objects[i]);
+        snprintf(name, sizeof name, "objects[%lu]", (unsigned long)i);
+        end_section(digest, name);
+    }
+    for (uint32_t i = 0; i < scene->part_count; i++) {
+        const struct scene_part *part = &scene->parts[i];
+        ADD(hash, part->object);
+        ADD(hash, part->axes);
+        ADD(hash, part->centre);
+        add_object(hash, &part->shape);
+    }
+    end_section(digest, "objects[].parts");
+}
+
 static void add_meshes(struct hash *hash, const struct scene *scene)
 {
     for (uint32_t i = 0; i < scene->mesh_count; i++) {
@@ -262,7 +321,6 @@ static void add_injection(struct hash *hash, const sonject_injection_params *inj
     ADD(hash, injection->noise_floor_db);
     ADD(hash, injection->influence_db);
     ADD(hash, injection->ray_scale);
-    ADD(hash, injection->seed);
     ADD(hash, injection->interactions);
     ADD(hash, injection->estimator);
     ADD(hash, injection->order_energies);
@@ -271,34 +329,60 @@ static void add_injection(struct hash *hash, const sonject_injection_params *inj
     ADD(hash, injection->match_saturation);
 }
 
+static void add_scene(struct digest *digest, const struct scene *scene, const char *input_identity)
+{
+    hash_add_text(digest->section, sonject_version());
+    end_section(digest, "sonject");
+    ADD(digest->section, scene->injection.seed);
+    end_section(digest, "injection.seed");
+    add_injection(digest->section, &scene->injection);
+    end_section(digest, "injection");
+    add_sonar(digest, scene);
+    add_responses(digest, scene);
+    add_sea(digest, scene);
+    add_image(digest, scene);
+    add_objects(digest, scene);
+    add_meshes(digest->section, scene);
+    end_section(digest, "objects[].mesh");
+    add_user_shapes(digest->section, &scene->user_shapes);
+    end_section(digest, "objects[].user_shape");
+    hash_add_text(digest->section, input_identity);
+    end_section(digest, "input's pixels");
+    if (digest->inputs) { /* these say more by themselves */
+        json_add(digest->inputs, "sonject", json_string(sonject_version()));
+        json_add(digest->inputs, "injection.seed", json_seed(scene->injection.seed));
+    }
+}
+
+static sonject_status digest_scene(struct report *report, const struct scene *scene,
+                                   const char *input_identity, char text[HASH_TEXT_CAPACITY],
+                                   json_t **inputs)
+{
+    struct digest digest = {hash_begin(), hash_begin(), inputs};
+    char ignored[HASH_TEXT_CAPACITY];
+    const bool is_whole = digest.section && digest.whole;
+    if (is_whole)
+        add_scene(&digest, scene, input_identity);
+    if (digest.section)
+        hash_end(digest.section, ignored);
+    if (digest.whole)
+        hash_end(digest.whole, text);
+    return is_whole ? SONJECT_OK : report_out_of_memory(report, "a hash");
+}
+
 sonject_status scene_hash(struct report *report, const struct scene *scene,
                           const char *input_identity, char text[HASH_TEXT_CAPACITY])
 {
-    struct hash *hash = hash_begin();
-    if (!hash)
-        return report_out_of_memory(report, "a hash");
-    hash_add_text(hash, sonject_version());
-    add_sonar(hash, scene);
-    add_responses(hash, scene);
-    add_water_layers(hash, scene);
-    add_relief(hash, &scene->relief);
-    add_image(hash, scene);
-    add_injection(hash, &scene->injection);
-    for (uint32_t i = 0; i < scene->object_count; i++)
-        add_object(hash, &scene->objects[i]);
-    add_meshes(hash, scene);
-    add_user_shapes(hash, &scene->user_shapes);
-    for (uint32_t i = 0; i < scene->part_count; i++) {
-        const struct scene_part *part = &scene->parts[i];
-        ADD(hash, part->object);
-        ADD(hash, part->axes);
-        ADD(hash, part->centre);
-        add_object(hash, &part->shape);
-    }
-    hash_add_text(hash, scene->input_path);
-    hash_add_text(hash, input_identity);
-    hash_end(hash, text);
-    return SONJECT_OK;
+    return digest_scene(report, scene, input_identity, text, NULL);
+}
+
+sonject_status scene_inputs(struct report *report, const struct scene *scene,
+                            const char *input_identity, char text[HASH_TEXT_CAPACITY],
+                            json_t **inputs)
+{
+    *inputs = json_object();
+    const sonject_status status = digest_scene(report, scene, input_identity, text, inputs);
+    return status == SONJECT_OK && !*inputs ? report_out_of_memory(report, "a hash") : status;
 }
 
 sonject_status traced_scene_hash(struct report *report, const struct scene *scene,
@@ -311,7 +395,6 @@ sonject_status traced_scene_hash(struct report *report, const struct scene *scen
     memset(&traced.pulse_table, 0, sizeof traced.pulse_table);
     memset(&traced.cross_range_table, 0, sizeof traced.cross_range_table);
     memset(&traced.motion, 0, sizeof traced.motion);
-    traced.input_path = NULL;
     return scene_hash(report, &traced, input_identity, text);
 }
 

@@ -266,6 +266,7 @@ static sonject_status form_file(struct sonject_context *context, const sonject_s
     request.impulses = impulses;
     request.folder = params->folder;
     request.label_formats = params->labels;
+    request.overwrites = params->overwrites != 0;
     request.progress = progress;
     request.user = user;
     scene_init(&read);

@@ -40,8 +40,7 @@ sonject_status take_stint_head(struct tracing *tracing)
     tracing->head.shard = job->request->shards > 0 ? job->request->shard : 1;
     tracing->head.shards = job->request->shards > 0 ? job->request->shards : 1;
     strncpy(identity->version, sonject_version(), sizeof identity->version - 1);
-    strncpy(identity->scene, job->traced_hash, sizeof identity->scene - 1);
-    strncpy(tracing->head.result, job->scene_hash, sizeof tracing->head.result - 1);
+    strncpy(identity->scene, job->scene_hash, sizeof identity->scene - 1);
     const sonject_status status = take_code(tracing->report, identity->code);
     return status == SONJECT_OK ? take_device(tracing->report, job, identity->device) : status;
 }

@@ -11,8 +11,7 @@ struct stint_job {
     struct sonject_context *context;
     struct device *device;
     const struct run_request *request;
-    const char *scene_hash;  /* of the run */
-    const char *traced_hash; /* the same but for the name of the input's file */
+    const char *scene_hash;
     const struct injection_input *input;
     double start_s; /* clock_seconds() when the call began */
     sonject_progress_function progress;

@@ -36,11 +36,17 @@ void hash_add_text(struct hash *hash, const char *text)
         hash_add(hash, text, strlen(text) + 1);
 }
 
-void hash_end(struct hash *hash, char text[HASH_TEXT_CAPACITY])
+void hash_restart(struct hash *hash, char text[HASH_TEXT_CAPACITY])
 {
     const XXH128_hash_t digest = XXH3_128bits_digest(hash->state);
     snprintf(text, HASH_TEXT_CAPACITY, "%016llx%016llx", (unsigned long long)digest.high64,
              (unsigned long long)digest.low64);
+    XXH3_128bits_reset(hash->state);
+}
+
+void hash_end(struct hash *hash, char text[HASH_TEXT_CAPACITY])
+{
+    hash_restart(hash, text);
     XXH3_freeState(hash->state);
     free(hash);
 }

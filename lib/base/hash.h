@@ -16,6 +16,9 @@ void hash_add(struct hash *hash, const void *bytes, size_t count);
 /* Adds a text with its terminator, so that "ab","c" differs from "a","bc"; NULL adds nothing. */
 void hash_add_text(struct hash *hash, const char *text);
 
+/* Writes the digits and begins anew. */
+void hash_restart(struct hash *hash, char text[HASH_TEXT_CAPACITY]);
+
 /* Writes the digits and frees the hash. */
 void hash_end(struct hash *hash, char text[HASH_TEXT_CAPACITY]);
 

@@ -10,6 +10,8 @@
 #include "base/memory.h"
 #include "base/text.h"
 
+#define DOCUMENT_BYTES_MAX ((size_t)64 << 20)
+
 json_t *json_number(double value)
 {
     return isfinite(value) ? json_real(value) : json_null();
@@ -86,4 +88,40 @@ sonject_status json_document_write(struct report *report, json_t *document, cons
     const sonject_status status = file_write_whole(report, path, text, strlen(text));
     free(text);
     return status;
+}
+
+/* Where memory is out jansson may find fault with the text: it is asked twice, and memory is. */
+static json_t *load_json(const char *text, size_t bytes, bool *lacks_memory)
+{
+    json_t *document = json_loadb(text, bytes, 0, NULL);
+    *lacks_memory = false;
+    if (document)
+        return document;
+    document = json_loadb(text, bytes, 0, NULL);
+    void *room = document ? NULL : allocate_array(bytes + 1, 2);
+    *lacks_memory = !document && !room;
+    free(room);
+    return document;
+}
+
+sonject_status json_document_read(struct report *report, const char *path, json_t **document)
+{
+    char *text;
+    size_t bytes;
+    bool lacks_memory;
+    *document = NULL;
+    const sonject_status status = file_read_whole(report, path, DOCUMENT_BYTES_MAX, &text, &bytes);
+    if (status != SONJECT_OK)
+        return status;
+    *document = load_json(text, bytes, &lacks_memory);
+    free(text);
+    if (lacks_memory)
+        return report_out_of_memory(report, path);
+    if (!json_is_object(*document)) {
+        json_decref(*document);
+        *document = NULL;
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: damaged: no JSON object; remove it and run that again", path);
+    }
+    return SONJECT_OK;
 }

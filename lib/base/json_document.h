@@ -35,4 +35,7 @@ char *json_document_text(const json_t *document, size_t flags);
  * (also where the document is NULL). */
 sonject_status json_document_write(struct report *report, json_t *document, const char *path);
 
+/* Reads a JSON object of at most 64 MB. Errors: STORAGE, INPUT, MEMORY. */
+sonject_status json_document_read(struct report *report, const char *path, json_t **document);
+
 #endif

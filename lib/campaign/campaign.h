@@ -98,8 +98,7 @@ struct campaign {
     size_t split_count;
     bool has_range;
     uint32_t streams; /* of random numbers that distributions take */
-    char *canonical;  /* the whole file, overrides included, in flow style */
-    struct tree tree; /* of the file, for messages: places point into it */
+    struct tree tree; /* of the file, overrides included: places point into it */
 };
 
 /* Reads a campaign file with overrides "key.path=value" of it. campaign: for campaign_clear, also

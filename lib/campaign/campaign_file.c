@@ -192,8 +192,6 @@ static sonject_status fill_campaign(struct tree *tree, const char *const *overri
                               "there is nothing in it; start with 'sonject_campaign: 1'");
     if (status == SONJECT_OK)
         status = read_section(&reader, &campaign_section, &tree->root, campaign);
-    if (status == SONJECT_OK)
-        status = tree_override_text(tree->report, &tree->root, &campaign->canonical);
     return status;
 }
 
@@ -275,7 +273,6 @@ void campaign_clear(struct campaign *campaign)
         free(campaign->splits[i].swaths);
         free(campaign->splits[i].shares);
     }
-    free(campaign->canonical);
     free(campaign->scene_path);
     free(campaign->scene_written);
     free(campaign->folder);

@@ -4,7 +4,7 @@
 
 #include "trace/stint_file.h"
 
-#define STINT_MAGIC       "sonject stint 1\n"
+#define STINT_MAGIC       "sonject stint 2\n"
 #define STINT_MAGIC_BYTES 16
 
 enum block_kind {
@@ -19,7 +19,7 @@ struct block_head {
 };
 
 typedef char block_head_is_packed[sizeof(struct block_head) == 56 ? 1 : -1];
-typedef char stint_head_is_packed[sizeof(struct stint_head) == 216 ? 1 : -1];
+typedef char stint_head_is_packed[sizeof(struct stint_head) == 176 ? 1 : -1];
 typedef char stint_end_is_packed[sizeof(struct stint_end) == 96 ? 1 : -1];
 
 /* Fills in the digest of a block whose kind and number of bytes are there. False where memory

@@ -69,8 +69,7 @@ static bool take_head(struct stint_file *file, const struct block_head *block,
     return is_terminated(identity->version, sizeof identity->version) &&
            is_terminated(identity->code, sizeof identity->code) &&
            is_terminated(identity->scene, sizeof identity->scene) &&
-           is_terminated(identity->device, sizeof identity->device) &&
-           is_terminated(head->result, sizeof head->result) && head->shard >= 1 &&
+           is_terminated(identity->device, sizeof identity->device) && head->shard >= 1 &&
            head->shard <= head->shards &&
            (file->source.bytes == 0 || file->source.texts[file->source.bytes - 1] == '\0');
 }

@@ -1,6 +1,6 @@
 /* Files of tallies: what one process traced of a shard in one go, a stint.
  *
- *   "sonject stint 1\n"
+ *   "sonject stint 2\n"
  *   blocks: kind, bytes (64 bits each), digest (XXH3 of kind, bytes and content, 32 digits in 40
  *   bytes), content
  *     head  struct stint_head, then the scene's source (texts, each terminated; nothing where the
@@ -35,8 +35,7 @@ struct stint_identity {
 
 struct stint_head {
     struct stint_identity identity;
-    char result[STINT_DIGEST_CAPACITY]; /* of the run's inputs, as run.json has it */
-    uint64_t shard, shards;             /* shard: from 1 */
+    uint64_t shard, shards; /* shard: from 1 */
 };
 
 struct stint_end {

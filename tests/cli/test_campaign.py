@@ -4,6 +4,7 @@ import base64
 import json
 import random
 import re
+import shutil
 import signal
 import subprocess
 import time
@@ -319,7 +320,9 @@ def test_it_stops_by_itself(command, ground, whole):
                                     {"splits": [{"name": "<b>", "images": 20}]},
                                     {"splits": [{"name": "train", "images": -1}]},
                                     {"outputs": None}, {"swaths": None}, {"rows": "64"},
-                                    {"sonject_campaign": 2}])
+                                    {"sonject_campaign": 1}, {"images": 19},
+                                    {"rows": 10**18}, {"classes": ["a\nb"]},
+                                    {"swaths": [{"path": "\u202e"}]}])
 def test_a_head_that_was_tampered_with_is_refused(command, whole, ground, change):
     head = json.loads((whole / "campaign.json").read_text())
     (ground / "odd").mkdir(exist_ok=True)
@@ -327,11 +330,115 @@ def test_a_head_that_was_tampered_with_is_refused(command, whole, ground, change
     assert_refused(command("merge", "odd"), 3, "odd/campaign.json", "damaged")
 
 
-def test_another_campaign_is_refused(command, whole):
+@pytest.mark.parametrize("setting, differs", [
+    ("seed=6", "seed (5 there, 6 here)"), ("images=10", "images (20 there, 10 here)"),
+    ("targets[0].object.diameter=20 cm", "targets"), ("scene=other.yaml", "scene"),
+    ("swaths[1].path=swath2.png", "swaths")])
+def test_another_campaign_is_refused_by_name(command, whole, ground, setting, differs):
+    (ground / "other.yaml").write_text(SCENE.replace("altitude: 10 m", "altitude: 11 m"))
     before = contents(whole)
-    answer = command("campaign", "campaign.yaml", "-o", "whole", "--set", "seed=6")
-    assert_refused(answer, 3, "whole", "another campaign")
+    answer = command("campaign", "campaign.yaml", "-o", "whole", "--set", setting)
+    assert_refused(answer, 2, "whole", f"differs in {differs}", "--overwrite")
     assert contents(whole) == before
+
+
+def test_another_campaign_leaves_nothing_behind_once_it_is_overwritten(command, whole, ground):
+    folder = ground / "replaced"
+    shutil.copytree(whole, folder)
+    changes = ["--set", "images=4", "--set", "splits={all: 1}", "--set", "labels=[voc]"]
+    assert command("campaign", "campaign.yaml", "-o", "fresh", *changes).returncode == 0
+    replace = ["campaign", "campaign.yaml", "-o", "replaced", *changes, "--overwrite"]
+    assert_refused(command(*replace, "--shard", "1/2"), 2, "--only 0 --overwrite")
+    assert contents(folder) == contents(whole)
+    answer = command(*replace)
+    assert answer.returncode == 0, answer.stderr
+    assert contents(folder) == contents(ground / "fresh")
+
+
+@pytest.fixture
+def damaged(whole, ground, tmp_path_factory):
+    """A copy of the data set, to be damaged."""
+    folder = ground / tmp_path_factory.mktemp("copy").name
+    shutil.copytree(whole, folder)
+    return folder
+
+
+def harm(path):
+    path.write_bytes(path.read_bytes()[:-1] + b"?")
+
+
+@pytest.mark.parametrize("kind, extension", [("masks", ".png"), ("images", ".png"),
+                                             ("truth", ".json"), ("labels", ".txt"),
+                                             ("records", ".json")])
+def test_what_was_changed_is_named_by_merge_and_made_again(command, damaged, whole, kind, extension):
+    record = next(each for each in records(damaged) if each["target"])
+    path = damaged / of_image(record, kind, extension)
+    for change in (harm, lambda path: path.write_bytes(b""), lambda path: path.unlink()):
+        change(path)
+        words = [f"missing or changed: {record['id']};", str(path.relative_to(damaged))]
+        if not path.exists() and kind == "records":
+            words = [f"missing: {record['id']};"]
+        assert_refused(command("merge", damaged.name), 3, "1 of 20 images", *words)
+        assert command("campaign", "campaign.yaml", "-o", damaged.name).returncode == 0
+        assert contents(damaged) == contents(whole)
+
+
+@pytest.mark.parametrize("name", ["train/coco.json", "classes.txt", "contact_sheet.png",
+                                  "report.html", "dataset.json"])
+def test_documents_that_were_changed_are_made_again(command, damaged, whole, name):
+    for change in (harm, lambda path: path.unlink()):
+        change(damaged / name)
+        answer = command("campaign", "campaign.yaml", "-o", damaged.name)
+        assert answer.returncode == 0 and "already" not in answer.stderr
+        assert contents(damaged) == contents(whole)
+
+
+def of_annotation(**change):
+    return lambda record: record["annotations"][0].update(change)
+
+
+HOSTILE_RECORDS = {
+    "image above": lambda record: record.update(image="../../swath0.png"),
+    "image elsewhere": lambda record: record.update(image="images/00000099.png"),
+    "image of another kind": lambda record: record.update(image=3),
+    "other split": lambda record: record.update(split="../test"),
+    "other id": lambda record: record.update(id=99),
+    "unknown target": lambda record: record.update(target="whale"),
+    "seed of a text": lambda record: record.update(seed="=1"),
+    "set of numbers": lambda record: record.update(set=[1]),
+    "direction of text": lambda record: record.update(set=["a=\u202eb"]),
+    "swath without a place": lambda record: record["swath"].pop("row"),
+    "no annotations": lambda record: record.update(annotations=None),
+    "unknown class": of_annotation(category_id=4),
+    "box beyond the image": of_annotation(bbox=[0, 0, CHIP + 1, 1]),
+    "box of texts": of_annotation(bbox=["0", "0", "1", "1"]),
+    "box that overflows": of_annotation(bbox=[2**63 - 1, 0, 2**63 - 1, 1]),
+    "area without pixels": of_annotation(area=1),
+    "runs beyond the image": of_annotation(segmentation={"size": [CHIP, CHIP], "counts": [2**62, 2**62]}),
+    "member of its own": of_annotation(script="<script>"),
+}
+
+
+@pytest.mark.parametrize("change", HOSTILE_RECORDS)
+def test_records_are_checked_before_they_are_believed(command, damaged, change):
+    before = contents(damaged)
+    record = next(each for each in records(damaged) if each["annotations"])
+    path = damaged / of_image(record, "records", ".json")
+    HOSTILE_RECORDS[change](record)
+    path.write_text(json.dumps(record))
+    assert_refused(command("merge", damaged.name), 3, "images are missing or changed",
+                   str(path.relative_to(damaged)))
+    after = contents(damaged)
+    assert {key: after[key] for key in after if "records" not in key} == {
+        key: before[key] for key in before if "records" not in key}
+
+
+def test_two_campaigns_in_one_folder_make_one_data_set(ground, environment, whole):
+    arguments = [COMMAND, "campaign", "campaign.yaml", "-o", "twice", "--quiet"]
+    both = [subprocess.Popen(arguments, cwd=ground, env=environment, stderr=subprocess.PIPE)
+            for _ in range(2)]
+    assert [(each.communicate()[1], each.returncode) for each in both] == [(b"", 0)] * 2
+    assert contents(ground / "twice") == contents(whole)
 
 
 def test_a_grid_draws_every_cell(command, ground):

@@ -34,6 +34,24 @@ def test_files_hold_the_series(sonject, scene, tmp_path):
     assert numpy.load(tmp_path / "real" / "series.npy").dtype == numpy.float32
 
 
+def test_series_of_other_inputs_are_refused_and_lost_ones_made_again(sonject, scene, tmp_path):
+    scene.write_text(SCENE + ARRAY)
+    file = tmp_path / "out" / "series.npy"
+    assert sonject("elements", scene, "-o", "out").returncode == 0
+    first, made = file.read_bytes(), file.stat().st_mtime_ns
+    assert sonject("elements", scene, "-o", "out").returncode == 0
+    assert file.stat().st_mtime_ns == made
+    for key in ("injection.seed", "elements.pings.count", "objects[0].diameter"):
+        changed = ["--set", f"{key}=2"]
+        differs = key.removesuffix(".diameter").removesuffix(".pings.count")
+        assert_refused(sonject("elements", scene, "-o", "out", *changed), 2, f"differs in {differs}")
+    file.write_bytes(first[:-1])
+    assert sonject("elements", scene, "-o", "out").returncode == 0
+    assert file.read_bytes() == first
+    assert sonject("elements", scene, "-o", "out", *changed, "--overwrite").returncode == 0
+    assert file.read_bytes() != first
+
+
 def test_what_is_wrong_leaves_nothing(sonject, scene, tmp_path):
     scene.write_text(SCENE + ARRAY)
     refused = sonject("elements", scene, "-o", "out", "--set", "elements.sampling_rate=20 kHz")

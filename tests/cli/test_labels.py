@@ -180,7 +180,7 @@ def test_contact_records(folder):
 
 def test_names_are_no_formulas_of_spreadsheets(sonject, scene, tmp_path):
     for name in ("=cmd|' /c calc'!A0", "+1", "-1", "@SUM(1)"):
-        changed = ["--set", f"objects[0].name={json.dumps(name)}"]
+        changed = ["--set", f"objects[0].name={json.dumps(name)}", "--overwrite"]
         assert sonject("run", scene, "-o", "out", *changed).returncode == 0
         with open(tmp_path / "out" / "contacts.csv", newline="", encoding="utf-8") as file:
             assert [line["name"] for line in csv.DictReader(file)] == ["'" + name]

@@ -49,8 +49,8 @@ def test_check_describes_meshes(sonject, scene, mesh):
 
 
 def test_the_content_of_a_mesh_counts(sonject, scene, mesh, tmp_path):
-    def run():
-        answer = sonject("run", scene, "-o", "out")
+    def run(*options):
+        answer = sonject("run", scene, "-o", "out", *options)
         assert answer.returncode == 0, answer.stderr
         return json.loads((tmp_path / "out" / "run.json").read_text())["scene_hash"], answer.stderr
 
@@ -58,7 +58,8 @@ def test_the_content_of_a_mesh_counts(sonject, scene, mesh, tmp_path):
     again, said = run()
     assert again == first and "already holds" in said
     mesh.write_text(TETRAHEDRON.replace("400", "300"))
-    other, said = run()
+    assert_refused(sonject("run", scene, "-o", "out"), 2, "differs in objects[].mesh:")
+    other, said = run("--overwrite")
     assert other != first and "already holds" not in said
 
 

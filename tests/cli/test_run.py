@@ -94,7 +94,7 @@ def test_orders_of_an_earlier_run_do_not_stay(sonject, scene, tmp_path):
     asked = ["--set", "injection.order_energies=true"]
     assert sonject("run", scene, "-o", "result", *asked).returncode == 0
     assert len(energies_of_orders(tmp_path / "result")) == 1
-    assert sonject("run", scene, "-o", "result").returncode == 0
+    assert sonject("run", scene, "-o", "result", "--overwrite").returncode == 0
     assert {path.name for path in (tmp_path / "result").iterdir()} == RESULTS
 
 
@@ -116,11 +116,69 @@ def test_a_finished_run_is_not_repeated(sonject, scene, tmp_path):
     assert before == {path: path.stat().st_mtime_ns for path in files_below(tmp_path / "result")}
 
 
-def test_other_inputs_are_run_again(sonject, scene, tmp_path):
+OTHER_INPUTS = {
+    "injection.seed (1 there, 2 here)": ["--seed", "2"],
+    "objects[0]": ["--set", "objects[0].diameter=0.4 m"],
+    "sonar": ["--set", "sonar.altitude=9 m"],
+    "seabed.relief": ["--set", "seabed.relief=[{ripples: {wavelength: 40 cm, height: 3 cm}}]"],
+    "input.geometry": ["--set", "input.geometry.row_spacing=2 cm"],
+}
+
+
+@pytest.mark.parametrize("differs", OTHER_INPUTS)
+def test_a_result_of_other_inputs_is_refused_by_name(sonject, scene, tmp_path, differs):
+    changed = OTHER_INPUTS[differs]
     assert sonject("run", scene, "-o", "result").returncode == 0
-    first = contents(tmp_path / "result")
-    assert sonject("run", scene, "-o", "result", "--seed", "2").returncode == 0
-    assert contents(tmp_path / "result")["image.tif"] != first["image.tif"]
+    before = {path: path.read_bytes() for path in files_below(tmp_path / "result")}
+    answer = sonject("run", scene, "-o", "result", *changed)
+    assert_refused(answer, 2, f"differs in {differs}", "--overwrite")
+    assert before == {path: path.read_bytes() for path in files_below(tmp_path / "result")}
+    assert sonject("run", scene, "-o", "result", *changed, "--overwrite").returncode == 0
+    assert sonject("run", scene, "-o", "other", *changed).returncode == 0
+    assert contents(tmp_path / "result") == contents(tmp_path / "other")
+
+
+def test_a_swath_that_changed_beside_the_patch_is_refused_by_name(sonject, scene, tmp_path, swath):
+    patch = ["--set", f"patch={{row: 0, column: 0, rows: 90, columns: {COLUMNS}}}"]
+    assert sonject("run", scene, "-o", "result", *patch).returncode == 0
+    (tmp_path / "moved.tif").write_bytes((tmp_path / "swath.tif").read_bytes())
+    elsewhere = sonject("run", scene, "-o", "result", *patch, "--set", "input.path=moved.tif")
+    assert elsewhere.returncode == 0 and "already" in elsewhere.stderr
+    swath[-1, -1] += 1
+    (tmp_path / "swath.tif").write_bytes(images.tiff_bytes(swath))
+    assert_refused(sonject("run", scene, "-o", "result", *patch), 2, "differs in", "swath.tif")
+
+
+def truncate(path):
+    path.write_bytes(path.read_bytes()[:-1])
+
+
+def alter(path):
+    data = bytearray(path.read_bytes())
+    data[len(data) // 2] ^= 1
+    path.write_bytes(data)
+
+
+def alter_unseen(path):
+    """Of the same size and time."""
+    time_ns = path.stat().st_mtime_ns
+    alter(path)
+    os.utime(path, ns=(time_ns, time_ns))
+
+
+@pytest.mark.parametrize("name", ["image.tif", "labels.png", "truth.json", "coco.json"])
+def test_what_is_lost_of_a_finished_run_is_made_again(sonject, scene, tmp_path, name):
+    folder = tmp_path / "result"
+    assert sonject("run", scene, "-o", "result").returncode == 0
+    before = contents(folder)
+    for harm in (lambda path: path.unlink(), truncate, alter, alter_unseen):
+        harm(folder / name)
+        answer = sonject("run", scene, "-o", "result", "--verbose")
+        assert answer.returncode == 0 and "already" not in answer.stderr
+        assert f"{name} is not as it was written" in answer.stderr
+        assert contents(folder) == before
+    (folder / name).touch()
+    assert "already" in sonject("run", scene, "-o", "result").stderr
 
 
 def test_the_seed_is_an_override(sonject, scene, tmp_path):

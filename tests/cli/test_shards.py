@@ -60,6 +60,10 @@ def test_what_shards_lack_is_named_and_the_rest_is_a_run(sonject, scene, tmp_pat
                   ["run", scene, "-o", "result", "--shard", "1/4"]):
         answer = sonject(*again)
         assert answer.returncode == 0 and "already" in answer.stderr
+    # a merged folder is looked at, too
+    (folder / "shadow.png").rename(tmp_path / "away")
+    assert_refused(sonject("merge", "result"), 3, "result: is merged already, but shadow.png")
+    (tmp_path / "away").rename(folder / "shadow.png")
     labelled = sonject("merge", "result", "--labels", "yolo")
     assert_refused(labelled, 3, "result: is merged already, without those labels")
     assert {path.name for path in folder.iterdir()} == RESULTS
@@ -96,6 +100,16 @@ def test_what_is_not_a_shard_of_the_run_is_refused(sonject, scene, tmp_path, who
     for other in (["--shard", "1/3"], [], ["--seed", "9"]):
         answer = sonject("run", scene, "-o", "result", *other)
         assert_refused(answer, 3, "result/work", "2 shards")
+    command(sonject, "merge", "result")
+    assert contents(tmp_path / "result") == whole
+
+
+def test_shards_replace_another_result_once_they_are_told_to(sonject, scene, tmp_path, whole):
+    command(sonject, "run", scene, "-o", "result", "--seed", "9")
+    for shard in ("1/2", "2/2"):
+        answer = sonject("run", scene, "-o", "result", "--shard", shard)
+        assert_refused(answer, 2, "differs in injection.seed (9 there, 1 here)")
+        command(sonject, "run", scene, "-o", "result", "--shard", shard, "--overwrite")
     command(sonject, "merge", "result")
     assert contents(tmp_path / "result") == whole
 

@@ -7,12 +7,14 @@
 
 #include <cmocka.h>
 
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 
 #include "base/file.h"
+#include "base/file_list.h"
 #include "temporary_folder.h"
 
 static void expect_text(char *text, const char *expected)
@@ -238,6 +240,82 @@ static void test_only_parts_of_dead_processes_are_tidied_away(void **state)
     free(orphan);
 }
 
+static bool holds(const json_t *entry, const char *path, bool hashes_all)
+{
+    struct report report = {{0}, NULL, NULL};
+    bool is_same = false;
+    assert_int_equal(file_entry_holds(&report, entry, path, hashes_all, &is_same), SONJECT_OK);
+    return is_same;
+}
+
+/* Changes the first byte of a file of so many bytes, at the same time as before where asked. */
+static void alter(const char *path, bool keeps_time)
+{
+    struct stat facts;
+    assert_int_equal(stat(path, &facts), 0);
+    const struct timespec kept[2] = {facts.st_mtim, facts.st_mtim};
+    const struct timespec later[2] = {{facts.st_mtim.tv_sec + 1, 0}, {facts.st_mtim.tv_sec + 1, 0}};
+    FILE *file = fopen(path, "r+b");
+    assert_non_null(file);
+    const int first = fgetc(file);
+    rewind(file);
+    fputc(first ^ 1, file);
+    assert_int_equal(fclose(file), 0);
+    assert_int_equal(utimensat(AT_FDCWD, path, keeps_time ? kept : later, 0), 0);
+}
+
+static void test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct report report = {{0}, NULL, NULL};
+    const char *path = temporary_file(folder, "image.tif");
+    const long sizes[] = {(16L << 20) - 1, 16L << 20};
+    for (int i = 0; i < 2; i++) {
+        const bool is_large = i == 1;
+        json_t *entry;
+        write_bytes(path, "", 0);
+        assert_int_equal(truncate(path, sizes[i]), 0);
+        assert_int_equal(file_entry(&report, path, "image.tif", true, &entry), SONJECT_OK);
+        alter(path, true);
+        assert_int_equal(holds(entry, path, false), is_large);
+        assert_false(holds(entry, path, true));
+        alter(path, false);
+        assert_true(holds(entry, path, false)); /* as it was, but for the time */
+        alter(path, false);
+        assert_false(holds(entry, path, false));
+        assert_int_equal(truncate(path, sizes[i] - 1), 0);
+        assert_false(holds(entry, path, false));
+        assert_int_equal(unlink(path), 0);
+        assert_false(holds(entry, path, false));
+        json_decref(entry);
+    }
+}
+
+static void test_a_list_of_files_reaches_nothing_outside_of_its_folder(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct report report = {{0}, NULL, NULL};
+    char around[TEMPORARY_CAPACITY + 300];
+    char absolute[TEMPORARY_CAPACITY + 300];
+    snprintf(around, sizeof around, "..%s/kept", strrchr(folder->path, '/'));
+    snprintf(absolute, sizeof absolute, "%s/kept", folder->path);
+    const char *names[] = {around, absolute}; /* both lead to the file */
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        const char *path = temporary_file(folder, "kept");
+        const char *changed = NULL;
+        json_t *list = json_array();
+        json_t *entry;
+        write_bytes(path, "", 0);
+        assert_int_equal(file_entry(&report, path, names[i], true, &entry), SONJECT_OK);
+        json_array_append_new(list, entry);
+        assert_int_equal(file_list_check(list, &report, folder->path, true, &changed), SONJECT_OK);
+        assert_string_equal(changed, names[i]);
+        file_list_discard(list, NULL, folder->path);
+        assert_true(file_exists(temporary_file(folder, "kept")));
+        json_decref(list);
+    }
+}
+
 static void test_folders_are_made_with_their_parents(void **state)
 {
     struct temporary_folder *folder = *state;
@@ -274,6 +352,8 @@ int main(void)
         WITH_FOLDER(test_a_full_disk_leaves_the_old_file),
         WITH_FOLDER(test_publishing),
         WITH_FOLDER(test_only_parts_of_dead_processes_are_tidied_away),
+        WITH_FOLDER(test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too),
+        WITH_FOLDER(test_a_list_of_files_reaches_nothing_outside_of_its_folder),
         WITH_FOLDER(test_folders_are_made_with_their_parents),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -29,7 +29,6 @@ static struct stint_head head_of(uint64_t shard, uint64_t shards)
     strcpy(head.identity.version, "1.2");
     strcpy(head.identity.code, "code");
     strcpy(head.identity.scene, "scene");
-    strcpy(head.result, "result");
     head.shard = shard;
     head.shards = shards;
     return head;

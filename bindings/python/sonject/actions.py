@@ -86,6 +86,7 @@ def run(
     shard: Optional[Tuple[int, int]] = None,
     exit_after_s: float = 0.0,
     checkpoint_s: float = 0.0,
+    overwrites: bool = False,
 ) -> bool:
     """Reads the scene's input, injects, and writes the result files into folder.
 
@@ -94,7 +95,8 @@ def run(
     result: merge makes it of all K. exit_after_s: stops by itself after so long, as if cancelled;
     the same call then goes on. checkpoint_s: how often what was traced is kept, 60 s by itself.
 
-    False, with nothing done, if folder already held the finished result of the same inputs.
+    False, with nothing done, if folder already held the finished result of the same inputs, every
+    file as it was written. A result of other inputs is refused unless overwrites is true.
     """
     context = scene.context
     params = initialised(s.sonject_run_params)
@@ -104,6 +106,7 @@ def run(
         set_shard(params, shard)
     params.exit_after_s = real_number("exit_after_s", exit_after_s)
     params.checkpoint_s = real_number("checkpoint_s", checkpoint_s)
+    params.overwrites = int(bool(overwrites))
     return context.complete(
         "sonject_run", context, scene, ctypes.byref(params), progress=progress
     )
@@ -151,12 +154,13 @@ def form(
     *,
     allows_user_shapes: bool = False,
     labels: Iterable[Union[str, LabelFormat]] = (),
+    overwrites: bool = False,
 ) -> bool:
     """Forms the image of what trace wrote into file, and writes what run would into folder.
 
     overrides: as of Scene.read, of bandwidth, resolution and response of the sonar and of
     input.path; scene: where it was traced from no scene file, or instead of overrides;
-    allows_user_shapes: as of Scene.read; labels: as of run.
+    allows_user_shapes: as of Scene.read; labels and overwrites: as of run.
     False, with nothing done, if folder already held the finished result of the same inputs.
     """
     context = _context_of(scene, context)
@@ -169,6 +173,7 @@ def form(
     params.override_count = len(texts)
     params.allows_user_shapes = int(bool(allows_user_shapes))
     params.labels = _label_sum(labels)
+    params.overwrites = int(bool(overwrites))
     return context.complete(
         "sonject_form", context, scene, ctypes.byref(params), progress=progress
     )

@@ -160,11 +160,13 @@ class Campaign(Handle):
         shard: Tuple[int, int] = (1, 1),
         only: Optional[int] = None,
         exit_after_s: float = 0.0,
+        overwrites: bool = False,
     ) -> bool:
         """Makes the images that the folder lacks, and the data set's documents once all are there.
 
         shard: (i, k) makes ids with id % k == i - 1, for merge; only: makes this image alone, anew.
         exit_after_s: stops by itself after so long, as if cancelled; the same call then goes on.
+        overwrites: another campaign's images in folder are removed; else they are refused.
         False if there was nothing left to do.
         """
         params = initialised(s.sonject_campaign_run_params)
@@ -174,6 +176,7 @@ class Campaign(Handle):
             params.only_one = 1
             params.only = self._id(only)
         params.exit_after_s = real_number("exit_after_s", exit_after_s)
+        params.overwrites = int(bool(overwrites))
         return self._context.complete(
             "sonject_campaign_run", self._context, self, ctypes.byref(params), progress=progress
         )

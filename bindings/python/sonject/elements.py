@@ -112,10 +112,20 @@ def element_series(patch: Any, scene: Scene, progress: Optional[Progress] = None
     return series
 
 
-def run_elements(scene: Scene, folder: PathLike, progress: Optional[Progress] = None) -> None:
-    """Reads the scene's input, and writes series.npy and elements.json into folder."""
+def run_elements(
+    scene: Scene,
+    folder: PathLike,
+    progress: Optional[Progress] = None,
+    *,
+    overwrites: bool = False,
+) -> None:
+    """Reads the scene's input, and writes series.npy and elements.json into folder.
+
+    Series of other inputs there are refused unless overwrites is true.
+    """
     params = initialised(s.sonject_run_params)
     params.folder = file_name("folder", folder)
+    params.overwrites = int(bool(overwrites))
     scene.context.work(
         "sonject_elements_run", scene.context, scene, ctypes.byref(params), progress=progress
     )

@@ -91,6 +91,10 @@ def test_a_data_set_is_made_once(campaign, tmp_path):
     assert not whole.run(tmp_path / "set")
     assert any(stage.endswith("images/s") for stage in seen)
     assert (tmp_path / "set" / "all" / "coco.json").exists()
+    other = sonject.Campaign(tmp_path / "campaign.yaml", {"images": 5})
+    with pytest.raises(sonject.SonjectError, match=r"differs in images \(6 there, 5 here\)"):
+        other.run(tmp_path / "set")
+    assert other.run(tmp_path / "set", overwrites=True)
     with pytest.raises(sonject.SonjectError, match="shard_index"):
         whole.run(tmp_path / "set", shard=(3, 2))
     with pytest.raises(ValueError, match="shard must lie within"):

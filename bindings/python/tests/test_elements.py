@@ -345,6 +345,12 @@ def test_the_files_are_the_series(context, tmp_path, monkeypatch):
     scene = scene_of(context, SMOOTH, elements=sonject.Elements(ping_spacing_m=0.1))
     scene.set_input(sonject.Uniform(ROWS, COLUMNS))
     sonject.run_elements(scene, tmp_path)
+    other = scene_of(context, SMOOTH, elements=sonject.Elements(ping_spacing_m=0.2))
+    other.set_input(sonject.Uniform(ROWS, COLUMNS))
+    with pytest.raises(sonject.SonjectError, match="differs in elements"):
+        sonject.run_elements(other, tmp_path)
+    sonject.run_elements(other, tmp_path, overwrites=True)
+    sonject.run_elements(scene, tmp_path, overwrites=True)
     series, geometry, image = read(tmp_path)
     assert numpy.array_equal(series, sonject.element_series(None, scene))
     layout = sonject.element_layout(scene)

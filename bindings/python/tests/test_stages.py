@@ -38,6 +38,13 @@ def test_a_scene_in_memory_is_formed_with_the_scene_at_hand(tmp_path):
         assert not sonject.form(impulses, formed, scene=scene)
         assert sonject.run(scene, tmp_path / f"run {bandwidth_hz}")
         assert contents(formed) == contents(tmp_path / f"run {bandwidth_hz}")
+    # the bandwidth that came last was not the one of this folder's result
+    folder = tmp_path / f"formed {30e3}"
+    for write in (lambda **options: sonject.form(impulses, folder, scene=scene, **options),
+                  lambda **options: sonject.run(make_scene(), folder, **options)):
+        with pytest.raises(sonject.SonjectError, match=r"differs in sonar: .*--overwrite"):
+            write()
+        assert write(overwrites=True)
     other = make_scene()
     other.add(sonject.Sphere(diameter_m=0.2))
     with pytest.raises(sonject.SonjectError, match="not what was traced"):

@@ -43,6 +43,8 @@ class sonject_run_params(Structure):
         ("shard_count", c_uint32),
         ("exit_after_s", c_double),
         ("checkpoint_s", c_double),
+        ("overwrites", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -73,6 +75,8 @@ class sonject_form_params(Structure):
         ("overrides", POINTER(c_char_p)),
         ("allows_user_shapes", c_uint32),
         ("labels", c_uint32),
+        ("overwrites", c_uint32),
+        ("reserved", c_uint32),
     ]
 
 
@@ -109,4 +113,6 @@ class sonject_campaign_run_params(Structure):
         ("only", c_uint64),
         ("folder", c_char_p),
         ("exit_after_s", c_double),
+        ("overwrites", c_uint32),
+        ("reserved", c_uint32),
     ]
