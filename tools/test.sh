@@ -6,6 +6,6 @@ cd "$(dirname "$0")/.."
 
 # shellcheck disable=SC2086 # lists of words
 install_packages $build_packages $test_packages
-build_release -Dtests=enabled -Dassimp=enabled
+build_release -Dtests=enabled
 install_readers
 meson test -C build --print-errorlogs "$@"

@@ -193,7 +193,7 @@ SONJECT_API sonject_status sonject_scene_add_object(sonject_scene *scene,
                                                     const sonject_object_params *object,
                                                     uint32_t *index);
 
-/* Reads a mesh file (STL, OBJ, PLY, with Assimp OFF, glTF) for objects of the shape
+/* Reads a mesh file (STL, OBJ, PLY) for objects of the shape
  * SONJECT_SHAPE_MESH, any number of which may show it: each call reads and keeps one (of scene
  * files, sonject_scene_read keeps one for all that name it alike). *mesh gets its number, counted
  * from 0. An object's centre is then the middle of the mesh's bounding box. Up to 64 meshes a

@@ -75,7 +75,7 @@ static sonject_status finish_mesh(struct reader *reader, const struct tree_node 
         [AXIS_Y_REVERSED] = "-y", [AXIS_Z_REVERSED] = "-z"                                         \
     }
 static const struct field mesh_fields[] = {
-    {"file", "of triangles: STL, OBJ or PLY; with Assimp OFF or glTF", .kind = FIELD_PATH,
+    {"file", "of triangles: STL, OBJ or PLY", .kind = FIELD_PATH,
      .offset = offsetof(STRUCTURE, path), REQUIRED},
     {"unit", "of the file's numbers, by default m", .kind = FIELD_SPECIAL, .unit = "m, km, cm, mm",
      .read = read_unit},

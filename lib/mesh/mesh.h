@@ -48,7 +48,7 @@ void mesh_options_init(struct mesh_options *options);
 bool mesh_is_of(const struct mesh *mesh, const struct file_identity *file,
                 const struct mesh_options *options);
 
-/* Reads a mesh file: STL, OBJ, PLY, with Assimp OFF, glTF too. Equal vertices become one (after
+/* Reads a mesh file: STL, OBJ, PLY. Equal vertices become one (after
  * rounding to single precision in the mesh's frame), triangles with two equal corners are left out,
  * orientation is made consistent (mesh/topology.h). A mesh that is not closed is no failure here:
  * topology says what is open. Errors: STORAGE (cannot be read), INPUT (what and where), UNSUPPORTED

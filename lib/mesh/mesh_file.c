@@ -1,3 +1,4 @@
+#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -10,7 +11,8 @@
 typedef sonject_status reader(struct report *report, const char *path, const char *bytes,
                               size_t count, struct mesh_soup *soup);
 
-bool mesh_path_ends_with(const char *path, const char *extension)
+/* extension: in small letters. */
+static bool ends_with(const char *path, const char *extension)
 {
     const size_t length = strlen(path);
     const size_t tail = strlen(extension);
@@ -26,14 +28,16 @@ bool mesh_path_ends_with(const char *path, const char *extension)
 
 sonject_status mesh_file_read(struct report *report, const char *path, struct mesh_soup *soup)
 {
-    reader *read = mesh_path_ends_with(path, ".stl")   ? stl_read
-                   : mesh_path_ends_with(path, ".obj") ? obj_read
-                   : mesh_path_ends_with(path, ".ply") ? ply_read
-                                                       : NULL;
+    reader *read = ends_with(path, ".stl")   ? stl_read
+                   : ends_with(path, ".obj") ? obj_read
+                   : ends_with(path, ".ply") ? ply_read
+                                             : NULL;
     char *bytes;
     size_t count;
     if (!read)
-        return assimp_read(report, path, soup);
+        return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                              "%s: meshes are read from STL, OBJ and PLY files; convert it to PLY",
+                              path);
     sonject_status status = file_read_whole(report, path, FILE_BYTES_MAX, &bytes, &count);
     if (status != SONJECT_OK)
         return status;

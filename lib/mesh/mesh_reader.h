@@ -19,17 +19,8 @@ sonject_status obj_read(struct report *report, const char *path, const char *byt
 sonject_status ply_read(struct report *report, const char *path, const char *bytes, size_t count,
                         struct mesh_soup *soup);
 
-/* The file by its name's extension: .stl, .obj, .ply, or as below. Errors: and STORAGE,
- * UNSUPPORTED. */
+/* The file by its name's extension: .stl, .obj, .ply, in any case of letters. Errors: and STORAGE,
+ * UNSUPPORTED (another extension). */
 sonject_status mesh_file_read(struct report *report, const char *path, struct mesh_soup *soup);
-
-/* Whether the path ends so, in any case of letters; extension: in small ones, ".stl". */
-bool mesh_path_ends_with(const char *path, const char *extension);
-
-/* What Assimp makes of the file: .off, .gltf, .glb, of at most 256 MB, that hold all that
- * they show. Errors: and STORAGE, UNSUPPORTED (another extension; the library is built without
- * Assimp).
- */
-sonject_status assimp_read(struct report *report, const char *path, struct mesh_soup *soup);
 
 #endif

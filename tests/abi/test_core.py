@@ -13,7 +13,7 @@ from test_interface import LIBRARY, SOURCE, exported_symbols
 
 READERS = os.environ.get("SONJECT_READERS")
 PACKAGE = SOURCE / "bindings" / "python" / "sonject"
-CORE = ["-Dopenimageio=disabled", "-Dassimp=disabled", "-Dhdf5=disabled", "-Dtests=disabled",
+CORE = ["-Dopenimageio=disabled", "-Dhdf5=disabled", "-Dtests=disabled",
         "-Dstatic=disabled", "-Dbuildtype=debug", "-Db_sanitize=none"]
 # What pip asks meson-python for. The build folder is said, so that none is made among the sources.
 BUILD_WHEEL = """\

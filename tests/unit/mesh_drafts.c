@@ -154,101 +154,8 @@ static void write_ply_binary(struct draft *draft, const struct mesh_sample *samp
     }
 }
 
-static void write_off(struct draft *draft, const struct mesh_sample *sample)
-{
-    put_text(draft, "OFF\n# a sample\n%zu %zu 0\n", sample->vertices, sample->triangles);
-    for (size_t i = 0; i < sample->vertices; i++)
-        put_text(draft, "%.9g %.9g %.9g\n", sample->positions[3 * i], sample->positions[3 * i + 1],
-                 sample->positions[3 * i + 2]);
-    for (size_t i = 0; i < sample->triangles; i++)
-        put_text(draft, "3 %u %u %u\n", sample->corners[3 * i], sample->corners[3 * i + 1],
-                 sample->corners[3 * i + 2]);
-}
-
-static void put_little(struct draft *draft, const void *word)
-{
-    put_reversed(draft, word, 4, is_big_endian());
-}
-
-/* The numbers behind a glTF document: coordinates, then corners. */
-static void write_gltf_numbers(struct draft *draft, const struct mesh_sample *sample)
-{
-    for (size_t i = 0; i < 3 * sample->vertices; i++) {
-        const float number = (float)sample->positions[i];
-        put_little(draft, &number);
-    }
-    for (size_t i = 0; i < 3 * sample->triangles; i++)
-        put_little(draft, &sample->corners[i]);
-}
-
-static void put_base64(struct draft *draft, const struct draft *bytes)
-{
-    static const char digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < bytes->count; i += 3) {
-        uint32_t word = 0;
-        for (size_t k = 0; k < 3; k++)
-            word = word << 8 | (i + k < bytes->count ? (unsigned char)bytes->bytes[i + k] : 0u);
-        for (size_t k = 0; k < 4; k++)
-            put(draft, i + k > bytes->count ? "=" : &digits[word >> (18 - 6 * k) & 63], 1);
-    }
-}
-
-/* numbers: to be within the document; NULL: they follow it. */
-static void write_gltf(struct draft *draft, const struct mesh_sample *sample,
-                       const struct draft *numbers)
-{
-    const size_t split = 12 * sample->vertices;
-    const size_t bytes = split + 12 * sample->triangles;
-    put_text(draft, "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
-                    "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":"
-                    "{\"POSITION\":0},\"indices\":1}]}],\n\"buffers\":[{");
-    if (numbers) {
-        put_text(draft, "\"uri\":\"data:application/octet-stream;base64,");
-        put_base64(draft, numbers);
-        put_text(draft, "\",");
-    }
-    put_text(draft,
-             "\"byteLength\":%zu}],\"bufferViews\":[{\"buffer\":0,\"byteOffset\":0,"
-             "\"byteLength\":%zu},{\"buffer\":0,\"byteOffset\":%zu,\"byteLength\":%zu}],\n"
-             "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":%zu,"
-             "\"type\":\"VEC3\",\"min\":[-1,-1,-1],\"max\":[1,1,1]},{\"bufferView\":1,"
-             "\"componentType\":5125,\"count\":%zu,\"type\":\"SCALAR\"}]}\n",
-             bytes, split, split, bytes - split, sample->vertices, 3 * sample->triangles);
-}
-
-static void write_glb(struct draft *draft, const struct mesh_sample *sample)
-{
-    struct draft text = {NULL, 0, 0};
-    struct draft numbers = {NULL, 0, 0};
-    write_gltf(&text, sample, NULL);
-    write_gltf_numbers(&numbers, sample);
-    while (text.count % 4 != 0)
-        put_text(&text, " ");
-    const uint32_t head[] = {2, (uint32_t)(28 + text.count + numbers.count), (uint32_t)text.count};
-    const uint32_t rest = (uint32_t)numbers.count;
-    put(draft, "glTF", 4);
-    for (int i = 0; i < 3; i++)
-        put_little(draft, &head[i]);
-    put(draft, "JSON", 4);
-    put(draft, text.bytes, text.count);
-    put_little(draft, &rest);
-    put(draft, "BIN", 4);
-    put(draft, numbers.bytes, numbers.count);
-    clear_draft(&text);
-    clear_draft(&numbers);
-}
-
-static void write_gltf_alone(struct draft *draft, const struct mesh_sample *sample)
-{
-    struct draft numbers = {NULL, 0, 0};
-    write_gltf_numbers(&numbers, sample);
-    write_gltf(draft, sample, &numbers);
-    clear_draft(&numbers);
-}
-
-const char *const draft_names[] = {"text.stl",   "binary.STL",  "sample.obj",
-                                   "text.ply",   "little.ply",  "big.ply",
-                                   "sample.off", "sample.gltf", "sample.glb"};
+const char *const draft_names[] = {"text.stl", "binary.STL", "sample.obj",
+                                   "text.ply", "little.ply", "big.ply"};
 
 struct draft write_format(enum format format, const struct mesh_sample *sample)
 {
@@ -261,12 +168,6 @@ struct draft write_format(enum format format, const struct mesh_sample *sample)
         write_obj(&draft, sample);
     else if (format == PLY_AS_TEXT)
         write_ply_text(&draft, sample);
-    else if (format == OFF)
-        write_off(&draft, sample);
-    else if (format == GLTF)
-        write_gltf_alone(&draft, sample);
-    else if (format == GLB)
-        write_glb(&draft, sample);
     else
         write_ply_binary(&draft, sample, format == PLY_BIG);
     return draft;

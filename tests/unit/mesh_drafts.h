@@ -19,15 +19,7 @@ enum format {
     PLY_AS_TEXT,
     PLY_LITTLE,
     PLY_BIG,
-    OWN_FORMATS,
-    OFF = OWN_FORMATS, /* from here on by Assimp */
-    GLTF,
-    GLB,
-#if defined(HAS_ASSIMP)
     FORMATS
-#else
-    FORMATS = OWN_FORMATS
-#endif
 };
 
 /* A file name for each. */

@@ -80,7 +80,7 @@ static void test_cut_short(void **state)
     (void)state;
     struct mesh_sample sample;
     sample_box(&sample);
-    for (int format = 0; format < OWN_FORMATS; format++) {
+    for (int format = 0; format < FORMATS; format++) {
         struct draft draft = write_format((enum format)format, &sample);
         size_t read = 0;
         for (size_t count = 0; count < draft.count; count++) {
@@ -109,7 +109,7 @@ static void test_mutations(void **state)
     (void)state;
     struct mesh_sample sample;
     sample_box(&sample);
-    for (int format = 0; format < OWN_FORMATS; format++) {
+    for (int format = 0; format < FORMATS; format++) {
         struct draft draft = write_format((enum format)format, &sample);
         char *changed = malloc(draft.count);
         assert_non_null(changed);
@@ -209,7 +209,8 @@ static void test_bad_content(void **state)
         expect_refusal(*state, cases[i].name, cases[i].text, strlen(cases[i].text),
                        cases[i].message);
     struct mesh mesh;
-    assert_int_equal(load(*state, "a.xyz", "x", 1, &mesh), SONJECT_ERROR_UNSUPPORTED);
+    assert_int_equal(load(*state, "a.glb", "glTF", 4, &mesh), SONJECT_ERROR_UNSUPPORTED);
+    assert_non_null(strstr(report.message, "a.glb: meshes are read from STL, OBJ and PLY"));
     struct mesh_options options;
     mesh_options_init(&options);
     assert_int_equal(mesh_load(&report, "/nowhere/a.stl", &options, &mesh), SONJECT_ERROR_STORAGE);

@@ -224,7 +224,7 @@ static void test_what_is_refused(void **state)
          "ellipsoid, box, wedge, cone, truncated_cone, torus, mesh, user; did you mean 'mesh'?"},
         {MESH("~"), ":6:11: objects[0].mesh: has no value; write one or remove the key"},
         {MESH("{unit: mm}"), ":6:11: objects[0].mesh.file: missing; add it (of triangles: STL, OBJ "
-                             "or PLY; with Assimp OFF or glTF)"},
+                             "or PLY)"},
         {MESH("{file: corner.obj, unit: foot}"),
          ":6:36: objects[0].mesh.unit: unit 'foot' is not one of m, km, cm, mm"},
         {MESH("{file: corner.obj, unit: -1}"),

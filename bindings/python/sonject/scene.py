@@ -371,7 +371,7 @@ class Scene(Handle):
         allows_open: bool = False,
         smooth_angle_rad: float = 0.0,
     ) -> int:
-        """Reads a mesh file (STL, OBJ, PLY; with Assimp OFF, glTF) for ``Mesh`` objects; gives its number.
+        """Reads a mesh file (STL, OBJ, PLY) for ``Mesh`` objects; gives its number.
 
         unit_m: metres a unit of the file; axes: which axis of the file the object's nose, y and z
         axis is, 1, 2, 3, negative for the reverse of it; allows_open: a mesh that is not closed is
