@@ -189,7 +189,8 @@ sonject_status sonject_scene_set_input_array(sonject_scene *scene, const char *a
 
 sonject_status sonject_scene_take_geometry(sonject_scene *scene)
 {
-    return scene ? recording_describe(scene->report, true, true, &scene->scene)
+    const char *key;
+    return scene ? recording_describe(scene->report, true, true, &scene->scene, &key)
                  : SONJECT_ERROR_ARGUMENT;
 }
 

@@ -1,5 +1,6 @@
 #include "inject/echoes.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -56,8 +57,11 @@ static void fill_energies(const struct line_grid *grid, const struct tracer *tra
         view->row_spacing_m / grid->strips_per_row * view->column_spacing_m / grid->bins_per_pixel;
     const size_t bins = (size_t)grid->bins.count;
     for (size_t bin = 0; bin < bins; bin++) {
-        const double range = view_apparent_range(view, ((double)grid->bins.first + (double)bin) /
-                                                           grid->bins_per_pixel);
+        /* half a bin at least: a beam has no width at range 0 */
+        const double range =
+            fmax(view_apparent_range(view, ((double)grid->bins.first + (double)bin) /
+                                               grid->bins_per_pixel),
+                 0.5 * view->column_spacing_m / grid->bins_per_pixel);
         energies[bin] = (float)(cell / (cross_range_energy_width(&tracer->response, range) *
                                         range_energy_width(&tracer->response)));
     }

@@ -28,10 +28,12 @@ static sonject_status check_bins(const struct line_grid *grid, const struct trac
                                  double shortest_deviation, const char *file)
 {
     const struct point_response *response = &tracer->response;
-    const double spacing = tracer->view.column_spacing_m;
-    const double margin = -grid->bins.first * spacing / grid->bins_per_pixel;
+    const double bin = tracer->view.column_spacing_m / grid->bins_per_pixel;
+    const double margin = -grid->bins.first * bin;
     const double fine = response->range_deviation_m / shortest_deviation;
-    const double wide = margin / pulse_reach(response);
+    /* a margin that ends at range 0 holds all that any pulse reaches */
+    const double wide =
+        tracer->view.first_range_m - margin < bin ? HUGE_VAL : margin / pulse_reach(response);
     if (fine >= 1.0 - ROUNDING && wide >= 1.0 - ROUNDING)
         return SONJECT_OK;
     return report_failure(tracer->report, SONJECT_ERROR_INPUT,

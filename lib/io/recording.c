@@ -1,5 +1,7 @@
 #include "io/recording.h"
 
+#include <math.h>
+
 #include "base/ranges.h"
 #include "io/geometry_notes.h"
 
@@ -26,6 +28,7 @@ static sonject_status patch_rows(struct report *report, const struct scene *scen
 /* What is asked for, and where it goes. */
 struct wanted {
     bool geometry, altitude;
+    const char **key; /* gets the scene's key that a failure is about */
     sonject_geometry_params where;
     double altitude_m;
 };
@@ -34,17 +37,22 @@ static sonject_status take_recording(struct report *report, const struct scene *
                                      const struct xtf_file *xtf, struct wanted *wanted)
 {
     uint64_t first, count;
+    *wanted->key = "patch";
     const sonject_status status = patch_rows(report, scene, xtf, &first, &count);
     if (status != SONJECT_OK)
         return status;
     const struct xtf_geometry geometry = xtf_geometry_of(xtf, first, count);
+    *wanted->key = "input.geometry";
     if (wanted->geometry && !(geometry.row_spacing_m > 0.0))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: has no positions, or the sonar stood still: give row_spacing, "
-                              "column_spacing (%g m here) and first_slant_range (%g m) instead of "
-                              "from_file",
-                              scene->input_path, geometry.column_spacing_m,
-                              geometry.first_slant_range_m);
+        return report_failure(
+            report, SONJECT_ERROR_INPUT,
+            "%s: %s: give row_spacing, column_spacing (%g m here) and first_slant_range (%g m) "
+            "instead of from_file",
+            scene->input_path,
+            isnan(geometry.row_spacing_m) ? "fewer than two of its pings have a position"
+                                          : "the patch's pings all have the same position",
+            geometry.column_spacing_m, geometry.first_slant_range_m);
+    *wanted->key = "sonar.altitude";
     if (wanted->altitude && !(geometry.altitude_m > 0.0))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: has no altitudes: give the sonar's altitude instead of "
@@ -63,6 +71,7 @@ static sonject_status take_notes(struct report *report, const struct scene *scen
 {
     struct noted_geometry noted;
     geometry_notes_read(file, &noted);
+    *wanted->key = "input.geometry";
     if (noted.axis == RANGE_GROUND)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: is in ground range, and runs work in slant range: convert it "
@@ -74,6 +83,7 @@ static sonject_status take_notes(struct report *report, const struct scene *scen
                               "sonject convert makes of them: give row_spacing, column_spacing and "
                               "first_slant_range instead of from_file",
                               scene->input_path);
+    *wanted->key = "sonar.altitude";
     if (wanted->altitude && !(noted.altitude_m > 0.0))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: does not say the sonar's altitude: give it instead of from_file",
@@ -88,8 +98,11 @@ static sonject_status check_and_set(struct report *report, const struct wanted *
 {
     struct report why = {{0}, NULL, NULL};
     struct check check = {&why, NULL, SONJECT_OK};
+    *wanted->key = "input.geometry";
     if (wanted->geometry)
         check.status = check_geometry(&wanted->where, &why, NULL);
+    if (check.status == SONJECT_OK)
+        *wanted->key = "sonar.altitude";
     if (wanted->altitude)
         check_positive_length(&check, "altitude", wanted->altitude_m);
     if (check.status != SONJECT_OK)
@@ -104,10 +117,11 @@ static sonject_status check_and_set(struct report *report, const struct wanted *
 }
 
 sonject_status recording_describe(struct report *report, bool takes_geometry, bool takes_altitude,
-                                  struct scene *scene)
+                                  struct scene *scene, const char **key)
 {
     struct swath_file *file;
-    struct wanted wanted = {takes_geometry, takes_altitude, scene->geometry, 0.0};
+    struct wanted wanted = {takes_geometry, takes_altitude, key, scene->geometry, 0.0};
+    *key = "input";
     if (!scene->input_path)
         return report_failure(report, SONJECT_ERROR_INPUT, "from_file needs a file as input.path");
     sonject_status status =

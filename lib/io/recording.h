@@ -9,8 +9,8 @@
  * input: an XTF file, of which spacing and altitude are the means over the patch's rows, or an
  * image whose notes say them (io/geometry_notes.h). Errors: INPUT (it does not say them: says what
  * to give instead; ground range; as swath_file_open_array), UNSUPPORTED, STORAGE, MEMORY. On
- * failure the scene is unchanged. */
+ * failure the scene is unchanged, and *key is the key of the scene that the message is about. */
 sonject_status recording_describe(struct report *report, bool takes_geometry, bool takes_altitude,
-                                  struct scene *scene);
+                                  struct scene *scene, const char **key);
 
 #endif

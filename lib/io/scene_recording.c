@@ -72,8 +72,10 @@ sonject_status finish_recording(struct reader *reader, const struct tree_node *n
     const sonject_status status = finish_sonar(reader, node, structure);
     if (status != SONJECT_OK || (!reader->takes_geometry && !reader->takes_altitude))
         return status;
-    if (recording_describe(&report, reader->takes_geometry, reader->takes_altitude,
-                           reader->scene) != SONJECT_OK)
-        return refuse_key(reader, node, "altitude", "%s", report.message);
-    return SONJECT_OK;
+    const char *key;
+    if (recording_describe(&report, reader->takes_geometry, reader->takes_altitude, reader->scene,
+                           &key) == SONJECT_OK)
+        return SONJECT_OK;
+    key_path_shorten(&reader->path, 0);
+    return refuse_key(reader, &reader->tree->root, key, "%s", report.message);
 }

@@ -25,7 +25,7 @@ static bool is_new_fix(const struct track *track, const struct xtf_ping *ping)
 {
     const struct track_fix *last =
         track->fix_count > 0 ? &track->fixes[track->fix_count - 1] : NULL;
-    if (ping->easting == 0.0 && ping->northing == 0.0)
+    if (!xtf_ping_has_position(ping))
         return false;
     if (track->is_geographic &&
         (fabs(ping->northing) > HIGHEST_LATITUDE || fabs(ping->easting) > 360.0))
@@ -40,6 +40,7 @@ sonject_status track_of_recording(struct track *track, struct report *report,
     const size_t rows = (size_t)file->rows.layout.rows;
     bool has_headings = false;
     bool are_angles = true;
+    size_t told = rows; /* the last row so far whose ping says anything */
     memset(track, 0, sizeof *track);
     track->rows = rows;
     track->is_geographic = file->is_geographic;
@@ -51,7 +52,12 @@ sonject_status track_of_recording(struct track *track, struct report *report,
     }
     for (size_t row = 0; row < rows; row++) {
         const struct xtf_ping *ping = &file->pings[row];
-        track->headings_deg[row] = ping->heading_deg;
+        const bool is_empty = ping->heading_deg == 0.0f && !xtf_ping_has_position(ping);
+        track->headings_deg[row] =
+            is_empty && told < rows ? track->headings_deg[told] : ping->heading_deg;
+        for (size_t before = 0; !is_empty && told == rows && before < row; before++)
+            track->headings_deg[before] = ping->heading_deg;
+        told = is_empty ? told : row;
         has_headings = has_headings || ping->heading_deg != 0.0f;
         are_angles = are_angles && fabsf(ping->heading_deg) <= 360.0f;
         if (is_new_fix(track, ping)) {

@@ -27,8 +27,9 @@ struct place {
 };
 
 /* Takes what a recording says. Rows without a position, and rows that repeat the one before, are
- * between fixes; headings count if all are angles and one of them is not 0. Errors: MEMORY. On
- * success to be given to track_clear; on failure nothing is held. */
+ * between fixes; headings count if all are angles and one of them is not 0, and a ping with neither
+ * has the heading of the one before. Errors: MEMORY. On success to be given to track_clear; on
+ * failure nothing is held. */
 sonject_status track_of_recording(struct track *track, struct report *report,
                                   const struct xtf_file *file);
 void track_clear(struct track *track);

@@ -316,12 +316,15 @@ void xtf_file_close(struct xtf_file *file)
     memset(file, 0, sizeof *file);
 }
 
-/* Straight distance between two pings, m; 0 if either has no position. */
+bool xtf_ping_has_position(const struct xtf_ping *ping)
+{
+    return ping->easting != 0.0 || ping->northing != 0.0;
+}
+
+/* Straight distance between two pings with positions, m. */
 static double distance_between(const struct xtf_file *file, const struct xtf_ping *a,
                                const struct xtf_ping *b)
 {
-    const bool is_known =
-        (a->easting != 0.0 || a->northing != 0.0) && (b->easting != 0.0 || b->northing != 0.0);
     double across = b->easting - a->easting;
     double along = b->northing - a->northing;
     if (file->is_geographic) {
@@ -329,17 +332,61 @@ static double distance_between(const struct xtf_file *file, const struct xtf_pin
         across = remainder(across, 360.0) * METRES_PER_DEGREE * cos(latitude);
         along *= METRES_PER_DEGREE;
     }
-    return is_known ? hypot(across, along) : 0.0;
+    return hypot(across, along);
+}
+
+/* Takes in as many rows on either side; false if all of the file's were there. */
+static bool widen(const struct xtf_file *file, uint64_t *first, uint64_t *end)
+{
+    const uint64_t rows = file->rows.layout.rows;
+    const uint64_t more = *end - *first;
+    const bool is_more = *first > 0 || *end < rows;
+    *first -= more < *first ? more : *first;
+    *end += more < rows - *end ? more : rows - *end;
+    return is_more;
+}
+
+/* Between the first and the last position of the rows, and of those around them where two are not
+ * there; NaN if they are nowhere. */
+static double mean_spacing(const struct xtf_file *file, uint64_t first, uint64_t end)
+{
+    do {
+        uint64_t from = first;
+        uint64_t to = end - 1;
+        while (from < to && !xtf_ping_has_position(&file->pings[from]))
+            from++;
+        while (from < to && !xtf_ping_has_position(&file->pings[to]))
+            to--;
+        if (from < to)
+            return distance_between(file, &file->pings[from], &file->pings[to]) /
+                   (double)(to - from);
+    } while (widen(file, &first, &end));
+    return NAN;
+}
+
+/* Of the rows' pings that have an altitude, or of those around them; 0 if there are none. */
+static double mean_altitude(const struct xtf_file *file, uint64_t first, uint64_t end)
+{
+    do {
+        double sum = 0.0;
+        uint64_t sounded = 0;
+        for (uint64_t row = first; row < end; row++)
+            if (file->pings[row].altitude_m > 0.0f) {
+                sum += (double)file->pings[row].altitude_m;
+                sounded++;
+            }
+        if (sounded > 0)
+            return sum / (double)sounded;
+    } while (widen(file, &first, &end));
+    return 0.0;
 }
 
 struct xtf_geometry xtf_geometry_of(const struct xtf_file *file, uint64_t first_row, uint64_t count)
 {
     const struct xtf_ping *first = &file->pings[first_row];
-    const struct xtf_ping *last = &file->pings[first_row + count - 1];
-    struct xtf_geometry geometry = {0.0, 0.0, 0.0, 0.0};
-    uint64_t sounded = 0;
-    if (count > 1)
-        geometry.row_spacing_m = distance_between(file, first, last) / (double)(count - 1);
+    struct xtf_geometry geometry;
+    geometry.row_spacing_m = mean_spacing(file, first_row, first_row + count);
+    geometry.altitude_m = mean_altitude(file, first_row, first_row + count);
     /* the delay is part of the way to the far edge */
     const double duration = (double)first->duration_s;
     const double delay = (double)first->delay_s;
@@ -348,12 +395,5 @@ struct xtf_geometry xtf_geometry_of(const struct xtf_file *file, uint64_t first_
     geometry.column_spacing_m =
         ((double)first->slant_range_m - near_edge) / (double)file->rows.layout.columns;
     geometry.first_slant_range_m = near_edge + 0.5 * geometry.column_spacing_m;
-    for (uint64_t i = 0; i < count; i++)
-        if (first[i].altitude_m > 0.0f) {
-            geometry.altitude_m += (double)first[i].altitude_m;
-            sounded++;
-        }
-    if (sounded > 0)
-        geometry.altitude_m /= (double)sounded;
     return geometry;
 }

@@ -35,7 +35,7 @@ struct xtf_file {
 
 /* Where a channel's pixels lie. */
 struct xtf_geometry {
-    double row_spacing_m; /* mean; 0 where the file has no positions */
+    double row_spacing_m; /* mean; NaN where the file has no positions, 0 where the sonar stood */
     double column_spacing_m;
     double first_slant_range_m; /* of the middle of column 0 */
     double altitude_m;          /* mean; 0 where the file has none */
@@ -53,8 +53,12 @@ sonject_status xtf_file_open(struct report *report, const char *path, int32_t ch
                              struct xtf_file *file);
 void xtf_file_close(struct xtf_file *file);
 
+/* False for a ping that the recorder left empty, or had no navigation for. */
+bool xtf_ping_has_position(const struct xtf_ping *ping);
+
 /* Geometry of the rows first_row... first_row + count - 1 (within the layout): spacing from the
- * straight line between the first and the last position. */
+ * straight line between the first and the last position. Pings without a position, or an altitude,
+ * are passed over; where too few have one, the pings around the rows stand in. */
 struct xtf_geometry xtf_geometry_of(const struct xtf_file *file, uint64_t first_row,
                                     uint64_t count);
 

@@ -36,10 +36,14 @@ void line_grid_for_patch(struct line_grid *grid, const struct patch_view *view,
     const int32_t strip_margin =
         (int32_t)ceil(cross_range_energy_reach(response, farthest, MARGIN_ENERGY_SHARE) / strip);
     const int32_t bin_margin = bins_of(view, response->pulse_margin_m, grid->bins_per_pixel);
+    /* nothing returns from before range 0 */
+    const int32_t bins_before = (int32_t)fmin(
+        bin_margin, view->first_range_m * grid->bins_per_pixel / view->column_spacing_m);
     grid->strips.first = -strip_margin;
     grid->strips.count = (int32_t)(view->rows * grid->strips_per_row) + 2 * strip_margin;
-    grid->bins.first = -bin_margin;
-    grid->bins.count = (int32_t)((view->columns - 1) * grid->bins_per_pixel) + 1 + 2 * bin_margin;
+    grid->bins.first = -bins_before;
+    grid->bins.count =
+        (int32_t)((view->columns - 1) * grid->bins_per_pixel) + 1 + bins_before + bin_margin;
 }
 
 double line_grid_shortest_deviation(const struct line_grid *grid, double column_spacing_m)

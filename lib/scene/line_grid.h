@@ -21,7 +21,7 @@ struct line_grid {
 
 /* The grid for energies and speckle: cells of at most the along-track resolution by a quarter of
  * the range resolution, with margins that hold all but 0.5 % of the energies of cross-range
- * response and pulse. */
+ * response and pulse, and end at range 0. */
 void line_grid_for_patch(struct line_grid *grid, const struct patch_view *view,
                          const struct point_response *response);
 

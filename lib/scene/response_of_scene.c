@@ -29,11 +29,10 @@ static sonject_status check_size(const struct point_response *response, struct r
                               "the pulse's half-power width of %.3g m is below 1/%d of the column "
                               "spacing: correct its table or bandwidth",
                               response->range_resolution_m, SPACING_OVER_WIDTH_MAX);
-    if (response->pulse_reach_m > CELLS_OF_REACH_MAX * response->range_resolution_m ||
-        response->pulse_reach_m >= view->first_range_m)
+    if (response->pulse_reach_m > CELLS_OF_REACH_MAX * response->range_resolution_m)
         return report_failure(report, SONJECT_ERROR_INPUT,
-                              "the pulse reaches %.4g m to each side, more than %d range cells or "
-                              "farther than from the sonar to the patch: cut its table",
+                              "the pulse reaches %.4g m to each side, more than %d range cells: "
+                              "cut its table",
                               response->pulse_reach_m, CELLS_OF_REACH_MAX);
     if (!response->cross_range_table)
         return SONJECT_OK;

@@ -46,9 +46,10 @@ def note(text=b"a note of the operator"):
     return struct.pack("<HBBHHHI", 0xFACE, 1, 0, 0, 0, 0, 14 + len(body)) + body
 
 
-def xtf_bytes(port, starboard, row_spacing=0.1, **options):
+def xtf_bytes(port, starboard, row_spacing=0.1, empty=(), **options):
     """Rows x columns of 16 bit samples a side, column 0 next to the track, and a sub-bottom channel
-    and notes between them. Port's samples go into the file from far to near, as recorders do."""
+    and notes between them. Port's samples go into the file from far to near, as recorders do. empty:
+    rows whose pings have neither position nor altitude."""
     data = file_header([SUBBOTTOM, PORT, STARBOARD], units=options.pop("units", 0))
     for row, (left, right) in enumerate(zip(port, starboard)):
         lines = [
@@ -57,7 +58,10 @@ def xtf_bytes(port, starboard, row_spacing=0.1, **options):
             (2, right.astype("<u2")),
         ]
         place = (1000.0 + 0.6 * row_spacing * row, 2000.0 + 0.8 * row_spacing * row)
-        data += ping(lines, position=place, number=row, **options)
+        if row in empty:
+            data += ping(lines, number=row, **{**options, "altitude": 0.0})
+        else:
+            data += ping(lines, position=place, number=row, **options)
         if row % 5 == 0:
             data += note()
     return data

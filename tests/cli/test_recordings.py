@@ -2,7 +2,7 @@
 
 import json
 import os
-import pathlib
+import re
 import subprocess
 
 import numpy
@@ -11,9 +11,10 @@ import pytest
 import images
 import recordings
 from conftest import assert_refused
+from measured_images import measured
 
 ROWS, COLUMNS = 60, 200
-RECORDING = pathlib.Path(os.environ["SONJECT_SOURCE"]).parent / "shared/data/sidescan"
+LINE = "sidescan/scotsman-iver2.xtf"
 SCENE = """\
 sonject: 1
 input: {{path: {path}, {channel} geometry: {geometry}}}
@@ -101,6 +102,32 @@ def test_degrees_are_metres_on_the_ground(sonject, tmp_path, sides):
     answer = sonject("check", write_scene(tmp_path, "line.xtf"))
     assert answer.returncode == 0, answer.stderr
     assert "4.00 m along-track, slant range 9.07...26.92 m, starboard" in answer.stdout
+
+
+@pytest.mark.parametrize("empty", [{10}, {49}, set(range(10, 49)), set(range(5, 55))])
+def test_empty_pings_change_no_geometry(sonject, tmp_path, sides, empty):
+    """Of the patch's rows 10 to 49, some or all; then the pings around them tell it."""
+    scene = write_scene(tmp_path, "line.xtf", channel="port")
+    answers = []
+    for rows in (set(), empty):
+        (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, empty=rows))
+        answer = sonject("check", scene)
+        assert answer.returncode == 0, answer.stderr
+        answers.append(answer.stdout)
+    assert answers[0] == answers[1]
+
+
+@pytest.mark.parametrize("spacing, empty, words", [
+    (0.1, range(ROWS), "line.xtf: fewer than two of its pings have a position"),
+    (0.0, (), "line.xtf: the patch's pings all have the same position"),
+])
+def test_a_geometry_that_is_not_told_is_refused_at_its_key(sonject, tmp_path, sides, spacing,
+                                                           empty, words):
+    (tmp_path / "line.xtf").write_bytes(
+        recordings.xtf_bytes(*sides, row_spacing=spacing, empty=empty))
+    scene = write_scene(tmp_path, "line.xtf", channel="port")
+    column = scene.read_text().splitlines()[1].index("from_file") + 1
+    assert_refused(sonject("check", scene), 3, f":2:{column}: input.geometry: ", words)
 
 
 @pytest.mark.parametrize("order", "<>")
@@ -204,15 +231,27 @@ def test_an_array_cut_short_is_refused(sonject, tmp_path):
         assert len(answer.stderr.splitlines()) == 1, answer.stderr
 
 
+def test_a_measured_line_works_from_its_first_pixel(sonject, tmp_path):
+    """Its first ping is empty, and its first columns are nearer than the pulse reaches."""
+    (tmp_path / "line.xtf").write_bytes(measured(LINE).read_bytes())
+    scene = write_scene(tmp_path, "line.xtf", channel="starboard")
+    options = ["--set", "patch={row: 0, column: 0, rows: 100, columns: 900}", "--set",
+               "sonar.bandwidth=25 kHz"]
+    answer = sonject("run", scene, "-o", "out", *options)
+    assert answer.returncode == 0, answer.stderr
+    # 99 pings with positions against 99 of 100: within a step of the recorder's positions
+    lengths = [float(re.search("([0-9.]+) m along-track", sonject("check", scene, *options, *more)
+                               .stdout)[1]) for more in ([], ["--set", "patch.row=1"])]
+    assert lengths[0] == pytest.approx(lengths[1], abs=0.3)
+
+
 def test_a_measured_line_is_read_by_others(sonject, tmp_path):
     """The Iver2's line, injected into at 10 to 28 m to port, in the eyes of pyxtf."""
-    measured = RECORDING / "scotsman-iver2.xtf"
+    line = measured(LINE)
     reader = os.environ.get("SONJECT_READERS")
-    if not measured.exists():
-        pytest.skip(f"{measured.parent} is not there")
     if not reader:
         pytest.skip("SONJECT_READERS does not name a Python that has pyxtf")
-    (tmp_path / "line.xtf").write_bytes(measured.read_bytes())
+    (tmp_path / "line.xtf").write_bytes(line.read_bytes())
     scene = write_scene(tmp_path, "line.xtf", channel="port")
     answer = sonject("run", scene, "-o", "out", "--set",
                      "patch={row: 10, column: 340, rows: 120, columns: 600}", "--set",

@@ -20,12 +20,12 @@
 
 /* Energy of a strip up to a ground range y: integral of mu sin^2(grazing) over its length, that is
  * mu h atan(y/h); none before the first return. */
-static void test_first_return(void **unused)
+static void expect_first_return(double middle_range, double altitude)
 {
-    (void)unused;
     struct bench bench;
     struct rough_trace trace;
-    bench_open(&bench, ROWS, COLUMNS, RANGE);
+    bench_open(&bench, ROWS, COLUMNS, middle_range);
+    bench.scene.sonar.altitude_m = altitude;
     bench_ready(&bench);
     const struct patch_view *view = &bench.tracer.view;
     assert_int_equal(rough_trace_begin(&trace, &bench.tracer, NULL), SONJECT_OK);
@@ -41,20 +41,30 @@ static void test_first_return(void **unused)
                                                          (double)grid->bins_per_pixel);
         for (int32_t q = 0; q < grid->strips.count; q++)
             sum += (double)energy[q * grid->bins.count + bin] / grid->strips.count;
-        if (end < 10.0)
+        if (end < altitude)
             assert_true(sum == 0.0);
-        if (bin % 200 == 150 && end > 10.0) {
+        if (bin % 200 == 150 && end > altitude) {
             print_message("%.2f m: ", end);
             /* rays on the far side of a bin's edge: a per cent of what the nearest bins have */
             expect_close("energy so far over the closed form",
-                         sum / (mu * strip * 10.0 * atan(sqrt(end * end - 100.0) / 10.0)), 1.0,
-                         0.01);
+                         sum / (mu * strip * altitude *
+                                atan(sqrt(end * end - altitude * altitude) / altitude)),
+                         1.0, 0.01);
         }
     }
     assert_true(sum > 0.0);
     free(energy);
     rough_trace_end(&trace);
     bench_close(&bench);
+}
+
+/* From 10 m over the seabed, and from 2 m in a patch that begins nearer to the sonar than the pulse
+ * reaches. */
+static void test_first_return(void **unused)
+{
+    (void)unused;
+    expect_first_return(RANGE, 10.0);
+    expect_first_return(3.01, 2.0);
 }
 
 /* A dark water column and an even seabed: the seabed's level is its own up to the first return, and
