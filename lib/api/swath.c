@@ -49,6 +49,7 @@ static sonject_status describe_file(struct report *report, const struct scene *s
     swath->is_complex = swath->layout.channels == 2;
     swath->transfer = scene->transfer;
     const double largest = (double)swath_file_largest(file);
+    swath->is_whole = largest > 0.0;
     if (largest > 0.0 &&
         !(swath->transfer.full_scale > 0.0 && swath->transfer.full_scale < largest))
         swath->transfer.full_scale = largest;
@@ -365,7 +366,9 @@ void *swath_stored_result(const struct swath *swath, const struct injection_resu
     const size_t bytes = pixel_bytes(swath->layout.type);
     unsigned char *stored = allocate_array(pixels * parts, bytes);
     unsigned char *fresh = allocate_array(pixels * parts, bytes);
-    const uint32_t step = quantisation_step(swath->layout.type, swath->stored, pixels * parts);
+    uint32_t step = quantisation_step(swath->layout.type, swath->stored, pixels * parts);
+    if (step == 0 && swath->is_whole)
+        step = 1;
     if (stored && fresh) {
         memcpy(stored, swath->stored, pixels * parts * bytes);
         if (swath->is_complex)

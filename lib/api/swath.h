@@ -21,6 +21,7 @@ struct swath {
     bool is_complex;
     bool is_made; /* by sonject */
     bool is_lossless;
+    bool is_whole; /* numbers that the file limits: integers, also where the layout has floats */
     struct track track;                /* of a recording */
     uint64_t clipped;                  /* pixels at full scale */
     char identity[HASH_TEXT_CAPACITY]; /* of path, size, time and patch pixels; of parameters if

@@ -116,11 +116,10 @@ void transfer_to_stored(const sonject_transfer_params *transfer, enum pixel_type
 {
     const double full_scale = transfer_full_scale(transfer, type);
     const double unit = step;
-    const double largest =
-        type == PIXEL_FLOAT32 ? (double)FLT_MAX : unit * floor(full_scale / unit);
+    const double largest = step == 0 ? (double)FLT_MAX : unit * floor(full_scale / unit);
     for (size_t i = 0; i < count; i++) {
         double value = value_of(transfer, full_scale, (double)amplitude[i]);
-        if (type != PIXEL_FLOAT32)
+        if (step != 0)
             value = value > 0.0 ? unit * floor(value / unit + 0.5) : 0.0;
         if (value > largest) {
             value = largest;
@@ -139,7 +138,9 @@ uint32_t quantisation_step(enum pixel_type type, const void *stored, size_t coun
 {
     uint32_t step = 0;
     uint32_t largest = 0;
-    for (size_t i = 0; type != PIXEL_FLOAT32 && step != 1 && i < count; i++) {
+    if (type == PIXEL_FLOAT32)
+        return 0;
+    for (size_t i = 0; step != 1 && i < count; i++) {
         uint32_t value = (uint32_t)stored_value(type, stored, i);
         largest = value > largest ? value : largest;
         while (value != 0) { /* Euclid's */

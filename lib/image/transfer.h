@@ -15,15 +15,15 @@ sonject_status transfer_to_amplitude(const sonject_transfer_params *transfer, en
                                      const void *stored, size_t count, float *amplitude,
                                      size_t *bad, uint64_t *clipped);
 
-/* Stored values of count amplitudes >= 0, rounded to multiples of step (integer types; 1: all their
- * values) and limited to full scale. *clipped is increased by the number of values that were
- * limited from above. */
+/* Stored values of count amplitudes >= 0, rounded to multiples of step (1: all whole numbers)
+ * and limited to full scale; as they are where step is 0. *clipped is increased by the number of
+ * values that were limited from above. */
 void transfer_to_stored(const sonject_transfer_params *transfer, enum pixel_type type,
                         uint32_t step, const float *amplitude, size_t count, void *stored,
                         uint64_t *clipped);
 
-/* The step of count stored integers: the largest whole number that divides them all, 1 for floats
- * and where that leaves fewer than 16 levels; 8 bit pictures kept in 16 bits have 256 or 257. */
+/* The step of count stored integers: the largest whole number that divides them all; 0 for floats,
+ * 1 where that leaves fewer than 16 levels; 8 bit pictures kept in 16 bits have 256 or 257. */
 uint32_t quantisation_step(enum pixel_type type, const void *stored, size_t count);
 
 #endif

@@ -20,13 +20,20 @@ struct sample_kind {
     const char *description; /* without the byte order */
     enum pixel_type type;
     uint32_t channels;
+    enum stored_number stored;
+    uint32_t largest; /* as of struct sample_rows; larger ones are negative */
 };
 
 static const struct sample_kind kinds[] = {
-    {"u1", PIXEL_UINT8, 1},
-    {"u2", PIXEL_UINT16, 1},
-    {"f4", PIXEL_FLOAT32, 1},
-    {"c8", PIXEL_FLOAT32, 2},
+    {"u1", PIXEL_UINT8, 1, STORED_AS_SHOWN, 0},
+    {"u2", PIXEL_UINT16, 1, STORED_AS_SHOWN, 0},
+    {"i2", PIXEL_UINT16, 1, STORED_AS_SHOWN, INT16_MAX},
+    {"u4", PIXEL_FLOAT32, 1, STORED_UINT32, UINT32_MAX},
+    {"i4", PIXEL_FLOAT32, 1, STORED_UINT32, INT32_MAX},
+    {"f4", PIXEL_FLOAT32, 1, STORED_AS_SHOWN, 0},
+    {"f8", PIXEL_FLOAT32, 1, STORED_FLOAT64, 0},
+    {"c8", PIXEL_FLOAT32, 2, STORED_AS_SHOWN, 0},
+    {"c16", PIXEL_FLOAT32, 2, STORED_FLOAT64, 0},
 };
 
 bool npy_begins(const unsigned char *bytes, size_t count)
@@ -66,6 +73,9 @@ static bool read_type(const char *header, struct sample_rows *rows)
             continue;
         rows->layout.type = kinds[i].type;
         rows->layout.channels = kinds[i].channels;
+        rows->stored = kinds[i].stored;
+        rows->largest = kinds[i].largest;
+        rows->above_is_negative = true;
         rows->is_big_endian = value[1] == '>' || (value[1] == '=' && machine_is_big_endian());
         return true;
     }
@@ -102,25 +112,28 @@ static sonject_status take_header(struct report *report, const char *header,
 {
     const char *order = value_of(header, "fortran_order");
     size_t bytes;
-    if (!order || !value_of(header, "descr") || !value_of(header, "shape"))
+    const bool is_transposed = order && strncmp(order, "True", 4) == 0;
+    if (!order || !(is_transposed || strncmp(order, "False", 5) == 0) ||
+        !value_of(header, "descr") || !value_of(header, "shape"))
         return refuse(report, rows,
                       "is not a NumPy array: its header lacks descr, fortran_order "
                       "or shape");
     if (!read_type(header, rows))
         return refuse(report, rows,
                       "has elements of a type that sonject does not read: save it as "
-                      "uint8, uint16, float32 or complex64");
-    if (strncmp(order, "False", 5) != 0)
-        return refuse(report, rows, "is in Fortran order: save numpy.ascontiguousarray of it");
+                      "uint8, 16 or 32 bit integers, float32, float64, complex64 or complex128");
     if (!read_shape(header, rows))
         return refuse(report, rows,
                       "is not two-dimensional: rows are track positions, columns "
                       "range cells");
     const struct region whole = {0, 0, rows->layout.rows, rows->layout.columns};
-    if (!region_bytes(&rows->layout, &whole, &bytes) ||
-        rows->file_bytes - rows->first_place < bytes)
+    const size_t size = rows->stored == STORED_FLOAT64 ? 2 : 1; /* of what the image takes */
+    if (!region_bytes(&rows->layout, &whole, &bytes) || bytes > SIZE_MAX / size ||
+        rows->file_bytes - rows->first_place < bytes * size)
         return refuse(report, rows, "is cut short: copy it again");
-    rows->row_bytes = bytes / rows->layout.rows;
+    rows->is_transposed = is_transposed;
+    rows->row_bytes =
+        bytes * size / (rows->is_transposed ? rows->layout.columns : rows->layout.rows);
     return SONJECT_OK;
 }
 

@@ -3,11 +3,13 @@
 #include "io/sample_rows.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "io/array_list.h"
 #include "io/byte_file.h"
 #include "io/byte_order.h"
 
@@ -44,44 +46,104 @@ void sample_rows_clear(struct sample_rows *rows)
     memset(rows, 0, sizeof *rows);
 }
 
-static size_t pixel_size(const struct sample_rows *rows)
+static size_t stored_bytes(const struct sample_rows *rows)
 {
-    return rows->layout.channels * pixel_bytes(rows->layout.type);
+    return rows->stored == STORED_FLOAT64 ? 8 : pixel_bytes(rows->layout.type);
 }
 
-/* Where the stored run begins that holds `columns` columns of a row from first_column on. */
-static uint64_t run_place(const struct sample_rows *rows, uint64_t row, const struct region *region)
+/* A region's samples as runs of the file: parts of rows, or of columns. */
+struct runs {
+    uint64_t count, pixels; /* pixels of a run */
+    size_t pixel_bytes;     /* as stored */
+    size_t bytes;           /* of a run */
+};
+
+static struct runs runs_of(const struct sample_rows *rows, const struct region *region)
 {
-    const uint64_t stored = rows->is_upside_down ? rows->layout.rows - 1 - row : row;
+    struct runs runs;
+    runs.count = rows->is_transposed ? region->columns : region->rows;
+    runs.pixels = rows->is_transposed ? region->rows : region->columns;
+    runs.pixel_bytes = rows->layout.channels * stored_bytes(rows);
+    runs.bytes = (size_t)runs.pixels * runs.pixel_bytes;
+    return runs;
+}
+
+/* Where a run of the region begins in the file. */
+static uint64_t run_place(const struct sample_rows *rows, const struct runs *runs, uint64_t run,
+                          const struct region *region)
+{
+    const struct raster_layout *layout = &rows->layout;
+    const uint64_t line = run + (rows->is_transposed ? region->first_column : region->first_row);
+    const uint64_t stored = rows->is_upside_down ? layout->rows - 1 - line : line;
     const uint64_t start =
-        rows->places ? rows->places[row] : rows->first_place + stored * rows->row_bytes;
-    const uint64_t first = rows->is_reversed
-                               ? rows->layout.columns - region->first_column - region->columns
+        rows->places ? rows->places[line] : rows->first_place + stored * rows->row_bytes;
+    const uint64_t first = rows->is_transposed ? region->first_row
+                           : rows->is_reversed
+                               ? layout->columns - region->first_column - region->columns
                                : region->first_column;
-    return start + first * pixel_size(rows);
+    return start + first * runs->pixel_bytes;
 }
 
-/* Between the file's order and the machine's: of columns, and of the bytes of each sample. */
-static void turn_run(const struct sample_rows *rows, const unsigned char *from, unsigned char *to,
-                     uint64_t columns)
+/* Between a stored sample, in the machine's byte order, and one of the image: one way or the other.
+ * A number that is shown as the same float as before keeps its bits. False if the other side cannot
+ * hold it. */
+static bool exchange_number(const struct sample_rows *rows, bool writes, unsigned char *stored,
+                            unsigned char *shown)
 {
-    const size_t sample = pixel_bytes(rows->layout.type);
-    const size_t pixel = pixel_size(rows);
-    const bool swaps = rows->is_big_endian != machine_is_big_endian();
-    for (uint64_t column = 0; column < columns; column++) {
-        const unsigned char *source =
-            from + (rows->is_reversed ? columns - 1 - column : column) * pixel;
-        unsigned char *target = to + column * pixel;
-        for (size_t i = 0; i < pixel; i++)
-            target[i] = source[swaps ? i / sample * sample + (sample - 1 - i % sample) : i];
+    const size_t bytes = pixel_bytes(rows->layout.type);
+    uint32_t whole = 0;
+    uint16_t half = 0;
+    double number = 0.0;
+    float single = 0.0f;
+    bool is_held = true;
+    switch (rows->stored) {
+    case STORED_AS_SHOWN:
+        if (rows->is_offset && !writes)
+            stored[machine_is_big_endian() ? 0 : 1] ^= 0x80;
+        memcpy(writes ? stored : shown, writes ? shown : stored, bytes);
+        if (rows->is_offset && writes)
+            stored[machine_is_big_endian() ? 0 : 1] ^= 0x80;
+        half = *shown;
+        if (rows->layout.type == PIXEL_UINT16)
+            memcpy(&half, shown, sizeof half);
+        return rows->largest == 0 || half <= rows->largest;
+    case STORED_UINT32:
+        memcpy(&whole, stored, sizeof whole);
+        memcpy(&single, shown, sizeof single);
+        if (writes && !(single == (float)whole)) {
+            is_held = single >= 0.0f && single <= (float)rows->largest;
+            number = is_held ? fmin(floor((double)single + 0.5), (double)rows->largest) : 0.0;
+            whole = (uint32_t)number;
+        }
+        single = (float)whole;
+        memcpy(writes ? stored : shown, writes ? (void *)&whole : (void *)&single, sizeof whole);
+        return is_held && whole <= rows->largest;
+    case STORED_FLOAT64:
+        break;
     }
+    memcpy(&number, stored, sizeof number);
+    memcpy(&single, shown, sizeof single);
+    if (writes)
+        number = kept_or_new(number, single);
+    else
+        is_held = float_of_double(number, &single);
+    memcpy(writes ? stored : shown, writes ? (void *)&number : (void *)&single, writes ? 8 : 4);
+    return is_held;
 }
 
-/* Between stored signed numbers and unsigned ones, in the file's order. */
-static void turn_signs(const struct sample_rows *rows, unsigned char *run, uint64_t columns)
+/* The same with the file's byte order. */
+static bool exchange(const struct sample_rows *rows, bool writes, unsigned char *stored,
+                     unsigned char *shown)
 {
-    for (uint64_t i = 0; rows->is_offset && i < columns; i++)
-        run[2 * i + (rows->is_big_endian ? 0 : 1)] ^= 0x80;
+    unsigned char ordered[8];
+    const size_t bytes = stored_bytes(rows);
+    const bool swaps = rows->is_big_endian != machine_is_big_endian();
+    for (size_t i = 0; i < bytes; i++)
+        ordered[i] = stored[swaps ? bytes - 1 - i : i];
+    const bool is_held = exchange_number(rows, writes, ordered, shown);
+    for (size_t i = 0; writes && i < bytes; i++)
+        stored[i] = ordered[swaps ? bytes - 1 - i : i];
+    return is_held;
 }
 
 static sonject_status cut_short(struct report *report, const struct sample_rows *rows)
@@ -90,57 +152,89 @@ static sonject_status cut_short(struct report *report, const struct sample_rows 
                           rows->path);
 }
 
-/* row, first_column: of the run's first sample in the image. */
-static sonject_status check_largest(struct report *report, const struct sample_rows *rows,
-                                    uint64_t row, const struct region *region,
-                                    const unsigned char *run)
+/* pixel: of the region. shown: its sample in the image. */
+static sonject_status refuse_sample(struct report *report, const struct sample_rows *rows,
+                                    bool writes, const struct region *region, uint64_t pixel,
+                                    const unsigned char *shown)
 {
-    for (uint64_t i = 0; rows->largest > 0 && i < region->columns; i++) {
-        uint16_t sample = run[i];
-        if (rows->layout.type == PIXEL_UINT16)
-            memcpy(&sample, run + i * sizeof sample, sizeof sample);
-        if (sample <= rows->largest)
-            continue;
-        if (rows->above_is_negative)
-            return report_failure(report, SONJECT_ERROR_INPUT,
-                                  "%s: the sample at row %llu, column %llu is negative: sonject "
-                                  "reads magnitudes, so convert the file first",
-                                  rows->path, (unsigned long long)row,
-                                  (unsigned long long)(region->first_column + i));
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: the sample at row %llu, column %llu is %u, more than the file's "
-                              "largest number of %u",
-                              rows->path, (unsigned long long)row,
-                              (unsigned long long)(region->first_column + i), (unsigned)sample,
-                              (unsigned)rows->largest);
+    char why[80] = "negative: sonject reads magnitudes, so convert the file first";
+    uint16_t half = *shown;
+    float single = 0.0f;
+    if (rows->layout.type == PIXEL_UINT16)
+        memcpy(&half, shown, sizeof half);
+    if (rows->layout.type == PIXEL_FLOAT32)
+        memcpy(&single, shown, sizeof single);
+    if (rows->stored == STORED_FLOAT64)
+        snprintf(why, sizeof why, "beyond what float32 holds: scale the array");
+    else if (writes || !rows->above_is_negative)
+        snprintf(why, sizeof why, "%.9g, more than the file's largest number of %lu",
+                 rows->stored == STORED_UINT32 ? (double)single : (double)half,
+                 (unsigned long)rows->largest);
+    return report_failure(
+        report, SONJECT_ERROR_INPUT, "%s: the sample at row %llu, column %llu is %s", rows->path,
+        (unsigned long long)(region->first_row + pixel / region->columns),
+        (unsigned long long)(region->first_column + pixel % region->columns), why);
+}
+
+/* All samples of a run, which is in memory. */
+static sonject_status exchange_run(struct report *report, const struct sample_rows *rows,
+                                   bool writes, const struct region *region, uint64_t number,
+                                   unsigned char *run, unsigned char *pixels)
+{
+    const struct runs runs = runs_of(rows, region);
+    const uint32_t channels = rows->layout.channels;
+    const size_t shown = pixel_bytes(rows->layout.type);
+    const size_t stored = stored_bytes(rows);
+    for (uint64_t i = 0; i < runs.pixels; i++) {
+        const uint64_t along = rows->is_reversed ? runs.pixels - 1 - i : i;
+        const uint64_t pixel = rows->is_transposed ? along * region->columns + number
+                                                   : number * region->columns + along;
+        for (uint32_t k = 0; k < channels; k++) {
+            unsigned char *sample = pixels + (pixel * channels + k) * shown;
+            if (!exchange(rows, writes, run + (i * channels + k) * stored, sample))
+                return refuse_sample(report, rows, writes, region, pixel, sample);
+        }
     }
     return SONJECT_OK;
+}
+
+/* Reads the region's samples, or writes them to a copy (out, to become path). */
+static sonject_status exchange_region(struct report *report, const struct sample_rows *rows,
+                                      const struct region *region, void *pixels, FILE *out,
+                                      const char *path)
+{
+    const struct runs runs = runs_of(rows, region);
+    unsigned char *run = allocate_array(runs.bytes, 1);
+    if (!run)
+        return report_out_of_memory(report, "a row");
+    sonject_status status = SONJECT_OK;
+    for (uint64_t i = 0; status == SONJECT_OK && i < runs.count; i++) {
+        const uint64_t place = run_place(rows, &runs, i, region);
+        if (!byte_file_read(rows->file, place, run, runs.bytes))
+            status = cut_short(report, rows);
+        else
+            status = exchange_run(report, rows, out != NULL, region, i, run, pixels);
+        if (status == SONJECT_OK && out &&
+            (fseeko(out, (off_t)place, SEEK_SET) != 0 ||
+             fwrite(run, 1, runs.bytes, out) != runs.bytes))
+            status = file_failure(report, path, "write", errno);
+    }
+    free(run);
+    return status;
+}
+
+static sonject_status refuse_region(struct report *report, const struct sample_rows *rows)
+{
+    return report_failure(report, SONJECT_ERROR_INPUT, "%s: the region is not inside the image",
+                          rows->path);
 }
 
 sonject_status sample_rows_read(struct report *report, const struct sample_rows *rows,
                                 const struct region *region, void *pixels)
 {
-    const size_t run_bytes = (size_t)region->columns * pixel_size(rows);
-    if (!region_is_inside(&rows->layout, region))
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: the region is not inside the image",
-                              rows->path);
-    unsigned char *run = allocate_array(run_bytes, 1);
-    if (!run)
-        return report_out_of_memory(report, "a row");
-    sonject_status status = SONJECT_OK;
-    for (uint64_t i = 0; status == SONJECT_OK && i < region->rows; i++) {
-        const uint64_t row = region->first_row + i;
-        unsigned char *out = (unsigned char *)pixels + i * run_bytes;
-        if (!byte_file_read(rows->file, run_place(rows, row, region), run, run_bytes)) {
-            status = cut_short(report, rows);
-        } else {
-            turn_signs(rows, run, region->columns);
-            turn_run(rows, run, out, region->columns);
-            status = check_largest(report, rows, row, region, out);
-        }
-    }
-    free(run);
-    return status;
+    return region_is_inside(&rows->layout, region)
+               ? exchange_region(report, rows, region, pixels, NULL, NULL)
+               : refuse_region(report, rows);
 }
 
 static sonject_status copy_all(struct report *report, const struct sample_rows *rows, FILE *out,
@@ -158,37 +252,13 @@ static sonject_status copy_all(struct report *report, const struct sample_rows *
     return SONJECT_OK;
 }
 
-static sonject_status put_patch(struct report *report, const struct sample_rows *rows, FILE *out,
-                                const char *path, const struct region *region, const void *pixels)
-{
-    const size_t run_bytes = (size_t)region->columns * pixel_size(rows);
-    unsigned char *run = allocate_array(run_bytes, 1);
-    if (!run)
-        return report_out_of_memory(report, "a row");
-    sonject_status status = SONJECT_OK;
-    for (uint64_t i = 0; status == SONJECT_OK && i < region->rows; i++) {
-        const unsigned char *row = (const unsigned char *)pixels + i * run_bytes;
-        const uint64_t place = run_place(rows, region->first_row + i, region);
-        turn_run(rows, row, run, region->columns);
-        turn_signs(rows, run, region->columns);
-        status = check_largest(report, rows, region->first_row + i, region, row);
-        if (status != SONJECT_OK)
-            break;
-        if (fseeko(out, (off_t)place, SEEK_SET) != 0 || fwrite(run, 1, run_bytes, out) != run_bytes)
-            status = file_failure(report, path, "write", errno);
-    }
-    free(run);
-    return status;
-}
-
 sonject_status sample_rows_copy_with_patch(struct report *report, const struct sample_rows *rows,
                                            const char *path, const struct region *region,
                                            const void *pixels, sonject_progress_function progress,
                                            void *user)
 {
     if (!region_is_inside(&rows->layout, region))
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: the region is not inside the image",
-                              rows->path);
+        return refuse_region(report, rows);
     char *part = file_part_name(path);
     if (!part)
         return report_out_of_memory(report, "a file name");
@@ -196,7 +266,7 @@ sonject_status sample_rows_copy_with_patch(struct report *report, const struct s
     sonject_status status = out ? copy_all(report, rows, out, path, progress, user)
                                 : file_failure(report, path, "write", errno);
     if (status == SONJECT_OK)
-        status = put_patch(report, rows, out, path, region, pixels);
+        status = exchange_region(report, rows, region, (void *)(uintptr_t)pixels, out, path);
     if (status == SONJECT_OK && rows->finish_copy)
         status = rows->finish_copy(report, rows, out, path);
     if (out && fclose(out) != 0 && status == SONJECT_OK)

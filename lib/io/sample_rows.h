@@ -1,6 +1,7 @@
 /* Files whose rows are runs of plain samples at known places: channels of XTF files, NumPy arrays,
- * PGM, PFM, BMP, Targa and FITS images. Copies differ from their source in the replaced samples and in
- * sums over them alone, byte for byte. */
+ * PGM, PFM, BMP, Targa and FITS images. Copies differ from their source in the replaced samples and
+ * in sums over them alone, byte for byte; a double or a 32-bit number whose value as a float stays
+ * the same keeps all its bits. */
 #ifndef SONJECT_IO_SAMPLE_ROWS_H
 #define SONJECT_IO_SAMPLE_ROWS_H
 
@@ -9,6 +10,13 @@
 #include "base/report.h"
 #include "image/raster.h"
 
+/* What the file's numbers are where the image has them as float32. */
+enum stored_number {
+    STORED_AS_SHOWN, /* what the image's are */
+    STORED_UINT32,   /* rounded to whole numbers */
+    STORED_FLOAT64
+};
+
 struct sample_rows {
     FILE *file; /* owned; open for reading */
     char *path; /* owned */
@@ -16,6 +24,8 @@ struct sample_rows {
     struct raster_layout layout;
     uint64_t *places; /* owned: of each row's first stored sample; NULL: row_bytes apart */
     uint64_t first_place, row_bytes;
+    enum stored_number stored;
+    bool is_transposed;  /* the file keeps columns together: they are what it calls rows */
     bool is_reversed;    /* column 0 is the row's last stored sample */
     bool is_upside_down; /* the last row comes first in the file */
     bool is_big_endian;
@@ -38,13 +48,13 @@ sonject_status sample_rows_open(struct report *report, const char *path,
 void sample_rows_clear(struct sample_rows *rows);
 
 /* Reads a region's samples in the machine's byte order, row after row. Errors: INPUT (cut short, a
- * sample above the largest). */
+ * sample that the image cannot hold), MEMORY. */
 sonject_status sample_rows_read(struct report *report, const struct sample_rows *rows,
                                 const struct region *region, void *pixels);
 
 /* Writes at path a copy of the file with the region's samples replaced. path is published whole or
- * not at all. progress may be NULL. Errors: INPUT (cut short, a new sample above the largest),
- * STORAGE, MEMORY, CANCELLED. */
+ * not at all. progress may be NULL. Errors: INPUT (cut short, a new sample that the file cannot
+ * hold), STORAGE, MEMORY, CANCELLED. */
 sonject_status sample_rows_copy_with_patch(struct report *report, const struct sample_rows *rows,
                                            const char *path, const struct region *region,
                                            const void *pixels, sonject_progress_function progress,

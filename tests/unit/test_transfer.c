@@ -68,11 +68,11 @@ static void test_float_decibels(void **state)
     assert_true(fabs((double)amplitude - 0.01) < 1e-9); /* half a unit in the last place: 5e-10 */
     float back = 0.0f;
     uint64_t clipped = 0;
-    transfer_to_stored(&decibel, PIXEL_FLOAT32, 1, &amplitude, 1, &back, &clipped);
+    transfer_to_stored(&decibel, PIXEL_FLOAT32, 0, &amplitude, 1, &back, &clipped);
     /* an amplitude off by 6e-8 of itself is off by 5e-7 dB; -40 has a last place of 4e-6 */
     assert_true(fabsf(back + 40.0f) < 5e-6f);
     const float nothing = 0.0f;
-    transfer_to_stored(&decibel, PIXEL_FLOAT32, 1, &nothing, 1, &back, &clipped);
+    transfer_to_stored(&decibel, PIXEL_FLOAT32, 0, &nothing, 1, &back, &clipped);
     assert_true(isfinite(back) && back < -700.0f);
     assert_int_equal(clipped, 0);
 }
@@ -105,7 +105,8 @@ static void expect_round_trip(const sonject_transfer_params *transfer, enum pixe
         assert_int_equal(transfer_to_amplitude(transfer, type, stored + i * size, at_once,
                                                amplitude + i, &bad, &clipped),
                          SONJECT_OK);
-        transfer_to_stored(transfer, type, 1, amplitude + i, at_once, back + i * size, &clipped);
+        transfer_to_stored(transfer, type, type != PIXEL_FLOAT32, amplitude + i, at_once,
+                           back + i * size, &clipped);
     }
     for (size_t i = 0; i < count; i++) {
         if (i > 0 && !(amplitude[i] > amplitude[i - 1]))
@@ -159,7 +160,7 @@ static void test_plain_floats_keep_every_bit(void **state)
         transfer_to_amplitude(&plain, PIXEL_FLOAT32, stored, count, amplitude, &bad, &clipped),
         SONJECT_OK);
     assert_memory_equal(amplitude, stored, sizeof stored);
-    transfer_to_stored(&plain, PIXEL_FLOAT32, 1, amplitude, count, back, &clipped);
+    transfer_to_stored(&plain, PIXEL_FLOAT32, 0, amplitude, count, back, &clipped);
     assert_memory_equal(back, stored, sizeof stored);
     assert_int_equal(clipped, 0);
 }
@@ -250,7 +251,7 @@ static void test_rounding_and_limits(void **state)
     assert_int_equal(clipped, 7);
     float large = 0.0f;
     const sonject_transfer_params gamma = make(SONJECT_TRANSFER_GAMMA, 0.01, 0.0);
-    transfer_to_stored(&gamma, PIXEL_FLOAT32, 1, amplitude + 6, 1, &large, &clipped);
+    transfer_to_stored(&gamma, PIXEL_FLOAT32, 0, amplitude + 6, 1, &large, &clipped);
     assert_true(large == FLT_MAX);
     assert_int_equal(clipped, 8);
 }
