@@ -160,6 +160,8 @@ static void describe_meshes(struct text *text, const struct scene *scene,
         text_add(text, ", %zu piece%s", topology->pieces, topology->pieces == 1 ? "" : "s");
         if (topology->turned > 0)
             text_add(text, "; %zu triangles turned to show the outside", topology->turned);
+        if (mesh->welded > 0)
+            text_add(text, "; %zu vertices of seams welded", mesh->welded);
         if (mesh->degenerate > 0)
             text_add(text, "; %zu triangles without area left out", mesh->degenerate);
         text_add(text, "\n");

@@ -1,4 +1,5 @@
 /* Meshes of scene files: the file, and how its numbers are meant. */
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/text.h"
@@ -6,10 +7,14 @@
 
 #define PI 3.14159265358979323846
 
+/* Lengths of targets. */
+#define LEAST_M 0.01
+#define MOST_M  100.0
+
 /* What is said about a mesh. */
 struct mesh_text {
     char *path;        /* owned; NULL: not given */
-    double unit_m;     /* m a unit of the file */
+    double unit_m;     /* m a unit of the file; 0: not given */
     uint32_t nose, up; /* enum file_axis: which axis of the file that one of the object is */
     bool allows_open;
     double smooth_angle_rad;
@@ -92,6 +97,23 @@ static const struct field mesh_fields[] = {
 const struct section mesh_section = {mesh_fields, COUNT(mesh_fields), finish_mesh};
 #undef STRUCTURE
 
+/* A file in mm whose unit nobody gave makes a target that no sonar sees. */
+static sonject_status doubt_size(struct reader *reader, const struct tree_node *node,
+                                 uint32_t number)
+{
+    const struct mesh *mesh = &reader->scene->meshes[number];
+    double longest = 0.0;
+    for (int axis = 0; axis < 3; axis++)
+        longest = fmax(longest, (double)mesh->upper_m[axis] - (double)mesh->lower_m[axis]);
+    if (longest >= LEAST_M && longest <= MOST_M)
+        return SONJECT_OK;
+    return refuse_value(reader, node,
+                        "the mesh is %.3g m long if its numbers are metres, and sonars are for "
+                        "targets of 1 cm to 100 m: give its unit, such as unit: mm, or unit: m if "
+                        "that is right",
+                        longest);
+}
+
 /* Into the scene; the message about a mesh that cannot be read gets its place in the scene file. */
 static sonject_status load(struct reader *reader, const struct tree_node *node,
                            const struct mesh_text *mesh, uint32_t *number)
@@ -100,7 +122,7 @@ static sonject_status load(struct reader *reader, const struct tree_node *node,
     struct mesh_options options;
     char excerpt[400];
     mesh_options_init(&options);
-    options.unit_m = mesh->unit_m;
+    options.unit_m = mesh->unit_m > 0.0 ? mesh->unit_m : 1.0;
     options.smooth_angle_rad = mesh->smooth_angle_rad;
     turn_file_axes(mesh, options.axes);
     if (!file_exists(mesh->path))
@@ -108,8 +130,10 @@ static sonject_status load(struct reader *reader, const struct tree_node *node,
                             text_excerpt(excerpt, sizeof excerpt, mesh->path));
     const sonject_status status =
         scene_share_mesh(reader->scene, &report, mesh->path, &options, mesh->allows_open, number);
-    if (status == SONJECT_OK || status == SONJECT_ERROR_MEMORY)
-        return status == SONJECT_OK ? status : report_out_of_memory(reader->report, mesh->path);
+    if (status == SONJECT_OK)
+        return mesh->unit_m > 0.0 ? status : doubt_size(reader, node, *number);
+    if (status == SONJECT_ERROR_MEMORY)
+        return report_out_of_memory(reader->report, mesh->path);
     refuse_value(reader, node, "%s", report.message);
     return status;
 }
@@ -117,7 +141,7 @@ static sonject_status load(struct reader *reader, const struct tree_node *node,
 sonject_status read_mesh(struct reader *reader, const struct tree_node *node, void *structure)
 {
     sonject_object_params *shape = structure;
-    struct mesh_text mesh = {.path = NULL, .unit_m = 1.0, .nose = AXIS_X, .up = AXIS_Z};
+    struct mesh_text mesh = {.path = NULL, .nose = AXIS_X, .up = AXIS_Z};
     const struct tree_entry *file = tree_find(node, "file");
     const size_t before = reader->path.length;
     sonject_status status = node->kind == TREE_TEXT

@@ -13,6 +13,10 @@
 #define RADIUS_LEAST_M 1e-6
 #define RADIUS_MOST_M  1e6
 
+/* How far apart the sides of a seam may be, of the bounding box's diagonal: what single precision
+ * makes of one point is within a tenth of it. */
+#define SEAM_SHARE 1e-6
+
 void mesh_options_init(struct mesh_options *options)
 {
     memset(options, 0, sizeof *options);
@@ -110,15 +114,16 @@ static sonject_status find_centre(struct report *report, const char *name,
                           "%s: the mesh is %g m across: check its unit", name, 2.0 * sqrt(square));
 }
 
-/* Brings the soup's vertices into the mesh's frame, welds them, and keeps the triangles that have
- * three corners left. */
+/* Brings the soup's vertices into the mesh's frame, welds those that are equal, or closer than the
+ * tolerance, and keeps the triangles that have three corners left. */
 static sonject_status weld_all(struct report *report, const char *name,
                                const struct mesh_soup *soup, const struct mesh_options *options,
-                               struct mesh *mesh, struct mesh_soup *welded)
+                               double tolerance, struct mesh *mesh, struct mesh_soup *welded)
 {
-    struct weld weld = {NULL, 0};
+    struct weld weld = {NULL, 0, tolerance};
     uint32_t *numbers = allocate_array(soup->vertices, sizeof *numbers); /* + 1; 0: not yet met */
     bool has_memory = numbers != NULL;
+    mesh->degenerate = 0;
     for (size_t i = 0; i < soup->triangles && has_memory; i++) {
         uint32_t corners[3];
         for (size_t k = 0; k < 3 && has_memory; k++) {
@@ -205,11 +210,48 @@ static sonject_status lay_normals(struct report *report, double angle, struct me
     return status;
 }
 
-static sonject_status prepare(struct report *report, const char *name, const struct mesh_soup *soup,
-                              const struct mesh_options *options, struct mesh *mesh)
+/* Vertices and triangles, and how they hang together. */
+static sonject_status weld_and_orient(struct report *report, const char *name,
+                                      const struct mesh_soup *soup,
+                                      const struct mesh_options *options, double tolerance,
+                                      struct mesh *mesh)
 {
     struct mesh_soup welded;
     memset(&welded, 0, sizeof welded);
+    free(mesh->vertices);
+    free(mesh->corners);
+    mesh->vertices = NULL;
+    mesh->corners = NULL;
+    sonject_status status = weld_all(report, name, soup, options, tolerance, mesh, &welded);
+    if (status == SONJECT_OK)
+        status = take_welded(report, name, &welded, mesh);
+    mesh_soup_clear(&welded);
+    return status == SONJECT_OK
+               ? mesh_topology_find(report, mesh->vertices, mesh->vertex_count, mesh->corners,
+                                    mesh->triangle_count, &mesh->topology)
+               : status;
+}
+
+/* Only a mesh that is open is looked at for a seam, so that no thin wall of another is touched. */
+static sonject_status close_seams(struct report *report, const char *name,
+                                  const struct mesh_soup *soup, const struct mesh_options *options,
+                                  struct mesh *mesh)
+{
+    double square = 0.0;
+    const size_t vertices = mesh->vertex_count;
+    for (int axis = 0; axis < 3; axis++) {
+        const double side = (double)mesh->upper_m[axis] - (double)mesh->lower_m[axis];
+        square += side * side;
+    }
+    const sonject_status status =
+        weld_and_orient(report, name, soup, options, SEAM_SHARE * sqrt(square), mesh);
+    mesh->welded = vertices - mesh->vertex_count;
+    return status;
+}
+
+static sonject_status prepare(struct report *report, const char *name, const struct mesh_soup *soup,
+                              const struct mesh_options *options, struct mesh *mesh)
+{
     mesh->options = *options;
     mesh->name = copy_text(name);
     if (!mesh->name)
@@ -224,13 +266,9 @@ static sonject_status prepare(struct report *report, const char *name, const str
             name, soup->triangles, MESH_TRIANGLES_MAX);
     sonject_status status = find_centre(report, name, soup, options, mesh);
     if (status == SONJECT_OK)
-        status = weld_all(report, name, soup, options, mesh, &welded);
-    if (status == SONJECT_OK)
-        status = take_welded(report, name, &welded, mesh);
-    mesh_soup_clear(&welded);
-    if (status == SONJECT_OK)
-        status = mesh_topology_find(report, mesh->vertices, mesh->vertex_count, mesh->corners,
-                                    mesh->triangle_count, &mesh->topology);
+        status = weld_and_orient(report, name, soup, options, 0.0, mesh);
+    if (status == SONJECT_OK && !mesh->topology.is_closed)
+        status = close_seams(report, name, soup, options, mesh);
     if (status == SONJECT_OK) {
         mesh->volume_m3 = mesh->topology.volume;
         status = mesh_hierarchy_build(report, mesh->vertices, mesh->corners, mesh->triangle_count,

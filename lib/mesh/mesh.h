@@ -33,6 +33,7 @@ struct mesh {
     float radius_m;               /* of the bounding sphere about the frame's origin */
     struct mesh_topology topology;
     double volume_m3;  /* of a closed mesh; else 0 */
+    size_t welded;     /* vertices of seams that were off by less than the tolerance */
     size_t degenerate; /* triangles of the file with two equal corners, which were left out */
 
     struct mesh_hierarchy hierarchy;
@@ -49,10 +50,11 @@ bool mesh_is_of(const struct mesh *mesh, const struct file_identity *file,
                 const struct mesh_options *options);
 
 /* Reads a mesh file: STL, OBJ, PLY. Equal vertices become one (after
- * rounding to single precision in the mesh's frame), triangles with two equal corners are left out,
- * orientation is made consistent (mesh/topology.h). A mesh that is not closed is no failure here:
- * topology says what is open. Errors: STORAGE (cannot be read), INPUT (what and where), UNSUPPORTED
- * (format), ARGUMENT (options), MEMORY. On failure *mesh is empty. */
+ * rounding to single precision in the mesh's frame); where that leaves the mesh open, so do those
+ * that are closer than a millionth of its bounding box's diagonal. Triangles with two equal corners
+ * are left out, orientation is made consistent (mesh/topology.h). A mesh that is not closed is no
+ * failure here: topology says what is open. Errors: STORAGE (cannot be read), INPUT (what and
+ * where), UNSUPPORTED (format), ARGUMENT (options), MEMORY. On failure *mesh is empty. */
 sonject_status mesh_load(struct report *report, const char *path,
                          const struct mesh_options *options, struct mesh *mesh);
 

@@ -1,9 +1,12 @@
 #include "mesh/soup.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+
+#define CELL_TOLERANCES 64.0 /* a cell of space, in which vertices are looked for */
 
 void mesh_soup_clear(struct mesh_soup *soup)
 {
@@ -80,37 +83,84 @@ static uint64_t mix(uint64_t value)
     return value ^ value >> 32;
 }
 
-static size_t slot_of(const struct weld *weld, const double position[3])
+/* What positions that may be one have in common: their bits, or a cell of space. A position near a
+ * cell's wall is looked for beyond it, too: `aside` steps of the tolerance. */
+static size_t slot_of(const struct weld *weld, const double position[3], const int aside[3])
 {
-    uint64_t bits[3];
-    memcpy(bits, position, sizeof bits);
-    const uint64_t hash = mix(bits[0] + mix(bits[1] + mix(bits[2] + UINT64_C(0x9e3779b97f4a7c15))));
+    uint64_t key[3];
+    for (int axis = 0; axis < 3; axis++) {
+        double place = position[axis];
+        if (weld->tolerance > 0.0)
+            place = floor((place + aside[axis] * weld->tolerance) /
+                          (CELL_TOLERANCES * weld->tolerance)) +
+                    0.0;
+        memcpy(&key[axis], &place, sizeof key[axis]);
+    }
+    const uint64_t hash = mix(key[0] + mix(key[1] + mix(key[2] + UINT64_C(0x9e3779b97f4a7c15))));
     return (size_t)hash & (weld->capacity - 1);
 }
 
-/* Where the position is or would be put. */
-static size_t find_slot(const struct weld *weld, const struct mesh_soup *soup,
+static bool is_one(const struct weld *weld, const double a[3], const double b[3])
+{
+    double square = 0.0;
+    for (int axis = 0; axis < 3; axis++)
+        square += (a[axis] - b[axis]) * (a[axis] - b[axis]);
+    return weld->tolerance > 0.0 ? square <= weld->tolerance * weld->tolerance
+                                 : memcmp(a, b, 3 * sizeof *a) == 0;
+}
+
+/* The slot from this one on that has the position's vertex, or is free. */
+static size_t find_slot(const struct weld *weld, const struct mesh_soup *soup, size_t slot,
                         const double position[3])
 {
-    size_t slot = slot_of(weld, position);
-    while (weld->slots[slot] != 0 && memcmp(&soup->positions[3 * (size_t)(weld->slots[slot] - 1)],
-                                            position, 3 * sizeof *position) != 0)
+    while (weld->slots[slot] != 0 &&
+           !is_one(weld, &soup->positions[3 * (size_t)(weld->slots[slot] - 1)], position))
         slot = (slot + 1) & (weld->capacity - 1);
     return slot;
 }
 
+static void put_vertex(struct weld *weld, const struct mesh_soup *soup, size_t vertex)
+{
+    size_t slot = slot_of(weld, &soup->positions[3 * vertex], (const int[3]){0, 0, 0});
+    while (weld->slots[slot] != 0)
+        slot = (slot + 1) & (weld->capacity - 1);
+    weld->slots[slot] = (uint32_t)(vertex + 1);
+}
+
 static bool widen(struct weld *weld, const struct mesh_soup *soup)
 {
-    struct weld wider;
-    wider.capacity = weld->capacity > 0 ? 4 * weld->capacity : 1024;
+    struct weld wider = {NULL, weld->capacity > 0 ? 4 * weld->capacity : 1024, weld->tolerance};
     wider.slots = allocate_array(wider.capacity, sizeof *wider.slots);
     if (!wider.slots)
         return false;
     for (size_t i = 0; i < soup->vertices; i++)
-        wider.slots[find_slot(&wider, soup, &soup->positions[3 * i])] = (uint32_t)(i + 1);
+        put_vertex(&wider, soup, i);
     free(weld->slots);
     *weld = wider;
     return true;
+}
+
+/* The vertex that is one with the position, counted from 1; 0: none is. */
+static uint32_t find_vertex(const struct weld *weld, const struct mesh_soup *soup,
+                            const double position[3])
+{
+    const int most = weld->tolerance > 0.0 ? 1 : 0;
+    size_t before[27];
+    size_t count = 0;
+    for (int i = 0; i < (most ? 27 : 1); i++) {
+        const int aside[3] = {most * (i % 3 - 1), most * (i / 3 % 3 - 1), most * (i / 9 - 1)};
+        const size_t first = slot_of(weld, position, aside);
+        size_t k = 0;
+        while (k < count && before[k] != first)
+            k++;
+        if (k < count) /* most of them are one cell */
+            continue;
+        before[count++] = first;
+        const uint32_t found = weld->slots[find_slot(weld, soup, first, position)];
+        if (found)
+            return found;
+    }
+    return 0;
 }
 
 bool weld_vertex(struct weld *weld, struct mesh_soup *soup, const double position[3],
@@ -119,13 +169,14 @@ bool weld_vertex(struct weld *weld, struct mesh_soup *soup, const double positio
     const double point[3] = {position[0] + 0.0, position[1] + 0.0, position[2] + 0.0};
     if (2 * soup->vertices >= weld->capacity && !widen(weld, soup))
         return false;
-    const size_t slot = find_slot(weld, soup, point);
-    if (weld->slots[slot] == 0) {
+    uint32_t found = find_vertex(weld, soup, point);
+    if (found == 0) {
         if (!mesh_soup_add_vertex(soup, point))
             return false;
-        weld->slots[slot] = (uint32_t)soup->vertices;
+        found = (uint32_t)soup->vertices;
+        put_vertex(weld, soup, found - 1);
     }
-    *number = weld->slots[slot] - 1;
+    *number = found - 1;
     return true;
 }
 

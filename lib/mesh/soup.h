@@ -36,12 +36,14 @@ sonject_status mesh_soup_failure(struct report *report, const char *path,
 
 /* Vertices by position, so that equal ones are found. */
 struct weld {
-    uint32_t *slots; /* number of a vertex + 1, 0: free; owned */
-    size_t capacity; /* a power of two */
+    uint32_t *slots;  /* number of a vertex + 1, 0: free; owned */
+    size_t capacity;  /* a power of two */
+    double tolerance; /* distance of vertices that are one; 0: they are equal to the last bit */
 };
 
-/* The number of the vertex at the position, added to the soup unless it is there to the last bit
- * (-0 is 0). Start with a zeroed weld; an empty soup. False when memory is out. */
+/* The number of the vertex at the position (-0 is 0), added to the soup unless one is there, or
+ * within the tolerance: then the first of those. Start with an empty weld and an empty soup. False
+ * when memory is out. */
 bool weld_vertex(struct weld *weld, struct mesh_soup *soup, const double position[3],
                  uint32_t *number);
 void weld_clear(struct weld *weld);

@@ -141,7 +141,7 @@ static bool is_text(const char *bytes, size_t count)
 sonject_status stl_read(struct report *report, const char *path, const char *bytes, size_t count,
                         struct mesh_soup *soup)
 {
-    struct weld weld = {NULL, 0};
+    struct weld weld = {NULL, 0, 0.0};
     struct words words = {report, path, bytes, bytes + count, 1};
     const sonject_status status = is_text(bytes, count)
                                       ? read_text(&words, &weld, soup)

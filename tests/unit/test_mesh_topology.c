@@ -66,6 +66,58 @@ static void test_orientation(void **state)
     sample_clear(&sample);
 }
 
+/* The box with corners of its own for each triangle, moved by up to so far. */
+static struct mesh prepare_loose_box(double off_m, bool is_reversed)
+{
+    struct mesh_sample box;
+    double positions[3 * 36];
+    uint32_t corners[36];
+    sample_box(&box);
+    for (size_t i = 0; i < 36; i++) {
+        corners[is_reversed ? 35 - i : i] = (uint32_t)i;
+        for (size_t axis = 0; axis < 3; axis++)
+            positions[3 * i + axis] = box.positions[3 * (size_t)box.corners[i] + axis] +
+                                      (i % 7 ? off_m * (double)((i + axis) % 5) / 8.0 : 0.0);
+    }
+    sample_clear(&box);
+    const struct mesh_sample loose = {
+        .positions = positions, .corners = corners, .vertices = 36, .triangles = 12};
+    return prepare(&loose);
+}
+
+/* A millionth of the box's diagonal is 2.4 um; the farthest corners of a seam are sqrt(3)/2 apart.
+ */
+static void test_narrow_seams_close_in_any_order(void **state)
+{
+    (void)state;
+    for (int is_reversed = 0; is_reversed < 2; is_reversed++) {
+        struct mesh mesh = prepare_loose_box(1e-6, is_reversed);
+        assert_true(mesh.topology.is_closed);
+        assert_int_equal(mesh.vertex_count, 8);
+        assert_true(mesh.welded > 0);
+        mesh_clear(&mesh);
+        mesh = prepare_loose_box(1e-4, is_reversed);
+        assert_false(mesh.topology.is_closed);
+        mesh_clear(&mesh);
+    }
+}
+
+/* Two sides of a closed mesh that are closer than a seam's may be. */
+static void test_thin_walls_stay(void **state)
+{
+    (void)state;
+    struct mesh_sample sample;
+    sample_box(&sample);
+    for (size_t i = 0; i < 8; i++)
+        sample.positions[3 * i + 2] *= 1e-6;
+    struct mesh mesh = prepare(&sample);
+    assert_true(mesh.topology.is_closed);
+    assert_int_equal(mesh.vertex_count, 8);
+    assert_int_equal(mesh.welded, 0);
+    mesh_clear(&mesh);
+    sample_clear(&sample);
+}
+
 /* A small box inside a large one, oriented inward, is a cavity. */
 static void test_cavity(void **state)
 {
@@ -278,10 +330,16 @@ static void test_normals(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_orientation),    cmocka_unit_test(test_cavity),
-        cmocka_unit_test(test_open),           cmocka_unit_test(test_crowded),
-        cmocka_unit_test(test_twisted),        cmocka_unit_test(test_degenerate),
-        cmocka_unit_test(test_crowded_vertex), cmocka_unit_test(test_normals),
+        cmocka_unit_test(test_orientation),
+        cmocka_unit_test(test_narrow_seams_close_in_any_order),
+        cmocka_unit_test(test_thin_walls_stay),
+        cmocka_unit_test(test_cavity),
+        cmocka_unit_test(test_open),
+        cmocka_unit_test(test_crowded),
+        cmocka_unit_test(test_twisted),
+        cmocka_unit_test(test_degenerate),
+        cmocka_unit_test(test_crowded_vertex),
+        cmocka_unit_test(test_normals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

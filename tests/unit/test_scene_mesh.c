@@ -337,6 +337,23 @@ static void test_open_meshes(void **state)
     remove_file(folder, "sheet.obj");
 }
 
+/* A file in millimetres whose unit nobody gave, and one that is meant so. */
+static void test_a_size_that_no_target_has_asks_for_the_unit(void **state)
+{
+    static const char sheet[] = "v 0 0 0\nv 1500 0 0\nv 0 700 0\nf 1 2 3\n";
+    struct scene_folder *folder = *state;
+    write_file(folder, "bomb.obj", sheet, sizeof sheet - 1);
+    expect_bad_mesh(folder, "bomb.obj", SONJECT_ERROR_INPUT, "does not enclose");
+    write_scene(folder, MESH("{file: bomb.obj, open: true}"),
+                sizeof MESH("{file: bomb.obj, open: true}") - 1);
+    assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(folder->report.message, "mesh is 1.5e+03 m long"));
+    assert_non_null(strstr(folder->report.message, "unit: mm"));
+    expect_scene_taken(folder, MESH("{file: bomb.obj, open: true, unit: m}"));
+    expect_scene_taken(folder, MESH("{file: bomb.obj, open: true, unit: mm}"));
+    remove_file(folder, "bomb.obj");
+}
+
 static void hash_of(const struct scene *scene, char text[HASH_TEXT_CAPACITY])
 {
     struct report report = {{0}, NULL, NULL};
@@ -386,6 +403,7 @@ int main(void)
         cmocka_unit_test(test_meshes_that_cannot_be_read),
         cmocka_unit_test(test_too_many_meshes),
         cmocka_unit_test(test_open_meshes),
+        cmocka_unit_test(test_a_size_that_no_target_has_asks_for_the_unit),
         cmocka_unit_test(test_the_hash_covers_the_mesh),
     };
     return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
