@@ -12,8 +12,9 @@
 #include "stop.h"
 
 enum {
-    BAR_WIDTH = 30,
-    LINE_WIDTH = 78
+    LINE_WIDTH = 78,
+    STAGE_WIDTH = 28, /* "hearing the impulses" fits */
+    BAR_WIDTH = 19
 };
 
 static const double redraw_interval_s = 0.1;
@@ -59,7 +60,8 @@ static void draw(struct progress *progress, double fraction, const char *stage)
     bar[BAR_WIDTH] = '\0';
     char left[40];
     format_time_left(left, sizeof(left), now_s() - progress->start_s, fraction);
-    fprintf(stderr, "\r%-16.16s [%s] %3d %%  %-20s", stage, bar, (int)(fraction * 100), left);
+    fprintf(stderr, "\r%-*.*s [%s] %3d %%  %-20s", STAGE_WIDTH, STAGE_WIDTH, stage, bar,
+            (int)(fraction * 100), left);
     fflush(stderr);
     progress->is_on_screen = true;
 }

@@ -18,6 +18,7 @@ struct quicklook_options {
     const char *decibels;
     const char *transfer;
     const char *channel;
+    const char *array;
     struct geometry_arguments geometry;
 };
 
@@ -32,6 +33,8 @@ static const struct argument arguments[] = {
      ARGUMENT_TEXT, false, MEMBER(transfer)},
     {"--channel", NULL, "port|starboard|N", "of an XTF file", ARGUMENT_TEXT, false,
      MEMBER(channel)},
+    {"--array", NULL, "NAME", "in an HDF5 or MATLAB file of several", ARGUMENT_TEXT, false,
+     MEMBER(array)},
 };
 
 static bool read_decibels(const char *text, sonject_quicklook_params *params)
@@ -56,6 +59,7 @@ static bool fill(const struct quicklook_options *options, sonject_quicklook_para
     sonject_quicklook_params_init(params);
     params->image = options->image;
     params->picture = options->picture;
+    params->array = options->array;
     return (!options->decibels || read_decibels(options->decibels, params)) &&
            (!options->transfer || read_transfer(options->transfer, params)) &&
            (!options->channel || channel_parse("quicklook", options->channel, &params->channel)) &&

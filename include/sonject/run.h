@@ -114,6 +114,7 @@ typedef struct sonject_quicklook_params {
     int32_t channel; /* of an XTF file, SONJECT_CHANNEL_ONLY by default; its metadata are those of
                         all its pings */
     uint32_t reserved;
+    const char *array; /* in an HDF5 or MATLAB file; NULL: the only one */
 } sonject_quicklook_params;
 
 SONJECT_API void sonject_quicklook_params_init(sonject_quicklook_params *params);

@@ -237,7 +237,7 @@ sonject_status sonject_quicklook(sonject_context *context, const sonject_quicklo
     struct plot_frame frame;
     double altitude = 0.0;
     if (status == SONJECT_OK)
-        status = swath_file_open(report, taken.image, taken.channel, &file);
+        status = swath_file_open_array(report, taken.image, taken.channel, taken.array, &file);
     if (status == SONJECT_OK)
         status = read_reduced(report, taken.image, file, &taken.transfer, &image);
     if (status == SONJECT_OK) {

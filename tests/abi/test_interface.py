@@ -92,7 +92,7 @@ SIZES = {
     "sonject_statistics": 208,
     "sonject_run_params": 48,
     "sonject_merge_params": 24,
-    "sonject_quicklook_params": 136,
+    "sonject_quicklook_params": 144,
     "sonject_convert_params": 112,
     "sonject_seabed_file_params": 256,
     "sonject_trace_params": 16,

@@ -66,7 +66,7 @@ def test_hdf5(sonject, tmp_path, swath, kind, storage):
         assert changed.max() - changed.min() <= image.nbytes
 
 
-def test_named_arrays_are_measured(sonject, tmp_path, swath):
+def test_named_arrays_are_measured_and_drawn(sonject, tmp_path, swath):
     arrays = {"low": swath, "more/high": swath ** 2}
     with h5py.File(tmp_path / "lines.h5", "w") as file:
         for name, image in arrays.items():
@@ -78,6 +78,10 @@ def test_named_arrays_are_measured(sonject, tmp_path, swath):
         assert answers[0].returncode == 0, answers[0].stderr
         assert answers[0].stdout == answers[1].stdout
         measured[name] = answers[0].stdout
+        drawn = [sonject("quicklook", "lines.h5", "--array", name, "-o", "named.png"),
+                 sonject("quicklook", "line.npy", "-o", "only.png")]
+        assert [answer.returncode for answer in drawn] == [0, 0], drawn[0].stderr
+        assert (tmp_path / "named.png").read_bytes() == (tmp_path / "only.png").read_bytes()
     assert measured["low"] != measured["more/high"]
     assert_refused(sonject("measure", "lines.h5"), 3, "low", "more/high")
     assert_refused(sonject("measure", "line.npy", "--array", "low"), 3, "neither HDF5 nor MATLAB")

@@ -199,9 +199,11 @@ def quicklook(
     geometry: Optional[Geometry] = None,
     transfer: Optional[Transfer] = None,
     channel: Union[str, int, None] = None,
+    array: Optional[str] = None,
     context: Optional[Context] = None,
 ) -> None:
-    """Draws an image file, or a channel of an XTF file (see Recording), as a PNG.
+    """Draws an image file, a channel of an XTF file (see Recording), or the array of that name in
+    an HDF5 or MATLAB file, as a PNG.
 
     decibels: ends of the grey scale, None: chosen from the image; altitude_m, geometry: None for
     what the image's metadata says; transfer: None for plain amplitudes.
@@ -217,6 +219,8 @@ def quicklook(
             raise ValueError(f"decibels must be (minimum, maximum), not {decibels!r}")
         params.minimum_db, params.maximum_db = minimum, maximum
     params.channel = Recording(image, channel).number()
+    if array is not None:
+        params.array = plain_text("array", array)
     if altitude_m is not None:
         params.altitude_m = real_number("altitude_m", altitude_m)
     if geometry is not None:

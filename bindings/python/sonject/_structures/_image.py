@@ -90,6 +90,7 @@ class sonject_quicklook_params(Structure):
         ("transfer", sonject_transfer_params),
         ("channel", c_int32),
         ("reserved", c_uint32),
+        ("array", c_char_p),
     ]
 
 
