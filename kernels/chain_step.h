@@ -32,7 +32,8 @@ FUNCTION struct chain_step step_in_direction(GLOBAL const struct surface_record 
 }
 
 /* The rough part of seabed or sea surface: towards the targets; where the hit is among them, or the
- * step leads elsewhere too, also all around. */
+ * step leads elsewhere too, also all around; only so where no cone is seen, for the point is inside
+ * all spheres. */
 FUNCTION struct chain_step step_among_few(GLOBAL const struct chain_record *chains,
                                           GLOBAL const struct sphere_record *spheres,
                                           GLOBAL const struct surface_record *surface,
@@ -41,11 +42,12 @@ FUNCTION struct chain_step step_among_few(GLOBAL const struct chain_record *chai
 {
     struct target_cones cones;
     view_targets(spheres, chains->spheres, hit->point, &cones);
-    const real lobe_share =
+    const real elsewhere_share =
         leads_elsewhere ? SPLAT(0.5f) : CHOOSE(cones.is_inside, SPLAT(0.5f), SPLAT(0.0f));
+    const real lobe_share = CHOOSE(MASK_OF(cones.sum > 0.0f), elsewhere_share, SPLAT(1.0f));
     const real cone_share = 1.0f - lobe_share;
     const mask by_lobe = MASK_OF(choice < lobe_share);
-    const real cone_choice = (choice - lobe_share) / cone_share;
+    const real cone_choice = (choice - lobe_share) / larger(cone_share, SPLAT(0.5f));
     struct vector3 direction = sample_target_direction(spheres, chains->spheres, hit->point, &cones,
                                                        larger(cone_choice, SPLAT(0.0f)), u, v);
     if (ANY(by_lobe)) {
@@ -55,7 +57,7 @@ FUNCTION struct chain_step step_among_few(GLOBAL const struct chain_record *chai
     }
     real density = cone_share * target_direction_density(spheres, chains->spheres, hit->point,
                                                          &cones, direction);
-    if (leads_elsewhere || ANY(cones.is_inside))
+    if (ANY(MASK_OF(lobe_share > 0.0f)))
         density += lobe_share * rough_direction_density(surface, hit->normal, hit->back, direction);
     return step_in_direction(surface, hit, direction, density);
 }

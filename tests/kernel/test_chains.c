@@ -179,11 +179,149 @@ static void test_sea_surface_keeps_energy(void **state)
     }
 }
 
+#define ROWS_OF_SKY 8 /* parts of the hemisphere, of equal solid angles */
+#define SKY         (ROWS_OF_SKY * ROWS_OF_SKY)
+
+/* Spheres as a launch has them, with the groups that stand for many. */
+struct targets {
+    struct sphere_record spheres[3];
+    struct sphere_group group, bound;
+};
+
+/* Where a point of level seabed lies: within the first `inside` of three spheres. */
+static void lay_targets(struct targets *targets, struct chain_record *chains, int count, int inside)
+{
+    static const float ways[3][3] = {
+        {0.05f, -0.02f, 0.1f}, {-0.1f, 0.1f, 0.05f}, {0.03f, 0.1f, 0.12f}};
+    memset(targets, 0, sizeof *targets);
+    for (int i = 0; i < count; i++) {
+        const float scale = i < inside ? 1.0f : 6.0f;
+        struct sphere_record *sphere = &targets->spheres[i];
+        sphere->centre_x = targets->group.centre_x[i] = scale * ways[i][0];
+        sphere->centre_y = targets->group.centre_y[i] = scale * ways[i][1];
+        sphere->centre_z = targets->group.centre_z[i] = scale * ways[i][2];
+        sphere->radius = targets->group.radius[i] = 0.3f;
+    }
+    targets->bound.radius[0] = 2.0f;
+    memset(chains, 0, sizeof *chains);
+    chains->spheres = 3; /* groups lie behind them */
+    chains->sea_surface_height = 10.0f;
+    chains->seabed.lambert = 0.1f;
+    chains->seabed.lambert_exponent = 1.0f;
+}
+
+static int part_of_sky(struct vector3 direction)
+{
+    const double square = 1.0 - (double)direction.z * (double)direction.z;
+    const double turn = atan2((double)direction.y, (double)direction.x) / (2.0 * PI) + 0.5;
+    const int ring = (int)fmin(ROWS_OF_SKY * square, ROWS_OF_SKY - 1.0);
+    const int sector = (int)fmin(ROWS_OF_SKY * turn, ROWS_OF_SKY - 1.0);
+    return ROWS_OF_SKY * ring + sector;
+}
+
+static int is_towards_some(const struct targets *targets, int count, struct vector3 direction)
+{
+    for (int i = 0; i < count; i++) {
+        const struct sphere_record *sphere = &targets->spheres[i];
+        const float along = sphere->centre_x * direction.x + sphere->centre_y * direction.y +
+                            sphere->centre_z * direction.z;
+        const float square = sphere->centre_x * sphere->centre_x +
+                             sphere->centre_y * sphere->centre_y +
+                             sphere->centre_z * sphere->centre_z;
+        if (along > 0.0f && square - along * along < sphere->radius * sphere->radius)
+            return 1;
+    }
+    return 0;
+}
+
+/* What Lambert's law sends to each part of the sky, of all or only towards the targets. */
+static void light_sky(const struct targets *targets, int count, int is_all, double sky[SKY])
+{
+    const int steps = 200 * ROWS_OF_SKY;
+    memset(sky, 0, SKY * sizeof *sky);
+    for (int i = 0; i < steps; i++)
+        for (int k = 0; k < steps; k++) {
+            const double square = (i + 0.5) / steps;
+            const double turn = 2.0 * PI * (k + 0.5) / steps;
+            const struct vector3 way = {(float)(sqrt(square) * cos(turn)),
+                                        (float)(sqrt(square) * sin(turn)),
+                                        (float)sqrt(1.0 - square)};
+            if (is_all || is_towards_some(targets, count, way))
+                sky[part_of_sky(way)] += 0.1 * PI / steps / steps;
+        }
+}
+
+/* Steps' weights are what the seabed scatters over the density they are drawn with. So, if that is
+ * the one they are weighed by, they bring to each part of the sky what Lambert's law does. Sums of
+ * squares over the parts' variances, against chi squared; 0.1 % of a part for the quadrature. */
+static void expect_sky(const struct targets *targets, const struct chain_record *chains, int count,
+                       int is_all, int order, uint32_t stream)
+{
+    double sky[SKY], sum[SKY] = {0.0}, square[SKY] = {0.0}, chi_squared = 0.0;
+    struct chain_hit hit;
+    int parts = 0;
+    light_sky(targets, count, is_all, sky);
+    memset(&hit, 0, sizeof hit);
+    hit.is_hit = -1;
+    hit.surface = SEABED;
+    hit.normal.z = 1.0f;
+    hit.back.y = -0.8f;
+    hit.back.z = 0.6f;
+    for (uint32_t i = 0; i < SAMPLES; i++) {
+        float u, v, choice;
+        three_uniforms(random_key_of(5, 0, 78, stream), i, 0, &u, &v, &choice);
+        const struct chain_step step = step_from_surface(
+            chains, targets->spheres, NULL, &chains->seabed, SEABED, order, &hit, choice, u, v);
+        const double weight = (double)step.weight;
+        if (weight > 0.0) {
+            sum[part_of_sky(step.direction)] += weight;
+            square[part_of_sky(step.direction)] += weight * weight;
+        }
+    }
+    for (int part = 0; part < SKY; part++) {
+        const double mean = sum[part] / SAMPLES;
+        const double variance = (square[part] / SAMPLES - mean * mean) / SAMPLES;
+        const double difference = mean - sky[part];
+        if (variance > 0.0 && sky[part] > 1e-4) {
+            chi_squared += difference * difference / (variance + 1e-6 * sky[part] * sky[part]);
+            parts++;
+        } else {
+            assert_true(fabs(difference) < 2e-4);
+        }
+    }
+    printf("%d spheres, %s, order %d: chi squared %.1f of %d parts\n", count,
+           is_all ? "and all around" : "alone", order, chi_squared, parts);
+    assert_true(parts > 5);
+    assert_true(chi_squared < parts + 4.0 * sqrt(2.0 * parts));
+}
+
+static void test_directions_are_weighed_as_they_are_drawn(void **state)
+{
+    (void)state;
+    for (uint32_t variant = 0; variant < 4 * 3 * 2 * 2; variant++) {
+        const int inside = (int)variant % 4;
+        const int count = (int)variant / 4 % 3 + 1;
+        const int leads_elsewhere = (int)variant / 12 % 2;
+        struct targets targets;
+        struct chain_record chains;
+        if (inside > count)
+            continue;
+        lay_targets(&targets, &chains, count, inside);
+        if (variant / 24)
+            chains.groups = 1;
+        else
+            chains.spheres = count;
+        expect_sky(&targets, &chains, count, inside > 0 || leads_elsewhere, 1 + leads_elsewhere,
+                   variant);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_closed_sphere),
         cmocka_unit_test(test_sea_surface_keeps_energy),
+        cmocka_unit_test(test_directions_are_weighed_as_they_are_drawn),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

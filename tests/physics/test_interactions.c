@@ -20,6 +20,7 @@
 #define RANGE_M  0.5
 #define MIDDLE_M 50.0
 #define FAR_M    400.0
+#define NEAR_M   20.0
 
 /* Energies by order and range, m^2: sums over seeds of value and square. */
 struct energies {
@@ -39,19 +40,39 @@ static double error_of(const struct energies *energies, int order, int range)
     return sqrt(fmax(0.0, variance) / (energies->seeds - 1));
 }
 
-/* Figure 7's geometry. Its surfaces are made brighter, so that the third order is heard. */
-static void make_scene(struct bench *bench)
+/* One object. Surfaces are so bright that the third order is heard. */
+static sonject_object_params *make_scene_of(struct bench *bench, sonject_shape shape,
+                                            double length_m, double diameter_m)
 {
     bench_open(bench, 240, 240, MIDDLE_M);
-    sonject_object_params *capsule = bench_add(bench, SONJECT_SHAPE_CAPSULE, 2.3, 0.0, 0.3);
-    capsule->heading_rad = 35.0 * PI / 180.0;
-    capsule->burial_m = 0.1;
-    capsule->material.reflection = 0.0;
-    capsule->material.lambert = 0.2;
+    sonject_object_params *object = bench_add(bench, shape, length_m, 0.0, diameter_m);
+    object->heading_rad = 35.0 * PI / 180.0;
+    object->material.reflection = 0.0;
+    object->material.lambert = 0.2;
     bench->scene.seabed.lambert = 0.2;
     bench->scene.injection.interactions = ORDERS;
     bench->scene.injection.order_energies = 1;
     bench->scene.injection.column_rule = SONJECT_COLUMNS_PAPER;
+    return object;
+}
+
+/* Figure 7's geometry. */
+static void make_scene(struct bench *bench)
+{
+    make_scene_of(bench, SONJECT_SHAPE_CAPSULE, 2.3, 0.3)->burial_m = 0.1;
+}
+
+/* An object that is all within one sphere, which seabed under its overhang is within too: from
+ * there no cone leads to a target. Near by and in a wide patch, for brute force's sake. */
+static sonject_object_params *make_overhang(struct bench *bench, sonject_shape shape,
+                                            double diameter_m, double height_m)
+{
+    sonject_object_params *object = make_scene_of(bench, shape, 0.0, diameter_m);
+    object->height_m = height_m;
+    bench->scene.geometry.row_spacing_m = 0.1;
+    bench->scene.geometry.column_spacing_m = 0.06;
+    bench_move(bench, NEAR_M);
+    return object;
 }
 
 static int range_of_bin(const struct bench *bench, const struct line_grid *grid, int32_t bin)
@@ -187,6 +208,17 @@ static void test_two_estimators_over_relief(void **unused)
     compare_estimators("brute force over relief", &bench, 0.25, 3.0);
 }
 
+static void test_two_estimators_under_overhangs(void **unused)
+{
+    (void)unused;
+    struct bench bench;
+    make_overhang(&bench, SONJECT_SHAPE_TORUS, 1.2, 0.4);
+    compare_estimators("brute force under a torus", &bench, 0.5, 4.0);
+    make_overhang(&bench, SONJECT_SHAPE_MESH, 0.0, 0.0)->pitch_rad = PI; /* on its tip */
+    bench_add_tetrahedron(&bench);
+    compare_estimators("brute force under a mesh", &bench, 0.5, 4.0);
+}
+
 /* What mirrors alone send into the source's rectangle is a glint, and none of the energies. */
 static void test_brute_force_leaves_glints_out(void **unused)
 {
@@ -266,7 +298,7 @@ static void test_focused_columns(void **unused)
 static void lay_reference(const struct bench *bench, struct reference_scene *scene,
                           struct reference_request *request)
 {
-    const struct placement *capsule = &bench->tracer.placements[0];
+    const struct placement *placement = &bench->tracer.placements[0];
     const struct patch_view *view = &bench->tracer.view;
     struct line_grid grid;
     line_grid_for_patch(&grid, view, &bench->tracer.response);
@@ -275,14 +307,16 @@ static void lay_reference(const struct bench *bench, struct reference_scene *sce
     scene->seabed_lambert = bench->scene.seabed.lambert;
     scene->object_count = 1;
     struct reference_object *object = &scene->objects[0];
-    object->shape = REFERENCE_CAPSULE;
+    object->shape =
+        placement->shape == SONJECT_SHAPE_CAPSULE ? REFERENCE_CAPSULE : REFERENCE_CYLINDER;
     object->length = bench->scene.objects[0].length_m;
-    object->radius = capsule->size.radius_m;
+    object->radius = placement->size.radius_m;
     object->lambert = bench->scene.objects[0].material.lambert;
-    object->centre = reference_vector(capsule->centre[0], capsule->centre[1], capsule->centre[2]);
+    object->centre =
+        reference_vector(placement->centre[0], placement->centre[1], placement->centre[2]);
     for (int axis = 0; axis < 3; axis++)
-        object->axes[axis] = reference_vector(capsule->axes[axis][0], capsule->axes[axis][1],
-                                              capsule->axes[axis][2]);
+        object->axes[axis] = reference_vector(placement->axes[axis][0], placement->axes[axis][1],
+                                              placement->axes[axis][2]);
     request->estimator = REFERENCE_CONNECT;
     request->limit = ORDERS;
     request->rays = 24000000;
@@ -300,16 +334,13 @@ static void lay_reference(const struct bench *bench, struct reference_scene *sce
 
 /* Against a reference that shares nothing with the kernels but the physics: plain double precision,
  * cosine sampling, its own shapes. Half a bin of 3 mm at either end of a range is systematic. */
-static void test_reference(void **unused)
+static void expect_reference(struct bench *bench)
 {
-    (void)unused;
     static struct reference_energy reference;
     struct reference_scene scene;
     struct reference_request request;
-    struct bench bench;
-    make_scene(&bench);
-    const struct energies traced = trace_seeds(&bench, 100);
-    lay_reference(&bench, &scene, &request);
+    const struct energies traced = trace_seeds(bench, 100);
+    lay_reference(bench, &scene, &request);
     assert_int_equal(reference_trace(&scene, &request, &reference), 0);
     for (int order = 1; order < ORDERS; order++)
         for (int range = RANGES / 2 - 2; range < RANGES / 2 + 2; range++) {
@@ -319,10 +350,27 @@ static void test_reference(void **unused)
             const double error = hypot(expected.error, error_of(&traced, order, range));
             print_message("order %d, %+.2f m: %.4g m2, reference %.4g +- %.2g\n", order + 1,
                           (range - RANGES / 2 + 0.5) * RANGE_M, mean, expected.mean, error);
-            assert_true(error < 0.1 * expected.mean);
+            assert_true(error < 0.1 * expected.mean || expected.mean == 0.0);
             assert_true(fabs(mean - expected.mean) <= 4.0 * error + 0.01 * expected.mean);
         }
-    bench_close(&bench);
+    bench_close(bench);
+}
+
+static void test_reference(void **unused)
+{
+    (void)unused;
+    struct bench bench;
+    make_scene(&bench);
+    expect_reference(&bench);
+}
+
+/* A drum on its side, all within one sphere, which seabed under its overhang is within too. */
+static void test_reference_under_overhang(void **unused)
+{
+    (void)unused;
+    struct bench bench;
+    make_scene_of(&bench, SONJECT_SHAPE_CYLINDER, 0.6, 0.6);
+    expect_reference(&bench);
 }
 
 /* An object seen by way of the seabed's mirror belongs to the pairs of sources
@@ -377,7 +425,9 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_reference),
+        cmocka_unit_test(test_reference_under_overhang),
         cmocka_unit_test(test_two_estimators),
+        cmocka_unit_test(test_two_estimators_under_overhangs),
         cmocka_unit_test(test_brute_force_leaves_glints_out),
         cmocka_unit_test(test_two_estimators_over_relief),
         cmocka_unit_test(test_reciprocity_over_relief),
