@@ -118,9 +118,10 @@ FUNCTION real target_direction_density(GLOBAL const struct sphere_record *sphere
     for (int i = 0; i < count; i++) {
         const struct vector3 way = to_sphere(&spheres[i], point);
         const real along = dot3(way, direction);
-        const real square_miss = dot3(way, way) - along * along;
+        /* not the difference of two squares: a far sphere is smaller than their rounding */
+        const struct vector3 miss = along3(way, direction, -along);
         const mask is_in_cone = MASK_OF(cones->openings[i] > 0.0f) & MASK_OF(along > 0.0f) &
-                                MASK_OF(square_miss <= spheres[i].radius * spheres[i].radius);
+                                MASK_OF(dot3(miss, miss) <= spheres[i].radius * spheres[i].radius);
         holding += CHOOSE(is_in_cone, SPLAT(1.0f), SPLAT(0.0f));
     }
     const mask is_some = MASK_OF(cones->sum > 0.0f);

@@ -210,6 +210,26 @@ static void lay_targets(struct targets *targets, struct chain_record *chains, in
     chains->seabed.lambert_exponent = 1.0f;
 }
 
+static void lay_hit(struct chain_hit *hit)
+{
+    memset(hit, 0, sizeof *hit);
+    hit->is_hit = -1;
+    hit->surface = SEABED;
+    hit->normal.z = 1.0f;
+    hit->back.y = -0.8f;
+    hit->back.z = 0.6f;
+}
+
+static struct chain_step sample_step(const struct chain_record *chains,
+                                     const struct targets *targets, int order,
+                                     const struct chain_hit *hit, uint32_t stream, uint32_t ray)
+{
+    float u, v, choice;
+    three_uniforms(random_key_of(5, 0, 78, stream), ray, 0, &u, &v, &choice);
+    return step_from_surface(chains, targets->spheres, NULL, &chains->seabed, SEABED, order, hit,
+                             choice, u, v);
+}
+
 static int part_of_sky(struct vector3 direction)
 {
     const double square = 1.0 - (double)direction.z * (double)direction.z;
@@ -261,17 +281,9 @@ static void expect_sky(const struct targets *targets, const struct chain_record 
     struct chain_hit hit;
     int parts = 0;
     light_sky(targets, count, is_all, sky);
-    memset(&hit, 0, sizeof hit);
-    hit.is_hit = -1;
-    hit.surface = SEABED;
-    hit.normal.z = 1.0f;
-    hit.back.y = -0.8f;
-    hit.back.z = 0.6f;
+    lay_hit(&hit);
     for (uint32_t i = 0; i < SAMPLES; i++) {
-        float u, v, choice;
-        three_uniforms(random_key_of(5, 0, 78, stream), i, 0, &u, &v, &choice);
-        const struct chain_step step = step_from_surface(
-            chains, targets->spheres, NULL, &chains->seabed, SEABED, order, &hit, choice, u, v);
+        const struct chain_step step = sample_step(chains, targets, order, &hit, stream, i);
         const double weight = (double)step.weight;
         if (weight > 0.0) {
             sum[part_of_sky(step.direction)] += weight;
@@ -316,12 +328,42 @@ static void test_directions_are_weighed_as_they_are_drawn(void **state)
     }
 }
 
+/* What Lambert's law sends into a cone above the horizon is mu cos times pi r^2/d^2. A direction is
+ * rounded by 1e-7 of the distance, which must not take it out of the cone that it was drawn in. */
+static void test_far_and_small_targets_get_their_share(void **state)
+{
+    (void)state;
+    static const float radii[] = {0.15f, 0.05f, 0.02f, 0.005f};
+    static const float distances[] = {0.7f, 5.0f, 30.0f};
+    for (int i = 0; i < 4 * 3; i++) {
+        const float radius = radii[i % 4], distance = distances[i / 4];
+        const double angle = (double)radius / (double)distance;
+        struct targets targets;
+        struct chain_record chains;
+        struct chain_hit hit;
+        double sum = 0.0;
+        lay_targets(&targets, &chains, 1, 0);
+        chains.spheres = 1;
+        targets.spheres[0].centre_x = 0.36f * distance;
+        targets.spheres[0].centre_y = 0.48f * distance;
+        targets.spheres[0].centre_z = 0.8f * distance;
+        targets.spheres[0].radius = radius;
+        lay_hit(&hit);
+        for (uint32_t ray = 0; ray < SAMPLES / 10; ray++)
+            sum += (double)sample_step(&chains, &targets, 1, &hit, 79, ray).weight;
+        const double share = 10.0 * sum / SAMPLES / (0.1 * 0.8 * PI * angle * angle);
+        printf("radius %g m at %g m: %.5f of its share\n", (double)radius, (double)distance, share);
+        assert_true(fabs(share - 1.0) < 2e-3);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_closed_sphere),
         cmocka_unit_test(test_sea_surface_keeps_energy),
         cmocka_unit_test(test_directions_are_weighed_as_they_are_drawn),
+        cmocka_unit_test(test_far_and_small_targets_get_their_share),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
