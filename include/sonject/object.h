@@ -83,7 +83,7 @@ typedef enum sonject_level_kind {
 
 typedef struct sonject_object_params {
     uint32_t struct_size;
-    uint32_t shape;                         /* sonject_shape */
+    uint32_t shape;                         /* sonject_shape; half a wavelength large at least */
     char name[SONJECT_NAME_CAPACITY];       /* "" becomes "object N"; both are terminated UTF-8
                                                without controls of terminals or text direction */
     char class_name[SONJECT_NAME_CAPACITY]; /* label class; "" becomes the shape's name */

@@ -18,7 +18,7 @@ sonject_status read_mesh(struct reader *reader, const struct tree_node *node, vo
 
 /* A shape, its sizes, ends and cuts. */
 #define SHAPE_FIELDS                                                                               \
-    {"shape", "of the object or part",                                                             \
+    {"shape", "of the object or part; objects are at least half a wavelength large",               \
      WORD(sonject_object_params, shape) = {[SONJECT_SHAPE_PLANE] = "plane",                        \
                                            [SONJECT_SHAPE_SPHERE] = "sphere",                      \
                                            [SONJECT_SHAPE_CYLINDER] = "cylinder",                  \

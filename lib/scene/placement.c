@@ -7,8 +7,9 @@
 #include "base/memory.h"
 #include "scene/pose.h"
 
-#define PI         3.14159265358979323846
-#define THINNEST_M 1.0e-4 /* a plate without thickness lies on the seabed, not in it */
+#define PI                   3.14159265358979323846
+#define SMALLEST_WAVELENGTHS 0.5    /* an object's size, at least */
+#define THINNEST_M           1.0e-4 /* a plate without thickness lies on the seabed, not in it */
 
 static const double outward[3] = {0.0, 1.0, 0.0};
 static const double upward[3] = {0.0, 0.0, 1.0};
@@ -236,6 +237,19 @@ static struct footprint footprint_of(const struct placement *parts, uint32_t cou
     return footprint;
 }
 
+/* Smaller objects are less than rays, which are a fraction of a wavelength apart, and physical
+ * optics can tell the echo of (kernels/MATH.md, "Small objects"). */
+static sonject_status check_size(struct report *report, const struct patch_view *view,
+                                 const char *name, double size_m)
+{
+    if (size_m >= SMALLEST_WAVELENGTHS * view->wavelength_m)
+        return SONJECT_OK;
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "object '%s' is %.3g mm large, which is less than half the wavelength of "
+                          "%.3g mm: make it larger or raise sonar.frequency",
+                          name, 1e3 * size_m, 1e3 * view->wavelength_m);
+}
+
 static sonject_status check_room(struct report *report, const struct patch_view *view,
                                  const sonject_object_params *object, const struct placement *parts,
                                  uint32_t count)
@@ -293,7 +307,11 @@ static sonject_status settle(struct placements *placements, struct report *repor
             parts[i].centre[k] += placed->origin[k];
     placed->bottom_m = -parts_extent(parts, placed->part_count, downward);
     placed->top_m = parts_extent(parts, placed->part_count, upward);
-    return check_room(report, view, object, parts, placed->part_count);
+    for (int axis = 0; axis < 3; axis++)
+        placed->size_m = fmax(placed->size_m, overall_size(parts, placed->part_count, axis));
+    const sonject_status is_seen = check_size(report, view, object->name, placed->size_m);
+    return is_seen != SONJECT_OK ? is_seen
+                                 : check_room(report, view, object, parts, placed->part_count);
 }
 
 /* Random numbers are told apart by the number of a shape. */

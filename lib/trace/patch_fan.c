@@ -5,8 +5,12 @@
 
 #include "trace/chain_reach.h"
 #include "trace/object_rays.h"
+#include "trace/sources.h"
 
-#define RAYS_MAX     67108864.0
+#define PI          3.14159265358979323846
+#define RAYS_MAX    67108864.0
+#define OBJECT_RAYS 16.0  /* at least, on a rough object: its echo's energy is then known to 1 dB  \
+                           */
 #define SURROUNDINGS 18.0 /* in bounding radii of an object */
 
 void patch_fan_origin(double origin[3], const struct patch_view *view)
@@ -104,6 +108,22 @@ double fan_elevation_step(const struct tracer *tracer, const struct line_grid *g
            (rays_per_bin * tracer->scene->injection.ray_scale);
 }
 
+/* The step at which the smallest rough object, a sphere as large as that, is met by OBJECT_RAYS. */
+static double step_to_objects(const struct tracer *tracer, double strip_m)
+{
+    double step = INFINITY;
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
+        const struct placement *placement = &tracer->placements[i];
+        const double size = tracer->objects[placement->object].size_m;
+        const double grazing = placement_grazing(placement, &tracer->view);
+        const double radius =
+            water_way_ray(&tracer->view.water, grazing, placement->centre[2]).wavefront_m;
+        if (material_is_rough(placement->material))
+            step = fmin(step, 0.25 * PI * size * size / (OBJECT_RAYS * strip_m * radius));
+    }
+    return step / tracer->scene->injection.ray_scale;
+}
+
 sonject_status fan_lay_rays(struct fan_record *fan, struct report *report, double lowest,
                             double highest, double step)
 {
@@ -147,5 +167,6 @@ sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
         edges = grazing_over_relief(tracer, edges);
     return fan_lay_rays(fan, tracer->report, central - edges.near,
                         highest_elevation(tracer, central, central - edges.far),
-                        fan_elevation_step(tracer, grid, far, rays_per_bin));
+                        fmin(fan_elevation_step(tracer, grid, far, rays_per_bin),
+                             step_to_objects(tracer, (double)fan->strip_width)));
 }

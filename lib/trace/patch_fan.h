@@ -11,7 +11,8 @@ void patch_fan_origin(double origin[3], const struct patch_view *view);
 
 /* Fills a fan record for the patch: elevations from the seabed at the grid's first bin up to that
  * at the last bin or over the highest object, in steps that put rays_per_bin rays (times the
- * scene's ray scale) into a bin where elevation covers most range. Quanta and stream are left 0.
+ * scene's ray scale) into a bin where elevation covers most range, or more where a rough object is
+ * so small that few would meet it. Quanta and stream are left 0.
  * has_map: a reflectivity map of the view's rows x columns goes with it. Errors: INPUT (too many
  * rays). */
 sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,

@@ -13,11 +13,6 @@
 
 #define RAYS_PER_BIN 2
 
-static bool is_rough(const sonject_material_params *material)
-{
-    return material->lambert > 0.0 || material->glossy_albedo > 0.0;
-}
-
 /* As dense as the fan that goes straight to the objects. */
 static void lay_fan(struct fan_record *fan, const struct rough_trace *trace,
                     const struct tracer *tracer, uint32_t part, const struct water_way *way)
@@ -110,7 +105,7 @@ sonject_status rough_trace_mirrored(struct rough_trace *trace, struct tracer *tr
 {
     sonject_status status = SONJECT_OK;
     for (uint32_t i = 0; status == SONJECT_OK && i < tracer->part_count; i++)
-        if (is_rough(tracer->placements[i].material) &&
+        if (material_is_rough(tracer->placements[i].material) &&
             line_grid_cells(&trace->tiles[tracer->placements[i].object].grid) > 0 &&
             mirrored_bins(tracer, i, &trace->grid).count > 0)
             status = trace_part(trace, tracer, i);

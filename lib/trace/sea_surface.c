@@ -8,7 +8,7 @@
 static bool is_rough(const sonject_material_params *material)
 {
     return (!material_is_smooth(material) || material->roughness_m > 0.0) &&
-           (material->lambert > 0.0 || material->glossy_albedo > 0.0);
+           material_is_rough(material);
 }
 
 /* A mirror alone lengthens chains of two interactions to three; what it adds to a single one is the

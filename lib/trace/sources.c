@@ -7,6 +7,11 @@ bool material_is_smooth(const sonject_material_params *material)
     return material->reflection_kind == SONJECT_REFLECTION_FLUID || material->reflection != 0.0;
 }
 
+bool material_is_rough(const sonject_material_params *material)
+{
+    return material->lambert > 0.0 || material->glossy_albedo > 0.0;
+}
+
 bool scene_mirror(const struct scene *scene, enum mirror_kind kind, double *height_m,
                   const sonject_material_params **material)
 {

@@ -22,6 +22,7 @@ struct sound_source {
 
 /* Whether the material has a mirror-like part. */
 bool material_is_smooth(const sonject_material_params *material);
+bool material_is_rough(const sonject_material_params *material);
 
 /* Whether the scene has the mirror, and its height over the mean seabed and its material. */
 bool scene_mirror(const struct scene *scene, enum mirror_kind kind, double *height_m,

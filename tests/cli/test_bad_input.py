@@ -45,6 +45,11 @@ def test_an_unknown_unit(sonject, scene):
     refuse(sonject, scene, 3, "scene.yaml:9:", "frequency", "parsec")
 
 
+def test_an_object_smaller_than_half_a_wavelength(sonject, scene):
+    edit(scene, "diameter: 0.5 m", "diameter: 7.4 mm")
+    refuse(sonject, scene, 3, "object", "7.4 mm", "half the wavelength of 15 mm", "frequency")
+
+
 def test_zero_altitude(sonject, scene):
     edit(scene, "altitude: 10 m", "altitude: 0 m")
     refuse(sonject, scene, 3, "altitude")

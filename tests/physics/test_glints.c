@@ -92,6 +92,66 @@ static void test_sphere(void **unused)
     }
 }
 
+/* Down to half a wavelength: a/2 within what physical optics' false echo of the terminator and
+ * cells of an eighth of a wavelength make of it, 2 dB. */
+static void test_smallest_sphere(void **unused)
+{
+    (void)unused;
+    static const double radii[] = {0.2505, 0.4, 0.5, 0.8}; /* wavelengths */
+    for (size_t i = 0; i < sizeof radii / sizeof *radii; i++) {
+        const double a = radii[i] * WAVELENGTH;
+        struct bench bench;
+        double range;
+        open_at(&bench, RANGE);
+        bench_add(&bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 2.0 * a)->burial_m = -1.0;
+        const double peak = glint_peak(&bench, &range);
+        print_message("sphere of radius %.1f mm\n", 1e3 * a);
+        expect_close("level re a/2, dB", decibels_of_amplitude(peak / (0.5 * a)), 0.0, 2.0);
+        bench_close(&bench);
+    }
+}
+
+/* Expected energy of a Lambert sphere over its radius squared, in pixels that are long. */
+static double rough_energy(double a, uint64_t seed)
+{
+    struct bench bench;
+    struct echoes echoes;
+    double sum = 0.0;
+    bench_open(&bench, 41, 41, RANGE);
+    bench.scene.geometry.row_spacing_m = 0.1;
+    bench.scene.injection.seed = seed;
+    sonject_object_params *object = bench_add(&bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 2.0 * a);
+    object->burial_m = -0.1;
+    object->material.reflection = 0.0;
+    object->material.lambert = 0.1;
+    bench_ready(&bench);
+    bench_echoes(&bench, NULL, SEABED_FIELD_NONE, &echoes);
+    for (size_t i = 0; i < echoes.rows * echoes.columns; i++)
+        sum += (double)echoes.target_energy[i];
+    echoes_clear(&echoes);
+    bench_close(&bench);
+    return sum / (a * a);
+}
+
+/* The smallest rough sphere is met by 16 rays: each run has its energy to a quarter, and all of
+ * them their mean, to 4 standard errors and 1 % of what is small against the large one. */
+static void test_smallest_rough_sphere(void **unused)
+{
+    (void)unused;
+    const int seeds = 16;
+    const double large = rough_energy(0.2, 1);
+    double sum = 0.0, square = 0.0;
+    for (int i = 0; i < seeds; i++) {
+        const double ratio = rough_energy(0.2505 * WAVELENGTH, (uint64_t)i + 1) / large;
+        sum += ratio / seeds;
+        square += ratio * ratio / seeds;
+    }
+    const double deviation = sqrt(square - sum * sum);
+    expect_close("mean over the large sphere's", sum, 1.0,
+                 4.0 * deviation / sqrt(seeds - 1.0) + 0.01);
+    expect_below("deviation of one run", deviation, 0.4);
+}
+
 /* A wrong sound speed in the processor scales ranges by c_ref/c and, since amplitudes are
  * normalised by the square of the apparent range, amplitudes by its square. */
 static void test_wrong_sound_speed(void **unused)
@@ -535,6 +595,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_sphere),
+        cmocka_unit_test(test_smallest_sphere),
+        cmocka_unit_test(test_smallest_rough_sphere),
         cmocka_unit_test(test_wrong_sound_speed),
         cmocka_unit_test(test_sphere_in_the_image),
         cmocka_unit_test(test_capsule_end),
