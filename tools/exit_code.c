@@ -30,7 +30,15 @@ int exit_code_of(sonject_status status)
 int fail_with(const sonject_context *context, sonject_status status)
 {
     const char *text = context ? sonject_context_message(context) : "";
-    message(text[0] ? text : sonject_status_name(status), NULL);
+    if (!text[0])
+        message(sonject_status_name(status));
+    while (*text) { /* a line for each mistake of a scene */
+        char line[2048];
+        const size_t length = strcspn(text, "\n");
+        snprintf(line, sizeof line, "%.*s", (int)length, text);
+        message(line);
+        text += length + (text[length] == '\n');
+    }
     return exit_code_of(status);
 }
 

@@ -50,8 +50,10 @@ SONJECT_API sonject_status sonject_context_create(const sonject_context_params *
  * Everything made with the context must be released before. */
 SONJECT_API void sonject_context_release(sonject_context **context);
 
-/* The one-line message of the last failed call on this context, "" if none failed. It names what is
- * wrong and where. Valid until the next call on the context. */
+/* The message of the last failed call on this context, "" if none failed: one line; of a scene or
+ * campaign file a line for each mistake, in the order of the file ("file:line:column: key: ..."),
+ * at most 50, then "and N more"; the last line has no end. It names what is wrong and where. Valid
+ * until the next call on the context. */
 SONJECT_API const char *sonject_context_message(const sonject_context *context);
 
 typedef struct sonject_device_info {

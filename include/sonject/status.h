@@ -6,8 +6,8 @@
 
 SONJECT_BEGIN_DECLARATIONS
 
-/* Values are stable: new ones are added at the end. The context keeps the one-line message that
- * goes with the last failure (sonject_context_message). */
+/* Values are stable: new ones are added at the end. The context keeps the message that goes
+ * with the last failure (sonject_context_message). */
 typedef enum sonject_status {
     SONJECT_OK = 0,
     SONJECT_ERROR_ARGUMENT = 1, /* the call breaks its contract (null, wrong size, out of range) */

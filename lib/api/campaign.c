@@ -7,25 +7,45 @@
 #include "io/scene_file.h"
 #include "io/yaml_flow.h"
 
-/* What the scene reader says of "--set KEY: ..." is the campaign file's where that drew the key. */
-static void place_message(struct sonject_campaign *campaign, const struct image_plan *plan)
+/* What the scene reader says of "--set KEY: what" is the campaign file's where that drew the key.
+ */
+static bool place_line(struct tree *tree, const struct image_plan *plan, const char *line)
 {
     static const char start[] = "--set ";
-    char message[REPORT_CAPACITY];
-    memcpy(message, campaign->report->message, sizeof message);
-    if (strncmp(message, start, strlen(start)) != 0)
-        return;
-    const char *key = message + strlen(start);
+    if (strncmp(line, start, strlen(start)) != 0)
+        return false;
+    line += strlen(start);
     for (size_t i = 0; i < plan->key_count; i++) {
         const char *text = plan->keys[i].text;
         const size_t length = strcspn(text, "=");
-        const char *rest = key + length;
-        if (plan->keys[i].place.line == 0 || strncmp(key, text, length) != 0 ||
-            (*rest != ':' && *rest != '.' && *rest != '['))
+        if (plan->keys[i].place.line == 0 || strncmp(line, text, length) != 0 ||
+            !strchr(":.[", line[length]))
             continue;
-        tree_failure(&campaign->campaign.tree, plan->keys[i].place, "", "%s", key);
-        return;
+        char key[256];
+        const size_t end = strcspn(line, ":");
+        snprintf(key, sizeof key, "%.*s", (int)end, line);
+        tree_failure(tree, plan->keys[i].place, key, "%s", line + end + (line[end] == ':') + 1);
+        return true;
     }
+    return false;
+}
+
+static void place_message(struct sonject_campaign *campaign, const struct image_plan *plan)
+{
+    static const struct tree_place behind = {NULL, SIZE_MAX, 1};
+    char message[REPORT_CAPACITY];
+    struct mistakes mistakes = {NULL, 0, 0, 0};
+    struct tree *tree = &campaign->campaign.tree;
+    memcpy(message, campaign->report->message, sizeof message);
+    tree->mistakes = &mistakes;
+    for (char *line = message, *next; *line; line = next) {
+        next = line + strcspn(line, "\n");
+        next += *next ? (*next = 0, 1) : 0;
+        if (!place_line(tree, plan, line))
+            mistakes_add(&mistakes, tree, &behind, line, line);
+    }
+    tree->mistakes = NULL;
+    mistakes_tell(&mistakes, campaign->report, SONJECT_ERROR_INPUT);
 }
 
 sonject_status campaign_read_scene(struct sonject_campaign *campaign, const struct image_plan *plan,

@@ -7,18 +7,33 @@
 #define LENGTH_MIN_M 1e-6
 #define LENGTH_MAX_M 1e6
 
-void check_failure(struct check *check, const char *key, const char *format, ...)
+static void fail(struct check *check, const char *key, const char *others, const char *format,
+                 va_list arguments)
 {
     char what[400];
-    va_list arguments;
-    if (check->status != SONJECT_OK)
-        return;
-    va_start(arguments, format);
     vsnprintf(what, sizeof what, format, arguments);
+    if (check->status == SONJECT_OK && check->report)
+        report_failure(check->report, SONJECT_ERROR_INPUT, "%s %s", key, what);
+    if (check->listener)
+        check->listener->hear(check->listener, key, others, what);
+    check->status = SONJECT_ERROR_INPUT;
+}
+
+void check_failure(struct check *check, const char *key, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    fail(check, key, "", format, arguments);
     va_end(arguments);
-    if (check->key)
-        *check->key = key;
-    check->status = report_failure(check->report, SONJECT_ERROR_INPUT, "%s %s", key, what);
+}
+
+void check_relation(struct check *check, const char *key, const char *others, const char *format,
+                    ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    fail(check, key, others, format, arguments);
+    va_end(arguments);
 }
 
 /* NaN fails every comparison, so ranges are asked for, never violations. */

@@ -6,16 +6,27 @@
 
 #include "base/report.h"
 
-/* A check that goes on. Keys are the names of values as scene files write them, in static storage.
- * Only the first failure is kept. */
+/* Is told of every failure of a check, for what is to tell them all. Keys are the names of values
+ * as scene files write them, in static storage. others: keys, separated by blanks, without whose
+ * being right the failure says nothing. */
+struct check_listener {
+    void (*hear)(struct check_listener *listener, const char *key, const char *others,
+                 const char *what);
+};
+
+/* A check that goes on. The report keeps the first failure. Either may be NULL. */
 struct check {
     struct report *report;
-    const char **key; /* gets the first failure's; may be NULL */
+    struct check_listener *listener;
     sonject_status status;
 };
 
 /* The message "<key> <what>"; check->status becomes INPUT. */
 void check_failure(struct check *check, const char *key, const char *format, ...) REPORT_FORMAT(3);
+
+/* The same where the value is wrong only beside those of others. */
+void check_relation(struct check *check, const char *key, const char *others, const char *format,
+                    ...) REPORT_FORMAT(4);
 
 /* unit: as it stands behind a number, " m"; "" for none. */
 void check_within(struct check *check, const char *key, double value, double minimum,

@@ -9,7 +9,7 @@ sonject_status report_failure(struct report *report, sonject_status status, cons
 {
     va_list arguments;
     va_start(arguments, format);
-    vsnprintf(report->message, sizeof report->message, format, arguments);
+    vsnprintf(report->message, REPORT_LINE, format, arguments);
     va_end(arguments);
     text_make_printable(report->message);
     return status;
@@ -24,7 +24,7 @@ void report_news(struct report *report, const char *format, ...)
 {
     if (!report->log)
         return;
-    char line[REPORT_CAPACITY];
+    char line[REPORT_LINE];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(line, sizeof line, format, arguments);

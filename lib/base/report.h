@@ -11,10 +11,11 @@
 extern "C" {
 #endif
 
-#define REPORT_CAPACITY 1024
+#define REPORT_LINE     1024 /* bytes of one */
+#define REPORT_CAPACITY 8192
 
 struct report {
-    char message[REPORT_CAPACITY]; /* one line, "" while nothing failed */
+    char message[REPORT_CAPACITY]; /* "" while nothing failed; one line, or one for each mistake */
     sonject_log_function log;      /* may be NULL */
     void *log_user;
 };

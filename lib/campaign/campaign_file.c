@@ -23,17 +23,22 @@ static sonject_status read_scene_name(struct reader *reader, const struct tree_n
                                    : report_out_of_memory(reader->report, "the campaign");
 }
 
+static sonject_status read_range_end(struct reader *reader, const struct tree_node *node,
+                                     void *structure)
+{
+    struct campaign *campaign = structure;
+    campaign->nearest_range_m = campaign->farthest_range_m;
+    return read_quantity(reader, node, QUANTITY_LENGTH, &campaign->farthest_range_m);
+}
+
 static sonject_status read_range(struct reader *reader, const struct tree_node *node,
                                  void *structure)
 {
+    static const struct list ends = {2, "", read_range_end};
     struct campaign *campaign = structure;
     if (node->kind != TREE_LIST || node->count != 2)
         return refuse_value(reader, node, "must be two slant ranges, [nearest, farthest]");
-    sonject_status status =
-        read_quantity(reader, &node->entries[0].value, QUANTITY_LENGTH, &campaign->nearest_range_m);
-    if (status == SONJECT_OK)
-        status = read_quantity(reader, &node->entries[1].value, QUANTITY_LENGTH,
-                               &campaign->farthest_range_m);
+    sonject_status status = read_list(reader, node, &ends, campaign);
     if (status == SONJECT_OK && !(campaign->nearest_range_m < campaign->farthest_range_m))
         status = refuse_value(reader, node, "begins at %g m, which is not below its end, %g m",
                               campaign->nearest_range_m, campaign->farthest_range_m);
@@ -41,28 +46,32 @@ static sonject_status read_range(struct reader *reader, const struct tree_node *
     return status;
 }
 
-/* A list of words, the first of which stands for the bit `first`, the next for the next. */
-static sonject_status read_words(struct reader *reader, const struct tree_node *node,
-                                 const char *const *words, size_t count, uint32_t first,
-                                 uint32_t *bits)
+/* Words, the first of which stands for the bit `first`, the next for the next. */
+struct bit_words {
+    const char *const *words;
+    size_t count;
+    uint32_t first;
+    uint32_t *bits;
+};
+
+static sonject_status read_bit_word(struct reader *reader, const struct tree_node *node,
+                                    void *structure)
 {
-    if (node->kind != TREE_LIST)
-        return refuse_value(reader, node, "must be a list");
-    for (size_t i = 0; i < node->count; i++) {
-        struct word_list list = {{0}, 0};
-        const struct tree_node *entry = &node->entries[i].value;
-        const char *text = read_text(reader, entry);
-        size_t word = 0;
-        if (!text)
-            return SONJECT_ERROR_INPUT;
-        while (word < count && strcmp(words[word], text) != 0)
-            list_word(&list, words[word++]);
-        if (word == count)
-            return refuse_word(reader, entry, text, &list, nearest_word(text, words, count));
-        *bits |= first << word;
-    }
+    const struct bit_words *bits = structure;
+    struct word_list list = {{0}, 0};
+    const char *text = read_text(reader, node);
+    size_t word = 0;
+    if (!text)
+        return SONJECT_ERROR_INPUT;
+    while (word < bits->count && strcmp(bits->words[word], text) != 0)
+        list_word(&list, bits->words[word++]);
+    if (word == bits->count)
+        return refuse_word(reader, node, text, &list, nearest_word(text, bits->words, bits->count));
+    *bits->bits |= bits->first << word;
     return SONJECT_OK;
 }
+
+static const struct list bit_words = {SIZE_MAX, "", read_bit_word};
 
 static sonject_status read_outputs(struct reader *reader, const struct tree_node *node,
                                    void *structure)
@@ -70,7 +79,8 @@ static sonject_status read_outputs(struct reader *reader, const struct tree_node
     static const char *const words[] = {"highlight", "shadow", "masks", "energy", "field"};
     struct campaign *campaign = structure;
     campaign->outputs &= OUTPUT_YOLO | OUTPUT_VOC;
-    return read_words(reader, node, words, COUNT(words), OUTPUT_HIGHLIGHT, &campaign->outputs);
+    struct bit_words bits = {words, COUNT(words), OUTPUT_HIGHLIGHT, &campaign->outputs};
+    return read_list(reader, node, &bit_words, &bits);
 }
 
 static sonject_status read_labels(struct reader *reader, const struct tree_node *node,
@@ -78,7 +88,8 @@ static sonject_status read_labels(struct reader *reader, const struct tree_node 
 {
     static const char *const words[] = {"yolo", "voc"};
     struct campaign *campaign = structure;
-    return read_words(reader, node, words, COUNT(words), OUTPUT_YOLO, &campaign->outputs);
+    struct bit_words bits = {words, COUNT(words), OUTPUT_YOLO, &campaign->outputs};
+    return read_list(reader, node, &bit_words, &bits);
 }
 
 static sonject_status finish_fraction(struct reader *reader, const struct tree_node *node,
@@ -94,9 +105,9 @@ static sonject_status finish_chip(struct reader *reader, const struct tree_node 
 {
     const struct campaign *campaign = structure;
     if (campaign->chip_rows < 16)
-        return refuse_key(reader, node, "rows", "must be at least 16");
+        refuse_key(reader, node, "rows", "must be at least 16");
     if (campaign->chip_columns < 16)
-        return refuse_key(reader, node, "columns", "must be at least 16");
+        refuse_key(reader, node, "columns", "must be at least 16");
     return finish_fraction(reader, node, "spread", campaign->spread);
 }
 
@@ -136,16 +147,16 @@ static sonject_status finish_campaign(struct reader *reader, const struct tree_n
                                       void *structure)
 {
     struct campaign *campaign = structure;
+    const double without_target = campaign->empty + campaign->clutter_alone;
     if (campaign->images == 0)
-        return refuse_key(reader, node, "images", "must be at least 1");
-    sonject_status status = finish_fraction(reader, node, "empty", campaign->empty);
-    if (status == SONJECT_OK && campaign->empty + campaign->clutter_alone > 1.0)
-        status = refuse_key(reader, node, "empty", "and clutter.alone together are above 1");
-    if (status == SONJECT_OK && campaign->target_count == 0 &&
-        campaign->empty + campaign->clutter_alone < 1.0)
-        status = refuse_key(reader, node, "targets",
-                            "is missing; add it, or make empty and clutter.alone add up to 1");
-    return status;
+        refuse_key(reader, node, "images", "must be at least 1");
+    finish_fraction(reader, node, "empty", campaign->empty);
+    if (without_target > 1.0)
+        refuse_relation(reader, node, "empty", "clutter", "and clutter.alone together are above 1");
+    if (campaign->target_count == 0 && without_target < 1.0)
+        refuse_relation(reader, node, "targets", "empty clutter",
+                        "is missing; add it, or make empty and clutter.alone add up to 1");
+    return SONJECT_OK;
 }
 
 /* Draws are read last, in this order, so that streams of random numbers keep their places. */
@@ -185,14 +196,14 @@ static sonject_status fill_campaign(struct tree *tree, const char *const *overri
 {
     struct reader reader = {.report = tree->report, .tree = tree};
     sonject_status status = SONJECT_OK;
-    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
+    for (size_t i = 0; !reading_ends(status) && i < count; i++)
         status = tree_override(tree, overrides[i]);
-    if (status == SONJECT_OK && tree_is_null(&tree->root))
-        status = refuse_value(&reader, &tree->root,
-                              "there is nothing in it; start with 'sonject_campaign: 1'");
-    if (status == SONJECT_OK)
-        status = read_section(&reader, &campaign_section, &tree->root, campaign);
-    return status;
+    if (reading_ends(status))
+        return status;
+    if (tree_is_null(&tree->root))
+        return refuse_value(&reader, &tree->root,
+                            "there is nothing in it; start with 'sonject_campaign: 1'");
+    return read_section(&reader, &campaign_section, &tree->root, campaign);
 }
 
 static void set_defaults(struct campaign *campaign)
@@ -223,12 +234,19 @@ sonject_status campaign_read(struct report *report, const char *path, const char
     sonject_status status = file_read_whole(report, path, TREE_BYTES_MAX, &text, &bytes);
     if (status != SONJECT_OK)
         return status;
-    tree_init(&campaign->tree, report, campaign->path);
-    status = tree_parse(&campaign->tree, text, bytes);
-    if (status == SONJECT_OK)
-        status = fill_campaign(&campaign->tree, overrides, count, campaign);
+    struct mistakes mistakes = {NULL, 0, 0, 0};
+    struct tree *tree = &campaign->tree;
+    tree_init(tree, report, campaign->path);
+    tree->mistakes = &mistakes;
+    report->message[0] = 0;
+    status = tree_parse(tree, text, bytes);
     free(text);
-    return status;
+    if (status == SONJECT_OK)
+        status = fill_campaign(tree, overrides, count, campaign);
+    tree->mistakes = NULL;
+    status = mistakes_tell(&mistakes, report, status);
+    return status == SONJECT_OK ? tree_override_text(report, &tree->root, &campaign->canonical)
+                                : status;
 }
 
 static void clear_draws(struct draws *draws)

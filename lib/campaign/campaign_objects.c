@@ -94,12 +94,11 @@ sonject_status read_campaign_draws(struct reader *reader, const struct tree_node
 {
     struct campaign *campaign = structure;
     sonject_status status = check_section(reader, node);
-    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
+    for (size_t i = 0; !reading_ends(status) && i < node->count; i++) {
         const struct tree_entry *entry = &node->entries[i];
         const bool is_object = strncmp(entry->key, OBJECT_PREFIX, strlen(OBJECT_PREFIX)) == 0;
         const char *key = entry->key + (is_object ? strlen(OBJECT_PREFIX) : 0);
-        status = check_scene_key(reader, entry, key, is_object);
-        if (status == SONJECT_OK)
+        if (check_scene_key(reader, entry, key, is_object) == SONJECT_OK)
             status = read_draw(reader, campaign, entry, key,
                                is_object ? &campaign->object_draws : &campaign->draws);
     }
@@ -142,12 +141,8 @@ static sonject_status read_object(struct reader *reader, const struct tree_node 
     struct item_text *text = structure;
     if (node->kind != TREE_SECTION)
         return refuse_value(reader, node, "must be a section, as of objects in a scene");
-    for (size_t i = 0; i < node->count; i++) {
-        const sonject_status status =
-            check_scene_key(reader, &node->entries[i], node->entries[i].key, true);
-        if (status != SONJECT_OK)
-            return status;
-    }
+    for (size_t i = 0; i < node->count; i++)
+        check_scene_key(reader, &node->entries[i], node->entries[i].key, true);
     return tree_override_text(reader->report, node, &text->item->object);
 }
 
@@ -156,10 +151,9 @@ static sonject_status read_item_draws(struct reader *reader, const struct tree_n
 {
     struct item_text *text = structure;
     sonject_status status = check_section(reader, node);
-    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
+    for (size_t i = 0; !reading_ends(status) && i < node->count; i++) {
         const struct tree_entry *entry = &node->entries[i];
-        status = check_scene_key(reader, entry, entry->key, true);
-        if (status == SONJECT_OK)
+        if (check_scene_key(reader, entry, entry->key, true) == SONJECT_OK)
             status = read_draw(reader, text->campaign, entry, entry->key, &text->item->draws);
     }
     return status;
@@ -176,28 +170,41 @@ static const struct field item_fields[] = {
 };
 static const struct section item_section = {item_fields, COUNT(item_fields), NULL};
 
+/* Items on their way into the campaign. */
+struct item_list {
+    struct campaign *campaign;
+    struct item **items;
+    size_t *count;
+    double sum; /* of the weights */
+};
+
+static sonject_status read_item(struct reader *reader, const struct tree_node *node,
+                                void *structure)
+{
+    struct item_list *list = structure;
+    sonject_status status =
+        grow_list(reader->report, list->items, *list->count, sizeof **list->items);
+    if (status != SONJECT_OK)
+        return status;
+    struct item *item = &(*list->items)[(*list->count)++];
+    struct item_text text = {list->campaign, item};
+    item->weight = 1.0;
+    item->place = node->place;
+    status = read_section(reader, &item_section, node, &text);
+    list->sum += item->weight;
+    return status;
+}
+
 static sonject_status read_items(struct reader *reader, const struct tree_node *node,
                                  struct campaign *campaign, struct item **items, size_t *count)
 {
-    sonject_status status = SONJECT_OK;
-    double sum = 0.0;
+    static const struct list entries = {CAMPAIGN_ITEMS_MAX, "", read_item};
+    struct item_list list = {campaign, items, count, 0.0};
     if (node->kind != TREE_LIST || node->count == 0 || node->count > CAMPAIGN_ITEMS_MAX)
         return refuse_value(reader, node, "must be a list of 1 to %d entries, not of %zu",
                             CAMPAIGN_ITEMS_MAX, node->count);
-    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
-        status = grow_list(reader->report, items, *count, sizeof **items);
-        if (status != SONJECT_OK)
-            return status;
-        struct item *item = &(*items)[(*count)++];
-        struct item_text text = {campaign, item};
-        item->weight = 1.0;
-        item->place = node->entries[i].value.place;
-        const size_t before = key_path_add_index(&reader->path, i);
-        status = read_section(reader, &item_section, &node->entries[i].value, &text);
-        key_path_shorten(&reader->path, before);
-        sum += item->weight;
-    }
-    if (status == SONJECT_OK && !(sum > 0.0))
+    const sonject_status status = read_list(reader, node, &entries, &list);
+    if (status == SONJECT_OK && !(list.sum > 0.0))
         return refuse_value(reader, node, "has weights that are all 0");
     return status;
 }

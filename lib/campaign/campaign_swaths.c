@@ -34,32 +34,37 @@ static sonject_status read_split_name(struct reader *reader, const struct tree_n
     return swath->split ? SONJECT_OK : report_out_of_memory(reader->report, "the campaign");
 }
 
+static sonject_status read_swath_key(struct reader *reader, const struct tree_entry *entry,
+                                     struct swath_plan *swath)
+{
+    char *value = NULL;
+    sonject_status status = check_scene_key(reader, entry, entry->key, false);
+    if (status == SONJECT_OK)
+        status = grow_list(reader->report, &swath->keys, swath->key_count, sizeof *swath->keys);
+    if (status == SONJECT_OK)
+        status = tree_override_text(reader->report, &entry->value, &value);
+    if (status != SONJECT_OK)
+        return status;
+    const size_t bytes = strlen(entry->key) + strlen(value) + 2;
+    char *pair = allocate_array(bytes, 1);
+    if (pair)
+        snprintf(pair, bytes, "%s=%s", entry->key, value);
+    free(value);
+    if (!pair)
+        return report_out_of_memory(reader->report, "the campaign");
+    swath->keys[swath->key_count++] = pair;
+    return SONJECT_OK;
+}
+
 static sonject_status read_swath_keys(struct reader *reader, const struct tree_node *node,
                                       void *structure)
 {
-    struct swath_plan *swath = structure;
+    sonject_status status = SONJECT_OK;
     if (node->kind != TREE_SECTION)
         return refuse_value(reader, node, "must be a section of 'key: value' lines");
-    for (size_t i = 0; i < node->count; i++) {
-        const struct tree_entry *entry = &node->entries[i];
-        char *value = NULL;
-        sonject_status status = check_scene_key(reader, entry, entry->key, false);
-        if (status == SONJECT_OK)
-            status = grow_list(reader->report, &swath->keys, swath->key_count, sizeof *swath->keys);
-        if (status == SONJECT_OK)
-            status = tree_override_text(reader->report, &entry->value, &value);
-        if (status != SONJECT_OK)
-            return status;
-        const size_t bytes = strlen(entry->key) + strlen(value) + 2;
-        char *pair = allocate_array(bytes, 1);
-        if (pair)
-            snprintf(pair, bytes, "%s=%s", entry->key, value);
-        free(value);
-        if (!pair)
-            return report_out_of_memory(reader->report, "the campaign");
-        swath->keys[swath->key_count++] = pair;
-    }
-    return SONJECT_OK;
+    for (size_t i = 0; !reading_ends(status) && i < node->count; i++)
+        status = read_swath_key(reader, &node->entries[i], structure);
+    return status;
 }
 
 static const struct field box_fields[] = {
@@ -70,28 +75,22 @@ static const struct field box_fields[] = {
 };
 static const struct section box_section = {box_fields, COUNT(box_fields), NULL};
 
+static sonject_status read_box(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    struct swath_plan *swath = structure;
+    const sonject_status status =
+        grow_list(reader->report, &swath->avoid, swath->avoid_count, sizeof *swath->avoid);
+    return status == SONJECT_OK
+               ? read_section(reader, &box_section, node, &swath->avoid[swath->avoid_count++])
+               : status;
+}
+
 static sonject_status read_avoid(struct reader *reader, const struct tree_node *node,
                                  void *structure)
 {
-    struct swath_plan *swath = structure;
-    if (node->kind != TREE_LIST)
-        return refuse_value(reader, node, "must be a list of {row: , column: , rows: , columns: }");
-    if (node->count > BOXES_MAX)
-        return refuse_value(reader, node, "has %zu entries; at most %d are possible", node->count,
-                            BOXES_MAX);
-    for (size_t i = 0; i < node->count; i++) {
-        sonject_status status =
-            grow_list(reader->report, &swath->avoid, swath->avoid_count, sizeof *swath->avoid);
-        if (status != SONJECT_OK)
-            return status;
-        const size_t before = key_path_add_index(&reader->path, i);
-        status = read_section(reader, &box_section, &node->entries[i].value,
-                              &swath->avoid[swath->avoid_count++]);
-        key_path_shorten(&reader->path, before);
-        if (status != SONJECT_OK)
-            return status;
-    }
-    return SONJECT_OK;
+    static const struct list boxes = {BOXES_MAX, " of {row: , column: , rows: , columns: }",
+                                      read_box};
+    return read_list(reader, node, &boxes, structure);
 }
 
 static const struct field swath_fields[] = {
@@ -112,29 +111,31 @@ static sonject_status check_split_name(struct reader *reader, const struct campa
             return SONJECT_OK;
         list_word(&list, campaign->splits[i].name);
     }
+    if (mistakes_concern(reader->tree->mistakes, reader->tree, "splits"))
+        return SONJECT_ERROR_INPUT;
     return refuse_key(reader, node, "split", "is none of the splits, which are %s", list.text);
+}
+
+static sonject_status read_swath(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    struct campaign *campaign = structure;
+    sonject_status status = grow_list(reader->report, &campaign->swaths, campaign->swath_count,
+                                      sizeof *campaign->swaths);
+    if (status != SONJECT_OK)
+        return status;
+    struct swath_plan *swath = &campaign->swaths[campaign->swath_count++];
+    swath->place = node->place;
+    status = read_section(reader, &swath_section, node, swath);
+    return reading_ends(status) ? status : check_split_name(reader, campaign, swath, node);
 }
 
 sonject_status read_swaths(struct reader *reader, const struct tree_node *node, void *structure)
 {
-    struct campaign *campaign = structure;
-    sonject_status status = SONJECT_OK;
+    static const struct list swaths = {CAMPAIGN_SWATHS_MAX, "", read_swath};
     if (node->kind != TREE_LIST || node->count == 0 || node->count > CAMPAIGN_SWATHS_MAX)
         return refuse_value(reader, node, "must be a list of 1 to %d entries", CAMPAIGN_SWATHS_MAX);
-    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
-        status = grow_list(reader->report, &campaign->swaths, campaign->swath_count,
-                           sizeof *campaign->swaths);
-        if (status != SONJECT_OK)
-            return status;
-        struct swath_plan *swath = &campaign->swaths[campaign->swath_count++];
-        swath->place = node->entries[i].value.place;
-        const size_t before = key_path_add_index(&reader->path, i);
-        status = read_section(reader, &swath_section, &node->entries[i].value, swath);
-        if (status == SONJECT_OK)
-            status = check_split_name(reader, campaign, swath, &node->entries[i].value);
-        key_path_shorten(&reader->path, before);
-    }
-    return status;
+    return read_list(reader, node, &swaths, structure);
 }
 
 bool is_split_name(const char *name)
@@ -148,6 +149,7 @@ sonject_status read_splits(struct reader *reader, const struct tree_node *node, 
 {
     struct campaign *campaign = structure;
     double sum = 0.0;
+    sonject_status status = SONJECT_OK;
     if (node->kind != TREE_SECTION || node->count == 0 || node->count > CAMPAIGN_SPLITS_MAX)
         return refuse_value(reader, node, "must be a section of 1 to %d 'name: fraction' lines",
                             CAMPAIGN_SPLITS_MAX);
@@ -157,21 +159,20 @@ sonject_status read_splits(struct reader *reader, const struct tree_node *node, 
         struct split *split = &campaign->splits[campaign->split_count++];
         memset(split, 0, sizeof *split);
         const size_t before = key_path_add(&reader->path, entry->key);
-        if (!is_split_name(entry->key))
-            return tree_failure(reader->tree, entry->place, reader->path.text,
-                                "names a folder: use up to %d letters, digits, _ and -",
-                                SPLIT_NAME_CAPACITY - 1);
-        strcpy(split->name, entry->key);
-        const sonject_status status =
-            read_quantity(reader, &entry->value, QUANTITY_NUMBER, &split->fraction);
-        if (status != SONJECT_OK)
-            return status;
-        if (!(split->fraction > 0.0 && split->fraction <= 1.0))
-            return refuse_value(reader, &entry->value, "must be above 0 and at most 1");
+        if (is_split_name(entry->key))
+            strcpy(split->name, entry->key);
+        else
+            status = tree_failure(reader->tree, entry->place, reader->path.text,
+                                  "names a folder: use up to %d letters, digits, _ and -",
+                                  SPLIT_NAME_CAPACITY - 1);
+        if (read_quantity(reader, &entry->value, QUANTITY_NUMBER, &split->fraction) != SONJECT_OK)
+            status = SONJECT_ERROR_INPUT;
+        else if (!(split->fraction > 0.0 && split->fraction <= 1.0))
+            status = refuse_value(reader, &entry->value, "must be above 0 and at most 1");
         sum += split->fraction;
         key_path_shorten(&reader->path, before);
     }
-    if (fabs(sum - 1.0) > 1e-6)
+    if (status == SONJECT_OK && fabs(sum - 1.0) > 1e-6)
         return refuse_value(reader, node, "add up to %g; make that 1", sum);
-    return SONJECT_OK;
+    return status;
 }

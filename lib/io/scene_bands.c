@@ -25,8 +25,8 @@ static sonject_status check_band(struct reader *reader, const struct tree_entry 
     else if (band->value.kind != TREE_SECTION)
         status = refuse_value(reader, &band->value,
                               "must be a section of the scene's keys that this band changes");
-    for (size_t i = 0; status == SONJECT_OK && i < sizeof others / sizeof *others; i++)
-        if (tree_find(&band->value, others[i]))
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (is_given(&band->value, others[i]))
             status =
                 refuse_key(reader, &band->value, others[i], "cannot be a band's own; remove it");
     key_path_shorten(&reader->path, before);
@@ -39,8 +39,9 @@ static sonject_status check_bands(struct reader *reader, const struct tree_node 
     const size_t before = key_path_add(&reader->path, "bands");
     if (bands->kind != TREE_SECTION || bands->count == 0)
         status = refuse_value(reader, bands, "must be a section of bands: their names, and keys");
-    for (size_t i = 0; status == SONJECT_OK && i < bands->count; i++)
-        status = check_band(reader, &bands->entries[i]);
+    for (size_t i = 0; bands->kind == TREE_SECTION && i < bands->count; i++)
+        if (check_band(reader, &bands->entries[i]) != SONJECT_OK)
+            status = SONJECT_ERROR_INPUT;
     key_path_shorten(&reader->path, before);
     return status;
 }

@@ -40,11 +40,7 @@ static const struct section hydrophones_section = {hydrophones_fields, COUNT(hyd
 static sonject_status finish_elements(struct reader *reader, const struct tree_node *node,
                                       void *structure)
 {
-    struct report report = {{0}, NULL, NULL};
-    const char *key = "";
-    if (check_elements(structure, &report, &key) != SONJECT_OK)
-        return place_check(reader, node, key, &report);
-    return SONJECT_OK;
+    return check_elements(structure, NULL, listen_at(reader, node));
 }
 
 static const struct field elements_fields[] = {

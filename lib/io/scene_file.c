@@ -10,8 +10,10 @@
 static sonject_status apply_overrides(struct tree *tree, const struct scene_text *source)
 {
     sonject_status status = SONJECT_OK;
-    for (size_t i = 0; status == SONJECT_OK && i < source->override_count; i++)
-        status = tree_override(tree, source->overrides[i]);
+    for (size_t i = 0; !reading_ends(status) && i < source->override_count; i++) {
+        const sonject_status of_one = tree_override(tree, source->overrides[i]);
+        status = of_one == SONJECT_OK ? status : of_one;
+    }
     return status;
 }
 
@@ -25,7 +27,7 @@ static sonject_status fill_scene(struct tree *tree, const struct scene_text *sou
                             .moved_folder = source->moved_folder,
                             .moved_overrides = source->moved_overrides};
     sonject_status status = apply_overrides(tree, source);
-    if (status != SONJECT_OK)
+    if (reading_ends(status))
         return status;
     if (tree_is_null(&tree->root))
         return refuse_value(&reader, &tree->root,
@@ -49,10 +51,14 @@ sonject_status scene_text_read(struct report *report, const struct scene_text *s
                                struct scene *scene)
 {
     struct tree tree;
+    struct mistakes mistakes = {NULL, 0, 0, 0};
     tree_init(&tree, report, source->path);
+    tree.mistakes = &mistakes;
+    report->message[0] = 0;
     sonject_status status = tree_parse(&tree, source->text, source->bytes);
     if (status == SONJECT_OK)
         status = fill_scene(&tree, source, scene);
+    status = mistakes_tell(&mistakes, report, status);
     tree_clear(&tree);
     if (status != SONJECT_OK)
         scene_clear(scene);

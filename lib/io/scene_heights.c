@@ -43,21 +43,19 @@ static sonject_status finish_heights(struct reader *reader, const struct tree_no
                                      void *structure)
 {
     const struct heights_text *text = structure;
-    struct report report = {{0}, NULL, NULL};
-    const char *key = "";
-    struct check check = {&report, &key, SONJECT_OK};
+    struct check check = {NULL, listen_at(reader, node), SONJECT_OK};
     check_coordinate(&check, "offset", text->offset_m);
     check_positive_length(&check, "row_spacing", text->grid.row_spacing_m);
     check_positive_length(&check, "column_spacing", text->grid.column_spacing_m);
     check_coordinate(&check, "first_along_track", text->grid.first_along_track_m);
     check_coordinate(&check, "first_ground_range", text->grid.first_ground_range_m);
-    return check.status == SONJECT_OK ? SONJECT_OK : place_check(reader, node, key, &report);
+    return check.status;
 }
 
 #define STRUCTURE struct heights_text
 static const struct field heights_fields[] = {
     {"file", "image or array of one channel: rows along-track, columns in ground range",
-     .kind = FIELD_PATH, .offset = offsetof(STRUCTURE, path), REQUIRED},
+     .kind = FIELD_FILE, .offset = offsetof(STRUCTURE, path), REQUIRED},
     {"array", "in an HDF5 or MATLAB file of several: its name", .kind = FIELD_SPECIAL,
      .unit = "text", .read = read_heights_array},
     {"unit", "of the file's numbers", .kind = FIELD_SPECIAL, .unit = "m, km, cm, mm",

@@ -37,6 +37,7 @@ static const char *unit_of(const struct field *field)
     case FIELD_LABEL:
         return "text";
     case FIELD_PATH:
+    case FIELD_FILE:
         return "file name";
     case FIELD_NAMED:
         return field->unit ? field->unit : "name";

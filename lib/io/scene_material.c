@@ -39,11 +39,6 @@ sonject_status read_sediment_name(struct reader *reader, const struct tree_node 
     return status;
 }
 
-static bool is_given(const struct tree_node *node, const char *key)
-{
-    return tree_find(node, key) != NULL;
-}
-
 /* The keys of fluid may change a named fluid; what is none yet needs them. */
 static sonject_status finish_fluid(struct reader *reader, const struct tree_node *node,
                                    void *structure)
@@ -52,8 +47,7 @@ static sonject_status finish_fluid(struct reader *reader, const struct tree_node
     static const char *const needed[] = {"density", "speed"};
     for (int i = 0; i < 2; i++)
         if (material->reflection_kind != SONJECT_REFLECTION_FLUID && !is_given(node, needed[i]))
-            return refuse_key(reader, node, needed[i],
-                              "missing; a fluid needs it (ratio to the water's)");
+            refuse_key(reader, node, needed[i], "missing; a fluid needs it (ratio to the water's)");
     material->reflection_kind = SONJECT_REFLECTION_FLUID;
     return SONJECT_OK;
 }

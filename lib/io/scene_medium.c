@@ -8,11 +8,6 @@
 #include "io/scene_fields.h"
 #include "medium/profile.h"
 
-static bool is_given(const struct tree_node *node, const char *key)
-{
-    return tree_find(node, key) != NULL;
-}
-
 const char *behind_name(const struct report *check)
 {
     const char *blank = strchr(check->message, ' ');
@@ -61,9 +56,19 @@ static sonject_status check_layers(struct reader *reader, const struct tree_node
     return refuse_key(reader, &node->entries[place.index].value, place.key, "%s", what);
 }
 
+static sonject_status read_layer(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    struct medium_text *text = structure;
+    struct water_layer *layer = &text->layers[text->layer_count++];
+    layer->density = 1.0;
+    return read_section(reader, &layer_section, node, layer);
+}
+
 static sonject_status read_layers(struct reader *reader, const struct tree_node *node,
                                   void *structure)
 {
+    static const struct list layers = {WATER_LAYERS_MAX, "", read_layer};
     struct medium_text *text = structure;
     sonject_status status =
         check_list(reader, node, "[{bottom: 0 m, sound_speed: 1490 m/s}, {bottom: 12 m, ...}]");
@@ -72,13 +77,7 @@ static sonject_status read_layers(struct reader *reader, const struct tree_node 
     text->layers = allocate_array(node->count, sizeof *text->layers);
     if (!text->layers)
         return report_out_of_memory(reader->report, "layers of water");
-    text->layer_count = node->count;
-    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
-        const size_t before = key_path_add_index(&reader->path, i);
-        text->layers[i].density = 1.0;
-        status = read_section(reader, &layer_section, &node->entries[i].value, &text->layers[i]);
-        key_path_shorten(&reader->path, before);
-    }
+    status = read_list(reader, node, &layers, text);
     return status == SONJECT_OK ? check_layers(reader, node, text->layers) : status;
 }
 
@@ -95,10 +94,9 @@ static sonject_status finish_sea_water(struct reader *reader, const struct tree_
     struct medium_text *text = structure;
     const struct sea_water *water = &text->sea_water;
     const double frequency = reader->scene->sonar.centre_frequency_hz;
-    struct report check = {{0}, NULL, NULL};
-    const char *key = "";
-    if (check_sea_water(water, &check, &key) != SONJECT_OK)
-        return place_check(reader, node, key, &check);
+    check_sea_water(water, NULL, listen_at(reader, node));
+    if (mistakes_concern(reader->tree->mistakes, reader->tree, "sonar.frequency"))
+        return SONJECT_OK;
     if (!(frequency >= ABSORPTION_FREQUENCY_MIN_HZ && frequency <= ABSORPTION_FREQUENCY_MAX_HZ))
         return refuse_value(reader, node,
                             "is known from 200 Hz to 1 MHz, not at the sonar's %g Hz; give it in "
@@ -126,11 +124,7 @@ static sonject_status finish_medium(struct reader *reader, const struct tree_nod
                                     void *structure)
 {
     const struct medium_text *text = structure;
-    struct report report = {{0}, NULL, NULL};
-    const char *key = "";
-    if (check_medium(&text->medium, &report, &key) != SONJECT_OK)
-        return place_check(reader, node, key, &report);
-    return SONJECT_OK;
+    return check_medium(&text->medium, NULL, listen_at(reader, node));
 }
 
 static const struct field medium_fields[] = {
@@ -163,9 +157,9 @@ sonject_status read_medium(struct reader *reader, const struct tree_node *node, 
     struct medium_text text = {.medium = scene->medium, .sea_water = {.ph = 8.0}};
     if (tree_is_null(node))
         return SONJECT_OK;
-    if (is_given(node, "sound_speed") + is_given(node, "layers") + is_given(node, "profile") > 1)
-        return refuse_value(reader, node,
-                            "more than one of sound_speed, layers and profile is there; give one");
+    if (count_given(node, "sound_speed layers profile") > 1)
+        refuse_value(reader, node,
+                     "more than one of sound_speed, layers and profile is there; give one");
     const sonject_status status = read_section(reader, &medium_section, node, &text);
     if (status == SONJECT_OK) {
         free(scene->water_layers);

@@ -2,7 +2,6 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "base/text.h"
 #include "io/scene_shape.h"
 
 #define PI 3.14159265358979323846
@@ -64,8 +63,8 @@ static sonject_status finish_mesh(struct reader *reader, const struct tree_node 
     const struct mesh_text *mesh = structure;
     int axes[3];
     if (!(mesh->smooth_angle_rad >= 0.0 && mesh->smooth_angle_rad <= PI))
-        return refuse_key(reader, node, "smooth", "must be 0 to 180 deg, not %g deg",
-                          mesh->smooth_angle_rad * 180.0 / PI);
+        refuse_key(reader, node, "smooth", "must be 0 to 180 deg, not %g deg",
+                   mesh->smooth_angle_rad * 180.0 / PI);
     if (!turn_file_axes(mesh, axes))
         return refuse_value(reader, node,
                             "nose and up are the same axis of the file; give both, such as "
@@ -80,7 +79,7 @@ static sonject_status finish_mesh(struct reader *reader, const struct tree_node 
         [AXIS_Y_REVERSED] = "-y", [AXIS_Z_REVERSED] = "-z"                                         \
     }
 static const struct field mesh_fields[] = {
-    {"file", "of triangles: STL, OBJ or PLY", .kind = FIELD_PATH,
+    {"file", "of triangles: STL, OBJ or PLY", .kind = FIELD_FILE,
      .offset = offsetof(STRUCTURE, path), REQUIRED},
     {"unit", "of the file's numbers, by default m", .kind = FIELD_SPECIAL, .unit = "m, km, cm, mm",
      .read = read_unit},
@@ -120,21 +119,20 @@ static sonject_status load(struct reader *reader, const struct tree_node *node,
 {
     struct report report = {{0}, NULL, NULL};
     struct mesh_options options;
-    char excerpt[400];
     mesh_options_init(&options);
     options.unit_m = mesh->unit_m > 0.0 ? mesh->unit_m : 1.0;
     options.smooth_angle_rad = mesh->smooth_angle_rad;
     turn_file_axes(mesh, options.axes);
-    if (!file_exists(mesh->path))
-        return refuse_value(reader, node, "there is no file %s; check its name",
-                            text_excerpt(excerpt, sizeof excerpt, mesh->path));
     const sonject_status status =
         scene_share_mesh(reader->scene, &report, mesh->path, &options, mesh->allows_open, number);
     if (status == SONJECT_OK)
         return mesh->unit_m > 0.0 ? status : doubt_size(reader, node, *number);
     if (status == SONJECT_ERROR_MEMORY)
         return report_out_of_memory(reader->report, mesh->path);
-    refuse_value(reader, node, "%s", report.message);
+    /* What is wrong in a file is one mistake, however many objects show it. */
+    if (!mistakes_concern(reader->tree->mistakes, reader->tree, mesh->path))
+        refuse_value(reader, node, "%s", report.message);
+    mistakes_add(reader->tree->mistakes, reader->tree, &node->place, mesh->path, NULL);
     return status;
 }
 
@@ -145,7 +143,7 @@ sonject_status read_mesh(struct reader *reader, const struct tree_node *node, vo
     const struct tree_entry *file = tree_find(node, "file");
     const size_t before = reader->path.length;
     sonject_status status = node->kind == TREE_TEXT
-                                ? read_path(reader, node, &mesh.path)
+                                ? read_existing_path(reader, node, &mesh.path)
                                 : read_section(reader, &mesh_section, node, &mesh);
     if (file)
         key_path_add(&reader->path, "file");

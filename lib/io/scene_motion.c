@@ -2,23 +2,10 @@
  * named columns. */
 #include <stdlib.h>
 
-#include "base/file.h"
-#include "base/text.h"
 #include "io/number_table.h"
 #include "io/scene_fields.h"
 
 #define TABLE_BYTES_MAX (16 * 1024 * 1024)
-
-/* Checks one sine, in a motion that has no other. */
-static sonject_status check_sine(struct reader *reader, const struct tree_node *node,
-                                 const sonject_motion_params *motion)
-{
-    struct report report = {{0}, NULL, NULL};
-    const char *key = "";
-    if (check_motion(motion, &report, &key) != SONJECT_OK)
-        return place_check(reader, node, key, &report);
-    return SONJECT_OK;
-}
 
 static sonject_status finish_sway(struct reader *reader, const struct tree_node *node,
                                   void *structure)
@@ -27,7 +14,7 @@ static sonject_status finish_sway(struct reader *reader, const struct tree_node 
     sonject_motion_params_init(&motion);
     motion.sways[0] = *(const sonject_sway *)structure;
     motion.sway_count = 1;
-    return check_sine(reader, node, &motion);
+    return check_motion(&motion, NULL, listen_at(reader, node));
 }
 
 static sonject_status finish_yaw(struct reader *reader, const struct tree_node *node,
@@ -38,7 +25,7 @@ static sonject_status finish_yaw(struct reader *reader, const struct tree_node *
     motion.yaws[0] = *(const sonject_yaw *)structure;
     motion.yaw_count = 1;
     motion.yaw_advance_m = 1.0;
-    return check_sine(reader, node, &motion);
+    return check_motion(&motion, NULL, listen_at(reader, node));
 }
 
 #define STRUCTURE sonject_sway
@@ -62,44 +49,33 @@ static const struct section yaw_sine_section = {yaw_sine_fields, COUNT(yaw_sine_
                                                 finish_yaw};
 #undef STRUCTURE
 
-typedef char yaws_are_as_many_as_sways[SONJECT_YAWS_CAPACITY == SONJECT_SWAYS_CAPACITY ? 1 : -1];
-
-/* A list of sines; each section's structure is one of `size` bytes from `sines` on. */
-static sonject_status read_sines(struct reader *reader, const struct tree_node *node,
-                                 const struct section *section, void *sines, size_t size,
-                                 uint32_t *count)
+static sonject_status read_sway(struct reader *reader, const struct tree_node *node,
+                                void *structure)
 {
-    const size_t most = SONJECT_SWAYS_CAPACITY;
-    sonject_status status = SONJECT_OK;
-    if (node->kind != TREE_LIST)
-        return refuse_value(reader, node, "must be a list; start each sine with '- '");
-    if (node->count > most)
-        return refuse_value(reader, node, "has %zu entries; at most %zu are possible", node->count,
-                            most);
-    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
-        const size_t before = key_path_add_index(&reader->path, i);
-        status = read_section(reader, section, &node->entries[i].value, (char *)sines + i * size);
-        if (status == SONJECT_OK)
-            *count = (uint32_t)i + 1;
-        key_path_shorten(&reader->path, before);
-    }
-    return status;
+    sonject_motion_params *motion = structure;
+    return read_section(reader, &sway_section, node, &motion->sways[motion->sway_count++]);
+}
+
+static sonject_status read_yaw(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    sonject_motion_params *motion = structure;
+    return read_section(reader, &yaw_sine_section, node, &motion->yaws[motion->yaw_count++]);
 }
 
 static sonject_status read_sways(struct reader *reader, const struct tree_node *node,
                                  void *structure)
 {
-    sonject_motion_params *motion = structure;
-    return read_sines(reader, node, &sway_section, motion->sways, sizeof *motion->sways,
-                      &motion->sway_count);
+    static const struct list sways = {SONJECT_SWAYS_CAPACITY, "; start each sine with '- '",
+                                      read_sway};
+    return read_list(reader, node, &sways, structure);
 }
 
 static sonject_status read_yaws(struct reader *reader, const struct tree_node *node,
                                 void *structure)
 {
-    sonject_motion_params *motion = structure;
-    return read_sines(reader, node, &yaw_sine_section, motion->yaws, sizeof *motion->yaws,
-                      &motion->yaw_count);
+    static const struct list yaws = {SONJECT_YAWS_CAPACITY, "; start each sine with '- '",
+                                     read_yaw};
+    return read_list(reader, node, &yaws, structure);
 }
 
 static sonject_status read_motion_table(struct reader *reader, const struct tree_node *node,
@@ -108,13 +84,9 @@ static sonject_status read_motion_table(struct reader *reader, const struct tree
 {
     struct number_table table;
     char *path = NULL;
-    char excerpt[400];
     size_t sample;
     const char *what;
-    sonject_status status = read_path(reader, node, &path);
-    if (status == SONJECT_OK && !file_exists(path))
-        status = refuse_value(reader, node, "there is no file %s; check its name",
-                              text_excerpt(excerpt, sizeof excerpt, path));
+    sonject_status status = read_existing_path(reader, node, &path);
     if (status == SONJECT_OK)
         status = number_table_read(reader->report, path, format, &table);
     free(path);
@@ -151,11 +123,9 @@ static sonject_status read_yaw_file(struct reader *reader, const struct tree_nod
 static sonject_status finish_motion(struct reader *reader, const struct tree_node *node,
                                     void *structure)
 {
-    struct report report = {{0}, NULL, NULL};
-    const char *key = "";
-    if (check_motion(structure, &report, &key) != SONJECT_OK)
-        return place_check(reader, node, key, &report);
-    return SONJECT_OK;
+    sonject_motion_params motion = *(const sonject_motion_params *)structure;
+    motion.sway_count = motion.yaw_count = 0; /* each sine was checked */
+    return check_motion(&motion, NULL, listen_at(reader, node));
 }
 
 /* An advance of 0, which would mean that there is no yaw. */

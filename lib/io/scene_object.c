@@ -7,11 +7,6 @@
 
 #define STRUCTURE sonject_object_params
 
-static bool is_given(const struct tree_node *node, const char *key)
-{
-    return tree_find(node, key) != NULL;
-}
-
 static const struct field position_fields[] = {
     {"along_track", "track position", QUANTITY(STRUCTURE, position_along, QUANTITY_LENGTH)},
     {"slant_range", "as the image shows it", QUANTITY(STRUCTURE, position_range, QUANTITY_LENGTH)},
@@ -26,13 +21,7 @@ static const struct section position_section = {position_fields, COUNT(position_
 sonject_status finish_position(struct reader *reader, const struct tree_node *node, void *structure)
 {
     sonject_object_params *object = structure;
-    const int metres = is_given(node, "along_track") + is_given(node, "slant_range");
-    const int pixels = is_given(node, "row") + is_given(node, "column");
-    if (metres + pixels != 2 || metres == 1)
-        return refuse_value(reader, node,
-                            "needs along_track and slant_range, or row and column; give one pair");
-    object->position_kind = metres ? SONJECT_POSITION_METRES : SONJECT_POSITION_PIXELS;
-    return SONJECT_OK;
+    return check_position(reader, node, &object->position_kind);
 }
 
 /* A depth by itself. structure: the object. */
@@ -47,7 +36,7 @@ static sonject_status finish_burial(struct reader *reader, const struct tree_nod
                                     void *structure)
 {
     sonject_object_params *object = structure;
-    if (is_given(node, "fraction") + is_given(node, "proud") != 1)
+    if (count_given(node, "fraction proud") != 1 && are_sound(reader, "fraction proud"))
         return refuse_value(reader, node,
                             "needs fraction or proud; give one, or a depth by itself");
     object->burial_kind =
@@ -67,7 +56,8 @@ static sonject_status finish_level(struct reader *reader, const struct tree_node
                                    void *structure)
 {
     sonject_object_params *object = structure;
-    if (is_given(node, "target_strength") + is_given(node, "over_seabed") != 1)
+    if (count_given(node, "target_strength over_seabed") != 1 &&
+        are_sound(reader, "target_strength over_seabed"))
         return refuse_value(reader, node, "needs target_strength or over_seabed; give one");
     object->level_kind =
         is_given(node, "over_seabed") ? SONJECT_LEVEL_OVER_SEABED : SONJECT_LEVEL_TARGET_STRENGTH;
@@ -125,14 +115,18 @@ static const struct field object_fields[] = {
 };
 const struct section object_section = {object_fields, COUNT(object_fields), finish_object};
 
-static sonject_status read_object(struct reader *reader, const struct tree_node *node)
+static sonject_status read_object(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
 {
     struct target_text text;
+    (void)structure;
     memset(&text, 0, sizeof text);
     start_shape(&text.object, NULL);
     sonject_status status = read_section(reader, &object_section, node, &text);
-    if (status == SONJECT_OK)
-        status = read_target_parts(reader, &text);
+    if (!reading_ends(status)) {
+        const sonject_status of_parts = read_target_parts(reader, &text);
+        status = of_parts == SONJECT_OK ? status : of_parts;
+    }
     if (status == SONJECT_OK)
         status = scene_append_object(reader->scene, reader->report, &text.object);
     target_text_clear(&text);
@@ -141,36 +135,19 @@ static sonject_status read_object(struct reader *reader, const struct tree_node 
 
 sonject_status read_objects(struct reader *reader, const struct tree_node *node, void *structure)
 {
-    sonject_status status = SONJECT_OK;
-    (void)structure;
-    if (tree_is_null(node))
-        return SONJECT_OK;
-    if (node->kind != TREE_LIST)
-        return refuse_value(reader, node, "must be a list; start each object with '- '");
-    if (node->count > SCENE_OBJECTS_MAX)
-        return refuse_value(reader, node, "has %zu entries; at most %d are possible", node->count,
-                            SCENE_OBJECTS_MAX);
-    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
-        const size_t before = key_path_add_index(&reader->path, i);
-        status = read_object(reader, &node->entries[i].value);
-        key_path_shorten(&reader->path, before);
-    }
-    return status;
+    static const struct list objects = {SCENE_OBJECTS_MAX, "; start each object with '- '",
+                                        read_object};
+    return tree_is_null(node) ? SONJECT_OK : read_list(reader, node, &objects, structure);
 }
 
 sonject_status finish_object(struct reader *reader, const struct tree_node *node, void *structure)
 {
-    static const char *const keys[] = {"shape", "parts", "target"};
     const struct target_text *text = structure;
-    sonject_status status =
-        check_one_given(reader, node, keys, COUNT(keys), "shape, parts and target");
-    if (status == SONJECT_OK && text->file)
-        status = refuse_shape_keys(reader, node, "the target's file tells the shape");
-    else if (status == SONJECT_OK && text->object.shape == SONJECT_SHAPE_PARTS)
-        status = refuse_shape_keys(reader, node, "the parts have shapes of their own");
-    else if (status == SONJECT_OK)
-        status = check_shape_keys(reader, node, text->object.shape);
-    if (status == SONJECT_OK)
-        status = check_shape_values(reader, node, &text->object);
-    return status;
+    const bool is_one = count_given(node, "shape parts target") == 1;
+    if (is_one && is_given(node, "target"))
+        refuse_shape_keys(reader, node, "the target's file tells the shape");
+    else if (is_one)
+        check_shape_keys(reader, node, text->object.shape);
+    check_shape_values(reader, node, &text->object);
+    return check_one_given(reader, node, "shape parts target", "shape, parts and target");
 }

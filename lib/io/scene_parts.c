@@ -23,9 +23,9 @@ struct part_text {
     bool is_group;
 };
 
-static sonject_status read_list(struct reader *reader, const struct tree_node *node,
-                                const struct frame *frame, const sonject_material_params *material,
-                                int level);
+static sonject_status read_level(struct reader *reader, const struct tree_node *node,
+                                 const struct frame *frame, const sonject_material_params *material,
+                                 int level);
 
 static struct frame frame_of(const struct part_text *part)
 {
@@ -47,51 +47,25 @@ static sonject_status read_group(struct reader *reader, const struct tree_node *
     struct part_text *part = structure;
     const struct frame frame = frame_of(part);
     part->is_group = true;
-    return read_list(reader, node, &frame, &part->shape.material, part->level + 1);
-}
-
-/* A surface that is inherited is checked where it is told. */
-static sonject_status check_values(struct reader *reader, const struct tree_node *node,
-                                   const struct part_text *part)
-{
-    sonject_object_params shape = part->shape;
-    if (!tree_find(node, "material"))
-        sonject_material_params_init(&shape.material);
-    return check_shape_values(reader, node, &shape);
-}
-
-static sonject_status check_place(struct reader *reader, const struct tree_node *node,
-                                  const struct part_text *part)
-{
-    struct report report = {{0}, NULL, NULL};
-    const char *key = "";
-    sonject_part_params place;
-    sonject_part_params_init(&place);
-    place.along_m = part->along_m;
-    place.across_m = part->across_m;
-    place.up_m = part->up_m;
-    if (check_part(&place, &report, &key) != SONJECT_OK)
-        return place_check(reader, node, key, &report);
-    return SONJECT_OK;
+    return read_level(reader, node, &frame, &part->shape.material, part->level + 1);
 }
 
 static sonject_status finish_part(struct reader *reader, const struct tree_node *node,
                                   void *structure)
 {
-    static const char *const keys[] = {"shape", "parts"};
     struct part_text *part = structure;
-    sonject_status status = check_one_given(reader, node, keys, COUNT(keys), "shape and parts");
+    sonject_part_params place;
+    sonject_part_params_init(&place);
+    place.along_m = part->along_m;
+    place.across_m = part->across_m;
+    place.up_m = part->up_m;
     if (part->is_group)
         part->shape.shape = SONJECT_SHAPE_PARTS;
-    if (status == SONJECT_OK && part->is_group)
-        status = refuse_shape_keys(reader, node, "the parts have shapes of their own");
-    else if (status == SONJECT_OK)
-        status = check_shape_keys(reader, node, part->shape.shape);
-    if (status == SONJECT_OK)
-        status = check_values(reader, node, part);
-    if (status == SONJECT_OK)
-        status = check_place(reader, node, part);
-    return status;
+    if (count_given(node, "shape parts") == 1)
+        check_shape_keys(reader, node, part->shape.shape);
+    check_shape_values(reader, node, &part->shape);
+    check_part(&place, NULL, listen_at(reader, node));
+    return check_one_given(reader, node, "shape parts", "shape and parts");
 }
 
 #define STRUCTURE struct part_text
@@ -133,39 +107,40 @@ static sonject_status append_part(struct reader *reader, const struct tree_node 
     return scene_append_part(reader->scene, reader->report, &made);
 }
 
+/* A list of parts, and what they have of the object or group that they are in. */
+struct part_list {
+    const struct frame *frame;
+    const sonject_material_params *material;
+    int level;
+};
+
 static sonject_status read_part(struct reader *reader, const struct tree_node *node,
-                                const struct frame *frame, const sonject_material_params *material,
-                                int level)
+                                void *structure)
 {
+    const struct part_list *list = structure;
     struct part_text part;
     memset(&part, 0, sizeof part);
-    start_shape(&part.shape, material);
-    part.outer = frame;
-    part.level = level;
+    start_shape(&part.shape, list->material);
+    part.outer = list->frame;
+    part.level = list->level;
     const sonject_status status = read_section(reader, &part_section, node, &part);
     if (status != SONJECT_OK || part.is_group)
         return status;
     return append_part(reader, node, &part);
 }
 
-static sonject_status read_list(struct reader *reader, const struct tree_node *node,
-                                const struct frame *frame, const sonject_material_params *material,
-                                int level)
+static sonject_status read_level(struct reader *reader, const struct tree_node *node,
+                                 const struct frame *frame, const sonject_material_params *material,
+                                 int level)
 {
-    sonject_status status = SONJECT_OK;
+    static const struct list parts = {SIZE_MAX, "; start each part with '- '", read_part};
+    struct part_list list = {frame, material, level};
     if (level > LEVELS_MAX)
         return refuse_value(reader, node, "nested too deeply; parts may be %d levels deep",
                             LEVELS_MAX);
-    if (node->kind != TREE_LIST)
-        return refuse_value(reader, node, "must be a list; start each part with '- '");
-    if (node->count == 0)
+    if (node->kind == TREE_LIST && node->count == 0)
         return refuse_value(reader, node, "is empty; give at least one part");
-    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
-        const size_t before = key_path_add_index(&reader->path, i);
-        status = read_part(reader, &node->entries[i].value, frame, material, level);
-        key_path_shorten(&reader->path, before);
-    }
-    return status;
+    return read_list(reader, node, &parts, &list);
 }
 
 sonject_status read_parts(struct reader *reader, const struct tree_node *node,
@@ -173,5 +148,5 @@ sonject_status read_parts(struct reader *reader, const struct tree_node *node,
 {
     static const struct frame own = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}},
                                      {0.0, 0.0, 0.0}};
-    return read_list(reader, node, &own, material, 1);
+    return read_level(reader, node, &own, material, 1);
 }

@@ -2,21 +2,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
 #include "base/memory.h"
-#include "base/text.h"
 #include "io/profile_table.h"
 #include "io/scene_fields.h"
 #include "io/scene_medium.h"
 #include "medium/profile.h"
 
-static bool is_given(const struct tree_node *node, const char *key)
-{
-    return tree_find(node, key) != NULL;
-}
-
-static sonject_status read_list(struct reader *reader, const struct tree_node *node,
-                                enum quantity quantity, double **values, size_t *count)
+static sonject_status read_numbers(struct reader *reader, const struct tree_node *node,
+                                   enum quantity quantity, double **values, size_t *count)
 {
     sonject_status status = check_list(
         reader, node, quantity == QUANTITY_SPEED ? "[1490 m/s, 1500 m/s]" : "[0 m, 12 m, 15 m]");
@@ -26,9 +19,10 @@ static sonject_status read_list(struct reader *reader, const struct tree_node *n
     if (!*values)
         return report_out_of_memory(reader->report, "a sound-speed profile");
     *count = node->count;
-    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
+    for (size_t i = 0; i < node->count; i++) {
         const size_t before = key_path_add_index(&reader->path, i);
-        status = read_quantity(reader, &node->entries[i].value, quantity, &(*values)[i]);
+        if (read_quantity(reader, &node->entries[i].value, quantity, &(*values)[i]) != SONJECT_OK)
+            status = SONJECT_ERROR_INPUT;
         key_path_shorten(&reader->path, before);
     }
     return status;
@@ -38,21 +32,21 @@ static sonject_status read_heights(struct reader *reader, const struct tree_node
                                    void *structure)
 {
     struct medium_text *text = structure;
-    return read_list(reader, node, QUANTITY_LENGTH, &text->heights_m, &text->height_count);
+    return read_numbers(reader, node, QUANTITY_LENGTH, &text->heights_m, &text->height_count);
 }
 
 static sonject_status read_depths(struct reader *reader, const struct tree_node *node,
                                   void *structure)
 {
     struct medium_text *text = structure;
-    return read_list(reader, node, QUANTITY_LENGTH, &text->depths_m, &text->depth_count);
+    return read_numbers(reader, node, QUANTITY_LENGTH, &text->depths_m, &text->depth_count);
 }
 
 static sonject_status read_speeds(struct reader *reader, const struct tree_node *node,
                                   void *structure)
 {
     struct medium_text *text = structure;
-    return read_list(reader, node, QUANTITY_SPEED, &text->speeds_mps, &text->speed_count);
+    return read_numbers(reader, node, QUANTITY_SPEED, &text->speeds_mps, &text->speed_count);
 }
 
 /* The message about entry `index` of the list that is the section's `key`. */
@@ -94,13 +88,9 @@ static sonject_status table_of_lists(struct reader *reader, const struct tree_no
 static sonject_status table_of_file(struct reader *reader, const struct tree_node *node,
                                     const struct medium_text *text, struct profile_table *table)
 {
-    char excerpt[400];
     if (is_given(node, "sound_speeds"))
         return refuse_key(reader, node, "sound_speeds",
                           "the file tells them; remove one of the two");
-    if (!file_exists(text->profile_file))
-        return refuse_key(reader, node, "file", "there is no file %s; check its name",
-                          text_excerpt(excerpt, sizeof excerpt, text->profile_file));
     return profile_table_read(reader->report, text->profile_file, table);
 }
 
@@ -110,12 +100,16 @@ static sonject_status layers_of_table(struct reader *reader, const struct tree_n
 {
     const double depth = reader->scene->surface.water_depth_m;
     struct report check = {{0}, NULL, NULL};
+    if (table->is_depth && mistakes_concern(reader->tree->mistakes, reader->tree, "surface.depth"))
+        return SONJECT_ERROR_INPUT;
     if (table->is_depth && !(depth > 0.0))
         return refuse_key(reader, node, key,
                           "depths are meant from the sea surface; set depth in surface");
     profile_table_to_heights(table, depth);
     sonject_status status = check_sound_speed_profile(table->positions_m, table->speeds_mps,
                                                       table->count, &check, NULL);
+    free(text->layers); /* that the file has beside the profile, which is refused */
+    text->layers = NULL;
     if (status == SONJECT_OK)
         status = layers_of_profile(table->positions_m, table->speeds_mps, table->count, &check,
                                    &text->layers, &text->layer_count);
@@ -129,10 +123,10 @@ static sonject_status finish_profile(struct reader *reader, const struct tree_no
 {
     struct medium_text *text = structure;
     struct profile_table table = {NULL, NULL, 0, false};
-    const int given = is_given(node, "file") + is_given(node, "heights") + is_given(node, "depths");
-    if (given != 1)
-        return refuse_value(reader, node, "%s of file, heights and depths is there; give one",
-                            given == 0 ? "none" : "more than one");
+    if (check_one_given(reader, node, "file heights depths", "file, heights and depths") !=
+            SONJECT_OK ||
+        !are_sound(reader, "file heights depths sound_speeds"))
+        return SONJECT_ERROR_INPUT;
     sonject_status status = text->profile_file ? table_of_file(reader, node, text, &table)
                                                : table_of_lists(reader, node, text, &table);
     const char *key = text->profile_file ? "file" : table.is_depth ? "depths" : "heights";
@@ -144,7 +138,7 @@ static sonject_status finish_profile(struct reader *reader, const struct tree_no
 
 #define STRUCTURE struct medium_text
 static const struct field profile_fields[] = {
-    {"file", "table with columns height_m or depth_m, and sound_speed_mps", .kind = FIELD_PATH,
+    {"file", "table with columns height_m or depth_m, and sound_speed_mps", .kind = FIELD_FILE,
      .offset = offsetof(STRUCTURE, profile_file)},
     {"heights", "over the mean seabed, list", .kind = FIELD_SPECIAL, .read = read_heights,
      .unit = "m, km, cm, mm"},

@@ -1,5 +1,4 @@
 /* Walks a section's table and fills its structure from the tree. */
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -17,52 +16,6 @@ void list_word(struct word_list *list, const char *word)
     snprintf(list->text + length, sizeof list->text - length, "%s%s", list->count ? ", " : "",
              word);
     list->count++;
-}
-
-static sonject_status refuse_at(const struct reader *reader, struct tree_place place,
-                                const char *format, va_list arguments)
-{
-    char what[REPORT_CAPACITY];
-    vsnprintf(what, sizeof what, format, arguments);
-    return tree_failure(reader->tree, place, reader->path.text, "%s", what);
-}
-
-sonject_status refuse_value(const struct reader *reader, const struct tree_node *node,
-                            const char *format, ...)
-{
-    va_list arguments;
-    va_start(arguments, format);
-    const sonject_status status = refuse_at(reader, node->place, format, arguments);
-    va_end(arguments);
-    return status;
-}
-
-sonject_status refuse_key(struct reader *reader, const struct tree_node *node, const char *key,
-                          const char *format, ...)
-{
-    const size_t before = key_path_add(&reader->path, key);
-    struct tree_place place = node->place;
-    while (node && *key) {
-        char step[64];
-        const size_t length = strcspn(key, ".");
-        snprintf(step, sizeof step, "%.*s", (int)length, key);
-        const struct tree_entry *entry = tree_find(node, step);
-        node = entry ? &entry->value : NULL;
-        place = entry ? entry->value.place : place;
-        key += length + (key[length] == '.');
-    }
-    va_list arguments;
-    va_start(arguments, format);
-    const sonject_status status = refuse_at(reader, place, format, arguments);
-    va_end(arguments);
-    key_path_shorten(&reader->path, before);
-    return status;
-}
-
-sonject_status place_check(struct reader *reader, const struct tree_node *node, const char *key,
-                           const struct report *check)
-{
-    return refuse_key(reader, node, key, "%s", check->message + strlen(key) + 1);
 }
 
 const char *read_text(struct reader *reader, const struct tree_node *node)
@@ -212,6 +165,16 @@ sonject_status read_path(struct reader *reader, const struct tree_node *node, ch
     return *path ? SONJECT_OK : report_out_of_memory(reader->report, "a file name");
 }
 
+sonject_status read_existing_path(struct reader *reader, const struct tree_node *node, char **path)
+{
+    char excerpt[400];
+    const sonject_status status = read_path(reader, node, path);
+    if (status != SONJECT_OK || file_exists(*path))
+        return status;
+    return refuse_value(reader, node, "there is no file %s; check its name",
+                        text_excerpt(excerpt, sizeof excerpt, *path));
+}
+
 static sonject_status read_subsection(struct reader *reader, const struct section *section,
                                       const struct tree_node *node, void *structure)
 {
@@ -231,7 +194,8 @@ static sonject_status read_field(struct reader *reader, const struct field *fiel
         return read_quantity(reader, node, field->quantity, destination);
     case FIELD_COUNT32:
         status = read_count(reader, field, node, &count);
-        *(uint32_t *)destination = (uint32_t)count;
+        if (status == SONJECT_OK)
+            *(uint32_t *)destination = (uint32_t)count;
         return status;
     case FIELD_COUNT64:
         return read_count(reader, field, node, destination);
@@ -249,6 +213,8 @@ static sonject_status read_field(struct reader *reader, const struct field *fiel
         return read_label(reader, node, destination);
     case FIELD_PATH:
         return read_path(reader, node, destination);
+    case FIELD_FILE:
+        return read_existing_path(reader, node, destination);
     case FIELD_SECTION:
         return read_subsection(reader, field->section, node, destination);
     case FIELD_NAMED:
@@ -261,54 +227,99 @@ static sonject_status read_field(struct reader *reader, const struct field *fiel
     return field->read(reader, node, structure);
 }
 
+/* The key that was meant is wrong, too, so that nothing calls it missing. */
 static sonject_status refuse_unknown(struct reader *reader, const struct section *section,
                                      const struct tree_entry *entry)
 {
     const char *keys[KEYS_LISTED];
     struct word_list list = {{0}, 0};
+    if (!are_sound(reader, entry->key))
+        return SONJECT_ERROR_INPUT;
     for (size_t i = 0; i < section->count && i < KEYS_LISTED; i++) {
         keys[i] = section->fields[i].key;
         list_word(&list, keys[i]);
     }
     const char *near = nearest_word(entry->key, keys, list.count);
-    key_path_add(&reader->path, entry->key);
+    const size_t before = key_path_add(&reader->path, entry->key);
     if (near)
-        return tree_failure(reader->tree, entry->place, reader->path.text,
-                            "unknown key; did you mean '%s'?", near);
-    return tree_failure(reader->tree, entry->place, reader->path.text,
-                        "unknown key; known here are %s", list.text);
+        tree_failure(reader->tree, entry->place, reader->path.text,
+                     "unknown key; did you mean '%s'?", near);
+    else
+        tree_failure(reader->tree, entry->place, reader->path.text,
+                     "unknown key; known here are %s", list.text);
+    key_path_shorten(&reader->path, before);
+    if (near)
+        mark_wrong(reader, &entry->value, near);
+    return SONJECT_ERROR_INPUT;
 }
 
 static sonject_status find_unknown(struct reader *reader, const struct section *section,
                                    const struct tree_node *node)
 {
+    sonject_status status = SONJECT_OK;
     for (size_t i = 0; i < node->count; i++) {
         size_t j = 0;
         while (j < section->count && strcmp(section->fields[j].key, node->entries[i].key) != 0)
             j++;
         if (j == section->count)
-            return refuse_unknown(reader, section, &node->entries[i]);
+            status = refuse_unknown(reader, section, &node->entries[i]);
     }
-    return SONJECT_OK;
+    return status;
 }
 
 static sonject_status find_missing(struct reader *reader, const struct section *section,
                                    const struct tree_node *node)
 {
-    struct word_list list = {{0}, 0};
-    const struct field *missing = NULL;
+    sonject_status status = SONJECT_OK;
     for (size_t i = 0; i < section->count; i++) {
         const struct field *field = &section->fields[i];
-        if (!field->is_required || tree_find(node, field->key))
-            continue;
-        list_word(&list, field->key);
-        missing = field;
+        if (field->is_required && !is_given(node, field->key))
+            status = refuse_key(reader, node, field->key, "missing; add it (%s)", field->meaning);
     }
-    if (list.count == 0)
-        return SONJECT_OK;
-    if (list.count > 1)
-        return refuse_value(reader, node, "%s are missing; add them", list.text);
-    return refuse_key(reader, node, missing->key, "missing; add it (%s)", missing->meaning);
+    return status;
+}
+
+bool reading_ends(sonject_status status)
+{
+    return status != SONJECT_OK && status != SONJECT_ERROR_INPUT;
+}
+
+/* A message that was not the reader's own, such as that about a line of a table, is a mistake at
+ * the node. */
+static sonject_status settle(const struct reader *reader, const struct tree_node *node,
+                             sonject_status before, sonject_status status)
+{
+    char *message = reader->report->message;
+    if (status == SONJECT_ERROR_INPUT && *message && reader->tree->mistakes) {
+        mistakes_add(reader->tree->mistakes, reader->tree, &node->place, reader->path.text,
+                     message);
+        *message = 0;
+    }
+    return status == SONJECT_OK || reading_ends(before) ? before : status;
+}
+
+sonject_status read_list(struct reader *reader, const struct tree_node *node,
+                         const struct list *list, void *structure)
+{
+    sonject_status status = SONJECT_OK;
+    if (node->kind != TREE_LIST)
+        return refuse_value(reader, node, "must be a list%s", list->how);
+    if (node->count > list->most)
+        return refuse_value(reader, node, "has %zu entries; at most %zu are possible", node->count,
+                            list->most);
+    for (size_t i = 0; !reading_ends(status) && i < node->count; i++) {
+        const struct tree_node *entry = &node->entries[i].value;
+        const size_t before = key_path_add_index(&reader->path, i);
+        status = settle(reader, entry, status, list->read(reader, entry, structure));
+        key_path_shorten(&reader->path, before);
+    }
+    return status;
+}
+
+static size_t count_mistakes(const struct reader *reader)
+{
+    const struct mistakes *mistakes = reader->tree->mistakes;
+    return mistakes ? mistakes->count + mistakes->uncounted : 0;
 }
 
 sonject_status read_section(struct reader *reader, const struct section *section,
@@ -317,18 +328,20 @@ sonject_status read_section(struct reader *reader, const struct section *section
     if (node->kind != TREE_SECTION)
         return refuse_value(reader, node, "must be a section of 'key: value' lines, not a %s",
                             node->kind == TREE_LIST ? "list" : "single value");
+    const size_t wrong_before = count_mistakes(reader);
     sonject_status status = find_unknown(reader, section, node);
-    if (status == SONJECT_OK)
-        status = find_missing(reader, section, node);
-    for (size_t i = 0; status == SONJECT_OK && i < section->count; i++) {
+    status = settle(reader, node, status, find_missing(reader, section, node));
+    for (size_t i = 0; !reading_ends(status) && i < section->count; i++) {
         const struct tree_entry *entry = tree_find(node, section->fields[i].key);
         if (!entry)
             continue;
         const size_t before = key_path_add(&reader->path, entry->key);
-        status = read_field(reader, &section->fields[i], &entry->value, structure);
+        status = settle(reader, &entry->value, status,
+                        read_field(reader, &section->fields[i], &entry->value, structure));
         key_path_shorten(&reader->path, before);
     }
-    if (status == SONJECT_OK && section->check)
-        status = section->check(reader, node, structure);
-    return status;
+    if (!reading_ends(status) && section->check)
+        status = settle(reader, node, status, section->check(reader, node, structure));
+    const bool is_wrong = count_mistakes(reader) > wrong_before;
+    return status == SONJECT_OK && is_wrong ? SONJECT_ERROR_INPUT : status;
 }

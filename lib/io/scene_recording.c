@@ -70,7 +70,9 @@ sonject_status finish_recording(struct reader *reader, const struct tree_node *n
 {
     struct report report = {{0}, NULL, NULL};
     const sonject_status status = finish_sonar(reader, node, structure);
-    if (status != SONJECT_OK || (!reader->takes_geometry && !reader->takes_altitude))
+    if ((!reader->takes_geometry && !reader->takes_altitude) ||
+        mistakes_concern(reader->tree->mistakes, reader->tree, "input") ||
+        mistakes_concern(reader->tree->mistakes, reader->tree, "patch"))
         return status;
     const char *key;
     if (recording_describe(&report, reader->takes_geometry, reader->takes_altitude, reader->scene,

@@ -7,11 +7,6 @@
 
 #define RIGHT_ANGLE 1.5707963267948966
 
-static bool is_given(const struct tree_node *node, const char *key)
-{
-    return tree_find(node, key) != NULL;
-}
-
 sonject_status read_version(struct reader *reader, const struct tree_node *node, void *structure)
 {
     (void)structure;
@@ -61,19 +56,16 @@ sonject_status read_aperture(struct reader *reader, const struct tree_node *node
 sonject_status finish_sonar(struct reader *reader, const struct tree_node *node, void *structure)
 {
     const sonject_sonar_params *sonar = structure;
-    struct report report = {{0}, NULL, NULL};
-    const char *key = "";
     const bool is_real = sonar->kind == SONJECT_SONAR_REAL;
     if (is_real && !is_given(node, "array"))
-        return refuse_key(reader, node, "array", "missing; a real aperture needs its length");
+        refuse_key(reader, node, "array", "missing; a real aperture needs its length");
     if (!is_real && is_given(node, "array"))
-        return refuse_key(reader, node, "array", "belongs to a real aperture; set kind: real");
+        refuse_relation(reader, node, "array", "kind",
+                        "belongs to a real aperture; set kind: real");
     if (is_real && is_given(node, "aperture"))
-        return refuse_key(reader, node, "aperture",
-                          "belongs to a synthetic aperture; a real one has that of its array");
-    if (check_sonar(sonar, &report, &key) != SONJECT_OK)
-        return place_check(reader, node, key, &report);
-    return SONJECT_OK;
+        refuse_key(reader, node, "aperture",
+                   "belongs to a synthetic aperture; a real one has that of its array");
+    return check_sonar(sonar, NULL, listen_at(reader, node));
 }
 
 sonject_status finish_scene(struct reader *reader, const struct tree_node *node, void *structure)
@@ -83,23 +75,25 @@ sonject_status finish_scene(struct reader *reader, const struct tree_node *node,
                                 ? scene->synthetic.complex_pixels
                                 : scene->input_is_complex;
     if (scene->seabed.map == SONJECT_MAP_COHERENT && !is_complex)
-        return refuse_key(reader, node, "seabed.map",
-                          "coherent needs complex pixels; set complex: true in input if they are");
+        refuse_relation(reader, node, "seabed.map",
+                        "input.complex input.synthetic input.uniform input.path",
+                        "coherent needs complex pixels; set complex: true in input if they are");
     if (scene->surface.water_depth_m > 0.0 &&
         scene->surface.water_depth_m <= scene->sonar.altitude_m)
-        return refuse_key(reader, node, "surface.depth",
-                          "must be above the sonar's altitude of %g m, not %g m",
-                          scene->sonar.altitude_m, scene->surface.water_depth_m);
+        refuse_relation(reader, node, "surface.depth", "sonar.altitude",
+                        "must be above the sonar's altitude of %g m, not %g m",
+                        scene->sonar.altitude_m, scene->surface.water_depth_m);
     if (scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
         !(scene->sonar.transducer_side_m > 0.0))
-        return refuse_key(reader, node, "injection.estimator",
-                          "brute_force needs a source that rays can hit; set transducer in sonar");
+        refuse_relation(reader, node, "injection.estimator", "sonar.transducer",
+                        "brute_force needs a source that rays can hit; set transducer in sonar");
     const double least_rate = element_least_rate(&scene->elements, scene->sonar.centre_frequency_hz,
                                                  scene->sonar.bandwidth_hz);
     if (scene->elements.sampling_rate_hz != 0.0 && scene->elements.sampling_rate_hz < least_rate)
-        return refuse_key(reader, node, "elements.sampling_rate",
-                          "must be at least %g Hz for the sonar's band, not %g Hz", least_rate,
-                          scene->elements.sampling_rate_hz);
+        refuse_relation(reader, node, "elements.sampling_rate",
+                        "elements.form sonar.frequency sonar.bandwidth",
+                        "must be at least %g Hz for the sonar's band, not %g Hz", least_rate,
+                        scene->elements.sampling_rate_hz);
     return SONJECT_OK;
 }
 
@@ -109,15 +103,14 @@ sonject_status finish_input(struct reader *reader, const struct tree_node *node,
     struct scene *scene = structure;
     const bool is_file = is_given(node, "path");
     const bool is_uniform = is_given(node, "uniform");
-    const bool is_synthetic = is_given(node, "synthetic");
-    if (is_file + is_uniform + is_synthetic != 1)
-        return refuse_value(reader, node, "%s of path, uniform and synthetic is there; give one",
-                            is_file + is_uniform + is_synthetic == 0 ? "none" : "more than one");
+    if (check_one_given(reader, node, "path uniform synthetic", "path, uniform and synthetic") !=
+        SONJECT_OK)
+        return SONJECT_ERROR_INPUT;
     for (int i = 0; i < 4; i++)
         if (!is_file && is_given(node, file_keys[i]))
-            return refuse_key(reader, node, file_keys[i],
-                              "belongs to an image file (path), not to %s; remove it",
-                              is_uniform ? "uniform" : "synthetic");
+            refuse_key(reader, node, file_keys[i],
+                       "belongs to an image file (path), not to %s; remove it",
+                       is_uniform ? "uniform" : "synthetic");
     scene->input_kind = is_file      ? SONJECT_INPUT_FILE
                         : is_uniform ? SONJECT_INPUT_UNIFORM
                                      : SONJECT_INPUT_SYNTHETIC;
@@ -127,10 +120,19 @@ sonject_status finish_input(struct reader *reader, const struct tree_node *node,
 sonject_status finish_uniform(struct reader *reader, const struct tree_node *node, void *structure)
 {
     const struct scene *scene = structure;
-    struct report report = {{0}, NULL, NULL};
-    const char *key = "";
-    if (check_uniform(scene->uniform_rows, scene->uniform_columns, &report, &key) != SONJECT_OK)
-        return place_check(reader, node, key, &report);
+    return check_uniform(scene->uniform_rows, scene->uniform_columns, NULL,
+                         listen_at(reader, node));
+}
+
+sonject_status check_position(struct reader *reader, const struct tree_node *node, uint32_t *kind)
+{
+    const bool is_metres = is_given(node, "along_track");
+    const char *pair = is_metres ? "along_track slant_range" : "row column";
+    *kind = is_metres ? SONJECT_POSITION_METRES : SONJECT_POSITION_PIXELS;
+    if ((count_given(node, pair) != 2 || node->count != 2) &&
+        are_sound(reader, "along_track slant_range row column"))
+        return refuse_value(reader, node,
+                            "needs along_track and slant_range, or row and column; give one pair");
     return SONJECT_OK;
 }
 
@@ -139,11 +141,7 @@ sonject_status finish_uniform(struct reader *reader, const struct tree_node *nod
     sonject_status finish_##name(struct reader *reader, const struct tree_node *node,              \
                                  void *structure)                                                  \
     {                                                                                              \
-        struct report report = {{0}, NULL, NULL};                                                  \
-        const char *key = "";                                                                      \
-        if (check_##name((const type *)structure, &report, &key) != SONJECT_OK)                    \
-            return place_check(reader, node, key, &report);                                        \
-        return SONJECT_OK;                                                                         \
+        return check_##name((const type *)structure, NULL, listen_at(reader, node));               \
     }
 
 FINISH(synthetic, sonject_synthetic_params)
@@ -156,20 +154,17 @@ FINISH(injection, sonject_injection_params)
 sonject_status finish_transfer(struct reader *reader, const struct tree_node *node, void *structure)
 {
     const sonject_transfer_params *transfer = structure;
-    struct report report = {{0}, NULL, NULL};
-    const char *key = "";
     const bool has_parameter = transfer->kind == SONJECT_TRANSFER_DECIBEL ||
                                transfer->kind == SONJECT_TRANSFER_GAMMA ||
                                transfer->kind == SONJECT_TRANSFER_SCHLICK;
     if (has_parameter && !is_given(node, "parameter"))
-        return refuse_key(reader, node, "parameter", "missing; this kind of transfer needs it");
+        refuse_key(reader, node, "parameter", "missing; this kind of transfer needs it");
     if (!has_parameter && is_given(node, "parameter"))
-        return refuse_key(reader, node, "parameter", "this kind of transfer has none; remove it");
+        refuse_relation(reader, node, "parameter", "kind",
+                        "this kind of transfer has none; remove it");
     if (transfer->kind != SONJECT_TRANSFER_DECIBEL && is_given(node, "offset"))
-        return refuse_key(reader, node, "offset", "only the decibel kind has one; remove it");
-    if (check_transfer(transfer, &report, &key) != SONJECT_OK)
-        return place_check(reader, node, key, &report);
-    return SONJECT_OK;
+        refuse_relation(reader, node, "offset", "kind", "only the decibel kind has one; remove it");
+    return check_transfer(transfer, NULL, listen_at(reader, node));
 }
 
 sonject_status finish_response(struct reader *reader, const struct tree_node *node, void *structure)

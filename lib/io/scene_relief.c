@@ -5,22 +5,11 @@
 
 #define STRUCTURE struct relief_feature
 
-static bool is_given(const struct tree_node *node, const char *key)
-{
-    return tree_find(node, key) != NULL;
-}
-
 static sonject_status finish_place(struct reader *reader, const struct tree_node *node,
                                    void *structure)
 {
     struct relief_feature *feature = structure;
-    const int metres = is_given(node, "along_track") + is_given(node, "slant_range");
-    const int pixels = is_given(node, "row") + is_given(node, "column");
-    if (metres + pixels != 2 || metres == 1)
-        return refuse_value(reader, node,
-                            "needs along_track and slant_range, or row and column; give one pair");
-    feature->position_kind = metres ? SONJECT_POSITION_METRES : SONJECT_POSITION_PIXELS;
-    return SONJECT_OK;
+    return check_position(reader, node, &feature->position_kind);
 }
 
 static const struct field place_fields[] = {
@@ -44,12 +33,8 @@ static const struct section place_section = {place_fields, COUNT(place_fields), 
 static sonject_status finish_kind(struct reader *reader, const struct tree_node *node,
                                   struct relief_feature *feature, enum relief_kind kind)
 {
-    struct report report = {{0}, NULL, NULL};
-    const char *key = "";
     feature->kind = kind;
-    if (check_relief_feature(feature, &report, &key) != SONJECT_OK)
-        return place_check(reader, node, key, &report);
-    return SONJECT_OK;
+    return check_relief_feature(feature, NULL, listen_at(reader, node));
 }
 
 static sonject_status finish_ripples(struct reader *reader, const struct tree_node *node,
@@ -123,10 +108,9 @@ static const struct section scour_section = {scour_fields, COUNT(scour_fields), 
 static sonject_status finish_feature(struct reader *reader, const struct tree_node *node,
                                      void *structure)
 {
+    static const char kinds[] = "ripples mound pit scour heights";
     (void)structure;
-    if (is_given(node, "ripples") + is_given(node, "mound") + is_given(node, "pit") +
-            is_given(node, "scour") + is_given(node, "heights") !=
-        1)
+    if (count_given(node, kinds) != 1 && are_sound(reader, kinds))
         return refuse_value(reader, node,
                             "needs one of ripples, mound, pit, scour and heights; give one");
     return SONJECT_OK;
@@ -142,26 +126,21 @@ static const struct field relief_fields[] = {
 };
 const struct section relief_section = {relief_fields, COUNT(relief_fields), finish_feature};
 
+static sonject_status read_feature(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    struct relief_feature feature;
+    (void)structure;
+    memset(&feature, 0, sizeof feature);
+    const sonject_status status = read_section(reader, &relief_section, node, &feature);
+    if (status != SONJECT_OK || is_given(node, "heights")) /* which are in the scene already */
+        return status;
+    return relief_features_append(&reader->scene->relief, reader->report, &feature);
+}
+
 sonject_status read_relief(struct reader *reader, const struct tree_node *node, void *structure)
 {
-    sonject_status status = SONJECT_OK;
-    (void)structure;
-    if (tree_is_null(node))
-        return SONJECT_OK;
-    if (node->kind != TREE_LIST)
-        return refuse_value(reader, node, "must be a list; start each feature with '- '");
-    if (node->count > RELIEF_FEATURES_MAX)
-        return refuse_value(reader, node, "has %zu entries; at most %d are possible", node->count,
-                            RELIEF_FEATURES_MAX);
-    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
-        const size_t before = key_path_add_index(&reader->path, i);
-        struct relief_feature feature;
-        memset(&feature, 0, sizeof feature);
-        status = read_section(reader, &relief_section, &node->entries[i].value, &feature);
-        /* heights are in the scene already */
-        if (status == SONJECT_OK && !is_given(&node->entries[i].value, "heights"))
-            status = relief_features_append(&reader->scene->relief, reader->report, &feature);
-        key_path_shorten(&reader->path, before);
-    }
-    return status;
+    static const struct list relief = {RELIEF_FEATURES_MAX, "; start each feature with '- '",
+                                       read_feature};
+    return tree_is_null(node) ? SONJECT_OK : read_list(reader, node, &relief, structure);
 }

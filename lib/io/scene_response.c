@@ -3,29 +3,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/file.h"
-#include "base/text.h"
 #include "io/number_table.h"
 #include "io/scene_fields.h"
 
 #define TABLE_BYTES_MAX (16 * 1024 * 1024)
-
-static bool is_given(const struct tree_node *node, const char *key)
-{
-    return tree_find(node, key) != NULL;
-}
-
-/* The table of a file that the section's `key` names. */
-static sonject_status read_table(struct reader *reader, const struct tree_node *node,
-                                 const char *key, const char *path,
-                                 const struct table_format *format, struct number_table *table)
-{
-    char excerpt[400];
-    if (!file_exists(path))
-        return refuse_key(reader, node, key, "there is no file %s; check its name",
-                          text_excerpt(excerpt, sizeof excerpt, path));
-    return number_table_read(reader->report, path, format, table);
-}
 
 enum {
     POSITION,
@@ -49,13 +30,12 @@ static sonject_status take_response(struct reader *reader, struct number_table *
                               position == TIME);
 }
 
-static sonject_status read_response_file(struct reader *reader, const struct tree_node *node,
-                                         const char *key, const char *path,
+static sonject_status read_response_file(struct reader *reader, const char *path,
                                          const struct table_format *format,
                                          struct response_table *response)
 {
     struct number_table table;
-    sonject_status status = read_table(reader, node, key, path, format, &table);
+    sonject_status status = number_table_read(reader->report, path, format, &table);
     if (status != SONJECT_OK)
         return status;
     status = take_response(reader, &table, response);
@@ -85,21 +65,17 @@ static sonject_status finish_pulse(struct reader *reader, const struct tree_node
     static const struct table_format format = {
         {"range_m", "time_s", "real", "imaginary"}, 1, RESPONSE_SAMPLES_MAX, TABLE_BYTES_MAX};
     struct pulse_text *text = structure;
-    struct report report = {{0}, NULL, NULL};
-    const char *key = "";
     const bool is_table = text->params.kind == SONJECT_PULSE_TABLE;
     if (is_given(node, "window") && text->params.kind != SONJECT_PULSE_CHIRP)
-        return refuse_key(reader, node, "window", "only a chirp has one; set kind: chirp");
+        refuse_relation(reader, node, "window", "kind", "only a chirp has one; set kind: chirp");
     if (is_table != is_given(node, "file"))
-        return refuse_key(reader, node, "file",
-                          is_table ? "missing; the table is read from it"
-                                   : "belongs to kind: table; remove it");
-    if (check_pulse(&text->params, &report, &key) != SONJECT_OK)
-        return place_check(reader, node, key, &report);
-    if (!is_table)
-        return SONJECT_OK;
-    return read_response_file(reader, node, "file", text->file, &format,
-                              &reader->scene->pulse_table);
+        refuse_relation(reader, node, "file", "kind",
+                        is_table ? "missing; the table is read from it"
+                                 : "belongs to kind: table; remove it");
+    const sonject_status status = check_pulse(&text->params, NULL, listen_at(reader, node));
+    if (!is_table || !are_sound(reader, "file"))
+        return status;
+    return read_response_file(reader, text->file, &format, &reader->scene->pulse_table);
 }
 
 #define STRUCTURE struct pulse_text
@@ -129,7 +105,7 @@ static const struct field pulse_fields[] = {
          {[SONJECT_PULSE_RECTANGULAR] = "rectangular", [SONJECT_PULSE_HANN] = "hann"},
      .section = &pulse_window_section},
     {"file", "table with columns range_m (beyond the target) or time_s, real, and imaginary",
-     .kind = FIELD_PATH, .offset = offsetof(STRUCTURE, file)},
+     .kind = FIELD_FILE, .offset = offsetof(STRUCTURE, file)},
 };
 const struct section pulse_section = {pulse_fields, COUNT(pulse_fields), finish_pulse};
 #undef STRUCTURE
@@ -154,15 +130,9 @@ sonject_status read_cross_range(struct reader *reader, const struct tree_node *n
         {"along_track_m", NULL, "real", "imaginary"}, 1, RESPONSE_SAMPLES_MAX, TABLE_BYTES_MAX};
     char *path = NULL;
     (void)structure;
-    sonject_status status = read_path(reader, node, &path);
-    if (status == SONJECT_OK && !file_exists(path)) {
-        char excerpt[400];
-        status = refuse_value(reader, node, "there is no file %s; check its name",
-                              text_excerpt(excerpt, sizeof excerpt, path));
-    } else if (status == SONJECT_OK) {
-        status =
-            read_response_file(reader, node, "", path, &format, &reader->scene->cross_range_table);
-    }
+    sonject_status status = read_existing_path(reader, node, &path);
+    if (status == SONJECT_OK)
+        status = read_response_file(reader, path, &format, &reader->scene->cross_range_table);
     free(path);
     return status;
 }

@@ -22,6 +22,7 @@ enum field_kind {
     FIELD_WORD,     /* uint32_t, the word's index; or a section, if the field has one */
     FIELD_LABEL,    /* char[SONJECT_NAME_CAPACITY] */
     FIELD_PATH,     /* char *, owned by the scene */
+    FIELD_FILE,     /* the same, of a file that is there */
     FIELD_SECTION,  /* a structure; the same one as its parent's where offset is 0 */
     FIELD_NAMED,    /* the same, or a single text that `read` takes into the structure */
     FIELD_SPECIAL   /* read by a function of its own */
@@ -54,6 +55,8 @@ struct section {
 };
 
 struct reader {
+    struct check_listener listener;  /* first */
+    const struct tree_node *checked; /* section that it hears of */
     struct report *report;
     const struct tree *tree;
     struct scene *scene;
@@ -68,9 +71,24 @@ struct reader {
 /* The whole file; its structure is struct scene. */
 extern const struct section scene_section;
 
-/* Reads a section's keys into structure. node: a TREE_SECTION. Errors: INPUT, MEMORY. */
+/* Reads a section's keys into structure. What is wrong is refused and keeps the value that it has,
+ * and the reading goes on, so that all mistakes are told; a check of values beside each other says
+ * nothing where one of them is wrong. Errors: INPUT, and STORAGE and MEMORY, which end a reading.
+ */
 sonject_status read_section(struct reader *reader, const struct section *section,
                             const struct tree_node *node, void *structure);
+
+/* Whether a status is one after which nothing more is read. */
+bool reading_ends(sonject_status status);
+
+/* Reads each entry of a list of at most so many. how: is said of what is no list. */
+struct list {
+    size_t most;
+    const char *how; /* behind "must be a list" */
+    sonject_status (*read)(struct reader *reader, const struct tree_node *node, void *structure);
+};
+sonject_status read_list(struct reader *reader, const struct tree_node *node,
+                         const struct list *list, void *structure);
 
 /* Reads a text as a quantity. */
 sonject_status read_quantity(struct reader *reader, const struct tree_node *node,
@@ -86,6 +104,9 @@ const char *read_text(struct reader *reader, const struct tree_node *node);
 /* Reads a text as the name of a file: one in the file is meant from the file's folder, one of an
  * override from where the user is. On success *path is the caller's, for free(). */
 sonject_status read_path(struct reader *reader, const struct tree_node *node, char **path);
+
+/* The same for a file that must be there. */
+sonject_status read_existing_path(struct reader *reader, const struct tree_node *node, char **path);
 
 /* Words in a message, "a, b, c". */
 struct word_list {
@@ -103,13 +124,35 @@ sonject_status refuse_value(const struct reader *reader, const struct tree_node 
                             const char *format, ...) REPORT_FORMAT(3);
 
 /* The same about a key of the section node at the reader's path, "material.lambert" for instance:
- * the message points at the key, or at the section where that is not there. */
+ * the message points at the key, or at the section where that is not there. Nothing is said where
+ * something else is wrong about the key already. */
 sonject_status refuse_key(struct reader *reader, const struct tree_node *node, const char *key,
                           const char *format, ...) REPORT_FORMAT(4);
 
-/* Gives a failure of one of the check_ functions its place: key and message as that gave them. */
-sonject_status place_check(struct reader *reader, const struct tree_node *node, const char *key,
-                           const struct report *check);
+/* The same, unless one of some other keys, separated by blanks, is wrong. */
+sonject_status refuse_relation(struct reader *reader, const struct tree_node *node, const char *key,
+                               const char *others, const char *format, ...) REPORT_FORMAT(5);
+
+/* For the check_ functions: refuses every value of the section node that they find wrong. */
+struct check_listener *listen_at(struct reader *reader, const struct tree_node *node);
+
+/* Whether nothing is wrong about any of some keys, separated by blanks, of the section at the
+ * reader's path. */
+bool are_sound(struct reader *reader, const char *keys);
+
+/* Makes a key wrong that another message is about; "": what is at the reader's path itself. */
+void mark_wrong(struct reader *reader, const struct tree_node *node, const char *key);
+
+/* Whether a section has a key, and how many it has of some, separated by blanks. */
+bool is_given(const struct tree_node *node, const char *key);
+size_t count_given(const struct tree_node *node, const char *keys);
+
+/* That exactly one of some keys is there. choice: them in words, "shape and parts". */
+sonject_status check_one_given(struct reader *reader, const struct tree_node *node,
+                               const char *keys, const char *choice);
+
+/* That a position is given in metres or in pixels, and in which: a sonject_position_kind. */
+sonject_status check_position(struct reader *reader, const struct tree_node *node, uint32_t *kind);
 
 /* The word of the list nearest to a mistyped one; NULL if none is near. */
 const char *nearest_word(const char *typed, const char *const *words, size_t count);

@@ -7,11 +7,6 @@
 
 #define STRUCTURE sonject_object_params
 
-static bool is_given(const struct tree_node *node, const char *key)
-{
-    return tree_find(node, key) != NULL;
-}
-
 void start_shape(sonject_object_params *shape, const sonject_material_params *material)
 {
     sonject_object_params_init(shape);
@@ -64,24 +59,16 @@ static const struct field cut_fields[] = {
 };
 const struct section cut_section = {cut_fields, COUNT(cut_fields), NULL};
 
-sonject_status read_cuts(struct reader *reader, const struct tree_node *node, void *structure)
+static sonject_status read_cut(struct reader *reader, const struct tree_node *node, void *structure)
 {
     sonject_object_params *object = structure;
-    sonject_status status = SONJECT_OK;
-    if (tree_is_null(node))
-        return SONJECT_OK;
-    if (node->kind != TREE_LIST)
-        return refuse_value(reader, node, "must be a list; start each cut with '- '");
-    if (node->count > SONJECT_CUTS_CAPACITY)
-        return refuse_value(reader, node, "has %zu entries; at most %d are possible", node->count,
-                            SONJECT_CUTS_CAPACITY);
-    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
-        const size_t before = key_path_add_index(&reader->path, i);
-        status = read_section(reader, &cut_section, &node->entries[i].value, &object->cuts[i]);
-        key_path_shorten(&reader->path, before);
-    }
-    object->cut_count = (uint32_t)node->count;
-    return status;
+    return read_section(reader, &cut_section, node, &object->cuts[object->cut_count++]);
+}
+
+sonject_status read_cuts(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    static const struct list cuts = {SONJECT_CUTS_CAPACITY, "; start each cut with '- '", read_cut};
+    return tree_is_null(node) ? SONJECT_OK : read_list(reader, node, &cuts, structure);
 }
 
 enum presence {
@@ -96,7 +83,15 @@ static const char *article_of(const char *name)
     return strchr("aeio", *name) ? "an" : "a";
 }
 
-sonject_status check_shape_keys(struct reader *reader, const struct tree_node *node, uint32_t shape)
+void refuse_shape_keys(struct reader *reader, const struct tree_node *node, const char *reason)
+{
+    static const struct field fields[] = {SHAPE_FIELDS};
+    for (size_t i = 0; i < COUNT(fields); i++)
+        if (is_given(node, fields[i].key))
+            refuse_key(reader, node, fields[i].key, "%s; remove it", reason);
+}
+
+void check_shape_keys(struct reader *reader, const struct tree_node *node, uint32_t shape)
 {
     static const struct {
         const char *key;
@@ -137,47 +132,37 @@ sonject_status check_shape_keys(struct reader *reader, const struct tree_node *n
         {"mesh", {[SONJECT_SHAPE_MESH] = NEEDED}},
     };
     const char *name = shape_name(shape);
+    if (shape == SONJECT_SHAPE_PARTS) {
+        refuse_shape_keys(reader, node, "the parts have shapes of their own");
+        return;
+    }
     for (size_t i = 0; i < COUNT(sizes); i++) {
         const unsigned char presence = sizes[i].presence[shape];
         if (presence == NEEDED && !is_given(node, sizes[i].key))
-            return refuse_key(reader, node, sizes[i].key, "missing; %s %s needs it",
-                              article_of(name), name);
+            refuse_relation(reader, node, sizes[i].key, "shape", "missing; %s %s needs it",
+                            article_of(name), name);
         if (presence == ABSENT && is_given(node, sizes[i].key))
-            return refuse_key(reader, node, sizes[i].key, "%s %s has none; remove it",
-                              article_of(name), name);
+            refuse_relation(reader, node, sizes[i].key, "shape", "%s %s has none; remove it",
+                            article_of(name), name);
     }
-    return SONJECT_OK;
 }
 
-sonject_status refuse_shape_keys(struct reader *reader, const struct tree_node *node,
-                                 const char *reason)
+/* Sizes say nothing where the shape is unknown; what another section or file tells is checked
+ * there. */
+void check_shape_values(struct reader *reader, const struct tree_node *node,
+                        const sonject_object_params *shape)
 {
-    static const struct field fields[] = {SHAPE_FIELDS};
-    for (size_t i = 0; i < COUNT(fields); i++)
-        if (is_given(node, fields[i].key))
-            return refuse_key(reader, node, fields[i].key, "%s; remove it", reason);
-    return SONJECT_OK;
-}
-
-sonject_status check_one_given(struct reader *reader, const struct tree_node *node,
-                               const char *const *keys, size_t count, const char *choice)
-{
-    size_t given = 0;
-    for (size_t i = 0; i < count; i++)
-        given += is_given(node, keys[i]);
-    if (given == 1)
-        return SONJECT_OK;
-    return refuse_value(reader, node, "%s of %s is there; give one",
-                        given == 0 ? "none" : "more than one", choice);
-}
-
-sonject_status check_shape_values(struct reader *reader, const struct tree_node *node,
-                                  const sonject_object_params *shape)
-{
-    struct report report = {{0}, NULL, NULL};
-    const char *key = "";
-    if (check_object(shape, &report, &key) != SONJECT_OK ||
-        check_cuts_in_scene(reader->scene, shape, &report, &key) != SONJECT_OK)
-        return place_check(reader, node, key, &report);
-    return SONJECT_OK;
+    sonject_object_params checked = *shape;
+    if (count_given(node, "shape parts target") != 1 || !are_sound(reader, "shape target")) {
+        checked.shape = SONJECT_SHAPE_PARTS;
+        checked.cut_count = 0;
+    }
+    if (!is_given(node, "name"))
+        checked.name[0] = 0;
+    if (!is_given(node, "class"))
+        checked.class_name[0] = 0;
+    if (!is_given(node, "material"))
+        sonject_material_params_init(&checked.material);
+    if (check_object(&checked, NULL, listen_at(reader, node)) == SONJECT_OK)
+        check_cuts_in_scene(reader->scene, &checked, NULL, listen_at(reader, node));
 }

@@ -89,20 +89,14 @@ sonject_status read_mesh(struct reader *reader, const struct tree_node *node, vo
 /* Defaults, no size set, surface as given (NULL: the default one). */
 void start_shape(sonject_object_params *shape, const sonject_material_params *material);
 
-/* That the section has the sizes of its shape, and no others. */
-sonject_status check_shape_keys(struct reader *reader, const struct tree_node *node,
-                                uint32_t shape);
+/* That the section has the sizes of its shape, and no others; of parts none. */
+void check_shape_keys(struct reader *reader, const struct tree_node *node, uint32_t shape);
 
 /* That it has no key of a shape: reason tells why. */
-sonject_status refuse_shape_keys(struct reader *reader, const struct tree_node *node,
-                                 const char *reason);
+void refuse_shape_keys(struct reader *reader, const struct tree_node *node, const char *reason);
 
-/* That exactly one of some keys is there. choice: them in words, "shape and parts". */
-sonject_status check_one_given(struct reader *reader, const struct tree_node *node,
-                               const char *const *keys, size_t count, const char *choice);
-
-/* check_object, with the place of what is wrong. */
-sonject_status check_shape_values(struct reader *reader, const struct tree_node *node,
-                                  const sonject_object_params *shape);
+/* check_object, of what the section itself says. */
+void check_shape_values(struct reader *reader, const struct tree_node *node,
+                        const sonject_object_params *shape);
 
 #endif

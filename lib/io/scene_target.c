@@ -23,16 +23,11 @@ static sonject_status note_parts(struct reader *reader, const struct tree_node *
 static sonject_status finish_target(struct reader *reader, const struct tree_node *node,
                                     void *structure)
 {
-    static const char *const keys[] = {"shape", "parts"};
     const struct target_text *target = structure;
-    sonject_status status = check_one_given(reader, node, keys, COUNT(keys), "shape and parts");
-    if (status == SONJECT_OK && target->parts)
-        status = refuse_shape_keys(reader, node, "the parts have shapes of their own");
-    else if (status == SONJECT_OK)
-        status = check_shape_keys(reader, node, target->object.shape);
-    if (status == SONJECT_OK)
-        status = check_shape_values(reader, node, &target->object);
-    return status;
+    if (count_given(node, "shape parts") == 1)
+        check_shape_keys(reader, node, target->object.shape);
+    check_shape_values(reader, node, &target->object);
+    return check_one_given(reader, node, "shape parts", "shape and parts");
 }
 
 /* There is no key for another file: targets are described in one. */
@@ -57,7 +52,8 @@ static struct reader reader_of_target(const struct reader *reader, const struct 
 }
 
 /* Reads the file that the target names. */
-static sonject_status read_target_file(struct reader *reader, struct target_text *target)
+static sonject_status read_target_file(struct reader *reader, struct tree_place named_at,
+                                       struct target_text *target)
 {
     char *text = NULL;
     size_t bytes;
@@ -66,6 +62,8 @@ static sonject_status read_target_file(struct reader *reader, struct target_text
     if (status != SONJECT_OK)
         return status;
     tree_init(&target->tree, reader->report, target->file);
+    target->tree.mistakes = reader->tree->mistakes;
+    target->tree.named_at = named_at;
     status = tree_parse(&target->tree, text, bytes);
     free(text);
     struct reader inner = reader_of_target(reader, target);
@@ -80,14 +78,13 @@ static sonject_status read_target_file(struct reader *reader, struct target_text
 sonject_status read_target(struct reader *reader, const struct tree_node *node,
                            struct target_text *target)
 {
-    char excerpt[400];
-    const sonject_status status = read_path(reader, node, &target->file);
+    sonject_status status = read_existing_path(reader, node, &target->file);
     if (status != SONJECT_OK)
         return status;
-    if (!file_exists(target->file))
-        return refuse_value(reader, node, "there is no file %s; check its name",
-                            text_excerpt(excerpt, sizeof excerpt, target->file));
-    return read_target_file(reader, target);
+    status = read_target_file(reader, node->place, target);
+    if (target->tree.file && mistakes_concern(reader->tree->mistakes, &target->tree, ""))
+        mark_wrong(reader, node, ""); /* whatever the file says is told already */
+    return status;
 }
 
 sonject_status read_target_parts(struct reader *reader, const struct target_text *target)
@@ -131,13 +128,16 @@ static void take_placing(sonject_object_params *to, const sonject_object_params 
 static sonject_status append_target(struct reader *reader, struct target_text *target,
                                     const sonject_object_params *placing)
 {
-    sonject_status status = read_target_file(reader, target);
+    static const struct tree_place nowhere;
+    sonject_status status = read_target_file(reader, nowhere, target);
     if (status == SONJECT_OK) {
         take_placing(&target->object, placing);
         status = check_object(&target->object, reader->report, NULL);
     }
-    if (status == SONJECT_OK)
-        status = read_target_parts(reader, target);
+    if (!reading_ends(status)) {
+        const sonject_status of_parts = read_target_parts(reader, target);
+        status = of_parts == SONJECT_OK ? status : of_parts;
+    }
     if (status == SONJECT_OK)
         status = scene_append_object(reader->scene, reader->report, &target->object);
     return status;
@@ -148,8 +148,10 @@ sonject_status scene_append_target(struct scene *scene, struct report *report, c
 {
     char excerpt[400];
     struct target_text target;
+    struct mistakes mistakes = {NULL, 0, 0, 0};
+    struct tree tree = {.mistakes = &mistakes};
     struct reader reader = {
-        .report = report, .scene = scene, .allows_user_shapes = allows_user_shapes};
+        .report = report, .tree = &tree, .scene = scene, .allows_user_shapes = allows_user_shapes};
     const struct scene_counts before = scene_count(scene);
     if (!file_exists(path))
         return report_failure(report, SONJECT_ERROR_INPUT,
@@ -160,7 +162,8 @@ sonject_status scene_append_target(struct scene *scene, struct report *report, c
     target.file = copy_text(path);
     if (!target.file)
         return report_out_of_memory(report, "a path");
-    const sonject_status status = append_target(&reader, &target, placing);
+    const sonject_status status =
+        mistakes_tell(&mistakes, report, append_target(&reader, &target, placing));
     target_text_clear(&target);
     if (status != SONJECT_OK)
         scene_cut_back(scene, &before);

@@ -21,12 +21,9 @@ static sonject_status read_code_file(struct reader *reader, const struct tree_no
     char excerpt[400];
     struct user_text *user = structure;
     size_t bytes;
-    sonject_status status = read_path(reader, node, &user->name);
+    sonject_status status = read_existing_path(reader, node, &user->name);
     if (status != SONJECT_OK)
         return status;
-    if (!file_exists(user->name))
-        return refuse_value(reader, node, "there is no file %s; check its name",
-                            text_excerpt(excerpt, sizeof excerpt, user->name));
     status = file_read_whole(reader->report, user->name, SNIPPET_BYTES_MAX, &user->code, &bytes);
     if (status == SONJECT_OK && strlen(user->code) != bytes)
         status = refuse_value(reader, node, "%s contains a character 0; remove it",
@@ -50,37 +47,28 @@ static sonject_status read_code(struct reader *reader, const struct tree_node *n
                                     : report_out_of_memory(reader->report, "a shape's code");
 }
 
+static sonject_status read_parameter(struct reader *reader, const struct tree_node *node,
+                                     void *structure)
+{
+    struct user_text *user = structure;
+    return read_quantity(reader, node, QUANTITY_NUMBER,
+                         &user->shape.parameters[user->shape.parameter_count++]);
+}
+
 static sonject_status read_parameters(struct reader *reader, const struct tree_node *node,
                                       void *structure)
 {
-    struct user_text *user = structure;
-    sonject_status status = SONJECT_OK;
-    if (node->kind != TREE_LIST)
-        return refuse_value(reader, node, "must be a list of numbers, [1, 0.5]");
-    if (node->count > SONJECT_USER_PARAMETERS_CAPACITY)
-        return refuse_value(reader, node, "has %zu entries; at most %d are possible", node->count,
-                            SONJECT_USER_PARAMETERS_CAPACITY);
-    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
-        const size_t before = key_path_add_index(&reader->path, i);
-        status = read_quantity(reader, &node->entries[i].value, QUANTITY_NUMBER,
-                               &user->shape.parameters[i]);
-        key_path_shorten(&reader->path, before);
-    }
-    user->shape.parameter_count = (uint32_t)node->count;
-    return status;
+    static const struct list parameters = {SONJECT_USER_PARAMETERS_CAPACITY,
+                                           " of numbers, [1, 0.5]", read_parameter};
+    return read_list(reader, node, &parameters, structure);
 }
 
 static sonject_status finish_user(struct reader *reader, const struct tree_node *node,
                                   void *structure)
 {
-    static const char *const keys[] = {"file", "code"};
-    struct report report = {{0}, NULL, NULL};
-    const char *key = "";
     const struct user_text *user = structure;
-    const sonject_status status = check_one_given(reader, node, keys, COUNT(keys), "file and code");
-    if (status == SONJECT_OK && check_user_shape(&user->shape, &report, &key) != SONJECT_OK)
-        return place_check(reader, node, key, &report);
-    return status;
+    check_user_shape(&user->shape, NULL, listen_at(reader, node));
+    return check_one_given(reader, node, "file code", "file and code");
 }
 
 #define STRUCTURE struct user_text
@@ -126,7 +114,7 @@ sonject_status read_user_shape(struct reader *reader, const struct tree_node *no
                             "use --allow-user-shapes");
     sonject_user_shape_params_init(&user.shape);
     sonject_status status = read_section(reader, &user_section, node, &user);
-    if (status == SONJECT_OK) {
+    if (status == SONJECT_OK && user.code) {
         user.shape.name = short_name(user.name);
         user.shape.code = user.code;
         status = user_shapes_append(&reader->scene->user_shapes, reader->report, &user.shape);

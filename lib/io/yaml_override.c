@@ -169,17 +169,19 @@ static sonject_status set_value(struct walk *walk, char *value)
     }
     status = tree_parse_value(walk->tree, walk->place.override, value, walk->steps, walk->node);
     free(value);
+    if (status != SONJECT_OK) /* nothing of it is read: the key is only known to be wrong */
+        tree_node_clear(walk->node);
+    if (status != SONJECT_OK && walk->tree->mistakes)
+        mistakes_add(walk->tree->mistakes, walk->tree, &walk->place, walk->place.override, NULL);
     return status;
 }
 
 sonject_status tree_override(struct tree *tree, const char *override)
 {
-    char excerpt[100];
     const char *equals = strchr(override, '=');
+    const struct tree_place whole = {override, 1, 1};
     if (!equals)
-        return report_failure(tree->report, SONJECT_ERROR_INPUT,
-                              "--set %s: has no '='; write key.path=value",
-                              text_excerpt(excerpt, sizeof excerpt, override));
+        return tree_failure(tree, whole, override, "has no '='; write key.path=value");
     struct walk walk = {.tree = tree, .node = &tree->root};
     sonject_status status =
         keep_path(tree, override, (size_t)(equals - override), &walk.place.override);

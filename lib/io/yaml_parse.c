@@ -117,9 +117,12 @@ static sonject_status take_key(struct builder *builder, const yaml_event_t *even
         return refuse(builder, event, "the key contains a character 0; remove it");
     const struct tree_entry *earlier = tree_find(node, key);
     key_path_add(&builder->path, key);
-    if (earlier)
-        return tree_failure(builder->tree, place_of(builder, event->start_mark), builder->path.text,
-                            "given twice, first on line %zu; remove one", earlier->place.line);
+    if (earlier) {
+        tree_failure(builder->tree, place_of(builder, event->start_mark), builder->path.text,
+                     "given twice, first on line %zu; remove one", earlier->place.line);
+        if (!builder->tree->mistakes)
+            return SONJECT_ERROR_INPUT;
+    }
     return tree_append(builder->tree, node, &builder->path, key,
                        place_of(builder, event->start_mark), entry);
 }

@@ -98,7 +98,7 @@ sonject_status tree_failure(const struct tree *tree, struct tree_place place, co
 {
     char where[320];
     char name[240];
-    char what[REPORT_CAPACITY];
+    char what[REPORT_LINE], line[2 * REPORT_LINE];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(what, sizeof what, format, arguments);
@@ -109,8 +109,13 @@ sonject_status tree_failure(const struct tree *tree, struct tree_place place, co
         snprintf(where, sizeof where, "%s:%zu:%zu", text_excerpt(name, sizeof name, tree->file),
                  place.line, place.column);
     const bool is_told = *path == 0 || (place.override && strcmp(path, place.override) == 0);
-    return report_failure(tree->report, SONJECT_ERROR_INPUT, "%s%s%s: %s", where,
-                          is_told ? "" : ": ", is_told ? "" : path, what);
+    snprintf(line, sizeof line, "%s%s%s: %s", where, is_told ? "" : ": ", is_told ? "" : path,
+             what);
+    text_make_printable(line);
+    if (!tree->mistakes)
+        return report_failure(tree->report, SONJECT_ERROR_INPUT, "%s", line);
+    mistakes_add(tree->mistakes, tree, &place, path, line);
+    return SONJECT_ERROR_INPUT;
 }
 
 static size_t add_text(struct key_path *path, const char *text)

@@ -8,6 +8,7 @@
 #include <stddef.h>
 
 #include "base/report.h"
+#include "io/mistakes.h"
 
 #define TREE_BYTES_MAX (1024 * 1024)
 #define TREE_DEPTH_MAX 32
@@ -46,7 +47,9 @@ struct tree_entry {
 
 struct tree {
     struct report *report;
-    const char *file; /* name for messages, the caller's */
+    struct mistakes *mistakes;  /* that are collected, the caller's; NULL: the report gets them */
+    const char *file;           /* name for messages, the caller's */
+    struct tree_place named_at; /* of the key that names the file; all 0: none does */
     struct tree_node root;
     size_t node_count;
     char **override_paths;
@@ -59,7 +62,7 @@ struct key_path {
     size_t length;
 };
 
-/* An empty tree. report and file must outlive it. */
+/* An empty tree, whose mistakes are not collected. report and file must outlive it. */
 void tree_init(struct tree *tree, struct report *report, const char *file);
 void tree_clear(struct tree *tree);
 
@@ -87,7 +90,8 @@ bool tree_is_null(const struct tree_node *node);
 
 void tree_node_clear(struct tree_node *node);
 
-/* The message "file:line:column: path: ..." or "--set path: ...". Returns INPUT. */
+/* The message "file:line:column: path: ..." or "--set path: ...", to the tree's mistakes or, where
+ * they are not collected, to its report. Returns INPUT. */
 sonject_status tree_failure(const struct tree *tree, struct tree_place place, const char *path,
                             const char *format, ...) REPORT_FORMAT(4);
 

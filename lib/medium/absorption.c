@@ -10,9 +10,9 @@
 #define KELVIN_AT_0_CELSIUS 273.0 /* the papers' own, without the 0.15 */
 
 sonject_status check_sea_water(const struct sea_water *water, struct report *report,
-                               const char **key)
+                               struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     check_within(&check, "temperature", water->temperature_celsius, -2.0, 30.0, " C");
     check_within(&check, "salinity", water->salinity_permille, 0.0, 40.0, " per mille");
     check_within(&check, "depth", water->depth_m, 0.0, 5000.0, " m");

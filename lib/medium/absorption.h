@@ -4,7 +4,7 @@
 
 #include <sonject/medium.h>
 
-#include "base/report.h"
+#include "base/ranges.h"
 
 #define ABSORPTION_FREQUENCY_MIN_HZ 200.0
 #define ABSORPTION_FREQUENCY_MAX_HZ 1e6
@@ -19,6 +19,6 @@ struct sea_water {
 /* Ranges in which the formula of sonject_absorption holds, in the manner of the checks in
  * scene/scene.h: keys are "temperature", "salinity", "depth" and "ph". Errors: INPUT. */
 sonject_status check_sea_water(const struct sea_water *water, struct report *report,
-                               const char **key);
+                               struct check_listener *listener);
 
 #endif

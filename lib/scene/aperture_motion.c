@@ -59,9 +59,9 @@ static void check_yaw(struct check *check, const sonject_motion_params *motion)
 }
 
 sonject_status check_motion(const sonject_motion_params *motion, struct report *report,
-                            const char **key)
+                            struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     check_within(&check, "sway", motion->sway_count, 0.0, SONJECT_SWAYS_CAPACITY, " entries");
     for (uint32_t i = 0; i < motion->sway_count && i < SONJECT_SWAYS_CAPACITY; i++) {
         check_within(&check, "amplitude", motion->sways[i].amplitude_m, -SWAY_MAX_M, SWAY_MAX_M,

@@ -32,8 +32,9 @@ static void swath_size(struct check *check, uint32_t rows, uint32_t columns)
     side_length(check, "rows", rows);
     side_length(check, "columns", columns);
     if ((uint64_t)rows * columns > SWATH_PIXELS_MAX)
-        check_failure(check, "rows", "times columns must be at most 2^31 pixels, not %lu x %lu",
-                      (unsigned long)rows, (unsigned long)columns);
+        check_relation(check, "rows", "columns",
+                       "times columns must be at most 2^31 pixels, not %lu x %lu",
+                       (unsigned long)rows, (unsigned long)columns);
 }
 
 /* Turns of the array: the beam stays on the imaged side. */
@@ -50,16 +51,17 @@ static void check_array(struct check *check, const sonject_sonar_params *sonar)
 }
 
 sonject_status check_sonar(const sonject_sonar_params *sonar, struct report *report,
-                           const char **key)
+                           struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     check_within(&check, "frequency", sonar->centre_frequency_hz, FREQUENCY_MIN_HZ,
                  FREQUENCY_MAX_HZ, " Hz");
     check_within(&check, "bandwidth", sonar->bandwidth_hz, FREQUENCY_MIN_HZ, FREQUENCY_MAX_HZ,
                  " Hz");
     if (sonar->bandwidth_hz >= 2.0 * sonar->centre_frequency_hz)
-        check_failure(&check, "bandwidth", "must be below twice the frequency, %g Hz, not %g Hz",
-                      2.0 * sonar->centre_frequency_hz, sonar->bandwidth_hz);
+        check_relation(&check, "bandwidth", "frequency",
+                       "must be below twice the frequency, %g Hz, not %g Hz",
+                       2.0 * sonar->centre_frequency_hz, sonar->bandwidth_hz);
     check_positive_length(&check, "altitude", sonar->altitude_m);
     if (sonar->along_track_resolution_m != 0.0)
         check_positive_length(&check, "resolution", sonar->along_track_resolution_m);
@@ -79,9 +81,9 @@ sonject_status check_sonar(const sonject_sonar_params *sonar, struct report *rep
 }
 
 sonject_status check_medium(const sonject_medium_params *medium, struct report *report,
-                            const char **key)
+                            struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     check_within(&check, "sound_speed", medium->sound_speed_mps, 100.0, 10000.0, " m/s");
     if (medium->reference_sound_speed_mps != 0.0)
         check_within(&check, "reference_sound_speed", medium->reference_sound_speed_mps, 100.0,
@@ -91,10 +93,10 @@ sonject_status check_medium(const sonject_medium_params *medium, struct report *
 }
 
 sonject_status check_seabed(const sonject_seabed_params *seabed, struct report *report,
-                            const char **key)
+                            struct check_listener *listener)
 {
     static const struct material_keys forward_keys = MATERIAL_KEYS("forward.");
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     check_choice(&check, "map", seabed->map, SONJECT_MAP_COHERENT + 1);
     if (!(seabed->lambert > 0.0 && PI * seabed->lambert <= ENERGY_SLACK))
         check_failure(
@@ -110,10 +112,10 @@ sonject_status check_seabed(const sonject_seabed_params *seabed, struct report *
 }
 
 sonject_status check_surface(const sonject_surface_params *surface, struct report *report,
-                             const char **key)
+                             struct check_listener *listener)
 {
     static const struct material_keys keys = MATERIAL_KEYS("");
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     check_length(&check, "depth", surface->water_depth_m);
     const sonject_material_params material = surface_material(surface);
     check_material(&check, &keys, &material, NAN);
@@ -121,9 +123,9 @@ sonject_status check_surface(const sonject_surface_params *surface, struct repor
 }
 
 sonject_status check_geometry(const sonject_geometry_params *geometry, struct report *report,
-                              const char **key)
+                              struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     check_choice(&check, "side", geometry->side, SONJECT_SIDE_STARBOARD + 1);
     check_positive_length(&check, "row_spacing", geometry->row_spacing_m);
     check_positive_length(&check, "column_spacing", geometry->column_spacing_m);
@@ -135,9 +137,9 @@ sonject_status check_geometry(const sonject_geometry_params *geometry, struct re
 }
 
 sonject_status check_transfer(const sonject_transfer_params *transfer, struct report *report,
-                              const char **key)
+                              struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     check_choice(&check, "kind", transfer->kind, SONJECT_TRANSFER_SCHLICK + 1);
     check_finite(&check, "parameter", transfer->parameter);
     check_finite(&check, "offset", transfer->offset);
@@ -154,9 +156,9 @@ sonject_status check_transfer(const sonject_transfer_params *transfer, struct re
 }
 
 sonject_status check_injection(const sonject_injection_params *injection, struct report *report,
-                               const char **key)
+                               struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     check_choice(&check, "mode", injection->mode, SONJECT_MODE_RESYNTHESISE + 1);
     check_choice(&check, "columns", injection->column_rule, SONJECT_COLUMNS_PAPER + 1);
     check_choice(&check, "noise_floor", injection->estimate_noise, 2);
@@ -179,15 +181,15 @@ sonject_status check_injection(const sonject_injection_params *injection, struct
         check_within(&check, "match.looks", injection->match_looks, 1.0, 64.0, " looks");
     if (injection->estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
         injection->mode != SONJECT_MODE_RESYNTHESISE)
-        check_failure(&check, "estimator",
-                      "brute_force traces the whole patch and needs mode: resynthesise");
+        check_relation(&check, "estimator", "mode",
+                       "brute_force traces the whole patch and needs mode: resynthesise");
     return check.status;
 }
 
 sonject_status check_patch(const sonject_patch_params *patch, struct report *report,
-                           const char **key)
+                           struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     const struct {
         const char *key;
         uint64_t value;
@@ -207,17 +209,17 @@ sonject_status check_patch(const sonject_patch_params *patch, struct report *rep
 }
 
 sonject_status check_uniform(uint32_t rows, uint32_t columns, struct report *report,
-                             const char **key)
+                             struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     swath_size(&check, rows, columns);
     return check.status;
 }
 
 sonject_status check_synthetic(const sonject_synthetic_params *synthetic, struct report *report,
-                               const char **key)
+                               struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     swath_size(&check, synthetic->rows, synthetic->columns);
     check_choice(&check, "complex", synthetic->complex_pixels, 2);
     if (!(synthetic->speckle_shape >= 0.01))
@@ -265,9 +267,10 @@ static void check_position(struct check *check, const sonject_object_params *obj
     check_finite(check, "position", object->position_range);
 }
 
-sonject_status check_part(const sonject_part_params *part, struct report *report, const char **key)
+sonject_status check_part(const sonject_part_params *part, struct report *report,
+                          struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     check_coordinate(&check, "at.along", part->along_m);
     check_coordinate(&check, "at.across", part->across_m);
     check_coordinate(&check, "at.up", part->up_m);
@@ -278,10 +281,10 @@ sonject_status check_part(const sonject_part_params *part, struct report *report
 }
 
 sonject_status check_object(const sonject_object_params *object, struct report *report,
-                            const char **key)
+                            struct check_listener *listener)
 {
     static const struct material_keys material_keys = MATERIAL_KEYS("material.");
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     check_label(&check, "name", object->name);
     check_label(&check, "class", object->class_name);
     check_shape(&check, object);

@@ -4,9 +4,9 @@
 #include "scene/shape_size.h"
 
 sonject_status check_cuts_in_scene(const struct scene *scene, const sonject_object_params *object,
-                                   struct report *report, const char **key)
+                                   struct report *report, struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     struct shape_size size;
     if (object->cut_count == 0)
         return SONJECT_OK;

@@ -8,6 +8,6 @@
  * check_object tells it of all other shapes, and has passed this one. Errors: INPUT, as
  * check_object. */
 sonject_status check_cuts_in_scene(const struct scene *scene, const sonject_object_params *object,
-                                   struct report *report, const char **key);
+                                   struct report *report, struct check_listener *listener);
 
 #endif

@@ -21,17 +21,17 @@ static void check_energy(struct check *check, const struct material_keys *keys,
     const double available = is_reduced ? material->reflection * material->reflection : 1.0;
     const char *bound = is_reduced ? "reflection^2" : "1";
     if (!(lambert >= 0.0 && PI * lambert <= available * ENERGY_SLACK))
-        check_failure(check, keys->lambert,
-                      "must be 0...%.4g (%s / pi), or the surface returns more than it receives; "
-                      "it is %s%g",
-                      available / PI, bound, has_own ? "the seabed's own, " : "", lambert);
+        check_relation(check, keys->lambert, keys->energy,
+                       "must be 0...%.4g (%s / pi), or the surface returns more than it receives; "
+                       "it is %s%g",
+                       available / PI, bound, has_own ? "the seabed's own, " : "", lambert);
     const double left = fmax(0.0, available - PI * lambert);
     if (!(material->glossy_albedo >= 0.0 &&
           PI * lambert + material->glossy_albedo <= available * ENERGY_SLACK))
-        check_failure(check, keys->albedo,
-                      "must be 0...%.4g (%s - pi lambert), or the surface returns more than it "
-                      "receives; it is %g",
-                      left, bound, material->glossy_albedo);
+        check_relation(check, keys->albedo, keys->energy,
+                       "must be 0...%.4g (%s - pi lambert), or the surface returns more than it "
+                       "receives; it is %g",
+                       left, bound, material->glossy_albedo);
 }
 
 void check_material(struct check *check, const struct material_keys *keys,

@@ -10,6 +10,7 @@
 struct material_keys {
     const char *reflection, *roughness, *lambert, *exponent, *albedo, *slope, *density, *speed,
         *loss;
+    const char *energy; /* all that limits what may be returned, for check_relation */
 };
 
 /* MATERIAL_KEYS("material.") are those of an object's. */
@@ -17,7 +18,8 @@ struct material_keys {
     {                                                                                              \
         prefix "reflection", prefix "roughness", prefix "lambert", prefix "exponent",              \
             prefix "glossy.albedo", prefix "glossy.slope", prefix "fluid.density",                 \
-            prefix "fluid.speed", prefix "fluid.loss"                                              \
+            prefix "fluid.speed", prefix "fluid.loss",                                             \
+            "lambert " prefix "lambert " prefix "reflection " prefix "name " prefix "sediment"     \
     }
 
 /* Ranges and energy bound of a material, as material.h states them. own_lambert: what its lambert

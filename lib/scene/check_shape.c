@@ -9,7 +9,9 @@ static void check_end(struct check *check, const sonject_object_params *object,
                       const char *const keys[2], uint32_t kind, double depth_m)
 {
     check_choice(check, keys[0], kind, SONJECT_END_SPHERICAL + 1);
-    check_within(check, keys[1], depth_m, 0.0, 0.5 * object->diameter_m, " m (half the diameter)");
+    if (!(depth_m >= 0.0 && depth_m <= 0.5 * object->diameter_m))
+        check_relation(check, keys[1], "diameter", "must be 0...%g m (half the diameter), not %g",
+                       0.5 * object->diameter_m, depth_m);
 }
 
 static void check_cylinder(struct check *check, const sonject_object_params *object)
@@ -18,23 +20,23 @@ static void check_cylinder(struct check *check, const sonject_object_params *obj
     static const char *const tail_keys[2] = {"tail_end", "tail_end.depth"};
     check_end(check, object, nose_keys, object->nose_end, object->nose_end_depth_m);
     check_end(check, object, tail_keys, object->tail_end, object->tail_end_depth_m);
-    if (check->status != SONJECT_OK)
+    if (object->nose_end > SONJECT_END_SPHERICAL || object->tail_end > SONJECT_END_SPHERICAL)
         return;
     struct shape_size size;
     shape_size_init(&size, object);
     const double ends = size.nose.depth_m + size.tail.depth_m;
     if (object->length_m < ends)
-        check_failure(check, "length",
-                      "of a cylinder includes its spherical ends and must be at least their %g m, "
-                      "not %g m",
-                      ends, object->length_m);
+        check_relation(check, "length", "diameter nose_end tail_end",
+                       "of a cylinder includes its spherical ends and must be at least their %g m, "
+                       "not %g m",
+                       ends, object->length_m);
 }
 
 static void check_capsule(struct check *check, const sonject_object_params *object)
 {
     if (object->length_m < object->diameter_m)
-        check_failure(
-            check, "length",
+        check_relation(
+            check, "length", "diameter",
             "of a capsule includes its round ends and must be at least its diameter, %g m, not "
             "%g m",
             object->diameter_m, object->length_m);
@@ -42,17 +44,18 @@ static void check_capsule(struct check *check, const sonject_object_params *obje
 
 static void check_wedge(struct check *check, const sonject_object_params *object)
 {
-    check_within(check, "front_height", object->front_height_m, 0.0, object->height_m,
-                 " m (the height)");
+    if (!(object->front_height_m >= 0.0 && object->front_height_m <= object->height_m))
+        check_relation(check, "front_height", "height", "must be 0...%g m (the height), not %g",
+                       object->height_m, object->front_height_m);
 }
 
 static void check_torus(struct check *check, const sonject_object_params *object)
 {
     if (object->diameter_m <= 2.0 * object->height_m)
-        check_failure(check, "diameter",
-                      "of a torus is that of its outline and must be above twice its height, %g "
-                      "m, or there is no hole; it is %g m",
-                      2.0 * object->height_m, object->diameter_m);
+        check_relation(check, "diameter", "height",
+                       "of a torus is that of its outline and must be above twice its height, %g "
+                       "m, or there is no hole; it is %g m",
+                       2.0 * object->height_m, object->diameter_m);
 }
 
 static void check_cuts(struct check *check, const sonject_object_params *object)
@@ -74,7 +77,8 @@ static void check_what_is_left(struct check *check, const sonject_object_params 
     struct shape_size size;
     shape_size_init(&size, object);
     if (!shape_is_left(&size, object->shape))
-        check_failure(check, "cuts", "leave nothing of the object; move one outwards");
+        check_relation(check, "cuts", "length width diameter height",
+                       "leave nothing of the object; move one outwards");
 }
 
 /* What a shape needs; the others may be anything finite. */
@@ -107,7 +111,7 @@ static void check_needed(struct check *check, const sonject_object_params *objec
 void check_shape(struct check *check, const sonject_object_params *object)
 {
     check_choice(check, "shape", object->shape, SONJECT_SHAPE_USER + 1);
-    if (check->status != SONJECT_OK)
+    if (object->shape > SONJECT_SHAPE_USER)
         return;
     if (object->shape == SONJECT_SHAPE_PARTS) {
         if (object->cut_count > 0)
@@ -127,8 +131,7 @@ void check_shape(struct check *check, const sonject_object_params *object)
         check_wedge(check, object);
     else if (object->shape == SONJECT_SHAPE_TORUS)
         check_torus(check, object);
-    if (check->status == SONJECT_OK)
-        check_cuts(check, object);
+    check_cuts(check, object);
     if (check->status == SONJECT_OK)
         check_what_is_left(check, object);
 }

@@ -55,8 +55,9 @@ static void check_times(struct check *check, const sonject_elements_params *elem
     if (!isnan(elements->last_time_s))
         check_within(check, "last_time", elements->last_time_s, 0.0, TIME_MAX_S, " s");
     if (elements->last_time_s < elements->first_time_s)
-        check_failure(check, "last_time", "must not be before first_time, %g s, but is %g s",
-                      elements->first_time_s, elements->last_time_s);
+        check_relation(check, "last_time", "first_time",
+                       "must not be before first_time, %g s, but is %g s", elements->first_time_s,
+                       elements->last_time_s);
     if (elements->sampling_rate_hz != 0.0)
         check_within(check, "sampling_rate", elements->sampling_rate_hz, RATE_MIN_HZ, RATE_MAX_HZ,
                      " Hz");
@@ -64,9 +65,9 @@ static void check_times(struct check *check, const sonject_elements_params *elem
 }
 
 sonject_status check_elements(const sonject_elements_params *elements, struct report *report,
-                              const char **key)
+                              struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     check_choice(&check, "form", elements->form, SONJECT_SERIES_PASSBAND + 1);
     check_choice(&check, "pulse", elements->pulse, SONJECT_SERIES_CHIRP + 1);
     check_within(&check, "hydrophones.count", elements->hydrophones, 1.0, HYDROPHONES_MAX, "");

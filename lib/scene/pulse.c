@@ -13,9 +13,9 @@ void sonject_pulse_params_init(sonject_pulse_params *pulse)
 }
 
 sonject_status check_pulse(const sonject_pulse_params *pulse, struct report *report,
-                           const char **key)
+                           struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     check_choice(&check, "kind", pulse->kind, SONJECT_PULSE_TABLE + 1);
     check_choice(&check, "window", pulse->window, SONJECT_PULSE_TAYLOR + 1);
     check_finite(&check, "window.taylor.sidelobes", pulse->taylor_sidelobe_db);

@@ -43,9 +43,9 @@ static void check_ripples(struct check *check, const struct relief_feature *feat
 }
 
 sonject_status check_relief_feature(const struct relief_feature *feature, struct report *report,
-                                    const char **key)
+                                    struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     switch (feature->kind) {
     case RELIEF_RIPPLES:
         check_ripples(&check, feature);

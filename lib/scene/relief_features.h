@@ -9,7 +9,7 @@
 #include <sonject/object.h>
 #include <sonject/relief.h>
 
-#include "base/report.h"
+#include "base/ranges.h"
 
 #define RELIEF_FEATURES_MAX  256
 #define RELIEF_GRID_SIDE_MAX 16384u /* rows or columns of heights */
@@ -48,7 +48,7 @@ struct relief_features {
 
 /* Checks of one feature and of a caller's grid, as check_ functions of scene/scene.h do. */
 sonject_status check_relief_feature(const struct relief_feature *feature, struct report *report,
-                                    const char **key);
+                                    struct check_listener *listener);
 sonject_status check_relief_grid(const sonject_relief_params *grid, const float *heights_m,
                                  struct report *report);
 

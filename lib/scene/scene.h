@@ -9,7 +9,7 @@
 #include <sonject/elements.h>
 #include <sonject/scene.h>
 
-#include "base/report.h"
+#include "base/ranges.h"
 #include "medium/water_layer.h"
 #include "mesh/mesh_store.h"
 #include "scene/aperture_motion.h"
@@ -101,38 +101,38 @@ sonject_status scene_share_mesh(struct scene *scene, struct report *report, cons
                                 uint32_t *number);
 
 /* Checks of one structure each, ranges and relations as the public headers state them. The message
- * starts with the name of the value as the scene file writes it ("bandwidth must be ..."); key, if
- * not NULL, gets that name (static storage), so that a reader can point at the line. Errors: INPUT.
- */
+ * starts with the name of the value as the scene file writes it ("bandwidth must be ..."). report
+ * keeps the first failure, listener hears all; either may be NULL. Errors: INPUT. */
 sonject_status check_sonar(const sonject_sonar_params *sonar, struct report *report,
-                           const char **key);
+                           struct check_listener *listener);
 sonject_status check_pulse(const sonject_pulse_params *pulse, struct report *report,
-                           const char **key);
+                           struct check_listener *listener);
 sonject_status check_motion(const sonject_motion_params *motion, struct report *report,
-                            const char **key);
+                            struct check_listener *listener);
 sonject_status check_medium(const sonject_medium_params *medium, struct report *report,
-                            const char **key);
+                            struct check_listener *listener);
 sonject_status check_seabed(const sonject_seabed_params *seabed, struct report *report,
-                            const char **key);
+                            struct check_listener *listener);
 sonject_status check_surface(const sonject_surface_params *surface, struct report *report,
-                             const char **key);
+                             struct check_listener *listener);
 sonject_status check_geometry(const sonject_geometry_params *geometry, struct report *report,
-                              const char **key);
+                              struct check_listener *listener);
 sonject_status check_transfer(const sonject_transfer_params *transfer, struct report *report,
-                              const char **key);
+                              struct check_listener *listener);
 sonject_status check_injection(const sonject_injection_params *injection, struct report *report,
-                               const char **key);
+                               struct check_listener *listener);
 sonject_status check_elements(const sonject_elements_params *elements, struct report *report,
-                              const char **key);
+                              struct check_listener *listener);
 sonject_status check_patch(const sonject_patch_params *patch, struct report *report,
-                           const char **key);
+                           struct check_listener *listener);
 sonject_status check_uniform(uint32_t rows, uint32_t columns, struct report *report,
-                             const char **key);
+                             struct check_listener *listener);
 sonject_status check_synthetic(const sonject_synthetic_params *synthetic, struct report *report,
-                               const char **key);
-sonject_status check_part(const sonject_part_params *part, struct report *report, const char **key);
+                               struct check_listener *listener);
+sonject_status check_part(const sonject_part_params *part, struct report *report,
+                          struct check_listener *listener);
 sonject_status check_object(const sonject_object_params *object, struct report *report,
-                            const char **key);
+                            struct check_listener *listener);
 
 /* The name of a shape as scene files write it; NULL for an unknown one. */
 const char *shape_name(uint32_t shape);

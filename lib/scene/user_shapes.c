@@ -15,9 +15,9 @@ void sonject_user_shape_params_init(sonject_user_shape_params *shape)
 }
 
 sonject_status check_user_shape(const sonject_user_shape_params *shape, struct report *report,
-                                const char **key)
+                                struct check_listener *listener)
 {
-    struct check check = {report, key, SONJECT_OK};
+    struct check check = {report, listener, SONJECT_OK};
     check_choice(&check, "open", shape->is_open, 2);
     check_positive_length(&check, "bounding_radius", shape->bounding_radius_m);
     check_length(&check, "half_length", shape->half_length_m);

@@ -7,7 +7,7 @@
 
 #include <sonject/user_shape.h>
 
-#include "base/report.h"
+#include "base/ranges.h"
 #include "user/snippet.h"
 
 #define USER_SNIPPETS_MAX 64
@@ -28,10 +28,9 @@ struct user_shapes {
     uint32_t count;
 };
 
-/* Ranges of the values, but for name and code. The message starts with the value's key in scene
- * files, which *key (may be NULL) gets. Errors: INPUT. */
+/* Ranges of the values, but for name and code, as check_ functions of scene/scene.h do. */
 sonject_status check_user_shape(const sonject_user_shape_params *shape, struct report *report,
-                                const char **key);
+                                struct check_listener *listener);
 
 /* Appends a checked shape. Errors: INPUT (its code or name, see snippet_make; too many), MEMORY. */
 sonject_status user_shapes_append(struct user_shapes *shapes, struct report *report,

@@ -89,12 +89,13 @@ def files_below(folder):
     return sorted(pathlib.Path(place, name) for place, _, names in os.walk(folder) for name in names)
 
 
-def assert_refused(answer, code, *words):
-    """One line on stderr that holds the words, nothing on stdout, the exit code."""
+def assert_refused(answer, code, *words, mistakes=1):
+    """One line on stderr for each mistake, the first of which holds the words, nothing on stdout, the
+    exit code."""
     assert answer.returncode == code, answer.stderr
     lines = answer.stderr.splitlines()
-    assert len(lines) == 1, answer.stderr
-    assert lines[0].startswith("sonject: ")
+    assert len(lines) == mistakes, answer.stderr
+    assert all(line.startswith("sonject: ") for line in lines)
     for word in words:
         assert word in lines[0], (word, lines[0])
     assert not answer.stdout

@@ -35,6 +35,18 @@ def test_an_unknown_key(sonject, scene):
     refuse(sonject, scene, 3, f"scene.yaml:{line}:5", "diametre", "diameter")
 
 
+@pytest.mark.parametrize("verb", [["check"], ["run", "-o", "result"], ["trace", "-o", "x.h5"]])
+def test_every_verb_tells_all_mistakes_in_their_order(sonject, scene, verb):
+    edit(scene, "100 kHz", "100 parsec")
+    edit(scene, "column_spacing: 2.5 cm", "colum_spacing: 2.5 cm")
+    edit(scene, "shape: sphere", "shape: shpere")
+    answer = sonject(verb[0], scene, *verb[1:], "--set", "sonar.altitude=deep")
+    assert_refused(answer, 3, "scene.yaml:6:5: input.geometry.colum_spacing", mistakes=4)
+    assert [line.split(": ")[2] for line in answer.stderr.splitlines()] == [
+        "input.geometry.colum_spacing", "sonar.frequency", "objects[0].shape",
+        "'deep' is not a number with a unit of m, km, cm, mm"]
+
+
 def test_a_wrong_unit(sonject, scene):
     edit(scene, "diameter: 0.5 m", "diameter: 0.5 kHz")
     refuse(sonject, scene, 3, "scene.yaml:", "diameter", "kHz")

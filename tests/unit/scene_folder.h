@@ -77,18 +77,20 @@ static inline void expect_scene_taken(struct scene_folder *folder, const char *t
         fail_msg("refused: %s", folder->report.message);
 }
 
-/* message: all of what follows the file name, ":2:3: sonar.altitude: ...". */
+/* message: all of what follows the file name, ":2:3: sonar.altitude: ...", in each of its lines. */
 static inline void expect_scene_refused(struct scene_folder *folder, const char *text,
                                         const char *message)
 {
-    const size_t place = strlen(folder->file);
+    char expected[REPORT_CAPACITY] = "";
     write_scene(folder, text, strlen(text));
     if (read_scene(folder, NULL, 0) != SONJECT_ERROR_INPUT)
         fail_msg("not refused: %s", text);
-    if (strncmp(folder->report.message, folder->file, place) != 0 ||
-        strcmp(folder->report.message + place, message) != 0)
-        fail_msg("the message is\n%s\nand not\n%s%s", folder->report.message, folder->file,
-                 message);
+    for (const char *line = message; *line;
+         line += strcspn(line, "\n") + (strchr(line, '\n') != NULL))
+        sprintf(expected + strlen(expected), "%s%s%.*s", line == message ? "" : "\n", folder->file,
+                (int)strcspn(line, "\n"), line);
+    if (strcmp(folder->report.message, expected) != 0)
+        fail_msg("the message is\n%s\nand not\n%s", folder->report.message, expected);
 }
 
 /* The text of an example scene, its end marked by a 0, for free(). name: "demo". */

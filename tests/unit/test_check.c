@@ -9,6 +9,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "first_key.h"
 #include "scene/scene.h"
 #include "scene/surface_material.h"
 
@@ -64,7 +65,8 @@ static void make_good(struct all *all)
     all->sphere.cuts[1].azimuth_rad = 3.0;
 }
 
-static sonject_status check_all(const struct all *all, struct report *report, const char **key)
+static sonject_status check_all(const struct all *all, struct report *report,
+                                struct check_listener *key)
 {
     sonject_status status = check_sonar(&all->sonar, report, key);
     if (status == SONJECT_OK)
@@ -101,14 +103,15 @@ static sonject_status check_all(const struct all *all, struct report *report, co
 static void expect_refused(const struct all *all, const char *name, const char *what)
 {
     struct report report = {{0}, NULL, NULL};
-    const char *key = NULL;
-    if (check_all(all, &report, &key) != SONJECT_ERROR_INPUT)
+    struct first_key first = FIRST_KEY;
+    if (check_all(all, &report, &first.listener) != SONJECT_ERROR_INPUT)
         fail_msg("%s of %s was taken", what, name);
-    assert_non_null(key);
-    if (strcmp(key, name) != 0)
-        fail_msg("%s of %s was blamed on %s", what, name, key);
-    if (strncmp(report.message, key, strlen(key)) != 0 || report.message[strlen(key)] != ' ')
-        fail_msg("the message does not start with %s: %s", key, report.message);
+    assert_non_null(first.key);
+    if (strcmp(first.key, name) != 0)
+        fail_msg("%s of %s was blamed on %s", what, name, first.key);
+    if (strncmp(report.message, first.key, strlen(first.key)) != 0 ||
+        report.message[strlen(first.key)] != ' ')
+        fail_msg("the message does not start with %s: %s", first.key, report.message);
 }
 
 static void expect_taken(const struct all *all, const char *name, double value)
@@ -484,7 +487,7 @@ static void test_the_seabeds_forward_material(void **state)
 static void test_the_sea_surfaces_rough_part(void **state)
 {
     struct report report = {{0}, NULL, NULL};
-    const char *key = NULL;
+    struct first_key first = FIRST_KEY;
     sonject_surface_params surface;
     sonject_material_params *material = &surface.material;
     (void)state;
@@ -495,18 +498,19 @@ static void test_the_sea_surfaces_rough_part(void **state)
     assert_true(surface_material(&surface).glossy_albedo == 1.0);
     material->reflection = -0.5;
     material->lambert = 0.05;
-    assert_int_equal(check_surface(&surface, &report, &key), SONJECT_OK);
+    assert_int_equal(check_surface(&surface, &report, &first.listener), SONJECT_OK);
     const double left = 0.25 - 3.14159265358979 * 0.05;
     assert_true(fabs(surface_material(&surface).glossy_albedo - left) < 1e-12); /* digits of pi */
     material->glossy_albedo = 0.0;
     assert_true(surface_material(&surface).glossy_albedo == 0.0);
     material->glossy_albedo = 0.1;
-    assert_int_equal(check_surface(&surface, &report, &key), SONJECT_ERROR_INPUT);
-    assert_string_equal(key, "glossy.albedo");
+    assert_int_equal(check_surface(&surface, &report, &first.listener), SONJECT_ERROR_INPUT);
+    assert_string_equal(first.key, "glossy.albedo");
+    first.key = NULL;
     material->glossy_albedo = NAN;
     material->lambert = 0.0796; /* 0.25 / pi = 0.0795775 */
-    assert_int_equal(check_surface(&surface, &report, &key), SONJECT_ERROR_INPUT);
-    assert_string_equal(key, "lambert");
+    assert_int_equal(check_surface(&surface, &report, &first.listener), SONJECT_ERROR_INPUT);
+    assert_string_equal(first.key, "lambert");
     material->reflection = 0.0;
     material->lambert = 0.0;
     assert_true(surface_material(&surface).glossy_albedo == 0.0);

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "first_key.h"
 #include "kernel/mesh_samples.h"
 #include "scene/check_cuts.h"
 #include "scene/placement.h"
@@ -193,7 +194,7 @@ static void test_cuts_must_leave_something(void **unused)
 {
     (void)unused;
     struct report report = {{0}, NULL, NULL};
-    const char *key = NULL;
+    struct first_key first = FIRST_KEY;
     struct scene scene;
     struct mesh mesh;
     struct mesh_sample sample;
@@ -209,15 +210,17 @@ static void test_cuts_must_leave_something(void **unused)
     object.cuts[0].distance_m = -0.99;
     object.cuts[1].azimuth_rad = PI;
     object.cuts[1].distance_m = 1.0;
-    assert_int_equal(check_object(&object, &report, &key), SONJECT_OK);
-    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, &key), SONJECT_OK);
+    assert_int_equal(check_object(&object, &report, &first.listener), SONJECT_OK);
+    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, &first.listener), SONJECT_OK);
     object.cuts[1].distance_m = 0.98;
-    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, &key), SONJECT_ERROR_INPUT);
-    assert_string_equal(key, "cuts");
+    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, &first.listener),
+                     SONJECT_ERROR_INPUT);
+    assert_string_equal(first.key, "cuts");
     assert_string_equal(report.message, "cuts leave nothing of the object; move one outwards");
     object.cut_count = 1;
     object.cuts[0].distance_m = -1.0; /* touches */
-    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, &key), SONJECT_ERROR_INPUT);
+    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, &first.listener),
+                     SONJECT_ERROR_INPUT);
     mesh_clear(&mesh);
 }
 

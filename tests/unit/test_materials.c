@@ -10,6 +10,7 @@
 
 #include <sonject/material.h>
 
+#include "first_key.h"
 #include "scene/scene.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])
@@ -112,12 +113,12 @@ static void test_values_are_allowed(void **state)
     (void)state;
     for (size_t i = 0; i < COUNT(promised); i++) {
         struct report report = {{0}, NULL, NULL};
-        const char *key = NULL;
+        struct first_key first = FIRST_KEY;
         sonject_object_params object;
         sonject_object_params_init(&object);
         object.material = take(promised[i]);
         assert_int_equal(object.material.struct_size, sizeof object.material);
-        if (check_object(&object, &report, &key) != SONJECT_OK)
+        if (check_object(&object, &report, &first.listener) != SONJECT_OK)
             fail_msg("%s: %s", promised[i], report.message);
         /* of a smooth and a rough part; nothing that the tables do not give */
         assert_true(object.material.roughness_m > 0.0 && object.material.lambert > 0.0);

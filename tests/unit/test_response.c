@@ -110,7 +110,7 @@ static void test_hostile_keys(void **state)
         {"pulse: {kind: gaussian, window: hann}",
          ":9:35: sonar.pulse.window: only a chirp has one; set kind: chirp"},
         {"pulse: {kind: table}", ":9:10: sonar.pulse.file: missing; the table is read from it"},
-        {"pulse: {kind: chirp, file: a.csv}",
+        {"pulse: {kind: chirp, file: scene.yaml}",
          ":9:30: sonar.pulse.file: belongs to kind: table; remove it"},
         {"pulse: {kind: chirp, window: {taylor: {sidelobes: 0, terms: 5}}}",
          "sonar.pulse.window.taylor.sidelobes: must be 1...120 dB, not 0"},

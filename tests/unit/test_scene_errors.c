@@ -47,11 +47,12 @@ static void test_unknown_keys(void **state)
          "absorption, layers, profile"},
         {OBJECT "sphere\n    diamter: 1 m\n",
          ":6:5: objects[0].diamter: unknown key; did you mean 'diameter'?"},
-        {BASE "objects:\n  - {shape: sphere, diameter: 1}\n  - {shape: plane, lenght: 1}\n",
+        {BASE
+         "objects:\n  - {shape: sphere, diameter: 1}\n  - {shape: plane, lenght: 1, width: 1}\n",
          ":6:20: objects[1].lenght: unknown key; did you mean 'length'?"},
         {START INPUT "sonar: {frequency: 1e5, bandwidth: 3e4, altitud: 10}\n",
          ":3:41: sonar.altitud: unknown key; did you mean 'altitude'?"},
-        {OBJECT "sphere\n    \xC3\xA9tat: 1 m\n",
+        {OBJECT "sphere\n    \xC3\xA9tat: 1 m\n    diameter: 1 m\n",
          ":6:5: objects[0].\xC3\xA9tat: unknown key; known here are target, name, class, shape, "
          "user, "
          "length, width, diameter, height, top_diameter, front_height, nose_end, tail_end, mesh, "
@@ -67,7 +68,9 @@ static void test_missing_keys(void **state)
         {INPUT SONAR, ":1:1: sonject: missing; add it (version of the format, 1)"},
         {START INPUT,
          ":1:1: sonar: missing; add it (the sonar: frequency, bandwidth and altitude)"},
-        {START, ":1:1: input, sonar are missing; add them"},
+        {START, ":1:1: input: missing; add it (where the image comes from: path, uniform or "
+                "synthetic, and geometry)\n"
+                ":1:1: sonar: missing; add it (the sonar: frequency, bandwidth and altitude)"},
         {START SONAR, ":1:1: input: missing; add it (where the image comes from: path, uniform or "
                       "synthetic, and geometry)"},
         {START INPUT "sonar: {bandwidth: 30e3, altitude: 10}\n",
@@ -77,13 +80,19 @@ static void test_missing_keys(void **state)
         {START INPUT "sonar: {frequency: 100e3, bandwidth: 30e3}\n",
          ":3:8: sonar.altitude: missing; add it (height of the track over the mean seabed, "
          "or from_file)"},
-        {START INPUT "sonar:\n", ":3:7: sonar: frequency, bandwidth, altitude are missing; add "
-                                 "them"},
+        {START INPUT "sonar:\n", ":3:7: sonar.frequency: missing; add it (centre frequency)\n"
+                                 ":3:7: sonar.bandwidth: missing; add it (sets the range "
+                                 "resolution, c / (2 bandwidth))\n"
+                                 ":3:7: sonar.altitude: missing; add it (height of the track over "
+                                 "the mean seabed, or from_file)"},
         {START "input: {uniform: {rows: 1, columns: 1}}\n" SONAR,
          ":2:8: input.geometry: missing; add it (where the pixels lie: row_spacing, column_spacing "
          "and first_slant_range, or from_file)"},
         {START "input:\n  uniform: {rows: 1, columns: 1}\n  geometry:\n    row_spacing: 1\n" SONAR,
-         ":5:5: input.geometry: column_spacing, first_slant_range are missing; add them"},
+         ":5:5: input.geometry.column_spacing: missing; add it (distance between range cells, in "
+         "slant range)\n"
+         ":5:5: input.geometry.first_slant_range: missing; add it (slant range of column 0 of the "
+         "whole swath)"},
         {START "input:\n  uniform: {rows: 1, columns: 1}\n  geometry: {row_spacing: {speed: 2}, "
                "column_spacing: 1, first_slant_range: 40}\n" SONAR,
          ":4:27: input.geometry.row_spacing.ping_rate: missing; add it (pings, and so rows, a "
@@ -91,9 +100,12 @@ static void test_missing_keys(void **state)
         {START "input:\n  uniform: {rows: 1, columns: 1}\n  geometry: {row_spacing: {speed: 2, "
                "ping_rate: 0}, column_spacing: 1, first_slant_range: 40}\n" SONAR,
          ":4:49: input.geometry.row_spacing.ping_rate: must be above 0 Hz, not 0"},
-        {START "input: {uniform: {rows: 1}, geometry: {}}\n" SONAR,
+        {START "input: {uniform: {rows: 1}, geometry: {row_spacing: 1, column_spacing: 1, "
+               "first_slant_range: 40}}\n" SONAR,
          ":2:18: input.uniform.columns: missing; add it (range cells)"},
-        {BASE "patch: {row: 1, column: 1}\n", ":4:8: patch: rows, columns are missing; add them"},
+        {BASE "patch: {row: 1, column: 1}\n",
+         ":4:8: patch.rows: missing; add it (track positions)\n"
+         ":4:8: patch.columns: missing; add it (range cells)"},
         {OBJECT "capsule\n    diameter: 1\n",
          ":5:5: objects[0].length: missing; a capsule needs it"},
         {OBJECT "plane\n    length: 1\n", ":5:5: objects[0].width: missing; a plane needs it"},
@@ -492,7 +504,10 @@ static void test_overrides_that_are_wrong(void **state)
         {"sonar.altitud=3", "--set sonar.altitud: unknown key; did you mean 'altitude'?"},
         {"sonar.altitude=3 kg", "--set sonar.altitude: unit 'kg' is not one of m, km, cm, mm"},
         {"sonar.altitude=-1 m", "--set sonar.altitude: must be 1e-06...1e+06 m, not -1"},
-        {"sonar={altitude: 3}", "--set sonar: frequency, bandwidth are missing; add them"},
+        {"sonar={altitude: 3}",
+         "--set sonar: sonar.frequency: missing; add it (centre frequency)\n"
+         "--set sonar: sonar.bandwidth: missing; add it (sets the range resolution, c / (2 "
+         "bandwidth))"},
         {"sonar={frequency: 1e5, bandwidth: 3e4, altitude: deep}",
          "--set sonar: sonar.altitude: 'deep' is not a number with a unit of m, km, cm, mm"},
         {"medium={sound_speed: *a}", "--set medium: medium.sound_speed: aliases (*name) are not "

@@ -148,8 +148,10 @@ static void test_what_is_refused(void **state)
          ":6:14: seabed.relief[0].heights: must be a section of 'key: value' lines, not a single "
          "value"},
         {BASE "  - heights: {file: heights.tif, first_ground_range: 0}\n",
-         ":6:14: seabed.relief[0].heights: unit, row_spacing, column_spacing are missing; add "
-         "them"},
+         ":6:14: seabed.relief[0].heights.unit: missing; add it (of the file's numbers)\n"
+         ":6:14: seabed.relief[0].heights.row_spacing: missing; add it (distance between rows)\n"
+         ":6:14: seabed.relief[0].heights.column_spacing: missing; add it (distance between "
+         "columns, horizontal)"},
         {HEIGHTS("offset: 1"),
          ":6:14: seabed.relief[0].heights.unit: missing; add it (of the file's numbers)"},
         {HEIGHTS("unit: feet"),
@@ -232,7 +234,7 @@ static void test_files_that_are_no_heights(void **state)
     assert_int_equal(truncate(heights_file(folder), 0), 0);
     expect_bad_file(folder, "unit: m", "");
     assert_int_equal(unlink(heights_file(folder)), 0);
-    expect_bad_file(folder, "unit: m", "o such file");
+    expect_bad_file(folder, "unit: m", "there is no file");
 }
 
 int main(void)

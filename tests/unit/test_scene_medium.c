@@ -143,9 +143,10 @@ static void test_absorption(void **state)
     assert_true(*absorption == sonject_absorption(455e3, -1.0, 5.0, 200.0, 8.0));
 }
 
-#define MEDIUM  BASE "medium:\n" /* its keys begin on line 5 */
-#define LAYERS  MEDIUM "  layers:\n"
-#define PROFILE MEDIUM "  profile: "
+#define GOOD_PROFILE "profile: {heights: [0 m, 9 m], sound_speeds: [1500, 1490]}\n"
+#define MEDIUM       BASE "medium:\n" /* its keys begin on line 5 */
+#define LAYERS       MEDIUM "  layers:\n"
+#define PROFILE      MEDIUM "  profile: "
 
 static void test_what_is_wrong(void **state)
 {
@@ -154,9 +155,9 @@ static void test_what_is_wrong(void **state)
     } wrong[] = {
         {MEDIUM "  sound_speed: 1500\n  layers: [{bottom: 0, sound_speed: 1500}]\n",
          ":5:3: medium: more than one of sound_speed, layers and profile is there; give one"},
-        {MEDIUM "  layers: []\n  profile: {}\n",
+        {MEDIUM "  layers: [{bottom: 0, sound_speed: 1500}]\n  " GOOD_PROFILE,
          ":5:3: medium: more than one of sound_speed, layers and profile is there; give one"},
-        {MEDIUM "  profile: {}\n  sound_speed: 1500\n",
+        {MEDIUM "  sound_speed: 1500\n  " GOOD_PROFILE,
          ":5:3: medium: more than one of sound_speed, layers and profile is there; give one"},
         {MEDIUM "  layers: []\n",
          ":5:11: medium.layers: must be a list, such as [{bottom: 0 m, sound_speed: 1490 m/s}, "
@@ -238,7 +239,8 @@ static void test_what_is_wrong(void **state)
         {MEDIUM "  absorption: [1]\n", ":5:15: medium.absorption: must be a section of 'key: "
                                        "value' lines, not a list"},
         {MEDIUM "  absorption: {temperature: 12 C}\n",
-         ":5:15: medium.absorption: salinity, depth are missing; add them"},
+         ":5:15: medium.absorption.salinity: missing; add it (per mille)\n"
+         ":5:15: medium.absorption.depth: missing; add it (below the sea surface)"},
         {MEDIUM "  absorption: {temperature: 31 C, salinity: 35, depth: 0}\n",
          ":5:29: medium.absorption.temperature: must be -2...30 C, not 31"},
         {MEDIUM "  absorption: {temperature: 285 K, salinity: 35, depth: 0}\n",

@@ -8,7 +8,8 @@ from .enumerations import Status
 class SonjectError(Exception):
     """A call of the library failed.
 
-    status: which kind of failure; message: one line that says what is wrong and where.
+    status: which kind of failure; message: says what is wrong and where, in one line, or in
+    one for each mistake of a scene or campaign file.
     """
 
     def __init__(self, status: Status, message: str) -> None:

@@ -1,0 +1,26 @@
+/* A listener of checks that keeps the key of the first failure. */
+#ifndef FIRST_KEY_H
+#define FIRST_KEY_H
+
+#include "base/ranges.h"
+
+struct first_key {
+    struct check_listener listener; /* first */
+    const char *key;
+};
+
+static inline void hear_first(struct check_listener *listener, const char *key, const char *others,
+                              const char *what)
+{
+    struct first_key *first = (struct first_key *)listener;
+    (void)others;
+    (void)what;
+    first->key = first->key ? first->key : key;
+}
+
+#define FIRST_KEY                                                                                  \
+    {                                                                                              \
+        {hear_first}, NULL                                                                         \
+    }
+
+#endif
