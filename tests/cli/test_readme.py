@@ -13,7 +13,8 @@ import pytest
 import images
 import recordings
 from conftest import COMMAND, SCENE
-from documents import MARKDOWN, SOURCE, comment_commands, markdown_commands, spans, suggested_settings
+from documents import (MARKDOWN, SOURCE, comment_commands, markdown_commands, read, spans,
+                       suggested_settings)
 
 sys.path.insert(0, str(SOURCE / "bindings" / "python"))
 
@@ -42,8 +43,6 @@ TYPED = {
         "sonject convert ground.tif slant.tif --range-axis slant",
     "sonject seabed -o IMAGE": "sonject seabed -o seabed.tif",
     "sonject VERB --help": "sonject measure --help",
-    "build/tools/sonject run tools/scenes/figure6.yaml -o out --set input.path=swath.png":
-        "build/tools/sonject run tools/scenes/figure6.yaml -o out --set input.path=image.png",
     "SONJECT_MUTATIONS=100000 build/tests/unit/unit_scene_hostile":
         "SONJECT_MUTATIONS=500 build/tests/unit/unit_scene_hostile",
     "build/tests/unit/unit_scene_reference tools/scenes/KEYS.md":
@@ -172,7 +171,24 @@ def project(tmp_path_factory, environment):
         assert answer.returncode == 0, answer.stdout + answer.stderr
 
     type_in("sonject seabed -o image.png --rows 472 --columns 512 --first-range 43.6125")
+    type_in("sonject seabed -o my_swath.tif --rows 400 --columns 500 --row-spacing 0.05 "
+            "--first-range 30")
+    (folder / "mine.yaml").write_text(own_scene())
     return folder, type_in
+
+
+def own_scene():
+    """The scene of the README for a swath of one's own."""
+    return re.search(r"```yaml\n(.*?)```", read("README.md"), flags=re.S)[1]
+
+
+def test_the_scene_for_a_swath_of_ones_own_is_short_and_whole(project):
+    folder, _ = project
+    assert len(own_scene().splitlines()) <= 15
+    answer = subprocess.run([COMMAND, "check", "mine.yaml"], cwd=folder, text=True,
+                            capture_output=True, check=False)
+    assert answer.returncode == 0, answer.stderr
+    assert "cylinder (cylinder): row 200.0, slant range 37.4" in answer.stdout
 
 
 def test_what_is_said_of_commands_is_of_commands_that_are_there():
