@@ -102,6 +102,7 @@ FUNCTION struct source_way way_through_layers(const struct fan_record *fan,
 /* Energies of one group of rays, lane by lane, ready to be tallied. */
 struct chain_echo {
     float energy[WIDTH]; /* quanta */
+    float chance[WIDTH]; /* of rounding up */
     int is_heard[WIDTH]; /* -1: there is some, in a bin that exists; else 0 */
     int bin[WIDTH];
     int strip[WIDTH], reverse_strip[WIDTH]; /* of the whole track; reverse -2^30: no such echo */
@@ -132,14 +133,15 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
     for (int i = 0; i < count; i++) {
         const int lane = heard[i];
         const float energy = echo->energy[lane];
+        const float chance = echo->chance[lane];
         const int strip = echo->strip[lane] - chains->tally_first_strip;
         const int reverse = echo->reverse_strip[lane] - chains->tally_first_strip;
         GLOBAL TALLY *line =
             tallies + (long)plane * chains->tally_strips * fan->bins + echo->bin[lane];
         if (strip >= 0 && strip < chains->tally_strips)
-            tally_add(line + (long)strip * fan->bins, energy, &outcome->faults);
+            tally_add(line + (long)strip * fan->bins, energy, chance, &outcome->faults);
         if (reverse >= 0 && reverse < chains->tally_strips)
-            tally_add(line + (long)reverse * fan->bins, energy, &outcome->faults);
+            tally_add(line + (long)reverse * fan->bins, energy, chance, &outcome->faults);
     }
     outcome->impulses += (RECORD_WORD)count;
 }
@@ -225,6 +227,7 @@ FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_
     /* what is not a number is heard too, and then reported */
     const mask is_heard = ~MASK_OF(kept <= 0.0f) & MASK_OF(bin >= 0) & MASK_OF(bin < fan->bins);
     STORE_REAL(kept, echo->energy);
+    STORE_REAL(chain->chance, echo->chance);
     STORE_WHOLE(is_heard, echo->is_heard);
     STORE_WHOLE(bin, echo->bin);
     STORE_WHOLE(strip, echo->strip);

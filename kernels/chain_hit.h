@@ -160,7 +160,8 @@ struct chain {
     struct random_key key;
     word number;      /* of the ray, for its random numbers */
     real energy;      /* what the receiver would get per unit of irradiance at the hit and unit of
-                         scattering, m^2 sr, in quanta */
+                         scattering, m^2 sr, in quanta of the hit's order */
+    real chance;      /* of rounding its echoes up */
     real range;       /* from the receiver to the first hit less the reference range */
     real length;      /* from the first hit to this one */
     real first_x;     /* along-track, of the first hit */

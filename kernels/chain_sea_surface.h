@@ -156,7 +156,7 @@ FUNCTION void connect_by_mirror(const struct fan_record *fan,
     real range;
     const real energy = energy_sent_home(fan, pieces, chains, objects, map, chain, receiver_x, 1,
                                          draw, ways.is_counted, &range, outcome);
-    keep_echo(fan, chains, ways, chain, energy, range, SPLAT(1.0f), echo);
+    keep_echo(fan, chains, ways, chain, energy, range, SPLAT(chains->finer[order - 1]), echo);
 }
 
 /* In `paper` columns the reverse of a path that nothing finds: the receiver is abreast of its first
@@ -179,7 +179,9 @@ FUNCTION void connect_reverse(const struct fan_record *fan,
     const real energy =
         energy_sent_home(fan, pieces, chains, objects, map, chain, chain->hit.point.x, by_mirror,
                          draw, ways.is_counted, &range, outcome);
-    keep_echo(fan, chains, ways, chain, energy, range, square / (square + shift * shift), echo);
+    const float finer = by_mirror ? chains->finer[order - 1] : 1.0f;
+    keep_echo(fan, chains, ways, chain, energy, range, finer * square / (square + shift * shift),
+              echo);
     for (int lane = 0; lane < WIDTH; lane++)
         echo->strip[lane] = NO_STRIP;
 }

@@ -233,6 +233,8 @@ enum chain_estimator {
     CHAINS_BRUTE_FORCE = 1 /* a path counts when it meets the source's rectangle by itself */
 };
 
+#define CHAIN_ORDERS_MAX 8
+
 /* How chains of several interactions are walked and where their echoes are tallied: planes of the
  * whole track's strips times bins. */
 struct chain_record {
@@ -248,6 +250,8 @@ struct chain_record {
                                openings as seen from there; 0: all are */
     RECORD_INT first_order; /* lowest that is tallied */
     RECORD_INT planes;      /* orders kept apart from first_order on, or 1: all in one */
+    float finer[CHAIN_ORDERS_MAX]; /* [k - 1]: quanta per m^2 of order k + 1, which brings less,
+                                      over those of order k; powers of two */
     RECORD_INT tally_first_strip;
     RECORD_INT tally_strips;
     struct surface_record seabed;
@@ -299,6 +303,7 @@ struct corner_echo_record {
     RECORD_INT bin;
     float real_part, imaginary_part; /* quanta */
     float fraction;                  /* of a bin beyond `bin` */
+    float chance;                    /* of rounding up, as in tally.h */
 };
 
 /* What a work-item counted. */

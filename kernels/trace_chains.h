@@ -134,7 +134,7 @@ FUNCTION void begin_chain(const struct fan_record *fan,
     chain->number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
     const mask is_ray = MASK_OF(chain->number < fan->rays);
     real along, across;
-    two_uniforms(key, chain->number, 0, &along, &across);
+    three_uniforms(key, chain->number, 0, &along, &across, &chain->chance);
     const real x = strip_position(fan, strip) + (along - 0.5f) * fan->strip_width;
     const struct fan_ray ray =
         fan_ray_at(fan, pieces, x,
@@ -229,7 +229,7 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
             chain.began_smooth = step.is_mirror;
         chain.only_mirrors = chain.only_mirrors & step.is_mirror;
         chain.choice = 0;
-        chain.energy = chain.energy * step.weight;
+        chain.energy = chain.energy * (step.weight * chains->finer[order - 1]);
         spread_from_image(&chain, &step, next.distance);
         chain.length = chain.length + next.distance;
         chain.surface_before = chain.hit.surface;

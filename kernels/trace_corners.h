@@ -239,6 +239,7 @@ FUNCTION void list_corner_echo(GLOBAL struct corner_echo_record *echoes, GLOBAL 
         record.real_part = kept->echo.real_part[lane];
         record.imaginary_part = kept->echo.imaginary_part[lane];
         record.fraction = kept->echo.fraction[lane];
+        record.chance = kept->echo.chance[lane];
         if (record.bin < 0)
             continue;
         const float most =

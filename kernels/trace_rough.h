@@ -60,6 +60,7 @@ struct rough_echo {
     int seabed_strip[WIDTH], target_strip[WIDTH]; /* of the whole track, where they focus */
     int seabed_bin[WIDTH], target_bin[WIDTH], object[WIDTH];
     float row[WIDTH], column[WIDTH]; /* of the reflectivity map */
+    float chance[WIDTH];             /* of rounding up */
 };
 
 FUNCTION GLOBAL TALLY *tile_element(GLOBAL const struct object_record *object, GLOBAL TALLY *tiles,
@@ -97,12 +98,12 @@ FUNCTION struct rough_tallies rough_tallies_of(const struct fan_record *fan, int
 }
 
 FUNCTION void add_to_rough(const struct rough_tallies *tallies, GLOBAL TALLY *tally, float quanta,
-                           struct outcome_record *outcome)
+                           float chance, struct outcome_record *outcome)
 {
     if (tallies->is_shared)
-        tally_add_shared(tally, quanta, &outcome->faults);
+        tally_add_shared(tally, quanta, chance, &outcome->faults);
     else
-        tally_add(tally, quanta, &outcome->faults);
+        tally_add(tally, quanta, chance, &outcome->faults);
 }
 
 /* The seabed's energy, and again where an object hides it. */
@@ -116,19 +117,20 @@ FUNCTION void tally_rough_seabed(const struct fan_record *fan,
     const int bin = echo->seabed_bin[lane];
     const int track_strip = echo->seabed_strip[lane];
     const int strip = track_strip - tallies->first_strip;
+    const float chance = echo->chance[lane];
     if (!(echo->seabed[lane] > 0.0f) || bin < 0 || bin >= fan->bins || strip < 0 ||
         strip >= tallies->strips)
         return;
     const float quanta =
         echo->seabed[lane] * map_value(fan, map, echo->row[lane], echo->column[lane]);
-    add_to_rough(tallies, &tallies->seabed[(long)strip * fan->bins + bin], quanta, outcome);
+    add_to_rough(tallies, &tallies->seabed[(long)strip * fan->bins + bin], quanta, chance, outcome);
     outcome->impulses += object < 0;
     if (object < 0)
         return;
     GLOBAL TALLY *lost =
         tile_element(&objects[object], tallies->tiles, TILE_LOST, track_strip, bin);
     if (lost)
-        add_to_rough(tallies, lost, quanta, outcome);
+        add_to_rough(tallies, lost, quanta, chance, outcome);
     else
         outcome->faults |= FAULT_OUTSIDE_TILE;
 }
@@ -150,8 +152,8 @@ FUNCTION void tally_rough_echo(const struct fan_record *fan,
             tile_element(&objects[object], tallies->tiles, TILE_FOOTPRINT, strip, bin);
         if (!energy || !footprint)
             return; /* beyond the patch's ranges, or its ends */
-        add_to_rough(tallies, footprint, 1.0f, outcome);
-        add_to_rough(tallies, energy, echo->target[lane], outcome);
+        add_to_rough(tallies, footprint, 1.0f, 0.5f, outcome);
+        add_to_rough(tallies, energy, echo->target[lane], echo->chance[lane], outcome);
         outcome->impulses += echo->target[lane] > 0.0f;
     }
 }
@@ -281,6 +283,7 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     STORE_WHOLE(object_numbers, echo->object);
     STORE_REAL(safe_row, echo->row);
     STORE_REAL(safe_column, echo->column);
+    STORE_REAL(jitter, echo->chance);
 }
 
 /* Traces the share `segment` of a strip's fan. */

@@ -9,6 +9,7 @@
 /* Energies of one group of rays, lane by lane, ready to be tallied. */
 struct mirrored_echo {
     float energy[WIDTH]; /* quanta; 0: none */
+    float chance[WIDTH]; /* of rounding up */
     int bin[WIDTH];
 };
 
@@ -21,8 +22,8 @@ FUNCTION void trace_rough_mirrored_group(const struct fan_record *fan,
 {
     const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
     GLOBAL const struct object_record *object = &objects[fan->only_object];
-    real along, across;
-    two_uniforms(key, number, 0, &along, &across);
+    real along, across, chance;
+    three_uniforms(key, number, 0, &along, &across, &chance);
     const struct fan_ray ray =
         fan_ray_at(fan, pieces, strip_position(fan, strip) + (along - 0.5f) * fan->strip_width,
                    fan->first_elevation + (REAL_OF(number) + across) * fan->elevation_step);
@@ -39,6 +40,7 @@ FUNCTION void trace_rough_mirrored_group(const struct fan_record *fan,
     const real kept = CHOOSE(path.is_open, energy, SPLAT(0.0f));
     const whole bin = nearest_bin(path.range * fan->bins_per_metre + fan->first_bin);
     STORE_REAL(kept, echo->energy);
+    STORE_REAL(chance, echo->chance);
     STORE_WHOLE(bin, echo->bin);
 }
 
@@ -66,7 +68,7 @@ FUNCTION struct outcome_record trace_rough_mirrored_strip(
                 tile_element(object, tiles, TILE_ENERGY, track_strip, echo.bin[lane]);
             if (!tally || echo.energy[lane] == 0.0f)
                 continue; /* beyond the patch's ranges */
-            tally_add(tally, echo.energy[lane], &outcome.faults);
+            tally_add(tally, echo.energy[lane], echo.chance[lane], &outcome.faults);
             outcome.impulses++;
         }
     }

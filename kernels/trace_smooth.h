@@ -15,6 +15,7 @@
 struct smooth_echo {
     float real_part[WIDTH], imaginary_part[WIDTH]; /* quanta */
     float fraction[WIDTH];                         /* of a bin beyond `bin` */
+    float chance[WIDTH];                           /* of rounding up */
     int bin[WIDTH];                                /* -1: no echo */
 };
 
@@ -24,6 +25,7 @@ struct wavefront_cell {
     mask is_ray;
     float width_along;                  /* m */
     real offset_along, fraction_across; /* where the ray met it: m off its middle; 0...1 */
+    real chance;                        /* of rounding its echo up */
 };
 
 FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
@@ -34,7 +36,7 @@ FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
     const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
     struct wavefront_cell cell;
     real along;
-    two_uniforms(key, number, (RECORD_WORD)stratum, &along, &cell.fraction_across);
+    three_uniforms(key, number, (RECORD_WORD)stratum, &along, &cell.fraction_across, &cell.chance);
     cell.is_ray = MASK_OF(number < fan->rays);
     cell.width_along = fan->strip_width / (float)fan->strata;
     cell.offset_along = (along - 0.5f) * cell.width_along;
@@ -51,6 +53,7 @@ FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
 struct cell_phase {
     real range;
     real amplitude;
+    real chance; /* of rounding it up */
 };
 
 /* gradient: of the whole path, along-track and across the ray. range: half the path by way of the
@@ -65,6 +68,7 @@ FUNCTION struct cell_phase integrate_cell(const struct fan_record *fan,
     const float per_cycle =
         0.5f * fan->inverse_wavelength; /* k w g / 2 in cycles is w g / (2 lambda) */
     struct cell_phase phase;
+    phase.chance = cell->chance;
     phase.range =
         range - 0.5f * (gradient_along * cell->offset_along + gradient_across * offset_across);
     const real limit = SPLAT(4.0e6f);
@@ -98,6 +102,7 @@ FUNCTION void put_smooth_echo(const struct fan_record *fan, mask is_hit, struct 
     STORE_REAL(real_part, echo->real_part);
     STORE_REAL(imaginary_part, echo->imaginary_part);
     STORE_REAL(fraction, echo->fraction);
+    STORE_REAL(phase.chance, echo->chance);
     STORE_WHOLE(bin_or_none, echo->bin);
 }
 
@@ -141,10 +146,11 @@ FUNCTION void tally_smooth_echo(GLOBAL TALLY *tally, const struct smooth_echo *e
         return;
     const float later = echo->fraction[lane];
     const float sooner = 1.0f - later;
-    tally_add(&tally[2 * bin], echo->real_part[lane] * sooner, &outcome->faults);
-    tally_add(&tally[2 * bin + 1], echo->imaginary_part[lane] * sooner, &outcome->faults);
-    tally_add(&tally[2 * bin + 2], echo->real_part[lane] * later, &outcome->faults);
-    tally_add(&tally[2 * bin + 3], echo->imaginary_part[lane] * later, &outcome->faults);
+    const float chance = echo->chance[lane];
+    tally_add(&tally[2 * bin], echo->real_part[lane] * sooner, chance, &outcome->faults);
+    tally_add(&tally[2 * bin + 1], echo->imaginary_part[lane] * sooner, chance, &outcome->faults);
+    tally_add(&tally[2 * bin + 2], echo->real_part[lane] * later, chance, &outcome->faults);
+    tally_add(&tally[2 * bin + 3], echo->imaginary_part[lane] * later, chance, &outcome->faults);
     outcome->impulses++;
 }
 

@@ -13,8 +13,11 @@
 #include "trace/stint.h"
 #include "trace/target_spheres.h"
 
+#define PI              3.14159265358979323846
 #define SEABED_SHARE    8.0f /* then all within about four widths of a target are followed */
 #define TALLY_BYTES_MAX ((size_t)1 << 30)
+
+typedef char orders_have_room[CHAIN_ORDERS_MAX == SCENE_INTERACTIONS_MAX ? 1 : -1];
 
 static sonject_material_params seabed_material(const struct scene *scene)
 {
@@ -39,7 +42,10 @@ static void chain_record_init(struct chain_record *record, const struct chain_tr
     record->spheres = (int32_t)spheres->count;
     record->groups = (int32_t)spheres->groups;
     record->seabed_share = SEABED_SHARE;
-
+    for (int i = 0; i < CHAIN_ORDERS_MAX; i++)
+        record->finer[i] = i + 1 < CHAIN_ORDERS_MAX
+                               ? ldexpf(1.0f, trace->exponents[i + 1] - trace->exponents[i])
+                               : 1.0f;
     record->first_order = (int32_t)trace->first_order;
     record->planes = (int32_t)trace->planes;
     record->tally_first_strip = trace->grid.strips.first;
@@ -53,21 +59,67 @@ static void chain_record_init(struct chain_record *record, const struct chain_tr
     surface_record_init(&record->sea_surface, &sea_surface, tracer->view.wavelength_m);
 }
 
-/* The most that one ray can bring is about its wavefront times the brightest scattering; quanta
- * leave four powers of ten over that, since directions that are drawn rarely count for many. */
-static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tracer)
+/* The most of the sound that meets a surface: what goes on, and what scatters to the source. */
+struct most_sent {
+    double onward, home;
+};
+
+/* is_led: the way on is sought among the targets, so that what goes there counts for itself and not
+ * for a share of the albedo. factor: of the map. */
+static void join_surface(struct most_sent *most, const sonject_material_params *material,
+                         bool is_led, double factor)
+{
+    const bool is_fluid = material->reflection_kind == SONJECT_REFLECTION_FLUID;
+    const double mirror = is_fluid ? 1.0 : material->reflection * material->reflection;
+    const double scattering = factor * material_brightness(material);
+    const double albedo = PI * material->lambert + material->glossy_albedo;
+    most->onward = fmax(most->onward, mirror + (is_led ? 2.0 * PI * scattering : albedo));
+    most->home = fmax(most->home, scattering);
+}
+
+static struct most_sent most_sent_by_surfaces(const struct chain_trace *trace,
+                                              const struct tracer *tracer, const float *map)
+{
+    const struct scene *scene = tracer->scene;
+    const sonject_material_params seabed = seabed_material(scene);
+    const sonject_material_params sea_surface = surface_material(&scene->surface);
+    struct most_sent most = {1e-12, 1e-12}; /* that an exponent exists */
+    double brightest = 1.0;
+    if (map && scene->seabed.forward_rule == SONJECT_FORWARD_MAP)
+        for (size_t i = 0; i < tracer->view.rows * tracer->view.columns; i++)
+            brightest = fmax(brightest, map[i]);
+    join_surface(&most, &seabed, true, brightest);
+    for (uint32_t i = 0; i < tracer->part_count; i++)
+        join_surface(&most, tracer->placements[i].material, false, 1.0);
+    if (trace->has_sea_surface)
+        join_surface(&most, &sea_surface, true, 1.0);
+    return most;
+}
+
+/* The most that one ray can bring is about its wavefront times what surfaces send on and home.
+ * Quanta leave four powers of ten over that, since directions that are drawn rarely count for many,
+ * and below it eleven. Orders in one plane have the quanta of the one that brings most. */
+static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tracer,
+                                    const float *map)
 {
     struct fan_record fan;
     const sonject_status status = patch_fan_init(&fan, tracer, &trace->grid, trace->has_map, 1.0);
     if (status != SONJECT_OK)
         return status;
-    const double wavefront =
-        (double)fan.strip_width * fan.elevation_step * 2.0 * fan.reference_range;
-    double brightest = brightest_scattering(tracer);
-    if (trace->has_sea_surface)
-        brightest = fmax(brightest, sea_surface_brightness(tracer->scene));
-    trace->quanta = power_of_two_below(ldexp(1.0, 37) / (wavefront * brightest));
-    trace->energy_of_quantum = view_energy_scale(&tracer->view) / trace->quanta;
+    const double range = fan.reference_range;
+    const double area = (double)fan.source_side * fan.source_side;
+    struct most_sent most = most_sent_by_surfaces(trace, tracer, map);
+    if (tracer->scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE && area > 0.0)
+        most.home = fmax(most.home, most.onward * range * range / area);
+    double bound = (double)fan.strip_width * fan.elevation_step * 2.0 * range * most.home;
+    if (trace->planes == 1)
+        bound *= pow(most.onward, trace->first_order - 1.0) *
+                 fmax(1.0, pow(most.onward, trace->orders - 1.0));
+    for (int i = 0; i < CHAIN_ORDERS_MAX; i++) {
+        trace->exponents[i] = 37 - (int)ceil(log2(bound));
+        if (trace->planes > 1)
+            bound *= most.onward;
+    }
     return SONJECT_OK;
 }
 
@@ -135,7 +187,7 @@ sonject_status chain_trace_begin(struct chain_trace *trace, struct tracer *trace
     line_grid_for_patch(&trace->grid, &tracer->view, &tracer->response);
     trace->has_map = map != NULL;
     trace->has_sea_surface = sea_surface_is_in_chains(tracer, &trace->grid);
-    sonject_status status = choose_quanta(trace, tracer);
+    sonject_status status = choose_quanta(trace, tracer, map);
     if (status == SONJECT_OK)
         status = patch_rays_init(&trace->rays, &trace->table, tracer, &trace->grid);
     if (status == SONJECT_OK)
@@ -170,7 +222,7 @@ sonject_status chain_trace_strips(struct chain_trace *trace, struct tracer *trac
                               trace->tallies};
     fan->record.first_strip = strips.first;
     fan->record.strips = strips.count;
-    fan->record.quanta = trace->quanta;
+    fan->record.quanta = ldexpf(1.0f, trace->exponents[0]);
     fan->record.table = trace->table;
     return trace_launch(tracer, trace->kernel, &fan->record, &trace->rays, buffers, 5);
 }
@@ -181,13 +233,15 @@ sonject_status chain_trace_read(struct chain_trace *trace, struct tracer *tracer
     const size_t cells = line_grid_cells(&trace->grid);
     const void *mapped;
     const int64_t *tallies;
+    const double energy_of_quantum =
+        ldexp(view_energy_scale(&tracer->view), -trace->exponents[trace->first_order - 1 + plane]);
     sonject_status status = buffer_map(tracer->report, tracer->device, trace->tallies,
                                        trace->planes * cells * sizeof(int64_t), &mapped);
     if (status != SONJECT_OK)
         return status;
     status = stint_sums(tracer->stint, (const int64_t *)mapped + plane * cells, cells, &tallies);
     for (size_t i = 0; status == SONJECT_OK && i < cells; i++)
-        energy[i] = (float)((double)tallies[i] * trace->energy_of_quantum);
+        energy[i] = (float)((double)tallies[i] * energy_of_quantum);
     buffer_unmap(tracer->device, trace->tallies, mapped);
     return status;
 }

@@ -6,13 +6,12 @@
 #include "trace/chain_fans.h"
 
 struct chain_trace {
-    struct line_grid grid;    /* of the patch with its margins */
-    uint32_t first_order;     /* interactions of the shortest path that is counted: 2, or 1 by brute
-                                 force, which counts everything */
-    uint32_t orders;          /* from first_order on */
-    uint32_t planes;          /* orders if they are kept apart, else 1 */
-    double energy_of_quantum; /* m^2 */
-    float quanta;             /* of it */
+    struct line_grid grid; /* of the patch with its margins */
+    uint32_t first_order;  /* interactions of the shortest path that is counted: 2, or 1 by brute
+                              force, which counts everything */
+    uint32_t orders;       /* from first_order on */
+    uint32_t planes;       /* orders if they are kept apart, else 1 */
+    int exponents[CHAIN_ORDERS_MAX]; /* of two: quanta per m^2 of the device's, by order */
     bool has_map, has_sea_surface;
     struct ray_table rays; /* of all fans */
     struct ray_table_record table;

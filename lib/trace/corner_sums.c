@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "kernels/tally.h"
 #include "trace/source_pairs.h"
 
 bool corner_sums_init(struct corner_sums *sums, const struct line_grid *grid)
@@ -47,10 +48,10 @@ bool corner_sums_add(struct corner_sums *sums, const struct corner_echo_record *
         int64_t *second = cell_at(sums, (size_t)strip, (size_t)echo->bin + 1);
         if (!first || !second)
             return false;
-        first[0] += (int64_t)(echo->real_part * sooner);
-        first[1] += (int64_t)(echo->imaginary_part * sooner);
-        second[0] += (int64_t)(echo->real_part * later);
-        second[1] += (int64_t)(echo->imaginary_part * later);
+        first[0] += whole_quanta(echo->real_part * sooner, echo->chance);
+        first[1] += whole_quanta(echo->imaginary_part * sooner, echo->chance);
+        second[0] += whole_quanta(echo->real_part * later, echo->chance);
+        second[1] += whole_quanta(echo->imaginary_part * later, echo->chance);
     }
     return true;
 }

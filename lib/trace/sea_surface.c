@@ -21,12 +21,6 @@ static bool adds_to_chains(const struct scene *scene)
            (is_rough(&material) || (material_is_smooth(&material) && interactions > 2));
 }
 
-double sea_surface_brightness(const struct scene *scene)
-{
-    const sonject_material_params material = surface_material(&scene->surface);
-    return is_rough(&material) ? material_brightness(&material) : 0.0;
-}
-
 static double earliest_half_path(const struct tracer *tracer)
 {
     const double sonar = tracer->view.altitude_m;

@@ -11,7 +11,4 @@
  * tallied on. */
 bool sea_surface_is_in_chains(const struct tracer *tracer, const struct line_grid *grid);
 
-/* The most that its rough part scatters, as material_brightness; 0 without one. */
-double sea_surface_brightness(const struct scene *scene);
-
 #endif

@@ -18,12 +18,12 @@
 /* Host and device must agree on every byte. */
 typedef char object_record_is_packed[sizeof(struct object_record) == 57 * 4 ? 1 : -1];
 typedef char fan_record_is_packed[sizeof(struct fan_record) == 76 * 4 ? 1 : -1];
-typedef char chain_record_is_packed[sizeof(struct chain_record) == 35 * 4 ? 1 : -1];
+typedef char chain_record_is_packed[sizeof(struct chain_record) == 43 * 4 ? 1 : -1];
 typedef char sphere_group_is_packed[sizeof(struct sphere_group) == 64 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
 typedef char source_pair_record_is_packed[sizeof(struct source_pair_record) == 49 * 4 ? 1 : -1];
 typedef char corner_record_is_packed[sizeof(struct corner_record) == 13 * 4 ? 1 : -1];
-typedef char corner_echo_record_is_packed[sizeof(struct corner_echo_record) == 5 * 4 ? 1 : -1];
+typedef char corner_echo_record_is_packed[sizeof(struct corner_echo_record) == 6 * 4 ? 1 : -1];
 typedef char ray_piece_record_is_packed[sizeof(struct ray_piece_record) == 7 * 4 ? 1 : -1];
 typedef char outcome_record_is_packed[sizeof(struct outcome_record) == 4 * 4 ? 1 : -1];
 

@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -171,7 +172,7 @@ static int64_t *trace_as_c(struct bench *bench, const float *map, struct trace_c
         struct chain_fan fan;
         if (chain_fan_init(&fan, &bench->tracer, &trace.grid, trace.has_map, i) != SONJECT_OK)
             fail_msg("%s", bench->report.message);
-        fan.record.quanta = trace.quanta;
+        fan.record.quanta = ldexpf(1.0f, trace.exponents[0]);
         fan.record.table = trace.table;
         fan.record.first_strip = fan.strips.first;
         fan.record.strips = fan.strips.count;

@@ -154,6 +154,23 @@ static void test_dihedral(void **unused)
     }
 }
 
+/* However little two faces reflect, they echo in proportion. Of 2 * 10^4 rays each brings some 50
+ * quanta, rounded by chance: four times half a quantum over 50 and the root of their number. */
+static void test_weak_faces(void **unused)
+{
+    (void)unused;
+    struct bench bench;
+    open_at(&bench, 2);
+    const struct sight sight = lay_dihedral(&bench, 0.2, 0.15, false, 0.0);
+    const double complex strong = further_echo(&bench, 0, 1, sight.range);
+    for (uint32_t part = 0; part < 2; part++)
+        bench.scene.objects[part].material.reflection = 1e-3;
+    const double complex weak = further_echo(&bench, 0, 1, sight.range) / 1e-6;
+    expect_close("level of weak faces", cabs(weak / strong), 1.0, 3e-4);
+    expect_close("phase of weak faces, rad", carg(weak / strong), 0.0, 3e-4);
+    bench_close(&bench);
+}
+
 /* Off the bisector less of each plate lights the other. */
 static void test_dihedral_off_its_bisector(void **unused)
 {
@@ -458,6 +475,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_dihedral),
+        cmocka_unit_test(test_weak_faces),
         cmocka_unit_test(test_dihedral_off_its_bisector),
         cmocka_unit_test(test_sphere_and_plate),
         cmocka_unit_test(test_caustic),
