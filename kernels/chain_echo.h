@@ -101,10 +101,11 @@ FUNCTION struct source_way way_through_layers(const struct fan_record *fan,
 
 /* Energies of one group of rays, lane by lane, ready to be tallied. */
 struct chain_echo {
-    float energy[WIDTH]; /* quanta */
-    float chance[WIDTH]; /* of rounding up */
-    int is_heard[WIDTH]; /* -1: there is some, in a bin that exists; else 0 */
-    int bin[WIDTH];
+    float energy[WIDTH];                    /* quanta */
+    float chance[WIDTH];                    /* of rounding up */
+    int is_heard[WIDTH];                    /* -1: there is some, in bins that exist; else 0 */
+    int bin[WIDTH];                         /* the first of two */
+    float later[WIDTH];                     /* share of the second */
     int strip[WIDTH], reverse_strip[WIDTH]; /* of the whole track; reverse -2^30: no such echo */
 };
 
@@ -136,12 +137,13 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
         const float chance = echo->chance[lane];
         const int strip = echo->strip[lane] - chains->tally_first_strip;
         const int reverse = echo->reverse_strip[lane] - chains->tally_first_strip;
-        GLOBAL TALLY *line =
-            tallies + (long)plane * chains->tally_strips * fan->bins + echo->bin[lane];
+        GLOBAL TALLY *lines = tallies + (long)plane * chains->tally_strips * fan->bins;
         if (strip >= 0 && strip < chains->tally_strips)
-            tally_add(line + (long)strip * fan->bins, energy, chance, &outcome->faults);
+            tally_shares(lines + (long)strip * fan->bins, fan->bins, 0, echo->bin[lane],
+                         echo->later[lane], energy, chance, &outcome->faults);
         if (reverse >= 0 && reverse < chains->tally_strips)
-            tally_add(line + (long)reverse * fan->bins, energy, chance, &outcome->faults);
+            tally_shares(lines + (long)reverse * fan->bins, fan->bins, 0, echo->bin[lane],
+                         echo->later[lane], energy, chance, &outcome->faults);
     }
     outcome->impulses += (RECORD_WORD)count;
 }
@@ -223,13 +225,15 @@ FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_
         reverse = CHOOSE(both, strip_at(fan, chain->hit.point.x), none);
     }
     kept = CHOOSE(ways.is_counted & chain->is_alive, kept, SPLAT(0.0f));
-    const whole bin = nearest_bin(range * fan->bins_per_metre + fan->first_bin);
+    const struct bin_pair bins = bins_about(range * fan->bins_per_metre + fan->first_bin);
     /* what is not a number is heard too, and then reported */
-    const mask is_heard = ~MASK_OF(kept <= 0.0f) & MASK_OF(bin >= 0) & MASK_OF(bin < fan->bins);
+    const mask is_heard =
+        ~MASK_OF(kept <= 0.0f) & MASK_OF(bins.bin >= -1) & MASK_OF(bins.bin < fan->bins);
     STORE_REAL(kept, echo->energy);
     STORE_REAL(chain->chance, echo->chance);
     STORE_WHOLE(is_heard, echo->is_heard);
-    STORE_WHOLE(bin, echo->bin);
+    STORE_WHOLE(bins.bin, echo->bin);
+    STORE_REAL(bins.later, echo->later);
     STORE_WHOLE(strip, echo->strip);
     STORE_WHOLE(reverse, echo->reverse_strip);
 }

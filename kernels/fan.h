@@ -81,11 +81,19 @@ FUNCTION float strip_position(const struct fan_record *fan, int strip)
     return fan->first_strip_x + (float)(fan->first_strip + strip) * fan->strip_width;
 }
 
-/* The bin whose middle is nearest to a bin coordinate; far outside -> a bin that does not exist. */
-FUNCTION whole nearest_bin(real coordinate)
+/* The bins between whose middles a bin coordinate lies; far outside -> bins that do not exist. */
+struct bin_pair {
+    whole bin;  /* the first */
+    real later; /* 0...1: the share of the second */
+};
+
+FUNCTION struct bin_pair bins_about(real coordinate)
 {
     const real limited = smaller(larger(coordinate, SPLAT(-2.0f)), SPLAT(8.0e6f));
-    return WHOLE_OF(limited + 4.5f) - 4; /* truncation is floor on positive numbers */
+    struct bin_pair pair;
+    pair.bin = WHOLE_OF(limited + 4.0f) - 4; /* truncation is floor on positive numbers */
+    pair.later = larger(limited - REAL_OF(pair.bin), SPLAT(0.0f));
+    return pair;
 }
 
 /* Distance from a point to the mean seabed; FAR_AWAY for rays that do not go down. */

@@ -34,28 +34,39 @@ FUNCTION TALLY whole_quanta(float quanta, float chance)
     return count + (chance < rest) - (chance < -rest);
 }
 
-/* Adds quanta to a tally that other work-items may add to at the same time. */
-FUNCTION void tally_add_shared(GLOBAL TALLY *tally, float quanta, float chance, RECORD_WORD *faults)
+#if defined(TALLY_IS_SHARED)
+#define TALLIES_ARE_SHARED 1
+#else
+#define TALLIES_ARE_SHARED 0
+#endif
+
+/* Adds quanta to a tally; is_shared: other work-items may add to it at the same time, which they
+ * may to any where TALLY_IS_SHARED. */
+FUNCTION void tally_add(GLOBAL TALLY *tally, int is_shared, float quanta, float chance,
+                        RECORD_WORD *faults)
 {
     if (!is_countable(quanta, faults))
         return;
 #ifdef __OPENCL_C_VERSION__
-    atom_add((volatile GLOBAL TALLY *)tally, whole_quanta(quanta, chance));
+    if (is_shared || TALLIES_ARE_SHARED) {
+        atom_add((volatile GLOBAL TALLY *)tally, whole_quanta(quanta, chance));
+        return;
+    }
 #else
-    *tally += whole_quanta(quanta, chance);
+    (void)is_shared;
 #endif
+    *tally += whole_quanta(quanta, chance);
 }
 
-/* Adds quanta to a tally of which this work-item's segments are the only owners: work-items share
- * a strip where TALLY_IS_SHARED. */
-FUNCTION void tally_add(GLOBAL TALLY *tally, float quanta, float chance, RECORD_WORD *faults)
+/* Shares an echo between two neighbours of a line of bins, `later` being the share of the second:
+ * its energy and mean range are kept. Those of them that the line has not got get nothing. */
+FUNCTION void tally_shares(GLOBAL TALLY *line, int bins, int is_shared, int bin, float later,
+                           float quanta, float chance, RECORD_WORD *faults)
 {
-#if defined(TALLY_IS_SHARED)
-    tally_add_shared(tally, quanta, chance, faults);
-#else
-    if (is_countable(quanta, faults))
-        *tally += whole_quanta(quanta, chance);
-#endif
+    if (bin >= 0 && bin < bins)
+        tally_add(&line[bin], is_shared, quanta * (1.0f - later), chance, faults);
+    if (bin >= -1 && bin + 1 < bins)
+        tally_add(&line[bin + 1], is_shared, quanta * later, 1.0f - chance, faults);
 }
 
 #endif

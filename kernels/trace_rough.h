@@ -56,22 +56,24 @@ FUNCTION struct connection connect_to_source(const struct fan_record *fan,
 
 /* Energies of one group of rays, lane by lane, ready to be tallied. */
 struct rough_echo {
-    float seabed[WIDTH], target[WIDTH];           /* quanta; 0: none */
-    int seabed_strip[WIDTH], target_strip[WIDTH]; /* of the whole track, where they focus */
-    int seabed_bin[WIDTH], target_bin[WIDTH], object[WIDTH];
+    float seabed[WIDTH], target[WIDTH];             /* quanta; 0: none */
+    int seabed_strip[WIDTH], target_strip[WIDTH];   /* of the whole track, where they focus */
+    int seabed_bin[WIDTH], target_bin[WIDTH];       /* the first of two */
+    float seabed_later[WIDTH], target_later[WIDTH]; /* share of the second */
+    int object[WIDTH];
     float row[WIDTH], column[WIDTH]; /* of the reflectivity map */
     float chance[WIDTH];             /* of rounding up */
 };
 
-FUNCTION GLOBAL TALLY *tile_element(GLOBAL const struct object_record *object, GLOBAL TALLY *tiles,
-                                    int plane, int strip, int bin)
+/* A strip of an object's tile, from its first bin on; 0: there is none. */
+FUNCTION GLOBAL TALLY *tile_line(GLOBAL const struct object_record *object, GLOBAL TALLY *tiles,
+                                 int plane, int strip)
 {
     const int row = strip - object->tile_first_strip;
-    const int column = bin - object->tile_first_bin;
-    if (row < 0 || row >= object->tile_strips || column < 0 || column >= object->tile_bins)
+    if (row < 0 || row >= object->tile_strips)
         return 0;
     return tiles + object->tile_offset +
-           ((long)plane * object->tile_strips + row) * object->tile_bins + column;
+           ((long)plane * object->tile_strips + row) * object->tile_bins;
 }
 
 /* Where a ray of a strip tallies. */
@@ -97,13 +99,21 @@ FUNCTION struct rough_tallies rough_tallies_of(const struct fan_record *fan, int
     return tallies;
 }
 
-FUNCTION void add_to_rough(const struct rough_tallies *tallies, GLOBAL TALLY *tally, float quanta,
-                           float chance, struct outcome_record *outcome)
+/* What an object hides of the seabed's energy. */
+FUNCTION void tally_lost_seabed(const struct fan_record *fan,
+                                GLOBAL const struct object_record *object,
+                                const struct rough_tallies *tallies, const struct rough_echo *echo,
+                                int lane, float quanta, struct outcome_record *outcome)
 {
-    if (tallies->is_shared)
-        tally_add_shared(tally, quanta, chance, &outcome->faults);
+    GLOBAL TALLY *line = tile_line(object, tallies->tiles, TILE_LOST, echo->seabed_strip[lane]);
+    const int bin = echo->seabed_bin[lane];
+    const int column = bin - object->tile_first_bin;
+    if (line && (column >= 0 || bin < 0) &&
+        (column + 1 < object->tile_bins || bin + 1 >= fan->bins))
+        tally_shares(line, object->tile_bins, tallies->is_shared, column, echo->seabed_later[lane],
+                     quanta, echo->chance[lane], &outcome->faults);
     else
-        tally_add(tally, quanta, chance, &outcome->faults);
+        outcome->faults |= FAULT_OUTSIDE_TILE;
 }
 
 /* The seabed's energy, and again where an object hides it. */
@@ -115,24 +125,17 @@ FUNCTION void tally_rough_seabed(const struct fan_record *fan,
 {
     const int object = echo->object[lane];
     const int bin = echo->seabed_bin[lane];
-    const int track_strip = echo->seabed_strip[lane];
-    const int strip = track_strip - tallies->first_strip;
-    const float chance = echo->chance[lane];
-    if (!(echo->seabed[lane] > 0.0f) || bin < 0 || bin >= fan->bins || strip < 0 ||
+    const int strip = echo->seabed_strip[lane] - tallies->first_strip;
+    if (!(echo->seabed[lane] > 0.0f) || bin < -1 || bin >= fan->bins || strip < 0 ||
         strip >= tallies->strips)
         return;
     const float quanta =
         echo->seabed[lane] * map_value(fan, map, echo->row[lane], echo->column[lane]);
-    add_to_rough(tallies, &tallies->seabed[(long)strip * fan->bins + bin], quanta, chance, outcome);
+    tally_shares(tallies->seabed + (long)strip * fan->bins, fan->bins, tallies->is_shared, bin,
+                 echo->seabed_later[lane], quanta, echo->chance[lane], &outcome->faults);
     outcome->impulses += object < 0;
-    if (object < 0)
-        return;
-    GLOBAL TALLY *lost =
-        tile_element(&objects[object], tallies->tiles, TILE_LOST, track_strip, bin);
-    if (lost)
-        add_to_rough(tallies, lost, quanta, chance, outcome);
-    else
-        outcome->faults |= FAULT_OUTSIDE_TILE;
+    if (object >= 0)
+        tally_lost_seabed(fan, &objects[object], tallies, echo, lane, quanta, outcome);
 }
 
 /* Tallies one lane. */
@@ -142,20 +145,21 @@ FUNCTION void tally_rough_echo(const struct fan_record *fan,
                                int lane, struct outcome_record *outcome)
 {
     tally_rough_seabed(fan, objects, map, tallies, echo, lane, outcome);
-    const int object = echo->object[lane];
-    if (object >= 0 && tallies->has_objects) {
-        const int strip = echo->target_strip[lane];
-        const int bin = echo->target_bin[lane];
-        GLOBAL TALLY *energy =
-            tile_element(&objects[object], tallies->tiles, TILE_ENERGY, strip, bin);
-        GLOBAL TALLY *footprint =
-            tile_element(&objects[object], tallies->tiles, TILE_FOOTPRINT, strip, bin);
-        if (!energy || !footprint)
-            return; /* beyond the patch's ranges, or its ends */
-        add_to_rough(tallies, footprint, 1.0f, 0.5f, outcome);
-        add_to_rough(tallies, energy, echo->target[lane], echo->chance[lane], outcome);
-        outcome->impulses += echo->target[lane] > 0.0f;
-    }
+    if (echo->object[lane] < 0 || !tallies->has_objects)
+        return;
+    GLOBAL const struct object_record *object = &objects[echo->object[lane]];
+    const int strip = echo->target_strip[lane];
+    const int bin = echo->target_bin[lane] - object->tile_first_bin;
+    const float later = echo->target_later[lane];
+    const int nearest = bin + (later >= 0.5f);
+    GLOBAL TALLY *energy = tile_line(object, tallies->tiles, TILE_ENERGY, strip);
+    GLOBAL TALLY *footprint = tile_line(object, tallies->tiles, TILE_FOOTPRINT, strip);
+    if (!energy || !footprint || nearest < 0 || nearest >= object->tile_bins)
+        return; /* beyond the patch's ranges, or its ends */
+    tally_add(&footprint[nearest], tallies->is_shared, 1.0f, 0.5f, &outcome->faults);
+    tally_shares(energy, object->tile_bins, tallies->is_shared, bin, later, echo->target[lane],
+                 echo->chance[lane], &outcome->faults);
+    outcome->impulses += echo->target[lane] > 0.0f;
 }
 
 /* Traces one group of WIDTH rays of a strip. */
@@ -257,8 +261,9 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     }
     if (has_beam(fan))
         target_range = whole_range(fan, &squinted, target_range);
-    const whole seabed_bins = nearest_bin(bed_bin);
-    const whole target_bins = nearest_bin(target_range * fan->bins_per_metre + fan->first_bin);
+    const struct bin_pair seabed_bins = bins_about(bed_bin);
+    const struct bin_pair target_bins =
+        bins_about(target_range * fan->bins_per_metre + fan->first_bin);
     const whole object_numbers = CHOOSE(on_object, nearest.object, WHOLE_OF(SPLAT(-1.0f)));
     const real kept = CHOOSE(bed_open, bed_energy, SPLAT(0.0f));
     const real bed_x = has_relief(fan) || has_beam(fan) ? bed.x : x;
@@ -278,8 +283,10 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     STORE_REAL(energy, echo->target);
     STORE_WHOLE(seabed_strips, echo->seabed_strip);
     STORE_WHOLE(target_strips, echo->target_strip);
-    STORE_WHOLE(seabed_bins, echo->seabed_bin);
-    STORE_WHOLE(target_bins, echo->target_bin);
+    STORE_WHOLE(seabed_bins.bin, echo->seabed_bin);
+    STORE_WHOLE(target_bins.bin, echo->target_bin);
+    STORE_REAL(seabed_bins.later, echo->seabed_later);
+    STORE_REAL(target_bins.later, echo->target_later);
     STORE_WHOLE(object_numbers, echo->object);
     STORE_REAL(safe_row, echo->row);
     STORE_REAL(safe_column, echo->column);

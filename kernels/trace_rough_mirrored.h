@@ -10,7 +10,8 @@
 struct mirrored_echo {
     float energy[WIDTH]; /* quanta; 0: none */
     float chance[WIDTH]; /* of rounding up */
-    int bin[WIDTH];
+    int bin[WIDTH];      /* the first of two */
+    float later[WIDTH];  /* share of the second */
 };
 
 FUNCTION void trace_rough_mirrored_group(const struct fan_record *fan,
@@ -38,10 +39,11 @@ FUNCTION void trace_rough_mirrored_group(const struct fan_record *fan,
                         path.cosine_back * wavefront * (path.spreading * path.spreading) * mirrors *
                         (pair->echoes * pair->echoes * fan->quanta);
     const real kept = CHOOSE(path.is_open, energy, SPLAT(0.0f));
-    const whole bin = nearest_bin(path.range * fan->bins_per_metre + fan->first_bin);
+    const struct bin_pair bins = bins_about(path.range * fan->bins_per_metre + fan->first_bin);
     STORE_REAL(kept, echo->energy);
     STORE_REAL(chance, echo->chance);
-    STORE_WHOLE(bin, echo->bin);
+    STORE_WHOLE(bins.bin, echo->bin);
+    STORE_REAL(bins.later, echo->later);
 }
 
 /* Traces the share `segment` of a strip's fan into the object's tile. */
@@ -55,6 +57,7 @@ FUNCTION struct outcome_record trace_rough_mirrored_strip(
     const struct random_key key =
         random_key_of(fan->seed_low, fan->seed_high, fan->stream, (RECORD_WORD)track_strip);
     GLOBAL const struct object_record *object = &objects[fan->only_object];
+    GLOBAL TALLY *line = tile_line(object, tiles, TILE_ENERGY, track_strip);
     const RECORD_WORD groups = (fan->rays + WIDTH - 1u) / WIDTH;
     for (RECORD_WORD group = (RECORD_WORD)segment; group < groups;
          group += (RECORD_WORD)fan->segments) {
@@ -64,11 +67,11 @@ FUNCTION struct outcome_record trace_rough_mirrored_strip(
         trace_rough_mirrored_group(fan, pieces, pair, objects, strip, key, group * WIDTH, &echo,
                                    &outcome);
         for (int lane = 0; lane < WIDTH; lane++) {
-            GLOBAL TALLY *tally =
-                tile_element(object, tiles, TILE_ENERGY, track_strip, echo.bin[lane]);
-            if (!tally || echo.energy[lane] == 0.0f)
+            const int bin = echo.bin[lane] - object->tile_first_bin;
+            if (!line || bin < -1 || bin >= object->tile_bins || echo.energy[lane] == 0.0f)
                 continue; /* beyond the patch's ranges */
-            tally_add(tally, echo.energy[lane], echo.chance[lane], &outcome.faults);
+            tally_shares(line, object->tile_bins, 0, bin, echo.later[lane], echo.energy[lane],
+                         echo.chance[lane], &outcome.faults);
             outcome.impulses++;
         }
     }

@@ -147,10 +147,11 @@ FUNCTION void tally_smooth_echo(GLOBAL TALLY *tally, const struct smooth_echo *e
     const float later = echo->fraction[lane];
     const float sooner = 1.0f - later;
     const float chance = echo->chance[lane];
-    tally_add(&tally[2 * bin], echo->real_part[lane] * sooner, chance, &outcome->faults);
-    tally_add(&tally[2 * bin + 1], echo->imaginary_part[lane] * sooner, chance, &outcome->faults);
-    tally_add(&tally[2 * bin + 2], echo->real_part[lane] * later, chance, &outcome->faults);
-    tally_add(&tally[2 * bin + 3], echo->imaginary_part[lane] * later, chance, &outcome->faults);
+    tally_add(&tally[2 * bin], 0, echo->real_part[lane] * sooner, chance, &outcome->faults);
+    tally_add(&tally[2 * bin + 1], 0, echo->imaginary_part[lane] * sooner, chance,
+              &outcome->faults);
+    tally_add(&tally[2 * bin + 2], 0, echo->real_part[lane] * later, chance, &outcome->faults);
+    tally_add(&tally[2 * bin + 3], 0, echo->imaginary_part[lane] * later, chance, &outcome->faults);
     outcome->impulses++;
 }
 

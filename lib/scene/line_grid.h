@@ -19,7 +19,7 @@ struct line_grid {
     struct span strips, bins;
 };
 
-/* The grid for energies and speckle: cells of at most the along-track resolution by a quarter of
+/* The grid for energies and speckle: cells of at most the along-track resolution by an eighth of
  * the range resolution, with margins that hold all but 0.5 % of the energies of cross-range
  * response and pulse, and end at range 0. */
 void line_grid_for_patch(struct line_grid *grid, const struct patch_view *view,

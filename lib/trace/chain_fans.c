@@ -9,12 +9,12 @@
 
 #define PI 3.14159265358979323846
 
-#define PATCH_RAYS_PER_BIN  2.0 /* brute force */
-#define SEABED_RAYS_PER_BIN 8.0 /* near the objects; thinned out with distance */
+#define PATCH_RAYS_PER_BIN  1.0 /* brute force */
+#define SEABED_RAYS_PER_BIN 4.0 /* near the objects; thinned out with distance */
 /* An object is small, and what it mirrors, or sends to the sea surface, spreads far; else its rough
  * part matters between objects. */
-#define OBJECT_RAYS_PER_BIN 32.0
-#define ROUGH_RAYS_PER_BIN  4.0 /* where the seabed's rays stand for its own */
+#define OBJECT_RAYS_PER_BIN 16.0
+#define ROUGH_RAYS_PER_BIN  2.0 /* where the seabed's rays stand for its own */
 
 static struct span strips_between(const struct tracer *tracer, const struct line_grid *grid,
                                   double first_x, double last_x)

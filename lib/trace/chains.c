@@ -103,7 +103,7 @@ static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tr
                                     const float *map)
 {
     struct fan_record fan;
-    const sonject_status status = patch_fan_init(&fan, tracer, &trace->grid, trace->has_map, 1.0);
+    const sonject_status status = patch_fan_init(&fan, tracer, &trace->grid, trace->has_map, 0.5);
     if (status != SONJECT_OK)
         return status;
     const double range = fan.reference_range;

@@ -13,9 +13,9 @@
 #include "trace/source_pairs.h"
 #include "trace/stint.h"
 
-#define RAYS_PER_BIN 2.0
+#define RAYS_PER_BIN 1.0
 #define RAYS_PER_BIN_OF_BEAM                                                                       \
-    6.0 /* a pixel is one ping's alone, and a beam's rays weigh unequally */
+    3.0 /* a pixel is one ping's alone, and a beam's rays weigh unequally */
 
 static double bin_of_apparent_range(const struct rough_trace *trace, const struct tracer *tracer,
                                     double range)

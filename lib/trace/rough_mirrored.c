@@ -11,7 +11,7 @@
 #include "trace/object_rays.h"
 #include "trace/source_pairs.h"
 
-#define RAYS_PER_BIN 2
+#define RAYS_PER_BIN 1
 
 /* As dense as the fan that goes straight to the objects. */
 static void lay_fan(struct fan_record *fan, const struct rough_trace *trace,

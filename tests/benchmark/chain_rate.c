@@ -16,7 +16,7 @@
 #define REPEATS 5
 #define SEEDS   12
 #define PIXELS  256
-#define CELL    4 /* bins of a resolution cell */
+#define CELL    8 /* bins of a resolution cell */
 
 /* One share of a fan's strips on its own thread, with tallies of its own. */
 struct share {
