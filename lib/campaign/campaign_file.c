@@ -244,9 +244,7 @@ sonject_status campaign_read(struct report *report, const char *path, const char
     if (status == SONJECT_OK)
         status = fill_campaign(tree, overrides, count, campaign);
     tree->mistakes = NULL;
-    status = mistakes_tell(&mistakes, report, status);
-    return status == SONJECT_OK ? tree_override_text(report, &tree->root, &campaign->canonical)
-                                : status;
+    return mistakes_tell(&mistakes, report, status);
 }
 
 static void clear_draws(struct draws *draws)
