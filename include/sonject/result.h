@@ -101,8 +101,10 @@ typedef struct sonject_object_truth {
     sonject_box both;
     uint64_t highlight_pixels;
     uint64_t shadow_pixels;
-    double target_strength_db; /* 10 log10 of its brightest pixel's expected cross-section in m^2;
-                                  -infinity where nothing of it is in view */
+    double target_strength_db; /* 10 log10 of its echo's largest expected cross-section in m^2,
+                                  wherever pixels lie and however far apart they are: of its glints
+                                  through the point response, and of rough surfaces speckle
+                                  averaged out. -infinity where nothing of it is in view */
     double highlight_contrast_db; /* mean energy of the highlight over the local seabed level */
     double shadow_contrast_db;    /* mean energy left in the shadow over the local seabed level */
     double burial_m;    /* depth of its lowest point below the seabed under its origin; negative:
@@ -114,7 +116,7 @@ typedef struct sonject_object_truth {
     uint32_t level_kind;         /* sonject_level_kind that was asked for */
     uint32_t reserved;
     double level_gain_db;      /* by which its echo was scaled; 0: physical */
-    double over_seabed_db;     /* its brightest pixel's expected energy over the seabed's there;
+    double over_seabed_db;     /* that cross-section over a pixel's of plain seabed at its range;
                                   -infinity where nothing of it is in view */
     double seabed_strength_db; /* assumed: 10 log10 of the seabed's cross-section per m^2 at the
                                   centre's grazing angle */

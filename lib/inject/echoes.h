@@ -11,9 +11,11 @@
 /* One object's part, on a window of columns (all rows). */
 struct object_echo {
     size_t first_column, columns;
-    float *energy;    /* expected cross-section, rough and smooth part, m^2 */
-    float *lost;      /* seabed energy that it hides, m^2 */
-    uint8_t *covered; /* 1 where some ray of that pixel hit it */
+    float *energy;                    /* expected cross-section, rough and smooth part, m^2 */
+    float *lost;                      /* seabed energy that it hides, m^2 */
+    uint8_t *covered;                 /* 1 where some ray of that pixel hit it */
+    double peak_energy, peak_range_m; /* of its echo, wherever pixels lie: m^2, 0 where there is
+                                         none, and the apparent range where it is */
 };
 
 /* Everything is rows x columns of the view unless said otherwise. Owned. */

@@ -196,7 +196,7 @@ static sonject_status form_and_compose(struct injection_setup *setup,
     status = echoes_form(&echoes, tracer, &patch.request, source);
     if (status == SONJECT_OK) {
         const double start = clock_seconds();
-        status = set_target_levels(tracer, &patch.level, &echoes, result);
+        status = set_target_levels(tracer, &echoes, result);
         if (status == SONJECT_OK)
             status = compose(tracer, &match, &patch.level, &echoes, pixels, is_complex, result);
         if (status == SONJECT_OK && resynthesises)

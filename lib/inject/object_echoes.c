@@ -32,6 +32,19 @@ static void mark_covered(struct object_echo *echo, const struct line_grid *grid,
         }
 }
 
+/* Energies of the tile between pixels. */
+static sonject_status form_rough_peak(struct peak_lattice *lattice, struct tracer *tracer,
+                                      const struct impulse_lines *tile)
+{
+    sonject_status status = peak_lattice_lay(lattice, tracer, &tile->grid, &tile->grid);
+    if (status == SONJECT_OK)
+        status = peak_lattice_begin(lattice, tracer, FORM_ENERGY, &tile->grid);
+    if (status == SONJECT_OK)
+        status = form_lines_add(&lattice->lines, tile->strips.first - lattice->grid.strips.first,
+                                tile->strips.count, tile->plane[TILE_ENERGY], NULL);
+    return status == SONJECT_OK ? peak_lattice_finish(lattice) : status;
+}
+
 static sonject_status form_rough(struct echoes *echoes, struct tracer *tracer,
                                  const struct impulse_lines *tile)
 {
@@ -90,6 +103,8 @@ static sonject_status begin_object(struct object_former *former, struct echoes *
     former->number = tile->number;
     former->grid = tile->grid;
     sonject_status status = cells > 0 ? form_rough(echoes, tracer, tile) : SONJECT_OK;
+    if (status == SONJECT_OK && cells > 0 && has_rough_part(tracer, tile->number))
+        status = form_rough_peak(&former->rough_peak, tracer, tile);
     if (status != SONJECT_OK)
         return status;
     const struct object_echo *echo = &echoes->objects[tile->number];
@@ -152,11 +167,29 @@ static sonject_status finish_field(struct echoes *echoes, struct form_lines *lin
     return status;
 }
 
+/* The same lines between pixels. */
+static sonject_status take_glint_peak(struct object_former *former, struct tracer *tracer,
+                                      const struct impulse_lines *lines)
+{
+    struct peak_lattice *lattice = &former->glint_peak;
+    sonject_status status = SONJECT_OK;
+    if (line_grid_cells(&former->grid) == 0)
+        return SONJECT_OK;
+    if (!lattice->plane[0])
+        status = peak_lattice_lay(lattice, tracer, &former->grid, &lines->grid);
+    if (status == SONJECT_OK && impulse_lines_begin(lines))
+        status = peak_lattice_begin(lattice, tracer, FORM_SPECKLE, &lines->grid);
+    if (status == SONJECT_OK)
+        status = form_lines_add(&lattice->lines, lines->strips.first - lattice->grid.strips.first,
+                                lines->strips.count, lines->plane[0], lines->plane[1]);
+    return status == SONJECT_OK && impulse_lines_end(lines) ? peak_lattice_finish(lattice) : status;
+}
+
 static sonject_status take_glint(struct object_former *former, struct echoes *echoes,
                                  struct tracer *tracer, const struct impulse_lines *lines)
 {
-    sonject_status status = SONJECT_OK;
-    if (impulse_lines_begin(lines))
+    sonject_status status = take_glint_peak(former, tracer, lines);
+    if (status == SONJECT_OK && impulse_lines_begin(lines))
         status = form_lines_begin(&former->lines, tracer->report, tracer->device, &tracer->view,
                                   &tracer->response, FORM_GLINT, &lines->grid);
     if (status == SONJECT_OK)
@@ -192,8 +225,9 @@ sonject_status object_echoes_finish(struct object_former *former, struct echoes 
 {
     if (!former->is_open)
         return SONJECT_OK;
-    const struct object_echo *echo = &echoes->objects[former->number];
+    struct object_echo *echo = &echoes->objects[former->number];
     const size_t pixels = echo->energy ? echoes->rows * echo->columns : 0;
+    echo->peak_energy = peak_of_echo(&former->glint_peak, &former->rough_peak, &echo->peak_range_m);
     for (size_t i = 0; i < pixels; i++)
         echo->energy[i] += former->glint_real[i] * former->glint_real[i] +
                            former->glint_imaginary[i] * former->glint_imaginary[i];
@@ -220,5 +254,7 @@ void object_former_clear(struct object_former *former)
     free(former->glint_real);
     free(former->glint_imaginary);
     form_lines_end(&former->lines);
+    peak_lattice_clear(&former->glint_peak);
+    peak_lattice_clear(&former->rough_peak);
     memset(former, 0, sizeof *former);
 }

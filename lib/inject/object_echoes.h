@@ -5,6 +5,7 @@
 #include <stdbool.h>
 
 #include "form/form.h"
+#include "inject/echo_peak.h"
 #include "inject/echoes.h"
 #include "inject/impulses.h"
 
@@ -17,6 +18,7 @@ struct object_former {
     /* The glints of its parts, which interfere, over the columns of its echo. */
     float *glint_real, *glint_imaginary;
     struct form_lines lines; /* of the part whose glints come in */
+    struct peak_lattice glint_peak, rough_peak;
 };
 
 /* Takes lines of OBJECT and GLINT. The next OBJECT finishes the one before; object_echoes_finish

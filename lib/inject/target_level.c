@@ -4,34 +4,26 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
+#include "inject/patch_level.h"
 
-/* Brightest expected energy of an object: in m^2, and over the seabed of its column. */
-struct peak {
-    double energy, over_seabed;
-};
-
-static struct peak find_peak(const struct patch_level *level, const struct echoes *echoes,
-                             const struct object_echo *echo)
+/* Over the seabed that the peak of an object's echo lies on. */
+static double peak_over_seabed(const struct tracer *tracer, const struct object_echo *echo)
 {
-    struct peak peak = {0.0, 0.0};
-    for (size_t row = 0; echo->energy && row < echoes->rows; row++)
-        for (size_t column = 0; column < echo->columns; column++) {
-            const double energy = (double)echo->energy[row * echo->columns + column];
-            const double plain = (double)level->cell_energy[echo->first_column + column];
-            peak.energy = fmax(peak.energy, energy);
-            peak.over_seabed = fmax(peak.over_seabed, energy / plain);
-        }
-    return peak;
+    return echo->peak_energy > 0.0
+               ? echo->peak_energy / seabed_cell_energy(&tracer->view, &tracer->response,
+                                                        tracer->scene->seabed.lambert,
+                                                        echo->peak_range_m)
+               : 0.0;
 }
 
 /* In energy; 1 where nothing is heard. */
-static double gain_of(const sonject_object_params *object, const struct peak *peak)
+static double gain_of(const sonject_object_params *object, double energy, double over_seabed)
 {
     const double asked = pow(10.0, object->level_db / 10.0);
-    if (object->level_kind == SONJECT_LEVEL_TARGET_STRENGTH && peak->energy > 0.0)
-        return asked / peak->energy;
-    if (object->level_kind == SONJECT_LEVEL_OVER_SEABED && peak->over_seabed > 0.0)
-        return asked / peak->over_seabed;
+    if (object->level_kind == SONJECT_LEVEL_TARGET_STRENGTH && energy > 0.0)
+        return asked / energy;
+    if (object->level_kind == SONJECT_LEVEL_OVER_SEABED && over_seabed > 0.0)
+        return asked / over_seabed;
     return 1.0;
 }
 
@@ -96,14 +88,15 @@ static void scale_pixel(struct echoes *echoes, const double *gains, double mean,
 static void scale_objects(struct echoes *echoes, const double *gains)
 {
     for (uint32_t number = 0; number < echoes->object_count; number++) {
-        const struct object_echo *echo = &echoes->objects[number];
+        struct object_echo *echo = &echoes->objects[number];
+        echo->peak_energy *= gains[number];
         for (size_t i = 0; echo->energy && i < echoes->rows * echo->columns; i++)
             echo->energy[i] *= (float)gains[number];
     }
 }
 
-sonject_status set_target_levels(const struct tracer *tracer, const struct patch_level *level,
-                                 struct echoes *echoes, struct injection_result *result)
+sonject_status set_target_levels(const struct tracer *tracer, struct echoes *echoes,
+                                 struct injection_result *result)
 {
     const struct scene *scene = tracer->scene;
     double *gains = allocate_array(echoes->object_count, sizeof *gains);
@@ -112,16 +105,17 @@ sonject_status set_target_levels(const struct tracer *tracer, const struct patch
     if (!gains)
         return report_out_of_memory(tracer->report, "the objects' levels");
     for (uint32_t i = 0; i < echoes->object_count; i++) {
-        const struct peak peak = find_peak(level, echoes, &echoes->objects[i]);
+        const struct object_echo *echo = &echoes->objects[i];
+        const double over_seabed = peak_over_seabed(tracer, echo);
         const double grazing = water_way_grazing(&tracer->view.water, tracer->objects[i].origin[1],
                                                  tracer->objects[i].origin[2]);
         sonject_object_truth *truth = &result->objects[i];
-        gains[i] = gain_of(&scene->objects[i], &peak);
+        gains[i] = gain_of(&scene->objects[i], echo->peak_energy, over_seabed);
         mean += gains[i] / echoes->object_count;
         is_scaled = is_scaled || scene->objects[i].level_kind != SONJECT_LEVEL_PHYSICAL;
         truth->level_kind = scene->objects[i].level_kind;
         truth->level_gain_db = decibels(gains[i]);
-        truth->over_seabed_db = decibels(gains[i] * peak.over_seabed);
+        truth->over_seabed_db = decibels(gains[i] * over_seabed);
         truth->seabed_strength_db = decibels(scene->seabed.lambert * sin(grazing) * sin(grazing));
     }
     for (size_t i = 0; is_scaled && i < echoes->rows * echoes->columns; i++)

@@ -4,13 +4,12 @@
 
 #include "inject/echoes.h"
 #include "inject/injection.h"
-#include "inject/patch_level.h"
 
-/* Finds for each object the factor that gives its brightest expected pixel the level it asks for,
+/* Finds for each object the factor that gives its echo's peak the level it asks for,
  * and scales fields and energies by it: at each pixel by the mean of the objects' factors, weighted
  * with their energies there, which is exact where one object is heard. Tells level_kind,
  * level_gain_db, over_seabed_db and seabed_strength_db in result->objects. Errors: MEMORY. */
-sonject_status set_target_levels(const struct tracer *tracer, const struct patch_level *level,
-                                 struct echoes *echoes, struct injection_result *result);
+sonject_status set_target_levels(const struct tracer *tracer, struct echoes *echoes,
+                                 struct injection_result *result);
 
 #endif

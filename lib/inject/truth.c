@@ -96,7 +96,6 @@ static void find_object(const struct patch_level *level, const struct echoes *ec
     memset(&highlight, 0, sizeof highlight);
     memset(&shadow, 0, sizeof shadow);
     memset(&both, 0, sizeof both);
-    double brightest = 0.0;
     double energy = 0.0;
     double dominant = 0.0;
     for (size_t row = 0; echo->energy && row < echoes->rows; row++)
@@ -105,7 +104,6 @@ static void find_object(const struct patch_level *level, const struct echoes *ec
             const size_t i = row * echoes->columns + column;
             const struct pixel_levels levels = levels_at(level, echoes, echo, row, column);
             const double plain = level->cell_energy[column];
-            brightest = fmax(brightest, levels.own);
             energy += levels.own;
             if (levels.own > levels.background && levels.own > levels.others)
                 dominant += levels.own;
@@ -132,7 +130,7 @@ static void find_object(const struct patch_level *level, const struct echoes *ec
     truth->highlight_pixels = highlight.pixels;
     truth->shadow_pixels = shadow.pixels;
     truth->highlight_visible = energy > 0.0 ? dominant / energy : NAN;
-    truth->target_strength_db = decibels(brightest);
+    truth->target_strength_db = decibels(echo->peak_energy);
     truth->highlight_contrast_db = decibels_over(&highlight);
     truth->shadow_contrast_db = decibels_over(&shadow);
 }

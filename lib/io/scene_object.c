@@ -65,9 +65,9 @@ static sonject_status finish_level(struct reader *reader, const struct tree_node
 }
 
 static const struct field level_fields[] = {
-    {"target_strength", "of its brightest pixel, speckle averaged out, re 1 m^2",
+    {"target_strength", "of its echo's peak, between pixels too, speckle averaged out, re 1 m^2",
      QUANTITY(STRUCTURE, level_db, QUANTITY_DECIBEL)},
-    {"over_seabed", "its brightest pixel over the local mean seabed",
+    {"over_seabed", "its echo's peak over the local mean seabed",
      QUANTITY(STRUCTURE, level_db, QUANTITY_DECIBEL)},
 };
 static const struct section level_section = {level_fields, COUNT(level_fields), finish_level};

@@ -75,8 +75,8 @@ class Object:
     towards range; pitch_rad: raises the nose; roll_rad: about the nose direction; burial_m: depth
     of the lowest point below the seabed, negative above it, or one of burial_fraction (of the
     height in that pose, 0 to 1) and proud_height_m (of the highest point above the seabed); cuts:
-    at most two; target_strength_db or over_seabed_db: scales the echo so that its brightest pixel,
-    speckle averaged out, has that level re 1 m^2 or over the seabed (None: as shape and material
+    at most two; target_strength_db or over_seabed_db: scales the echo so that its peak, between
+    pixels too and speckle averaged out, has that level re 1 m^2 or over the seabed (None: as shape and material
     say); name, class_name: for truth and labels, "" for "object N" and the shape's name.
     """
 

@@ -54,11 +54,11 @@ class ObjectTruth:
 
     is_visible: some pixel is its own, or it casts a shadow; *_is_cut: touches the patch's edge;
     row, column: of its centre, in patch pixels; slant_range_m: apparent; height_m: of the centre
-    over the seabed; target_strength_db: of its brightest pixel, re 1 m^2, -inf where nothing of it
-    is in view; contrasts: mean energy over the local seabed level; burial_m: depth of the lowest
+    over the seabed; target_strength_db: of its echo's peak, wherever pixels lie, re 1 m^2, -inf where
+    nothing of it is in view; contrasts: mean energy over the local seabed level; burial_m: depth of the lowest
     point; grazing_rad: of the sound that comes straight to the centre; transmission_loss_db: one
     way, from 1 m off the sonar; level_kind: LevelKind that was asked for; level_gain_db: by which
-    its echo was scaled; over_seabed_db: its brightest pixel over the seabed there;
+    its echo was scaled; over_seabed_db: that peak over the seabed there;
     seabed_strength_db: assumed, of an m^2 at the centre's grazing angle; highlight_visible: share
     of its energy where it dominates all else; shadow_visible: share of its shadow that no other
     object's highlight fills; overall sizes: along its nose, its own y and z.
