@@ -181,8 +181,9 @@ SONJECT_API void sonject_contact_file_params_init(sonject_contact_file_params *p
  * members of sonject_contact_measures (null where they are not known), the caller's for
  * sonject_text_release; NULL on failure. Contacts are those of boxes, then of truth, in their
  * order. Ones that were looked for come the brightest first; none touches the box of a brighter
- * one, nor is it 20 dB fainter than one in its columns within 64 rows, as side lobes are. N tells
- * how many more areas are bright enough. Errors: ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED. */
+ * one, nor is it 20 dB fainter than one in its columns within 64 rows, as side lobes are. The water
+ * column of a sidescan image and the first return at its end hold none. N tells how many more areas
+ * are bright enough. Errors: ARGUMENT, INPUT, STORAGE, MEMORY, UNSUPPORTED. */
 SONJECT_API sonject_status sonject_measure_contacts(sonject_context *context,
                                                     const sonject_contact_file_params *params,
                                                     char **text);

@@ -8,12 +8,13 @@
 
 #define CELL        64 /* pixels on a side, for each of which the seabed's level is found */
 #define CELL_MARGIN 32 /* around a cell, that counts too */
+#define LINE        8  /* columns from the first return on: what begins there is its line */
 
 /* Pixels of a row one after the other that are bright. */
 struct run {
     size_t row, first, last; /* last: included */
     size_t area;             /* a run of the same area that comes no later; itself: the first */
-    double contrast;         /* the largest in it */
+    double contrast;         /* the largest in it; infinite: it begins in water, or with its end */
 };
 
 /* Grows as runs are found. */
@@ -84,6 +85,8 @@ static bool list_runs(struct run_list *list, const struct contact_image *image,
                 run.contrast = fmax(run.contrast, contrast);
             }
             if (run.contrast > 0.0 && (!is_bright || column + 1 == image->columns)) {
+                if (run.first < image->seabed_columns[row] + LINE && image->seabed_columns[row] > 0)
+                    run.contrast = INFINITY;
                 run.area = list->count;
                 if (!append(list, &run))
                     return false;
@@ -142,6 +145,17 @@ static int by_contrast(const void *a, const void *b)
     return 0;
 }
 
+/* Sorts areas, without what is in the water column and the first return, however far that goes. */
+static void leave_out_returns(struct bright_area *areas, size_t *count)
+{
+    size_t returns = 0;
+    qsort(areas, *count, sizeof *areas, by_contrast);
+    while (returns < *count && isinf(areas[returns].contrast))
+        returns++;
+    *count -= returns;
+    memmove(areas, areas + returns, *count * sizeof *areas);
+}
+
 /* The first run of an area comes before its others: areas are counted in the runs' order. */
 static bool list_areas(struct run_list *list, struct bright_area **areas, size_t *count)
 {
@@ -166,7 +180,7 @@ static bool list_areas(struct run_list *list, struct bright_area **areas, size_t
     free(numbers);
     *areas = found;
     if (has_memory)
-        qsort(found, *count, sizeof *found, by_contrast);
+        leave_out_returns(found, count);
     return has_memory;
 }
 

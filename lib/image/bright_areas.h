@@ -10,7 +10,8 @@ struct bright_area {
     double contrast; /* of its brightest mean of 3 x 3 pixels over the seabed */
 };
 
-/* Lists them: the brightest first, then by row and column. *areas is for free(), after failure as
+/* Lists them: the brightest first, then by row and column; none that begins before the first return
+ * of a sidescan image or with it. *areas is for free(), after failure as
  * well. Errors: MEMORY. */
 sonject_status list_bright_areas(struct report *report, const struct contact_image *image,
                                  struct bright_area **areas, size_t *count);

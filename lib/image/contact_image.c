@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "image/first_return.h"
 
 #define SEABED_MARGIN 24 /* pixels around a box that are taken for seabed */
 #define BLOCK                                                                                      \
@@ -22,11 +23,16 @@ sonject_status contact_image_create(struct contact_image *image, struct report *
         image->means = allocate_array(count, sizeof *image->means);
         image->marks = allocate_array(count, 1);
         image->taken = allocate_array(count, 1);
+        image->seabed_columns = allocate_array(rows, sizeof *image->seabed_columns);
     }
-    if (!image->means || !image->marks || !image->taken)
+    if (!image->means || !image->marks || !image->taken || !image->seabed_columns)
         return report_out_of_memory(report, "contacts' measures");
     mean_of_neighbours(intensity, rows, columns, image->means);
-    return measure_speckle(report, intensity, NULL, rows, columns, columns, &image->speckle);
+    const sonject_status status =
+        find_first_return(report, intensity, rows, columns, image->seabed_columns);
+    return status != SONJECT_OK
+               ? status
+               : measure_speckle(report, intensity, NULL, rows, columns, columns, &image->speckle);
 }
 
 void contact_image_clear(struct contact_image *image)
@@ -34,6 +40,7 @@ void contact_image_clear(struct contact_image *image)
     free(image->means);
     free(image->marks);
     free(image->taken);
+    free(image->seabed_columns);
     memset(image, 0, sizeof *image);
 }
 
@@ -59,7 +66,8 @@ size_t seabed_blocks(const struct window_box *box)
     return (box->rows / BLOCK) * (box->columns / BLOCK) + 1;
 }
 
-/* The median of the blocks of a box that do not overlap another one; negative if there are none. */
+/* The median of the blocks of a box that do not overlap another one or the water column; negative
+ * if there are none. */
 static double level_beside(const struct contact_image *image, const struct window_box *wide,
                            const struct window_box *box, float *blocks)
 {
@@ -68,7 +76,8 @@ static double level_beside(const struct contact_image *image, const struct windo
         for (size_t column = 0; column + BLOCK <= wide->columns; column += BLOCK) {
             const struct window_box block = {wide->first_row + row, wide->first_column + column,
                                              BLOCK, BLOCK};
-            if (!box || !boxes_overlap(&block, box))
+            if (block.first_column >= image->seabed_columns[block.first_row] &&
+                (!box || !boxes_overlap(&block, box)))
                 blocks[count++] = mean_of_box(image, &block);
         }
     qsort(blocks, count, sizeof *blocks, by_size);
@@ -77,8 +86,8 @@ static double level_beside(const struct contact_image *image, const struct windo
 
 double level_within(const struct contact_image *image, const struct window_box *box, float *blocks)
 {
-    return box->rows >= BLOCK && box->columns >= BLOCK ? level_beside(image, box, NULL, blocks)
-                                                       : (double)mean_of_box(image, box);
+    const double level = level_beside(image, box, NULL, blocks);
+    return level >= 0.0 ? level : (double)mean_of_box(image, box);
 }
 
 sonject_status find_seabed_level(const struct contact_image *image, struct report *report,

@@ -8,10 +8,11 @@
 struct contact_image {
     const float *intensity; /* rows x columns, borrowed */
     size_t rows, columns;
-    float *means;                      /* over 3 x 3 pixels; owned */
-    uint8_t *marks;                    /* enum contact_part, of the contact measured last; owned */
-    struct window_box marked;          /* beyond which marks are 0 */
-    uint8_t *taken;                    /* not 0: of any contact measured so far; owned */
+    size_t *seabed_columns;   /* the first one of each row, as of find_first_return; owned */
+    float *means;             /* over 3 x 3 pixels; owned */
+    uint8_t *marks;           /* enum contact_part, of the contact measured last; owned */
+    struct window_box marked; /* beyond which marks are 0 */
+    uint8_t *taken;           /* not 0: of any contact measured so far; owned */
     struct speckle_statistics speckle; /* of all pixels */
 };
 

@@ -250,6 +250,23 @@ def test_contacts_are_looked_for(sonject, tmp_path):
     assert_refused(sonject("measure", "image.tif", "--find-most=2"), 2, "--find")
 
 
+def test_first_return_is_no_contact(sonject, tmp_path):
+    """Behind the transmitted pulse, a water column 40 dB darker than the seabed, at whose wandering
+    end a line is 14 dB brighter, here and there broken. Only what lies on the seabed is found."""
+    pixels = speckle(seed=3)
+    line = (60 + 25 * numpy.sin(numpy.arange(ROWS) / 40)).astype(int)
+    columns = numpy.arange(COLUMNS)
+    for row, first in enumerate(line):
+        pixels[row, columns < first] *= 0.01
+        pixels[row, first : first + (5 if row % 64 > 2 else 0)] *= 5
+    pixels[:, :6] = 5 * speckle(seed=4)[:, :6]
+    add_contact(pixels, 120, 150, 21, 10, 50)
+    for rows in (slice(None), slice(None, None, -1)):
+        write(tmp_path / "image.tif", pixels[rows].copy())
+        (found,) = told(sonject("measure", "image.tif", "--find"))["contacts"]
+        assert abs(found["highlight"]["column"] - 150) <= 2, found["highlight"]
+
+
 def test_numbers_that_cannot_be_measured(sonject, tmp_path):
     pixels = speckle()
     pixels[3, 4] = 3e19
