@@ -10,6 +10,7 @@
 #include "api/campaign_files.h"
 #include "api/campaign_handle.h"
 #include "api/documents.h"
+#include "api/label_files.h"
 #include "api/scene_hash.h"
 #include "base/file.h"
 #include "base/json_document.h"
@@ -117,10 +118,11 @@ static sonject_status write_mask(struct sonject_campaign *campaign, const struct
 {
     const struct raster_layout layout = {swath->layout.rows, swath->layout.columns, 1, PIXEL_UINT8};
     const struct region all = {0, 0, layout.rows, layout.columns};
-    const void *pixels = output == OUTPUT_HIGHLIGHT ? result->highlight
-                         : output == OUTPUT_SHADOW  ? result->shadow
-                                                    : result->labels;
-    return raster_file_write_placed(campaign->report, path, &layout, &all, pixels);
+    if (output != OUTPUT_HIGHLIGHT && output != OUTPUT_SHADOW)
+        return write_label_mask(campaign->report, swath, &all, result->labels, path);
+    return raster_file_write_placed(campaign->report, path, &layout, &all,
+                                    output == OUTPUT_HIGHLIGHT ? result->highlight : result->shadow,
+                                    NULL);
 }
 
 /* Energy and field. */

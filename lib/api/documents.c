@@ -106,6 +106,12 @@ static json_t *dimensions_document(const sonject_object_truth *truth)
     return document;
 }
 
+/* The size that a key gives, or where the shape has no such key what is left of its extent. */
+static json_t *size_document(double given_m, double extent_m)
+{
+    return json_number(given_m > 0.0 ? given_m : extent_m);
+}
+
 static json_t *object_document(const struct run_facts *facts, uint32_t index)
 {
     const sonject_object_params *object = &facts->scene->objects[index];
@@ -119,10 +125,10 @@ static json_t *object_document(const struct run_facts *facts, uint32_t index)
     json_add(&document, "name", json_text(object->name));
     json_add(&document, "class", json_text(object->class_name));
     json_add(&document, "shape", json_string(shape_name(object->shape)));
-    json_add(&document, "length_m", json_number(object->length_m));
-    json_add(&document, "width_m", json_number(object->width_m));
+    json_add(&document, "length_m", size_document(object->length_m, truth->overall_length_m));
+    json_add(&document, "width_m", size_document(object->width_m, truth->overall_width_m));
     json_add(&document, "diameter_m", json_number(object->diameter_m));
-    json_add(&document, "body_height_m", json_number(object->height_m));
+    json_add(&document, "body_height_m", size_document(object->height_m, truth->overall_height_m));
     json_add(&document, "top_diameter_m", json_number(object->top_diameter_m));
     json_add(&document, "front_height_m", json_number(object->front_height_m));
     json_add(&document, "cuts", json_count(object->cut_count));

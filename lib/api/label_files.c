@@ -8,6 +8,8 @@
 #include "base/file.h"
 #include "base/file_list.h"
 #include "base/json_document.h"
+#include "io/png_chunks.h"
+#include "io/raster_file.h"
 #include "label/coco.h"
 #include "label/contact_record.h"
 #include "label/voc.h"
@@ -128,4 +130,27 @@ sonject_status write_labels(struct report *report, struct run_facts *facts, cons
     class_names_clear(&classes);
     image_labels_clear(&labels);
     return status;
+}
+
+/* 0 is black; neighbours lie a golden angle apart on the wheel of six sectors of colours. */
+static void colour_of(unsigned number, uint8_t *colour)
+{
+    const unsigned hue = number * 949 % 1536;
+    const uint8_t rising = (uint8_t)(hue % 256);
+    const uint8_t parts[3] = {255, (uint8_t)(hue / 256 % 2 ? 255 - rising : rising), 64};
+    static const uint8_t order[6][3] = {{0, 1, 2}, {1, 0, 2}, {2, 0, 1},
+                                        {2, 1, 0}, {1, 2, 0}, {0, 2, 1}};
+    for (int i = 0; i < 3; i++)
+        colour[i] = parts[order[hue / 256][i]];
+}
+
+sonject_status write_label_mask(struct report *report, const struct swath *swath,
+                                const struct region *region, const uint8_t *labels,
+                                const char *path)
+{
+    const struct raster_layout layout = {swath->layout.rows, swath->layout.columns, 1, PIXEL_UINT8};
+    uint8_t palette[PNG_PALETTE_BYTES] = {0, 0, 0};
+    for (unsigned number = 1; number < 256; number++)
+        colour_of(number, palette + 3 * number);
+    return raster_file_write_placed(report, path, &layout, region, labels, palette);
 }

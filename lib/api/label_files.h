@@ -14,4 +14,10 @@ sonject_status write_labels(struct report *report, struct run_facts *facts, cons
 json_t *labels_document(uint32_t formats);
 uint32_t labels_of_document(const json_t *run);
 
+/* Writes numbers of objects as a PNG in which each has a colour of its own. labels: of region; 0
+ * everywhere else. Errors: STORAGE, MEMORY. */
+sonject_status write_label_mask(struct report *report, const struct swath *swath,
+                                const struct region *region, const uint8_t *labels,
+                                const char *path);
+
 #endif

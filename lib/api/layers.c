@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "api/label_files.h"
 #include "base/file.h"
 #include "base/file_list.h"
 #include "base/memory.h"
@@ -33,7 +34,7 @@ static sonject_status write_mask(struct report *report, const struct swath *swat
                                  const uint8_t *mask, const char *path)
 {
     const struct raster_layout layout = {swath->layout.rows, swath->layout.columns, 1, PIXEL_UINT8};
-    return raster_file_write_placed(report, path, &layout, &swath->patch, mask);
+    return raster_file_write_placed(report, path, &layout, &swath->patch, mask, NULL);
 }
 
 static void amplitude_of(const float *pixels, size_t count, bool is_complex, float *amplitude)
@@ -147,11 +148,12 @@ sonject_status write_layers(struct report *report, struct run_facts *facts, cons
             status = write_float_layer(report, &notes, swath, 1, result->energy, path);
         else if (i == 6)
             status = write_quicklook(report, scene, swath, result, path);
+        else if (i == 4)
+            status = write_label_mask(report, swath, &swath->patch, result->labels, path);
         else
             status = write_mask(report, swath,
                                 i == 2   ? result->highlight
                                 : i == 3 ? result->shadow
-                                : i == 4 ? result->labels
                                          : result->influence,
                                 path);
         free(path);

@@ -14,7 +14,11 @@
 #define INTERLACED_BYTES_MAX ((uint64_t)1 << 30) /* interlaced pictures are decoded whole */
 #define DEFLATE_RATIO_MAX    1032
 #define SIDE_MAX             1000000 /* of libpng */
-#define TEXTS_MAX            16      /* that are read */
+#define HEADER_BYTES         25      /* of the IHDR chunk with length, name and checksum */
+#define COLOURS_PLACE        17      /* in them, of the kind of colour */
+#define COLOURS_BY_PALETTE   3
+#define NUMBERS_CHUNK        "soNu" /* in pictures of numbers: the header of a grey PNG */
+#define TEXTS_MAX            16     /* that are read */
 #define TEXT_BYTES_MAX       65536
 
 struct png_reader {
@@ -23,6 +27,7 @@ struct png_reader {
     uint64_t place;       /* of the current chunk */
     uint64_t chunk_bytes; /* with length, name and checksum */
     char name[5];
+    bool has_palette;
     uint32_t checksums[256]; /* of the 256 bytes */
 };
 
@@ -96,13 +101,18 @@ static sonject_status cut_short(struct report *report, const char *path)
     return report_failure(report, SONJECT_ERROR_INPUT, "%s: damaged PNG: cut short", path);
 }
 
+static sonject_status refuse_palette(struct report *report, const char *path)
+{
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "%s: has a palette; convert it to one channel first", path);
+}
+
 static sonject_status check_colours(struct report *report, const char *path, unsigned bits,
                                     unsigned colours)
 {
     static const int channels[] = {1, 0, 3, 1, 2, 0, 4};
-    if (colours == 3)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: has a palette; convert it to one channel first", path);
+    if (colours == COLOURS_BY_PALETTE)
+        return refuse_palette(report, path);
     if (colours > 6 || channels[colours] == 0)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: damaged PNG: unknown kind of colour", path);
@@ -147,7 +157,23 @@ static sonject_status check_header(struct report *report, const char *path,
                               "%s: is interlaced and larger than 1 GB: write it without "
                               "interlacing",
                               path);
-    return check_colours(report, path, header[8], header[9]);
+    reader->has_palette = header[9] == COLOURS_BY_PALETTE && header[8] == 8;
+    return reader->has_palette ? SONJECT_OK : check_colours(report, path, header[8], header[9]);
+}
+
+/* A copy of the header that calls the palette's indices grey levels, which they are too: added to
+ * parts in its place. */
+static bool take_numbers_header(struct png_reader *reader, struct byte_ranges *parts,
+                                bool *has_memory)
+{
+    unsigned char header[2][HEADER_BYTES];
+    if (reader->chunk_bytes != HEADER_BYTES + 12 || !is_intact(reader) ||
+        !byte_file_read(reader->file, SIGNATURE_BYTES, header[0], HEADER_BYTES) ||
+        !byte_file_read(reader->file, reader->place + 8, header[1], HEADER_BYTES) ||
+        memcmp(header[0], header[1], COLOURS_PLACE) != 0 || header[1][COLOURS_PLACE] != 0)
+        return false;
+    *has_memory = byte_ranges_add(parts, reader->place + 8, HEADER_BYTES) && *has_memory;
+    return true;
 }
 
 static sonject_status check_chunks(struct report *report, const char *path,
@@ -159,15 +185,21 @@ static sonject_status check_chunks(struct report *report, const char *path,
     const sonject_status status = check_header(report, path, reader, &bytes);
     if (status != SONJECT_OK)
         return status;
-    bool has_memory = byte_ranges_add(parts, 0, SIGNATURE_BYTES + reader->chunk_bytes);
+    bool has_memory =
+        byte_ranges_add(parts, 0, SIGNATURE_BYTES + (reader->has_palette ? 0 : HEADER_BYTES));
+    bool has_numbers = !reader->has_palette;
     do {
         if (!next_chunk(reader))
             return cut_short(report, path);
+        if (!has_numbers && is_chunk(reader, NUMBERS_CHUNK))
+            has_numbers = take_numbers_header(reader, parts, &has_memory);
         if (is_chunk(reader, "tRNS"))
             return report_failure(
                 report, SONJECT_ERROR_INPUT,
                 "%s: has a transparent grey level; convert it to plain grey first", path);
         const bool is_pixels = is_chunk(reader, "IDAT");
+        if (is_pixels && !has_numbers)
+            return refuse_palette(report, path);
         const bool is_needed = is_pixels || is_chunk(reader, "IEND");
         const bool is_text = is_chunk(reader, "tEXt") && reader->chunk_bytes <= TEXT_BYTES_MAX &&
                              texts < TEXTS_MAX && is_intact(reader);
@@ -199,6 +231,61 @@ sonject_status png_check(struct report *report, const char *path, struct byte_ra
 static bool copy_chunk(const struct png_reader *reader, FILE *result)
 {
     return byte_file_copy(reader->file, reader->place, reader->chunk_bytes, result);
+}
+
+static uint32_t checksum(const struct png_reader *reader, const unsigned char *bytes, size_t count)
+{
+    uint32_t sum = UINT32_C(0xFFFFFFFF);
+    for (size_t i = 0; i < count; i++)
+        sum = reader->checksums[(sum ^ bytes[i]) & 0xFF] ^ sum >> 8;
+    return sum ^ UINT32_C(0xFFFFFFFF);
+}
+
+/* At most PALETTE_BYTES of content. */
+static bool write_chunk(const struct png_reader *reader, const char *name, const void *content,
+                        uint32_t count, FILE *result)
+{
+    unsigned char bytes[8 + PNG_PALETTE_BYTES + 4];
+    number_to_bytes(count, bytes, 4, true);
+    memcpy(bytes + 4, name, 4);
+    memcpy(bytes + 8, content, count);
+    number_to_bytes(checksum(reader, bytes + 4, 4 + count), bytes + 8 + count, 4, true);
+    return fwrite(bytes, 1, 12 + count, result) == 12 + count;
+}
+
+static bool colour(struct png_reader *grey, const uint8_t *palette, FILE *result)
+{
+    unsigned char header[HEADER_BYTES];
+    bool is_good = byte_file_copy(grey->file, 0, SIGNATURE_BYTES, result) && next_chunk(grey) &&
+                   grey->chunk_bytes == HEADER_BYTES &&
+                   byte_file_read(grey->file, grey->place, header, HEADER_BYTES);
+    if (!is_good)
+        return false;
+    unsigned char coloured[13];
+    memcpy(coloured, header + 8, sizeof coloured);
+    coloured[COLOURS_PLACE - 8] = COLOURS_BY_PALETTE;
+    is_good = write_chunk(grey, "IHDR", coloured, sizeof coloured, result) &&
+              write_chunk(grey, "PLTE", palette, PNG_PALETTE_BYTES, result) &&
+              write_chunk(grey, NUMBERS_CHUNK, header, HEADER_BYTES, result);
+    while (is_good && !is_chunk(grey, "IEND"))
+        is_good = next_chunk(grey) && copy_chunk(grey, result);
+    return is_good;
+}
+
+sonject_status png_colour(struct report *report, const char *grey, const uint8_t *palette,
+                          const char *result, const char *name)
+{
+    struct png_reader from;
+    errno = 0;
+    FILE *to = fopen(result, "wb");
+    bool is_good = to != NULL;
+    is_good = open_png(&from, grey) && is_good;
+    is_good = is_good && colour(&from, palette, to);
+    if (to && fclose(to) != 0)
+        is_good = false;
+    const int error = errno;
+    close_png(&from);
+    return is_good ? SONJECT_OK : file_failure(report, name, "write", error != 0 ? error : EIO);
 }
 
 /* The chunks of pixels, all of them. */

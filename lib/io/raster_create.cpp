@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "io/image_kind.h"
+#include "io/png_chunks.h"
 #include "io/raster_failure.hpp"
 #include "io/raster_writer.hpp"
 
@@ -90,7 +91,8 @@ sonject_status raster_image_write(struct report *report, const char *path,
 
 sonject_status raster_image_write_placed(struct report *report, const char *path,
                                          const struct raster_layout *layout,
-                                         const struct region *region, const void *pixels)
+                                         const struct region *region, const void *pixels,
+                                         const uint8_t *palette)
 {
     return guarded(report, path, [&] {
         const enum image_kind kind = kind_to_write(report, path, *layout);
@@ -109,6 +111,9 @@ sonject_status raster_image_write_placed(struct report *report, const char *path
             output.write_rows(row, end, strip.data());
         }
         output.finish();
-        require(file_publish(report, part.name, path));
+        const part_file coloured(part.name);
+        if (palette)
+            require(png_colour(report, part.name, palette, coloured.name, path));
+        require(file_publish(report, palette ? coloured.name : part.name, path));
     });
 }

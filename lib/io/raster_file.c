@@ -93,10 +93,12 @@ sonject_status raster_file_write(struct report *report, const char *path,
 
 sonject_status raster_file_write_placed(struct report *report, const char *path,
                                         const struct raster_layout *layout,
-                                        const struct region *region, const void *pixels)
+                                        const struct region *region, const void *pixels,
+                                        const uint8_t *palette)
 {
     const struct raster_module *module = NULL;
     const sonject_status status = raster_module_find(report, path, &module);
-    return status != SONJECT_OK ? status
-                                : module->write_placed(report, path, layout, region, pixels);
+    return status != SONJECT_OK
+               ? status
+               : module->write_placed(report, path, layout, region, pixels, palette);
 }

@@ -58,11 +58,13 @@ sonject_status raster_file_write(struct report *report, const char *path,
                                  const void *pixels);
 
 /* Writes at path a raster that is 0 everywhere but in region, which gets pixels: masks of a swath
- * that may be larger than memory. Streams as raster_file_copy_with_patch does; published whole or
- * not at all. Errors: STORAGE, UNSUPPORTED (format), MEMORY. */
+ * that may be larger than memory. palette: PNG_PALETTE_BYTES for the colours of a PNG of 8 bit
+ * numbers, which are read as they were written; NULL: grey. Streams as raster_file_copy_with_patch
+ * does; published whole or not at all. Errors: STORAGE, UNSUPPORTED (format), MEMORY. */
 sonject_status raster_file_write_placed(struct report *report, const char *path,
                                         const struct raster_layout *layout,
-                                        const struct region *region, const void *pixels);
+                                        const struct region *region, const void *pixels,
+                                        const uint8_t *palette);
 
 #ifdef __cplusplus
 }

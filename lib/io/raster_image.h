@@ -33,7 +33,8 @@ sonject_status raster_image_write(struct report *report, const char *path,
                                   const void *pixels);
 sonject_status raster_image_write_placed(struct report *report, const char *path,
                                          const struct raster_layout *layout,
-                                         const struct region *region, const void *pixels);
+                                         const struct region *region, const void *pixels,
+                                         const uint8_t *palette);
 
 #ifdef __cplusplus
 }

@@ -32,7 +32,7 @@ struct raster_module {
                             const void *pixels);
     sonject_status (*write_placed)(struct report *report, const char *path,
                                    const struct raster_layout *layout, const struct region *region,
-                                   const void *pixels);
+                                   const void *pixels, const uint8_t *palette);
 };
 
 /* The one thing that the module shows. */

@@ -50,10 +50,10 @@ def _unfiltered(lines, columns):
 
 
 def read_png(path):
-    """Grey levels of an 8 bit grey PNG."""
+    """Pixels of an 8 bit PNG, grey or numbers of colours."""
     content = path.read_bytes()
     columns, rows, depth, colour = struct.unpack(">IIBB", content[16:26])
-    assert (depth, colour) == (8, 0)
+    assert (depth, colour) in ((8, 0), (8, 3))
     position, data = 8, b""
     while position < len(content):
         size, name = struct.unpack(">I4s", content[position : position + 8])

@@ -12,6 +12,7 @@ import pytest
 
 import images
 import recordings
+from measured_images import read_png
 from conftest import COMMAND, COLUMNS, ROWS, assert_refused
 
 # Boxes as long as they are wide would hide rows and columns that are swapped. The second target
@@ -67,30 +68,6 @@ def decoded(segmentation):
     return numpy.repeat(values, segmentation["counts"]).reshape(columns, rows).T.astype("u1")
 
 
-def read_png(path):
-    """Pixels of an 8 bit grey PNG."""
-    import zlib
-
-    data, place, body = path.read_bytes(), 8, b""
-    while place < len(data):
-        length = int.from_bytes(data[place : place + 4], "big")
-        if data[place + 4 : place + 8] == b"IDAT":
-            body += data[place + 8 : place + 8 + length]
-        place += 12 + length
-    lines = numpy.frombuffer(zlib.decompress(body), "u1").reshape(ROWS, COLUMNS + 1)
-    pixels = numpy.zeros((ROWS, COLUMNS), int)
-    for row, line in enumerate(lines.astype(int)):
-        above = pixels[row - 1] if row else numpy.zeros(COLUMNS, int)
-        for column, value in enumerate(line[1:]):
-            left = pixels[row, column - 1] if column else 0
-            corner = above[column - 1] if column else 0
-            guess = left + above[column] - corner
-            nearest = min((left, above[column], corner), key=lambda x: abs(guess - x))
-            added = [0, left, above[column], (left + above[column]) // 2, nearest][line[0]]
-            pixels[row, column] = (value + added) % 256
-    return pixels
-
-
 def box_of(mask):
     """(row, column, rows, columns) of the pixels that are set."""
     rows, columns = numpy.nonzero(mask)
@@ -129,6 +106,21 @@ def test_every_format_has_the_boxes_of_the_masks(folder, seen):
         assert entry.find("occluded").text == str(int(annotation["occluded"]))
     assert [entry["truncated"] for entry in coco["annotations"]] == [False, False, True]
     assert [entry["occluded"] for entry in coco["annotations"]] == [True, False, False]
+
+
+def test_labels_are_colours_that_read_as_numbers(sonject, folder, tmp_path):
+    content = (folder / "labels.png").read_bytes()
+    palette = content[content.index(b"PLTE") + 4 :][: 3 * 256]
+    colours = {palette[3 * i : 3 * i + 3] for i in range(1, 256)}
+    assert palette[:3] == bytes(3) and len(colours) == 255 and min(map(max, colours)) == 255
+    answer = sonject("convert", folder / "labels.png", "labels.pgm")
+    assert answer.returncode == 0, answer.stderr
+    numbers = (tmp_path / "labels.pgm").read_bytes()[-ROWS * COLUMNS :]
+    assert numbers == read_png(folder / "labels.png").astype("u1").tobytes()
+    assert set(numbers) == {0, 1, 2, 3}
+    at = content.index(b"soNu")
+    (tmp_path / "other.png").write_bytes(content[: at - 4] + content[at + 33 :])
+    assert_refused(sonject("convert", "other.png", "other.pgm"), 3, "palette")
 
 
 def test_truth_says_where_boxes_lie_and_what_is_seen(folder, seen):

@@ -57,6 +57,9 @@ def test_the_content_of_a_mesh_counts(sonject, scene, mesh, tmp_path):
     first, _ = run()
     again, said = run()
     assert again == first and "already holds" in said
+    for truth in json.loads((tmp_path / "out" / "truth.json").read_text())["objects"]:
+        sizes = [truth[key] for key in ("length_m", "width_m", "body_height_m")]
+        assert sizes == pytest.approx([0.6, 0.5, 0.4])
     mesh.write_text(TETRAHEDRON.replace("400", "300"))
     assert_refused(sonject("run", scene, "-o", "out"), 2, "differs in objects[].mesh:")
     other, said = run("--overwrite")

@@ -180,7 +180,7 @@ static void put_mask(const char *mask, const struct region *patch)
     if (!pixels)
         fail(mask, "out of memory");
     memset(pixels, 255, (size_t)(patch->rows * patch->columns));
-    if (raster_file_write_placed(&report, mask, &layout, patch, pixels) != SONJECT_OK)
+    if (raster_file_write_placed(&report, mask, &layout, patch, pixels, NULL) != SONJECT_OK)
         fail(mask, report.message);
     free(pixels);
 }

@@ -212,7 +212,7 @@ static void test_a_region_outside_is_refused(void **state)
     raster_file_close(&file);
     assert_int_equal(raster_file_copy_with_patch(&report, path, path, &outside, pixels, NULL, NULL),
                      SONJECT_ERROR_INPUT);
-    assert_int_equal(raster_file_write_placed(&report, path, &grey8, &outside, pixels),
+    assert_int_equal(raster_file_write_placed(&report, path, &grey8, &outside, pixels, NULL),
                      SONJECT_ERROR_STORAGE);
     expect_pixels(path, &grey8, pixels, NULL, NULL);
     free(pixels);
@@ -312,7 +312,7 @@ static void test_placed(void **state)
         unsigned char *patch = make_pixels(layout, &patch_region, 3);
         unsigned char *zeros = calloc(ROWS * COLUMNS, pixel_size(layout));
         assert_non_null(zeros);
-        expect_ok(raster_file_write_placed(&report, path, layout, &patch_region, patch));
+        expect_ok(raster_file_write_placed(&report, path, layout, &patch_region, patch, NULL));
         expect_pixels(path, layout, zeros, &patch_region, patch);
         free(zeros);
         free(patch);
