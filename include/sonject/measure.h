@@ -81,7 +81,26 @@ typedef struct sonject_contact_params {
 
 SONJECT_API void sonject_contact_params_init(sonject_contact_params *params);
 
-/* One ruler for measured and injected contacts. NaN: not there, or not known. A highlight are
+/* One ruler for measured and injected contacts: what truth (sonject_object_truth, truth.json) tells
+ * by these names it has read off the object's expected energies, on plain seabed and without
+ * speckle. Across the middle third of the rows, intensity over slant range:
+ *
+ *               highlight_range
+ *                 |<------>|          gap_range      lit, but no highlight: a rim, a level top
+ *                 |  ____  |<------->|
+ *                 | /    \ |         |               shadow_range
+ *     6 dB over - |/      \|____     |<--------------------------------->|
+ *     seabed ~~~~~~             \    |<- dim_range ->|                   |  ~~~~~~~~~~~~
+ *                                \   |_______        |                   | /
+ *     6 dB under -                \__|       \_______|__________________/|/
+ *                                                     shadow_contrast of the darkest third
+ *
+ * Truth's own names are those of masks, which only it knows: `highlight`, `shadow`, `box` and their
+ * pixels are where the object's echo dominates and where more than half of the seabed's energy is
+ * hidden, a rim included. Boxes by the thresholds here are `highlight_box` and `shadow_box` in
+ * JSON.
+ *
+ * NaN: not there, or not known. A highlight are
  * pixels whose mean with their neighbours is 6 dB over the seabed (and less than 20 dB under the
  * contact's brightest), a shadow 9 or more that are 6 dB under it.
  *
@@ -123,10 +142,11 @@ typedef struct sonject_contact_measures {
                              that of a uniform bar */
     double axis_width_m;  /* likewise, across it */
     double axis_rad;      /* from along-track towards range, -pi/2...pi/2 */
-    double highlight_db;  /* mean intensity, 10 log10 of squared amplitude units */
-    double shadow_db;
-    double seabed_db;             /* around the box */
-    double highlight_contrast_db; /* over the seabed */
+    double highlight_db;  /* mean intensity of its pixels, 10 log10 of squared amplitude units */
+    double shadow_db;     /* of the darkest third of its columns in the middle third of its rows */
+    double seabed_db;     /* median of means of 6 x 6 pixels around the box */
+    double highlight_contrast_db; /* over the seabed; both contrasts' standard error is 0.4 dB for
+                                     contacts of 100 pixels and more of single-look speckle */
     double shadow_contrast_db;
     double seabed_shape; /* of the whole image without the contacts that are measured with it, as in
                             sonject_measurement */

@@ -96,17 +96,18 @@ typedef struct sonject_object_truth {
     double slant_range_m;      /* apparent, of the centre */
     double ground_range_m;     /* of the centre */
     double height_m;           /* of the centre over the mean seabed */
-    sonject_box highlight;
+    sonject_box highlight;     /* of masks, as the layers of these names */
     sonject_box shadow;
     sonject_box both;
     uint64_t highlight_pixels;
     uint64_t shadow_pixels;
-    double target_strength_db; /* 10 log10 of its echo's largest expected cross-section in m^2,
-                                  wherever pixels lie and however far apart they are: of its glints
-                                  through the point response, and of rough surfaces speckle
-                                  averaged out. -infinity where nothing of it is in view */
-    double highlight_contrast_db; /* mean energy of the highlight over the local seabed level */
-    double shadow_contrast_db;    /* mean energy left in the shadow over the local seabed level */
+    double target_strength_db;    /* 10 log10 of its echo's largest expected cross-section in m^2,
+                                     wherever pixels lie and however far apart they are: of its glints
+                                     through the point response, and of rough surfaces speckle
+                                     averaged out. -infinity where nothing of it is in view */
+    double highlight_contrast_db; /* as in sonject_contact_measures, see there; of this object alone
+                                     and of expected energies, without speckle */
+    double shadow_contrast_db;
     double burial_m;    /* depth of its lowest point below the seabed under its origin; negative:
                            above that */
     double grazing_rad; /* of the sound that comes straight to the centre */
@@ -128,6 +129,12 @@ typedef struct sonject_object_truth {
     double overall_length_m;   /* of what is left of it, along its nose */
     double overall_width_m;    /* along its own y */
     double overall_height_m;   /* along its own z */
+    double highlight_along_m;  /* likewise as in sonject_contact_measures; NaN: not there */
+    double highlight_range_m;
+    double shadow_along_m;
+    double shadow_range_m;
+    double gap_range_m;
+    double dim_range_m;
 } sonject_object_truth;
 
 /* Truth of object number index. truth->struct_size must be set. Errors: ARGUMENT. */

@@ -110,9 +110,9 @@ static json_t *measures_document(const char *image, const sonject_contact_measur
 {
     json_t *document = json_object();
     json_add(&document, "image", json_text(image));
-    json_add(&document, "box", box_document(&measures->box));
-    json_add(&document, "highlight", box_document(&measures->highlight));
-    json_add(&document, "shadow", box_document(&measures->shadow));
+    json_add(&document, "measured_box", box_document(&measures->box));
+    json_add(&document, "highlight_box", box_document(&measures->highlight));
+    json_add(&document, "shadow_box", box_document(&measures->shadow));
     json_add(&document, "cut", json_boolean(measures->is_cut));
     for (size_t i = 0; i < CONTACT_NUMBERS; i++) {
         double value;

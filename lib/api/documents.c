@@ -163,6 +163,12 @@ static json_t *object_document(const struct run_facts *facts, uint32_t index)
     json_add(&document, "target_strength_db", json_number(truth->target_strength_db));
     json_add(&document, "highlight_contrast_db", json_number(truth->highlight_contrast_db));
     json_add(&document, "shadow_contrast_db", json_number(truth->shadow_contrast_db));
+    json_add(&document, "highlight_along_m", json_number(truth->highlight_along_m));
+    json_add(&document, "highlight_range_m", json_number(truth->highlight_range_m));
+    json_add(&document, "shadow_along_m", json_number(truth->shadow_along_m));
+    json_add(&document, "shadow_range_m", json_number(truth->shadow_range_m));
+    json_add(&document, "gap_range_m", json_number(truth->gap_range_m));
+    json_add(&document, "dim_range_m", json_number(truth->dim_range_m));
     json_add(&document, "level", level_document(facts, index));
     return document;
 }

@@ -6,7 +6,6 @@
 #include "base/memory.h"
 #include "image/first_return.h"
 
-#define SEABED_MARGIN 24 /* pixels around a box that are taken for seabed */
 #define BLOCK                                                                                      \
     6 /* pixels on a side. A mean of 36 exponential values has its median 1 %                      \
          below its mean */

@@ -5,6 +5,8 @@
 #include "image/contact_mask.h"
 #include "image/speckle_statistics.h"
 
+#define SEABED_MARGIN 24 /* pixels around a box that are taken for seabed */
+
 struct contact_image {
     const float *intensity; /* rows x columns, borrowed */
     size_t rows, columns;

@@ -306,7 +306,7 @@ static void measure_shadow(const struct contact_lines *lines, const size_t *high
     view.highlight = highlight ? *highlight : view.core;
     view.dark =
         fmin(fmax(level, SHADOW_LEAST * lines->seabed), SHADOW_UNDER_SEABED * lines->seabed);
-    sizes->shadow_intensity = sizes->shadow.energy / (double)sizes->shadow.pixels;
+    sizes->shadow_intensity = level;
     measure_in_range(lines, &view, &middle, sizes);
     struct profile_path across = {darkest, true, part->first_row + part->rows / 2, 1,
                                   part->rows / 2 + 1 + EDGE_REACH};

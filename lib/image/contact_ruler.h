@@ -1,4 +1,5 @@
 /* How long and wide a contact's highlight and shadow are, the same for measured and injected ones.
+ * What names mean: sonject/measure.h.
  *
  * Where the formulas come from:
  * - Speckle is circular Gaussian: a mean of n independent intensities has the gamma distribution of
@@ -29,7 +30,9 @@ struct contact_sizes {
     struct contact_length gap_columns; /* from the highlight's far edge to the shadow */
     struct contact_length
         dim_columns; /* of the shadow's, the first ones if brighter; 0: none are */
-    double highlight_intensity, shadow_intensity; /* means over their pixels */
+    double highlight_intensity, shadow_intensity; /* means: over its pixels, and over the darkest
+                                                     third of its columns in the middle third of its
+                                                     rows, which its edges are not in */
 };
 
 /* Measures the contact that find_contact_parts finds. Across the track lengths are those of the

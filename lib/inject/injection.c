@@ -202,7 +202,7 @@ static sonject_status form_and_compose(struct injection_setup *setup,
         if (status == SONJECT_OK && resynthesises)
             status = compare_seabed(tracer->report, &echoes, &patch.level, result);
         if (status == SONJECT_OK) {
-            find_truth(tracer, &patch.level, &echoes, result);
+            status = find_truth(tracer, &patch.level, &match.seabed, &echoes, result);
             tell_match(&match, &tracer->response, &result->statistics);
             fill_statistics(tracer, &patch.level, &echoes, clock_seconds() - start, result);
             hand_over_orders(&echoes, result);

@@ -1,15 +1,19 @@
 #include "inject/truth.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
+
+#include "base/memory.h"
+#include "image/contact_ruler.h"
+#include "image/contact_search.h"
 
 struct box_search {
     size_t first_row, last_row, first_column, last_column;
     uint64_t pixels;
-    double energy, level; /* sums over its pixels */
 };
 
-static void box_take(struct box_search *box, size_t row, size_t column, double energy, double level)
+static void box_take(struct box_search *box, size_t row, size_t column)
 {
     if (box->pixels == 0 || row < box->first_row)
         box->first_row = row;
@@ -20,8 +24,6 @@ static void box_take(struct box_search *box, size_t row, size_t column, double e
     if (box->pixels == 0 || column > box->last_column)
         box->last_column = column;
     box->pixels++;
-    box->energy += energy;
-    box->level += level;
 }
 
 static sonject_box box_of(const struct box_search *search)
@@ -83,11 +85,6 @@ static double decibels(double ratio)
     return ratio > 0.0 ? 10.0 * log10(ratio) : -INFINITY;
 }
 
-static double decibels_over(const struct box_search *search)
-{
-    return search->pixels > 0 ? decibels(search->energy / search->level) : NAN;
-}
-
 static void find_object(const struct patch_level *level, const struct echoes *echoes,
                         uint32_t number, struct injection_result *result)
 {
@@ -103,21 +100,20 @@ static void find_object(const struct patch_level *level, const struct echoes *ec
              column++) {
             const size_t i = row * echoes->columns + column;
             const struct pixel_levels levels = levels_at(level, echoes, echo, row, column);
-            const double plain = level->cell_energy[column];
             energy += levels.own;
             if (levels.own > levels.background && levels.own > levels.others)
                 dominant += levels.own;
             if (levels.own > levels.background && is_on_object(echo, echoes->rows, row, column)) {
                 result->highlight[i] = 255;
                 result->labels[i] = (uint8_t)(number + 1);
-                box_take(&highlight, row, column, levels.own + levels.background, plain);
-                box_take(&both, row, column, 0.0, 0.0);
+                box_take(&highlight, row, column);
+                box_take(&both, row, column);
             } else if (levels.hidden_share > 0.5) {
                 if (!result->labels[i])
                     result->labels[i] = (uint8_t)(number + 1);
                 result->shadow[i] = 255;
-                box_take(&shadow, row, column, echoes->target_energy[i] + levels.background, plain);
-                box_take(&both, row, column, 0.0, 0.0);
+                box_take(&shadow, row, column);
+                box_take(&both, row, column);
             }
         }
     sonject_object_truth *truth = &result->objects[number];
@@ -131,8 +127,6 @@ static void find_object(const struct patch_level *level, const struct echoes *ec
     truth->shadow_pixels = shadow.pixels;
     truth->highlight_visible = energy > 0.0 ? dominant / energy : NAN;
     truth->target_strength_db = decibels(echo->peak_energy);
-    truth->highlight_contrast_db = decibels_over(&highlight);
-    truth->shadow_contrast_db = decibels_over(&shadow);
 }
 
 /* Of an object's shadow, when the masks of all objects are known. */
@@ -200,8 +194,102 @@ static void locate(const struct tracer *tracer, uint32_t number, sonject_object_
     truth->transmission_loss_db = transmission_loss(tracer, origin, truth->grazing_rad);
 }
 
-void find_truth(const struct tracer *tracer, const struct patch_level *level,
-                const struct echoes *echoes, struct injection_result *result)
+/* What is expected of a pixel with one object alone, over plain seabed: its echo, what came by way
+ * of the seabed or other objects, the seabed that is left, and noise instead of what is not. */
+static double expected_over_seabed(const struct patch_level *level, const struct echoes *echoes,
+                                   const struct object_echo *echo, size_t row, size_t column)
+{
+    const size_t i = row * echoes->columns + column;
+    const double without = echoes->seabed_energy[i];
+    double indirect = echoes->target_energy[i];
+    double own = 0.0;
+    double hidden = 0.0;
+    for (uint32_t k = 0; k < echoes->object_count; k++) {
+        const struct object_echo *other = &echoes->objects[k];
+        if (!other->energy || column - other->first_column >= other->columns)
+            continue;
+        const size_t local = row * other->columns + column - other->first_column;
+        indirect -= (double)other->energy[local];
+        if (other == echo) {
+            own = other->energy[local];
+            hidden = without > 0.0 ? fmin(1.0, other->lost[local] / without) : 0.0;
+        }
+    }
+    return (own + fmax(0.0, indirect)) / (double)level->cell_energy[column] + 1.0 - hidden +
+           hidden * level->noise_ratio;
+}
+
+static double in_metres(struct contact_length length, double spacing_m)
+{
+    return length.pixels * spacing_m;
+}
+
+/* Lays the ruler of contacts on an object as it is expected to show, in its box with a margin. */
+static sonject_status measure_object(const struct tracer *tracer, const struct patch_level *level,
+                                     const struct speckle_statistics *speckle,
+                                     const struct echoes *echoes, uint32_t number,
+                                     sonject_object_truth *truth)
+{
+    const struct window_box box = {truth->both.first_row, truth->both.first_column,
+                                   truth->both.rows, truth->both.columns};
+    const struct window_box wide =
+        box_with_margin(&box, CONTACT_MARGIN + SEABED_MARGIN, echoes->rows, echoes->columns);
+    struct contact_place place;
+    struct contact_image image;
+    struct contact_sizes sizes;
+    float *expected = allocate_array(wide.rows, wide.columns * sizeof *expected);
+    if (!expected)
+        return report_out_of_memory(tracer->report, "an object's measures");
+    for (size_t i = 0; i < wide.rows * wide.columns; i++)
+        expected[i] = (float)expected_over_seabed(level, echoes, &echoes->objects[number],
+                                                  wide.first_row + i / wide.columns,
+                                                  wide.first_column + i % wide.columns);
+    memset(&place, 0, sizeof place);
+    place.box = box_with_margin(&box, CONTACT_MARGIN, echoes->rows, echoes->columns);
+    place.box.first_row -= wide.first_row;
+    place.box.first_column -= wide.first_column;
+    place.bright = place.box;
+    sonject_status status =
+        contact_image_create(&image, tracer->report, expected, wide.rows, wide.columns);
+    image.speckle = *speckle;
+    if (status == SONJECT_OK)
+        status = measure_contact_sizes(&image, tracer->report, &place, &sizes);
+    if (status == SONJECT_OK) {
+        const struct patch_view *view = &tracer->view;
+        truth->highlight_contrast_db = decibels(sizes.highlight_intensity / sizes.seabed);
+        truth->shadow_contrast_db = decibels(sizes.shadow_intensity / sizes.seabed);
+        truth->highlight_along_m = in_metres(sizes.highlight_rows, view->row_spacing_m);
+        truth->highlight_range_m = in_metres(sizes.highlight_columns, view->column_spacing_m);
+        truth->shadow_along_m = in_metres(sizes.shadow_rows, view->row_spacing_m);
+        truth->shadow_range_m = in_metres(sizes.shadow_columns, view->column_spacing_m);
+        truth->gap_range_m = in_metres(sizes.gap_columns, view->column_spacing_m);
+        truth->dim_range_m = in_metres(sizes.dim_columns, view->column_spacing_m);
+    }
+    contact_image_clear(&image);
+    free(expected);
+    return status;
+}
+
+static sonject_status measure_objects(const struct tracer *tracer, const struct patch_level *level,
+                                      const struct speckle_statistics *speckle,
+                                      const struct echoes *echoes, struct injection_result *result)
+{
+    sonject_status status = SONJECT_OK;
+    for (uint32_t i = 0; status == SONJECT_OK && i < echoes->object_count; i++) {
+        sonject_object_truth *truth = &result->objects[i];
+        truth->highlight_contrast_db = truth->shadow_contrast_db = NAN;
+        truth->highlight_along_m = truth->highlight_range_m = NAN;
+        truth->shadow_along_m = truth->shadow_range_m = NAN;
+        truth->gap_range_m = truth->dim_range_m = NAN;
+        if (truth->is_visible)
+            status = measure_object(tracer, level, speckle, echoes, i, truth);
+    }
+    return status;
+}
+
+sonject_status find_truth(const struct tracer *tracer, const struct patch_level *level,
+                          const struct speckle_statistics *speckle, const struct echoes *echoes,
+                          struct injection_result *result)
 {
     for (uint32_t i = 0; i < echoes->object_count; i++) {
         locate(tracer, i, &result->objects[i]);
@@ -213,4 +301,5 @@ void find_truth(const struct tracer *tracer, const struct patch_level *level,
             result->shadow[i] = 0;
     for (uint32_t i = 0; i < echoes->object_count; i++)
         find_visible_shadow(level, echoes, i, result);
+    return measure_objects(tracer, level, speckle, echoes, result);
 }

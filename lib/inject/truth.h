@@ -2,12 +2,15 @@
 #ifndef SONJECT_INJECT_TRUTH_H
 #define SONJECT_INJECT_TRUTH_H
 
+#include "image/speckle_statistics.h"
 #include "inject/echoes.h"
 #include "inject/injection.h"
 #include "inject/patch_level.h"
 
-/* Fills result's masks and objects (allocated), in the view's row order. */
-void find_truth(const struct tracer *tracer, const struct patch_level *level,
-                const struct echoes *echoes, struct injection_result *result);
+/* Fills result's masks and objects (allocated), in the view's row order. speckle: the
+ * measured patch's. Errors: MEMORY. */
+sonject_status find_truth(const struct tracer *tracer, const struct patch_level *level,
+                          const struct speckle_statistics *speckle, const struct echoes *echoes,
+                          struct injection_result *result);
 
 #endif

@@ -182,7 +182,7 @@ def test_lengths_of_a_contact(sonject, tmp_path):
             assert told_by_box[f"{part}_{name}_pixels"] == pytest.approx(size, abs=1.5)
             assert told_by_box[f"{part}_{name}_m"] == pytest.approx(
                 told_by_box[f"{part}_{name}_pixels"] * metres)
-        near = told_by_box[part]
+        near = told_by_box[f"{part}_box"]
         assert abs(near["row"] - row) <= 2 and abs(near["rows"] - rows) <= 4
         assert abs(near["column"] - column) <= 2 and abs(near["columns"] - columns) <= 4
     # 36 times the seabed's energy, and 1/400 of it; 252 and 1155 single-look values
@@ -227,7 +227,7 @@ def test_contacts_are_looked_for(sonject, tmp_path):
     add_contact(pixels, 120, 40, 21, 2.5, 30)
     write(tmp_path / "image.tif", pixels)
     answer = told(sonject("measure", "image.tif", "--find"))
-    places = [(entry["box"]["row"], entry["box"]["column"]) for entry in answer["contacts"]]
+    places = [(entry["measured_box"]["row"], entry["measured_box"]["column"]) for entry in answer["contacts"]]
     assert answer["left_off"] == 0
     expected = [(34, 54), (114, 144), (194, 284)]
     assert numpy.abs(numpy.subtract(places, expected)).max() <= 8, places
@@ -236,12 +236,12 @@ def test_contacts_are_looked_for(sonject, tmp_path):
     assert first["gap_range_pixels"] == pytest.approx(12, abs=1.5)
     assert 0 < first["shadow_range_error_pixels"] < 1
     assert [entry["cut"] for entry in answer["contacts"]] == [False, False, True]
-    box = first["box"]
+    box = first["measured_box"]
     again = told(sonject("measure", "image.tif", "--box",
                          ",".join(str(box[key]) for key in ("row", "column", "rows", "columns"))))
     assert again["contacts"][0]["shadow_range_pixels"] == first["shadow_range_pixels"]
     limited = told(sonject("measure", "image.tif", "--find", "--find-most=1"))
-    assert [entry["box"] for entry in limited["contacts"]] == [first["box"]]
+    assert [entry["measured_box"] for entry in limited["contacts"]] == [first["measured_box"]]
     assert limited["left_off"] == 3  # with the one in the second contact's shadow
     bright = told(sonject("measure", "image.tif", "--find", "--find-contrast=20"))
     assert len(bright["contacts"]) == 2
@@ -264,7 +264,7 @@ def test_first_return_is_no_contact(sonject, tmp_path):
     for rows in (slice(None), slice(None, None, -1)):
         write(tmp_path / "image.tif", pixels[rows].copy())
         (found,) = told(sonject("measure", "image.tif", "--find"))["contacts"]
-        assert abs(found["highlight"]["column"] - 150) <= 2, found["highlight"]
+        assert abs(found["highlight_box"]["column"] - 150) <= 2, found["highlight_box"]
 
 
 def test_numbers_that_cannot_be_measured(sonject, tmp_path):

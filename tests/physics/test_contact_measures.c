@@ -25,10 +25,11 @@
 #ifndef SEED
 #define SEED 20240611 /* of the poses and of the seabeds' speckle */
 #endif
-#define SIDES   32 /* of what stands for a circle: 0.5 % less wide */
-#define CORNERS (2 * SIDES)
-#define EDGES   (3 * SIDES)
-#define LINES   33 /* across the middle third of the rows */
+#define SIDES          32 /* of what stands for a circle: 0.5 % less wide */
+#define CORNERS        (2 * SIDES)
+#define EDGES          (3 * SIDES)
+#define CONTRAST_ERROR 0.4 /* dB, as sonject/measure.h says */
+#define LINES          33  /* across the middle third of the rows */
 
 /* A convex body as it is drawn: all that is random. */
 struct pose {
@@ -305,6 +306,43 @@ static sonject_scene *make_scene(sonject_context *context, uint64_t seed)
     return scene;
 }
 
+/* Names that truth and measures share, and what standard errors those tell. */
+static const struct {
+    const char *name;
+    size_t in_truth, in_measures, error_in_measures; /* error 0: CONTRAST_ERROR */
+} shared_names[] = {
+#define LENGTH(name)                                                                               \
+    {                                                                                              \
+#name "_m", offsetof(sonject_object_truth, name##_m),                                      \
+            offsetof(sonject_contact_measures, name##_m),                                          \
+            offsetof(sonject_contact_measures, name##_error_pixels)                                \
+    }
+#define CONTRAST(name)                                                                             \
+    {                                                                                              \
+#name, offsetof(sonject_object_truth, name), offsetof(sonject_contact_measures, name), 0   \
+    }
+    LENGTH(highlight_along),     LENGTH(highlight_range), LENGTH(shadow_along),
+    LENGTH(shadow_range),        LENGTH(gap_range),       CONTRAST(highlight_contrast_db),
+    CONTRAST(shadow_contrast_db)};
+
+#define SHARED_NAMES (sizeof shared_names / sizeof *shared_names)
+
+static int disagreements[SHARED_NAMES]; /* by more than 4 standard errors */
+
+static void add_agreement(const sonject_object_truth *truth,
+                          const sonject_contact_measures *measures)
+{
+    for (size_t i = 0; i < SHARED_NAMES; i++) {
+        const size_t place = shared_names[i].error_in_measures;
+        double told, measured, error;
+        memcpy(&told, (const char *)truth + shared_names[i].in_truth, sizeof told);
+        memcpy(&measured, (const char *)measures + shared_names[i].in_measures, sizeof measured);
+        memcpy(&error, (const char *)measures + place, sizeof error);
+        error = place > 0 ? error * SPACING : CONTRAST_ERROR;
+        disagreements[i] += !(fabs(measured - told) <= 4.0 * error);
+    }
+}
+
 /* Injects it, and measures it in the box that its truth gives with a margin. */
 static void measure(sonject_context *context, const struct pose *pose, uint64_t seed,
                     sonject_contact_measures *measures)
@@ -331,6 +369,7 @@ static void measure(sonject_context *context, const struct pose *pose, uint64_t 
     params.row_spacing_m = params.column_spacing_m = SPACING;
     measures->struct_size = sizeof *measures;
     expect_ok(context, sonject_measure_contact(context, &pixels, &params, measures));
+    add_agreement(&truth, measures);
     sonject_result_release(&result);
     sonject_scene_release(&scene);
 }
@@ -396,6 +435,7 @@ static struct tally measure_poses(const char *what, void (*draw_pose)(struct pos
     sonject_context *context = NULL;
     struct tally tally;
     memset(&tally, 0, sizeof tally);
+    memset(disagreements, 0, sizeof disagreements);
     sonject_context_params_init(&params);
     params.device_name = bench_device;
     assert_int_equal(sonject_context_create(&params, &context), SONJECT_OK);
@@ -439,6 +479,11 @@ static void test_random_poses(void **unused)
     expect_below("mean error of highlights", fabs(tally.highlight_bias), 0.5);
     for (int i = 0; i < 2; i++)
         assert_true(tally.pulls[i] > 0.75 && tally.pulls[i] < 1.35);
+    /* truth is of the same names; rare edges are taken for another */
+    for (size_t i = 0; i < SHARED_NAMES; i++) {
+        print_message("%s: ", shared_names[i].name);
+        expect_below("off truth by more than 4 standard errors, of 100", disagreements[i], 3.0);
+    }
 }
 
 /* The lit top of a thick target is no part of its shadow. That of a smooth one is as dark as the

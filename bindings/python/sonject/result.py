@@ -55,7 +55,8 @@ class ObjectTruth:
     is_visible: some pixel is its own, or it casts a shadow; *_is_cut: touches the patch's edge;
     row, column: of its centre, in patch pixels; slant_range_m: apparent; height_m: of the centre
     over the seabed; target_strength_db: of its echo's peak, wherever pixels lie, re 1 m^2, -inf where
-    nothing of it is in view; contrasts: mean energy over the local seabed level; burial_m: depth of the lowest
+    nothing of it is in view; contrasts and lengths: as ContactMeasures, of
+    expected energies; burial_m: depth of the lowest
     point; grazing_rad: of the sound that comes straight to the centre; transmission_loss_db: one
     way, from 1 m off the sonar; level_kind: LevelKind that was asked for; level_gain_db: by which
     its echo was scaled; over_seabed_db: that peak over the seabed there;
@@ -93,6 +94,12 @@ class ObjectTruth:
     overall_length_m: float
     overall_width_m: float
     overall_height_m: float
+    highlight_along_m: float
+    highlight_range_m: float
+    shadow_along_m: float
+    shadow_range_m: float
+    gap_range_m: float
+    dim_range_m: float
 
 
 @dataclass(frozen=True)

@@ -40,6 +40,12 @@ class sonject_object_truth(Structure):
         ("overall_length_m", c_double),
         ("overall_width_m", c_double),
         ("overall_height_m", c_double),
+        ("highlight_along_m", c_double),
+        ("highlight_range_m", c_double),
+        ("shadow_along_m", c_double),
+        ("shadow_range_m", c_double),
+        ("gap_range_m", c_double),
+        ("dim_range_m", c_double),
     ]
 
 
