@@ -88,7 +88,7 @@ SIZES = {
     "sonject_element_layout": 176,
     "sonject_pixels": 40,
     "sonject_box": 32,
-    "sonject_object_truth": 296,
+    "sonject_object_truth": 344,
     "sonject_statistics": 208,
     "sonject_run_params": 48,
     "sonject_merge_params": 24,
