@@ -52,7 +52,8 @@ def test_a_run_leaves_the_promised_files(sonject, scene, tmp_path, swath):
         json.loads((folder / name).read_text())
     for name in ("highlight.png", "shadow.png", "labels.png"):
         header = (folder / name).read_bytes()[16:26]
-        assert struct.unpack(">IIBB", header) == (COLUMNS, ROWS, 8, 0)
+        colours = 3 if name == "labels.png" else 0
+        assert struct.unpack(">IIBB", header) == (COLUMNS, ROWS, 8, colours)
     image = images.read_tiff(folder / "image.tif")
     assert image.dtype == numpy.float32
     assert image.shape == swath.shape
