@@ -28,6 +28,10 @@ typedef struct sonject_context_params {
     void *opencl_device;  /* the cl_device_id to use in that context; NULL with no context */
     sonject_log_function log; /* NULL: silent */
     void *log_user;
+    uint32_t decodes_in_process; /* 0: HDF5 and MATLAB v7.3 files are read by a child process, the
+                                    program sonject-decoder, so that one that ends HDF5 ends only a
+                                    call; 1: in this process, for hosts that may not start others */
+    uint32_t reserved_end;       /* 0 */
 } sonject_context_params;
 
 /* Fills params with the defaults and its size. params: not NULL. */
@@ -42,7 +46,11 @@ SONJECT_API void sonject_context_params_init(sonject_context_params *params);
  * contexts may be used by different threads at once, also when these are the first to use OpenCL.
  * Contexts of one device share what is compiled for it, which is given back with the last of them.
  * Forks: a child of a process in which a call needed OpenCL (one that opened a device or listed
- * them) is answered ERROR_DEVICE by all such calls. Where none did, parent and child may both. */
+ * them) is answered ERROR_DEVICE by all such calls. Where none did, parent and child may both.
+ * The program sonject-decoder, if a call needed it, has no descriptors but its own, ends with the
+ * context or this process, and is started anew where a file ended it. It is looked for in the
+ * folder sonject beside the library (or beside the program that has it linked in), in the folder of
+ * either, and where sonject was installed. */
 SONJECT_API sonject_status sonject_context_create(const sonject_context_params *params,
                                                   sonject_context **context);
 

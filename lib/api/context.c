@@ -107,14 +107,16 @@ static sonject_status copy_params(struct sonject_context *context,
         return SONJECT_OK;
     sonject_context_params taken;
     sonject_context_params_init(&taken);
-    const sonject_status status = params_take(&context->report, &taken, sizeof taken, params,
-                                              sizeof taken, "context parameters");
+    const sonject_status status =
+        params_take(&context->report, &taken, sizeof taken, params,
+                    offsetof(sonject_context_params, decodes_in_process), "context parameters");
     if (status != SONJECT_OK)
         return status;
     if ((taken.opencl_context == NULL) != (taken.opencl_device == NULL))
         return SONJECT_ERROR_ARGUMENT;
     context->report.log = taken.log;
-    context->report.log_user = taken.log_user;
+    context->host.log_user = taken.log_user;
+    context->decoder.is_in_process = taken.decodes_in_process != 0;
     context->params = taken;
     context->params.device_name = taken.device_name ? copy_text(taken.device_name) : NULL;
     if (taken.device_name && !context->params.device_name)
@@ -131,6 +133,8 @@ sonject_status sonject_context_create(const sonject_context_params *params,
     struct sonject_context *made = allocate_array(1, sizeof *made);
     if (!made)
         return SONJECT_ERROR_MEMORY;
+    made->host.decoder = &made->decoder;
+    made->report.host = &made->host;
     const sonject_status status = copy_params(made, params);
     if (status != SONJECT_OK) {
         sonject_context_release(&made);
@@ -147,6 +151,7 @@ void sonject_context_release(sonject_context **context)
     if (!context || !*context)
         return;
     device_close(&(*context)->device);
+    decoder_stop(&(*context)->decoder);
     if ((*context)->params.opencl_context && !driver_is_inherited())
         clReleaseContext((*context)->params.opencl_context);
     free((char *)(*context)->params.device_name);

@@ -11,10 +11,13 @@
 #include "base/report.h"
 #include "cl/device.h"
 #include "inject/injection.h"
+#include "io/decoder.h"
 #include "scene/scene.h"
 
 struct sonject_context {
-    struct report report;
+    struct report report; /* its host is the next member */
+    struct report_host host;
+    struct decoder decoder;
     sonject_context_params params; /* its strings are owned */
     struct device *device;         /* NULL until first needed */
 };

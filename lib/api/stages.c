@@ -1,9 +1,7 @@
 #define _POSIX_C_SOURCE 200809L
-#include <errno.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include <sonject/stages.h>
 #include <sonject/version.h>
@@ -13,8 +11,6 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "io/scene_file.h"
-
-#define PATH_BYTES_MAX ((size_t)1 << 16)
 
 void sonject_trace_params_init(sonject_trace_params *params)
 {
@@ -26,20 +22,6 @@ void sonject_form_params_init(sonject_form_params *params)
 {
     memset(params, 0, sizeof *params);
     params->struct_size = sizeof *params;
-}
-
-/* The working folder, to be given to free(); NULL where it has no name. */
-static char *working_folder(void)
-{
-    for (size_t bytes = 256; bytes <= PATH_BYTES_MAX; bytes *= 2) {
-        char *folder = allocate_array(bytes, 1);
-        if (!folder || getcwd(folder, bytes))
-            return folder;
-        free(folder);
-        if (errno != ERANGE)
-            return NULL;
-    }
-    return NULL;
 }
 
 sonject_status take_source(struct impulse_head *head, struct report *report,

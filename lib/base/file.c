@@ -15,7 +15,8 @@
 
 #include "base/memory.h"
 
-#define READ_STEP ((size_t)64 * 1024)
+#define PATH_BYTES_MAX ((size_t)1 << 16)
+#define READ_STEP      ((size_t)64 * 1024)
 
 sonject_status file_failure(struct report *report, const char *path, const char *action, int error)
 {
@@ -24,6 +25,46 @@ sonject_status file_failure(struct report *report, const char *path, const char 
         snprintf(reason, sizeof reason, "error %d", error);
     return report_failure(report, error == ENOMEM ? SONJECT_ERROR_MEMORY : SONJECT_ERROR_STORAGE,
                           "%s: cannot %s: %s", path, action, reason);
+}
+
+bool file_error_is_of_system(int error)
+{
+    return error == EIO || error == ENXIO || error == ENODEV || error == ESTALE ||
+           error == ETIMEDOUT || error == EMFILE || error == ENFILE || error == ENOMEM;
+}
+
+static sonject_status refuse_endless(struct report *report, const char *path)
+{
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "%s: is not a regular file but a pipe or a device: copy it to a file",
+                          path);
+}
+
+sonject_status file_refuse(struct report *report, const char *path, int error)
+{
+    if (error == ESPIPE)
+        return refuse_endless(report, path);
+    const sonject_status status = file_failure(report, path, "open", error);
+    return file_error_is_of_system(error) ? status : SONJECT_ERROR_INPUT;
+}
+
+int file_open(const char *path)
+{
+    struct stat facts;
+    /* looked at first, for some devices do something when they are opened */
+    int descriptor = -1;
+    if (stat(path, &facts) != 0)
+        return -1;
+    if (S_ISREG(facts.st_mode))
+        descriptor = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY);
+    if (descriptor < 0 && S_ISREG(facts.st_mode))
+        return -1;
+    if (descriptor >= 0 && fstat(descriptor, &facts) == 0 && S_ISREG(facts.st_mode))
+        return descriptor;
+    if (descriptor >= 0)
+        close(descriptor);
+    errno = S_ISDIR(facts.st_mode) ? EISDIR : ESPIPE;
+    return -1;
 }
 
 /* From a '.' inside the last component to the end; "" if there is none. */
@@ -223,9 +264,11 @@ sonject_status file_read_whole(struct report *report, const char *path, size_t l
 {
     *bytes = NULL;
     *count = 0;
-    const int descriptor = open(path, O_RDONLY | O_CLOEXEC);
+    const int descriptor = file_open(path);
     if (descriptor < 0)
-        return file_failure(report, path, "open", errno);
+        return errno == ESPIPE
+                   ? refuse_endless(report, path)
+                   : file_failure(report, path, errno == EISDIR ? "read" : "open", errno);
     const int error = read_all(descriptor, limit, bytes, count);
     close(descriptor);
     sonject_status status = SONJECT_OK;
@@ -284,8 +327,7 @@ sonject_status file_identify(struct report *report, const char *path,
     if (S_ISDIR(facts.st_mode))
         return file_failure(report, path, "read", EISDIR);
     if (!S_ISREG(facts.st_mode))
-        return report_failure(report, SONJECT_ERROR_STORAGE,
-                              "%s: cannot read: it is not a regular file", path);
+        return refuse_endless(report, path);
     identity->device = (uint64_t)facts.st_dev;
     identity->number = (uint64_t)facts.st_ino;
     identity->bytes = (uint64_t)facts.st_size;
@@ -311,6 +353,27 @@ char *path_join(const char *folder, const char *name)
         snprintf(path, capacity, "%s%s%s", folder, folder[folder_length - 1] == '/' ? "" : "/",
                  name);
     return path;
+}
+
+char *working_folder(void)
+{
+    for (size_t bytes = 256; bytes <= PATH_BYTES_MAX; bytes *= 2) {
+        char *folder = allocate_array(bytes, 1);
+        if (!folder || getcwd(folder, bytes))
+            return folder;
+        free(folder);
+        if (errno != ERANGE)
+            return NULL;
+    }
+    return NULL;
+}
+
+char *path_absolute(const char *path)
+{
+    char *folder = *path == '/' ? NULL : working_folder();
+    char *whole = path_join(folder ? folder : "", path);
+    free(folder);
+    return whole;
 }
 
 char *path_folder(const char *path)

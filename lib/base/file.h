@@ -16,6 +16,17 @@ extern "C" {
  * ENOMEM. */
 sonject_status file_failure(struct report *report, const char *path, const char *action, int error);
 
+/* True for what the system fails in, of whatever file: a disk's error, too many open files. */
+bool file_error_is_of_system(int error);
+
+/* The message for a file that cannot be opened for reading. Returns STORAGE or MEMORY where the
+ * system fails, else INPUT. */
+sonject_status file_refuse(struct report *report, const char *path, int error);
+
+/* Opens a regular file for reading, and never waits. -1 with errno if that fails: EISDIR for a
+ * folder, ESPIPE for pipes and devices, which may have no end. */
+int file_open(const char *path);
+
 /* A private name beside path for a file in the making:
  * "<path>.<place>-<process>-<unique>.part<extension of path>", so that writers that choose by
  * extension still work. To be given to free(); NULL when memory is out. */
@@ -37,7 +48,8 @@ sonject_status file_write_whole(struct report *report, const char *path, const v
                                 size_t count);
 
 /* Reads a whole file of at most limit bytes into *bytes (one terminating 0 byte beyond *count), to
- * be given to free(). Errors: STORAGE (cannot open, read), INPUT (larger than limit), MEMORY. */
+ * be given to free(). Errors: STORAGE (cannot open, read), INPUT (larger than limit, a pipe or a
+ * device), MEMORY. */
 sonject_status file_read_whole(struct report *report, const char *path, size_t limit, char **bytes,
                                size_t *count);
 
@@ -53,14 +65,20 @@ struct file_identity {
     int64_t changed_s, changed_ns; /* when it last changed */
 };
 
-/* Of a regular file, links followed. Errors: STORAGE (there is none, or it is not a regular file:
- * folders, pipes, devices). */
+/* Of a regular file, links followed. Errors: STORAGE (there is none, a folder), INPUT (a pipe or a
+ * device). */
 sonject_status file_identify(struct report *report, const char *path,
                              struct file_identity *identity);
 
 /* folder + "/" + name, to be given to free(); an absolute name is copied as it is; folder "" gives
  * name. NULL when memory is out. */
 char *path_join(const char *folder, const char *name);
+
+/* The working folder, to be given to free(); NULL with errno where it has no name. */
+char *working_folder(void);
+
+/* path, or the working folder and path, to be given to free(); NULL when memory is out. */
+char *path_absolute(const char *path);
 
 /* The folder part of path ("" if none), to be given to free(). */
 char *path_folder(const char *path);

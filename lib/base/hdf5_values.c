@@ -187,18 +187,6 @@ bool hdf5_read_text(hid_t object, const char *name, char **text)
     return is_done;
 }
 
-bool hdf5_read_short_text(hid_t object, const char *name, char *text, size_t capacity)
-{
-    char *read;
-    if (!hdf5_read_text(object, name, &read))
-        return false;
-    const size_t bytes = strlen(read) + 1;
-    if (bytes <= capacity)
-        memcpy(text, read, bytes);
-    free(read);
-    return bytes <= capacity;
-}
-
 static bool write_packed(hid_t group, const char *name, const char *packed, size_t bytes,
                          size_t count)
 {

@@ -37,9 +37,6 @@ bool hdf5_read_number(hid_t object, const char *name, double *value);
 /* *text is to be given to free(); at most 65535 bytes. */
 bool hdf5_read_text(hid_t object, const char *name, char **text);
 
-/* The same into a text of fixed capacity; fails where it does not fit. */
-bool hdf5_read_short_text(hid_t object, const char *name, char *text, size_t capacity);
-
 /* Datasets of texts, count of them; each read text is to be given to free(), and *texts. At most
  * 2^24 bytes together. */
 bool hdf5_write_texts(hid_t group, const char *name, const char *const *texts, size_t count);

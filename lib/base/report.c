@@ -30,5 +30,5 @@ void report_news(struct report *report, const char *format, ...)
     vsnprintf(line, sizeof line, format, arguments);
     va_end(arguments);
     text_make_printable(line);
-    report->log(report->log_user, line);
+    report->log(report->host ? report->host->log_user : NULL, line);
 }

@@ -14,10 +14,18 @@ extern "C" {
 #define REPORT_LINE     1024 /* bytes of one */
 #define REPORT_CAPACITY 8192
 
-struct report {
-    char message[REPORT_CAPACITY]; /* "" while nothing failed; one line, or one for each mistake */
-    sonject_log_function log;      /* may be NULL */
+struct decoder;
+
+/* What a context lends to all its calls. */
+struct report_host {
     void *log_user;
+    struct decoder *decoder; /* who reads its files of HDF5 (io/decoder.h) */
+};
+
+struct report {
+    char message[REPORT_CAPACITY];  /* "" while nothing failed; one line, or one for each mistake */
+    sonject_log_function log;       /* may be NULL */
+    const struct report_host *host; /* NULL: no log, and a decoder of its own for each file */
 };
 
 #if defined(__GNUC__)

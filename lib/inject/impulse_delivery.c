@@ -1,7 +1,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "base/hdf5_values.h"
 #include "base/memory.h"
 #include "inject/beam_shadows.h"
 #include "inject/echoes.h"
@@ -9,124 +8,106 @@
 #include "inject/reimaging.h"
 
 #define CELLS_AT_A_TIME ((size_t)1 << 22)
-#define CELLS_MAX       ((uint64_t)1 << 33)
 #define SPAN_MAX        ((int64_t)1 << 28)
-#define INFLATION_MAX   1100 /* bytes that one byte of deflated data can stand for, and some */
 
-/* A set that is open. */
+/* A set that is read. */
 struct set_reading {
-    const struct impulse_file *file;
+    struct impulse_file *file;
     char name[IMPULSE_GROUP_CAPACITY];
     struct impulse_lines lines;
-    hid_t planes[IMPULSE_PLANES_MAX];
     float *values[IMPULSE_PLANES_MAX];
 };
 
-static bool read_grid(hid_t group, struct line_grid *grid)
+static bool read_grid(struct impulse_file *file, const char *group, struct line_grid *grid)
 {
     int32_t per_row = 0;
     int32_t per_pixel = 0;
     const bool is_done =
-        hdf5_read_integer(group, "strips_per_row", 1, SPAN_MAX, &per_row) &&
-        hdf5_read_integer(group, "bins_per_pixel", 1, SPAN_MAX, &per_pixel) &&
-        hdf5_read_integer(group, "first_strip", -SPAN_MAX, SPAN_MAX, &grid->strips.first) &&
-        hdf5_read_integer(group, "strips", 0, SPAN_MAX, &grid->strips.count) &&
-        hdf5_read_integer(group, "first_bin", -SPAN_MAX, SPAN_MAX, &grid->bins.first) &&
-        hdf5_read_integer(group, "bins", 0, SPAN_MAX, &grid->bins.count);
+        impulse_file_integer(file, group, "strips_per_row", 1, SPAN_MAX, &per_row) &&
+        impulse_file_integer(file, group, "bins_per_pixel", 1, SPAN_MAX, &per_pixel) &&
+        impulse_file_integer(file, group, "first_strip", -SPAN_MAX, SPAN_MAX,
+                             &grid->strips.first) &&
+        impulse_file_integer(file, group, "strips", 0, SPAN_MAX, &grid->strips.count) &&
+        impulse_file_integer(file, group, "first_bin", -SPAN_MAX, SPAN_MAX, &grid->bins.first) &&
+        impulse_file_integer(file, group, "bins", 0, SPAN_MAX, &grid->bins.count);
     grid->strips_per_row = (uint32_t)per_row;
     grid->bins_per_pixel = (uint32_t)per_pixel;
-    return is_done && (uint64_t)grid->strips.count * (uint64_t)grid->bins.count <= CELLS_MAX;
+    return is_done;
 }
 
-/* 32-bit floats, strips x bins, and no more of them than the stored bytes can stand for. */
-static bool plane_is_sound(hid_t plane, const struct line_grid *grid)
+/* Whether the plane is there, and of that size. */
+static bool plane_is_sound(struct set_reading *set, const char *name)
 {
-    hsize_t extent[2] = {0, 0};
-    const hid_t type = H5Dget_type(plane);
-    const hid_t space = H5Dget_space(plane);
-    const bool is_sound =
-        type >= 0 && space >= 0 && H5Tget_class(type) == H5T_FLOAT && H5Tget_size(type) == 4 &&
-        H5Sget_simple_extent_ndims(space) == 2 &&
-        H5Sget_simple_extent_dims(space, extent, NULL) == 2 &&
-        extent[0] == (hsize_t)grid->strips.count && extent[1] == (hsize_t)grid->bins.count &&
-        H5Dget_storage_size(plane) >= extent[0] * extent[1] * sizeof(float) / INFLATION_MAX;
-    if (type >= 0)
-        H5Tclose(type);
-    if (space >= 0)
-        H5Sclose(space);
-    return is_sound;
+    static const struct region none = {0, 0, 0, 0};
+    const struct line_grid *grid = &set->lines.grid;
+    struct decoder_reply reply;
+    return impulse_file_ask(set->file, DECODER_PLANE, set->name, name, &none, &reply, NULL) &&
+           reply.layout.rows == (uint64_t)grid->strips.count &&
+           reply.layout.columns == (uint64_t)grid->bins.count;
 }
 
-static void close_set(struct set_reading *set)
+static void free_values(struct set_reading *set)
 {
-    for (int i = 0; i < IMPULSE_PLANES_MAX; i++) {
-        if (set->planes[i] >= 0)
-            H5Dclose(set->planes[i]);
-        set->planes[i] = -1;
+    for (int i = 0; i < IMPULSE_PLANES_MAX; i++)
         free(set->values[i]);
-        set->values[i] = NULL;
-    }
 }
 
-/* Opens the set of a kind and number with so many planes; a file without it leaves *is_there
+/* Looks at the set of a kind and number with so many planes; a file without it leaves *is_there
  * false. */
-static sonject_status open_set(struct set_reading *set, const struct impulse_file *file,
+static sonject_status open_set(struct set_reading *set, struct impulse_file *file,
                                enum impulse_kind kind, uint32_t number, uint32_t planes,
                                bool *is_there)
 {
+    struct decoder_reply reply;
     memset(set, 0, sizeof *set);
     set->file = file;
     set->lines.kind = kind;
     set->lines.number = number;
     set->lines.planes = planes;
-    for (int i = 0; i < IMPULSE_PLANES_MAX; i++)
-        set->planes[i] = -1;
     impulse_group_name(kind, number, set->name);
-    const hid_t group = impulse_group_open(file->file, set->name);
-    *is_there = group >= 0;
-    if (group < 0)
+    if (!impulse_file_ask(file, DECODER_HAS_GROUP, set->name, "", NULL, &reply, NULL))
+        return impulse_file_refuse(file, set->name, "is damaged");
+    *is_there = reply.value != 0;
+    if (!*is_there)
         return SONJECT_OK;
-    bool is_sound = read_grid(group, &set->lines.grid);
-    for (uint32_t i = 0; is_sound && line_grid_cells(&set->lines.grid) > 0 && i < planes; i++) {
-        const char *name = impulse_plane_names(kind)[i];
-        if (H5Lexists(group, name, H5P_DEFAULT) > 0)
-            set->planes[i] = H5Dopen2(group, name, H5P_DEFAULT);
-        is_sound = set->planes[i] >= 0 && plane_is_sound(set->planes[i], &set->lines.grid);
-    }
-    H5Gclose(group);
-    if (is_sound)
-        return SONJECT_OK;
-    close_set(set);
-    return impulse_file_refuse(file, set->name, "is damaged");
+    struct line_grid *grid = &set->lines.grid;
+    bool is_sound = read_grid(file, set->name, grid);
+    for (uint32_t i = 0; is_sound && line_grid_cells(grid) > 0 && i < planes; i++)
+        is_sound = plane_is_sound(set, impulse_plane_names(kind)[i]);
+    if (!is_sound)
+        return impulse_file_refuse(file, set->name, "is damaged");
+    return decoder_check_announced(file->report, &file->file, (uint64_t)grid->strips.count,
+                                   (uint64_t)grid->bins.count, sizeof(float));
 }
 
-static bool read_plane(hid_t plane, const struct impulse_lines *lines, float *values)
+/* Some strips of a plane, a piece at a time. */
+static bool read_plane(struct set_reading *set, const char *name, float *values)
 {
-    const hsize_t first[2] = {(hsize_t)(lines->strips.first - lines->grid.strips.first), 0};
-    const hsize_t count[2] = {(hsize_t)lines->strips.count, (hsize_t)lines->grid.bins.count};
-    const hid_t memory = H5Screate_simple(2, count, NULL);
-    const hid_t space = H5Dget_space(plane);
-    const bool is_done =
-        memory >= 0 && space >= 0 &&
-        H5Sselect_hyperslab(space, H5S_SELECT_SET, first, NULL, count, NULL) >= 0 &&
-        H5Dread(plane, H5T_NATIVE_FLOAT, memory, space, H5P_DEFAULT, values) >= 0;
-    if (space >= 0)
-        H5Sclose(space);
-    if (memory >= 0)
-        H5Sclose(memory);
+    const struct impulse_lines *lines = &set->lines;
+    const uint64_t bins = (uint64_t)lines->grid.bins.count;
+    const uint64_t end = (uint64_t)lines->strips.count;
+    const uint64_t some = DECODER_PIECE_BYTES / sizeof(float) / bins + 1;
+    bool is_done = true;
+    for (uint64_t i = 0; is_done && i < end; i += some) {
+        const struct region piece = {(uint64_t)(lines->strips.first - lines->grid.strips.first) + i,
+                                     0, some < end - i ? some : end - i, bins};
+        const size_t bytes = (size_t)(piece.rows * bins) * sizeof(float);
+        struct decoder_reply reply;
+        struct decoder_bytes out = {values + i * bins, bytes, 0};
+        is_done =
+            impulse_file_ask(set->file, DECODER_PLANE, set->name, name, &piece, &reply, &out) &&
+            out.count == bytes;
+    }
     return is_done;
 }
 
 static sonject_status read_strips(struct set_reading *set)
 {
-    struct hdf5_session session;
     bool is_done = true;
     if (line_grid_cells(&set->lines.grid) == 0)
         return SONJECT_OK;
-    hdf5_enter(&session);
     for (uint32_t i = 0; is_done && i < set->lines.planes; i++)
-        is_done = read_plane(set->planes[i], &set->lines, set->values[i]);
-    hdf5_leave(&session);
+        is_done = read_plane(set, impulse_plane_names(set->lines.kind)[i], set->values[i]);
     return is_done ? SONJECT_OK : impulse_file_refuse(set->file, set->name, "is damaged");
 }
 
@@ -152,13 +133,12 @@ static sonject_status allocate_values(struct set_reading *set, int32_t strips)
     return SONJECT_OK;
 }
 
-/* Reads an open set strip by strip, hands it out and closes it. */
+/* Reads a set strip by strip and hands it out. */
 static sonject_status hand_out(struct set_reading *set, const struct impulse_sink *sink)
 {
     struct impulse_lines *lines = &set->lines;
     const int32_t end = lines->grid.strips.first + lines->grid.strips.count;
     const int32_t most = strips_at_a_time(lines);
-    struct hdf5_session session;
     sonject_status status = allocate_values(set, most);
     lines->strips.first = lines->grid.strips.first;
     do {
@@ -169,9 +149,7 @@ static sonject_status hand_out(struct set_reading *set, const struct impulse_sin
             status = sink->take(sink->taker, lines);
         lines->strips.first += lines->strips.count;
     } while (status == SONJECT_OK && lines->strips.first < end);
-    hdf5_enter(&session);
-    close_set(set);
-    hdf5_leave(&session);
+    free_values(set);
     return status;
 }
 
@@ -195,7 +173,7 @@ static sonject_status check_grid(const struct delivery *delivery, const struct s
     const struct line_grid *grid = &set->lines.grid;
     const struct line_grid *of =
         set->lines.kind == IMPULSES_HIDDEN ? &delivery->beam : &delivery->seabed;
-    const char *path = delivery->file->path;
+    const char *path = delivery->file->file.path;
     bool is_possible =
         grid->strips_per_row == of->strips_per_row && grid->bins_per_pixel == of->bins_per_pixel;
     switch (set->lines.kind) {
@@ -228,23 +206,18 @@ static sonject_status check_grid(const struct delivery *delivery, const struct s
 static sonject_status deliver_set(struct delivery *delivery, enum impulse_kind kind,
                                   uint32_t number, uint32_t planes, bool is_required)
 {
-    struct hdf5_session session;
     struct set_reading set;
     bool is_there = false;
-    hdf5_enter(&session);
     sonject_status status = open_set(&set, delivery->file, kind, number, planes, &is_there);
     if (status == SONJECT_OK && !is_there && is_required)
         status = impulse_file_refuse(delivery->file, set.name, "is missing");
     if (status == SONJECT_OK && is_there) {
         status = check_grid(delivery, &set);
-        if (status != SONJECT_OK)
-            close_set(&set);
-        else if (kind == IMPULSES_SEABED)
+        if (kind == IMPULSES_SEABED)
             delivery->seabed = set.lines.grid;
         else if (kind == IMPULSES_BEAM)
             delivery->beam = set.lines.grid;
     }
-    hdf5_leave(&session);
     return status == SONJECT_OK && is_there ? hand_out(&set, delivery->sink) : status;
 }
 

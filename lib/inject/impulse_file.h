@@ -26,8 +26,7 @@
  * floats in chunks of whole strips of about 1 MB, shuffled, deflated (level 1), with Fletcher-32
  * checksums. Rows are the view's: of images to starboard the last row comes first (patch_view.h).
  * Headers are in the format of HDF5 1.10, with checksums; a hash of the whole file stands before
- * them (impulse_seal.h), so that HDF5 is given none that was cut short or changed by accident. Like
- * any HDF5 file, take none from people whom you would not take a program from. */
+ * them (impulse_seal.h), so that none that was cut short or changed by accident is read. */
 #ifndef SONJECT_INJECT_IMPULSE_FILE_H
 #define SONJECT_INJECT_IMPULSE_FILE_H
 

@@ -6,22 +6,21 @@
 #include <stdlib.h>
 #include <sys/stat.h>
 #include <sys/types.h>
+#include <unistd.h>
+
+#include "base/file.h"
 
 FILE *byte_file_open(const char *path, uint64_t *bytes)
 {
     struct stat facts;
-    FILE *file = fopen(path, "rb");
-    if (!file)
-        return NULL;
-    int error = 0;
-    if (fstat(fileno(file), &facts) != 0)
-        error = errno;
-    else if (S_ISDIR(facts.st_mode))
-        error = EISDIR;
-    else if (!S_ISREG(facts.st_mode))
-        error = ESPIPE;
-    if (error != 0) {
-        fclose(file);
+    const int descriptor = file_open(path);
+    FILE *file = descriptor >= 0 ? fdopen(descriptor, "rb") : NULL;
+    if (!file || fstat(descriptor, &facts) != 0) {
+        const int error = errno;
+        if (file)
+            fclose(file);
+        else if (descriptor >= 0)
+            close(descriptor);
         errno = error;
         return NULL;
     }

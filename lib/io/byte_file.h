@@ -24,7 +24,7 @@ struct byte_ranges {
 /* Adds a part that follows those that are there. False when memory is out. */
 bool byte_ranges_add(struct byte_ranges *ranges, uint64_t place, uint64_t count);
 
-/* Opens for reading; NULL with errno set if that fails, also for a folder. */
+/* Opens for reading; NULL with errno, as file_open, if that fails. */
 FILE *byte_file_open(const char *path, uint64_t *bytes);
 
 /* False if the file does not hold as much. */

@@ -8,29 +8,25 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "io/byte_file.h"
 #include "io/hdf5_set.h"
 
 #define RUN_BYTES ((size_t)16 << 20) /* of samples in memory at a time, beside the image */
 
 struct hdf5_array {
     char *path;
-    uint64_t file_bytes;
     struct hdf5_set set;
     struct raster_layout layout;
     hid_t file, dataset;
+    bool writes;
 };
 
 /* What reads or writes a run of samples, in the file's order. */
 struct transfer {
     struct report *report;
     const struct hdf5_array *array;
-    hid_t dataset; /* of the array's own file, or of a copy */
     const struct region *region;
     bool writes;
     unsigned char *pixels;
-    sonject_progress_function progress;
-    void *user;
 };
 
 static hid_t open_file(const char *path, unsigned mode)
@@ -53,15 +49,29 @@ static void set_layout(struct hdf5_array *array)
                                                      : PIXEL_FLOAT32;
 }
 
-static sonject_status open_array(struct report *report, struct hdf5_array *array, const char *name)
+/* The disk's failures, and the limits' of memory, are told from the file's by errno, which is to be
+ * 0 before. */
+static sonject_status cannot_move(struct report *report, const struct hdf5_array *array)
 {
-    FILE *file = byte_file_open(array->path, &array->file_bytes);
-    if (!file) {
-        (void)file_failure(report, array->path, "open", errno);
-        return SONJECT_ERROR_INPUT;
-    }
-    fclose(file);
-    array->file = open_file(array->path, H5F_ACC_RDONLY);
+    const int error = errno;
+    if (error == ENOMEM)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: reading its array takes more memory than it can if it is sound "
+                              "and stored in chunks of some megabytes: store it anew",
+                              array->path);
+    if (error == ENOSPC || error == EDQUOT || error == EFBIG || file_error_is_of_system(error))
+        return file_failure(report, array->path, array->writes ? "copy" : "read", error);
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "%s: its array is cut short or damaged: copy it again", array->path);
+}
+
+static sonject_status open_array(struct report *report, struct hdf5_array *array, const char *place,
+                                 const char *name)
+{
+    errno = 0;
+    array->file = open_file(place, array->writes ? H5F_ACC_RDWR : H5F_ACC_RDONLY);
+    if (array->file < 0 && file_error_is_of_system(errno))
+        return file_refuse(report, array->path, errno);
     if (array->file < 0)
         return report_failure(
             report, SONJECT_ERROR_INPUT,
@@ -79,15 +89,13 @@ static sonject_status open_array(struct report *report, struct hdf5_array *array
                               array->path, array->set.name);
     array->dataset = H5Dopen2(array->file, array->set.name, H5P_DEFAULT);
     if (array->dataset < 0)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: its array cannot be opened",
-                              array->path);
+        return cannot_move(report, array);
     set_layout(array);
-    return hdf5_set_check_storage(report, array->path, array->dataset, &array->set,
-                                  array->file_bytes);
+    return hdf5_set_check_storage(report, array->path, array->dataset);
 }
 
-sonject_status hdf5_array_open(struct report *report, const char *path, const char *name,
-                               struct hdf5_array **array)
+sonject_status hdf5_array_open(struct report *report, const char *path, const char *place,
+                               const char *name, bool writes, struct hdf5_array **array)
 {
     struct hdf5_session session;
     struct hdf5_array *opened = allocate_array(1, sizeof *opened);
@@ -99,8 +107,9 @@ sonject_status hdf5_array_open(struct report *report, const char *path, const ch
         return report_out_of_memory(report, "a file");
     }
     opened->file = opened->dataset = -1;
+    opened->writes = writes;
     hdf5_enter(&session);
-    const sonject_status status = open_array(report, opened, name);
+    const sonject_status status = open_array(report, opened, place, name);
     hdf5_leave(&session);
     if (status == SONJECT_OK)
         *array = opened;
@@ -115,6 +124,8 @@ void hdf5_array_close(struct hdf5_array **array)
     if (!array || !*array)
         return;
     hdf5_enter(&session);
+    if ((*array)->writes && (*array)->file >= 0)
+        hdf5_abandon((*array)->file);
     if ((*array)->dataset >= 0)
         H5Dclose((*array)->dataset);
     if ((*array)->file >= 0)
@@ -135,12 +146,16 @@ uint32_t hdf5_array_largest(const struct hdf5_array *array)
     return array->set.number == HDF5_INT16 ? INT16_MAX : 0;
 }
 
-bool hdf5_array_attribute(const struct hdf5_array *array, const char *name, char *value,
-                          size_t capacity)
+bool hdf5_array_is_turned(const struct hdf5_array *array)
+{
+    return array->set.is_matlab;
+}
+
+bool hdf5_array_attribute(const struct hdf5_array *array, const char *name, char **value)
 {
     struct hdf5_session session;
     hdf5_enter(&session);
-    const bool is_there = hdf5_read_short_text(array->dataset, name, value, capacity);
+    const bool is_there = hdf5_read_text(array->dataset, name, value);
     hdf5_leave(&session);
     return is_there;
 }
@@ -208,29 +223,20 @@ static bool move_run(const struct transfer *transfer, hid_t type, uint64_t first
     const hsize_t start[2] = {(is_turned ? region->first_column : region->first_row) + first,
                               is_turned ? region->first_row : region->first_column};
     const hsize_t counts[2] = {count, is_turned ? region->rows : region->columns};
-    const hid_t space = H5Dget_space(transfer->dataset);
+    const hid_t space = H5Dget_space(transfer->array->dataset);
     const hid_t memory = H5Screate_simple(2, counts, NULL);
     bool is_done = space >= 0 && memory >= 0 &&
                    H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, counts, NULL) >= 0;
     if (is_done)
-        is_done = (writes ? H5Dwrite(transfer->dataset, type, memory, space, H5P_DEFAULT, run)
-                          : H5Dread(transfer->dataset, type, memory, space, H5P_DEFAULT, run)) >= 0;
+        is_done =
+            (writes
+                 ? H5Dwrite(transfer->array->dataset, type, memory, space, H5P_DEFAULT, run)
+                 : H5Dread(transfer->array->dataset, type, memory, space, H5P_DEFAULT, run)) >= 0;
     if (memory >= 0)
         H5Sclose(memory);
     if (space >= 0)
         H5Sclose(space);
     return is_done;
-}
-
-/* The disk's failures are told from the file's by errno, which is to be 0 before. */
-static sonject_status cannot_move(const struct transfer *transfer)
-{
-    const int error = errno;
-    if (transfer->writes && (error == ENOSPC || error == EDQUOT || error == EFBIG || error == EIO))
-        return file_failure(transfer->report, transfer->array->path, "copy", error);
-    return report_failure(transfer->report, SONJECT_ERROR_INPUT,
-                          "%s: its array is cut short or damaged: copy it again",
-                          transfer->array->path);
 }
 
 static sonject_status transfer_samples(const struct transfer *transfer)
@@ -250,16 +256,13 @@ static sonject_status transfer_samples(const struct transfer *transfer)
         errno = 0;
         const uint64_t count = lines - first < at_once ? lines - first : at_once;
         const bool needs_old = !transfer->writes || array->set.number == HDF5_FLOAT64;
-        if (transfer->progress &&
-            transfer->progress(transfer->user, (double)first / (double)lines, "write") != 0)
-            status = report_failure(transfer->report, SONJECT_CANCELLED, "cancelled");
-        else if (needs_old && !move_run(transfer, type, first, count, run, false))
-            status = cannot_move(transfer);
+        if (needs_old && !move_run(transfer, type, first, count, run, false))
+            status = cannot_move(transfer->report, array);
         else
             status = exchange_run(transfer, run, first, count);
         if (status == SONJECT_OK && transfer->writes &&
             !move_run(transfer, type, first, count, run, true))
-            status = cannot_move(transfer);
+            status = cannot_move(transfer->report, array);
     }
     free(run);
     if (type >= 0)
@@ -267,88 +270,42 @@ static sonject_status transfer_samples(const struct transfer *transfer)
     return status;
 }
 
-static sonject_status refuse_region(struct report *report, const struct hdf5_array *array)
-{
-    return report_failure(report, SONJECT_ERROR_INPUT, "%s: the region is not inside the image",
-                          array->path);
-}
-
-sonject_status hdf5_array_read(struct report *report, const struct hdf5_array *array,
-                               const struct region *region, void *pixels)
+static sonject_status transfer_region(struct transfer transfer)
 {
     struct hdf5_session session;
-    const struct transfer transfer = {report, array,  array->dataset, region,
-                                      false,  pixels, NULL,           NULL};
-    if (!region_is_inside(&array->layout, region))
-        return refuse_region(report, array);
+    if (!region_is_inside(&transfer.array->layout, transfer.region))
+        return report_failure(transfer.report, SONJECT_ERROR_INPUT,
+                              "%s: the region is not inside the image", transfer.array->path);
     hdf5_enter(&session);
     const sonject_status status = transfer_samples(&transfer);
     hdf5_leave(&session);
     return status;
 }
 
-static sonject_status copy_bytes(struct report *report, const struct hdf5_array *array,
-                                 const char *part, const char *path)
+sonject_status hdf5_array_read(struct report *report, const struct hdf5_array *array,
+                               const struct region *region, void *pixels)
 {
-    uint64_t bytes = 0;
-    sonject_status status = SONJECT_OK;
-    FILE *from = byte_file_open(array->path, &bytes);
-    errno = 0;
-    FILE *to = from ? fopen(part, "wb") : NULL;
-    if (!from)
-        status = report_failure(report, SONJECT_ERROR_INPUT, "%s: cannot be opened", array->path);
-    else if (!to || (!byte_file_copy(from, 0, bytes, to) && ferror(to)))
-        status = file_failure(report, path, "write", errno ? errno : EIO);
-    else if (ferror(from) || bytes != array->file_bytes)
-        status = report_failure(report, SONJECT_ERROR_INPUT, "%s: changed while it was read",
-                                array->path);
-    if (to && fclose(to) != 0 && status == SONJECT_OK)
-        status = file_failure(report, path, "write", errno);
-    if (from)
-        fclose(from);
-    return status;
+    return transfer_region((struct transfer){report, array, region, false, pixels});
 }
 
-static sonject_status patch_copy(struct transfer *transfer, const char *part)
+sonject_status hdf5_array_change(struct report *report, const struct hdf5_array *array,
+                                 const struct region *region, const void *pixels)
 {
-    sonject_status status = SONJECT_OK;
-    errno = 0;
-    const hid_t file = open_file(part, H5F_ACC_RDWR);
-    transfer->dataset = file < 0 ? -1 : H5Dopen2(file, transfer->array->set.name, H5P_DEFAULT);
-    status = transfer->dataset < 0 ? cannot_move(transfer) : transfer_samples(transfer);
-    if (status == SONJECT_OK && H5Fflush(file, H5F_SCOPE_LOCAL) < 0)
-        status = cannot_move(transfer);
-    if (status != SONJECT_OK && file >= 0)
-        hdf5_abandon(file);
-    if (transfer->dataset >= 0)
-        H5Dclose(transfer->dataset);
-    if (file >= 0 && H5Fclose(file) < 0 && status == SONJECT_OK)
-        status = cannot_move(transfer);
-    return status;
+    return transfer_region((struct transfer){report, array, region, true, (unsigned char *)pixels});
 }
 
-sonject_status hdf5_array_copy_with_patch(struct report *report, const struct hdf5_array *array,
-                                          const char *path, const struct region *region,
-                                          const void *pixels, sonject_progress_function progress,
-                                          void *user)
+sonject_status hdf5_array_finish(struct report *report, struct hdf5_array *array)
 {
     struct hdf5_session session;
-    struct transfer transfer = {report,   array, -1, region, true, (unsigned char *)pixels,
-                                progress, user};
-    if (!region_is_inside(&array->layout, region))
-        return refuse_region(report, array);
-    char *part = file_part_name(path);
-    if (!part)
-        return report_out_of_memory(report, "a file name");
-    sonject_status status = copy_bytes(report, array, part, path);
     hdf5_enter(&session);
-    if (status == SONJECT_OK)
-        status = patch_copy(&transfer, part);
+    errno = 0;
+    bool is_done = H5Fflush(array->file, H5F_SCOPE_LOCAL) >= 0;
+    if (!is_done)
+        hdf5_abandon(array->file);
+    H5Dclose(array->dataset);
+    is_done = H5Fclose(array->file) >= 0 && is_done;
+    array->dataset = array->file = -1;
+    const sonject_status status = is_done ? SONJECT_OK : cannot_move(report, array);
     hdf5_leave(&session);
-    if (status == SONJECT_OK)
-        status = file_publish(report, part, path);
-    else
-        file_discard(part);
-    free(part);
     return status;
 }

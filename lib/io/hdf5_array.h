@@ -13,37 +13,43 @@
 
 struct hdf5_array;
 
-/* Opens a data set by its path within the file; NULL: the only one of more than one row and column.
- * Refused (INPUT): a damaged file, no such data set or several (lists them), other types, data in
- * other files, filters that sonject does not know or that change numbers. Links are not followed.
- * Errors: INPUT, MEMORY, UNSUPPORTED (builds without HDF5). On success *array is the caller's, for
- * hdf5_array_close; on failure NULL. */
-sonject_status hdf5_array_open(struct report *report, const char *path, const char *name,
-                               struct hdf5_array **array);
+/* A file that is open, and the data set in it that was chosen; read and changed by what the decoder
+ * does (io/decoder.h). */
+struct hdf5_array;
+
+/* Opens a data set of the file at place, path in messages, by its path within the file; NULL: the
+ * only one of more than one row and column. Refused (INPUT): a damaged file, no such data set or
+ * several (lists them), other types, data in other files, filters that sonject does not know or
+ * that change numbers. Links are not followed. Errors: INPUT, STORAGE, MEMORY, UNSUPPORTED. On
+ * success *array is the caller's, for hdf5_array_close; on failure NULL. */
+sonject_status hdf5_array_open(struct report *report, const char *path, const char *place,
+                               const char *name, bool writes, struct hdf5_array **array);
+
+/* Changes of a file that was not finished go nowhere. */
 void hdf5_array_close(struct hdf5_array **array);
 
 void hdf5_array_layout(const struct hdf5_array *array, struct raster_layout *layout);
 
+/* Whether columns lie together. */
+bool hdf5_array_is_turned(const struct hdf5_array *array);
+
 /* 32767 of int16, 0 of other types. */
 uint32_t hdf5_array_largest(const struct hdf5_array *array);
 
-/* A text attribute of the data set, copied into value; false if it has none of that name or it does
- * not fit. */
-bool hdf5_array_attribute(const struct hdf5_array *array, const char *name, char *value,
-                          size_t capacity);
+/* A text attribute of the data set, to be given to free(); false if it has none of that name. */
+bool hdf5_array_attribute(const struct hdf5_array *array, const char *name, char **value);
 
 /* Samples of a region, row after row. Errors: INPUT (cut short, damaged, a negative whole number),
- * MEMORY. */
+ * STORAGE, MEMORY. */
 sonject_status hdf5_array_read(struct report *report, const struct hdf5_array *array,
                                const struct region *region, void *pixels);
 
-/* Writes at path a copy of the file with the region's samples replaced; HDF5 itself changes them in
- * a copy of all bytes. A float64 whose value as a float32 stays the same keeps all its bits.
- * Published whole or not at all. Errors: INPUT, STORAGE, MEMORY, CANCELLED. */
-sonject_status hdf5_array_copy_with_patch(struct report *report, const struct hdf5_array *array,
-                                          const char *path, const struct region *region,
-                                          const void *pixels, sonject_progress_function progress,
-                                          void *user);
+/* Replaces them. A float64 whose value as a float32 stays the same keeps all its bits. */
+sonject_status hdf5_array_change(struct report *report, const struct hdf5_array *array,
+                                 const struct region *region, const void *pixels);
+
+/* Brings all changes to the file and closes it. Errors: STORAGE, INPUT. */
+sonject_status hdf5_array_finish(struct report *report, struct hdf5_array *array);
 
 /* Writes a new file with the one data set "image", complex as r and i, whose attributes
  * the notes become. Published whole or not at

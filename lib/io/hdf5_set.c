@@ -2,9 +2,8 @@
 
 #include <string.h>
 
-#define DEPTH_MAX       16
-#define OBJECTS_MAX     100000
-#define CHUNK_BYTES_MAX ((uint64_t)1 << 28)
+#define DEPTH_MAX   16
+#define OBJECTS_MAX 100000
 
 static enum hdf5_number number_of(hid_t type)
 {
@@ -69,7 +68,8 @@ static bool look_at_open(hid_t dataset, struct hdf5_set *set)
     return is_plane;
 }
 
-bool hdf5_set_look_at(hid_t file, const char *name, struct hdf5_set *set)
+/* What the data set of that path is; false if it is not one of two dimensions. */
+static bool look_at(hid_t file, const char *name, struct hdf5_set *set)
 {
     memset(set, 0, sizeof *set);
     set->number = HDF5_OTHER;
@@ -116,7 +116,7 @@ static void visit_link(struct walk *walk, hid_t group, const char *name)
         walk->depth++;
         visit_group(walk, object);
         walk->depth--;
-    } else if (kind == H5I_DATASET && hdf5_set_look_at(walk->file, walk->path, &set)) {
+    } else if (kind == H5I_DATASET && look_at(walk->file, walk->path, &set)) {
         const uint64_t rows = set.sides[set.is_matlab ? 1 : 0];
         const uint64_t columns = set.sides[set.is_matlab ? 0 : 1];
         if (array_list_add(&walk->list, walk->path, rows, columns,
@@ -186,28 +186,8 @@ static sonject_status check_filters(struct report *report, const char *path, hid
     return SONJECT_OK;
 }
 
-/* Chunks are held in memory whole. */
-static sonject_status check_chunks(struct report *report, const char *path, hid_t creation,
-                                   uint64_t sample_bytes)
+sonject_status hdf5_set_check_storage(struct report *report, const char *path, hid_t dataset)
 {
-    hsize_t chunk[2] = {0, 0};
-    if (H5Pget_chunk(creation, 2, chunk) != 2 || chunk[0] == 0 || chunk[1] == 0 ||
-        chunk[0] > CHUNK_BYTES_MAX || chunk[1] > CHUNK_BYTES_MAX / chunk[0] / sample_bytes)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: its array is stored in chunks of more than 256 MB: store it in "
-                              "smaller ones",
-                              path);
-    return check_filters(report, path, creation);
-}
-
-sonject_status hdf5_set_check_storage(struct report *report, const char *path, hid_t dataset,
-                                      const struct hdf5_set *set, uint64_t file_bytes)
-{
-    const uint64_t parts = set->is_complex ? 2 : 1;
-    const uint64_t sample_bytes = parts * (set->number == HDF5_UINT8     ? 1
-                                           : set->number <= HDF5_INT16   ? 2
-                                           : set->number == HDF5_FLOAT32 ? 4
-                                                                         : 8);
     const hid_t creation = H5Dget_create_plist(dataset);
     const H5D_layout_t layout = creation < 0 ? H5D_LAYOUT_ERROR : H5Pget_layout(creation);
     sonject_status status = SONJECT_OK;
@@ -221,14 +201,10 @@ sonject_status hdf5_set_check_storage(struct report *report, const char *path, h
                                 "this one",
                                 path);
     else if (layout == H5D_CHUNKED)
-        status = check_chunks(report, path, creation, sample_bytes);
-    else if (layout == H5D_CONTIGUOUS &&
-             (set->sides[0] > file_bytes / set->sides[1] / sample_bytes ||
-              H5Dget_offset(dataset) == HADDR_UNDEF))
+        status = check_filters(report, path, creation);
+    else if (layout == H5D_CONTIGUOUS && H5Dget_offset(dataset) == HADDR_UNDEF)
         status = report_failure(report, SONJECT_ERROR_INPUT,
-                                "%s: holds fewer samples than its array has: it is cut short or "
-                                "was never filled",
-                                path);
+                                "%s: its array was never filled: choose another file", path);
     if (creation >= 0)
         H5Pclose(creation);
     return status;

@@ -29,9 +29,6 @@ struct hdf5_set {
     char part_names[2][8]; /* of a complex one's compound */
 };
 
-/* What the data set of that path is; false if it is not one of two dimensions. */
-bool hdf5_set_look_at(hid_t file, const char *name, struct hdf5_set *set);
-
 /* True if its numbers are of a type that sonject reads. */
 bool hdf5_set_is_read(const struct hdf5_set *set);
 
@@ -39,9 +36,9 @@ bool hdf5_set_is_read(const struct hdf5_set *set);
 sonject_status hdf5_set_choose(struct report *report, const char *path, hid_t file,
                                const char *wanted, struct hdf5_set *set);
 
-/* Checks how its samples are stored. Errors: INPUT (in other files, cut short, unknown filters). */
-sonject_status hdf5_set_check_storage(struct report *report, const char *path, hid_t dataset,
-                                      const struct hdf5_set *set, uint64_t file_bytes);
+/* Checks how its samples are stored. Errors: INPUT (in other files, never filled, unknown filters).
+ */
+sonject_status hdf5_set_check_storage(struct report *report, const char *path, hid_t dataset);
 
 /* The type in memory: numbers, or pairs of them. To be closed by H5Tclose. */
 hid_t hdf5_set_memory_type(const struct hdf5_set *set);

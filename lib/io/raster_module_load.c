@@ -1,7 +1,4 @@
-/* Loads the module of image files. It lies in the folder sonject beside the library, or, as in
- * Python's package and where it was built, right beside it; tests are told where (RASTER_MODULE).
- */
-#define _GNU_SOURCE /* dladdr */
+/* Loads the module of image files. */
 #include "io/raster_module.h"
 
 #include <dlfcn.h>
@@ -11,35 +8,11 @@
 
 #include <sonject/version.h>
 
-#include "base/file.h"
-#include "base/memory.h"
+#include "base/module_path.h"
 #include "base/text.h"
 
 static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
 static const struct raster_module *loaded;
-
-#ifdef RASTER_MODULE
-static char *module_path(void)
-{
-    return copy_text(RASTER_MODULE);
-}
-#else
-/* For free(); NULL when memory is out. */
-static char *module_path(void)
-{
-    Dl_info library;
-    char *folder = dladdr(&loaded, &library) != 0 && library.dli_fname
-                       ? path_folder(library.dli_fname)
-                       : copy_text("");
-    char *within = folder ? path_join(folder, "sonject/openimageio.so") : NULL;
-    char *beside = folder ? path_join(folder, "openimageio.so") : NULL;
-    const bool is_known = folder && *folder != '\0'; /* else the system looks where it looks */
-    char *path = is_known && within && file_exists(within) ? within : beside;
-    free(path == within ? beside : within);
-    free(folder);
-    return path;
-}
-#endif
 
 static sonject_status refuse(struct report *report, const char *path, const char *module_file,
                              const char *why)
@@ -91,7 +64,7 @@ sonject_status raster_module_find(struct report *report, const char *path,
     sonject_status status = SONJECT_OK;
     pthread_mutex_lock(&one_at_a_time);
     if (!loaded) {
-        char *module_file = module_path();
+        char *module_file = module_path("openimageio.so");
         status =
             module_file ? load(report, path, module_file) : report_out_of_memory(report, "a path");
         free(module_file);

@@ -141,7 +141,7 @@ static sonject_status take_pixels(struct reader *reader, struct report *report,
 static sonject_status load(struct reader *reader, const struct tree_node *node,
                            struct heights_text *text)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {{0}, NULL, reader->report->host};
     struct swath_file *file;
     sonject_status status =
         swath_file_open_array(&report, text->path, SONJECT_CHANNEL_ONLY, text->array, &file);

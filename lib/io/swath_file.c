@@ -8,8 +8,8 @@
 #include "base/memory.h"
 #include "io/bmp_file.h"
 #include "io/byte_file.h"
+#include "io/decoded_image.h"
 #include "io/fits_file.h"
-#include "io/hdf5_array.h"
 #include "io/hdf5_mark.h"
 #include "io/image_kind.h"
 #include "io/mat_file.h"
@@ -35,8 +35,8 @@ struct swath_file {
     char *path;
     struct raster_file *image; /* SWATH_IMAGE */
     struct xtf_file xtf;
-    struct sample_rows plain; /* SWATH_NPY, SWATH_PNM, SWATH_FITS, SWATH_BMP, SWATH_TGA */
-    struct hdf5_array *hdf5;
+    struct sample_rows plain;      /* SWATH_NPY, SWATH_PNM, SWATH_FITS, SWATH_BMP, SWATH_TGA */
+    struct decoded_image *decoded; /* SWATH_HDF5 */
     struct mat_file mat;
 };
 
@@ -47,8 +47,7 @@ static sonject_status tell_kind(struct report *report, const char *path, enum sw
     uint64_t bytes;
     FILE *stream = byte_file_open(path, &bytes);
     if (!stream) {
-        (void)file_failure(report, path, "open", errno);
-        return SONJECT_ERROR_INPUT;
+        return file_refuse(report, path, errno);
     }
     const size_t got = fread(head, 1, sizeof head, stream);
     fclose(stream);
@@ -79,7 +78,7 @@ static bool has_names(enum swath_kind kind)
 static enum swath_kind kind_if_any(const char *path)
 {
     struct report report = {{0}, NULL, NULL};
-    enum swath_kind kind;
+    enum swath_kind kind = SWATH_IMAGE;
     return tell_kind(&report, path, &kind) == SONJECT_OK ? kind : SWATH_IMAGE;
 }
 
@@ -109,7 +108,7 @@ static sonject_status open_kind(struct report *report, struct swath_file *file, 
     case SWATH_TGA:
         return tga_file_open(report, file->path, &file->plain);
     case SWATH_HDF5:
-        return hdf5_array_open(report, file->path, array, &file->hdf5);
+        return decoded_image_open(report, file->path, array, &file->decoded);
     case SWATH_MAT:
         return mat_file_open(report, file->path, array, &file->mat);
     case SWATH_IMAGE:
@@ -166,7 +165,7 @@ void swath_file_close(struct swath_file **file)
     raster_file_close(&(*file)->image);
     xtf_file_close(&(*file)->xtf);
     sample_rows_clear(&(*file)->plain);
-    hdf5_array_close(&(*file)->hdf5);
+    decoded_image_close(&(*file)->decoded);
     mat_file_close(&(*file)->mat);
     free((*file)->path);
     free(*file);
@@ -187,7 +186,7 @@ void swath_file_layout(const struct swath_file *file, struct raster_layout *layo
     if (rows)
         *layout = rows->layout;
     else if (file->kind == SWATH_HDF5)
-        hdf5_array_layout(file->hdf5, layout);
+        *layout = file->decoded->layout;
     else if (file->kind == SWATH_MAT)
         *layout = file->mat.layout;
     else
@@ -205,7 +204,7 @@ uint32_t swath_file_largest(const struct swath_file *file)
     if (rows)
         return rows->largest;
     if (file->kind == SWATH_HDF5)
-        return hdf5_array_largest(file->hdf5);
+        return file->decoded->largest;
     return file->kind == SWATH_MAT ? mat_file_largest(&file->mat) : 0;
 }
 
@@ -235,7 +234,7 @@ bool swath_file_attribute(const struct swath_file *file, const char *name, char 
     case SWATH_PNM:
         return pnm_file_attribute(&file->plain, name, value, capacity);
     case SWATH_HDF5:
-        return hdf5_array_attribute(file->hdf5, name, value, capacity);
+        return decoded_image_attribute(file->decoded, name, value, capacity);
     default:
         return false;
     }
@@ -248,7 +247,7 @@ sonject_status swath_file_read(struct report *report, struct swath_file *file,
     if (rows)
         return sample_rows_read(report, rows, region, pixels);
     if (file->kind == SWATH_HDF5)
-        return hdf5_array_read(report, file->hdf5, region, pixels);
+        return decoded_image_read(report, file->decoded, region, pixels);
     if (file->kind == SWATH_MAT)
         return mat_file_read(report, &file->mat, region, pixels);
     return raster_file_read(report, file->image, region, pixels);
@@ -263,7 +262,8 @@ sonject_status swath_file_copy_with_patch(struct report *report, const struct sw
     if (rows)
         return sample_rows_copy_with_patch(report, rows, path, region, pixels, progress, user);
     if (file->kind == SWATH_HDF5)
-        return hdf5_array_copy_with_patch(report, file->hdf5, path, region, pixels, progress, user);
+        return decoded_image_copy_with_patch(report, file->decoded, path, region, pixels, progress,
+                                             user);
     if (file->kind == SWATH_MAT)
         return mat_file_copy_with_patch(report, &file->mat, path, region, pixels, progress, user);
     return raster_file_copy_with_patch(report, file->path, path, region, pixels, progress, user);

@@ -220,6 +220,11 @@ def test_programs_link_the_static_library_by_pkg_config(static_library, prefix, 
         numpy.save(files[0], numpy.zeros((2, 3), "u1"))
     assert_stands_alone(tmp_path / "program", *files)
     assert all(path.exists() for path in files)
+    for decoder in list(prefix.rglob("sonject-decoder")) if files else []:
+        shutil.copy(decoder, tmp_path)
+        assert_stands_alone(tmp_path / "program", files[0], tmp_path / "a.h5")
+        assert_stands_alone(tmp_path / "program", tmp_path / "a.h5", tmp_path / "b.npy")
+        assert (numpy.load(tmp_path / "b.npy") == numpy.load(files[0])).all()
 
 
 def test_programs_link_the_static_library_by_cmake(static_library, prefix, tmp_path):
@@ -304,6 +309,27 @@ def test_images_need_the_module_of_this_library(convert, tmp_path, module, reaso
 def test_what_is_no_image_needs_no_module(convert, tmp_path):
     assert convert("a.npy", "a.pgm").returncode == 0
     assert convert("a.pgm", "b.npy").returncode == 0
+    assert (numpy.load(tmp_path / "b.npy") == numpy.load(tmp_path / "a.npy")).all()
+
+
+@pytest.mark.parametrize("program, reason", [
+    (None, "No such file"), ("#!/bin/sh\nexit 2\n", "another version of sonject")],
+    ids=["missing", "of another version"])
+def test_hdf5_files_need_the_decoder_of_this_library(convert, prefix, tmp_path, program, reason):
+    installed = list(prefix.rglob("sonject-decoder"))
+    if not installed:
+        pytest.skip("built without HDF5")
+    decoder = tmp_path / "library" / "sonject" / "sonject-decoder"
+    assert convert("a.npy", "a.h5").returncode == 0  # which reads none
+    if program:
+        decoder.write_text(program)
+        decoder.chmod(0o755)
+    answer = convert("a.h5", "b.npy")
+    (line,) = answer.stderr.splitlines()
+    assert answer.returncode == 3 and reason in line and "a.h5" in line
+    assert "sonject-decoder" in line and "anew" in line
+    shutil.copy(installed[0], decoder)
+    assert convert("a.h5", "b.npy").returncode == 0
     assert (numpy.load(tmp_path / "b.npy") == numpy.load(tmp_path / "a.npy")).all()
 
 

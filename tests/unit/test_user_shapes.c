@@ -188,7 +188,8 @@ static void expect_explained(const char *log, const char *message)
 {
     int lines = 0;
     int expected = 0;
-    struct report report = {{0}, count_line, &lines};
+    const struct report_host host = {&lines, NULL};
+    struct report report = {{0}, count_line, &host};
     struct user_shapes shapes;
     memset(&shapes, 0, sizeof shapes);
     append(&shapes, "a.cl", GOOD);

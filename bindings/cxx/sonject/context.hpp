@@ -26,6 +26,7 @@ struct context_options {
     void *opencl_context = nullptr; /* a host's cl_context and cl_device_id */
     void *opencl_device = nullptr;
     sonject::log log;
+    bool decodes_in_process = false; /* HDF5 files, else by a child process */
 };
 
 /* One OpenCL device and what is compiled for it. */
@@ -40,6 +41,7 @@ class context
         params.device_name = options.device_name.empty() ? nullptr : options.device_name.c_str();
         params.opencl_context = options.opencl_context;
         params.opencl_device = options.opencl_device;
+        params.decodes_in_process = options.decodes_in_process;
         params.log = *log_ ? &context::tell : nullptr;
         params.log_user = log_;
         const sonject_status status = sonject_context_create(&params, &handle_);

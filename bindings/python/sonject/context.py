@@ -35,7 +35,8 @@ class Context:
     """Works with one OpenCL device.
 
     device: part of the device's name, None for the default one; log: called with lines of news;
-    opencl_context, opencl_device: addresses of a host's cl_context and cl_device_id to work in.
+    opencl_context, opencl_device: addresses of a host's cl_context and cl_device_id to work in;
+    decodes_in_process: read HDF5 files here, not in a child process (a damaged one may end this).
 
     Calls from several threads on one context wait for each other; use a context per thread to work
     at once. OpenCL does not survive os.fork: what needs a device is refused in a child whose parent
@@ -48,6 +49,7 @@ class Context:
         log: Optional[Callable[[str], Any]] = None,
         opencl_context: Optional[int] = None,
         opencl_device: Optional[int] = None,
+        decodes_in_process: bool = False,
     ) -> None:
         self._library = load()
         self._lock = threading.Lock()
@@ -59,6 +61,7 @@ class Context:
         params.device_name = optional_file_name("device", device)
         params.opencl_context = opencl_context
         params.opencl_device = opencl_device
+        params.decodes_in_process = int(decodes_in_process)
         if self._log is not None:
             params.log = self._log.callback
         self._pointer = ctypes.POINTER(s.sonject_context)()

@@ -33,6 +33,8 @@ class sonject_context_params(Structure):
         ("opencl_device", c_void_p),
         ("log", sonject_log_function),
         ("log_user", c_void_p),
+        ("decodes_in_process", c_uint32),
+        ("reserved_end", c_uint32),
     ]
 
 

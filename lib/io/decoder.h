@@ -1,0 +1,125 @@
+/* Files that libraries of others decode, and change. A child process does it, the program
+ * sonject-decoder, within limits of memory and time: a file that ends it ends one call, and the
+ * next one starts another child. A context has one at most (or none: it decodes in this process).
+ *
+ * The two pass records over a socket: a request and its bytes there, a reply and its bytes back,
+ * one after the other. Nothing that comes back is believed. */
+#ifndef SONJECT_IO_DECODER_H
+#define SONJECT_IO_DECODER_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/report.h"
+#include "image/raster.h"
+
+#define DECODER_PROGRAM      "sonject-decoder"
+#define DECODER_STRANGER     2                   /* its exit status if it is not this library's */
+#define DECODER_MEMORY_BYTES ((uint64_t)2 << 30) /* of the child, all told */
+#define DECODER_CPU_S        60                  /* for a request */
+#define DECODER_SILENCE_S    120                 /* after which it is taken for stuck */
+#define DECODER_FILES_MAX    256                 /* open at once */
+#define DECODER_PIECE_BYTES  ((size_t)16 << 20)  /* of samples in a request, or one line */
+
+/* What is asked. `in`: the request's bytes, texts that each end with a 0, or samples. `out`: the
+ * reply's. Images are the array of a file; trees are files whose parts have names. */
+enum decoder_function {
+    DECODER_OPEN_IMAGE, /* in: its name, where it lies, the array ("": the only one);
+                           -> handle, layout, largest, is_turned */
+    DECODER_OPEN_COPY,  /* the same, to be written to */
+    DECODER_OPEN_TREE,  /* in: its name, where it lies; -> handle */
+    DECODER_CLOSE,      /* handle; what was written to a copy may be lost */
+    DECODER_ATTRIBUTE,  /* handle of an image; in: its name -> out: text; value 0: it has none */
+    DECODER_READ,       /* handle of an image, region -> out: its samples, row after row */
+    DECODER_WRITE,      /* handle of a copy, region; in: samples */
+    DECODER_FINISH,     /* handle of a copy, which is then closed: all is to be in the file */
+    DECODER_HAS_GROUP,  /* handle of a tree; in: group -> value */
+    DECODER_WHOLE,      /* handle of a tree; in: group, attribute -> value */
+    DECODER_INTEGER,    /* the same: an int32_t */
+    DECODER_NUMBER,     /* the same: the bits of a double */
+    DECODER_TEXT,       /* the same -> out */
+    DECODER_TEXTS,      /* handle of a tree; in: group, dataset -> out: texts; value: how many */
+    DECODER_PLANE,      /* the same, and region, all columns: float32 -> layout, out: samples; no
+                           rows: the layout alone */
+    DECODER_FUNCTIONS
+};
+
+struct decoder_request {
+    uint32_t function, handle;
+    struct region region;
+    uint64_t bytes; /* that follow */
+};
+
+struct decoder_reply {
+    int32_t status; /* a sonject_status; unless it is OK, the bytes are its message */
+    uint32_t handle;
+    struct raster_layout layout;
+    uint32_t largest;   /* 0: of its type */
+    uint32_t is_turned; /* columns lie together in the file */
+    uint64_t value;
+    uint64_t bytes; /* that follow */
+};
+
+/* What the child's first argument must be. */
+void decoder_stamp(char stamp[64]);
+
+/* The files that one decoder has open, in the process that decodes. */
+struct decoder_state;
+struct decoder_state *decoder_state_make(void); /* NULL: memory is out */
+void decoder_state_release(struct decoder_state **state);
+
+/* Does what is asked, here. in: of request->bytes. *out: reply->bytes of it, to be given to free();
+ * NULL: none, or the call failed. */
+sonject_status decoder_answer(struct report *report, struct decoder_state *state,
+                              const struct decoder_request *request, const void *in,
+                              struct decoder_reply *reply, void **out);
+
+/* All 0: none is started. */
+struct decoder {
+    bool is_in_process;
+    struct decoder_state *state; /* in this process; NULL: none is needed yet */
+    long process, owner;         /* 0: none is started; who started it */
+    int socket;
+    uint32_t starts; /* how often */
+};
+
+/* Ends it, if there is one. What it had open is lost. */
+void decoder_stop(struct decoder *decoder);
+
+/* A file that a decoder has open. Stays where it is while it is open. */
+struct decoder_file {
+    char *path;     /* as the caller named it; owned */
+    uint64_t bytes; /* how long it is */
+    struct decoder *decoder;
+    struct decoder own; /* where the report has no host */
+    uint32_t handle, start;
+};
+
+/* Opens a file by one of the functions above. path: its name in messages; place: the file, NULL: of
+ * that name. array: NULL for the only one, and for trees. Errors: INPUT (not a regular file,
+ * damaged, what opening refuses), STORAGE (the system's), MEMORY, UNSUPPORTED (no decoder). On
+ * failure there is nothing to be closed. */
+sonject_status decoder_open(struct report *report, enum decoder_function function, const char *path,
+                            const char *place, const char *array, struct decoder_file *file,
+                            struct decoder_reply *reply);
+void decoder_close(struct decoder_file *file);
+
+/* Where a reply's bytes go. */
+struct decoder_bytes {
+    void *bytes;     /* NULL: allocated, with a 0 behind them, for free() */
+    size_t capacity; /* more of them are refused */
+    size_t count;
+};
+
+/* Asks about an open file. request->handle is set here. out: NULL where no bytes come. Errors: as
+ * decoder_answer's; INPUT (the file ended the decoder, now or before), STORAGE, MEMORY. */
+sonject_status decoder_ask(struct report *report, struct decoder_file *file,
+                           struct decoder_request *request, const void *in,
+                           struct decoder_reply *reply, struct decoder_bytes *out);
+
+/* INPUT if a file announces more than it can hold, however well it is packed. */
+sonject_status decoder_check_announced(struct report *report, const struct decoder_file *file,
+                                       uint64_t rows, uint64_t columns, size_t sample_bytes);
+
+#endif
