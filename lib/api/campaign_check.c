@@ -1,7 +1,6 @@
 /* Whether all that a campaign may draw can be made, and the hash of what its images depend on. */
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include <sonject/version.h>
 

@@ -48,6 +48,13 @@ sonject_status file_refuse(struct report *report, const char *path, int error)
     return file_error_is_of_system(error) ? status : SONJECT_ERROR_INPUT;
 }
 
+sonject_status file_check_disk(struct report *report, const char *path, sonject_status status)
+{
+    const bool is_of_disk = errno == EIO || errno == ESTALE || errno == ETIMEDOUT;
+    return status == SONJECT_ERROR_INPUT && is_of_disk ? file_failure(report, path, "read", errno)
+                                                       : status;
+}
+
 int file_open(const char *path)
 {
     struct stat facts;

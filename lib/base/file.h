@@ -23,6 +23,10 @@ bool file_error_is_of_system(int error);
  * system fails, else INPUT. */
 sonject_status file_refuse(struct report *report, const char *path, int error);
 
+/* For a reader that found its file wrong, with errno 0 when it began: where the disk could not be
+ * read, the message is the system's, and STORAGE is returned; else status. */
+sonject_status file_check_disk(struct report *report, const char *path, sonject_status status);
+
 /* Opens a regular file for reading, and never waits. -1 with errno if that fails: EISDIR for a
  * folder, ESPIPE for pipes and devices, which may have no end. */
 int file_open(const char *path);

@@ -8,6 +8,7 @@
 #include "base/file.h"
 #include "base/hash.h"
 #include "base/memory.h"
+#include "io/byte_file.h"
 
 #define BEGINNING "sonject impulses, XXH3 "
 #define PIECE     ((size_t)1 << 20)
@@ -59,12 +60,16 @@ sonject_status impulse_seal_check(struct report *report, const char *path)
 {
     char seal[IMPULSE_SEAL_BYTES];
     char found[IMPULSE_SEAL_BYTES];
-    FILE *file = fopen(path, "rb");
+    uint64_t bytes = 0;
+    FILE *file = byte_file_open(path, &bytes);
     if (!file)
-        return file_failure(report, path, "read", errno);
+        return file_refuse(report, path, errno);
     sonject_status status = SONJECT_OK;
-    if (fread(found, 1, sizeof found, file) != sizeof found ||
-        memcmp(found, BEGINNING, strlen(BEGINNING)) != 0)
+    const bool is_one = fread(found, 1, sizeof found, file) == sizeof found &&
+                        memcmp(found, BEGINNING, strlen(BEGINNING)) == 0;
+    if (ferror(file))
+        status = file_failure(report, path, "read", errno);
+    else if (!is_one)
         status = report_failure(report, SONJECT_ERROR_INPUT,
                                 "%s: not a file that sonject trace writes", path);
     if (status == SONJECT_OK)

@@ -22,10 +22,9 @@ void decoder_stamp(char stamp[64])
              sizeof(struct decoder_request), sizeof(struct decoder_reply), DECODER_FUNCTIONS);
 }
 
-/* One of the two is there. */
 struct opened {
-    struct hdf5_array *image;
-    char *path; /* of a tree */
+    char *path;               /* in messages; NULL: none is open */
+    struct hdf5_array *image; /* NULL: it is a tree */
     hid_t tree;
 };
 
@@ -53,12 +52,12 @@ struct decoder_state *decoder_state_make(void)
 static void close_file(struct opened *file)
 {
     struct hdf5_session session;
-    hdf5_array_close(&file->image);
-    if (file->path) {
+    if (file->path && !file->image) {
         hdf5_enter(&session);
         H5Fclose(file->tree);
         hdf5_leave(&session);
     }
+    hdf5_array_close(&file->image);
     free(file->path);
     memset(file, 0, sizeof *file);
 }
@@ -73,20 +72,18 @@ void decoder_state_release(struct decoder_state **state)
 
 static sonject_status refuse(struct question *question, const char *what)
 {
-    const char *path = question->file && question->file->path ? question->file->path : "a file";
-    if (file_error_is_of_system(errno) && errno != ENOMEM)
-        return file_failure(question->report, path, "read", errno);
-    return report_failure(question->report, SONJECT_ERROR_INPUT, "%s: %s %s is damaged", path,
-                          question->texts[0], what);
+    return report_failure(question->report, SONJECT_ERROR_INPUT, "%s: %s %s is damaged",
+                          question->file->path, question->texts[0], what);
 }
 
 /* The place of a file to be opened; NULL: too many are. */
 static struct opened *free_place(struct question *question)
 {
     for (uint32_t i = 0; i < DECODER_FILES_MAX; i++)
-        if (!question->state->files[i].image && !question->state->files[i].path) {
+        if (!question->state->files[i].path) {
             question->reply->handle = i + 1;
-            return &question->state->files[i];
+            question->file = &question->state->files[i];
+            return question->file;
         }
     (void)report_failure(question->report, SONJECT_ERROR_STORAGE, "%s: %d files are open",
                          question->texts[0], DECODER_FILES_MAX);
@@ -102,8 +99,13 @@ static sonject_status open_image(struct question *question)
     const sonject_status status =
         hdf5_array_open(question->report, question->texts[0], question->texts[1], array,
                         question->request->function == DECODER_OPEN_COPY, &place->image);
+    place->path = status == SONJECT_OK ? copy_text(question->texts[0]) : NULL;
     if (status != SONJECT_OK)
         return status;
+    if (!place->path) {
+        hdf5_array_close(&place->image);
+        return report_out_of_memory(question->report, question->texts[0]);
+    }
     hdf5_array_layout(place->image, &question->reply->layout);
     question->reply->largest = hdf5_array_largest(place->image);
     question->reply->is_turned = hdf5_array_is_turned(place->image);
@@ -123,8 +125,6 @@ static sonject_status open_tree(struct question *question)
     }
     if (tree >= 0)
         H5Fclose(tree);
-    if (file_error_is_of_system(errno))
-        return file_refuse(question->report, question->texts[0], errno);
     return report_failure(question->report, SONJECT_ERROR_INPUT,
                           "%s: HDF5 cannot open it: it is damaged or cut short",
                           question->texts[0]);
@@ -373,8 +373,23 @@ static bool is_possible(struct question *question, const struct answer *answer)
     if (request->handle > 0 && request->handle <= DECODER_FILES_MAX)
         question->file = &question->state->files[request->handle - 1];
     return (!answer->needs_image || (question->file && question->file->image)) &&
-           (!answer->needs_tree || (question->file && question->file->path)) &&
+           (!answer->needs_tree ||
+            (question->file && question->file->path && !question->file->image)) &&
            (request->function != DECODER_CLOSE || question->file);
+}
+
+/* Where the disk could not be read HDF5 says that it is damaged, or does without what lies there: a
+ * walk through a file may then find another array. */
+static sonject_status tell_disk(struct question *question, sonject_status status)
+{
+    const char *path =
+        question->file && question->file->path ? question->file->path : question->texts[0];
+    if ((status != SONJECT_OK && status != SONJECT_ERROR_INPUT) ||
+        file_check_disk(question->report, path, SONJECT_ERROR_INPUT) == SONJECT_ERROR_INPUT)
+        return status;
+    if (question->file && question->request->function <= DECODER_OPEN_TREE)
+        close_file(question->file);
+    return SONJECT_ERROR_STORAGE;
 }
 
 sonject_status decoder_answer(struct report *report, struct decoder_state *state,
@@ -398,6 +413,7 @@ sonject_status decoder_answer(struct report *report, struct decoder_state *state
         status = answer->give(&question);
         if (enters)
             hdf5_leave(&session);
+        status = tell_disk(&question, status);
     }
     if (status != SONJECT_OK) {
         free(question.out);

@@ -94,7 +94,7 @@ static sonject_status open_exr(struct exr_file *exr, struct report *report, cons
     exr->path = path;
     exr->file = byte_file_open(path, &exr->file_bytes);
     if (!exr->file)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: cannot be opened", path);
+        return file_refuse(report, path, errno);
     sonject_status status = exr_header_read(report, path, exr->file, exr->file_bytes, &exr->header);
     if (status == SONJECT_OK)
         status = read_places(exr);

@@ -128,6 +128,8 @@ static bool update(FILE *copy, const struct sums *sums, uint64_t header_bytes, u
     char code[CODE_BYTES];
     const uint64_t place = sums->code_card + TEXT_PLACE;
     const uint32_t data = sum_blocks(copy, header_bytes, data_bytes);
+    if (ferror(copy))
+        return false;
     if (data == sums->data)
         return true; /* codes are not unique */
     if (sums->data_card > 0) {
@@ -143,7 +145,7 @@ static bool update(FILE *copy, const struct sums *sums, uint64_t header_bytes, u
     if (!put(copy, place, code, sizeof code))
         return false;
     encode(~add_sums(sum_blocks(copy, 0, header_bytes), data) & RIGHT_SUM, code);
-    return put(copy, place, code, sizeof code);
+    return !ferror(copy) && put(copy, place, code, sizeof code);
 }
 
 sonject_status fits_sums_update(struct report *report, FILE *source, FILE *copy,
@@ -152,6 +154,8 @@ sonject_status fits_sums_update(struct report *report, FILE *source, FILE *copy,
 {
     struct sums sums;
     find_cards(source, header_bytes, &sums);
+    if (ferror(source))
+        return file_failure(report, path, "read", errno);
     if (sums.data_card == 0 && sums.code_card == 0)
         return SONJECT_OK;
     sums.header = sum_blocks(source, 0, header_bytes);

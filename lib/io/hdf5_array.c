@@ -68,10 +68,7 @@ static sonject_status cannot_move(struct report *report, const struct hdf5_array
 static sonject_status open_array(struct report *report, struct hdf5_array *array, const char *place,
                                  const char *name)
 {
-    errno = 0;
     array->file = open_file(place, array->writes ? H5F_ACC_RDWR : H5F_ACC_RDONLY);
-    if (array->file < 0 && file_error_is_of_system(errno))
-        return file_refuse(report, array->path, errno);
     if (array->file < 0)
         return report_failure(
             report, SONJECT_ERROR_INPUT,

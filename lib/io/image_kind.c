@@ -116,12 +116,13 @@ sonject_status image_kind_of(struct report *report, const char *path, enum image
     unsigned char head[16] = {0};
     uint64_t bytes;
     FILE *file = byte_file_open(path, &bytes);
-    if (!file) {
-        (void)file_failure(report, path, "open", errno);
-        return SONJECT_ERROR_INPUT;
-    }
+    if (!file)
+        return file_refuse(report, path, errno);
     const size_t got = fread(head, 1, sizeof head, file);
+    const bool is_read = ferror(file) == 0;
     fclose(file);
+    if (!is_read)
+        return file_failure(report, path, "read", errno);
     if (image_kind_of_beginning(head, got, kind))
         return SONJECT_OK;
     return refuse_kind(report, path, head, got);

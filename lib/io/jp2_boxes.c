@@ -159,7 +159,7 @@ static sonject_status open_jp2(struct jp2_file *jp2, struct report *report, cons
     jp2->path = path;
     jp2->file = byte_file_open(path, &jp2->file_bytes);
     if (!jp2->file)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: cannot be opened", path);
+        return file_refuse(report, path, errno);
     if (!byte_file_read(jp2->file, 0, head, sizeof head))
         return refuse_cut(jp2);
     jp2->has_boxes = !jp2_codestream_begins(head, sizeof head);

@@ -196,11 +196,7 @@ sonject_status mat_file_open(struct report *report, const char *path, const char
     if (!file->path)
         return report_out_of_memory(report, "a file name");
     file->file = byte_file_open(path, &file->file_bytes);
-    sonject_status status = SONJECT_OK;
-    if (!file->file) {
-        (void)file_failure(report, path, "open", errno);
-        status = SONJECT_ERROR_INPUT;
-    }
+    sonject_status status = file->file ? SONJECT_OK : file_refuse(report, path, errno);
     if (status == SONJECT_OK)
         status = read_file(report, file, array);
     if (status != SONJECT_OK)

@@ -25,11 +25,7 @@ sonject_status sample_rows_open(struct report *report, const char *path,
     if (!rows->path)
         return report_out_of_memory(report, "a file name");
     rows->file = byte_file_open(path, &rows->file_bytes);
-    sonject_status status = SONJECT_OK;
-    if (!rows->file) {
-        (void)file_failure(report, path, "open", errno);
-        status = SONJECT_ERROR_INPUT;
-    }
+    sonject_status status = rows->file ? SONJECT_OK : file_refuse(report, path, errno);
     if (status == SONJECT_OK)
         status = read_header(report, rows);
     if (status != SONJECT_OK)

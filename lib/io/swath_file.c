@@ -50,7 +50,10 @@ static sonject_status tell_kind(struct report *report, const char *path, enum sw
         return file_refuse(report, path, errno);
     }
     const size_t got = fread(head, 1, sizeof head, stream);
+    const bool is_read = ferror(stream) == 0;
     fclose(stream);
+    if (!is_read)
+        return file_failure(report, path, "read", errno);
     *kind = xtf_begins(head, got)                        ? SWATH_XTF
             : npy_begins(head, got)                      ? SWATH_NPY
             : pnm_begins(head, got)                      ? SWATH_PNM
@@ -142,6 +145,7 @@ sonject_status swath_file_open_beside(struct report *report, const char *path, c
         return report_out_of_memory(report, "a file");
     }
     opened->path = copy;
+    errno = 0;
     status = tell_kind(report, opened->path, &opened->kind);
     if (status == SONJECT_OK) {
         const enum swath_kind beside = other ? kind_if_any(other) : SWATH_IMAGE;
@@ -149,7 +153,7 @@ sonject_status swath_file_open_beside(struct report *report, const char *path, c
             channel = SONJECT_CHANNEL_ONLY;
         if (!has_names(opened->kind) && has_names(beside))
             array = NULL;
-        status = open_kind(report, opened, channel, array);
+        status = file_check_disk(report, path, open_kind(report, opened, channel, array));
     }
     if (status == SONJECT_OK)
         *file = opened;
@@ -240,8 +244,8 @@ bool swath_file_attribute(const struct swath_file *file, const char *name, char 
     }
 }
 
-sonject_status swath_file_read(struct report *report, struct swath_file *file,
-                               const struct region *region, void *pixels)
+static sonject_status read_kind(struct report *report, struct swath_file *file,
+                                const struct region *region, void *pixels)
 {
     const struct sample_rows *rows = sample_rows_of(file);
     if (rows)
@@ -253,10 +257,16 @@ sonject_status swath_file_read(struct report *report, struct swath_file *file,
     return raster_file_read(report, file->image, region, pixels);
 }
 
-sonject_status swath_file_copy_with_patch(struct report *report, const struct swath_file *file,
-                                          const char *path, const struct region *region,
-                                          const void *pixels, sonject_progress_function progress,
-                                          void *user)
+sonject_status swath_file_read(struct report *report, struct swath_file *file,
+                               const struct region *region, void *pixels)
+{
+    errno = 0;
+    return file_check_disk(report, file->path, read_kind(report, file, region, pixels));
+}
+
+static sonject_status copy_kind(struct report *report, const struct swath_file *file,
+                                const char *path, const struct region *region, const void *pixels,
+                                sonject_progress_function progress, void *user)
 {
     const struct sample_rows *rows = sample_rows_of(file);
     if (rows)
@@ -267,4 +277,14 @@ sonject_status swath_file_copy_with_patch(struct report *report, const struct sw
     if (file->kind == SWATH_MAT)
         return mat_file_copy_with_patch(report, &file->mat, path, region, pixels, progress, user);
     return raster_file_copy_with_patch(report, file->path, path, region, pixels, progress, user);
+}
+
+sonject_status swath_file_copy_with_patch(struct report *report, const struct swath_file *file,
+                                          const char *path, const struct region *region,
+                                          const void *pixels, sonject_progress_function progress,
+                                          void *user)
+{
+    errno = 0;
+    return file_check_disk(report, file->path,
+                           copy_kind(report, file, path, region, pixels, progress, user));
 }

@@ -10,6 +10,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
+#include "io/byte_file.h"
 #include "io/byte_order.h"
 #include "io/tiff_encode.h"
 #include "io/tiff_structure.h"
@@ -59,12 +60,12 @@ static sonject_status copy_bytes(struct tiff_writer *writer, FILE *source, unsig
 
 static sonject_status copy_file(struct tiff_writer *writer)
 {
-    FILE *source = fopen(writer->patch->source, "rb");
+    uint64_t bytes = 0;
+    FILE *source = byte_file_open(writer->patch->source, &bytes);
     unsigned char *buffer = allocate_array(COPY_STEP, 1);
     sonject_status status;
     if (!source)
-        status = report_failure(writer->report, SONJECT_ERROR_INPUT, "%s: cannot be opened",
-                                writer->patch->source);
+        status = file_refuse(writer->report, writer->patch->source, errno);
     else if (!buffer)
         status = report_out_of_memory(writer->report, "a copy");
     else

@@ -18,7 +18,7 @@ sonject_status tiff_reader_open(struct report *report, const char *path, struct 
     reader->report = report;
     reader->path = path;
     reader->file = byte_file_open(path, &reader->file_bytes);
-    return reader->file ? SONJECT_OK : file_failure(report, path, "open", errno);
+    return reader->file ? SONJECT_OK : file_refuse(report, path, errno);
 }
 
 void tiff_reader_close(struct tiff_reader *reader)

@@ -291,11 +291,7 @@ sonject_status xtf_file_open(struct report *report, const char *path, int32_t ch
     if (!file->rows.path)
         return report_out_of_memory(report, "a file name");
     file->rows.file = byte_file_open(path, &file->rows.file_bytes);
-    sonject_status status = SONJECT_OK;
-    if (!file->rows.file) {
-        (void)file_failure(report, path, "open", errno);
-        status = SONJECT_ERROR_INPUT;
-    }
+    sonject_status status = file->rows.file ? SONJECT_OK : file_refuse(report, path, errno);
     if (status == SONJECT_OK)
         status = read_header(&opening, &first_packet);
     if (status == SONJECT_OK)

@@ -1,5 +1,6 @@
 """Scenes and images that cannot be used: exit code 3, one line, nothing written."""
 
+import os
 import struct
 
 import numpy
@@ -27,6 +28,32 @@ def test_a_missing_scene_is_named(sonject, tmp_path):
     assert_refused(sonject("check", "absent.yaml"), 3, "absent.yaml")
     assert_refused(sonject("run", "absent.yaml", "-o", "result"), 3, "absent.yaml")
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("verb", ["check", "run", "trace", "elements", "form", "campaign",
+                                  "measure", "quicklook", "convert"])
+@pytest.mark.parametrize("endless", ["a pipe", "a device"])
+def test_what_may_never_end_is_refused_at_once(sonject, tmp_path, verb, endless):
+    name = "/dev/zero"
+    if endless == "a pipe":
+        name = "pipe"
+        os.mkfifo(tmp_path / name)
+    output = {"check": [], "measure": [], "convert": ["b.npy"], "quicklook": ["-o", "b.png"]}
+    answer = sonject(verb, name, *output.get(verb, ["-o", "result"]), timeout=60)
+    assert_refused(answer, 3, name, "not a regular file")
+
+
+@pytest.mark.parametrize("named", [
+    "input.path=pipe", "sonar.measured_response=pipe", "sonar.motion.file=pipe",
+    "medium.profile.file=pipe", "objects=[{target: pipe}]",
+    "objects=[{shape: mesh, mesh: pipe.stl}]",
+    "seabed.relief=[{heights: {file: pipe, unit: m, row_spacing: 1 m, column_spacing: 1 m, "
+    "first_ground_range: 1 m}}]"])
+def test_a_scene_names_no_pipe(sonject, scene, tmp_path, named):
+    for name in ("pipe", "pipe.stl"):
+        os.mkfifo(tmp_path / name)
+    answer = sonject("check", scene, "--set", named, timeout=60)
+    assert_refused(answer, 3, "pipe", "not a regular file")
 
 
 def test_an_unknown_key(sonject, scene):

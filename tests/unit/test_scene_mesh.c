@@ -277,7 +277,7 @@ static void test_meshes_that_cannot_be_read(void **state)
     expect_bad_mesh(folder, "folder.stl", SONJECT_ERROR_STORAGE, "s a directory");
     assert_int_equal(rmdir(file_in(folder, "folder.stl")), 0);
     assert_int_equal(mkfifo(file_in(folder, "pipe.stl"), 0666), 0);
-    expect_bad_mesh(folder, "pipe.stl", SONJECT_ERROR_STORAGE, "not a regular file");
+    expect_bad_mesh(folder, "pipe.stl", SONJECT_ERROR_INPUT, "not a regular file");
     remove_file(folder, "pipe.stl");
     static const struct {
         const char *name;

@@ -1,0 +1,157 @@
+/* A disk that cannot be read is no damaged file: whichever of a reader's calls fails, the status is
+ * STORAGE, and the message has the name of the file (or of the copy) and the system's words. */
+#define _POSIX_C_SOURCE 200809L
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "io/raster_formats.h"
+#include "io/swath_file.h"
+#include "unit/temporary_folder.h"
+
+#define SIDE       16
+#define MARK_ERROR 0x20 /* _IO_ERR_SEEN of glibc, whose call this is */
+
+size_t __real_fread(void *bytes, size_t size, size_t count, FILE *file);
+size_t __wrap_fread(void *bytes, size_t size, size_t count, FILE *file);
+ssize_t __real_read(int descriptor, void *bytes, size_t count);
+ssize_t __wrap_read(int descriptor, void *bytes, size_t count);
+
+static long calls, due; /* 0: none fails */
+
+/* Not of what gives random names to files. */
+static bool is_due(int descriptor)
+{
+    struct stat facts;
+    if (fstat(descriptor, &facts) != 0 || !S_ISREG(facts.st_mode) || ++calls != due)
+        return false;
+    errno = EIO;
+    return true;
+}
+
+size_t __wrap_fread(void *bytes, size_t size, size_t count, FILE *file)
+{
+    if (!is_due(fileno(file)))
+        return __real_fread(bytes, size, count, file);
+    file->_flags |= MARK_ERROR;
+    return 0;
+}
+
+ssize_t __wrap_read(int descriptor, void *bytes, size_t count)
+{
+    return is_due(descriptor) ? -1 : __real_read(descriptor, bytes, count);
+}
+
+static sonject_status use(struct report *report, const char *path, const char *copy)
+{
+    static float pixels[2 * SIDE * SIDE];
+    struct swath_file *file;
+    const struct region corner = {0, 0, 2, 2};
+    sonject_status status = swath_file_open_array(report, path, SONJECT_CHANNEL_ONLY,
+                                                  strstr(path, ".mat") ? "depths" : NULL, &file);
+    if (status != SONJECT_OK)
+        return status;
+    status = swath_file_read(report, file, &corner, pixels);
+    if (status == SONJECT_OK)
+        status = swath_file_copy_with_patch(report, file, copy, &corner, pixels, NULL, NULL);
+    swath_file_close(&file);
+    return status;
+}
+
+static void expect_told(const char *path, const char *copy)
+{
+    struct report report = {{0}, NULL, NULL};
+    long count = 0;
+    due = 0;
+    calls = 0;
+    if (use(&report, path, copy) != SONJECT_OK)
+        fail_msg("%s", report.message);
+    count = calls;
+    assert_true(count > 0);
+    for (long n = 1; n <= count; n++) {
+        due = n;
+        calls = 0;
+        (void)remove(copy);
+        report.message[0] = '\0';
+        const sonject_status status = use(&report, path, copy);
+        due = 0;
+        if (status != SONJECT_ERROR_STORAGE || !strstr(report.message, strerror(EIO)) ||
+            (!strstr(report.message, path) && !strstr(report.message, copy)))
+            fail_msg("%s: call %ld of %ld: status %d, %s", path, n, count, (int)status,
+                     report.message);
+    }
+    print_message("%s: %ld calls\n", path, count);
+}
+
+static void test_written_formats(void **state)
+{
+    static const struct {
+        const char *name;
+        enum pixel_type type;
+    } formats[] = {{"a.npy", PIXEL_FLOAT32}, {"a.tif", PIXEL_FLOAT32}, {"a.png", PIXEL_UINT16},
+                   {"a.jpg", PIXEL_UINT8},   {"a.pgm", PIXEL_UINT8},   {"a.pfm", PIXEL_FLOAT32},
+                   {"a.h5", PIXEL_FLOAT32}};
+    static float pixels[SIDE * SIDE];
+    expect_told(SOURCE_ROOT "/tests/unit/heights.mat", temporary_file(*state, "copy.mat"));
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+        struct report report = {{0}, NULL, NULL};
+        char path[TEMPORARY_CAPACITY + 300], copy[TEMPORARY_CAPACITY + 300];
+        const struct raster_layout layout = {SIDE, SIDE, 1, formats[i].type};
+        snprintf(path, sizeof path, "%s", temporary_file(*state, formats[i].name));
+        snprintf(copy, sizeof copy, "%s", temporary_file(*state, "copy"));
+        (void)strcat(copy, formats[i].name + 1);
+        const bool is_lossy = strstr(path, ".jpg");
+        if ((is_lossy ? raster_file_write(&report, path, &layout, NULL, NULL, 0, pixels)
+                      : raster_format_write(&report, path, &layout, NULL, 0, pixels)) != SONJECT_OK)
+            fail_msg("%s", report.message);
+        expect_told(path, copy);
+    }
+}
+
+#ifdef FAILING_PREAD
+static void test_a_disk_under_the_decoder(void **state)
+{
+    static float pixels[SIDE * SIDE];
+    static const struct raster_layout layout = {SIDE, SIDE, 1, PIXEL_FLOAT32};
+    struct report report = {{0}, NULL, NULL};
+    char path[TEMPORARY_CAPACITY + 300], number[24];
+    snprintf(path, sizeof path, "%s", temporary_file(*state, "a.h5"));
+    const char *copy = temporary_file(*state, "copy.h5");
+    assert_int_equal(raster_format_write(&report, path, &layout, NULL, 0, pixels), SONJECT_OK);
+    assert_int_equal(setenv("LD_PRELOAD", FAILING_PREAD, 1), 0);
+    long n = 0;
+    sonject_status status = SONJECT_ERROR_STORAGE;
+    while (status != SONJECT_OK) {
+        snprintf(number, sizeof number, "%ld", ++n);
+        assert_int_equal(setenv("FAULT_PREAD", number, 1), 0);
+        status = use(&report, path, copy);
+        if (status != SONJECT_OK &&
+            (status != SONJECT_ERROR_STORAGE || !strstr(report.message, strerror(EIO))))
+            fail_msg("call %ld: status %d, %s", n, (int)status, report.message);
+    }
+    assert_true(n > 8);
+    unsetenv("LD_PRELOAD");
+}
+#endif
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup_teardown(test_written_formats, make_temporary_folder,
+                                        remove_temporary_folder),
+#ifdef FAILING_PREAD
+        cmocka_unit_test_setup_teardown(test_a_disk_under_the_decoder, make_temporary_folder,
+                                        remove_temporary_folder),
+#endif
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
