@@ -8,6 +8,7 @@
 
 #include <sonject/version.h>
 
+#include "base/memory.h"
 #include "base/module_path.h"
 #include "base/text.h"
 
