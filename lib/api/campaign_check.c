@@ -1,4 +1,5 @@
 /* Whether all that a campaign may draw can be made, and the hash of what its images depend on. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 
@@ -13,6 +14,15 @@
 #include "io/yaml_flow.h"
 
 #define TRIALS_MAX 20000 /* scenes, about as many milliseconds at the most */
+
+/* Over all of the swath, whose pings say it, or as the scene does. */
+static double highest_altitude(const struct scene *scene, const struct xtf_file *xtf)
+{
+    double highest = scene->sonar.altitude_m;
+    for (uint64_t i = 0; xtf && scene->has_recorded_altitude && i < xtf->rows.layout.rows; i++)
+        highest = fmax(highest, (double)xtf->pings[i].altitude_m);
+    return highest;
+}
 
 /* Size and room of a swath, whose scene tells its geometry. */
 static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t number)
@@ -39,7 +49,8 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
             swath_file_open_array(campaign->report, swath->path, scene.channel, scene.array, &file);
     if (status == SONJECT_OK) {
         swath_file_layout(file, &swath->layout);
-        status = campaign_measure(campaign->report, &campaign->campaign, number, &scene.geometry);
+        status = campaign_measure(campaign->report, &campaign->campaign, number, &scene.geometry,
+                                  highest_altitude(&scene, swath_file_xtf(file)));
     }
     swath_file_close(&file);
     scene_clear(&scene);

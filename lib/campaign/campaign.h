@@ -116,8 +116,9 @@ sonject_status campaign_split(struct report *report, struct campaign *campaign,
                               const char *const *identities);
 
 /* Finds where images may lie in a swath whose layout is known. geometry: of the scene with that
- * swath. Errors: INPUT (no room), MEMORY. */
+ * swath. altitude_m: the sonar's highest, which images begin beyond, so that no target lies in the
+ * water column. Errors: INPUT (no room), MEMORY. */
 sonject_status campaign_measure(struct report *report, struct campaign *campaign, size_t swath,
-                                const sonject_geometry_params *geometry);
+                                const sonject_geometry_params *geometry, double altitude_m);
 
 #endif

@@ -5,19 +5,22 @@
 #include "base/memory.h"
 #include "campaign/campaign.h"
 
-/* First columns whose chip's middle has a slant range within the limits. */
+static double column_at(const sonject_geometry_params *geometry, double range_m)
+{
+    return (range_m - geometry->first_slant_range_m) / geometry->column_spacing_m;
+}
+
+/* First columns beyond the first return whose chip's middle has a slant range within the limits. */
 static void limit_ranges(const struct campaign *campaign, const sonject_geometry_params *geometry,
-                         struct region *chips)
+                         double altitude_m, struct region *chips)
 {
     const double half = 0.5 * (double)(campaign->chip_columns - 1);
-    const double first = ceil((campaign->nearest_range_m - geometry->first_slant_range_m) /
-                                  geometry->column_spacing_m -
-                              half - 1e-9);
-    const double last = floor((campaign->farthest_range_m - geometry->first_slant_range_m) /
-                                  geometry->column_spacing_m -
-                              half + 1e-9);
-    const double low = fmax(first, (double)chips->first_column);
-    const double high = fmin(last, (double)chips->first_column + (double)chips->columns - 1.0);
+    double low = fmax((double)chips->first_column, floor(column_at(geometry, altitude_m)) + 1.0);
+    double high = (double)chips->first_column + (double)chips->columns - 1.0;
+    if (campaign->has_range) {
+        low = fmax(low, ceil(column_at(geometry, campaign->nearest_range_m) - half - 1e-9));
+        high = fmin(high, floor(column_at(geometry, campaign->farthest_range_m) - half + 1e-9));
+    }
     if (!(low <= high)) {
         chips->columns = 0;
         return;
@@ -50,7 +53,7 @@ static sonject_status refuse_size(const struct campaign *campaign, const struct 
 }
 
 sonject_status campaign_measure(struct report *report, struct campaign *campaign, size_t swath,
-                                const sonject_geometry_params *geometry)
+                                const sonject_geometry_params *geometry, double altitude_m)
 {
     struct swath_plan *plan = &campaign->swaths[swath];
     const uint64_t rows = (uint64_t)campaign->chip_rows + 2 * (uint64_t)campaign->edge;
@@ -59,12 +62,17 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
         return refuse_size(campaign, plan);
     struct region chips = {campaign->edge, campaign->edge, plan->layout.rows - rows + 1,
                            plan->layout.columns - columns + 1};
-    if (campaign->has_range)
-        limit_ranges(campaign, geometry, &chips);
+    limit_ranges(campaign, geometry, altitude_m, &chips);
+    if (chips.columns == 0 && !campaign->has_range)
+        return tree_failure(&campaign->tree, plan->place, "swaths",
+                            "no image within %s begins beyond the sonar's altitude, up to %g m",
+                            plan->written, altitude_m);
     if (chips.columns == 0)
         return tree_failure(&campaign->tree, plan->place, "swaths",
-                            "no image within %s has its middle at slant ranges of %g to %g m",
-                            plan->written, campaign->nearest_range_m, campaign->farthest_range_m);
+                            "no image within %s has its middle at slant ranges of %g to %g m and "
+                            "begins beyond the sonar's altitude, up to %g m",
+                            plan->written, campaign->nearest_range_m, campaign->farthest_range_m,
+                            altitude_m);
     struct region *forbidden = allocate_array(plan->avoid_count, sizeof *forbidden);
     if (!forbidden)
         return report_out_of_memory(report, "the places for images");

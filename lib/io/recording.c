@@ -113,6 +113,7 @@ static sonject_status check_and_set(struct report *report, const struct wanted *
         scene->geometry = wanted->where;
     if (wanted->altitude)
         scene->sonar.altitude_m = wanted->altitude_m;
+    scene->has_recorded_altitude = wanted->altitude;
     return SONJECT_OK;
 }
 

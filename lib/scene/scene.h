@@ -48,8 +48,9 @@ struct scene {
     sonject_elements_params elements;
     sonject_patch_params patch;
     sonject_input_kind input_kind;
-    char *input_path;      /* owned; NULL unless input_kind is SONJECT_INPUT_FILE */
-    bool input_is_complex; /* two channels of the file are real and imaginary part */
+    char *input_path;           /* owned; NULL unless input_kind is SONJECT_INPUT_FILE */
+    bool has_recorded_altitude; /* the input file says it, ping by ping */
+    bool input_is_complex;      /* two channels of the file are real and imaginary part */
     int32_t channel; /* of a file that is XTF: SONJECT_CHANNEL_PORT and the like, or a number */
     char *array;     /* owned; of several in a file, its name; NULL: the only one */
     char *band;      /* owned; which of its file's bands it is; NULL: that has none */

@@ -46,10 +46,10 @@ def note(text=b"a note of the operator"):
     return struct.pack("<HBBHHHI", 0xFACE, 1, 0, 0, 0, 0, 14 + len(body)) + body
 
 
-def xtf_bytes(port, starboard, row_spacing=0.1, empty=(), **options):
+def xtf_bytes(port, starboard, row_spacing=0.1, empty=(), altitudes=None, **options):
     """Rows x columns of 16 bit samples a side, column 0 next to the track, and a sub-bottom channel
     and notes between them. Port's samples go into the file from far to near, as recorders do. empty:
-    rows whose pings have neither position nor altitude."""
+    rows whose pings have neither position nor altitude. altitudes: of the rows, where they differ."""
     data = file_header([SUBBOTTOM, PORT, STARBOARD], units=options.pop("units", 0))
     for row, (left, right) in enumerate(zip(port, starboard)):
         lines = [
@@ -57,6 +57,8 @@ def xtf_bytes(port, starboard, row_spacing=0.1, empty=(), **options):
             (1, left[::-1].astype("<u2")),
             (2, right.astype("<u2")),
         ]
+        if altitudes is not None:
+            options["altitude"] = altitudes[row]
         place = (1000.0 + 0.6 * row_spacing * row, 2000.0 + 0.8 * row_spacing * row)
         if row in empty:
             data += ping(lines, number=row, **{**options, "altitude": 0.0})

@@ -282,3 +282,24 @@ def test_a_measured_line_is_read_by_others(sonject, tmp_path):
     assert len(changed) > 100
     assert (changed.min(0) >= (10, 1024 - 940)).all()
     assert (changed.max(0) < (130, 1024 - 340)).all()
+
+
+def test_a_campaign_keeps_out_of_the_water_column_whatever_the_altitude(sonject, tmp_path, sides):
+    altitudes = numpy.linspace(5.0, 9.0, ROWS)
+    (tmp_path / "line.xtf").write_bytes(recordings.xtf_bytes(*sides, altitudes=altitudes))
+    scene = write_scene(tmp_path, "line.xtf", channel="port").read_text()
+    kept = [line for line in scene.splitlines() if not line.startswith(("patch", "objects"))]
+    (tmp_path / "scene.yaml").write_text("\n".join(kept) + "\n")
+    (tmp_path / "campaign.yaml").write_text("""\
+sonject_campaign: 1
+scene: scene.yaml
+images: 12
+chip: {rows: 16, columns: 60}
+swaths: [{path: line.xtf}]
+targets: [{class: ball, object: {shape: sphere, diameter: 0.4 m}}]
+""")
+    answer = sonject("campaign", "campaign.yaml", "-o", "data")
+    assert answer.returncode == 0, answer.stderr
+    for path in (tmp_path / "data" / "all" / "records").iterdir():
+        first = json.loads(path.read_text())["swath"]["column"]
+        assert 0.15 * (first + 0.5) > 9.0

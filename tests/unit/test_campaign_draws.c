@@ -225,7 +225,7 @@ static void test_images_keep_from_edges_contacts_and_ranges(void **state)
     swath.layout.columns = 90;
     swath.avoid = boxes;
     swath.avoid_count = 3;
-    assert_int_equal(campaign_measure(&report, &campaign, 0, &geometry), SONJECT_OK);
+    assert_int_equal(campaign_measure(&report, &campaign, 0, &geometry, 10.0), SONJECT_OK);
     for (uint64_t row = 1; row + 16 < 60; row++)
         for (uint64_t column = 4; column <= 56; column++) {
             bool is_free = true;
