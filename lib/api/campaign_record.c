@@ -157,9 +157,10 @@ static bool is_image_name(const char *name, uint64_t id)
 {
     char stem[32];
     snprintf(stem, sizeof stem, "images/%08" PRIu64, id);
+    if (strncmp(name, stem, strlen(stem)) != 0)
+        return false;
     const char *extension = name + strlen(stem);
-    return strncmp(name, stem, strlen(stem)) == 0 &&
-           (strcmp(extension, ".png") == 0 || strcmp(extension, ".tif") == 0);
+    return strcmp(extension, ".png") == 0 || strcmp(extension, ".tif") == 0;
 }
 
 /* NULL, or what of a record is not as it should be. */
