@@ -51,8 +51,9 @@ static sonject_status explain(struct report *report, const struct device *device
     const char *first = strstr(whole, "error:");
     snprintf(log, sizeof log, "%s", first ? first : whole);
     log[strcspn(log, "\n")] = '\0';
-    return report_failure(report, SONJECT_ERROR_DEVICE, "device '%s' cannot build %s: %s: %s",
-                          device->name, text->name, cl_error_name(error), log);
+    return report_failure(report, SONJECT_ERROR_DEVICE, "device '%s' cannot build %s: %s: %s%s",
+                          device->name, text->name, cl_error_name(error), log,
+                          first ? "" : ": has its cache, such as ~/.cache/pocl, room on the disk?");
 }
 
 static sonject_status build_failure(struct report *report, const struct device *device,

@@ -227,7 +227,7 @@ def test_every_option_exists():
 
 GEOMETRY = "input.geometry={row_spacing: 5 cm, column_spacing: 5 cm, first_slant_range: 25 m}"
 XTF = ["input={path: line.xtf, channel: port}"]
-ROCK = f"objects=[{{shape: mesh, mesh: {{file: {SOURCE}/tools/targets/rock.obj}}}}]"
+ROCK = f"objects=[{{shape: mesh, mesh: {{file: {SOURCE}/tools/targets/rock.obj, unit: cm}}}}]"
 # Where a fragment of the README belongs: the key that it is the value of, "" where it tells that
 # itself, and what else the scene needs before or behind it.
 FRAGMENTS = {

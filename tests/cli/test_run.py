@@ -2,6 +2,7 @@
 
 import json
 import os
+import pathlib
 import pty
 import resource
 import shutil
@@ -31,6 +32,8 @@ RESULTS = {
     "quicklook.png",
     "run.json",
 }
+DEMO = pathlib.Path(os.environ["SONJECT_SOURCE"]) / "tools" / "scenes" / "demo.yaml"
+LARGE = ["--set", "input.synthetic.rows=1200"]  # 2.3 MB of pixels
 # So many rays that signals arrive while it traces.
 SLOW = ["--set", "injection.rays=512"]
 
@@ -272,19 +275,20 @@ def test_an_unknown_device_is_named(sonject, scene, tmp_path):
 
 
 def limit_file_size():
-    """Like a disk that is full after some kilobytes: writing beyond fails."""
+    """Like a disk that is full after what a driver writes of a program that it knows: writing beyond
+    fails."""
     signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (8192, 8192))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (2**21, 2**21))
 
 
-def test_a_limit_on_file_sizes_leaves_nothing_half(sonject, scene, tmp_path):
-    # The first run fills the caches, which are not what this is about.
-    assert sonject("run", scene, "-o", "first").returncode == 0
-    answer = sonject("run", scene, "-o", "result", preexec_fn=limit_file_size)
+def test_a_limit_on_file_sizes_leaves_nothing_half(sonject, tmp_path):
+    # The first run fills the driver's cache, which is not what this is about.
+    assert sonject("run", DEMO, *LARGE, "-o", "first").returncode == 0
+    answer = sonject("run", DEMO, *LARGE, "-o", "result", preexec_fn=limit_file_size)
     assert_refused(answer, 5, "result")
     assert not (tmp_path / "result" / "run.json").exists()
     assert {path.name for path in files_below(tmp_path / "result")} <= RESULTS
-    assert sonject("run", scene, "-o", "result").returncode == 0
+    assert sonject("run", DEMO, *LARGE, "-o", "result").returncode == 0
     assert contents(tmp_path / "result") == contents(tmp_path / "first")
 
 
@@ -363,6 +367,18 @@ def stop_at_the_bar(arguments, output, folder, variables, *numbers):
         else:
             output.unlink()
     return code, text
+
+
+@pytest.mark.parametrize("delay_s", [0.3, 1.0, 2.0])
+def test_a_signal_while_the_driver_compiles_stops_a_run(scene, tmp_path, environment, delay_s):
+    cold = {**environment, "XDG_CACHE_HOME": str(tmp_path), "POCL_CACHE_DIR": str(tmp_path / "pocl")}
+    process = subprocess.Popen([COMMAND, "run", scene, "-o", "result"], cwd=tmp_path, env=cold,
+                               text=True, stderr=subprocess.PIPE)
+    time.sleep(delay_s)
+    process.send_signal(signal.SIGTERM)
+    said = process.communicate()[1]
+    assert process.returncode == 85, said
+    assert said.endswith("sonject: stopped; run the same command again\n")
 
 
 @pytest.mark.parametrize(

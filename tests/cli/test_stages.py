@@ -9,7 +9,7 @@ import pytest
 
 import images
 from conftest import assert_refused, files_below
-from test_run import contents, limit_file_size, small_disk, stop_at_the_bar  # noqa: F401
+from test_run import DEMO, contents, limit_file_size, small_disk, stop_at_the_bar  # noqa: F401
 
 HAS_HDF5 = os.environ.get("SONJECT_HAS_HDF5") == "1"
 needs_hdf5 = pytest.mark.skipif(not HAS_HDF5, reason="built without HDF5")
@@ -147,8 +147,11 @@ def test_other_responses_give_a_runs_image_but_for_the_noise_of_rays(sonject, sc
     by_seed = numpy.median(abs(second[bright] / first[bright] - 1))
     by_stages = numpy.median(abs(formed[bright] / first[bright] - 1))
     # The traced grid is no coarser, so its rays differ no more than those of two seeds do; half as
-    # much again leaves room for the spread of two medians over thousands of pixels.
-    assert 0 < by_seed < 0.2 and by_stages < 1.5 * by_seed
+    # much again leaves room for the spread of two medians over thousands of pixels. Bins d wide, an
+    # eighth of the resolution, widen the squared pulse's variance v by d^2/6, v = 11.5 d^2, and the
+    # traced ones by a quarter of that: 1.1 % in all, which changes the energy at a distance t by
+    # (t^2/v - 1)/2 of it, 1.3 % at the median of t down to the -30 dB of what is bright.
+    assert 0 < by_seed < 0.2 and by_stages < 1.5 * by_seed + 0.013
     assert abs(formed.sum() / first.sum() - 1) < 0.02
 
 
@@ -245,9 +248,9 @@ def left_by_trace(folder):
 
 
 @needs_hdf5
-def test_a_limit_on_file_sizes_leaves_no_trace(sonject, scene, tmp_path):
-    command(sonject, "trace", scene, "-o", "first.h5")  # fills the caches too
-    answer = sonject("trace", scene, "-o", "impulses.h5", preexec_fn=limit_file_size)
+def test_a_limit_on_file_sizes_leaves_no_trace(sonject, tmp_path):
+    command(sonject, "trace", DEMO, "-o", "first.h5")  # fills the driver's cache too
+    answer = sonject("trace", DEMO, "-o", "impulses.h5", preexec_fn=limit_file_size)
     assert_refused(answer, 5, "impulses.h5", "cannot write")
     assert left_by_trace(tmp_path) == {"first.h5"}
 

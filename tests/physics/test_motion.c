@@ -31,7 +31,7 @@ static void open_aperture(struct bench *bench)
     bench->scene.sonar.along_track_resolution_m = RESOLUTION;
     bench->scene.sonar.response_window = SONJECT_WINDOW_HAMMING; /* lobes at -43 dB */
     bench_move(bench, RANGE);
-    sonject_object_params *object = bench_add(bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.002);
+    sonject_object_params *object = bench_add(bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.008);
     object->burial_m = -0.1;
     object->position_kind = SONJECT_POSITION_METRES;
     object->position_along = MIDDLE * SPACING;

@@ -191,6 +191,7 @@ static void open_fine(struct bench *bench, size_t window)
     bench->scene.sonar.along_track_resolution_m = 0.04;
     choose_window(&bench->scene.sonar, window);
     bench_move(bench, RANGE);
+    bench->scene.sonar.centre_frequency_hz = 800e3; /* a ball is half a wavelength large at least */
     bench_add(bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.001)->burial_m = -0.1;
     bench_ready(bench);
     /* puts the ball on the middle of the middle pixel */

@@ -93,7 +93,7 @@ static void test_point_widens_with_range(void **unused)
         struct echoes echoes;
         bench_open(&bench, ROWS, COLUMNS, ranges[i]);
         choose_sidescan(&bench, ranges[i]);
-        hang_ball(&bench, ranges[i], 0.002);
+        hang_ball(&bench, ranges[i], 0.008);
         bench_ready(&bench);
         const double range = placement_range(&bench.placements[0], &bench.tracer.view);
         bench_echoes(&bench, NULL, SEABED_FIELD_NONE, &echoes);
@@ -147,7 +147,7 @@ static void test_turned_array(void **unused)
         bench.scene.geometry.side = i ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
         bench.scene.sonar.array_heading_rad = 0.006;
         bench.scene.sonar.array_pitch_rad = -0.004;
-        hang_ball(&bench, 40.0, 0.002);
+        hang_ball(&bench, 40.0, 0.008);
         bench_ready(&bench);
         assert_int_equal(cross_range_check(&bench.tracer.response, &bench.report, &bench.scene,
                                            &bench.tracer.view),
@@ -187,7 +187,7 @@ static void test_synthetic_aperture_does_not(void **unused)
         bench.scene.geometry.row_spacing_m = SPACING;
         bench.scene.sonar.along_track_resolution_m = 0.4;
         bench_move(&bench, ranges[i]);
-        hang_ball(&bench, ranges[i], 0.002);
+        hang_ball(&bench, ranges[i], 0.008);
         bench_ready(&bench);
         bench_echoes(&bench, NULL, SEABED_FIELD_NONE, &echoes);
         expect_close("half-power width, m",

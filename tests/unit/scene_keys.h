@@ -571,11 +571,11 @@ static const struct key_case {
     {"objects[].parts[].cuts[].distance", small, "-5 cm", TYPE_DOUBLE, SIZED(cuts[0].distance_m),
      -0.05, NULL, A_PART(A_SPHERE ", cuts: [{distance: 0}]")},
 #define MESH(member) offsetof(struct mesh, member)
-#define ROCK         SOURCE_ROOT "/tools/targets/rock.obj"
-#define A_MESH       "objects[0]={shape: mesh, mesh: {file: '" ROCK "'}}"
-#define A_MESH_PART  A_PART("shape: mesh, mesh: {file: '" ROCK "'}")
-    {"objects[].mesh", small, ROCK, TYPE_PATH, MESH(name), 0.0, ROCK, "objects[0]={shape: mesh}"},
-    {"objects[].mesh.file", small, ROCK, TYPE_PATH, MESH(name), 0.0, ROCK,
+#define SOLID        SOURCE_ROOT "/tests/unit/tetrahedron.obj"
+#define A_MESH       "objects[0]={shape: mesh, mesh: {file: '" SOLID "'}}"
+#define A_MESH_PART  A_PART("shape: mesh, mesh: {file: '" SOLID "'}")
+    {"objects[].mesh", small, SOLID, TYPE_PATH, MESH(name), 0.0, SOLID, "objects[0]={shape: mesh}"},
+    {"objects[].mesh.file", small, SOLID, TYPE_PATH, MESH(name), 0.0, SOLID,
      "objects[0]={shape: mesh}"},
     {"objects[].mesh.unit", small, "cm", TYPE_DOUBLE, MESH(options.unit_m), 0.01, NULL, A_MESH},
     {"objects[].mesh.nose", small, "y", TYPE_U32, MESH(options.axes[0]), 2.0, NULL, A_MESH},
@@ -583,9 +583,9 @@ static const struct key_case {
     {"objects[].mesh.open", small, "true", TYPE_NOTHING, 0, 0.0, NULL, A_MESH},
     {"objects[].mesh.smooth", small, "90 deg", TYPE_DOUBLE, MESH(options.smooth_angle_rad),
      PI / 2.0, NULL, A_MESH},
-    {"objects[].parts[].mesh", small, ROCK, TYPE_PATH, MESH(name), 0.0, ROCK,
+    {"objects[].parts[].mesh", small, SOLID, TYPE_PATH, MESH(name), 0.0, SOLID,
      A_PART("shape: mesh")},
-    {"objects[].parts[].mesh.file", small, ROCK, TYPE_PATH, MESH(name), 0.0, ROCK,
+    {"objects[].parts[].mesh.file", small, SOLID, TYPE_PATH, MESH(name), 0.0, SOLID,
      A_PART("shape: mesh")},
     {"objects[].parts[].mesh.unit", small, "cm", TYPE_DOUBLE, MESH(options.unit_m), 0.01, NULL,
      A_MESH_PART},
