@@ -66,7 +66,7 @@ static void expect_places(const char *message, const char *path, const char *tex
 {
     unsigned long last_line = 1, last_column = 1;
     for (const char *at = message, *end; *at; at = *end ? end + 1 : end) {
-        unsigned long line, column;
+        unsigned long line = 0, column = 0;
         int length = 0;
         end = at + strcspn(at, "\n");
         if (at != message && *end == 0 && sscanf(at, "and %lu more%n", &line, &length) == 1)
