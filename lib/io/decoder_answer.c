@@ -361,7 +361,7 @@ static const struct answer {
 static bool is_possible(struct question *question, const struct answer *answer)
 {
     const struct decoder_request *request = question->request;
-    const char *text = question->samples;
+    const char *text = request->bytes > 0 ? question->samples : "";
     const char *end = text + request->bytes;
     for (unsigned i = 0; i < answer->texts; i++) {
         const char *zero = text < end ? memchr(text, '\0', (size_t)(end - text)) : NULL;

@@ -245,7 +245,7 @@ static void a_file_that_ends_the_decoder_ends_one_call(void **state)
     const char *path = temporary_file(*state, "overread.h5");
     make_overread(path);
     assert_int_equal(use_file(&host, path, NULL), SONJECT_ERROR_INPUT);
-    expect_says(&host, "overread.h5: is damaged: the program that reads it ended (signal 11)");
+    expect_says(&host, "overread.h5: is damaged: the program that reads it ended");
     path = temporary_file(*state, "a.h5");
     make_file(path, 0);
     assert_int_equal(use_file(&host, path, NULL), SONJECT_OK);
