@@ -34,6 +34,7 @@ static void lay_sphere(struct fan_record *fan, struct chain_record *chains,
     fan->strips = 1;
     fan->bins_per_metre = BINS_A_METRE;
     fan->bins = BINS;
+    fan->first_bin = 1.0f;        /* echoes come up to 0.04 bins before the middle one */
     fan->quanta = 17179869184.0f; /* so fine that what is cut off does not count */
     fan->seed_low = 11;
     fan->stream = STREAM_CHAIN_RAYS;
@@ -45,6 +46,8 @@ static void lay_sphere(struct fan_record *fan, struct chain_record *chains,
     chains->first_order = 1;
     chains->planes = ORDERS;
     chains->tally_strips = 1;
+    for (int i = 0; i < CHAIN_ORDERS_MAX; i++)
+        chains->finer[i] = 1.0f;
     memset(sphere, 0, sizeof *sphere);
     sphere->shape = SHAPE_SPHERE;
     sphere->centre_y = -RADIUS * fan->cosine_depression;
@@ -63,8 +66,8 @@ static void raw_energies(const struct fan_record *fan, const int64_t *tallies,
     for (int order = 0; order < ORDERS; order++) {
         energy[order] = 0.0;
         for (int bin = 0; bin < BINS; bin++) {
-            const double half_path =
-                (double)fan->reference_range + (double)bin / (double)fan->bins_per_metre;
+            const double half_path = (double)fan->reference_range +
+                                     (bin - (double)fan->first_bin) / (double)fan->bins_per_metre;
             energy[order] += (double)tallies[order * BINS + bin] / pow(half_path, 4.0);
         }
     }
