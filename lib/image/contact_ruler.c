@@ -253,9 +253,10 @@ static void measure_dim_part(const struct contact_lines *lines, const struct sha
         return;
     const struct profile_path path = {*middle, false, (size_t)first, 1, (size_t)columns};
     const struct profile profile = profile_with_skirt(lines, &path);
+    const double level = sizes->shadow.energy / (double)sizes->shadow.pixels;
     double gain;
     for (size_t k = 0; k < profile.count; k++)
-        lines->skirt[k] /= sizes->shadow_intensity;
+        lines->skirt[k] /= level;
     const struct profile_edge change = find_profile_change(&profile, &gain);
     if (gain < DIM_GAIN)
         return;
