@@ -10,6 +10,7 @@
 #include "trace/object_buffer.h"
 #include "trace/patch_fan.h"
 #include "trace/sea_surface.h"
+#include "trace/sources.h"
 #include "trace/stint.h"
 #include "trace/target_spheres.h"
 
@@ -65,14 +66,14 @@ struct most_sent {
 };
 
 /* is_led: the way on is sought among the targets, so that what goes there counts for itself and not
- * for a share of the albedo. factor: of the map. */
+ * for a share of the albedo. rough: what the rough part is times, 0 if there is none. */
 static void join_surface(struct most_sent *most, const sonject_material_params *material,
-                         bool is_led, double factor)
+                         bool is_led, double rough)
 {
     const bool is_fluid = material->reflection_kind == SONJECT_REFLECTION_FLUID;
     const double mirror = is_fluid ? 1.0 : material->reflection * material->reflection;
-    const double scattering = factor * material_brightness(material);
-    const double albedo = PI * material->lambert + material->glossy_albedo;
+    const double scattering = rough * material_brightness(material);
+    const double albedo = rough * (PI * material->lambert + material->glossy_albedo);
     most->onward = fmax(most->onward, mirror + (is_led ? 2.0 * PI * scattering : albedo));
     most->home = fmax(most->home, scattering);
 }
@@ -89,10 +90,12 @@ static struct most_sent most_sent_by_surfaces(const struct chain_trace *trace,
         for (size_t i = 0; i < tracer->view.rows * tracer->view.columns; i++)
             brightest = fmax(brightest, map[i]);
     join_surface(&most, &seabed, true, brightest);
-    for (uint32_t i = 0; i < tracer->part_count; i++)
-        join_surface(&most, tracer->placements[i].material, false, 1.0);
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
+        const sonject_material_params *material = tracer->placements[i].material;
+        join_surface(&most, material, false, material_is_rough(material));
+    }
     if (trace->has_sea_surface)
-        join_surface(&most, &sea_surface, true, 1.0);
+        join_surface(&most, &sea_surface, true, material_is_rough(&sea_surface));
     return most;
 }
 

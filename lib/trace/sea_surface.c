@@ -5,12 +5,6 @@
 #include "scene/surface_material.h"
 #include "trace/sources.h"
 
-static bool is_rough(const sonject_material_params *material)
-{
-    return (!material_is_smooth(material) || material->roughness_m > 0.0) &&
-           material_is_rough(material);
-}
-
 /* A mirror alone lengthens chains of two interactions to three; what it adds to a single one is the
  * pairs of sources'. */
 static bool adds_to_chains(const struct scene *scene)
@@ -18,7 +12,7 @@ static bool adds_to_chains(const struct scene *scene)
     const sonject_material_params material = surface_material(&scene->surface);
     const uint32_t interactions = scene->injection.interactions;
     return interactions > 1 &&
-           (is_rough(&material) || (material_is_smooth(&material) && interactions > 2));
+           (material_is_rough(&material) || (material_is_smooth(&material) && interactions > 2));
 }
 
 static double earliest_half_path(const struct tracer *tracer)

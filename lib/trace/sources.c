@@ -9,7 +9,8 @@ bool material_is_smooth(const sonject_material_params *material)
 
 bool material_is_rough(const sonject_material_params *material)
 {
-    return material->lambert > 0.0 || material->glossy_albedo > 0.0;
+    return (material->lambert > 0.0 || material->glossy_albedo > 0.0) &&
+           (!material_is_smooth(material) || material->roughness_m > 0.0);
 }
 
 bool scene_mirror(const struct scene *scene, enum mirror_kind kind, double *height_m,

@@ -20,7 +20,8 @@ struct sound_source {
     enum mirror_kind last_mirror; /* of no meaning without bounces */
 };
 
-/* Whether the material has a mirror-like part. */
+/* Whether the material has a mirror-like part, and one that scatters: of what mirrors, that is what
+ * roughness takes from it. */
 bool material_is_smooth(const sonject_material_params *material);
 bool material_is_rough(const sonject_material_params *material);
 
