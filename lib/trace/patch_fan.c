@@ -7,10 +7,9 @@
 #include "trace/object_rays.h"
 #include "trace/sources.h"
 
-#define PI          3.14159265358979323846
-#define RAYS_MAX    67108864.0
-#define OBJECT_RAYS 16.0  /* at least, on a rough object: its echo's energy is then known to 1 dB  \
-                           */
+#define PI           3.14159265358979323846
+#define RAYS_MAX     67108864.0
+#define OBJECT_RAYS  16.0 /* at least, on a rough object: its energy is then known to 1 dB */
 #define SURROUNDINGS 18.0 /* in bounding radii of an object */
 
 void patch_fan_origin(double origin[3], const struct patch_view *view)
