@@ -52,6 +52,17 @@ double line_grid_shortest_deviation(const struct line_grid *grid, double column_
            (2.0 * sqrt(log(2.0)) * (double)grid->bins_per_pixel);
 }
 
+double line_grid_near_end(const struct line_grid *grid, const struct patch_view *view)
+{
+    return view_apparent_range(view, (grid->bins.first - 1.0) / grid->bins_per_pixel);
+}
+
+double line_grid_far_end(const struct line_grid *grid, const struct patch_view *view)
+{
+    const double end = grid->bins.first + grid->bins.count;
+    return view_apparent_range(view, end / grid->bins_per_pixel);
+}
+
 size_t line_grid_cells(const struct line_grid *grid)
 {
     return (size_t)grid->strips.count * (size_t)grid->bins.count;

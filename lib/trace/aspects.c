@@ -20,12 +20,10 @@ double aspects_slide(const struct tracer *tracer, double length_m)
     return length_m * sine / sqrt(1.0 - sine * sine);
 }
 
-/* True range of the grid's last bin. */
+/* True range of the grid's end. */
 static double range_of_end(const struct tracer *tracer, const struct line_grid *grid)
 {
-    const double last_bin = grid->bins.first + grid->bins.count - 0.5;
-    return view_apparent_range(&tracer->view, last_bin / grid->bins_per_pixel) /
-           tracer->view.range_ratio;
+    return line_grid_far_end(grid, &tracer->view) / tracer->view.range_ratio;
 }
 
 void aspects_record_init(struct fan_record *fan, const struct tracer *tracer,

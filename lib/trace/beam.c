@@ -45,8 +45,7 @@ sonject_status beam_record_init(struct fan_record *fan, const struct tracer *tra
         fan->beam.across[k] = (float)axes[2][k];
     }
     /* what lies at the near end's range off broadside is nearer abreast */
-    const double near = view_apparent_range(view, (grid->bins.first - 0.5) / grid->bins_per_pixel) *
-                        sqrt(1.0 - sine * sine);
+    const double near = line_grid_near_end(grid, view) * sqrt(1.0 - sine * sine);
     double origin[3];
     patch_fan_origin(origin, view);
     const double central = water_way_grazing(&view->water, origin[1], 0.0);

@@ -54,9 +54,7 @@ static sonject_status lay_seabed_fan(struct chain_fan *fan, struct tracer *trace
     const struct surroundings around = surroundings_of_objects(tracer);
     /* an echo never comes before that of its first hit, so seabed beyond the patch has none in it
      */
-    const double patch_end = view_ground_range(
-        view, view_apparent_range(view, (grid->bins.first + grid->bins.count - 0.5) /
-                                            grid->bins_per_pixel));
+    const double patch_end = view_ground_range(view, line_grid_far_end(grid, view));
     const double far = water_way_grazing(&view->water, fmin(around.far_ground, patch_end), 0.0);
     const double near = around.near_ground > 0.0
                             ? water_way_grazing(&view->water, around.near_ground, 0.0)

@@ -21,12 +21,6 @@ void patch_fan_origin(double origin[3], const struct patch_view *view)
     origin[2] = 0.0;
 }
 
-/* Apparent range at a bin coordinate. */
-static double range_of_bin(const struct tracer *tracer, const struct line_grid *grid, double bin)
-{
-    return view_apparent_range(&tracer->view, bin / grid->bins_per_pixel);
-}
-
 /* Seabed and heights that rays of the patch's frame come to. */
 struct region {
     double near, far;   /* ground range, m */
@@ -52,9 +46,8 @@ static struct region region_of_patch(const struct tracer *tracer, const struct l
     static const double upward[3] = {0.0, 0.0, 1.0};
     const struct patch_view *view = &tracer->view;
     struct region region;
-    region.near = view_ground_range(view, range_of_bin(tracer, grid, grid->bins.first - 0.5));
-    region.far = view_ground_range(
-        view, range_of_bin(tracer, grid, grid->bins.first + grid->bins.count - 0.5));
+    region.near = view_ground_range(view, line_grid_near_end(grid, view));
+    region.far = view_ground_range(view, line_grid_far_end(grid, view));
     region.bottom = tracer_lowest_seabed(tracer);
     region.top = tracer_highest_seabed(tracer);
     for (uint32_t i = 0; i < tracer->part_count; i++) {
@@ -158,9 +151,8 @@ sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
     fan->map_rows = has_map ? (int32_t)view->rows : 0;
     fan->map_columns = has_map ? (int32_t)view->columns : 0;
     const double central = water_way_grazing(&view->water, origin[1], 0.0);
-    const double near = view_grazing(view, range_of_bin(tracer, grid, grid->bins.first - 0.5));
-    const double far =
-        view_grazing(view, range_of_bin(tracer, grid, grid->bins.first + grid->bins.count - 0.5));
+    const double near = view_grazing(view, line_grid_near_end(grid, view));
+    const double far = view_grazing(view, line_grid_far_end(grid, view));
     struct grazing_angles edges = {near, far};
     if (tracer->relief)
         edges = grazing_over_relief(tracer, edges);

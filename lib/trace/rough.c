@@ -79,9 +79,8 @@ static double part_slide(const struct rough_trace *trace, const struct tracer *t
     const double sine = has_beam(trace) ? beam_largest_sine(tracer) : 0.0;
     if (has_beam(trace)) /* rays belong to the ping that they leave from */
         return ranges.last * sine / sqrt(1.0 - sine * sine);
-    const double bins = trace->grid.bins.first + trace->grid.bins.count;
-    const double patch_end = view_apparent_range(&tracer->view, bins / trace->grid.bins_per_pixel) /
-                             tracer->view.range_ratio;
+    const double patch_end =
+        line_grid_far_end(&trace->grid, &tracer->view) / tracer->view.range_ratio;
     return aspects_slide(tracer, fmax(fmin(ranges.last, patch_end) - ranges.first, 0.0));
 }
 

@@ -38,8 +38,6 @@ bool sea_surface_is_in_chains(const struct tracer *tracer, const struct line_gri
     if (!(depth > 0.0) || !adds_to_chains(tracer->scene) ||
         (water->count > 1 && water->layers[1].bottom_m < depth))
         return false;
-    const double last_range = view_apparent_range(
-        view, (grid->bins.first + grid->bins.count + 1.0) / grid->bins_per_pixel);
     const double side = tracer->scene->sonar.transducer_side_m;
-    return (earliest_half_path(tracer) - side) * view->range_ratio < last_range;
+    return (earliest_half_path(tracer) - side) * view->range_ratio < line_grid_far_end(grid, view);
 }

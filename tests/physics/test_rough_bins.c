@@ -1,5 +1,5 @@
-/* A rough face at one range, moved through a pixel in steps finer than bins: its echo is the pulse
- * at its own range, of its own energy, wherever bins lie. */
+/* Echoes between range bins. A rough face at one range, moved through a pixel in steps finer than
+ * bins: its echo is the pulse at its own range, of its own energy, wherever bins lie. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include <math.h>
+#include <stdlib.h>
 
 #include "bench.h"
 
@@ -97,8 +98,46 @@ static void test_face_within_a_pixel(void **unused)
     bench_close(&bench);
 }
 
+/* Echoes from beyond the middles of the outermost bins share with them too: rays go that far. Over
+ * its neighbour each has 1 but for 1e-4 of range. */
+static void test_outermost_bins_are_full(void **unused)
+{
+    (void)unused;
+    struct bench bench;
+    struct rough_trace trace;
+    bench_open(&bench, 64, 96, 50.0);
+    bench.scene.injection.ray_scale = 16.0;
+    bench_ready(&bench);
+    assert_int_equal(rough_trace_begin(&trace, &bench.tracer, NULL), SONJECT_OK);
+    const int32_t strips = trace.grid.strips.count;
+    const int32_t bins = trace.grid.bins.count;
+    float *energy = calloc(line_grid_cells(&trace.grid), sizeof *energy);
+    assert_non_null(energy);
+    assert_int_equal(rough_trace_strips(&trace, &bench.tracer, trace.grid.strips, energy),
+                     SONJECT_OK);
+    const int32_t outermost[2] = {0, bins - 1};
+    for (int end = 0; end < 2; end++) {
+        double sum = 0.0, square = 0.0;
+        for (int32_t strip = 0; strip < strips; strip++) {
+            const float *line = &energy[strip * bins];
+            const double ratio =
+                (double)line[outermost[end]] / (double)line[end == 0 ? 1 : bins - 2];
+            sum += ratio / strips;
+            square += ratio * ratio / strips;
+        }
+        expect_close("outermost bin over the one beside it", sum, 1.0,
+                     1e-3 + 4.0 * sqrt((square - sum * sum) / strips));
+    }
+    free(energy);
+    rough_trace_end(&trace);
+    bench_close(&bench);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_face_within_a_pixel)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_face_within_a_pixel),
+        cmocka_unit_test(test_outermost_bins_are_full),
+    };
     return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
 }

@@ -305,8 +305,7 @@ static void look_at_seabed(struct bench *bench, enum convention convention,
     struct line_grid grid;
     const struct patch_view *view = &bench->tracer.view;
     line_grid_for_patch(&grid, view, &bench->tracer.response);
-    request->near_ground = view_ground_range(
-        view, view_apparent_range(view, (grid.bins.first - 0.5) / grid.bins_per_pixel));
+    request->near_ground = view_ground_range(view, line_grid_near_end(&grid, view));
     request->far_ground = INFINITY;
     request->reach_x = INFINITY;
 }
