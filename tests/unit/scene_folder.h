@@ -85,10 +85,11 @@ static inline void expect_scene_refused(struct scene_folder *folder, const char 
     write_scene(folder, text, strlen(text));
     if (read_scene(folder, NULL, 0) != SONJECT_ERROR_INPUT)
         fail_msg("not refused: %s", text);
-    for (const char *line = message; *line;
-         line += strcspn(line, "\n") + (strchr(line, '\n') != NULL))
-        sprintf(expected + strlen(expected), "%s%s%.*s", line == message ? "" : "\n", folder->file,
-                (int)strcspn(line, "\n"), line);
+    for (const char *line = message, *end; *line; line = *end ? end + 1 : end) {
+        end = line + strcspn(line, "\n");
+        strcat(strcat(expected, line == message ? "" : "\n"), folder->file);
+        strncat(expected, line, (size_t)(end - line));
+    }
     if (strcmp(folder->report.message, expected) != 0)
         fail_msg("the message is\n%s\nand not\n%s", folder->report.message, expected);
 }
