@@ -158,8 +158,13 @@ static void test_lines_beyond_fifty_are_counted(void **state)
         sprintf(text + strlen(text), "  unheard_of_%d: 1\n", i);
     write_scene(folder, text, strlen(text));
     assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
-    assert_int_equal(lines_of(folder->report.message), 51);
-    assert_string_equal(strrchr(folder->report.message, '\n'), "\nand 10 more");
+    /* fifty, or, where the folder's name is long, as many as there is room for */
+    const char *message = folder->report.message;
+    const int told = (int)lines_of(message) - 1;
+    char rest[32];
+    sprintf(rest, "\nand %d more", 60 - told);
+    assert_string_equal(strrchr(message, '\n'), rest);
+    assert_true(told == 50 || (told < 50 && strlen(message) > REPORT_CAPACITY - REPORT_LINE));
 }
 
 static void test_broken_yaml_ends_the_reading(void **state)
