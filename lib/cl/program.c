@@ -96,7 +96,12 @@ static cl_program find_or_build(struct device *device, const struct program_text
                                         (const char **)text->pieces, NULL, &building->error);
     if (building->error != CL_SUCCESS)
         return NULL;
-    building->error = clBuildProgram(program, 1, &device->id, text->options, NULL, NULL);
+    /* LLVM removes its files at a signal, and so fails in what it was about. Kernels that are known
+     * to be right are built again, for the caller to stop as it does elsewhere. */
+    int tries = text->explain ? 1 : 3;
+    do
+        building->error = clBuildProgram(program, 1, &device->id, text->options, NULL, NULL);
+    while (building->error == CL_BUILD_PROGRAM_FAILURE && --tries > 0);
     if (building->error != CL_SUCCESS) {
         building->failed = program;
         return NULL;
