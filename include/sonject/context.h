@@ -28,9 +28,10 @@ typedef struct sonject_context_params {
     void *opencl_device;  /* the cl_device_id to use in that context; NULL with no context */
     sonject_log_function log; /* NULL: silent */
     void *log_user;
-    uint32_t decodes_in_process; /* 0: HDF5 and MATLAB v7.3 files are read by a child process, the
-                                    program sonject-decoder, so that one that ends HDF5 ends only a
-                                    call; 1: in this process, for hosts that may not start others */
+    uint32_t decodes_in_process; /* 0: images, HDF5 and MATLAB v7.3 files are read by a child
+                                    process, the program sonject-decoder, so that one that ends a
+                                    library ends only a call; 1: in this process, for hosts that may
+                                    not start others */
     uint32_t reserved_end;       /* 0 */
 } sonject_context_params;
 

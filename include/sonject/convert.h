@@ -28,9 +28,10 @@ typedef struct sonject_convert_params {
     uint32_t struct_size;
     int32_t channel;    /* of an XTF file, SONJECT_CHANNEL_ONLY by default */
     const char *input;  /* any image, array or recording that runs read */
-    const char *output; /* .tif, .png, .npy, .h5, .pgm, .pfm; with `into` any */
+    const char *output; /* .tif, .png, .npy, .h5; with `into` any */
     const char *into;   /* NULL, or a file of the output's size and type: the output is a copy of it
-                           with the input's samples, all else untouched */
+                           with the input's samples, all else untouched; not of
+                           OpenEXR, PGM, PFM and BMP, whose copies are TIFF */
     const char *array;  /* in an HDF5 or MATLAB file of several, its name; NULL: the only one */
     uint32_t samples;   /* sonject_samples; another type needs a scale */
     uint32_t magnitude; /* 1: of complex samples their magnitude */
@@ -46,7 +47,7 @@ typedef struct sonject_convert_params {
 SONJECT_API void sonject_convert_params_init(sonject_convert_params *params);
 
 /* Converts a file. Geometry that is known goes with the samples where the format keeps texts (all
- * but .npy and .pfm; a line of the log tells of it). Channel and array are those of
+ * but .npy; a line of the log tells of it). Channel and array are those of
  * `input`, and of `into` where that has several. Doubles become floats. Refused (INPUT): samples
  * that the new type cannot hold, formats that cannot hold the samples as they are, a range axis of
  * an input that does not tell its own, and whatever would do nothing. The output appears whole or

@@ -168,8 +168,8 @@ SONJECT_API sonject_status sonject_scene_set_injection(sonject_scene *scene,
                                                        const sonject_injection_params *injection);
 SONJECT_API sonject_status sonject_scene_set_patch(sonject_scene *scene,
                                                    const sonject_patch_params *patch);
-/* An image (TIFF, PNG, JPEG, JPEG 2000, OpenEXR, PGM, PFM, BMP, Targa, FITS), an array (NumPy,
- * HDF5, MATLAB) or an XTF file. path is copied. */
+/* An image (TIFF, PNG, JPEG, OpenEXR, PGM, PFM, BMP), an array (NumPy, HDF5, MATLAB) or an XTF
+ * file. path is copied. */
 SONJECT_API sonject_status sonject_scene_set_input_file(sonject_scene *scene, const char *path);
 /* The channel of an input file that is XTF: 0...63, SONJECT_CHANNEL_PORT and the like; by default
  * SONJECT_CHANNEL_ONLY. Rows are pings, columns range cells from the track outwards on either side.

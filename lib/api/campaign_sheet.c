@@ -94,15 +94,15 @@ static sonject_status shade(struct report *report, enum pixel_type type, struct 
 static sonject_status load_thumbnail(struct report *report, const char *path,
                                      struct thumbnail *small)
 {
-    struct raster_file *file;
+    struct decoded_image *file;
     struct raster_layout layout;
     size_t bytes;
     void *pixels = NULL;
     memset(small, 0, sizeof *small);
-    sonject_status status = raster_file_open(report, path, &file);
+    sonject_status status = decoded_image_open(report, path, NULL, &file);
     if (status != SONJECT_OK)
         return status;
-    raster_file_layout(file, &layout);
+    layout = file->layout;
     const struct region all = {0, 0, layout.rows, layout.columns};
     const double longer = (double)(layout.rows > layout.columns ? layout.rows : layout.columns);
     small->scale = fmin(1.0, CELL_SIDE / longer);
@@ -112,13 +112,13 @@ static sonject_status load_thumbnail(struct report *report, const char *path,
         region_bytes(&layout, &all, &bytes))
         pixels = allocate_array(bytes, 1);
     small->values = allocate_array((size_t)small->rows * small->columns, sizeof *small->values);
-    status = pixels && small->values ? raster_file_read(report, file, &all, pixels)
+    status = pixels && small->values ? decoded_image_read(report, file, &all, pixels)
                                      : report_out_of_memory(report, "the contact sheet");
     if (status == SONJECT_OK) {
         reduce(&layout, pixels, small);
         status = shade(report, layout.type, small);
     }
-    raster_file_close(&file);
+    decoded_image_close(&file);
     free(pixels);
     return status;
 }

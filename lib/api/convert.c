@@ -96,6 +96,11 @@ static sonject_status write_into(struct report *report, const sonject_convert_pa
         status = report_failure(report, SONJECT_ERROR_INPUT,
                                 "%s: a JPEG would change the samples: choose another format",
                                 params->into);
+    else if (!swath_file_is_patched(file))
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "%s: files of this kind are not changed in place: write a new .tif "
+                                "instead",
+                                params->into);
     else if (layout.rows != ours->rows || layout.columns != ours->columns ||
              layout.channels != ours->channels || layout.type != ours->type)
         status = report_failure(report, SONJECT_ERROR_INPUT,
@@ -125,7 +130,7 @@ static sonject_status write_new(struct report *report, const sonject_convert_par
     const sonject_status status = raster_format_write(report, params->output, &conversion->layout,
                                                       attributes, count, conversion->pixels);
     if (status == SONJECT_OK && count > 0 && !raster_format_keeps_attributes(params->output))
-        report_news(report, "%s keeps no geometry: .tif, .png, .h5 and .pgm do", params->output);
+        report_news(report, "%s keeps no geometry: .tif, .png and .h5 do", params->output);
     return status;
 }
 

@@ -98,6 +98,11 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
         status = swath_write(report, facts->scene, facts->swath, result, path, tell_stage, &writing,
                              &result->statistics.output_clipped);
     free(path);
+    if (status == SONJECT_OK && facts->scene->input_kind == SONJECT_INPUT_FILE &&
+        !facts->swath->is_patched)
+        report_news(report,
+                    "%s is written as a new TIFF: files of the input's kind are not changed",
+                    facts->image_name);
     if (status == SONJECT_OK)
         status = file_list_add(&facts->files, report, folder, facts->image_name, true);
     if (status == SONJECT_OK)
@@ -199,7 +204,7 @@ sonject_status run_scene(struct sonject_context *context, const struct run_reque
     sonject_status status = open_swath(report, request, &swath);
     if (status != SONJECT_OK)
         return status;
-    char *image_name = swath_image_name(request->scene);
+    char *image_name = swath_image_name(request->scene, &swath);
     facts.scene = request->scene;
     facts.swath = &swath;
     facts.scene_hash = hash;

@@ -46,6 +46,7 @@ static sonject_status describe_file(struct report *report, const struct scene *s
     const struct xtf_file *recording = swath_file_xtf(file);
     swath_file_layout(file, &swath->layout);
     swath->is_lossless = swath_file_is_lossless(file);
+    swath->is_patched = swath_file_is_patched(file);
     swath->is_complex = swath->layout.channels == 2;
     swath->transfer = scene->transfer;
     const double largest = (double)swath_file_largest(file);
@@ -341,10 +342,10 @@ void swath_close(struct swath *swath)
     memset(swath, 0, sizeof *swath);
 }
 
-char *swath_image_name(const struct scene *scene)
+char *swath_image_name(const struct scene *scene, const struct swath *swath)
 {
     const char *extension = ".tif";
-    if (scene->input_kind == SONJECT_INPUT_FILE) {
+    if (swath->is_patched) {
         const char *dot = strrchr(scene->input_path, '.');
         const char *slash = strrchr(scene->input_path, '/');
         if (dot && (!slash || dot > slash))

@@ -22,6 +22,7 @@ struct swath {
     bool is_made; /* by sonject */
     bool is_lossless;
     bool is_whole; /* numbers that the file limits: integers, also where the layout has floats */
+    bool is_patched; /* the image is the input's file with other pixels, not a TIFF */
     struct track track;                /* of a recording */
     uint64_t clipped;                  /* pixels at full scale */
     char identity[HASH_TEXT_CAPACITY]; /* of path, size, time and patch pixels; of parameters if
@@ -61,9 +62,9 @@ void *swath_stored_result(const struct swath *swath, const struct injection_resu
 /* The patch, as an injection takes it; its pixels stay the swath's. */
 struct injection_input swath_input(const struct swath *swath);
 
-/* "image.tif" and the like: the input's extension, .tif for a made swath. To be given to free();
- * NULL when memory is out. */
-char *swath_image_name(const struct scene *scene);
+/* "image.png" and the like: the input's extension where it is patched, else .tif. To be given to
+ * free(); NULL when memory is out. */
+char *swath_image_name(const struct scene *scene, const struct swath *swath);
 
 /* Writes the swath with the result's patch at path, in the input's format, type and transfer;
  * pixels that were not touched keep their stored bytes. *clipped gets the number of touched pixels

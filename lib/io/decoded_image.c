@@ -8,7 +8,8 @@
 #include "base/memory.h"
 #include "io/byte_file.h"
 
-#define SIDE_MAX ((uint64_t)1 << 31)
+#define SIDE_MAX      ((uint64_t)1 << 31)
+#define ATTRIBUTE_MAX ((size_t)64 << 20) /* bytes of any that a decoder gives */
 
 static sonject_status check_reply(struct report *report, const struct decoder_file *file,
                                   const struct decoder_reply *reply)
@@ -65,9 +66,16 @@ bool decoded_image_attribute(struct decoded_image *image, const char *name, char
     struct report unheard = {{0}, NULL, NULL};
     struct decoder_request request = {.function = DECODER_ATTRIBUTE, .bytes = strlen(name) + 1};
     struct decoder_reply reply;
-    struct decoder_bytes out = {value, capacity, 0};
-    return decoder_ask(&unheard, &image->file, &request, name, &reply, &out) == SONJECT_OK &&
-           out.count > 0 && value[out.count - 1] == '\0';
+    struct decoder_bytes out = {NULL, ATTRIBUTE_MAX, 0};
+    const bool is_there =
+        decoder_ask(&unheard, &image->file, &request, name, &reply, &out) == SONJECT_OK &&
+        out.count > 0 && out.count <= capacity;
+    if (is_there) {
+        memcpy(value, out.bytes, out.count);
+        value[out.count - 1] = '\0';
+    }
+    free(out.bytes);
+    return is_there;
 }
 
 /* A region's samples pass piece by piece, each of some rows, or of some columns where these lie

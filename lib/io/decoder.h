@@ -23,7 +23,8 @@
 #define DECODER_PIECE_BYTES  ((size_t)16 << 20)  /* of samples in a request, or one line */
 
 /* What is asked. `in`: the request's bytes, texts that each end with a 0, or samples. `out`: the
- * reply's. Images are the array of a file; trees are files whose parts have names. */
+ * reply's. Images are files of
+ * OpenImageIO's, or an array of HDF5's; trees are files whose parts have names. */
 enum decoder_function {
     DECODER_OPEN_IMAGE, /* in: its name, where it lies, the array ("": the only one);
                            -> handle, layout, largest, is_turned */

@@ -1,4 +1,5 @@
-/* What the decoder does, in its own process or in the library's. Images and trees are HDF5's. */
+/* What the decoder does, in its own process or in the library's: images are OpenImageIO's or
+ * HDF5's, trees HDF5's. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,10 +7,14 @@
 #include <sonject/version.h>
 
 #include "base/file.h"
-#include "base/hdf5_values.h"
 #include "base/memory.h"
+#include "io/byte_file.h"
 #include "io/decoder.h"
 #include "io/hdf5_array.h"
+#include "io/raster_module.h"
+#ifdef HAS_HDF5
+#include "base/hdf5_values.h"
+#endif
 
 #define TEXT_OF(number)   #number
 #define DIGITS_OF(number) TEXT_OF(number)
@@ -23,9 +28,12 @@ void decoder_stamp(char stamp[64])
 }
 
 struct opened {
-    char *path;               /* in messages; NULL: none is open */
-    struct hdf5_array *image; /* NULL: it is a tree */
-    hid_t tree;
+    char *path;                         /* in messages; NULL: none is open */
+    struct raster_image *raster;        /* NULL, and so is image: it is a tree */
+    const struct raster_module *module; /* whose raster is */
+    struct raster_layout layout;        /* of raster */
+    struct hdf5_array *image;
+    int64_t tree; /* HDF5's number */
 };
 
 struct decoder_state {
@@ -51,13 +59,18 @@ struct decoder_state *decoder_state_make(void)
 
 static void close_file(struct opened *file)
 {
-    struct hdf5_session session;
-    if (file->path && !file->image) {
+    if (file->raster) {
+        file->module->close(&file->raster);
+    } else if (file->image) {
+        hdf5_array_close(&file->image);
+    } else if (file->path) {
+#ifdef HAS_HDF5
+        struct hdf5_session session;
         hdf5_enter(&session);
         H5Fclose(file->tree);
         hdf5_leave(&session);
+#endif
     }
-    hdf5_array_close(&file->image);
     free(file->path);
     memset(file, 0, sizeof *file);
 }
@@ -68,12 +81,6 @@ void decoder_state_release(struct decoder_state **state)
         close_file(&(*state)->files[i]);
     free(*state);
     *state = NULL;
-}
-
-static sonject_status refuse(struct question *question, const char *what)
-{
-    return report_failure(question->report, SONJECT_ERROR_INPUT, "%s: %s %s is damaged",
-                          question->file->path, question->texts[0], what);
 }
 
 /* The place of a file to be opened; NULL: too many are. */
@@ -90,12 +97,45 @@ static struct opened *free_place(struct question *question)
     return NULL;
 }
 
+/* False: it is HDF5's. */
+static bool is_raster(const char *path)
+{
+    unsigned char head[16] = {0};
+    enum image_kind kind;
+    uint64_t bytes;
+    FILE *file = byte_file_open(path, &bytes);
+    const size_t got = file ? fread(head, 1, sizeof head, file) : 0;
+    if (file)
+        fclose(file);
+    return image_kind_of_beginning(head, got, &kind);
+}
+
+static sonject_status open_raster(struct question *question, struct opened *place)
+{
+    place->path = copy_text(question->texts[0]);
+    sonject_status status = place->path
+                                ? raster_module_find(question->report, place->path, &place->module)
+                                : report_out_of_memory(question->report, "a path");
+    if (status == SONJECT_OK)
+        status = place->module->open(question->report, question->texts[1], &place->raster,
+                                     &place->layout);
+    question->reply->layout = place->layout;
+    if (status != SONJECT_OK) {
+        free(place->path);
+        place->path = NULL;
+    }
+    return status;
+}
+
 static sonject_status open_image(struct question *question)
 {
     const char *array = *question->texts[2] ? question->texts[2] : NULL;
     struct opened *place = free_place(question);
     if (!place)
         return SONJECT_ERROR_STORAGE;
+    if (question->request->function == DECODER_OPEN_IMAGE && !array &&
+        is_raster(question->texts[1]))
+        return open_raster(question, place);
     const sonject_status status =
         hdf5_array_open(question->report, question->texts[0], question->texts[1], array,
                         question->request->function == DECODER_OPEN_COPY, &place->image);
@@ -110,24 +150,6 @@ static sonject_status open_image(struct question *question)
     question->reply->largest = hdf5_array_largest(place->image);
     question->reply->is_turned = hdf5_array_is_turned(place->image);
     return SONJECT_OK;
-}
-
-static sonject_status open_tree(struct question *question)
-{
-    struct opened *place = free_place(question);
-    if (!place)
-        return SONJECT_ERROR_STORAGE;
-    const hid_t tree = H5Fopen(question->texts[1], H5F_ACC_RDONLY, H5P_DEFAULT);
-    place->path = tree < 0 ? NULL : copy_text(question->texts[0]);
-    if (place->path) {
-        place->tree = tree;
-        return SONJECT_OK;
-    }
-    if (tree >= 0)
-        H5Fclose(tree);
-    return report_failure(question->report, SONJECT_ERROR_INPUT,
-                          "%s: HDF5 cannot open it: it is damaged or cut short",
-                          question->texts[0]);
 }
 
 static sonject_status close_handle(struct question *question)
@@ -146,10 +168,11 @@ static sonject_status give_text(struct question *question, char *text)
 
 static sonject_status read_attribute(struct question *question)
 {
-    char *text = NULL;
-    return hdf5_array_attribute(question->file->image, question->texts[0], &text)
-               ? give_text(question, text)
-               : SONJECT_OK;
+    const struct opened *file = question->file;
+    char *text = file->raster ? file->module->attribute(file->raster, question->texts[0]) : NULL;
+    const bool is_there =
+        file->raster ? text != NULL : hdf5_array_attribute(file->image, question->texts[0], &text);
+    return is_there ? give_text(question, text) : SONJECT_OK;
 }
 
 /* Of the region's samples, as the layout has them. */
@@ -164,10 +187,15 @@ static bool make_room(struct question *question, const struct raster_layout *lay
 
 static sonject_status read_samples(struct question *question)
 {
-    struct raster_layout layout;
-    hdf5_array_layout(question->file->image, &layout);
+    struct opened *file = question->file;
+    struct raster_layout layout = file->layout;
+    if (!file->raster)
+        hdf5_array_layout(file->image, &layout);
     if (!make_room(question, &layout))
         return report_out_of_memory(question->report, "samples");
+    if (file->raster)
+        return file->module->read(question->report, file->raster, &question->request->region,
+                                  question->out);
     return hdf5_array_read(question->report, question->file->image, &question->request->region,
                            question->out);
 }
@@ -183,6 +211,31 @@ static sonject_status finish_copy(struct question *question)
     const sonject_status status = hdf5_array_finish(question->report, question->file->image);
     close_file(question->file);
     return status;
+}
+
+#ifdef HAS_HDF5
+static sonject_status refuse(struct question *question, const char *what)
+{
+    return report_failure(question->report, SONJECT_ERROR_INPUT, "%s: %s %s is damaged",
+                          question->file->path, question->texts[0], what);
+}
+
+static sonject_status open_tree(struct question *question)
+{
+    struct opened *place = free_place(question);
+    if (!place)
+        return SONJECT_ERROR_STORAGE;
+    const hid_t tree = H5Fopen(question->texts[1], H5F_ACC_RDONLY, H5P_DEFAULT);
+    place->path = tree < 0 ? NULL : copy_text(question->texts[0]);
+    if (place->path) {
+        place->tree = tree;
+        return SONJECT_OK;
+    }
+    if (tree >= 0)
+        H5Fclose(tree);
+    return report_failure(question->report, SONJECT_ERROR_INPUT,
+                          "%s: HDF5 cannot open it: it is damaged or cut short",
+                          question->texts[0]);
 }
 
 /* Groups are asked for one after the other, since HDF5 fails where one in between is missing. */
@@ -334,6 +387,7 @@ static sonject_status read_plane(struct question *question)
         H5Gclose(group);
     return is_read ? SONJECT_OK : refuse(question, name);
 }
+#endif
 
 /* What each function needs: texts, a handle of an image or a tree. */
 static const struct answer {
@@ -343,12 +397,13 @@ static const struct answer {
 } answers[DECODER_FUNCTIONS] = {
     [DECODER_OPEN_IMAGE] = {open_image, 3, false, false},
     [DECODER_OPEN_COPY] = {open_image, 3, false, false},
-    [DECODER_OPEN_TREE] = {open_tree, 3, false, false},
     [DECODER_CLOSE] = {close_handle, 0, false, false},
     [DECODER_ATTRIBUTE] = {read_attribute, 1, true, false},
     [DECODER_READ] = {read_samples, 0, true, false},
     [DECODER_WRITE] = {write_samples, 0, true, false},
     [DECODER_FINISH] = {finish_copy, 0, true, false},
+#ifdef HAS_HDF5
+    [DECODER_OPEN_TREE] = {open_tree, 3, false, false},
     [DECODER_HAS_GROUP] = {has_group, 1, false, true},
     [DECODER_WHOLE] = {read_group_value, 2, false, true},
     [DECODER_INTEGER] = {read_group_value, 2, false, true},
@@ -356,6 +411,7 @@ static const struct answer {
     [DECODER_TEXT] = {read_group_value, 2, false, true},
     [DECODER_TEXTS] = {read_texts, 2, false, true},
     [DECODER_PLANE] = {read_plane, 2, false, true},
+#endif
 };
 
 static bool is_possible(struct question *question, const struct answer *answer)
@@ -372,9 +428,11 @@ static bool is_possible(struct question *question, const struct answer *answer)
     }
     if (request->handle > 0 && request->handle <= DECODER_FILES_MAX)
         question->file = &question->state->files[request->handle - 1];
-    return (!answer->needs_image || (question->file && question->file->image)) &&
-           (!answer->needs_tree ||
-            (question->file && question->file->path && !question->file->image)) &&
+    const struct opened *file = question->file;
+    const bool changes = request->function == DECODER_WRITE || request->function == DECODER_FINISH;
+    const bool is_image = file && (file->image || (file->raster && !changes));
+    const bool is_tree = file && file->path && !file->image && !file->raster;
+    return (!answer->needs_image || is_image) && (!answer->needs_tree || is_tree) &&
            (request->function != DECODER_CLOSE || question->file);
 }
 
@@ -399,20 +457,24 @@ sonject_status decoder_answer(struct report *report, struct decoder_state *state
     struct question question = {report, state, request, NULL, {"", "", ""}, in, reply, NULL};
     const struct answer *answer =
         request->function < DECODER_FUNCTIONS ? &answers[request->function] : NULL;
-    struct hdf5_session session;
     sonject_status status;
-    if (!answer || !is_possible(&question, answer)) {
+    if (!answer || !answer->give || !is_possible(&question, answer)) {
         status =
             report_failure(report, SONJECT_ERROR_INPUT, "a decoder was asked what it cannot do");
     } else {
+#ifdef HAS_HDF5
         /* images see to it themselves */
         const bool enters = answer->needs_tree || request->function == DECODER_OPEN_TREE;
+        struct hdf5_session session;
         if (enters)
             hdf5_enter(&session);
+#endif
         errno = 0;
         status = answer->give(&question);
+#ifdef HAS_HDF5
         if (enters)
             hdf5_leave(&session);
+#endif
         status = tell_disk(&question, status);
     }
     if (status != SONJECT_OK) {

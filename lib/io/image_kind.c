@@ -7,9 +7,8 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "io/exr_chunks.h"
-#include "io/jp2_boxes.h"
 #include "io/jpeg_segments.h"
+#include "io/plain_head.h"
 #include "io/png_chunks.h"
 #include "io/tiff_structure.h"
 
@@ -45,21 +44,26 @@ static const struct foreign foreign_kinds[] = {
     {"a PBM", "P4", 0, 2},
     {"a PPM", "P6", 0, 2},
     {"a PGM in ASCII (P2)", "P2", 0, 2},
+    {"a JPEG 2000", "\xFF\x4F\xFF\x51", 0, 4},
+    {"a JPEG 2000", "jP  ", 4, 4},
+    {"a FITS", "SIMPLE  =", 0, 9},
+    {"a Targa", "\0\0\x03", 0, 3},
+    {"a Targa", "\0\0\x0B", 0, 3},
     {"a NITF", "NITF", 0, 4},
     {"a JSF", "\x01\x16", 0, 2},
     {"a zip or .npz", "PK\x03\x04", 0, 4},
 };
 
-static const struct beginning beginnings[] = {
-    {IMAGE_TIFF, {'I', 'I', 42, 0}, 4},
-    {IMAGE_TIFF, {'M', 'M', 0, 42}, 4},
-    {IMAGE_TIFF, {'I', 'I', 43, 0}, 4},
-    {IMAGE_TIFF, {'M', 'M', 0, 43}, 4},
-    {IMAGE_PNG, {0x89, 'P', 'N', 'G'}, 4},
-    {IMAGE_JPEG, {0xFF, 0xD8, 0xFF, 0}, 3},
-    {IMAGE_OPENEXR, {0x76, 0x2F, 0x31, 0x01}, 4},
-    {IMAGE_JPEG2000, {0xFF, 0x4F, 0xFF, 0x51}, 4},
-    {IMAGE_JPEG2000, {0, 0, 0, 12, 'j', 'P', ' ', ' '}, 8}};
+static const struct beginning beginnings[] = {{IMAGE_TIFF, {'I', 'I', 42, 0}, 4},
+                                              {IMAGE_TIFF, {'M', 'M', 0, 42}, 4},
+                                              {IMAGE_TIFF, {'I', 'I', 43, 0}, 4},
+                                              {IMAGE_TIFF, {'M', 'M', 0, 43}, 4},
+                                              {IMAGE_PNG, {0x89, 'P', 'N', 'G'}, 4},
+                                              {IMAGE_JPEG, {0xFF, 0xD8, 0xFF, 0}, 3},
+                                              {IMAGE_OPENEXR, {0x76, 0x2F, 0x31, 0x01}, 4},
+                                              {IMAGE_BMP, {'B', 'M'}, 2},
+                                              {IMAGE_PNM, {'P', '5'}, 2},
+                                              {IMAGE_PNM, {'P', 'f'}, 2}};
 
 struct extension {
     enum image_kind kind;
@@ -87,8 +91,8 @@ static sonject_status refuse_kind(struct report *report, const char *path,
                                   const unsigned char *head, size_t count)
 {
     static const char readable[] =
-        "TIFF, PNG, JPEG, JPEG 2000, OpenEXR, PGM (P5), PFM (Pf), BMP, Targa, FITS, XTF, "
-        "NumPy (.npy), HDF5 and MATLAB (.mat)";
+        "TIFF, PNG, JPEG, OpenEXR, PGM (P5), PFM (Pf), BMP, XTF, NumPy (.npy), HDF5 and MATLAB "
+        "(.mat)";
     const char *name = foreign_name(head, count);
     if (name)
         return report_failure(report, SONJECT_ERROR_INPUT,
@@ -98,6 +102,11 @@ static sonject_status refuse_kind(struct report *report, const char *path,
     return report_failure(report, SONJECT_ERROR_INPUT,
                           "%s: is %s; sonject reads %s: convert it to one of these", path,
                           count == 0 ? "empty" : "of no format that sonject knows", readable);
+}
+
+bool image_kind_is_patched(enum image_kind kind)
+{
+    return kind == IMAGE_TIFF || kind == IMAGE_PNG || kind == IMAGE_JPEG;
 }
 
 bool image_kind_of_beginning(const unsigned char *bytes, size_t count, enum image_kind *kind)
@@ -164,10 +173,12 @@ sonject_status image_kind_check(struct report *report, const char *path, enum im
         return png_check(report, path, parts);
     case IMAGE_JPEG:
         return jpeg_check(report, path, parts);
-    case IMAGE_JPEG2000:
-        return jp2_check(report, path, parts);
+    case IMAGE_BMP:
+        return bmp_check(report, path);
+    case IMAGE_PNM:
+        return pnm_check(report, path);
     case IMAGE_OPENEXR:
-        return exr_check(report, path);
+        return SONJECT_OK;
     case IMAGE_TIFF:
         break;
     }

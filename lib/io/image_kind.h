@@ -15,9 +15,13 @@ enum image_kind {
     IMAGE_TIFF,
     IMAGE_PNG,
     IMAGE_JPEG,
-    IMAGE_JPEG2000,
-    IMAGE_OPENEXR
+    IMAGE_OPENEXR,
+    IMAGE_BMP,
+    IMAGE_PNM /* PGM and PFM */
 };
+
+/* Whether a copy keeps the format, with other pixels in a region; else copies are TIFF. */
+bool image_kind_is_patched(enum image_kind kind);
 
 /* Told by the file's first bytes. Errors: INPUT (cannot be opened, another kind). */
 sonject_status image_kind_of(struct report *report, const char *path, enum image_kind *kind);

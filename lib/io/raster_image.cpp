@@ -4,7 +4,8 @@
 #include <limits>
 #include <utility>
 
-#include "io/raster_openexr.hpp"
+#include <OpenImageIO/strutil.h>
+
 #include "io/raster_streams.hpp"
 #include "io/raster_writer.hpp"
 
@@ -50,6 +51,40 @@ void open_input(struct report *report, struct raster_image &file)
     if (!is_open || !reason.empty())
         throw failure{report_failure(report, SONJECT_ERROR_INPUT, "%s: cannot be read: %s", path,
                                      reason.c_str())};
+}
+
+/* "real" of "real" and of "layer.real"; the letters' case does not matter. */
+std::string part_of_channel(const std::string &name)
+{
+    return OIIO::Strutil::lower(name.substr(name.rfind('.') + 1));
+}
+
+/* What OpenEXR itself takes. The format has no checksums: a window that a damaged byte changed is
+ * told by the other one. Channels are sorted by their names, so only these tell which is which. */
+void check_openexr(struct report *report, struct raster_image &file)
+{
+    const OIIO::ImageSpec &spec = file.spec;
+    const char *fault = nullptr;
+    if (spec.x != spec.full_x || spec.y != spec.full_y || spec.width != spec.full_width ||
+        spec.height != spec.full_height)
+        fault = "its data window is not its display window: write the whole image";
+    else if (spec.deep || file.input->seek_subimage(1, 0))
+        fault = "has several parts or depths: write the image alone";
+    else if (!spec.channelformats.empty())
+        fault = "has channels of different types: store them in one";
+    file.input->seek_subimage(0, 0);
+    file.input->geterror(); /* that there is no other part */
+    file.is_half = spec.format == OIIO::TypeDesc::HALF;
+    if (!fault && spec.nchannels == 2) {
+        const std::string first = part_of_channel(spec.channel_name(0));
+        const std::string second = part_of_channel(spec.channel_name(1));
+        file.is_swapped = first == "imag" && second == "real";
+        if (!file.is_swapped && !(first == "real" && second == "imag"))
+            fault = "has two channels: name them real and imag";
+    }
+    if (fault)
+        throw failure{
+            report_failure(report, SONJECT_ERROR_INPUT, "%s: %s", file.path.c_str(), fault)};
 }
 
 void take_layout(struct report *report, struct raster_image &file)
@@ -104,11 +139,16 @@ void read_by_rows(struct report *report, struct raster_image &file, const struct
     const uint64_t end = wanted_end < file.layout.rows ? wanted_end : file.layout.rows;
     const uint64_t start = region.first_row / unit * unit;
     const uint64_t kept = region.columns * pixel;
-    std::vector<unsigned char> rows(
-        size_t((at_once < end - start ? at_once : end - start) * row_bytes(file.layout)));
+    std::vector<unsigned char> &rows = file.rows;
     for (uint64_t first = start; first < end; first += at_once) {
         const uint64_t last = end - first < at_once ? end : first + at_once;
-        file.read(report, {first, 0, last - first, file.layout.columns}, rows.data());
+        if (first != file.first_row || last != file.end_row) {
+            file.end_row = 0;
+            rows.resize(size_t((last - first) * row_bytes(file.layout)));
+            file.read(report, {first, 0, last - first, file.layout.columns}, rows.data());
+            file.first_row = first;
+            file.end_row = last;
+        }
         for (uint64_t row = first; row < last; row++)
             if (row >= region.first_row && row < region_end)
                 std::memcpy(pixels + (row - region.first_row) * kept,
@@ -148,11 +188,6 @@ void read_by_tiles(struct report *report, struct raster_image &file, const struc
         }
 }
 
-} // namespace
-
-namespace raster
-{
-
 void read_region(struct report *report, struct raster_image &file, const struct region &region,
                  void *pixels)
 {
@@ -178,17 +213,15 @@ std::unique_ptr<struct raster_image> open_file(struct report *report, const char
     return file;
 }
 
-} // namespace raster
+} // namespace
 
 sonject_status raster_image_open(struct report *report, const char *path,
-                                 struct raster_image **image, struct raster_layout *layout,
-                                 bool *is_lossless)
+                                 struct raster_image **image, struct raster_layout *layout)
 {
     *image = nullptr;
     return guarded(report, path, [&] {
         *image = open_file(report, path).release();
         *layout = (*image)->layout;
-        *is_lossless = (*image)->kind != IMAGE_JPEG;
     });
 }
 
@@ -206,8 +239,7 @@ void raster_image_close(struct raster_image **image)
     *image = nullptr;
 }
 
-bool raster_image_attribute(const struct raster_image *image, const char *name, char *value,
-                            size_t capacity)
+char *raster_image_attribute(const struct raster_image *image, const char *name)
 {
     try {
         const std::string description(image->spec.get_string_attribute(description_name));
@@ -215,16 +247,11 @@ bool raster_image_attribute(const struct raster_image *image, const char *name, 
         const std::string start = "\n" + std::string(name) + "=";
         const size_t line = lines.find(start);
         if (line == std::string::npos)
-            return false;
+            return nullptr;
         const size_t first = line + start.size();
-        const size_t count = lines.find('\n', first) - first;
-        if (count >= capacity)
-            return false;
-        std::memcpy(value, lines.data() + first, count);
-        value[count] = '\0';
-        return true;
+        return strdup(lines.substr(first, lines.find('\n', first) - first).c_str());
     } catch (...) {
-        return false;
+        return nullptr;
     }
 }
 
@@ -233,4 +260,23 @@ sonject_status raster_image_read(struct report *report, struct raster_image *ima
 {
     return guarded(report, image->path.c_str(),
                    [&] { read_region(report, *image, *region, pixels); });
+}
+
+sonject_status raster_image_encode(struct report *report, const struct raster_encoding *encoding)
+{
+    return guarded(report, encoding->name, [&] {
+        const struct raster_layout &layout = encoding->layout;
+        const uint64_t at_once = rows_at_once(layout);
+        std::unique_ptr<image_writer> output;
+        std::vector<unsigned char> strip(
+            size_t((at_once < layout.rows ? at_once : layout.rows) * row_bytes(layout)));
+        for (uint64_t row = 0; row < layout.rows; row += at_once) {
+            const uint64_t end = layout.rows - row < at_once ? layout.rows : row + at_once;
+            require(encoding->give_rows(encoding->user, row, end, strip.data()));
+            if (!output)
+                output = std::make_unique<image_writer>(report, *encoding);
+            output->write_rows(row, end, strip.data());
+        }
+        output->finish();
+    });
 }

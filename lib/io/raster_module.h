@@ -1,6 +1,6 @@
 /* The module of image files: a shared object of its own, which is loaded when the first image needs
  * it, because OpenImageIO brings along some 250 libraries, whose loading takes longer than many a
- * run. Static libraries have it in them. */
+ * run. The decoder reads by it, the library writes. Static libraries have it in them. */
 #ifndef SONJECT_IO_RASTER_MODULE_H
 #define SONJECT_IO_RASTER_MODULE_H
 
@@ -14,25 +14,15 @@ struct raster_module {
     uint32_t mark;         /* RASTER_MODULE_MARK */
     uint32_t module_bytes; /* of this structure, and of others that pass between the two */
     uint32_t report_bytes;
-    uint32_t layout_bytes;
+    uint32_t encoding_bytes;
     char version[16]; /* of sonject */
     sonject_status (*open)(struct report *report, const char *path, struct raster_image **image,
-                           struct raster_layout *layout, bool *is_lossless);
+                           struct raster_layout *layout);
     void (*close)(struct raster_image **image);
-    bool (*attribute)(const struct raster_image *image, const char *name, char *value,
-                      size_t capacity);
+    char *(*attribute)(const struct raster_image *image, const char *name);
     sonject_status (*read)(struct report *report, struct raster_image *image,
                            const struct region *region, void *pixels);
-    sonject_status (*copy_with_patch)(struct report *report, const char *source, const char *path,
-                                      const struct region *region, const void *pixels,
-                                      sonject_progress_function progress, void *user);
-    sonject_status (*write)(struct report *report, const char *path,
-                            const struct raster_layout *layout, const char *const *channel_names,
-                            const struct raster_attribute *attributes, size_t attribute_count,
-                            const void *pixels);
-    sonject_status (*write_placed)(struct report *report, const char *path,
-                                   const struct raster_layout *layout, const struct region *region,
-                                   const void *pixels, const uint8_t *palette);
+    sonject_status (*encode)(struct report *report, const struct raster_encoding *encoding);
 };
 
 /* The one thing that the module shows. */

@@ -32,7 +32,7 @@ static const char *what_is_wrong_with(const struct raster_module *module)
         return "it is of something else";
     if (strncmp(module->version, sonject_version(), sizeof module->version) != 0 ||
         module->module_bytes != sizeof *module || module->report_bytes != sizeof(struct report) ||
-        module->layout_bytes != sizeof(struct raster_layout))
+        module->encoding_bytes != sizeof(struct raster_encoding))
         return "it is of another version of sonject";
     return NULL;
 }

@@ -26,8 +26,10 @@ struct raster_image {
     std::vector<unsigned char> copied; /* what it sees, where it must lie in memory */
     std::unique_ptr<OIIO::ImageInput> input;
     OIIO::ImageSpec spec;
-    bool is_half = false;    /* stored as 16-bit floating point */
-    bool is_swapped = false; /* the imaginary part is stored before the real one */
+    std::vector<unsigned char> rows;     /* decoded last, for pieces of one strip */
+    uint64_t first_row = 0, end_row = 0; /* what they are; nothing if these are equal */
+    bool is_half = false;                /* stored as 16-bit floating point */
+    bool is_swapped = false;             /* the imaginary part is stored before the real one */
 
     raster_image() = default;
     ~raster_image()
@@ -67,17 +69,5 @@ struct raster_image {
             std::swap(parts[2 * i], parts[2 * i + 1]);
     }
 };
-
-namespace raster
-{
-
-/* Checks the file as image_kind_check does and reads its head. */
-std::unique_ptr<struct raster_image> open_file(struct report *report, const char *path);
-
-/* Pixels of a region, row by row. */
-void read_region(struct report *report, struct raster_image &file, const struct region &region,
-                 void *pixels);
-
-} // namespace raster
 
 #endif

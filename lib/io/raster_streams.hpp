@@ -5,37 +5,14 @@
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
-#include <new>
 #include <string>
 
 #include <OpenImageIO/filesystem.h>
 
-#include "base/file.h"
 #include "io/byte_file.h"
 
 namespace raster
 {
-
-/* A file name that is removed when it goes out of scope, unless it was published before. */
-class part_file
-{
-  public:
-    explicit part_file(const char *path) : name(file_part_name(path))
-    {
-        if (!name)
-            throw std::bad_alloc();
-    }
-    ~part_file()
-    {
-        file_discard(name);
-        std::free(name);
-    }
-    part_file(const part_file &) = delete;
-    part_file &operator=(const part_file &) = delete;
-
-    char *const name;
-};
 
 /* Where encoders write to. They must not learn of a failure, for they would print it or end the
  * process: the bytes are dropped, and whoever drives the encoder asks for the error. */

@@ -1,4 +1,4 @@
-/* An image as it is written: PNG, JPEG and JPEG 2000 by OpenImageIO's encoders, TIFF plainly. */
+/* An image as it is written: PNG and JPEG by OpenImageIO's encoders, TIFF plainly. */
 #ifndef SONJECT_IO_RASTER_WRITER_HPP
 #define SONJECT_IO_RASTER_WRITER_HPP
 
@@ -16,6 +16,7 @@
 #include "image/raster.h"
 #include "io/image_kind.h"
 #include "io/raster_failure.hpp"
+#include "io/raster_image.h"
 #include "io/raster_streams.hpp"
 #include "io/tiff_head.h"
 
@@ -52,10 +53,12 @@ inline const char *format_name(enum image_kind kind)
         return "png";
     case IMAGE_JPEG:
         return "jpeg";
-    case IMAGE_JPEG2000:
-        return "jpeg2000";
     case IMAGE_OPENEXR:
         return "openexr";
+    case IMAGE_BMP:
+        return "bmp";
+    case IMAGE_PNM:
+        return "pnm";
     case IMAGE_TIFF:
         break;
     }
@@ -73,39 +76,20 @@ inline uint64_t rows_at_once(const struct raster_layout &layout)
     return rows > 0 ? rows : 1;
 }
 
-/* Puts the part of the patch that lies in rows first...end over these rows. */
-inline void overlay(const struct raster_layout &layout, const struct region &region,
-                    const void *patch, uint64_t first, uint64_t end, unsigned char *rows)
-{
-    const uint64_t pixel = layout.channels * pixel_bytes(layout.type);
-    const uint64_t from = first > region.first_row ? first : region.first_row;
-    const uint64_t region_end = region.first_row + region.rows;
-    const uint64_t to = end < region_end ? end : region_end;
-    for (uint64_t row = from; row < to; row++)
-        std::memcpy(rows + (row - first) * row_bytes(layout) + region.first_column * pixel,
-                    static_cast<const unsigned char *>(patch) +
-                        (row - region.first_row) * region.columns * pixel,
-                    region.columns * pixel);
-}
-
 /* An image as it is written, row by row. To be made when the first rows are there: libpng prints a
  * complaint about a PNG that is given up without any. */
 class image_writer
 {
   public:
-    /* description: a text that the file keeps; name: of the finished file, for messages; is_drawn:
-     * a mask or a picture, not an image of measured pixels */
-    image_writer(struct report *where, const char *path, const char *name, enum image_kind kind,
-                 const struct raster_layout &image, const std::string &description,
-                 bool is_drawn = false)
-        : report(where), final_name(name), layout(image), sink(path)
+    image_writer(struct report *where, const struct raster_encoding &encoding)
+        : report(where), final_name(encoding.name), layout(encoding.layout), sink(encoding.path)
     {
         if (sink.error_so_far() != 0)
             fail();
-        if (kind == IMAGE_TIFF)
-            write_head(description);
+        if (encoding.kind == IMAGE_TIFF)
+            write_head(encoding.description);
         else
-            open_encoder(path, kind, description, is_drawn);
+            open_encoder(encoding);
     }
 
     image_writer(const image_writer &) = delete;
@@ -130,39 +114,38 @@ class image_writer
     }
 
   private:
-    void write_head(const std::string &description)
+    void write_head(const char *description)
     {
         size_t count = 0;
         const std::unique_ptr<unsigned char, decltype(&std::free)> head(
-            tiff_make_head(&layout, description.c_str(), &count), &std::free);
+            tiff_make_head(&layout, description, &count), &std::free);
         if (!head)
             throw std::bad_alloc();
         if (!write(head.get(), count))
             fail();
     }
 
-    void open_encoder(const char *path, enum image_kind kind, const std::string &description,
-                      bool is_drawn)
+    void open_encoder(const struct raster_encoding &encoding)
     {
         OIIO::ImageSpec spec(int(layout.columns), int(layout.rows), int(layout.channels),
                              stored_type(layout.type));
         OIIO::Filesystem::IOProxy *proxy = &sink;
         spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-        if (kind == IMAGE_JPEG)
+        if (encoding.kind == IMAGE_JPEG)
             spec.attribute("Compression", jpeg_quality);
-        if (!description.empty())
-            spec.attribute(description_name, description);
-        if (is_drawn) { /* few values, or noise by way of a colour map: filters and searching for
-                         * longer matches cost much time, and make files no smaller */
+        if (*encoding.description)
+            spec.attribute(description_name, encoding.description);
+        if (encoding
+                .is_drawn) { /* few values, or noise by way of a colour map: filters and searching
+                              * for longer matches cost much time, and make files no smaller */
             spec.attribute("png:filter", png_filter_none);
             spec.attribute("png:compressionLevel", 1);
         }
-        encoder = OIIO::ImageOutput::create(format_name(kind));
+        encoder = OIIO::ImageOutput::create(format_name(encoding.kind));
         if (!encoder)
             fail();
         encoder->threads(1);
-        /* the encoder of JPEG 2000 tells by the name what to write, and leaves others empty */
-        if (!encoder->open(kind == IMAGE_JPEG2000 ? "encoded.jp2" : path, spec))
+        if (!encoder->open(encoding.path, spec))
             fail();
     }
 

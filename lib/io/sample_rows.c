@@ -70,9 +70,8 @@ static uint64_t run_place(const struct sample_rows *rows, const struct runs *run
 {
     const struct raster_layout *layout = &rows->layout;
     const uint64_t line = run + (rows->is_transposed ? region->first_column : region->first_row);
-    const uint64_t stored = rows->is_upside_down ? layout->rows - 1 - line : line;
     const uint64_t start =
-        rows->places ? rows->places[line] : rows->first_place + stored * rows->row_bytes;
+        rows->places ? rows->places[line] : rows->first_place + line * rows->row_bytes;
     const uint64_t first = rows->is_transposed ? region->first_row
                            : rows->is_reversed
                                ? layout->columns - region->first_column - region->columns
@@ -94,11 +93,7 @@ static bool exchange_number(const struct sample_rows *rows, bool writes, unsigne
     bool is_held = true;
     switch (rows->stored) {
     case STORED_AS_SHOWN:
-        if (rows->is_offset && !writes)
-            stored[machine_is_big_endian() ? 0 : 1] ^= 0x80;
         memcpy(writes ? stored : shown, writes ? shown : stored, bytes);
-        if (rows->is_offset && writes)
-            stored[machine_is_big_endian() ? 0 : 1] ^= 0x80;
         half = *shown;
         if (rows->layout.type == PIXEL_UINT16)
             memcpy(&half, shown, sizeof half);
@@ -263,8 +258,6 @@ sonject_status sample_rows_copy_with_patch(struct report *report, const struct s
                                 : file_failure(report, path, "write", errno);
     if (status == SONJECT_OK)
         status = exchange_region(report, rows, region, (void *)(uintptr_t)pixels, out, path);
-    if (status == SONJECT_OK && rows->finish_copy)
-        status = rows->finish_copy(report, rows, out, path);
     if (out && fclose(out) != 0 && status == SONJECT_OK)
         status = file_failure(report, path, "write", errno);
     if (status == SONJECT_OK)

@@ -1,7 +1,6 @@
-/* Files whose rows are runs of plain samples at known places: channels of XTF files, NumPy arrays,
- * PGM, PFM, BMP, Targa and FITS images. Copies differ from their source in the replaced samples and
- * in sums over them alone, byte for byte; a double or a 32-bit number whose value as a float stays
- * the same keeps all its bits. */
+/* Files whose rows are runs of plain samples at known places: channels of XTF files, NumPy arrays.
+ * Copies differ from their source in the replaced samples alone, byte for byte; a double or a
+ * 32-bit number whose value as a float stays the same keeps all its bits. */
 #ifndef SONJECT_IO_SAMPLE_ROWS_H
 #define SONJECT_IO_SAMPLE_ROWS_H
 
@@ -27,14 +26,9 @@ struct sample_rows {
     enum stored_number stored;
     bool is_transposed;  /* the file keeps columns together: they are what it calls rows */
     bool is_reversed;    /* column 0 is the row's last stored sample */
-    bool is_upside_down; /* the last row comes first in the file */
     bool is_big_endian;
-    bool is_offset;         /* stored as signed 16-bit numbers, 32768 less than they are */
     uint32_t largest;       /* larger samples are refused; 0: none are */
     bool above_is_negative; /* what is larger are negative numbers */
-    /* Puts right what a copy says of its samples; NULL: it says nothing. path: of the copy. */
-    sonject_status (*finish_copy)(struct report *report, const struct sample_rows *rows, FILE *copy,
-                                  const char *path);
 };
 
 /* Opens a file and has its header read, which fills the rest of rows. On failure rows is cleared.

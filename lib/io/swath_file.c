@@ -6,26 +6,18 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "io/bmp_file.h"
 #include "io/byte_file.h"
 #include "io/decoded_image.h"
-#include "io/fits_file.h"
 #include "io/hdf5_mark.h"
 #include "io/image_kind.h"
 #include "io/mat_file.h"
 #include "io/npy_file.h"
-#include "io/pnm_file.h"
 #include "io/raster_file.h"
-#include "io/tga_file.h"
 
 enum swath_kind {
     SWATH_IMAGE,
     SWATH_XTF,
     SWATH_NPY,
-    SWATH_PNM,
-    SWATH_FITS,
-    SWATH_BMP,
-    SWATH_TGA,
     SWATH_HDF5,
     SWATH_MAT
 };
@@ -33,17 +25,17 @@ enum swath_kind {
 struct swath_file {
     enum swath_kind kind;
     char *path;
-    struct raster_file *image; /* SWATH_IMAGE */
+    enum image_kind image; /* of SWATH_IMAGE */
     struct xtf_file xtf;
-    struct sample_rows plain;      /* SWATH_NPY, SWATH_PNM, SWATH_FITS, SWATH_BMP, SWATH_TGA */
-    struct decoded_image *decoded; /* SWATH_HDF5 */
+    struct sample_rows plain;      /* SWATH_NPY */
+    struct decoded_image *decoded; /* SWATH_IMAGE, SWATH_HDF5 */
     struct mat_file mat;
 };
 
-static sonject_status tell_kind(struct report *report, const char *path, enum swath_kind *kind)
+static sonject_status tell_kind(struct report *report, const char *path, enum swath_kind *kind,
+                                enum image_kind *image)
 {
-    unsigned char head[TGA_HEAD_BYTES] = {0};
-    enum image_kind image;
+    unsigned char head[16] = {0};
     uint64_t bytes;
     FILE *stream = byte_file_open(path, &bytes);
     if (!stream) {
@@ -54,17 +46,14 @@ static sonject_status tell_kind(struct report *report, const char *path, enum sw
     fclose(stream);
     if (!is_read)
         return file_failure(report, path, "read", errno);
-    *kind = xtf_begins(head, got)                        ? SWATH_XTF
-            : npy_begins(head, got)                      ? SWATH_NPY
-            : pnm_begins(head, got)                      ? SWATH_PNM
-            : fits_begins(head, got)                     ? SWATH_FITS
-            : bmp_begins(head, got)                      ? SWATH_BMP
-            : mat_begins(head, got)                      ? SWATH_MAT
-            : image_kind_of_beginning(head, got, &image) ? SWATH_IMAGE
-            : hdf5_mark_is_in(path)                      ? SWATH_HDF5
-            : tga_begins(head, got)                      ? SWATH_TGA
-                                                         : SWATH_IMAGE;
-    return SONJECT_OK;
+    *kind = xtf_begins(head, got)                       ? SWATH_XTF
+            : npy_begins(head, got)                     ? SWATH_NPY
+            : mat_begins(head, got)                     ? SWATH_MAT
+            : image_kind_of_beginning(head, got, image) ? SWATH_IMAGE
+            : hdf5_mark_is_in(path)                     ? SWATH_HDF5
+                                                        : SWATH_IMAGE;
+    return *kind == SWATH_IMAGE ? file_check_disk(report, path, image_kind_of(report, path, image))
+                                : SONJECT_OK;
 }
 
 static bool has_channels(enum swath_kind kind)
@@ -82,7 +71,8 @@ static enum swath_kind kind_if_any(const char *path)
 {
     struct report report = {{0}, NULL, NULL};
     enum swath_kind kind = SWATH_IMAGE;
-    return tell_kind(&report, path, &kind) == SONJECT_OK ? kind : SWATH_IMAGE;
+    enum image_kind image;
+    return tell_kind(&report, path, &kind, &image) == SONJECT_OK ? kind : SWATH_IMAGE;
 }
 
 static sonject_status open_kind(struct report *report, struct swath_file *file, int32_t channel,
@@ -102,22 +92,13 @@ static sonject_status open_kind(struct report *report, struct swath_file *file, 
         return xtf_file_open(report, file->path, channel, &file->xtf);
     case SWATH_NPY:
         return npy_file_open(report, file->path, &file->plain);
-    case SWATH_PNM:
-        return pnm_file_open(report, file->path, &file->plain);
-    case SWATH_FITS:
-        return fits_file_open(report, file->path, &file->plain);
-    case SWATH_BMP:
-        return bmp_file_open(report, file->path, &file->plain);
-    case SWATH_TGA:
-        return tga_file_open(report, file->path, &file->plain);
-    case SWATH_HDF5:
-        return decoded_image_open(report, file->path, array, &file->decoded);
     case SWATH_MAT:
         return mat_file_open(report, file->path, array, &file->mat);
+    case SWATH_HDF5:
     case SWATH_IMAGE:
         break;
     }
-    return raster_file_open(report, file->path, &file->image);
+    return decoded_image_open(report, file->path, array, &file->decoded);
 }
 
 sonject_status swath_file_open(struct report *report, const char *path, int32_t channel,
@@ -146,7 +127,7 @@ sonject_status swath_file_open_beside(struct report *report, const char *path, c
     }
     opened->path = copy;
     errno = 0;
-    status = tell_kind(report, opened->path, &opened->kind);
+    status = tell_kind(report, opened->path, &opened->kind, &opened->image);
     if (status == SONJECT_OK) {
         const enum swath_kind beside = other ? kind_if_any(other) : SWATH_IMAGE;
         if (!has_channels(opened->kind) && has_channels(beside))
@@ -166,7 +147,6 @@ void swath_file_close(struct swath_file **file)
 {
     if (!file || !*file)
         return;
-    raster_file_close(&(*file)->image);
     xtf_file_close(&(*file)->xtf);
     sample_rows_clear(&(*file)->plain);
     decoded_image_close(&(*file)->decoded);
@@ -189,17 +169,18 @@ void swath_file_layout(const struct swath_file *file, struct raster_layout *layo
     const struct sample_rows *rows = sample_rows_of(file);
     if (rows)
         *layout = rows->layout;
-    else if (file->kind == SWATH_HDF5)
-        *layout = file->decoded->layout;
-    else if (file->kind == SWATH_MAT)
-        *layout = file->mat.layout;
     else
-        raster_file_layout(file->image, layout);
+        *layout = file->kind == SWATH_MAT ? file->mat.layout : file->decoded->layout;
 }
 
 bool swath_file_is_lossless(const struct swath_file *file)
 {
-    return file->kind != SWATH_IMAGE || raster_file_is_lossless(file->image);
+    return file->kind != SWATH_IMAGE || file->image != IMAGE_JPEG;
+}
+
+bool swath_file_is_patched(const struct swath_file *file)
+{
+    return file->kind != SWATH_IMAGE || image_kind_is_patched(file->image);
 }
 
 uint32_t swath_file_largest(const struct swath_file *file)
@@ -207,9 +188,7 @@ uint32_t swath_file_largest(const struct swath_file *file)
     const struct sample_rows *rows = sample_rows_of(file);
     if (rows)
         return rows->largest;
-    if (file->kind == SWATH_HDF5)
-        return file->decoded->largest;
-    return file->kind == SWATH_MAT ? mat_file_largest(&file->mat) : 0;
+    return file->kind == SWATH_MAT ? mat_file_largest(&file->mat) : file->decoded->largest;
 }
 
 enum range_axis swath_file_range_axis(const struct swath_file *file)
@@ -232,16 +211,7 @@ const struct xtf_file *swath_file_xtf(const struct swath_file *file)
 bool swath_file_attribute(const struct swath_file *file, const char *name, char *value,
                           size_t capacity)
 {
-    switch (file->kind) {
-    case SWATH_IMAGE:
-        return raster_file_attribute(file->image, name, value, capacity);
-    case SWATH_PNM:
-        return pnm_file_attribute(&file->plain, name, value, capacity);
-    case SWATH_HDF5:
-        return decoded_image_attribute(file->decoded, name, value, capacity);
-    default:
-        return false;
-    }
+    return file->decoded && decoded_image_attribute(file->decoded, name, value, capacity);
 }
 
 static sonject_status read_kind(struct report *report, struct swath_file *file,
@@ -250,11 +220,9 @@ static sonject_status read_kind(struct report *report, struct swath_file *file,
     const struct sample_rows *rows = sample_rows_of(file);
     if (rows)
         return sample_rows_read(report, rows, region, pixels);
-    if (file->kind == SWATH_HDF5)
-        return decoded_image_read(report, file->decoded, region, pixels);
     if (file->kind == SWATH_MAT)
         return mat_file_read(report, &file->mat, region, pixels);
-    return raster_file_read(report, file->image, region, pixels);
+    return decoded_image_read(report, file->decoded, region, pixels);
 }
 
 sonject_status swath_file_read(struct report *report, struct swath_file *file,
@@ -276,7 +244,8 @@ static sonject_status copy_kind(struct report *report, const struct swath_file *
                                              user);
     if (file->kind == SWATH_MAT)
         return mat_file_copy_with_patch(report, &file->mat, path, region, pixels, progress, user);
-    return raster_file_copy_with_patch(report, file->path, path, region, pixels, progress, user);
+    return raster_file_copy_with_patch(report, file->decoded, file->image, path, region, pixels,
+                                       progress, user);
 }
 
 sonject_status swath_file_copy_with_patch(struct report *report, const struct swath_file *file,

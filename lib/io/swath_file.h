@@ -11,7 +11,7 @@ struct swath_file;
 
 /* Opens for reading; the file's first bytes tell what it is. channel: of an XTF file; must be
  * SONJECT_CHANNEL_ONLY for other files. Of several arrays in a file none is chosen. Errors: INPUT
- * (as raster_file_open, xtf_file_open and the like say), UNSUPPORTED, STORAGE, MEMORY. On success
+ * (as decoded_image_open, xtf_file_open and the like say), UNSUPPORTED, STORAGE, MEMORY. On success
  * *file is the caller's, for swath_file_close; on failure NULL. */
 sonject_status swath_file_open(struct report *report, const char *path, int32_t channel,
                                struct swath_file **file);
@@ -32,6 +32,9 @@ void swath_file_layout(const struct swath_file *file, struct raster_layout *layo
 /* False where writing the format changes pixels (JPEG). */
 bool swath_file_is_lossless(const struct swath_file *file);
 
+/* Whether copies keep the file's format and all else that it says; else they are TIFF. */
+bool swath_file_is_patched(const struct swath_file *file);
+
 /* The largest number that the file may hold where that is less than its type's; 0 elsewhere. */
 uint32_t swath_file_largest(const struct swath_file *file);
 
@@ -46,17 +49,19 @@ enum range_axis swath_file_range_axis(const struct swath_file *file);
 /* The XTF file behind it; NULL for other kinds. */
 const struct xtf_file *swath_file_xtf(const struct swath_file *file);
 
-/* A text that sonject stored with an image, as raster_file_attribute; false for kinds that keep
- * none. */
+/* A text that sonject stored with an image, copied into value; false if it has none of that name or
+ * it does not fit. */
 bool swath_file_attribute(const struct swath_file *file, const char *name, char *value,
                           size_t capacity);
 
-/* As raster_file_read. */
+/* Reads a region's stored pixels, row after row, channels interleaved. Errors: INPUT (cut short,
+ * damaged), STORAGE, MEMORY. */
 sonject_status swath_file_read(struct report *report, struct swath_file *file,
                                const struct region *region, void *pixels);
 
-/* Writes at path a copy of the file with region replaced by pixels, everything else as it was.
- * Published whole or not at all. progress may be NULL. Errors: INPUT, STORAGE, MEMORY, CANCELLED.
+/* Writes at path a copy of the file with region replaced by pixels, everything else as it was, or
+ * a TIFF (swath_file_is_patched). Published whole or not at all. progress may be NULL. Errors:
+ * INPUT, STORAGE, MEMORY, CANCELLED.
  */
 sonject_status swath_file_copy_with_patch(struct report *report, const struct swath_file *file,
                                           const char *path, const struct region *region,

@@ -46,44 +46,7 @@ def tiff_bytes(pixels, width=None, height=None):
     return struct.pack("<2sHI", b"II", 42, 8 + len(data) + len(padding)) + data + padding + directory
 
 
-def tga_bytes(pixels, note=b"a note"):
-    """An 8 bit grey Targa of (rows, columns), whose last row comes first."""
-    rows, columns = pixels.shape
-    return (struct.pack("<BBB5xHHHHBB", len(note), 0, 3, 0, 0, columns, rows, 8, 0) + note
-            + pixels[::-1].astype(numpy.uint8).tobytes() + bytes(8) + b"TRUEVISION-XFILE.\0")
-
-
-def jp2_bytes(rows, columns, bits=8, tile=None, has_boxes=True):
-    """A grey JPEG 2000 whose packets are empty: all its samples are of the middle level.
-
-    tile: its rows and columns; has_boxes: else the coded image alone.
-    """
-    tile = tile or (rows, columns)
-    tiles = -(-rows // tile[0]) * -(-columns // tile[1])
-
-    def segment(mark, content):
-        return struct.pack(">HH", mark, len(content) + 2) + content
-
-    def box(kind, content):
-        return struct.pack(">I", len(content) + 8) + kind + content
-
-    coded = (b"\xff\x4f"
-             + segment(0xFF51, struct.pack(">H8IHBBB", 0, columns, rows, 0, 0, tile[1], tile[0], 0, 0,
-                                           1, bits - 1, 1, 1))
-             + segment(0xFF52, bytes([0, 0, 0, 1, 0, 0, 4, 4, 0, 1]))  # reversible, one layer
-             + segment(0xFF5C, bytes([0x40, bits << 3]))
-             + b"".join(segment(0xFF90, struct.pack(">HIBB", i, 15, 0, 1)) + b"\xff\x93\0"
-                        for i in range(tiles))
-             + b"\xff\xd9")
-    if not has_boxes:
-        return coded
-    head = struct.pack(">IIHBBBB", rows, columns, 1, bits - 1, 7, 0, 0)
-    return (box(b"jP  ", b"\r\n\x87\n") + box(b"ftyp", b"jp2 \0\0\0\0jp2 ")
-            + box(b"jp2h", box(b"ihdr", head) + box(b"colr", b"\1\0\0\0\0\0\x11"))
-            + box(b"jp2c", coded) + box(b"xml ", b"<note>of the operator</note>"))
-
-
-def png_bytes(pixels):
+def png_bytes(pixels, description=b""):
     """An 8 bit grey PNG of (rows, columns)."""
     rows, columns = pixels.shape
     lines = b"".join(b"\0" + row.astype(numpy.uint8).tobytes() for row in pixels)
@@ -96,6 +59,7 @@ def png_bytes(pixels):
     return (
         b"\x89PNG\r\n\x1a\n"
         + chunk(b"IHDR", header)
+        + chunk(b"tEXt", b"Description\0" + description)
         + chunk(b"IDAT", zlib.compress(lines))
         + chunk(b"IEND", b"")
     )

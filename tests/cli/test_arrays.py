@@ -1,4 +1,4 @@
-"""HDF5 and MATLAB arrays and PGM images as input, in the eyes of h5py and scipy."""
+"""HDF5 and MATLAB arrays as input, in the eyes of h5py and scipy."""
 
 import json
 
@@ -195,17 +195,3 @@ def test_a_campaign_takes_each_swath_from_its_array(sonject, tmp_path, swath):
         assert numpy.array_equal(chip, sides[name][row : row + 32, column : column + 48])
         taken.append(name)
     assert sorted(taken) == ["port", "port", "sides/starboard", "sides/starboard"]
-
-
-def test_a_pgm_keeps_its_largest_number(sonject, tmp_path, swath):
-    """Glints brighter than the file's largest number are cut there, as the recorder would."""
-    pixels = (swath / swath.max() * 4095).astype(">u2")
-    head = b"P5\n# of the operator\n%d %d\n4095\n" % (COLUMNS, ROWS)
-    (tmp_path / "line.pgm").write_bytes(head + pixels.tobytes())
-    answer = sonject("run", write_scene(tmp_path, "line.pgm"), "-o", "out")
-    assert answer.returncode == 0, answer.stderr
-    after = (tmp_path / "out/image.pgm").read_bytes()
-    assert after.startswith(head)
-    samples = numpy.frombuffer(after[len(head):], ">u2").reshape(ROWS, COLUMNS)
-    assert samples.max() <= 4095
-    assert_target_is_there(pixels, samples)

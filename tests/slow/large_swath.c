@@ -12,6 +12,7 @@
 
 #include "io/byte_order.h"
 #include "io/raster_file.h"
+#include "io/swath_file.h"
 #include "io/tiff_encode.h"
 #include "io/tiff_structure.h"
 
@@ -119,14 +120,14 @@ static void write_swath(const char *path, uint32_t compression)
 }
 
 /* The copy's pixels in a window around the patch, and in windows all over the swath. */
-static void check_window(struct raster_file *file, const struct region *window,
+static void check_window(struct swath_file *file, const struct region *window,
                          const struct region *patch)
 {
     struct report report = {{0}, NULL, NULL};
     uint16_t *pixels = calloc((size_t)(window->rows * window->columns), sizeof *pixels);
     if (!pixels)
         fail("checking", "out of memory");
-    if (raster_file_read(&report, file, window, pixels) != SONJECT_OK)
+    if (swath_file_read(&report, file, window, pixels) != SONJECT_OK)
         fail("checking", report.message);
     for (uint64_t i = 0; i < window->rows * window->columns; i++) {
         const uint64_t row = window->first_row + i / window->columns;
@@ -144,10 +145,10 @@ static void check_window(struct raster_file *file, const struct region *window,
 static void check_copy(const char *path, const struct region *patch)
 {
     struct report report = {{0}, NULL, NULL};
-    struct raster_file *file;
+    struct swath_file *file;
     const struct region around = {patch->first_row - 100, patch->first_column - 100,
                                   patch->rows + 200, patch->columns + 200};
-    if (raster_file_open(&report, path, &file) != SONJECT_OK)
+    if (swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file) != SONJECT_OK)
         fail("checking", report.message);
     check_window(file, &around, patch);
     for (uint64_t row = 0; row + 300 < ROWS; row += 5003)
@@ -155,7 +156,7 @@ static void check_copy(const char *path, const struct region *patch)
             const struct region window = {row, column, 300, 300};
             check_window(file, &window, patch);
         }
-    raster_file_close(&file);
+    swath_file_close(&file);
 }
 
 static void put_patch(const char *source, const char *copy, const struct region *patch)
@@ -167,8 +168,11 @@ static void put_patch(const char *source, const char *copy, const struct region 
     for (uint64_t i = 0; i < patch->rows * patch->columns; i++)
         pixels[i] = (uint16_t)~pixel_at(patch->first_row + i / patch->columns,
                                         patch->first_column + i % patch->columns);
-    if (raster_file_copy_with_patch(&report, source, copy, patch, pixels, NULL, NULL) != SONJECT_OK)
+    struct swath_file *file;
+    if (swath_file_open(&report, source, SONJECT_CHANNEL_ONLY, &file) != SONJECT_OK ||
+        swath_file_copy_with_patch(&report, file, copy, patch, pixels, NULL, NULL) != SONJECT_OK)
         fail(copy, report.message);
+    swath_file_close(&file);
     free(pixels);
 }
 

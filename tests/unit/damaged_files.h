@@ -16,10 +16,15 @@
 #include <string.h>
 
 #include "io/byte_order.h"
+#include "io/decoder.h"
 #include "io/swath_file.h"
 #include "temporary_folder.h"
 
 #define LARGEST_FILE 65536
+
+/* One for all, as a context has it. */
+static struct decoder decoder;
+static const struct report_host host = {NULL, &decoder};
 
 static void write_file(const char *path, const unsigned char *bytes, size_t count)
 {
@@ -32,7 +37,7 @@ static void write_file(const char *path, const unsigned char *bytes, size_t coun
 /* Opens, reads all of it, and writes a copy with a patch (NULL: none). */
 static sonject_status use_file(const char *path, const char *copy, int32_t channel)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {{0}, NULL, &host};
     struct swath_file *file;
     struct raster_layout layout;
     size_t bytes = 0;
@@ -71,7 +76,7 @@ static void expect_whole(const char *path, const char *copy, const unsigned char
 
 /* Reads the file with changed bytes and cut short, `mutations` times: none but the statuses that
  * bad files give. Most places are where structure is, in the first 300 bytes. */
-static void mutate(const char *folder, const char *name, int32_t channel,
+static inline void mutate(const char *folder, const char *name, int32_t channel,
                    const unsigned char *bytes, size_t count, int mutations)
 {
     char path[512], copy[512];

@@ -43,7 +43,7 @@ static inline const char *file_in(const char *folder, const char *name)
 static inline struct swath_file *open_draft(const char *folder, const char *name, const char *array,
                                             const struct draft *draft)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {{0}, NULL, &host};
     struct swath_file *file = NULL;
     const char *path = file_in(folder, name);
     if (draft)
@@ -56,7 +56,7 @@ static inline struct swath_file *open_draft(const char *folder, const char *name
 static inline void expect_refused(const char *folder, const char *name, const char *array,
                                   const struct draft *draft, const char *words)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {{0}, NULL, &host};
     struct swath_file *file = NULL;
     const char *path = file_in(folder, name);
     if (draft)
@@ -84,7 +84,7 @@ static const struct region inside = {1, 2, 2, 2};
 static inline void patch(struct swath_file *file, const char *folder, const char *copy,
                          const void *samples, struct draft *back)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {{0}, NULL, &host};
     const char *path = file_in(folder, copy);
     if (swath_file_copy_with_patch(&report, file, path, &inside, samples, NULL, NULL) != SONJECT_OK)
         fail_msg("%s", report.message);
@@ -96,7 +96,7 @@ static inline void patch(struct swath_file *file, const char *folder, const char
 
 static inline void read_all(struct swath_file *file, void *samples)
 {
-    struct report report = {{0}, NULL, NULL};
+    struct report report = {{0}, NULL, &host};
     const struct region whole = {0, 0, ROWS, COLUMNS};
     if (swath_file_read(&report, file, &whole, samples) != SONJECT_OK)
         fail_msg("%s", report.message);

@@ -13,6 +13,7 @@
 #include <sys/resource.h>
 
 #include "io/raster_file.h"
+#include "io/swath_file.h"
 #include "io/tiff_head.h"
 #include "temporary_folder.h"
 #include "tiff_builder.h"
@@ -26,7 +27,10 @@ static const struct raster_layout real32 = {ROWS, COLUMNS, 1, PIXEL_FLOAT32};
 static const struct raster_layout complex32 = {ROWS, COLUMNS, 2, PIXEL_FLOAT32};
 static const struct region patch_region = {17, 23, 20, 31};
 
-static struct report report;
+/* One decoder for all, as a context has it. */
+static struct decoder decoder;
+static const struct report_host host = {NULL, &decoder};
+static struct report report = {{0}, NULL, &host};
 
 static struct region whole_of(const struct raster_layout *layout)
 {
@@ -64,14 +68,26 @@ static void expect_ok(sonject_status status)
         fail_msg("status %d: %s", (int)status, report.message);
 }
 
+static sonject_status copy_with_patch(const char *source, const char *path,
+                                      const struct region *region, const void *pixels,
+                                      sonject_progress_function progress, void *user)
+{
+    struct swath_file *file;
+    sonject_status status = swath_file_open(&report, source, SONJECT_CHANNEL_ONLY, &file);
+    if (status == SONJECT_OK)
+        status = swath_file_copy_with_patch(&report, file, path, region, pixels, progress, user);
+    swath_file_close(&file);
+    return status;
+}
+
 static unsigned char *read_file(const char *path, const struct raster_layout *expected,
                                 const struct region *region)
 {
-    struct raster_file *file;
+    struct swath_file *file;
     struct raster_layout layout;
     size_t bytes = 0;
-    expect_ok(raster_file_open(&report, path, &file));
-    raster_file_layout(file, &layout);
+    expect_ok(swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file));
+    swath_file_layout(file, &layout);
     assert_int_equal(layout.rows, expected->rows);
     assert_int_equal(layout.columns, expected->columns);
     assert_int_equal(layout.channels, expected->channels);
@@ -79,8 +95,8 @@ static unsigned char *read_file(const char *path, const struct raster_layout *ex
     assert_true(region_bytes(&layout, region, &bytes));
     unsigned char *pixels = calloc(bytes, 1);
     assert_non_null(pixels);
-    expect_ok(raster_file_read(&report, file, region, pixels));
-    raster_file_close(&file);
+    expect_ok(swath_file_read(&report, file, region, pixels));
+    swath_file_close(&file);
     assert_null(file);
     return pixels;
 }
@@ -117,8 +133,8 @@ static void expect_message(const char *path, const char *part)
 
 static void expect_no_open(const char *path, const char *part)
 {
-    struct raster_file *file = (struct raster_file *)&report;
-    if (raster_file_open(&report, path, &file) != SONJECT_ERROR_INPUT)
+    struct swath_file *file = (struct swath_file *)&report;
+    if (swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file) != SONJECT_ERROR_INPUT)
         fail_msg("%s was not refused (%s)", path, part);
     assert_null(file);
     expect_message(path, part);
@@ -179,20 +195,20 @@ static void test_regions_in_any_order(void **state)
     unsigned char *pixels = make_pixels(&grey8, &everything, 1);
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         const char *path = temporary_file(folder, names[i]);
-        struct raster_file *file;
+        struct swath_file *file;
         expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
         unsigned char *stored = read_file(path, &grey8, &everything);
-        expect_ok(raster_file_open(&report, path, &file));
+        expect_ok(swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file));
         for (size_t j = 0; j < sizeof regions / sizeof *regions; j++) {
             unsigned char part[ROWS * COLUMNS];
-            expect_ok(raster_file_read(&report, file, &regions[j], part));
+            expect_ok(swath_file_read(&report, file, &regions[j], part));
             for (uint64_t row = 0; row < regions[j].rows; row++)
                 assert_memory_equal(part + row * regions[j].columns,
                                     stored + (regions[j].first_row + row) * COLUMNS +
                                         regions[j].first_column,
                                     regions[j].columns);
         }
-        raster_file_close(&file);
+        swath_file_close(&file);
         free(stored);
     }
     free(pixels);
@@ -205,12 +221,12 @@ static void test_a_region_outside_is_refused(void **state)
     const struct region everything = whole_of(&grey8);
     const struct region outside = {40, 0, 14, 1};
     unsigned char *pixels = make_pixels(&grey8, &everything, 1);
-    struct raster_file *file;
+    struct swath_file *file;
     expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
-    expect_ok(raster_file_open(&report, path, &file));
-    assert_int_equal(raster_file_read(&report, file, &outside, pixels), SONJECT_ERROR_INPUT);
-    raster_file_close(&file);
-    assert_int_equal(raster_file_copy_with_patch(&report, path, path, &outside, pixels, NULL, NULL),
+    expect_ok(swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file));
+    assert_int_equal(swath_file_read(&report, file, &outside, pixels), SONJECT_ERROR_INPUT);
+    swath_file_close(&file);
+    assert_int_equal(copy_with_patch(path, path, &outside, pixels, NULL, NULL),
                      SONJECT_ERROR_INPUT);
     assert_int_equal(raster_file_write_placed(&report, path, &grey8, &outside, pixels, NULL),
                      SONJECT_ERROR_STORAGE);
@@ -230,20 +246,20 @@ static void test_attributes(void **state)
     for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
         const char *path = temporary_file(folder, names[i]);
         char value[10];
-        struct raster_file *file;
+        struct swath_file *file;
         expect_ok(raster_file_write(&report, path, &grey8, channels, attributes, 2, pixels));
-        expect_ok(raster_file_open(&report, path, &file));
-        assert_true(raster_file_attribute(file, "sonject:frequency", value, sizeof value));
+        expect_ok(swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file));
+        assert_true(swath_file_attribute(file, "sonject:frequency", value, sizeof value));
         assert_string_equal(value, "100000 Hz"); /* just fits */
-        assert_false(raster_file_attribute(file, "sonject:frequency", value, sizeof value - 1));
-        assert_true(raster_file_attribute(file, "sonject:side", value, sizeof value));
+        assert_false(swath_file_attribute(file, "sonject:frequency", value, sizeof value - 1));
+        assert_true(swath_file_attribute(file, "sonject:side", value, sizeof value));
         assert_string_equal(value, "port");
-        assert_true(raster_file_attribute(file, "channels", value, sizeof value));
+        assert_true(swath_file_attribute(file, "channels", value, sizeof value));
         assert_string_equal(value, "intensity");
-        assert_false(raster_file_attribute(file, "frequency", value, sizeof value));
-        assert_false(raster_file_attribute(file, "sonject:side", value, 0));
-        assert_int_equal(raster_file_is_lossless(file), i < 2);
-        raster_file_close(&file);
+        assert_false(swath_file_attribute(file, "frequency", value, sizeof value));
+        assert_false(swath_file_attribute(file, "sonject:side", value, 0));
+        assert_int_equal(swath_file_is_lossless(file), i < 2);
+        swath_file_close(&file);
     }
     free(pixels);
 }
@@ -328,7 +344,7 @@ static const char *copy_and_compare(struct temporary_folder *folder, const char 
     snprintf(from, sizeof from, "%s", source);
     const char *path = temporary_file(folder, name);
     unsigned char *patch = make_pixels(layout, region, 99);
-    expect_ok(raster_file_copy_with_patch(&report, from, path, region, patch, NULL, NULL));
+    expect_ok(copy_with_patch(from, path, region, patch, NULL, NULL));
     expect_pixels(path, layout, pixels, region, patch);
     free(patch);
     return path;
@@ -359,12 +375,12 @@ static void test_png_keeps_what_it_says(void **state)
         size_t copy_count;
         unsigned char *copy = bytes_of_file(path, &copy_count);
         assert_memory_equal(copy, longer, head + sizeof chunk);
-        struct raster_file *file;
+        struct swath_file *file;
         char value[8];
-        expect_ok(raster_file_open(&report, path, &file));
-        assert_true(raster_file_attribute(file, "sonject:side", value, sizeof value));
+        expect_ok(swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file));
+        assert_true(swath_file_attribute(file, "sonject:side", value, sizeof value));
         assert_string_equal(value, "port");
-        raster_file_close(&file);
+        swath_file_close(&file);
         free(copy);
         free(longer);
         free(bytes);
@@ -390,7 +406,7 @@ static void test_jpeg_keeps_what_it_says_and_nearly_all_pixels(void **state)
     memcpy(longer + 2 + sizeof segment, bytes + 2, count - 2);
     write_bytes(source, longer, count + sizeof segment);
     const char *path = temporary_file(folder, "b.jpg");
-    expect_ok(raster_file_copy_with_patch(&report, source, path, &patch_region, patch, NULL, NULL));
+    expect_ok(copy_with_patch(source, path, &patch_region, patch, NULL, NULL));
     size_t copy_count;
     unsigned char *copy = bytes_of_file(path, &copy_count);
     assert_memory_equal(copy, longer, 2 + sizeof segment);
@@ -576,9 +592,9 @@ static void test_a_file_that_contradicts_itself(void **state)
     char path[TEMPORARY_CAPACITY + 300];
     snprintf(path, sizeof path, "%s", temporary_file(folder, "a.tif"));
     write_bytes(path, source, count);
-    assert_int_equal(raster_file_copy_with_patch(&report, path, temporary_file(folder, "b.tif"),
-                                                 &bottom, pixels, NULL, NULL),
-                     SONJECT_ERROR_INPUT);
+    assert_int_equal(
+        copy_with_patch(path, temporary_file(folder, "b.tif"), &bottom, pixels, NULL, NULL),
+        SONJECT_ERROR_INPUT);
     expect_message(path, "cannot be replaced");
     assert_int_equal(count_entries(folder->path), 1);
     free(source);
@@ -761,9 +777,9 @@ static void test_files_that_are_no_images(void **state)
     const struct region region = {0, 0, 1, 1};
     char missing[TEMPORARY_CAPACITY + 300];
     snprintf(missing, sizeof missing, "%s", temporary_file(folder, "missing.tif"));
-    assert_int_equal(raster_file_copy_with_patch(&report, missing, temporary_file(folder, "b.tif"),
-                                                 &region, pixels, NULL, NULL),
-                     SONJECT_ERROR_INPUT);
+    assert_int_equal(
+        copy_with_patch(missing, temporary_file(folder, "b.tif"), &region, pixels, NULL, NULL),
+        SONJECT_ERROR_INPUT);
     expect_message(missing, "No such file");
     assert_int_equal(count_entries(folder->path), 1);
 }
@@ -775,17 +791,17 @@ static void test_a_jpeg_that_ends_early(void **state)
     const struct region everything = whole_of(&grey8);
     const char *path = temporary_file(folder, "a.jpg");
     unsigned char *pixels = make_pixels(&grey8, &everything, 1);
-    struct raster_file *file;
+    struct swath_file *file;
     size_t count;
     expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
     unsigned char *bytes = bytes_of_file(path, &count);
     bytes[count / 2] = 0xFF;
     bytes[count / 2 + 1] = 0xD9;
     write_bytes(path, bytes, count);
-    expect_ok(raster_file_open(&report, path, &file));
-    assert_int_equal(raster_file_read(&report, file, &everything, pixels), SONJECT_ERROR_INPUT);
+    expect_ok(swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file));
+    assert_int_equal(swath_file_read(&report, file, &everything, pixels), SONJECT_ERROR_INPUT);
     expect_message(path, "cut short or damaged");
-    raster_file_close(&file);
+    swath_file_close(&file);
     free(bytes);
     free(pixels);
 }
@@ -824,23 +840,23 @@ struct damage {
 
 static void try_damaged(struct damage *damage, const unsigned char *bytes, size_t count)
 {
-    struct raster_file *file;
+    struct swath_file *file;
     FILE *out = open_new_file(damage->source);
     if (!out || fwrite(bytes, 1, count, out) != count || fclose(out) != 0)
         return;
     unlink(damage->copy);
-    sonject_status status = raster_file_open(&report, damage->source, &file);
+    sonject_status status = swath_file_open(&report, damage->source, SONJECT_CHANNEL_ONLY, &file);
     damage->refused_at_once += status == SONJECT_ERROR_INPUT;
     if (status == SONJECT_OK) {
         struct raster_layout layout;
-        raster_file_layout(file, &layout);
+        swath_file_layout(file, &layout);
         if (region_is_inside(&layout, &patch_region) && layout.channels == 1 &&
             layout.type == PIXEL_UINT8)
-            status = raster_file_read(&report, file, &patch_region, damage->patch);
-        raster_file_close(&file);
+            status = swath_file_read(&report, file, &patch_region, damage->patch);
+        swath_file_close(&file);
         if (status == SONJECT_OK)
-            status = raster_file_copy_with_patch(&report, damage->source, damage->copy,
-                                                 &patch_region, damage->patch, NULL, NULL);
+            status = copy_with_patch(damage->source, damage->copy, &patch_region, damage->patch,
+                                     NULL, NULL);
     }
     const bool has_copy = access(damage->copy, F_OK) == 0;
     if (status == SONJECT_OK && has_copy)
@@ -1033,13 +1049,11 @@ static void test_cancelling(void **state)
         snprintf(copy, sizeof copy, "%s/copy-%s", folder->path, names[i]);
         int calls = 0;
         expect_ok(raster_file_write(&report, source, &grey8, NULL, NULL, 0, pixels));
-        assert_int_equal(raster_file_copy_with_patch(&report, source, copy, &patch_region, pixels,
-                                                     cancel, &calls),
+        assert_int_equal(copy_with_patch(source, copy, &patch_region, pixels, cancel, &calls),
                          SONJECT_CANCELLED);
         assert_int_equal(count_entries(folder->path), i + 1);
         calls = 0;
-        expect_ok(raster_file_copy_with_patch(&report, source, copy, &patch_region, pixels,
-                                              count_calls, &calls));
+        expect_ok(copy_with_patch(source, copy, &patch_region, pixels, count_calls, &calls));
         assert_true(calls > 0);
         unlink(copy);
     }
@@ -1067,8 +1081,8 @@ static void test_a_full_disk(void **state)
         for (rlim_t limit = 0; limit < 3000; limit += 200) {
             low.rlim_cur = limit;
             assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
-            const sonject_status copied = raster_file_copy_with_patch(
-                &report, source, copy, &patch_region, pixels, NULL, NULL);
+            const sonject_status copied =
+                copy_with_patch(source, copy, &patch_region, pixels, NULL, NULL);
             const bool names_it = strstr(report.message, copy) != NULL &&
                                   strstr(report.message, "File too large") != NULL;
             const sonject_status written =

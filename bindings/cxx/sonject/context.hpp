@@ -26,7 +26,7 @@ struct context_options {
     void *opencl_context = nullptr; /* a host's cl_context and cl_device_id */
     void *opencl_device = nullptr;
     sonject::log log;
-    bool decodes_in_process = false; /* HDF5 files, else by a child process */
+    bool decodes_in_process = false; /* images and HDF5, else by a child process */
 };
 
 /* One OpenCL device and what is compiled for it. */

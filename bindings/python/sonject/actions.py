@@ -247,7 +247,7 @@ def convert(
     altitude_m: Optional[float] = None,
     context: Optional[Context] = None,
 ) -> None:
-    """Makes a file of one format (.tif, .png, .npy, .h5, .pgm, .pfm) from a file of another.
+    """Makes a file of one format (.tif, .png, .npy, .h5) from a file of another.
 
     into: the output is a copy of this file with the source's samples; samples, scale: another type,
     in which values that do not fit are refused; geometry, altitude_m: None for what the source's

@@ -36,7 +36,7 @@ class Context:
 
     device: part of the device's name, None for the default one; log: called with lines of news;
     opencl_context, opencl_device: addresses of a host's cl_context and cl_device_id to work in;
-    decodes_in_process: read HDF5 files here, not in a child process (a damaged one may end this).
+    decodes_in_process: read images and HDF5 here, not in a child (a damaged file may end this).
 
     Calls from several threads on one context wait for each other; use a context per thread to work
     at once. OpenCL does not survive os.fork: what needs a device is refused in a child whose parent

@@ -1,0 +1,13 @@
+/* What the heads of BMP, PGM and PFM files say, beside how long the files are: these formats have
+ * no checksums, and OpenImageIO takes what their heads say. */
+#ifndef SONJECT_IO_PLAIN_HEAD_H
+#define SONJECT_IO_PLAIN_HEAD_H
+
+#include "base/report.h"
+
+/* Refuses (INPUT) files whose length is not what the head says, and numbers that OpenImageIO would
+ * not hand on as they are stored. */
+sonject_status bmp_check(struct report *report, const char *path);
+sonject_status pnm_check(struct report *report, const char *path);
+
+#endif
