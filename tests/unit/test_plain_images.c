@@ -144,10 +144,11 @@ static double number_in(enum pixel_type type, const void *samples, unsigned i)
                                   : (double)((const uint8_t *)samples)[i];
 }
 
-/* OK: it has all the right samples. */
-static sonject_status take(const char *path, const struct kind *kind, bool *is_right)
+/* OK: it was read; is_right: every sample is. */
+static sonject_status take_by(const struct report_host *by, const char *path,
+                              const struct kind *kind, bool *is_right)
 {
-    struct report report = {{0}, NULL, &host};
+    struct report report = {{0}, NULL, by};
     struct swath_file *file;
     struct raster_layout layout;
     float samples[SAMPLES];
@@ -167,8 +168,15 @@ static sonject_status take(const char *path, const struct kind *kind, bool *is_r
     return status;
 }
 
-static void test_every_sample_is_read(void **state)
+static sonject_status take(const char *path, const struct kind *kind, bool *is_right)
 {
+    return take_by(&host, path, kind, is_right);
+}
+
+static void test_every_sample_is_read_by_the_child_and_here(void **state)
+{
+    struct decoder own = {.is_in_process = true};
+    const struct report_host alone = {NULL, &own};
     for (size_t i = 0; i < KINDS; i++) {
         struct draft draft;
         bool is_right;
@@ -177,7 +185,11 @@ static void test_every_sample_is_read(void **state)
         write_file(path, draft.bytes, draft.count);
         assert_int_equal(take(path, &kinds[i], &is_right), SONJECT_OK);
         assert_true(is_right);
+        assert_int_equal(take_by(&alone, path, &kinds[i], &is_right), SONJECT_OK);
+        assert_true(is_right);
     }
+    assert_true(decoder.starts == 1 && own.starts == 0);
+    decoder_stop(&own);
 }
 
 static void test_a_cut_file_is_never_taken(void **state)
@@ -290,7 +302,7 @@ static void test_foreign_formats(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_sample_is_read),
+        cmocka_unit_test(test_every_sample_is_read_by_the_child_and_here),
         cmocka_unit_test(test_a_cut_file_is_never_taken),
         cmocka_unit_test(test_a_damaged_head_never_gives_other_samples),
         cmocka_unit_test(test_a_copy_is_a_tiff_of_all_samples),
