@@ -106,13 +106,12 @@ sonject_status pnm_check(struct report *report, const char *path)
         !(rows >= 1.0 && rows < (double)SIDE_MAX))
         return refuse(report, path, "is damaged: its head does not tell its size");
     const bool is_float = head.text[1] == 'f';
-    if (is_float ? fabs(largest) != 1.0 : largest != 255.0 && largest != 65535.0)
+    if (fabs(largest) != (is_float ? 1.0 : 255.0))
         return refuse(report, path,
                       is_float
                           ? "says that its numbers are scaled: write it with a scale of 1.0 or "
                             "-1.0"
-                          : "has a largest number other than 255 and 65535: write it as TIFF");
-    const uint64_t sample_bytes = is_float ? 4 : largest > 255.0 ? 2 : 1;
+                          : "is no PGM of 8 bits (largest number 255): write it as TIFF");
     return check_length(report, path, &head, (uint64_t)(at + 1 - head.text), (uint64_t)rows,
-                        (uint64_t)columns * sample_bytes);
+                        (uint64_t)columns * (is_float ? 4 : 1));
 }
