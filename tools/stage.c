@@ -1,8 +1,16 @@
 #include "stage.h"
 
+#include <string.h>
+
 #include "exit_code.h"
 #include "message.h"
 #include "stop.h"
+
+static void log_notes(void *progress, const char *line)
+{
+    if (strncmp(line, "note: ", 6) == 0)
+        progress_log(progress, line);
+}
 
 int stage_work(const struct stage_options *stage, stage_function function, const void *verb_options,
                const char *done)
@@ -13,7 +21,7 @@ int stage_work(const struct stage_options *stage, stage_function function, const
     sonject_context_params params;
     sonject_context_params_init(&params);
     params.device_name = stage->device;
-    params.log = stage->is_verbose && !stage->is_quiet ? progress_log : NULL;
+    params.log = stage->is_quiet ? NULL : stage->is_verbose ? progress_log : log_notes;
     params.log_user = &progress;
     sonject_context *context = NULL;
     int was_finished = 0;

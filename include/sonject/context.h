@@ -12,7 +12,8 @@ SONJECT_BEGIN_DECLARATIONS
 
 typedef struct sonject_context sonject_context;
 
-/* Receives one line of news (no newline at its end); called on the thread that made the call. */
+/* Receives one line of news (no newline at its end); called on the thread that made the call. A
+ * line that begins with "note: " says that a result is not of its input's kind: show it always. */
 typedef void (*sonject_log_function)(void *user, const char *line);
 
 /* Called between pieces of work with the finished fraction, 0...1. Return 0 to go on, anything else

@@ -100,8 +100,7 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
     free(path);
     if (status == SONJECT_OK && facts->scene->input_kind == SONJECT_INPUT_FILE &&
         !facts->swath->is_patched)
-        report_news(report,
-                    "%s is written as a new TIFF: files of the input's kind are not changed",
+        report_news(report, "note: %s is a new TIFF: files of the input's kind are not changed",
                     facts->image_name);
     if (status == SONJECT_OK)
         status = file_list_add(&facts->files, report, folder, facts->image_name, true);

@@ -21,7 +21,7 @@ struct swath {
     bool is_complex;
     bool is_made; /* by sonject */
     bool is_lossless;
-    bool is_whole; /* numbers that the file limits: integers, also where the layout has floats */
+    bool is_whole;   /* numbers that the file limits: integers, also where the layout has floats */
     bool is_patched; /* the image is the input's file with other pixels, not a TIFF */
     struct track track;                /* of a recording */
     uint64_t clipped;                  /* pixels at full scale */

@@ -217,9 +217,9 @@ sonject_status raster_file_write(struct report *report, const char *path,
         growing_text_add(&text, "%s%s=%s", text.length > 0 ? "\n" : "", attributes[i].name,
                          attributes[i].value);
     char *description = growing_text_end(&text);
-    const sonject_status status = description
-                                      ? write_rows(&rows, path, description, layout->channels == 3, NULL)
-                                      : report_out_of_memory(report, "a description");
+    const sonject_status status =
+        description ? write_rows(&rows, path, description, layout->channels == 3, NULL)
+                    : report_out_of_memory(report, "a description");
     free(description);
     return status;
 }

@@ -24,8 +24,8 @@ struct sample_rows {
     uint64_t *places; /* owned: of each row's first stored sample; NULL: row_bytes apart */
     uint64_t first_place, row_bytes;
     enum stored_number stored;
-    bool is_transposed;  /* the file keeps columns together: they are what it calls rows */
-    bool is_reversed;    /* column 0 is the row's last stored sample */
+    bool is_transposed; /* the file keeps columns together: they are what it calls rows */
+    bool is_reversed;   /* column 0 is the row's last stored sample */
     bool is_big_endian;
     uint32_t largest;       /* larger samples are refused; 0: none are */
     bool above_is_negative; /* what is larger are negative numbers */
