@@ -113,14 +113,14 @@ def test_labels_are_colours_that_read_as_numbers(sonject, folder, tmp_path):
     palette = content[content.index(b"PLTE") + 4 :][: 3 * 256]
     colours = {palette[3 * i : 3 * i + 3] for i in range(1, 256)}
     assert palette[:3] == bytes(3) and len(colours) == 255 and min(map(max, colours)) == 255
-    answer = sonject("convert", folder / "labels.png", "labels.pgm")
+    answer = sonject("convert", folder / "labels.png", "labels.npy")
     assert answer.returncode == 0, answer.stderr
-    numbers = (tmp_path / "labels.pgm").read_bytes()[-ROWS * COLUMNS :]
+    numbers = (tmp_path / "labels.npy").read_bytes()[-ROWS * COLUMNS :]
     assert numbers == read_png(folder / "labels.png").astype("u1").tobytes()
     assert set(numbers) == {0, 1, 2, 3}
     at = content.index(b"soNu")
     (tmp_path / "other.png").write_bytes(content[: at - 4] + content[at + 33 :])
-    assert_refused(sonject("convert", "other.png", "other.pgm"), 3, "palette")
+    assert_refused(sonject("convert", "other.png", "other.npy"), 3, "palette")
 
 
 def test_truth_says_where_boxes_lie_and_what_is_seen(folder, seen):
