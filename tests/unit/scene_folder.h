@@ -88,7 +88,9 @@ static inline void expect_scene_refused(struct scene_folder *folder, const char 
     for (const char *line = message, *end; *line; line = *end ? end + 1 : end) {
         end = line + strcspn(line, "\n");
         strcat(strcat(expected, line == message ? "" : "\n"), folder->file);
-        strncat(expected, line, (size_t)(end - line));
+        char *behind = expected + strlen(expected);
+        memcpy(behind, line, (size_t)(end - line));
+        behind[end - line] = 0;
     }
     if (strcmp(folder->report.message, expected) != 0)
         fail_msg("the message is\n%s\nand not\n%s", folder->report.message, expected);
