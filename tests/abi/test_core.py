@@ -84,7 +84,7 @@ def test_the_wheel_holds_package_and_library(wheel):
     sources = {f"sonject/{path.relative_to(PACKAGE)}" for path in PACKAGE.rglob("*")
                if path.is_file() and "__pycache__" not in path.parts}
     assert {"sonject/_structures/__init__.py", "sonject/py.typed"} <= sources
-    assert names == sources | {"sonject/libsonject.so"}
+    assert names == sources | {"sonject/libsonject.so", "sonject/sonject-decoder"}
 
 
 def test_a_wheel_with_image_files_has_their_module(tmp_path):
