@@ -13,7 +13,6 @@ from test_interface import LIBRARY, SOURCE, exported_symbols
 
 READERS = os.environ.get("SONJECT_READERS")
 PACKAGE = SOURCE / "bindings" / "python" / "sonject"
-HAS_DECODER = (LIBRARY.parent / "sonject-decoder").exists()
 CORE = ["-Dopenimageio=disabled", "-Dhdf5=disabled", "-Dtests=disabled",
         "-Dstatic=disabled", "-Dbuildtype=debug", "-Db_sanitize=none"]
 # What pip asks meson-python for. The build folder is said, so that none is made among the sources.
@@ -100,8 +99,7 @@ def test_a_wheel_with_image_files_has_their_module(tmp_path):
     assert settings["install"] == ["--tags=python-runtime"]
     assert {entry["destination"] for entry in entries if entry["tag"] == "python-runtime"} == {
         "{py_platlib}/sonject", "{py_platlib}/sonject/libsonject.so",
-        "{py_platlib}/sonject/openimageio.so"} | (
-            {"{py_platlib}/sonject/sonject-decoder"} if HAS_DECODER else set())
+        "{py_platlib}/sonject/openimageio.so", "{py_platlib}/sonject/sonject-decoder"}
 
 
 def test_the_installed_package_finds_its_library(installed):

@@ -365,7 +365,8 @@ static void expect_reference(const struct energies *traced,
 }
 
 /* Against a reference that shares nothing with the kernels but the physics: plain double precision,
- * cosine sampling, its own shapes. Half a bin of 3 mm at either end of a range is systematic. */
+ * cosine sampling, its own shapes. A bin of 3 mm, shared at either end of a range, is systematic.
+ */
 static void compare_with_reference(struct bench *bench, const double (*seabed_and_target_db)[2],
                                    size_t count)
 {

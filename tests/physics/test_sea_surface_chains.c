@@ -379,7 +379,7 @@ static void test_all_paths_in_paper_columns(void **unused)
     compare_all_paths(SONJECT_COLUMNS_PAPER, AS_CONNECTED, "paper columns", 0.03);
 }
 
-/* Half a bin of 3 mm at either end of a range is systematic: 1 %. */
+/* A bin of 3 mm, shared at either end of a range, is systematic: 1 %. */
 static void test_all_paths_in_focused_columns(void **unused)
 {
     (void)unused;
