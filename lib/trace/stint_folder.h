@@ -42,7 +42,8 @@ sonject_status stint_chain_find(struct stint_chain *chain, struct report *report
                                 const struct stint_folder *folder, uint64_t shard);
 void stint_chain_clear(struct stint_chain *chain);
 
-/* Removes stints, parts of them that dead processes left, and the folder if nothing else is in it. */
+/* Removes stints, parts of them that dead processes left, and the folder if nothing else is in it.
+ */
 void stint_folder_remove(const char *path);
 
 #endif

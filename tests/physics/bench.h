@@ -28,8 +28,8 @@ struct bench {
 };
 
 /* Opens bench_device, and lays a patch of pixels with default parameters: 100 kHz, 30 kHz, 10 m
- * altitude, 2.5 cm, but with broadside rays alone. Its middle column is at middle_range_m. Fails the
- * test where a call fails. */
+ * altitude, 2.5 cm, but with broadside rays alone. Its middle column is at middle_range_m. Fails
+ * the test where a call fails. */
 void bench_open(struct bench *bench, size_t rows, size_t columns, double middle_range_m);
 void bench_close(struct bench *bench);
 

@@ -190,7 +190,8 @@ static void test_image_of_a_point(void **unused)
         bench.scene.geometry.column_spacing_m = 0.003;
         choose_pulse(&bench, pulse);
         bench_move(&bench, RANGE);
-        bench.scene.sonar.centre_frequency_hz = 400e3; /* a ball is half a wavelength large at least */
+        bench.scene.sonar.centre_frequency_hz =
+            400e3; /* a ball is half a wavelength large at least */
         bench.scene.injection.ray_scale = 16.0;
         bench_add(&bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.002)->burial_m = -0.1;
         bench_ready(&bench);

@@ -11,8 +11,8 @@
 #include <string.h>
 
 #include "bench.h"
-#include "shadow_edge.h"
 #include "inject/injection.h"
+#include "shadow_edge.h"
 
 #define ROWS    201
 #define COLUMNS 401

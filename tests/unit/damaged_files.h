@@ -77,7 +77,7 @@ static void expect_whole(const char *path, const char *copy, const unsigned char
 /* Reads the file with changed bytes and cut short, `mutations` times: none but the statuses that
  * bad files give. Most places are where structure is, in the first 300 bytes. */
 static inline void mutate(const char *folder, const char *name, int32_t channel,
-                   const unsigned char *bytes, size_t count, int mutations)
+                          const unsigned char *bytes, size_t count, int mutations)
 {
     char path[512], copy[512];
     static unsigned char changed[LARGEST_FILE];

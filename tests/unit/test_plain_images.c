@@ -203,7 +203,8 @@ static void test_a_damaged_head_never_gives_other_samples(void **state)
         for (size_t place = 0; place < draft.count - kinds[i].data; place++)
             for (unsigned change = 0; change < 4; change++) {
                 const unsigned char kept = draft.bytes[place];
-                draft.bytes[place] = (unsigned char)(change < 3 ? kept ^ (1u << 3 * change) : 0xFFu);
+                draft.bytes[place] =
+                    (unsigned char)(change < 3 ? kept ^ (1u << 3 * change) : 0xFFu);
                 write_file(path, draft.bytes, draft.count);
                 const sonject_status status = take(path, &kinds[i], &is_right);
                 if (status == SONJECT_OK ? !is_right : status != SONJECT_ERROR_INPUT)
