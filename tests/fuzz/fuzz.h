@@ -21,4 +21,7 @@ char *fuzz_text(const uint8_t *bytes, size_t count);
  * message. */
 void fuzz_expect(sonject_status status, const struct report *report);
 
+/* The same, with a line for each mistake. */
+void fuzz_expect_lines(sonject_status status, const struct report *report);
+
 #endif

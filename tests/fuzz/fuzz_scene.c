@@ -13,7 +13,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     const struct scene_text source = {
         .path = "scenes/fuzz.yaml", .text = text, .bytes = count, .allows_user_shapes = true};
     scene_init(&scene);
-    fuzz_expect(scene_text_read(&report, &source, &scene), &report);
+    fuzz_expect_lines(scene_text_read(&report, &source, &scene), &report);
     scene_clear(&scene);
     free(text);
     return 0;

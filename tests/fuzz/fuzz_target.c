@@ -21,7 +21,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
                                       .allows_user_shapes = true};
     fuzz_write("targets/fuzz.yaml", bytes, count);
     scene_init(&scene);
-    fuzz_expect(scene_text_read(&report, &source, &scene), &report);
+    fuzz_expect_lines(scene_text_read(&report, &source, &scene), &report);
     scene_clear(&scene);
     return 0;
 }

@@ -47,7 +47,9 @@ def main():
             "-timeout=60", "-rss_limit_mb=2048", "-print_final_stats=1", "-verbosity=0",
             f"-artifact_prefix={findings / kind}-", *dictionary, folder / "corpus",
         ]
-        return subprocess.run(arguments, cwd=folder, stdin=subprocess.DEVNULL, check=False).returncode
+        ended = subprocess.run(arguments, cwd=folder, stdin=subprocess.DEVNULL, check=False)
+        # libFuzzer tells what it found by 77, which Meson takes for a test that was skipped.
+        return 1 if ended.returncode else 0
 
 
 if __name__ == "__main__":
