@@ -9,6 +9,8 @@
 #include "base/json_document.h"
 #include "cl/sources.h"
 #include "inject/impulse_file.h"
+#include "io/scene_parts.h"
+#include "io/scene_shape.h"
 
 /* Members one by one: the padding of a structure is not part of its value. */
 #define ADD(hash, member) hash_add(hash, &(member), sizeof(member))
@@ -28,243 +30,156 @@ static void end_section(struct digest *digest, const char *name)
         json_add(digest->inputs, name, json_string(text));
 }
 
+/* NaN has many patterns and one meaning: that nothing was given. */
+static void add_number(struct hash *hash, double number)
+{
+    const double told = isnan(number) ? (double)NAN : number;
+    ADD(hash, told);
+}
+
+/* A section with a structure of its own. */
+static bool is_part(const struct field *field)
+{
+    return field->kind == FIELD_SECTION && field->offset != 0;
+}
+
+/* All that a section's keys set in its structure, but for parts, which have structures of their
+ * own. Files count by what is in them, which is the scene's. */
+static void add_rows(struct hash *hash, const struct section *section, const void *structure)
+{
+    for (size_t i = 0; i < section->count; i++) {
+        const struct field *field = &section->fields[i];
+        const void *member = (const char *)structure + field->offset;
+        switch (field->kind) {
+        case FIELD_QUANTITY:
+            add_number(hash, *(const double *)member);
+            break;
+        case FIELD_COUNT64:
+            hash_add(hash, member, sizeof(uint64_t));
+            break;
+        case FIELD_COUNT32:
+        case FIELD_FLAG32:
+        case FIELD_WORD:
+            hash_add(hash, member, sizeof(uint32_t));
+            break;
+        case FIELD_BOOL:
+            hash_add(hash, member, sizeof(bool));
+            break;
+        case FIELD_LABEL:
+            hash_add_text(hash, member);
+            break;
+        case FIELD_TEXT:
+            hash_add_text(hash, *(char *const *)member ? *(char *const *)member : "");
+            break;
+        case FIELD_NAMED:
+            add_rows(hash, field->section, member);
+            continue;
+        case FIELD_PATH:
+        case FIELD_FILE:
+        case FIELD_SECTION:
+        case FIELD_SPECIAL:
+            break;
+        }
+        if (field->section && !field->read && !is_part(field))
+            add_rows(hash, field->section, structure);
+    }
+}
+
+static void add_section(struct digest *digest, const char *name, const struct section *section,
+                        const void *structure)
+{
+    char inner[64];
+    add_rows(digest->section, section, structure);
+    end_section(digest, name);
+    for (size_t i = 0; i < section->count; i++) {
+        const struct field *field = &section->fields[i];
+        snprintf(inner, sizeof inner, "%s.%s", name, field->key);
+        if (is_part(field))
+            add_section(digest, inner, field->section, (const char *)structure + field->offset);
+    }
+}
+
 static void add_material(struct hash *hash, const sonject_material_params *material)
 {
-    /* NaN has many patterns and one meaning: the seabed's own, what the sea surface's lambert
-     * leaves
-     */
-    const double lambert = isnan(material->lambert) ? -1.0 : material->lambert;
-    const double glossy_albedo = isnan(material->glossy_albedo) ? -1.0 : material->glossy_albedo;
     ADD(hash, material->reflection_kind);
-    ADD(hash, material->reflection);
-    ADD(hash, material->roughness_m);
-    ADD(hash, lambert);
-    ADD(hash, material->lambert_exponent);
-    ADD(hash, glossy_albedo);
-    ADD(hash, material->glossy_slope);
-    ADD(hash, material->density_ratio);
-    ADD(hash, material->speed_ratio);
-    ADD(hash, material->loss);
+    add_rows(hash, &material_section, material);
 }
 
-static void add_water_layers(struct hash *hash, const struct scene *scene)
+static void add_table(struct hash *hash, const double *positions, const void *values,
+                      size_t value_bytes, size_t count)
+{
+    const uint64_t told = count;
+    ADD(hash, told);
+    hash_add(hash, positions, count * sizeof *positions);
+    hash_add(hash, values, count * value_bytes);
+}
+
+static void add_response(struct digest *digest, const char *name,
+                         const struct response_table *table)
+{
+    ADD(digest->section, table->is_time);
+    add_table(digest->section, table->positions, table->values, sizeof *table->values,
+              table->count);
+    end_section(digest, name);
+}
+
+static void add_motion(struct digest *digest, const struct aperture_motion *motion)
+{
+    struct hash *hash = digest->section;
+    const sonject_motion_params *params = &motion->params;
+    const struct motion_table *sway = &motion->sway_table, *yaw = &motion->yaw_table;
+    ADD(hash, params->sway_count);
+    for (uint32_t i = 0; i < params->sway_count && i < SONJECT_SWAYS_CAPACITY; i++)
+        add_rows(hash, &sway_section, &params->sways[i]);
+    ADD(hash, params->yaw_count);
+    for (uint32_t i = 0; i < params->yaw_count && i < SONJECT_YAWS_CAPACITY; i++)
+        add_rows(hash, &yaw_sine_section, &params->yaws[i]);
+    add_table(hash, sway->along_track_m, sway->values, sizeof *sway->values, sway->count);
+    add_table(hash, yaw->along_track_m, yaw->values, sizeof *yaw->values, yaw->count);
+    add_section(digest, "sonar.motion", &motion_section, params);
+}
+
+static void add_medium(struct digest *digest, const struct scene *scene)
 {
     const uint64_t count = scene->water_layer_count;
-    ADD(hash, count);
-    for (size_t i = 0; i < scene->water_layer_count; i++) {
-        ADD(hash, scene->water_layers[i].bottom_m);
-        ADD(hash, scene->water_layers[i].speed_mps);
-        ADD(hash, scene->water_layers[i].density);
-    }
+    ADD(digest->section, count);
+    for (size_t i = 0; i < scene->water_layer_count; i++)
+        add_rows(digest->section, &layer_section, &scene->water_layers[i]);
+    add_section(digest, "medium", &medium_section, &scene->medium);
 }
 
-static void add_sonar(struct digest *digest, const struct scene *scene)
+static void add_relief(struct digest *digest, const struct relief_features *relief)
 {
     struct hash *hash = digest->section;
-    const sonject_sonar_params *sonar = &scene->sonar;
-    ADD(hash, sonar->response_window);
-    ADD(hash, sonar->centre_frequency_hz);
-    ADD(hash, sonar->bandwidth_hz);
-    ADD(hash, sonar->altitude_m);
-    ADD(hash, sonar->along_track_resolution_m);
-    ADD(hash, sonar->transducer_side_m);
-    ADD(hash, sonar->taylor_sidelobe_db);
-    ADD(hash, sonar->taylor_terms);
-    ADD(hash, sonar->kind);
-    ADD(hash, sonar->aperture_rad);
-    ADD(hash, sonar->array_length_m);
-    ADD(hash, sonar->array_height_m);
-    ADD(hash, sonar->array_heading_rad);
-    ADD(hash, sonar->array_pitch_rad);
-    ADD(hash, sonar->array_depression_rad);
-    end_section(digest, "sonar");
-}
-
-static void add_response_table(struct hash *hash, const struct response_table *table)
-{
-    const uint64_t count = table->count;
-    ADD(hash, count);
-    ADD(hash, table->is_time);
-    hash_add(hash, table->positions, table->count * sizeof *table->positions);
-    hash_add(hash, table->values, table->count * sizeof *table->values);
-}
-
-static void add_motion_table(struct hash *hash, const struct motion_table *table)
-{
-    const uint64_t count = table->count;
-    ADD(hash, count);
-    hash_add(hash, table->along_track_m, table->count * sizeof *table->along_track_m);
-    hash_add(hash, table->values, table->count * sizeof *table->values);
-}
-
-/* Only where there is some: scenes that know of none keep their hashes. */
-static void add_yaw(struct hash *hash, const struct aperture_motion *motion)
-{
-    const sonject_motion_params *params = &motion->params;
-    if (!aperture_motion_has_yaw(motion))
-        return;
-    ADD(hash, params->yaw_advance_m);
-    ADD(hash, params->yaw_bias_rad);
-    ADD(hash, params->yaw_random_rms_rad);
-    ADD(hash, params->yaw_random_correlation_m);
-    ADD(hash, params->yaw_seed);
-    ADD(hash, params->yaw_count);
-    for (uint32_t i = 0; i < params->yaw_count && i < SONJECT_YAWS_CAPACITY; i++) {
-        ADD(hash, params->yaws[i].amplitude_rad);
-        ADD(hash, params->yaws[i].wavelength_m);
-        ADD(hash, params->yaws[i].phase_rad);
-    }
-    add_motion_table(hash, &motion->yaw_table);
-}
-
-static void add_motion(struct hash *hash, const struct aperture_motion *motion)
-{
-    const sonject_motion_params *params = &motion->params;
-    ADD(hash, params->sway_count);
-    for (uint32_t i = 0; i < params->sway_count && i < SONJECT_SWAYS_CAPACITY; i++) {
-        ADD(hash, params->sways[i].amplitude_m);
-        ADD(hash, params->sways[i].wavelength_m);
-        ADD(hash, params->sways[i].phase_rad);
-    }
-    ADD(hash, params->random_rms_m);
-    ADD(hash, params->random_correlation_m);
-    ADD(hash, params->seed);
-    add_motion_table(hash, &motion->sway_table);
-    add_yaw(hash, motion);
-}
-
-static void add_responses(struct digest *digest, const struct scene *scene)
-{
-    struct hash *hash = digest->section;
-    ADD(hash, scene->pulse.kind);
-    ADD(hash, scene->pulse.window);
-    ADD(hash, scene->pulse.taylor_terms);
-    ADD(hash, scene->pulse.taylor_sidelobe_db);
-    add_response_table(hash, &scene->pulse_table);
-    end_section(digest, "sonar.pulse");
-    add_response_table(hash, &scene->cross_range_table);
-    end_section(digest, "sonar.measured_response");
-    add_motion(hash, &scene->motion);
-    end_section(digest, "sonar.motion");
-}
-
-/* Only where there is some: scenes that know of none keep their hashes. */
-static void add_relief(struct hash *hash, const struct relief_features *relief)
-{
     for (uint32_t i = 0; i < relief->count; i++) {
-        const struct relief_feature *feature = &relief->features[i];
-        ADD(hash, feature->kind);
-        ADD(hash, feature->height_m);
-        ADD(hash, feature->wavelength_m);
-        ADD(hash, feature->heading_rad);
-        ADD(hash, feature->phase_rad);
-        ADD(hash, feature->sharpness);
-        ADD(hash, feature->irregularity);
-        ADD(hash, feature->seed);
-        ADD(hash, feature->radius_m);
-        ADD(hash, feature->width_m);
-        ADD(hash, feature->position_kind);
-        ADD(hash, feature->position_along);
-        ADD(hash, feature->position_range);
-        hash_add_text(hash, feature->object);
+        ADD(hash, relief->features[i].kind);
+        add_rows(hash, &relief_section, &relief->features[i]);
     }
-    if (!relief->heights_m)
-        return;
-    ADD(hash, relief->grid.rows);
-    ADD(hash, relief->grid.columns);
-    ADD(hash, relief->grid.first_along_track_m);
-    ADD(hash, relief->grid.first_ground_range_m);
-    ADD(hash, relief->grid.row_spacing_m);
-    ADD(hash, relief->grid.column_spacing_m);
-    hash_add(hash, relief->heights_m,
-             (size_t)relief->grid.rows * relief->grid.columns * sizeof *relief->heights_m);
-}
-
-static void add_sea(struct digest *digest, const struct scene *scene)
-{
-    struct hash *hash = digest->section;
-    ADD(hash, scene->medium.sound_speed_mps);
-    ADD(hash, scene->medium.reference_sound_speed_mps);
-    ADD(hash, scene->medium.absorption_db_per_m);
-    add_water_layers(hash, scene);
-    end_section(digest, "medium");
-    ADD(hash, scene->seabed.map);
-    ADD(hash, scene->seabed.lambert);
-    ADD(hash, scene->seabed.level_radius_m);
-    ADD(hash, scene->seabed.despeckle_radius_m);
-    ADD(hash, scene->seabed.forward_rule);
-    add_material(hash, &scene->seabed.forward);
-    end_section(digest, "seabed");
-    add_relief(hash, &scene->relief);
+    if (relief->heights_m) {
+        ADD(hash, relief->grid.rows);
+        ADD(hash, relief->grid.columns);
+        ADD(hash, relief->grid.first_along_track_m);
+        ADD(hash, relief->grid.first_ground_range_m);
+        ADD(hash, relief->grid.row_spacing_m);
+        ADD(hash, relief->grid.column_spacing_m);
+        hash_add(hash, relief->heights_m,
+                 (size_t)relief->grid.rows * relief->grid.columns * sizeof *relief->heights_m);
+    }
     end_section(digest, "seabed.relief");
-    ADD(hash, scene->surface.water_depth_m);
-    add_material(hash, &scene->surface.material);
-    end_section(digest, "surface");
 }
 
-static void add_image(struct digest *digest, const struct scene *scene)
-{
-    struct hash *hash = digest->section;
-    const sonject_geometry_params *geometry = &scene->geometry;
-    ADD(hash, geometry->side);
-    ADD(hash, geometry->row_spacing_m);
-    ADD(hash, geometry->column_spacing_m);
-    ADD(hash, geometry->first_along_track_m);
-    ADD(hash, geometry->first_slant_range_m);
-    end_section(digest, "input.geometry");
-    ADD(hash, scene->transfer.kind);
-    ADD(hash, scene->transfer.parameter);
-    ADD(hash, scene->transfer.offset);
-    ADD(hash, scene->transfer.full_scale);
-    end_section(digest, "input.transfer");
-    ADD(hash, scene->patch.first_row);
-    ADD(hash, scene->patch.first_column);
-    ADD(hash, scene->patch.rows);
-    ADD(hash, scene->patch.columns);
-    end_section(digest, "patch");
-    ADD(hash, scene->input_kind);
-    ADD(hash, scene->input_is_complex);
-    ADD(hash, scene->channel);
-    hash_add_text(hash, scene->array ? scene->array : "");
-    end_section(digest, "input");
-}
-
+/* What has no key, but is of one: the kinds that a key's way of writing tells, and numbers of what
+ * the scene has. */
 static void add_object(struct hash *hash, const sonject_object_params *object)
 {
-    ADD(hash, object->shape);
-    hash_add_text(hash, object->name);
-    hash_add_text(hash, object->class_name);
-    ADD(hash, object->length_m);
-    ADD(hash, object->width_m);
-    ADD(hash, object->diameter_m);
-    ADD(hash, object->position_kind);
-    ADD(hash, object->position_along);
-    ADD(hash, object->position_range);
-    ADD(hash, object->heading_rad);
-    ADD(hash, object->pitch_rad);
-    ADD(hash, object->roll_rad);
     ADD(hash, object->burial_kind);
-    ADD(hash, object->burial_m);
-    ADD(hash, object->burial_fraction);
-    ADD(hash, object->proud_height_m);
-    ADD(hash, object->height_m);
-    ADD(hash, object->top_diameter_m);
-    ADD(hash, object->front_height_m);
-    ADD(hash, object->nose_end);
-    ADD(hash, object->tail_end);
-    ADD(hash, object->nose_end_depth_m);
-    ADD(hash, object->tail_end_depth_m);
+    add_material(hash, &object->material);
     ADD(hash, object->mesh);
     ADD(hash, object->user_shape);
-    ADD(hash, object->level_kind);
-    ADD(hash, object->level_db);
     ADD(hash, object->cut_count);
-    for (uint32_t i = 0; i < object->cut_count && i < SONJECT_CUTS_CAPACITY; i++) {
-        ADD(hash, object->cuts[i].azimuth_rad);
-        ADD(hash, object->cuts[i].elevation_rad);
-        ADD(hash, object->cuts[i].distance_m);
-    }
-    add_material(hash, &object->material);
+    for (uint32_t i = 0; i < object->cut_count && i < SONJECT_CUTS_CAPACITY; i++)
+        add_rows(hash, &cut_section, &object->cuts[i]);
+    add_rows(hash, &object_section, object);
 }
 
 /* Objects by their numbers, and what they are made of all together. */
@@ -313,34 +228,37 @@ static void add_user_shapes(struct hash *hash, const struct user_shapes *shapes)
     }
 }
 
-static void add_injection(struct hash *hash, const sonject_injection_params *injection)
+/* The seed is told apart from what else is said of the injection. The array of the element level
+ * is no part of an image. */
+static void add_settings(struct digest *digest, const struct scene *scene)
 {
-    ADD(hash, injection->mode);
-    ADD(hash, injection->column_rule);
-    ADD(hash, injection->estimate_noise);
-    ADD(hash, injection->noise_floor_db);
-    ADD(hash, injection->influence_db);
-    ADD(hash, injection->ray_scale);
-    ADD(hash, injection->interactions);
-    ADD(hash, injection->estimator);
-    ADD(hash, injection->order_energies);
-    ADD(hash, injection->match_response);
-    ADD(hash, injection->match_looks);
-    ADD(hash, injection->match_saturation);
+    sonject_injection_params injection = scene->injection;
+    ADD(digest->section, injection.seed);
+    end_section(digest, "injection.seed");
+    injection.seed = 0;
+    ADD(digest->section, injection.estimate_noise);
+    add_section(digest, "injection", &injection_section, &injection);
+    add_section(digest, "sonar", &sonar_section, &scene->sonar);
+    add_section(digest, "sonar.pulse", &pulse_section, &scene->pulse);
+    add_response(digest, "sonar.pulse.file", &scene->pulse_table);
+    add_response(digest, "sonar.measured_response", &scene->cross_range_table);
+    add_motion(digest, &scene->motion);
+    add_medium(digest, scene);
+    add_material(digest->section, &scene->seabed.forward);
+    add_section(digest, "seabed", &seabed_section, &scene->seabed);
+    add_relief(digest, &scene->relief);
+    add_material(digest->section, &scene->surface.material);
+    add_section(digest, "surface", &surface_section, &scene->surface);
+    add_section(digest, "patch", &patch_section, &scene->patch);
+    ADD(digest->section, scene->input_kind);
+    add_section(digest, "input", &input_section, scene);
 }
 
 static void add_scene(struct digest *digest, const struct scene *scene, const char *input_identity)
 {
     hash_add_text(digest->section, sonject_version());
     end_section(digest, "sonject");
-    ADD(digest->section, scene->injection.seed);
-    end_section(digest, "injection.seed");
-    add_injection(digest->section, &scene->injection);
-    end_section(digest, "injection");
-    add_sonar(digest, scene);
-    add_responses(digest, scene);
-    add_sea(digest, scene);
-    add_image(digest, scene);
+    add_settings(digest, scene);
     add_objects(digest, scene);
     add_meshes(digest->section, scene);
     end_section(digest, "objects[].mesh");

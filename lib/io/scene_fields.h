@@ -14,6 +14,7 @@
     .kind = FIELD_COUNT64, .offset = offsetof(structure, member), .maximum = limit
 #define WORD(structure, member)  .kind = FIELD_WORD, .offset = offsetof(structure, member), .words
 #define LABEL(structure, member) .kind = FIELD_LABEL, .offset = offsetof(structure, member)
+#define TEXT(structure, member)  .kind = FIELD_TEXT, .offset = offsetof(structure, member)
 
 /* A section that fills a structure of its own, and one that fills its parent's. */
 #define PART(structure, member, table)                                                             \

@@ -28,17 +28,6 @@ static sonject_status read_heights_unit(struct reader *reader, const struct tree
     return read_length_unit(reader, node, &((struct heights_text *)structure)->unit_m);
 }
 
-static sonject_status read_heights_array(struct reader *reader, const struct tree_node *node,
-                                         void *structure)
-{
-    struct heights_text *heights = structure;
-    const char *text = read_text(reader, node);
-    if (!text)
-        return SONJECT_ERROR_INPUT;
-    heights->array = copy_text(text);
-    return heights->array ? SONJECT_OK : report_out_of_memory(reader->report, "a name");
-}
-
 static sonject_status finish_heights(struct reader *reader, const struct tree_node *node,
                                      void *structure)
 {
@@ -56,8 +45,7 @@ static sonject_status finish_heights(struct reader *reader, const struct tree_no
 static const struct field heights_fields[] = {
     {"file", "image or array of one channel: rows along-track, columns in ground range",
      .kind = FIELD_FILE, .offset = offsetof(STRUCTURE, path), REQUIRED},
-    {"array", "in an HDF5 or MATLAB file of several: its name", .kind = FIELD_SPECIAL,
-     .unit = "text", .read = read_heights_array},
+    {"array", "in an HDF5 or MATLAB file of several: its name", TEXT(STRUCTURE, array)},
     {"unit", "of the file's numbers", .kind = FIELD_SPECIAL, .unit = "m, km, cm, mm",
      .read = read_heights_unit, REQUIRED},
     {"positive", "where larger numbers lie: up (heights, by default) or down (depths)",

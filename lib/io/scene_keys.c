@@ -26,6 +26,8 @@ static const char *unit_of(const struct field *field)
         [QUANTITY_DENSITY] = "kg/m3, g/cm3",
         [QUANTITY_TIME] = "s, ms, us",
     };
+    if (field->unit)
+        return field->unit;
     switch (field->kind) {
     case FIELD_QUANTITY:
         return of_quantities[field->quantity];
@@ -35,14 +37,13 @@ static const char *unit_of(const struct field *field)
     case FIELD_WORD:
         return "word";
     case FIELD_LABEL:
+    case FIELD_TEXT:
         return "text";
     case FIELD_PATH:
     case FIELD_FILE:
         return "file name";
     case FIELD_NAMED:
-        return field->unit ? field->unit : "name";
-    case FIELD_SPECIAL:
-        return field->unit ? field->unit : "whole number";
+        return "name";
     default:
         return "whole number";
     }
@@ -70,8 +71,8 @@ static void list_section(struct listing *listing, const char *prefix, const stru
         char below[sizeof path + 4];
         snprintf(path, sizeof path, "%s%s", prefix, field->key);
         /* a section with a unit may be written as a single value too */
-        if (field->kind == FIELD_WORD || field->kind == FIELD_NAMED || !field->section ||
-            (field->unit && !field->is_list))
+        if (field->kind == FIELD_WORD || field->kind == FIELD_NAMED ||
+            field->kind == FIELD_QUANTITY || !field->section || (field->unit && !field->is_list))
             list_field(listing, path, field);
         if (!field->section)
             continue;

@@ -31,7 +31,7 @@ static const struct field layer_fields[] = {
     {"sound_speed", "of the layer", QUANTITY(STRUCTURE, speed_mps, QUANTITY_SPEED), REQUIRED},
     {"density", "of all layers or of none", QUANTITY(STRUCTURE, density, QUANTITY_DENSITY)},
 };
-static const struct section layer_section = {layer_fields, COUNT(layer_fields), NULL};
+const struct section layer_section = {layer_fields, COUNT(layer_fields), NULL};
 #undef STRUCTURE
 
 /* Densities stand at all layers or at none. node: the list. */
@@ -81,13 +81,6 @@ static sonject_status read_layers(struct reader *reader, const struct tree_node 
     return status == SONJECT_OK ? check_layers(reader, node, text->layers) : status;
 }
 
-static sonject_status read_absorption(struct reader *reader, const struct tree_node *node,
-                                      void *structure)
-{
-    struct medium_text *text = structure;
-    return read_quantity(reader, node, QUANTITY_ABSORPTION, &text->medium.absorption_db_per_m);
-}
-
 static sonject_status finish_sea_water(struct reader *reader, const struct tree_node *node,
                                        void *structure)
 {
@@ -120,6 +113,21 @@ static const struct field sea_water_fields[] = {
 static const struct section sea_water_section = {sea_water_fields, COUNT(sea_water_fields),
                                                  finish_sea_water};
 
+static sonject_status read_absorption(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    struct medium_text *text = structure;
+    if (node->kind != TREE_TEXT)
+        return read_section(reader, &sea_water_section, node, text);
+    return read_quantity(reader, node, QUANTITY_ABSORPTION, &text->medium.absorption_db_per_m);
+}
+
+static sonject_status read_profile(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    return read_section(reader, &profile_section, node, structure);
+}
+
 static sonject_status finish_medium(struct reader *reader, const struct tree_node *node,
                                     void *structure)
 {
@@ -133,11 +141,12 @@ static const struct field medium_fields[] = {
      "that the image processor assumed; by default the true one, around the seabed",
      QUANTITY(STRUCTURE, medium.reference_sound_speed_mps, QUANTITY_SPEED)},
     {"absorption", "of the water: a number, or a section of what the sea water is like",
-     .kind = FIELD_NAMED, .offset = 0, .section = &sea_water_section, .read = read_absorption,
-     .unit = "dB/m, dB/km"},
+     QUANTITY(STRUCTURE, medium.absorption_db_per_m, QUANTITY_ABSORPTION),
+     .section = &sea_water_section, .read = read_absorption},
     {"layers", "list of level layers instead of sound_speed, from the seabed upwards",
      .kind = FIELD_SPECIAL, .read = read_layers, .section = &layer_section, .is_list = true},
-    {"profile", "measured sound speeds instead of sound_speed", SAME(profile_section)},
+    {"profile", "measured sound speeds instead of sound_speed", .kind = FIELD_SPECIAL,
+     .read = read_profile, .section = &profile_section},
 };
 const struct section medium_section = {medium_fields, COUNT(medium_fields), finish_medium};
 #undef STRUCTURE

@@ -35,7 +35,7 @@ static const struct field sway_fields[] = {
      REQUIRED},
     {"phase", "of the sine at along-track 0", QUANTITY(STRUCTURE, phase_rad, QUANTITY_ANGLE)},
 };
-static const struct section sway_section = {sway_fields, COUNT(sway_fields), finish_sway};
+const struct section sway_section = {sway_fields, COUNT(sway_fields), finish_sway};
 #undef STRUCTURE
 
 #define STRUCTURE sonject_yaw
@@ -45,8 +45,7 @@ static const struct field yaw_sine_fields[] = {
      REQUIRED},
     {"phase", "of the sine at along-track 0", QUANTITY(STRUCTURE, phase_rad, QUANTITY_ANGLE)},
 };
-static const struct section yaw_sine_section = {yaw_sine_fields, COUNT(yaw_sine_fields),
-                                                finish_yaw};
+const struct section yaw_sine_section = {yaw_sine_fields, COUNT(yaw_sine_fields), finish_yaw};
 #undef STRUCTURE
 
 static sonject_status read_sway(struct reader *reader, const struct tree_node *node,

@@ -24,14 +24,6 @@ sonject_status finish_position(struct reader *reader, const struct tree_node *no
     return check_position(reader, node, &object->position_kind);
 }
 
-/* A depth by itself. structure: the object. */
-static sonject_status read_burial(struct reader *reader, const struct tree_node *node,
-                                  void *structure)
-{
-    sonject_object_params *object = structure;
-    return read_quantity(reader, node, QUANTITY_LENGTH, &object->burial_m);
-}
-
 static sonject_status finish_burial(struct reader *reader, const struct tree_node *node,
                                     void *structure)
 {
@@ -102,8 +94,7 @@ static const struct field object_fields[] = {
      .section = &position_section},
     TURN_FIELDS("from along-track towards range"),
     {"burial", "depth of the lowest point below the seabed, or {fraction: } or {proud: }",
-     .kind = FIELD_NAMED, .offset = 0, .unit = "m, km, cm, mm", .section = &burial_section,
-     .read = read_burial},
+     QUANTITY(STRUCTURE, burial_m, QUANTITY_LENGTH), .section = &burial_section},
     {"level",
      "scales the echo to {target_strength: } or {over_seabed: }; by default shape, material "
      "and seabed.lambert alone set it",

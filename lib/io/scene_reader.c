@@ -175,6 +175,18 @@ sonject_status read_existing_path(struct reader *reader, const struct tree_node 
                         text_excerpt(excerpt, sizeof excerpt, *path));
 }
 
+static sonject_status read_owned_text(struct reader *reader, const struct tree_node *node,
+                                      char **owned)
+{
+    const char *text = read_text(reader, node);
+    if (!text)
+        return SONJECT_ERROR_INPUT;
+    if (*text == '\0' || !text_is_printable(text))
+        return refuse_value(reader, node, "must be a text without control characters");
+    *owned = copy_text(text);
+    return *owned ? SONJECT_OK : report_out_of_memory(reader->report, "a text");
+}
+
 static sonject_status read_subsection(struct reader *reader, const struct section *section,
                                       const struct tree_node *node, void *structure)
 {
@@ -189,8 +201,12 @@ static sonject_status read_field(struct reader *reader, const struct field *fiel
     uint64_t count = 0;
     bool flag = false;
     sonject_status status = SONJECT_OK;
+    if (field->read && field->kind != FIELD_NAMED)
+        return field->read(reader, node, structure);
     switch (field->kind) {
     case FIELD_QUANTITY:
+        if (field->section && node->kind != TREE_TEXT)
+            return read_section(reader, field->section, node, structure);
         return read_quantity(reader, node, field->quantity, destination);
     case FIELD_COUNT32:
         status = read_count(reader, field, node, &count);
@@ -211,6 +227,8 @@ static sonject_status read_field(struct reader *reader, const struct field *fiel
         return read_word(reader, field, node, destination);
     case FIELD_LABEL:
         return read_label(reader, node, destination);
+    case FIELD_TEXT:
+        return read_owned_text(reader, node, destination);
     case FIELD_PATH:
         return read_path(reader, node, destination);
     case FIELD_FILE:
@@ -224,7 +242,7 @@ static sonject_status read_field(struct reader *reader, const struct field *fiel
     case FIELD_SPECIAL:
         break;
     }
-    return field->read(reader, node, structure);
+    return SONJECT_ERROR_INPUT; /* never: it has a function */
 }
 
 /* The key that was meant is wrong, too, so that nothing calls it missing. */

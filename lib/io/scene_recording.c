@@ -1,7 +1,6 @@
 /* What a scene may leave to its input file. */
 #include <string.h>
 
-#include "base/memory.h"
 #include "base/text.h"
 #include "io/recording.h"
 #include "io/scene_schema.h"
@@ -33,18 +32,6 @@ sonject_status read_channel(struct reader *reader, const struct tree_node *node,
                                 : "",
                             XTF_CHANNEL_MAX);
     return SONJECT_OK;
-}
-
-sonject_status read_array(struct reader *reader, const struct tree_node *node, void *structure)
-{
-    struct scene *scene = structure;
-    const char *text = read_text(reader, node);
-    if (!text)
-        return SONJECT_ERROR_INPUT;
-    if (*text == '\0' || !text_is_printable(text))
-        return refuse_value(reader, node, "must be the name of an array");
-    scene->array = copy_text(text);
-    return scene->array ? SONJECT_OK : report_out_of_memory(reader->report, "a name");
 }
 
 sonject_status read_geometry(struct reader *reader, const struct tree_node *node, void *structure)

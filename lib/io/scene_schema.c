@@ -1,6 +1,7 @@
 /* The tables. A line: key, meaning, what it is, where it goes. */
 #include "io/scene_bands.h"
 #include "io/scene_fields.h"
+#include "io/xtf_file.h"
 
 #define SIDE_MAX  (UINT64_C(1) << 20)
 #define INDEX_MAX (UINT64_C(1) << 40)
@@ -43,8 +44,8 @@ static const struct section synthetic_section = {synthetic_fields, COUNT(synthet
 #define STRUCTURE sonject_geometry_params
 static const struct field geometry_fields[] = {
     {"row_spacing", "distance between track positions, or the speed and ping_rate that make it",
-     .kind = FIELD_SPECIAL, .read = read_row_spacing, .section = &ping_spacing_section,
-     .unit = "m, km, cm, mm, or {speed, ping_rate}", REQUIRED},
+     QUANTITY(STRUCTURE, row_spacing_m, QUANTITY_LENGTH), .read = read_row_spacing,
+     .section = &ping_spacing_section, .unit = "m, km, cm, mm, or {speed, ping_rate}", REQUIRED},
     {"column_spacing", "distance between range cells, in slant range",
      QUANTITY(STRUCTURE, column_spacing_m, QUANTITY_LENGTH), REQUIRED},
     {"first_slant_range", "slant range of column 0 of the whole swath",
@@ -80,20 +81,20 @@ static const struct section transfer_section = {transfer_fields, COUNT(transfer_
 #define STRUCTURE struct scene
 static const struct field input_fields[] = {
     {"path", "image file", .kind = FIELD_PATH, .offset = offsetof(STRUCTURE, input_path)},
-    {"channel", "of an XTF file: port, starboard, or its number there", .kind = FIELD_SPECIAL,
-     .read = read_channel, .unit = "word or whole number"},
-    {"array", "in an HDF5 or MATLAB file of several: its name", .kind = FIELD_SPECIAL,
-     .read = read_array, .unit = "text"},
+    {"channel", "of an XTF file: port, starboard, or its number there",
+     COUNT32(STRUCTURE, channel, XTF_CHANNEL_MAX), .read = read_channel,
+     .unit = "word or whole number"},
+    {"array", "in an HDF5 or MATLAB file of several: its name", TEXT(STRUCTURE, array)},
     {"complex", "the file's two channels are real and imaginary part", .kind = FIELD_BOOL,
      .offset = offsetof(STRUCTURE, input_is_complex)},
     {"uniform", "a swath of unit reflectivity", SAME(uniform_section)},
     {"synthetic", "a swath that sonject makes", PART(STRUCTURE, synthetic, synthetic_section)},
     {"geometry",
      "where the pixels lie: row_spacing, column_spacing and first_slant_range, or from_file",
-     .kind = FIELD_SPECIAL, .read = read_geometry, .section = &geometry_section, REQUIRED},
+     PART(STRUCTURE, geometry, geometry_section), .read = read_geometry, REQUIRED},
     {"transfer", "what the file's numbers mean", PART(STRUCTURE, transfer, transfer_section)},
 };
-static const struct section input_section = {input_fields, COUNT(input_fields), finish_input};
+const struct section input_section = {input_fields, COUNT(input_fields), finish_input};
 #undef STRUCTURE
 
 #define STRUCTURE sonject_patch_params
@@ -103,7 +104,7 @@ static const struct field patch_fields[] = {
     {"rows", "track positions", COUNT64(STRUCTURE, rows, INDEX_MAX), REQUIRED},
     {"columns", "range cells", COUNT64(STRUCTURE, columns, INDEX_MAX), REQUIRED},
 };
-static const struct section patch_section = {patch_fields, COUNT(patch_fields), finish_patch};
+const struct section patch_section = {patch_fields, COUNT(patch_fields), finish_patch};
 #undef STRUCTURE
 
 #define STRUCTURE sonject_sonar_params
@@ -139,8 +140,9 @@ static const struct field sonar_fields[] = {
      REQUIRED},
     {"bandwidth", "sets the range resolution, c / (2 bandwidth)",
      QUANTITY(STRUCTURE, bandwidth_hz, QUANTITY_FREQUENCY), REQUIRED},
-    {"altitude", "height of the track over the mean seabed, or from_file", .kind = FIELD_SPECIAL,
-     .read = read_altitude, .unit = "m, km, cm, mm, or from_file", REQUIRED},
+    {"altitude", "height of the track over the mean seabed, or from_file",
+     QUANTITY(STRUCTURE, altitude_m, QUANTITY_LENGTH), .read = read_altitude,
+     .unit = "m, km, cm, mm, or from_file", REQUIRED},
     {"resolution", "along-track; by default the row spacing",
      QUANTITY(STRUCTURE, along_track_resolution_m, QUANTITY_LENGTH)},
     {"transducer", "side of the source, 0 for a point",
@@ -153,7 +155,8 @@ static const struct field sonar_fields[] = {
      WORD(STRUCTURE,
           kind) = {[SONJECT_SONAR_SYNTHETIC] = "synthetic", [SONJECT_SONAR_REAL] = "real"}},
     {"aperture", "full angle of the aspects that shadows and rough highlights take, auto or none",
-     .kind = FIELD_SPECIAL, .read = read_aperture, .unit = "deg, auto or none"},
+     QUANTITY(STRUCTURE, aperture_rad, QUANTITY_ANGLE), .read = read_aperture,
+     .unit = "deg, auto or none"},
     {"array", "of a real aperture", SAME(array_section)},
     {"pulse", "what a point looks like in range; by default Gaussian", .kind = FIELD_SPECIAL,
      .section = &pulse_section, .read = read_pulse},
@@ -162,7 +165,7 @@ static const struct field sonar_fields[] = {
     {"motion", "residual motion of a synthetic aperture's sonar", .kind = FIELD_SPECIAL,
      .section = &motion_section, .read = read_motion},
 };
-static const struct section sonar_section = {sonar_fields, COUNT(sonar_fields), finish_recording};
+const struct section sonar_section = {sonar_fields, COUNT(sonar_fields), finish_recording};
 #undef STRUCTURE
 
 #define STRUCTURE sonject_seabed_params
@@ -183,7 +186,7 @@ static const struct field seabed_fields[] = {
      "list of ripples, mounds, pits, scour and heights, added together; by default all is level",
      .kind = FIELD_SPECIAL, .section = &relief_section, .is_list = true, .read = read_relief},
 };
-static const struct section seabed_section = {seabed_fields, COUNT(seabed_fields), finish_seabed};
+const struct section seabed_section = {seabed_fields, COUNT(seabed_fields), finish_seabed};
 #undef STRUCTURE
 
 #define STRUCTURE sonject_material_params
@@ -210,8 +213,7 @@ static const struct field surface_fields[] = {
      QUANTITY(STRUCTURE, material.lambert_exponent, QUANTITY_NUMBER)},
     {"glossy", "cone about the mirror direction", PART(STRUCTURE, material, waves_section)},
 };
-static const struct section surface_section = {surface_fields, COUNT(surface_fields),
-                                               finish_surface};
+const struct section surface_section = {surface_fields, COUNT(surface_fields), finish_surface};
 #undef STRUCTURE
 
 #define STRUCTURE sonject_injection_params
@@ -219,8 +221,9 @@ static const struct field match_fields[] = {
     {"response", "widths of the point response: the image's around the targets, or the sonar's",
      WORD(STRUCTURE,
           match_response) = {[SONJECT_MATCH_NOMINAL] = "nominal", [SONJECT_MATCH_IMAGE] = "image"}},
-    {"looks", "averaged in a magnitude pixel: image, or 1 to 64", .kind = FIELD_SPECIAL,
-     .read = read_match_looks, .unit = "number, or image"},
+    {"looks", "averaged in a magnitude pixel: image, or 1 to 64",
+     QUANTITY(STRUCTURE, match_looks, QUANTITY_NUMBER), .read = read_match_looks,
+     .unit = "number, or image"},
     {"saturation", "amplitude that cuts highlights: the image's own, or the file's full scale",
      WORD(STRUCTURE, match_saturation) =
          {[SONJECT_MATCH_NOMINAL] = "full_scale", [SONJECT_MATCH_IMAGE] = "image"}},
@@ -235,8 +238,9 @@ static const struct field injection_fields[] = {
      WORD(
          STRUCTURE,
          column_rule) = {[SONJECT_COLUMNS_FOCUSED] = "focused", [SONJECT_COLUMNS_PAPER] = "paper"}},
-    {"noise_floor", "noise over the mean seabed, or estimate", .kind = FIELD_SPECIAL,
-     .read = read_noise_floor, .unit = "dB, or estimate"},
+    {"noise_floor", "noise over the mean seabed, or estimate",
+     QUANTITY(STRUCTURE, noise_floor_db, QUANTITY_DECIBEL), .read = read_noise_floor,
+     .unit = "dB, or estimate"},
     {"influence", "change over the seabed from which a pixel is the target's",
      QUANTITY(STRUCTURE, influence_db, QUANTITY_DECIBEL)},
     {"rays", "factor on the number of rays", QUANTITY(STRUCTURE, ray_scale, QUANTITY_NUMBER)},
@@ -250,8 +254,8 @@ static const struct field injection_fields[] = {
      .offset = offsetof(STRUCTURE, order_energies)},
     {"match", "what targets take over from a measured magnitude image", SAME(match_section)},
 };
-static const struct section injection_section = {injection_fields, COUNT(injection_fields),
-                                                 finish_injection};
+const struct section injection_section = {injection_fields, COUNT(injection_fields),
+                                          finish_injection};
 #undef STRUCTURE
 
 /* Keys are read in this order, whatever the file's: the water needs the sonar's frequency and the
@@ -272,7 +276,7 @@ static const struct field scene_fields[] = {
     {"seabed", "the seabed", PART(STRUCTURE, seabed, seabed_section)},
     {"surface", "the sea surface; by default none is heard",
      PART(STRUCTURE, surface, surface_section)},
-    {"medium", "the water", .kind = FIELD_SPECIAL, .read = read_medium, .section = &medium_section},
+    {"medium", "the water", PART(STRUCTURE, medium, medium_section), .read = read_medium},
     {"injection", "how targets are put into the image",
      PART(STRUCTURE, injection, injection_section)},
     {"elements", "the array whose time series `sonject elements` writes",

@@ -14,18 +14,19 @@
 #define FIELD_WORDS_MAX 15
 
 enum field_kind {
-    FIELD_QUANTITY, /* double */
+    FIELD_QUANTITY, /* double; or a section, if the field has one */
     FIELD_COUNT32,  /* uint32_t */
     FIELD_COUNT64,  /* uint64_t */
     FIELD_BOOL,     /* bool */
     FIELD_FLAG32,   /* uint32_t, 0 or 1 */
     FIELD_WORD,     /* uint32_t, the word's index; or a section, if the field has one */
     FIELD_LABEL,    /* char[SONJECT_NAME_CAPACITY] */
+    FIELD_TEXT,     /* char *, owned by the structure */
     FIELD_PATH,     /* char *, owned by the scene */
     FIELD_FILE,     /* the same, of a file that is there */
     FIELD_SECTION,  /* a structure; the same one as its parent's where offset is 0 */
     FIELD_NAMED,    /* the same, or a single text that `read` takes into the structure */
-    FIELD_SPECIAL   /* read by a function of its own */
+    FIELD_SPECIAL   /* no single member: read by a function of its own */
 };
 
 struct reader;
@@ -44,6 +45,7 @@ struct field {
                                            values that no word stands for */
     const struct section *section;
     const char *unit; /* as told to users, where kind and quantity do not say it */
+    /* Reads the key in a way of its own, into the section's structure; FIELD_NAMED: a text. */
     sonject_status (*read)(struct reader *reader, const struct tree_node *node, void *structure);
 };
 
@@ -68,8 +70,12 @@ struct reader {
     struct key_path path; /* of the section or key that is read */
 };
 
-/* The whole file; its structure is struct scene. */
-extern const struct section scene_section;
+/* The whole file, and its section `input`; their structure is struct scene. */
+extern const struct section scene_section, input_section;
+
+/* Sections and entries of lists of the structures of the same names. */
+extern const struct section patch_section, sonar_section, seabed_section, surface_section,
+    injection_section, sway_section, yaw_sine_section, layer_section;
 
 /* Reads a section's keys into structure. What is wrong is refused and keeps the value that it has,
  * and the reading goes on, so that all mistakes are told; a check of values beside each other says
@@ -197,7 +203,6 @@ sonject_status read_medium(struct reader *reader, const struct tree_node *node, 
 extern const struct section geometry_section;
 extern const struct section ping_spacing_section;
 sonject_status read_channel(struct reader *reader, const struct tree_node *node, void *structure);
-sonject_status read_array(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status read_geometry(struct reader *reader, const struct tree_node *node, void *structure);
 sonject_status read_row_spacing(struct reader *reader, const struct tree_node *node,
                                 void *structure);

@@ -730,4 +730,33 @@ static inline void write_override(char *override, size_t capacity, const struct 
     snprintf(override + length, capacity - length, "=%s", value);
 }
 
+static inline const struct key_case *case_of(const char *path)
+{
+    for (size_t i = 0; i < COUNT(cases); i++)
+        if (strcmp(cases[i].path, path) == 0)
+            return &cases[i];
+    fail_msg("%s has no case", path);
+    return NULL;
+}
+
+/* Reads the case's scene with a value of its key; NULL: without the key. */
+static inline sonject_status read_case(struct scene_folder *folder, const struct key_case *key,
+                                       const char *value)
+{
+    char override[1400];
+    const char *overrides[2];
+    size_t count = 0;
+    if (key->other)
+        overrides[count++] = key->other;
+    if (value) {
+        write_override(override, sizeof override, key, value);
+        overrides[count++] = override;
+    }
+    write_scene(folder, key->base, strlen(key->base));
+    scene_clear(&folder->scene);
+    memset(&folder->report, 0, sizeof folder->report);
+    return scene_file_read_with(&folder->report, folder->file, overrides, count, true,
+                                &folder->scene);
+}
+
 #endif
