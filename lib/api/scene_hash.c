@@ -9,8 +9,7 @@
 #include "base/json_document.h"
 #include "cl/sources.h"
 #include "inject/impulse_file.h"
-#include "io/scene_parts.h"
-#include "io/scene_shape.h"
+#include "io/scene_schema.h"
 
 /* Members one by one: the padding of a structure is not part of its value. */
 #define ADD(hash, member) hash_add(hash, &(member), sizeof(member))
@@ -43,6 +42,18 @@ static bool is_part(const struct field *field)
     return field->kind == FIELD_SECTION && field->offset != 0;
 }
 
+static void add_rows(struct hash *hash, const struct section *section, const void *structure);
+
+static void add_entries(struct hash *hash, const struct field *field, const void *structure)
+{
+    const uint32_t count =
+        *(const uint32_t *)(const void *)((const char *)structure + field->count_offset);
+    ADD(hash, count);
+    for (uint32_t i = 0; i < count && i < field->maximum; i++)
+        add_rows(hash, field->section,
+                 (const char *)structure + field->offset + i * field->entry_bytes);
+}
+
 /* All that a section's keys set in its structure, but for parts, which have structures of their
  * own. Files count by what is in them, which is the scene's. */
 static void add_rows(struct hash *hash, const struct section *section, const void *structure)
@@ -73,6 +84,9 @@ static void add_rows(struct hash *hash, const struct section *section, const voi
             break;
         case FIELD_NAMED:
             add_rows(hash, field->section, member);
+            continue;
+        case FIELD_ENTRIES:
+            add_entries(hash, field, structure);
             continue;
         case FIELD_PATH:
         case FIELD_FILE:
@@ -126,17 +140,10 @@ static void add_response(struct digest *digest, const char *name,
 static void add_motion(struct digest *digest, const struct aperture_motion *motion)
 {
     struct hash *hash = digest->section;
-    const sonject_motion_params *params = &motion->params;
     const struct motion_table *sway = &motion->sway_table, *yaw = &motion->yaw_table;
-    ADD(hash, params->sway_count);
-    for (uint32_t i = 0; i < params->sway_count && i < SONJECT_SWAYS_CAPACITY; i++)
-        add_rows(hash, &sway_section, &params->sways[i]);
-    ADD(hash, params->yaw_count);
-    for (uint32_t i = 0; i < params->yaw_count && i < SONJECT_YAWS_CAPACITY; i++)
-        add_rows(hash, &yaw_sine_section, &params->yaws[i]);
     add_table(hash, sway->along_track_m, sway->values, sizeof *sway->values, sway->count);
     add_table(hash, yaw->along_track_m, yaw->values, sizeof *yaw->values, yaw->count);
-    add_section(digest, "sonar.motion", &motion_section, params);
+    add_section(digest, "sonar.motion", &motion_section, &motion->params);
 }
 
 static void add_medium(struct digest *digest, const struct scene *scene)
@@ -176,9 +183,6 @@ static void add_object(struct hash *hash, const sonject_object_params *object)
     add_material(hash, &object->material);
     ADD(hash, object->mesh);
     ADD(hash, object->user_shape);
-    ADD(hash, object->cut_count);
-    for (uint32_t i = 0; i < object->cut_count && i < SONJECT_CUTS_CAPACITY; i++)
-        add_rows(hash, &cut_section, &object->cuts[i]);
     add_rows(hash, &object_section, object);
 }
 

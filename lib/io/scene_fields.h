@@ -21,6 +21,13 @@
     .kind = FIELD_SECTION, .offset = offsetof(structure, member), .section = &(table)
 #define SAME(table) .kind = FIELD_SECTION, .offset = 0, .section = &(table)
 
+/* A list of at most as many entries as the array holds. word: what one is. */
+#define ENTRIES(structure, member, number, word, table)                                            \
+    .kind = FIELD_ENTRIES, .is_list = true, .unit = word, .section = &(table),                     \
+    .offset = offsetof(structure, member), .count_offset = offsetof(structure, number),            \
+    .entry_bytes = sizeof((structure *)0)->member[0],                                              \
+    .maximum = sizeof((structure *)0)->member / sizeof((structure *)0)->member[0]
+
 #define REQUIRED .is_required = true
 
 #endif

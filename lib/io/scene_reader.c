@@ -194,6 +194,32 @@ static sonject_status read_subsection(struct reader *reader, const struct sectio
     return read_section(reader, section, tree_is_null(node) ? &empty : node, structure);
 }
 
+/* A list's next entry goes here. */
+struct entries {
+    const struct field *field;
+    char *first;
+    uint32_t *count;
+};
+
+static sonject_status read_entry(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    const struct entries *entries = structure;
+    char *entry = entries->first + entries->field->entry_bytes * (*entries->count)++;
+    return read_section(reader, entries->field->section, node, entry);
+}
+
+static sonject_status read_entries(struct reader *reader, const struct field *field,
+                                   const struct tree_node *node, void *structure)
+{
+    char how[60];
+    const struct list list = {(size_t)field->maximum, how, read_entry};
+    struct entries entries = {field, (char *)structure + field->offset,
+                              (uint32_t *)(void *)((char *)structure + field->count_offset)};
+    snprintf(how, sizeof how, "; start each %s with '- '", field->unit);
+    return tree_is_null(node) ? SONJECT_OK : read_list(reader, node, &list, &entries);
+}
+
 static sonject_status read_field(struct reader *reader, const struct field *field,
                                  const struct tree_node *node, void *structure)
 {
@@ -239,6 +265,8 @@ static sonject_status read_field(struct reader *reader, const struct field *fiel
         if (node->kind == TREE_TEXT && !tree_is_null(node))
             return field->read(reader, node, destination);
         return read_subsection(reader, field->section, node, destination);
+    case FIELD_ENTRIES:
+        return read_entries(reader, field, node, structure);
     case FIELD_SPECIAL:
         break;
     }

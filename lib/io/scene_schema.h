@@ -26,6 +26,7 @@ enum field_kind {
     FIELD_FILE,     /* the same, of a file that is there */
     FIELD_SECTION,  /* a structure; the same one as its parent's where offset is 0 */
     FIELD_NAMED,    /* the same, or a single text that `read` takes into the structure */
+    FIELD_ENTRIES,  /* an array of structures, which the section fills, and how many there are */
     FIELD_SPECIAL   /* no single member: read by a function of its own */
 };
 
@@ -40,11 +41,13 @@ struct field {
     bool is_list; /* the section is that of each entry */
     enum quantity quantity;
     size_t offset;                      /* of the destination in the section's structure */
-    uint64_t maximum;                   /* of a count */
+    uint64_t maximum;                   /* of a count, or entries */
+    size_t count_offset, entry_bytes;   /* of entries: where a uint32_t counts them, size of one */
     const char *words[FIELD_WORDS_MAX]; /* ended by NULL, in the order of the enumeration; "" for
                                            values that no word stands for */
     const struct section *section;
-    const char *unit; /* as told to users, where kind and quantity do not say it */
+    const char
+        *unit; /* as told to users, where kind and quantity do not say it; what an entry is */
     /* Reads the key in a way of its own, into the section's structure; FIELD_NAMED: a text. */
     sonject_status (*read)(struct reader *reader, const struct tree_node *node, void *structure);
 };
@@ -75,7 +78,7 @@ extern const struct section scene_section, input_section;
 
 /* Sections and entries of lists of the structures of the same names. */
 extern const struct section patch_section, sonar_section, seabed_section, surface_section,
-    injection_section, sway_section, yaw_sine_section, layer_section;
+    injection_section, layer_section;
 
 /* Reads a section's keys into structure. What is wrong is refused and keeps the value that it has,
  * and the reading goes on, so that all mistakes are told; a check of values beside each other says
@@ -221,8 +224,7 @@ sonject_status read_relief_heights(struct reader *reader, const struct tree_node
 
 /* The array of the element level, in scene_elements.c. */
 extern const struct section elements_section;
-/* Pulse and measured cross-range response, in scene_response.c, and residual motion, in
- * scene_motion.c. */
+/* Pulse, measured cross-range response and residual motion, in scene_response.c. */
 extern const struct section pulse_section;
 extern const struct section motion_section;
 sonject_status read_pulse(struct reader *reader, const struct tree_node *node, void *structure);

@@ -59,18 +59,6 @@ static const struct field cut_fields[] = {
 };
 const struct section cut_section = {cut_fields, COUNT(cut_fields), NULL};
 
-static sonject_status read_cut(struct reader *reader, const struct tree_node *node, void *structure)
-{
-    sonject_object_params *object = structure;
-    return read_section(reader, &cut_section, node, &object->cuts[object->cut_count++]);
-}
-
-sonject_status read_cuts(struct reader *reader, const struct tree_node *node, void *structure)
-{
-    static const struct list cuts = {SONJECT_CUTS_CAPACITY, "; start each cut with '- '", read_cut};
-    return tree_is_null(node) ? SONJECT_OK : read_list(reader, node, &cuts, structure);
-}
-
 enum presence {
     ABSENT = 0,
     NEEDED,

@@ -11,7 +11,6 @@ extern const struct section nose_end_section;
 extern const struct section tail_end_section;
 extern const struct section mesh_section;
 extern const struct section cut_section;
-sonject_status read_cuts(struct reader *reader, const struct tree_node *node, void *structure);
 
 /* Reads the mesh into the scene, which keeps one however many shapes show it; in scene_mesh.c. */
 sonject_status read_mesh(struct reader *reader, const struct tree_node *node, void *structure);
@@ -66,8 +65,7 @@ sonject_status read_mesh(struct reader *reader, const struct tree_node *node, vo
          .read = read_mesh},                                                                       \
     {                                                                                              \
         "cuts", "planes that cut parts off any shape, at most 2",                                  \
-            .kind = FIELD_SPECIAL, .unit = "list", .section = &cut_section, .is_list = true,       \
-            .read = read_cuts                                                                      \
+            ENTRIES(sonject_object_params, cuts, cut_count, "cut", cut_section)                    \
     }
 
 /* Angles; what heading is counted from differs. */
