@@ -23,7 +23,7 @@ __kernel void draw_speckle(__global const float *energy, int bins, int first_bin
     }
 }
 
-/* Global size: groups of WIDTH columns x strips x 2 planes. */
+/* Global size: groups of WIDTH columns x strips x planes. */
 __kernel void compress_range(__global const float *lines_real,
                              __global const float *lines_imaginary,
                              __global const struct filled_span *filled, int bins, int first,
@@ -54,7 +54,7 @@ __kernel void compress_range_complex(__global const float *lines_real,
                         (int)get_global_id(0) * WIDTH, out_real + out, out_imaginary + out);
 }
 
-/* Global size: groups of WIDTH columns x groups of FORM_ROWS rows. */
+/* Global size: groups of WIDTH columns x groups of FORM_ROWS rows x planes. */
 __kernel void combine_aspects(int first_strip, int end_strip, int strips_per_row, int reach,
                               __global const float *lines_real,
                               __global const float *lines_imaginary,
@@ -63,9 +63,9 @@ __kernel void combine_aspects(int first_strip, int end_strip, int strips_per_row
                               __global float *out_imaginary)
 {
     const struct aspects aspects = {first_strip, end_strip, strips_per_row, reach};
-    combine_aspects_of(aspects, lines_real, lines_imaginary, filled, stride, response,
-                       (int)get_global_id(1) * FORM_ROWS, rows, (int)get_global_id(0) * WIDTH,
-                       out_real, out_imaginary);
+    combine_aspects_of(aspects, get_global_id(2) ? lines_imaginary : lines_real, filled, stride,
+                       response, (int)get_global_id(1) * FORM_ROWS, rows,
+                       (int)get_global_id(0) * WIDTH, get_global_id(2) ? out_imaginary : out_real);
 }
 
 /* Global size: groups of WIDTH columns x groups of FORM_ROWS rows from first_row on. */

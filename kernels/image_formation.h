@@ -26,6 +26,11 @@ FUNCTION void complex_normal(struct random_key key, word number, real *real_part
 FUNCTION real load_tap(GLOBAL const float *line, int bins, int start, int bins_per_pixel)
 {
     float lanes[WIDTH];
+    if (start >= 0 && start + (WIDTH - 1) * bins_per_pixel < bins) {
+        for (int lane = 0; lane < WIDTH; lane++)
+            lanes[lane] = line[start + lane * bins_per_pixel];
+        return LOAD_REAL(lanes);
+    }
     for (int lane = 0; lane < WIDTH; lane++) {
         const int bin = start + lane * bins_per_pixel;
         lanes[lane] = bin >= 0 && bin < bins ? line[bin] : 0.0f;
@@ -95,23 +100,20 @@ FUNCTION int is_filled_at(struct filled_span columns, int column)
     return columns.first < column + WIDTH && columns.end > column;
 }
 
-#define FORM_ROWS 4 /* rows a work-item forms, so that a line is read once for all of them */
+#define FORM_ROWS 8 /* rows a work-item forms, so that a line is read once for all of them */
 
 /* Cross-range response for FORM_ROWS x WIDTH pixels: row n is the sum over strips q of
  * lines[q] * response[n * strips_per_row - q + reach], but for columns that a strip leaves empty.
- * Planes are rows_or_strips x stride. */
-FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lines_real,
-                                 GLOBAL const float *lines_imaginary,
+ * Before and behind the response lie (FORM_ROWS - 1) * strips_per_row zeros. Planes are
+ * rows_or_strips x stride. */
+FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lines,
                                  GLOBAL const struct filled_span *filled, int stride,
                                  GLOBAL const float *response, int first_row, int rows, int column,
-                                 GLOBAL float *out_real, GLOBAL float *out_imaginary)
+                                 GLOBAL float *out)
 {
-    real sum_real[FORM_ROWS], sum_imaginary[FORM_ROWS];
-    for (int r = 0; r < FORM_ROWS; r++) {
-        sum_real[r] = SPLAT(0.0f);
-        sum_imaginary[r] = SPLAT(0.0f);
-    }
-    const int taps = 2 * aspects.reach + 1;
+    real sum[FORM_ROWS];
+    for (int r = 0; r < FORM_ROWS; r++)
+        sum[r] = SPLAT(0.0f);
     int low = first_row * aspects.strips_per_row - aspects.reach;
     int high = (first_row + FORM_ROWS - 1) * aspects.strips_per_row + aspects.reach + 1;
     low = low < aspects.first_strip ? aspects.first_strip : low;
@@ -119,22 +121,15 @@ FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lin
     for (int strip = low; strip < high; strip++) {
         if (!is_filled_at(filled[strip - aspects.first_strip], column))
             continue;
-        const long at = (long)(strip - aspects.first_strip) * stride + column;
-        const real a = LOAD_REAL(lines_real + at);
-        const real b = LOAD_REAL(lines_imaginary + at);
-        for (int r = 0; r < FORM_ROWS; r++) {
-            const int tap = (first_row + r) * aspects.strips_per_row - strip + aspects.reach;
-            if (tap < 0 || tap >= taps)
-                continue;
-            sum_real[r] += a * response[tap];
-            sum_imaginary[r] += b * response[tap];
-        }
+        const real a = LOAD_REAL(lines + (long)(strip - aspects.first_strip) * stride + column);
+        GLOBAL const float *tap =
+            response + (first_row + FORM_ROWS - 1) * aspects.strips_per_row - strip + aspects.reach;
+        UNROLLED
+        for (int r = 0; r < FORM_ROWS; r++)
+            sum[r] += a * tap[r * aspects.strips_per_row];
     }
-    for (int r = 0; r < FORM_ROWS && first_row + r < rows; r++) {
-        const long at = (long)(first_row + r) * stride + column;
-        STORE_REAL(sum_real[r], out_real + at);
-        STORE_REAL(sum_imaginary[r], out_imaginary + at);
-    }
+    for (int r = 0; r < FORM_ROWS && first_row + r < rows; r++)
+        STORE_REAL(sum[r], out + (long)(first_row + r) * stride + column);
 }
 
 /* Responses of a set of rows and blocks of columns, each with the taps of struct aspects. */

@@ -17,6 +17,7 @@
 #define FUNCTION    static inline __attribute__((always_inline)) /* vectors travel badly by call */
 #define APART       static __attribute__((noinline)) /* what is rare and large is called instead */
 #define GLOBAL      __global
+#define UNROLLED    _Pragma("unroll") /* keeps sums of a loop in registers */
 #define JOIN_(a, b) a##b
 #define JOIN(a, b)  JOIN_(a, b)
 #if WIDTH == 1
@@ -103,6 +104,7 @@ FUNCTION RECORD_WORD UNION(mask m)
 #define APART static inline
 #endif
 #define GLOBAL
+#define UNROLLED
 #define LOWEST_BIT(bits) __builtin_ctz(bits)
 #if WIDTH == 1
 typedef float real;

@@ -9,7 +9,7 @@
 #include "scene/motion_response.h"
 
 #define BLOCK_COLUMNS 16 /* that share a response; holds whole groups of any width */
-#define ROWS_PER_ITEM 4  /* FORM_ROWS of kernels/image_formation.h */
+#define ROWS_PER_ITEM 8  /* FORM_ROWS of kernels/image_formation.h */
 #define TAPS_OF_A_RUN ((size_t)1 << 22)
 
 /* The taps of a run of rows. */
@@ -69,7 +69,7 @@ static void store(struct taps *taps, const struct form_lines *lines, size_t numb
     for (size_t i = 0; i < taps->each; i++) {
         const double a = taps->row_real[i];
         const double b = taps->row_imaginary[i];
-        const bool is_energy = lines->kind == FORM_ENERGY;
+        const bool is_energy = form_is_of_energies(lines->kind);
         taps->real_part[first + i] = (float)(is_energy ? a * a + b * b : a);
         taps->imaginary_part[first + i] = is_energy ? 0.0f : (float)b;
     }

@@ -14,7 +14,7 @@
 
 #define SPECKLE_ENERGY_SHARE 0.001 /* of |W|^2 that is cut off from speckle and energies */
 #define COLUMN_STEP          16    /* lines are padded to whole groups of any width */
-#define ROWS_PER_ITEM        4     /* FORM_ROWS of kernels/image_formation.h */
+#define ROWS_PER_ITEM        8     /* FORM_ROWS of kernels/image_formation.h */
 
 /* The columns that the grid's bins reach through the pulse. */
 static void choose_window(struct form_lines *lines, const struct patch_view *view,
@@ -42,7 +42,8 @@ static sonject_status make_pulse(struct form_lines *lines, const struct patch_vi
                                  int32_t taps_each_side)
 {
     const double bin = view->column_spacing_m / lines->grid.bins_per_pixel;
-    const bool is_real = lines->kind == FORM_ENERGY || range_response_is_real(&lines->response);
+    const bool is_energy = form_is_of_energies(lines->kind);
+    const bool is_real = is_energy || range_response_is_real(&lines->response);
     lines->pulse_taps = 2 * taps_each_side + 1;
     lines->pulse_first = -taps_each_side - lines->grid.bins.first;
     const size_t count = (size_t)lines->pulse_taps;
@@ -55,7 +56,7 @@ static sonject_status make_pulse(struct form_lines *lines, const struct patch_vi
         const struct complex_number g =
             range_response_complex(&lines->response, (taps_each_side - tap) * bin);
         const double energy = g.real_part * g.real_part + g.imaginary_part * g.imaginary_part;
-        taps[tap] = (float)(lines->kind == FORM_ENERGY ? energy : g.real_part);
+        taps[tap] = (float)(is_energy ? energy : g.real_part);
         imaginary_taps[tap] = (float)g.imaginary_part;
     }
     if (status == SONJECT_OK)
@@ -65,6 +66,11 @@ static sonject_status make_pulse(struct form_lines *lines, const struct patch_vi
     free(taps);
     free(imaginary_taps);
     return status;
+}
+
+bool form_is_of_energies(enum form_kind kind)
+{
+    return kind == FORM_ENERGY || kind == FORM_TWO_ENERGIES;
 }
 
 int32_t form_reach(const struct patch_view *view, const struct point_response *response,
@@ -89,6 +95,7 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
     lines->device = device;
     lines->grid = *grid;
     lines->kind = kind;
+    lines->planes = kind == FORM_ENERGY && cross_range_is_plain(response) ? 1 : 2;
     lines->rows = view->rows;
     lines->row_spacing_m = view->row_spacing_m;
     lines->view = view;
@@ -193,7 +200,7 @@ static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t 
                                                 ARGUMENT(out_strip),
                                                 ARGUMENT(lines->real_lines),
                                                 ARGUMENT(lines->imaginary_lines)};
-    const size_t global[3] = {lines->stride / lines->device->width, (size_t)count, 2};
+    const size_t global[3] = {lines->stride / lines->device->width, (size_t)count, lines->planes};
     return kernel_run(lines->report, lines->device, lines->compress, arguments,
                       sizeof arguments / sizeof *arguments, 3, global);
 }
@@ -322,19 +329,19 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
     return status;
 }
 
-/* W (or |W|^2) at the offsets n * strips_per_row - q of pixel row n from strip q. */
+/* W (or |W|^2) at the offsets n * strips_per_row - q of pixel row n from strip q, among the zeros
+ * that let a work-item take one strip into all of its rows. */
 static float *response_taps(const struct form_lines *lines, size_t *count)
 {
-    *count = 2 * (size_t)lines->reach + 1;
-    float *taps = allocate_array(*count, sizeof *taps);
-    if (!taps)
-        return NULL;
     const double per_row = lines->grid.strips_per_row;
-    for (size_t i = 0; i < *count; i++) {
+    const size_t zeros = (ROWS_PER_ITEM - 1) * (size_t)lines->grid.strips_per_row;
+    *count = 2 * (size_t)lines->reach + 1 + 2 * zeros;
+    float *taps = allocate_array(*count, sizeof *taps);
+    for (size_t i = 0; taps && i <= 2 * (size_t)lines->reach; i++) {
         const double strips = (double)i - lines->reach;
         const double rows = strips / per_row + 0.5 - 0.5 / per_row;
         const double w = along_track_response(&lines->response, rows * lines->row_spacing_m);
-        taps[i] = (float)(lines->kind == FORM_ENERGY ? w * w : w);
+        taps[zeros + i] = (float)(form_is_of_energies(lines->kind) ? w * w : w);
     }
     return taps;
 }
@@ -362,10 +369,10 @@ static sonject_status combine(struct form_lines *lines, cl_mem taps, cl_mem real
                                                 ARGUMENT(rows),
                                                 ARGUMENT(real_out),
                                                 ARGUMENT(imaginary_out)};
-    const size_t global[2] = {lines->stride / lines->device->width,
-                              (lines->rows + ROWS_PER_ITEM - 1) / ROWS_PER_ITEM};
+    const size_t global[3] = {lines->stride / lines->device->width,
+                              (lines->rows + ROWS_PER_ITEM - 1) / ROWS_PER_ITEM, lines->planes};
     return kernel_run(lines->report, lines->device, lines->combine, arguments,
-                      sizeof arguments / sizeof *arguments, 2, global);
+                      sizeof arguments / sizeof *arguments, 3, global);
 }
 
 /* Reads a plane and drops the padding of its rows. */
@@ -410,7 +417,7 @@ sonject_status form_lines_finish(struct form_lines *lines, float *real_part, flo
         status = combine(lines, tap_buffer, real_out, imaginary_out);
     if (status == SONJECT_OK)
         status = read_plane(lines, real_out, padded, real_part);
-    if (status == SONJECT_OK)
+    if (status == SONJECT_OK && lines->planes == 2 && imaginary_part)
         status = read_plane(lines, imaginary_out, padded, imaginary_part);
     buffer_release(&tap_buffer);
     buffer_release(&real_out);

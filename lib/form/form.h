@@ -14,15 +14,19 @@
 #include "scene/patch_view.h"
 #include "scene/point_response.h"
 
-/* What is formed: complex amplitudes, by G and W; or two energies side by side (the real plane and
- * the imaginary plane), by |G|^2 and |W|^2. Glints are kept over the whole patch (of a beam, to
+/* What is formed: complex amplitudes, by G and W; or energies, by |G|^2 and |W|^2: one plane of
+ * them, or two side by side. Glints are kept over the whole patch (of a beam, to
  * -60 dB), since their side lobes stand out of the seabed that far; speckle and energies where 99.9
  * % of |W|^2 lies. */
 enum form_kind {
     FORM_GLINT,
     FORM_SPECKLE,
-    FORM_ENERGY
+    FORM_ENERGY, /* the real plane; the imaginary plane is 0 */
+    FORM_TWO_ENERGIES
 };
+
+/* Whether it is energies that are formed. */
+bool form_is_of_energies(enum form_kind kind);
 
 struct form_lines {
     struct report *report;
@@ -30,6 +34,7 @@ struct form_lines {
     const struct patch_view *view; /* borrowed */
     struct line_grid grid;
     enum form_kind kind;
+    size_t planes;                /* of lines and pixels: 1 or 2 */
     size_t rows, columns, stride; /* pixels; stride: floats from a line to the next */
     size_t first_column;          /* of the patch; the window is `columns` wide */
     int32_t reach;                /* of the cross-range response, strips */
@@ -66,7 +71,8 @@ sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t c
 sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, int32_t count,
                                       const float *energy, uint64_t seed, uint32_t stream);
 
-/* Combines all lines into two planes of rows x lines->columns pixels. Errors: DEVICE, MEMORY. */
+/* Combines all lines into two planes of rows x lines->columns pixels. imaginary_part may be NULL
+ * for FORM_ENERGY. Errors: DEVICE, MEMORY. */
 sonject_status form_lines_finish(struct form_lines *lines, float *real_part, float *imaginary_part);
 
 #endif

@@ -74,18 +74,16 @@ static sonject_status take_hidden(struct beam_former *former, struct echoes *ech
         return status;
     const size_t columns = former->lines.columns;
     float *hidden = allocate_array(echoes->rows * columns, sizeof *hidden);
-    float *unused = allocate_array(echoes->rows * columns, sizeof *unused);
-    status = hidden && unused ? form_lines_add(&former->lines, lines->strips.first,
-                                               lines->strips.count, lines->plane[0], NULL)
-                              : report_out_of_memory(tracer->report, "the beam's shadows");
+    status = hidden ? form_lines_add(&former->lines, lines->strips.first, lines->strips.count,
+                                     lines->plane[0], NULL)
+                    : report_out_of_memory(tracer->report, "the beam's shadows");
     if (status == SONJECT_OK)
-        status = form_lines_finish(&former->lines, hidden, unused);
+        status = form_lines_finish(&former->lines, hidden, NULL);
     if (status == SONJECT_OK)
         add_lost(former->seabed, echoes, &echoes->objects[lines->number], hidden,
                  former->lines.first_column, columns);
     form_lines_end(&former->lines);
     free(hidden);
-    free(unused);
     return status;
 }
 

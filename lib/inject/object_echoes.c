@@ -51,7 +51,7 @@ static sonject_status form_rough(struct echoes *echoes, struct tracer *tracer,
     struct object_echo *echo = &echoes->objects[tile->number];
     struct form_lines lines;
     sonject_status status = form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view,
-                                             &tracer->response, FORM_ENERGY, &tile->grid);
+                                             &tracer->response, FORM_TWO_ENERGIES, &tile->grid);
     if (status != SONJECT_OK)
         return status;
     const size_t pixels = echoes->rows * lines.columns;

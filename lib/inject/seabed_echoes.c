@@ -19,11 +19,8 @@ sonject_status form_energies_as_they_come(struct form_lines *energies, struct tr
                                 NULL);
     if (status != SONJECT_OK || !impulse_lines_end(lines))
         return status;
-    float *unused = allocate_array(tracer->view.rows * tracer->view.columns, sizeof *unused);
-    status = unused ? form_lines_finish(energies, formed, unused)
-                    : report_out_of_memory(tracer->report, "the seabed");
+    status = form_lines_finish(energies, formed, NULL);
     form_lines_end(energies);
-    free(unused);
     return status;
 }
 

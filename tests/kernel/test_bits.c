@@ -705,7 +705,7 @@ static void response_as_c(struct bench *bench, const struct form_lines *lines, i
         }
     }
     for (int i = 0; i < taps; i++) {
-        const bool is_energy = lines->kind == FORM_ENERGY;
+        const bool is_energy = lines->kind == FORM_TWO_ENERGIES;
         real_part[i] = (float)(is_energy ? a[i] * a[i] + b[i] * b[i] : a[i]);
         imaginary_part[i] = is_energy ? 0.0f : (float)b[i];
     }
@@ -745,7 +745,8 @@ static struct planes form_as_c(struct bench *bench, const struct form_lines *lin
     struct planes padded = planes_of(lines->rows * lines->stride);
     struct planes pixels = planes_of(lines->rows * lines->columns);
     float *pulse = calloc((size_t)lines->pulse_taps, sizeof *pulse);
-    float *response = calloc((size_t)taps, sizeof *response);
+    const int zeros = (FORM_ROWS - 1) * (int)lines->grid.strips_per_row;
+    float *response = calloc((size_t)(taps + 2 * zeros), sizeof *response);
     assert_true(pulse && response);
     assert_int_equal(buffer_read(&bench->report, bench->tracer.device, lines->pulse, 0,
                                  (size_t)lines->pulse_taps * sizeof *pulse, pulse),
@@ -759,7 +760,7 @@ static struct planes form_as_c(struct bench *bench, const struct form_lines *lin
                          (i - lines->reach + 0.5 * (lines->grid.strips_per_row - 1)) * strip) <
                     1e-9);
         const double w = along_track_response(&lines->response, rows * lines->row_spacing_m);
-        response[i] = (float)(lines->kind == FORM_ENERGY ? w * w : w);
+        response[zeros + i] = (float)(lines->kind == FORM_TWO_ENERGIES ? w * w : w);
     }
     compress_as_c(bench, lines, bins, pulse, &compressed);
     const struct aspects aspects = aspects_of(lines);
@@ -769,9 +770,9 @@ static struct planes form_as_c(struct bench *bench, const struct form_lines *lin
     else
         for (int row = 0; row < (int)lines->rows; row += FORM_ROWS)
             for (int column = 0; column < (int)lines->columns; column++)
-                combine_aspects_of(aspects, compressed.part[0], compressed.part[1], all,
-                                   (int)lines->stride, response, row, (int)lines->rows, column,
-                                   padded.part[0], padded.part[1]);
+                for (int part = 0; part < 2; part++)
+                    combine_aspects_of(aspects, compressed.part[part], all, (int)lines->stride,
+                                       response, row, (int)lines->rows, column, padded.part[part]);
     for (int part = 0; part < 2; part++)
         for (size_t row = 0; row < lines->rows; row++)
             memcpy(pixels.part[part] + row * lines->columns,
@@ -889,7 +890,7 @@ static void compare_formation(struct bench *bench, enum scene_kind kind)
     struct line_grid patch;
     line_grid_for_patch(&patch, &bench->tracer.view, &bench->tracer.response);
     compare_forming(bench, FORM_SPECKLE, &patch, 1);
-    compare_forming(bench, FORM_ENERGY, &patch, 0);
+    compare_forming(bench, FORM_TWO_ENERGIES, &patch, 0);
     /* a fine grid in a corner, partly outside the patch, as a glint's is */
     const struct line_grid corner = {7, 26, {-20, 150}, {-40, 333}};
     compare_forming(bench, FORM_GLINT, &corner, 0);
@@ -919,7 +920,7 @@ static void compare_varied_formation(struct bench *bench, enum scene_kind kind)
         struct line_grid patch;
         line_grid_for_patch(&patch, &bench->tracer.view, &bench->tracer.response);
         compare_forming(bench, FORM_SPECKLE, &patch, 1);
-        compare_forming(bench, FORM_ENERGY, &patch, 0);
+        compare_forming(bench, FORM_TWO_ENERGIES, &patch, 0);
         compare_forming(bench, FORM_GLINT, &corner, 0);
     }
     sonject_motion_params_init(&bench->scene.motion.params);
