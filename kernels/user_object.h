@@ -1,6 +1,6 @@
 /* Objects whose shape a user wrote in OpenCL C (kernels/MATH.md, "Shapes that users write"). The
- * snippets are plain scalar code and are called lane by lane; they stand behind the whole program,
- * so that no macro of theirs reaches this code. */
+ * snippets are plain scalar code and are called lane by lane; each is a translation unit of its
+ * own, so that no name of theirs reaches this code. */
 #ifndef SONJECT_KERNELS_USER_OBJECT_H
 #define SONJECT_KERNELS_USER_OBJECT_H
 

@@ -10,7 +10,8 @@ SONJECT_BEGIN_DECLARATIONS
 
 #define SONJECT_USER_PARAMETERS_CAPACITY 16
 
-/* A shape given by two functions in OpenCL C 1.2, which become part of the program that traces:
+/* A shape given by two functions in OpenCL C 1.2, which are compiled as a translation unit of their
+ * own and linked to the program that traces:
  *
  *   float shape_distance(float3 point, float3 direction, float nearest, const float *parameters)
  *     {distance in m of the first surface beyond `nearest` on the ray point + distance * direction,
@@ -31,9 +32,10 @@ SONJECT_BEGIN_DECLARATIONS
  * left, and shape_normal may be asked about points of a cut's face, where any answer will do.
  *
  * The code may hold further functions, types, `constant` tables and macros; their names meet
- * neither those of the program nor of other shapes (but enumerators do). The two
- * functions must not be `static`. #include, #pragma, #undef and #line are refused. sonject_check
- * tries a shape with some thousand rays.
+ * neither those of the program nor of other shapes, with a compiler other than clang where
+ * functions and tables are `static`. #include, #pragma, #undef and #line are refused. sonject_check
+ * tries a shape with some thousand rays. A device whose driver links no programs takes no such
+ * shapes.
  *
  * The code is a program: it runs with the rights of the process (on a CPU it can do what the
  * process can), and one that does not come to an end cannot be stopped, it holds the device until

@@ -15,20 +15,27 @@ static bool divides_correctly(const struct device *device)
     return (precision & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
 }
 
-/* No fast-math of any kind; correctly rounded division where the compiler has to be told. A CPU's
- * work-items own their tallies; a GPU's share them. */
+/* No fast-math of any kind; correctly rounded division where the compiler has to be told. */
+static void language_options(const struct device *device, char options[PROGRAM_OPTIONS_CAPACITY])
+{
+    snprintf(options, PROGRAM_OPTIONS_CAPACITY, "-cl-std=CL1.2%s",
+             divides_correctly(device) ? " -cl-fp32-correctly-rounded-divide-sqrt" : "");
+}
+
+/* A CPU's work-items own their tallies; a GPU's share them. */
 void program_options(const struct device *device, uint32_t variant, const char *more,
                      char options[PROGRAM_OPTIONS_CAPACITY])
 {
-    snprintf(options, PROGRAM_OPTIONS_CAPACITY, "-cl-std=CL1.2 -DWIDTH=%u%s%s%s%s%s%s",
+    language_options(device, options);
+    const size_t length = strlen(options);
+    snprintf(options + length, PROGRAM_OPTIONS_CAPACITY - length, " -DWIDTH=%u%s%s%s%s%s",
              (unsigned)device->width, variant & PROGRAM_WITH_MESHES ? " -DWITH_MESHES" : "",
              variant & PROGRAM_WITH_RELIEF ? " -DWITH_RELIEF" : "",
              variant & PROGRAM_WITH_ASPECTS ? " -DWITH_ASPECTS" : "",
-             device->is_cpu ? "" : " -DTALLY_IS_SHARED",
-             divides_correctly(device) ? " -cl-fp32-correctly-rounded-divide-sqrt" : "", more);
+             device->is_cpu ? "" : " -DTALLY_IS_SHARED", more);
 }
 
-/* Digits that stand for what a program is made of, on its device; the first piece is its name's. */
+/* Digits that stand for what a program is made of, on its device; the source is its name's. */
 static sonject_status program_key(struct report *report, const struct program_text *text,
                                   char key[HASH_TEXT_CAPACITY])
 {
@@ -37,8 +44,8 @@ static sonject_status program_key(struct report *report, const struct program_te
         return report_out_of_memory(report, "the name of a program");
     hash_add_text(hash, text->name);
     hash_add_text(hash, text->options);
-    for (size_t i = 1; i < text->count; i++)
-        hash_add_text(hash, text->pieces[i]);
+    for (size_t i = 0; i < text->unit_count; i++)
+        hash_add_text(hash, text->units[i]);
     hash_end(hash, key);
     return SONJECT_OK;
 }
@@ -56,32 +63,93 @@ static sonject_status explain(struct report *report, const struct device *device
                           first ? "" : ": has its cache, such as ~/.cache/pocl, room on the disk?");
 }
 
-static sonject_status build_failure(struct report *report, const struct device *device,
-                                    const struct program_text *text, cl_program program,
-                                    cl_int error)
-{
-    size_t bytes = 0;
-    clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, 0, NULL, &bytes);
-    char *log = allocate_array(bytes + 1, 1);
-    if (!log)
-        return report_out_of_memory(report, "the build log");
-    if (clGetProgramBuildInfo(program, device->id, CL_PROGRAM_BUILD_LOG, bytes, log, NULL) !=
-        CL_SUCCESS)
-        log[0] = '\0';
-    const sonject_status status = text->explain && error == CL_BUILD_PROGRAM_FAILURE
-                                      ? text->explain(report, device, text, log)
-                                      : explain(report, device, text, log, error);
-    free(log);
-    return status;
-}
-
 /* What came of building a program, to be told when the driver is left. */
 struct building {
     const char *call; /* that failed */
     cl_int error;
     cl_program failed; /* has the log; NULL: none */
+    size_t unit;       /* that did not compile; unit_count: the library's own source */
     double seconds;    /* 0: it was there */
 };
+
+static sonject_status build_failure(struct report *report, const struct device *device,
+                                    const struct program_text *text,
+                                    const struct building *building)
+{
+    size_t bytes = 0;
+    clGetProgramBuildInfo(building->failed, device->id, CL_PROGRAM_BUILD_LOG, 0, NULL, &bytes);
+    char *log = allocate_array(bytes + 1, 1);
+    if (!log)
+        return report_out_of_memory(report, "the build log");
+    if (clGetProgramBuildInfo(building->failed, device->id, CL_PROGRAM_BUILD_LOG, bytes, log,
+                              NULL) != CL_SUCCESS)
+        log[0] = '\0';
+    const sonject_status status =
+        building->unit < text->unit_count && building->error == CL_COMPILE_PROGRAM_FAILURE
+            ? text->explain(report, device, text->user, building->unit, log)
+            : explain(report, device, text, log, building->error);
+    free(log);
+    return status;
+}
+
+/* One translation unit, to be linked or not; NULL: see `building`. */
+static cl_program compile(struct device *device, const char *const pieces[2], const char *options,
+                          bool is_linked, struct building *building)
+{
+    /* LLVM removes its files at a signal, and so fails in what it was about. Kernels that are known
+     * to be right are built again, for the caller to stop as it does elsewhere. */
+    int tries = is_linked ? 1 : 3;
+    building->call = "clCreateProgramWithSource";
+    cl_program program = clCreateProgramWithSource(device->context, pieces[1] ? 2 : 1,
+                                                   (const char **)pieces, NULL, &building->error);
+    if (building->error != CL_SUCCESS)
+        return NULL;
+    do
+        building->error = is_linked ? clCompileProgram(program, 1, &device->id, options, 0, NULL,
+                                                       NULL, NULL, NULL)
+                                    : clBuildProgram(program, 1, &device->id, options, NULL, NULL);
+    while (building->error == CL_BUILD_PROGRAM_FAILURE && --tries > 0);
+    if (building->error == CL_SUCCESS)
+        return program;
+    building->failed = program;
+    return NULL;
+}
+
+/* The source with all units; NULL: see `building`. */
+static cl_program compile_and_link(struct device *device, const struct program_text *text,
+                                   struct building *building)
+{
+    cl_program programs[1 + PROGRAM_UNITS_MAX];
+    cl_program linked = NULL;
+    char options[PROGRAM_OPTIONS_CAPACITY];
+    cl_uint count = 0;
+    language_options(device, options);
+    for (; count < text->unit_count; count++) {
+        building->unit = count;
+        programs[count] =
+            compile(device, (const char *const[2]){text->units[count]}, options, true, building);
+        if (!programs[count])
+            break;
+    }
+    if (count == text->unit_count) {
+        building->unit = count;
+        programs[count] = compile(device, (const char *const[2]){text->source, text->calls},
+                                  text->options, true, building);
+        count += programs[count] != NULL;
+    }
+    if (count > text->unit_count) {
+        building->call = "clLinkProgram, which users' shapes need,";
+        linked = clLinkProgram(device->context, 1, &device->id, "", count, programs, NULL, NULL,
+                               &building->error);
+        if (building->error != CL_SUCCESS) {
+            building->failed = linked;
+            linked = NULL;
+        }
+    }
+    while (count > 0)
+        clReleaseProgram(programs[--count]);
+    return linked;
+}
 
 /* The program stays the device's; NULL: see `building`. */
 static cl_program find_or_build(struct device *device, const struct program_text *text,
@@ -91,21 +159,11 @@ static cl_program find_or_build(struct device *device, const struct program_text
     if (program)
         return program;
     const double start = clock_seconds();
-    building->call = "clCreateProgramWithSource";
-    program = clCreateProgramWithSource(device->context, (cl_uint)text->count,
-                                        (const char **)text->pieces, NULL, &building->error);
-    if (building->error != CL_SUCCESS)
+    program = text->unit_count > 0 ? compile_and_link(device, text, building)
+                                   : compile(device, (const char *const[2]){text->source},
+                                             text->options, false, building);
+    if (!program)
         return NULL;
-    /* LLVM removes its files at a signal, and so fails in what it was about. Kernels that are known
-     * to be right are built again, for the caller to stop as it does elsewhere. */
-    int tries = text->explain ? 1 : 3;
-    do
-        building->error = clBuildProgram(program, 1, &device->id, text->options, NULL, NULL);
-    while (building->error == CL_BUILD_PROGRAM_FAILURE && --tries > 0);
-    if (building->error != CL_SUCCESS) {
-        building->failed = program;
-        return NULL;
-    }
     building->seconds = clock_seconds() - start;
     shared_program_keep(device->shared, key, program);
     return program;
@@ -114,7 +172,7 @@ static cl_program find_or_build(struct device *device, const struct program_text
 sonject_status kernel_of_text(struct report *report, struct device *device,
                               const struct program_text *text, const char *name, cl_kernel *kernel)
 {
-    struct building building = {NULL, CL_SUCCESS, NULL, 0.0};
+    struct building building = {NULL, CL_SUCCESS, NULL, 0, 0.0};
     char key[HASH_TEXT_CAPACITY];
     *kernel = NULL;
     sonject_status status = program_key(report, text, key);
@@ -131,7 +189,7 @@ sonject_status kernel_of_text(struct report *report, struct device *device,
     if (building.seconds > 0.0)
         report_news(report, "%s built in %.1f s", text->name, building.seconds);
     if (building.failed) {
-        status = build_failure(report, device, text, building.failed, building.error);
+        status = build_failure(report, device, text, &building);
         clReleaseProgram(building.failed);
     } else if (building.error != CL_SUCCESS) {
         *kernel = NULL;
@@ -144,10 +202,10 @@ sonject_status kernel_create(struct report *report, struct device *device,
                              enum device_program number, uint32_t variant, const char *name,
                              cl_kernel *kernel)
 {
-    const char *const pieces[] = {embedded_sources[number].text};
     char options[PROGRAM_OPTIONS_CAPACITY];
     program_options(device, variant, "", options);
-    const struct program_text text = {
-        embedded_sources[number].name, pieces, 1, options, NULL, NULL};
+    const struct program_text text = {.name = embedded_sources[number].name,
+                                      .source = embedded_sources[number].text,
+                                      .options = options};
     return kernel_of_text(report, device, &text, name, kernel);
 }

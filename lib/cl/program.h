@@ -1,21 +1,24 @@
-/* Kernels: embedded sources, with or without code of users behind them, built once a device for all
- * contexts of a process. What of it is kept between processes is the driver's to say. */
+/* Kernels: embedded sources, with or without code of users linked to them, built once a device for
+ * all contexts of a process. What of it is kept between processes is the driver's to say. */
 #ifndef SONJECT_CL_PROGRAM_H
 #define SONJECT_CL_PROGRAM_H
 
 #include "cl/device.h"
 
 #define PROGRAM_OPTIONS_CAPACITY 192
+#define PROGRAM_UNITS_MAX        64
 
-/* What a program is made of, one piece of text after the other. */
+/* What a program is made of. */
 struct program_text {
-    const char *name; /* of the embedded source that is the first piece */
-    const char *const *pieces;
-    size_t count;
+    const char *name;    /* of the embedded source */
+    const char *source;  /* its text */
+    const char *calls;   /* more behind it: what it calls of the units; NULL: nothing */
     const char *options; /* of program_options */
-    /* Makes the message of a failed build from its log; NULL: that of the library's own kernels. */
-    sonject_status (*explain)(struct report *report, const struct device *device,
-                              const struct program_text *text, const char *log);
+    char *const *units;  /* users' code that is linked to it, each a translation unit of its own */
+    size_t unit_count;   /* at most PROGRAM_UNITS_MAX; 0: nothing is linked */
+    /* Makes the message of a unit that does not compile from the compiler's log. */
+    sonject_status (*explain)(struct report *report, const struct device *device, const void *user,
+                              size_t unit, const char *log);
     const void *user; /* for explain */
 };
 

@@ -50,8 +50,8 @@ static sonject_status find_snippet(struct user_shapes *shapes, struct report *re
     if (!snippets)
         return report_out_of_memory(report, "a shape's code");
     shapes->snippets = snippets;
-    const sonject_status status = snippet_make(report, shape->name, shape->first_line, shape->code,
-                                               *number, &snippets[*number]);
+    const sonject_status status =
+        snippet_make(report, shape->name, shape->first_line, shape->code, &snippets[*number]);
     shapes->snippet_count += status == SONJECT_OK;
     return status;
 }

@@ -39,28 +39,6 @@ static bool find_line(const char *log, const char *word, char *line)
     return false;
 }
 
-/* Takes our prefixes off the names of functions. */
-static void rename_back(char *text)
-{
-    char *at = text;
-    while ((at = strstr(at, "user_")) != NULL) {
-        const size_t digits = strspn(at + 5, "0123456789");
-        if (digits > 0 && at[5 + digits] == '_')
-            memmove(at, at + 6 + digits, strlen(at + 6 + digits) + 1);
-        else
-            at += 5;
-    }
-}
-
-/* A place that a line of a log tells. */
-struct place {
-    const char *start; /* in that line; NULL: none */
-    const char *what;  /* is wrong there */
-    const char *name;
-    unsigned long line;
-    bool is_behind; /* the code, in what ends it */
-};
-
 /* Reads ":" and the number of a line; returns what follows, NULL where these do not stand here. */
 static const char *read_line_number(const char *at, unsigned long *line)
 {
@@ -71,27 +49,6 @@ static const char *read_line_number(const char *at, unsigned long *line)
     for (size_t i = 1; i <= count; i++)
         *line = 10 * *line + (unsigned long)(at[i] - '0');
     return at + 1 + count;
-}
-
-static bool ends_with(const char *start, const char *end, const char *words)
-{
-    const size_t length = strlen(words);
-    return (size_t)(end - start) >= length && strncmp(end - length, words, length) == 0;
-}
-
-/* Where the line tells "name:" with the number of a line, perhaps a column, then what is wrong. */
-static struct place find_place(const char *line, const char *name)
-{
-    struct place place = {NULL, NULL, name, 0, false};
-    for (const char *at = line; (at = strstr(at, name)) != NULL; at++) {
-        place.what = read_line_number(at + strlen(name), &place.line);
-        if (!place.what)
-            continue;
-        place.start = at;
-        place.is_behind = ends_with(line, at, "end of ");
-        return place;
-    }
-    return place;
 }
 
 /* What is told behind a place: column, where macros were spelt, and the word error are left out. */
@@ -108,65 +65,36 @@ static const char *skip_to_words(const char *what)
     return what + strspn(what, " ");
 }
 
-/* The first place in any of the snippets. */
-static struct place first_place(const struct user_shapes *shapes, const char *line)
+/* Where the text tells ":" with the number of a line, then what is wrong; NULL: nowhere. */
+static const char *find_place(const char *text, unsigned long *line)
 {
-    struct place first = {NULL, NULL, NULL, 0, false};
-    for (uint32_t i = 0; i < shapes->snippet_count; i++) {
-        const struct place place = find_place(line, shapes->snippets[i].name);
-        if (place.start && (!first.start || place.start < first.start))
-            first = place;
-    }
-    return first;
+    const char *what = NULL;
+    for (; !what && (text = strchr(text, ':')) != NULL; text++)
+        what = read_line_number(text, line);
+    return what;
 }
 
-/* The place of a line of the whole program, which "<any name>:" stands before. */
-static struct place place_in_program(const struct user_text *text, const char *line)
-{
-    struct place place = {NULL, NULL, NULL, 0, false};
-    unsigned long number;
-    const char *start = strchr(line, '<');
-    const char *end = start ? strchr(start, '>') : NULL;
-    place.what = end ? read_line_number(end + 1, &number) : NULL;
-    if (!place.what)
-        return place;
-    unsigned long first = 1 + text->lines_before;
-    for (uint32_t i = 0; i < text->shapes->snippet_count; i++) {
-        const struct user_snippet *snippet = &text->shapes->snippets[i];
-        const unsigned long code = first + text_count_lines(snippet->before);
-        const unsigned long behind = code + text_count_lines(snippet->code);
-        first = behind + text_count_lines(snippet->behind);
-        if (number < code || number > first)
-            continue;
-        place.start = start;
-        place.name = snippet->name;
-        place.line = snippet->first_line + (number - code);
-        place.is_behind = number > behind;
-        return place;
-    }
-    return place;
-}
-
-sonject_status explain_build_log(struct report *report, const struct user_text *text,
+sonject_status explain_build_log(struct report *report, const struct user_snippet *snippet,
                                  const char *device_name, const char *log)
 {
-    char line[LINE_CAPACITY];
+    char text[LINE_CAPACITY];
+    unsigned long line;
+    const unsigned long before = text_count_lines(SNIPPET_BEFORE);
     tell_log(report, log);
-    /* linkers say it in their own words */
-    if (!find_line(log, "error:", line) && !find_line(log, "fatal", line))
-        text_excerpt(line, EXCERPT_CAPACITY, log);
-    for (size_t end = strlen(line); end > 0 && strchr(" \n", line[end - 1]); end--)
-        line[end - 1] = '\0';
-    rename_back(line);
-    struct place place = first_place(text->shapes, line);
-    if (!place.start)
-        place = place_in_program(text, line);
-    if (!place.start)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "device '%s' cannot build the user shapes' code: %s", device_name,
-                              line);
-    const char *what = skip_to_words(place.what);
-    if (place.is_behind)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: at its end: %s", place.name, what);
-    return report_failure(report, SONJECT_ERROR_INPUT, "%s:%lu: %s", place.name, place.line, what);
+    if (!find_line(log, "error:", text) && !find_line(log, "fatal", text))
+        text_excerpt(text, EXCERPT_CAPACITY, log);
+    for (size_t end = strlen(text); end > 0 && strchr(" \n", text[end - 1]); end--)
+        text[end - 1] = '\0';
+    const char *what = find_place(text, &line);
+    if (!what)
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: device '%s' cannot compile it: %s",
+                              snippet->name, device_name, text);
+    what = skip_to_words(what);
+    if (line <= before)
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: %s", snippet->name, what);
+    if (line > before + text_count_lines(snippet->code) + 1)
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: at its end: %s", snippet->name,
+                              what);
+    return report_failure(report, SONJECT_ERROR_INPUT, "%s:%lu: %s", snippet->name,
+                          snippet->first_line + (line - before - 1), what);
 }

@@ -1,5 +1,5 @@
 /* Kernels for scenes: the library's own programs where no shape is a user's, else with the code of
- * all its users' shapes behind them. */
+ * all its users' shapes linked to them. */
 #ifndef SONJECT_USER_USER_PROGRAM_H
 #define SONJECT_USER_USER_PROGRAM_H
 

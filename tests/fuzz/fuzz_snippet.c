@@ -10,7 +10,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
     struct report report = {{0}, NULL, NULL};
     struct user_snippet snippet;
     char *code = fuzz_text(bytes, count);
-    const sonject_status status = snippet_make(&report, "fuzz.cl", 1, code, 0, &snippet);
+    const sonject_status status = snippet_make(&report, "fuzz.cl", 1, code, &snippet);
     fuzz_expect(status, &report);
     if (status == SONJECT_OK)
         snippet_clear(&snippet);

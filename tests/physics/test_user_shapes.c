@@ -490,6 +490,12 @@ static void test_errors_are_in_the_users_lines(void **state)
         {SPHERE_CODE "#define CLOSE }\nfloat g(float x) { return x; CLOSE }\n", "my shape.cl:19: "},
         {SPHERE_CODE "#define OPEN {\nfloat g(float x) { return x; OPEN }\n", "my shape.cl"},
         {SPHERE_CODE "#define HASH #undef\nHASH FUNCTION\n", "my shape.cl:19: "},
+        /* what would hide our own text behind it */
+        {SPHERE_CODE "}\n", "my shape.cl:18: "},
+        {SPHERE_CODE "\n/* to the end\n", "my shape.cl:19: "},
+        {SPHERE_CODE "#if 0\n\n", "my shape.cl:18: "},
+        {SPHERE_CODE "constant char c[] = \"open;\n", "my shape.cl:18: "},
+        {"#define shape_normal other\n" SPHERE_CODE, "shape_normal"},
         /* declared, never written */
         {"float shape_distance(float3 p, float3 d, float t, const float *a);\n" SPHERE_NORMAL,
          "shape_distance"},
@@ -499,8 +505,7 @@ static void test_errors_are_in_the_users_lines(void **state)
     bench_open(&bench, ROWS, COLUMNS, RANGE);
     for (size_t i = 0; i < COUNT(cases); i++) {
         struct user_snippet snippet;
-        if (snippet_make(&bench.report, "my shape.cl", 1, cases[i].code, 1, &snippet) ==
-            SONJECT_OK) {
+        if (snippet_make(&bench.report, "my shape.cl", 1, cases[i].code, &snippet) == SONJECT_OK) {
             snippet_clear(&snippet);
             assert_int_equal(
                 compile(&bench, cases[i].code, PROGRAM_PROBE_USER_SHAPE, "probe_user_shape"),
@@ -510,6 +515,7 @@ static void test_errors_are_in_the_users_lines(void **state)
         if (!strstr(bench.report.message, cases[i].place))
             fail_msg("case %zu: '%s' is not in the message", i, cases[i].place);
         assert_null(strstr(bench.report.message, "user_1_"));
+        assert_non_null(strstr(bench.report.message, "my shape.cl"));
         assert_null(strchr(bench.report.message, '\n'));
     }
     /* the programs that trace say the same */
