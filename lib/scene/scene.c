@@ -179,36 +179,14 @@ sonject_status scene_share_mesh(struct scene *scene, struct report *report, cons
 
 const char *shape_name(uint32_t shape)
 {
-    switch (shape) {
-    case SONJECT_SHAPE_PLANE:
-        return "plane";
-    case SONJECT_SHAPE_SPHERE:
-        return "sphere";
-    case SONJECT_SHAPE_CYLINDER:
-        return "cylinder";
-    case SONJECT_SHAPE_CAPSULE:
-        return "capsule";
-    case SONJECT_SHAPE_DISC:
-        return "disc";
-    case SONJECT_SHAPE_ELLIPSOID:
-        return "ellipsoid";
-    case SONJECT_SHAPE_BOX:
-        return "box";
-    case SONJECT_SHAPE_WEDGE:
-        return "wedge";
-    case SONJECT_SHAPE_CONE:
-        return "cone";
-    case SONJECT_SHAPE_TRUNCATED_CONE:
-        return "truncated_cone";
-    case SONJECT_SHAPE_TORUS:
-        return "torus";
-    case SONJECT_SHAPE_PARTS:
-        return "parts";
-    case SONJECT_SHAPE_MESH:
-        return "mesh";
-    case SONJECT_SHAPE_USER:
-        return "user";
-    default:
-        return NULL;
-    }
+    static const char *const names[] = {
+        [SONJECT_SHAPE_PLANE] = "plane",       [SONJECT_SHAPE_SPHERE] = "sphere",
+        [SONJECT_SHAPE_CYLINDER] = "cylinder", [SONJECT_SHAPE_CAPSULE] = "capsule",
+        [SONJECT_SHAPE_DISC] = "disc",         [SONJECT_SHAPE_ELLIPSOID] = "ellipsoid",
+        [SONJECT_SHAPE_BOX] = "box",           [SONJECT_SHAPE_WEDGE] = "wedge",
+        [SONJECT_SHAPE_CONE] = "cone",         [SONJECT_SHAPE_TRUNCATED_CONE] = "truncated_cone",
+        [SONJECT_SHAPE_TORUS] = "torus",       [SONJECT_SHAPE_PARTS] = "parts",
+        [SONJECT_SHAPE_MESH] = "mesh",         [SONJECT_SHAPE_USER] = "user",
+    };
+    return shape < sizeof names / sizeof *names ? names[shape] : NULL;
 }
