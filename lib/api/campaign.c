@@ -87,14 +87,12 @@ static sonject_status open_campaign(struct sonject_campaign *campaign, const cha
 {
     struct campaign *plan = &campaign->campaign;
     sonject_status status = campaign_read(campaign->report, path, overrides, count, plan);
-    if (status == SONJECT_OK)
-        status = scene_file_load(campaign->report, plan->scene_path, &campaign->scene_text,
-                                 &campaign->scene_bytes);
+    THEN(status, scene_file_load(campaign->report, plan->scene_path, &campaign->scene_text,
+                                 &campaign->scene_bytes));
     if (status != SONJECT_OK)
         return status;
     campaign->swath_hashes = allocate_array(plan->swath_count, sizeof *campaign->swath_hashes);
-    if (!campaign->swath_hashes)
-        return report_out_of_memory(campaign->report, "the campaign");
+    CHECK_MEMORY(campaign->report, campaign->swath_hashes, "the campaign");
     return campaign_check(campaign);
 }
 
@@ -127,8 +125,7 @@ sonject_status sonject_campaign_read(sonject_context *context, const char *path,
         if (!overrides[i])
             return null_argument(&context->report, "an override");
     struct sonject_campaign *made = allocate_array(1, sizeof *made);
-    if (!made)
-        return report_out_of_memory(&context->report, "a campaign");
+    CHECK_MEMORY(&context->report, made, "a campaign");
     made->report = &context->report;
     made->allows_user_shapes = taken.allows_user_shapes != 0;
     status = open_campaign(made, path, overrides, count);

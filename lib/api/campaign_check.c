@@ -42,11 +42,9 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
                             "there is no %s that can be read; check its name", swath->path);
     status =
         image_plan_try(campaign->report, &campaign->campaign, number, CATEGORY_EMPTY, 0, 0, &plan);
-    if (status == SONJECT_OK)
-        status = campaign_read_scene(campaign, &plan, &scene);
-    if (status == SONJECT_OK)
-        status =
-            swath_file_open_array(campaign->report, swath->path, scene.channel, scene.array, &file);
+    THEN(status, campaign_read_scene(campaign, &plan, &scene));
+    THEN(status,
+         swath_file_open_array(campaign->report, swath->path, scene.channel, scene.array, &file));
     if (status == SONJECT_OK) {
         swath_file_layout(file, &swath->layout);
         status = campaign_measure(campaign->report, &campaign->campaign, number, &scene.geometry,
@@ -68,10 +66,8 @@ static sonject_status try_scene(struct sonject_campaign *campaign, struct hash *
     scene.mesh_store = &campaign->meshes;
     sonject_status status =
         image_plan_try(campaign->report, &campaign->campaign, swath, category, item, step, &plan);
-    if (status == SONJECT_OK)
-        status = campaign_read_scene(campaign, &plan, &scene);
-    if (status == SONJECT_OK)
-        status = scene_hash(campaign->report, &scene, NULL, text);
+    THEN(status, campaign_read_scene(campaign, &plan, &scene));
+    THEN(status, scene_hash(campaign->report, &scene, NULL, text));
     if (status == SONJECT_OK)
         hash_add_text(hash, text);
     campaign->has_user_shapes = campaign->has_user_shapes || scene.user_shapes.count > 0;
@@ -107,8 +103,7 @@ static sonject_status try_scenes(struct sonject_campaign *campaign, struct hash 
     sonject_status status = SONJECT_OK;
     for (uint32_t i = 0; status == SONJECT_OK && i < plan->swath_count; i++)
         status = try_scene(campaign, hash, i, CATEGORY_EMPTY, 0, 1);
-    if (status == SONJECT_OK)
-        status = try_steps(campaign, hash, CATEGORY_EMPTY, 0, NULL, &trials);
+    THEN(status, try_steps(campaign, hash, CATEGORY_EMPTY, 0, NULL, &trials));
     for (uint32_t i = 0; status == SONJECT_OK && i < plan->target_count; i++)
         status = try_steps(campaign, hash, CATEGORY_TARGET + i, 0, &plan->targets[i], &trials);
     for (uint32_t i = 0; status == SONJECT_OK && i < plan->clutter_count; i++)
@@ -120,8 +115,7 @@ static sonject_status split_swaths(struct sonject_campaign *campaign)
 {
     struct campaign *plan = &campaign->campaign;
     const char **identities = allocate_array(plan->swath_count, sizeof *identities);
-    if (!identities)
-        return report_out_of_memory(campaign->report, "the splits");
+    CHECK_MEMORY(campaign->report, identities, "the splits");
     for (size_t i = 0; i < plan->swath_count; i++)
         identities[i] = campaign->swath_hashes[i];
     const sonject_status status = campaign_split(campaign->report, plan, identities);
@@ -179,17 +173,13 @@ sonject_status campaign_check(struct sonject_campaign *campaign)
     char code[HASH_TEXT_CAPACITY];
     char trials[HASH_TEXT_CAPACITY];
     struct hash *hash = hash_begin();
-    if (!hash)
-        return report_out_of_memory(campaign->report, "a hash");
+    CHECK_MEMORY(campaign->report, hash, "a hash");
     sonject_status status = code_hash(campaign->report, code);
     for (uint32_t i = 0; status == SONJECT_OK && i < plan->swath_count; i++)
         status = measure_swath(campaign, i);
-    if (status == SONJECT_OK)
-        status = split_swaths(campaign);
-    if (status == SONJECT_OK)
-        status = image_plan_check_grid(plan);
-    if (status == SONJECT_OK)
-        status = try_scenes(campaign, hash);
+    THEN(status, split_swaths(campaign));
+    THEN(status, image_plan_check_grid(plan));
+    THEN(status, try_scenes(campaign, hash));
     hash_restart(hash, trials);
     if (status == SONJECT_OK) {
         add_inputs(campaign, hash, code, trials);

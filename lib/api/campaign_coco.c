@@ -24,8 +24,7 @@ static sonject_status add_entry(const struct data_set *set, FILE *file, json_t *
 {
     char *text = json_document_text(entry, JSON_COMPACT | JSON_REAL_PRECISION(9));
     json_decref(entry);
-    if (!text)
-        return report_out_of_memory(set->report, "coco.json");
+    CHECK_MEMORY(set->report, text, "coco.json");
     const bool failed = fprintf(file, "%s%s", is_first ? "\n" : ",\n", text) < 0;
     free(text);
     return failed ? file_failure(set->report, set->folder, "write coco.json below", errno)
@@ -48,20 +47,17 @@ static sonject_status add_image(struct coco_file *coco, uint64_t id, bool is_fir
     size_t i;
     const json_t *annotation;
     const struct data_set *set = coco->set;
-    sonject_status status = data_set_image(set, coco->split, id, &record, NULL, NULL);
-    if (status != SONJECT_OK)
-        return status;
-    status = add_entry(set, coco->images,
-                       json_pack("{s:I, s:s, s:I, s:I}", "id", (json_int_t)id, "file_name",
-                                 member_text(record, "image"), "width", set->columns, "height",
-                                 set->rows),
-                       is_first);
+    CHECK(data_set_image(set, coco->split, id, &record, NULL, NULL));
+    sonject_status status = add_entry(set, coco->images,
+                                      json_pack("{s:I, s:s, s:I, s:I}", "id", (json_int_t)id,
+                                                "file_name", member_text(record, "image"), "width",
+                                                set->columns, "height", set->rows),
+                                      is_first);
     json_array_foreach(json_object_get(record, "annotations"), i, annotation)
     {
         const bool is_first_of_all = coco->annotation_count == 0;
-        if (status == SONJECT_OK)
-            status =
-                add_entry(set, coco->annotations, numbered(coco, id, annotation), is_first_of_all);
+        THEN(status,
+             add_entry(set, coco->annotations, numbered(coco, id, annotation), is_first_of_all));
     }
     json_decref(record);
     return status;
@@ -100,11 +96,10 @@ static sonject_status add_categories(struct coco_file *coco)
     sonject_status status = SONJECT_OK;
     json_array_foreach(json_object_get(coco->set->head, "classes"), i, name)
     {
-        if (status == SONJECT_OK)
-            status = add_entry(coco->set, coco->images,
+        THEN(status, add_entry(coco->set, coco->images,
                                json_pack("{s:I, s:O, s:s}", "id", (json_int_t)i + 1, "name", name,
                                          "supercategory", "object"),
-                               i == 0);
+                               i == 0));
     }
     return status;
 }
@@ -121,8 +116,7 @@ static sonject_status write_split(struct coco_file *coco, const char *path)
     if (status == SONJECT_OK && !copy_all(coco->annotations, coco->images))
         status = file_failure(report, path, "write", errno);
     fputs("],\n\"categories\": [", coco->images);
-    if (status == SONJECT_OK)
-        status = add_categories(coco);
+    THEN(status, add_categories(coco));
     fputs("]}\n", coco->images);
     if (status == SONJECT_OK && (fflush(coco->images) != 0 || ferror(coco->images)))
         status = file_failure(report, path, "write", errno);
@@ -143,8 +137,7 @@ static sonject_status write_coco_file(const struct data_set *set, size_t split, 
         if (!coco.images || !coco.annotations)
             status = file_failure(set->report, path, "write", errno);
     }
-    if (status == SONJECT_OK)
-        status = write_split(&coco, path);
+    THEN(status, write_split(&coco, path));
     if (coco.annotations)
         fclose(coco.annotations);
     if (coco.images && fclose(coco.images) != 0 && status == SONJECT_OK)
@@ -165,8 +158,7 @@ sonject_status write_data_set_coco(const struct data_set *set)
     sonject_status status = SONJECT_OK;
     for (size_t i = 0; status == SONJECT_OK && i < set->split_count; i++) {
         char *path = campaign_file(set->folder, set->split_names[i], "coco.json", NULL);
-        if (!path)
-            return report_out_of_memory(set->report, "a file name");
+        CHECK_MEMORY(set->report, path, "a file name");
         status = write_coco_file(set, i, path);
         free(path);
     }

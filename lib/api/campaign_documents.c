@@ -42,8 +42,7 @@ sonject_status data_set_is_finished(const struct data_set *set, bool *is_finishe
     json_t *document;
     sonject_status status = earlier_document(set->report, set->folder, DOCUMENT, &document);
     const json_t *files = json_object_get(document, "files");
-    if (status == SONJECT_OK)
-        status = file_list_check(files, set->report, set->folder, true, &changed);
+    THEN(status, file_list_check(files, set->report, set->folder, true, &changed));
     *is_finished = status == SONJECT_OK && !changed &&
                    json_array_size(files) == DOCUMENTS + set->split_count &&
                    strcmp(member_text(document, "hash"), member_text(set->head, "hash")) == 0;
@@ -171,16 +170,11 @@ static sonject_status write_classes(const struct data_set *set)
 sonject_status data_set_finish(struct data_set *set)
 {
     sonject_status status = check_complete(set);
-    if (status == SONJECT_OK)
-        status = write_data_set_coco(set);
-    if (status == SONJECT_OK)
-        status = write_classes(set);
-    if (status == SONJECT_OK)
-        status = write_contact_sheet(set);
-    if (status == SONJECT_OK)
-        status = write_report_page(set);
-    if (status == SONJECT_OK)
-        status = write_data_set(set);
+    THEN(status, write_data_set_coco(set));
+    THEN(status, write_classes(set));
+    THEN(status, write_contact_sheet(set));
+    THEN(status, write_report_page(set));
+    THEN(status, write_data_set(set));
     if (status != SONJECT_OK)
         return status;
     for (size_t i = 0; i < set->split_count; i++)

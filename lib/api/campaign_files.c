@@ -202,8 +202,7 @@ sonject_status campaign_write_json(struct report *report, json_t *document, cons
 {
     char *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     json_decref(document);
-    if (!text)
-        return report_out_of_memory(report, path);
+    CHECK_MEMORY(report, text, path);
     const sonject_status status = file_write_whole(report, path, text, strlen(text));
     free(text);
     return status;

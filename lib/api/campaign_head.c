@@ -88,9 +88,8 @@ static sonject_status check_head(struct sonject_campaign *campaign, const json_t
     struct data_set set;
     memset(&set, 0, sizeof set);
     sonject_status status = data_set_open(&set, campaign->report, folder);
-    if (status == SONJECT_OK)
-        status = inputs_check(campaign->report, folder, json_object_get(set.head, "inputs"), inputs,
-                              NULL, overwrites, is_same);
+    THEN(status, inputs_check(campaign->report, folder, json_object_get(set.head, "inputs"), inputs,
+                              NULL, overwrites, is_same));
     if (status == SONJECT_OK && !*is_same)
         data_set_remove(&set);
     data_set_clear(&set);
@@ -216,14 +215,12 @@ sonject_status data_set_open(struct data_set *set, struct report *report, const 
     char *path = path_join(folder, HEAD_FILE);
     set->report = report;
     set->folder = folder;
-    if (!path)
-        return report_out_of_memory(report, "a file name");
+    CHECK_MEMORY(report, path, "a file name");
     sonject_status status = SONJECT_OK;
     if (!file_exists(path))
         status = report_failure(report, SONJECT_ERROR_INPUT,
                                 "%s: holds no campaign: there is no campaign.json", folder);
-    if (status == SONJECT_OK)
-        status = json_document_read(report, path, &set->head);
+    THEN(status, json_document_read(report, path, &set->head));
     if (status == SONJECT_OK && !take_head(set))
         status = report_failure(report, SONJECT_ERROR_INPUT,
                                 "%s: damaged; remove it and run the campaign again", path);

@@ -49,13 +49,10 @@ sonject_status campaign_image_make(struct sonject_context *context,
     image->scene.mesh_store = &campaign->meshes;
     sonject_status status =
         image_plan_make(campaign->report, &campaign->campaign, id, &image->plan);
-    if (status == SONJECT_OK)
-        status = campaign_read_scene(campaign, &image->plan, &image->scene);
-    if (status == SONJECT_OK)
-        status =
-            swath_open_stored(campaign->report, &image->scene, &campaign->store, &image->swath);
-    if (status == SONJECT_OK)
-        status = context_device(context, &device);
+    THEN(status, campaign_read_scene(campaign, &image->plan, &image->scene));
+    THEN(status,
+         swath_open_stored(campaign->report, &image->scene, &campaign->store, &image->swath));
+    THEN(status, context_device(context, &device));
     if (status == SONJECT_OK) {
         const struct injection_input input = swath_input(&image->swath);
         status = injection_run(campaign->report, device, &image->scene, &input, progress, user,
@@ -102,8 +99,7 @@ static sonject_status write_pixels(struct sonject_campaign *campaign, const stru
     static const char *const complex_names[] = {"real", "imag"};
     struct geometry_notes notes;
     void *stored = swath_stored_result(swath, result, &result->statistics.output_clipped);
-    if (!stored)
-        return report_out_of_memory(campaign->report, "an image");
+    CHECK_MEMORY(campaign->report, stored, "an image");
     geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
     const sonject_status status = raster_file_write(campaign->report, path, &swath->layout,
                                                     swath->is_complex ? complex_names : NULL,
@@ -176,15 +172,12 @@ static sonject_status write_record(struct sonject_campaign *campaign,
     memset(&coco, 0, sizeof coco);
     sonject_status status =
         scene_hash(campaign->report, &image->scene, image->swath.identity, hash);
-    if (status == SONJECT_OK)
-        status = coco_add(&coco, campaign->report, labels, classes);
-    if (status == SONJECT_OK)
-        status = image_files_list(files, campaign->report, &list);
-    if (status == SONJECT_OK)
-        status = campaign_write_json(campaign->report,
+    THEN(status, coco_add(&coco, campaign->report, labels, classes));
+    THEN(status, image_files_list(files, campaign->report, &list));
+    THEN(status, campaign_write_json(campaign->report,
                                      record_of(campaign, image, labels->file_name, hash,
                                                json_incref(list), json_incref(coco.annotations)),
-                                     files->record);
+                                     files->record));
     json_decref(list);
     coco_clear(&coco);
     return status;
@@ -246,11 +239,9 @@ static sonject_status write_rest(struct sonject_campaign *campaign,
     for (size_t i = 0; status == SONJECT_OK && i < files->output_count; i++)
         status = write_output(campaign, image, scene, swath, labels, &classes,
                               files->outputs[i].kind->output, files->outputs[i].path);
-    if (status == SONJECT_OK)
-        status =
-            write_truth_of(campaign, scene, swath, &image->result, labels->file_name, files->truth);
-    if (status == SONJECT_OK)
-        status = write_record(campaign, image, labels, &classes, files);
+    THEN(status,
+         write_truth_of(campaign, scene, swath, &image->result, labels->file_name, files->truth));
+    THEN(status, write_record(campaign, image, labels, &classes, files));
     class_names_clear(&classes);
     return status;
 }
@@ -270,15 +261,12 @@ sonject_status campaign_image_write(struct sonject_campaign *campaign, struct ca
     const struct label_request request = {
         &scene, &image->result, image_name, swath.layout.rows, swath.layout.columns, swath.patch, 0,
         0,      &swath.track};
-    sonject_status status = image_labels_find(&labels, campaign->report, &request);
-    if (status != SONJECT_OK)
-        return status;
-    status = image_files_init(&files, campaign->report, folder, split, image->plan.id,
-                              swath.layout.type, swath.is_complex, campaign->campaign.outputs);
-    if (status == SONJECT_OK)
-        status = write_pixels(campaign, &scene, &swath, &image->result, files.image);
-    if (status == SONJECT_OK)
-        status = write_rest(campaign, image, &scene, &swath, &labels, &files);
+    CHECK(image_labels_find(&labels, campaign->report, &request));
+    sonject_status status =
+        image_files_init(&files, campaign->report, folder, split, image->plan.id, swath.layout.type,
+                         swath.is_complex, campaign->campaign.outputs);
+    THEN(status, write_pixels(campaign, &scene, &swath, &image->result, files.image));
+    THEN(status, write_rest(campaign, image, &scene, &swath, &labels, &files));
     image_files_clear(&files);
     image_labels_clear(&labels);
     return status;

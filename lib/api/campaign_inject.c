@@ -48,10 +48,8 @@ sonject_status sonject_campaign_describe(const sonject_campaign *campaign, uint6
     sonject_campaign_image told;
     if (!campaign)
         return SONJECT_ERROR_ARGUMENT;
-    sonject_status status = campaign_check_id(campaign, id);
-    if (status != SONJECT_OK)
-        return status;
-    status = image_plan_make(campaign->report, &campaign->campaign, id, &plan);
+    CHECK(campaign_check_id(campaign, id));
+    sonject_status status = image_plan_make(campaign->report, &campaign->campaign, id, &plan);
     if (status == SONJECT_OK) {
         describe_plan(&campaign->campaign, &plan, &told);
         status = params_give(campaign->report, image, &told, sizeof told, sizeof told,
@@ -72,13 +70,11 @@ sonject_status sonject_campaign_scene(sonject_context *context, sonject_campaign
     if (!campaign)
         return null_argument(&context->report, "campaign");
     sonject_status status = campaign_check_id(campaign, id);
-    if (status == SONJECT_OK)
-        status = sonject_scene_create(context, scene);
+    THEN(status, sonject_scene_create(context, scene));
     if (status != SONJECT_OK)
         return status;
     status = image_plan_make(campaign->report, &campaign->campaign, id, &plan);
-    if (status == SONJECT_OK)
-        status = campaign_read_scene(campaign, &plan, &(*scene)->scene);
+    THEN(status, campaign_read_scene(campaign, &plan, &(*scene)->scene));
     image_plan_clear(&plan);
     if (status != SONJECT_OK)
         sonject_scene_release(scene);
@@ -96,14 +92,11 @@ sonject_status sonject_campaign_inject(sonject_context *context, sonject_campaig
     context_begin_call(context);
     if (!campaign)
         return null_argument(&context->report, "campaign");
-    sonject_status status = campaign_check_id(campaign, id);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(campaign_check_id(campaign, id));
     struct sonject_result *made = allocate_array(1, sizeof *made);
-    if (!made)
-        return report_out_of_memory(&context->report, "a result");
+    CHECK_MEMORY(&context->report, made, "a result");
     memset(&image, 0, sizeof image);
-    status = campaign_image_make(context, campaign, id, progress, user, &image);
+    sonject_status status = campaign_image_make(context, campaign, id, progress, user, &image);
     if (status == SONJECT_OK) {
         made->report = &context->report;
         made->result = image.result;

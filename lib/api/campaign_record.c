@@ -228,8 +228,7 @@ static sonject_status read_record(const struct data_set *set, size_t split, uint
     sonject_status status =
         image_files_init(files, set->report, set->folder, set->split_names[split], id, PIXEL_UINT8,
                          false, set->outputs);
-    if (status == SONJECT_OK)
-        status = json_document_read(set->report, files->record, record);
+    THEN(status, json_document_read(set->report, files->record, record));
     const char *fault = status == SONJECT_OK ? find_fault(set, split, id, *record) : NULL;
     if (fault)
         return refuse_record(set, files->record, fault);

@@ -129,9 +129,7 @@ static sonject_status add_image(struct statistics_page *page, size_t split, uint
     size_t i;
     const json_t *entry;
     const bool is_taken = id % page->every == 0;
-    const sonject_status status = data_set_image(page->set, split, id, &record, &truth, NULL);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(data_set_image(page->set, split, id, &record, &truth, NULL));
     json_array_foreach(json_object_get(record, "set"), i, entry)
     {
         if (is_taken)
@@ -250,8 +248,7 @@ sonject_status write_report_page(const struct data_set *set)
     }
     if (!path || !page || !page->counts)
         status = report_out_of_memory(set->report, "the report");
-    if (status == SONJECT_OK)
-        status = gather(page);
+    THEN(status, gather(page));
     if (status == SONJECT_OK) {
         write_page(page, &text);
         char *whole = growing_text_end(&text);

@@ -54,8 +54,7 @@ static sonject_status make_image(struct sweep *sweep, uint64_t id)
     memset(&image, 0, sizeof image);
     sonject_status status =
         campaign_image_make(sweep->context, sweep->campaign, id, tell_image, sweep, &image);
-    if (status == SONJECT_OK)
-        status = campaign_image_write(sweep->campaign, &image, sweep->params->folder);
+    THEN(status, campaign_image_write(sweep->campaign, &image, sweep->params->folder));
     campaign_image_clear(&image);
     sweep->made++;
     if (status == SONJECT_OK && tell_image(sweep, 0.0, "") != 0)
@@ -86,8 +85,7 @@ static sonject_status find_missing(struct sweep *sweep)
     const struct campaign *plan = &sweep->campaign->campaign;
     sonject_status status = SONJECT_OK;
     sweep->is_missing = allocate_array(plan->images, 1);
-    if (!sweep->is_missing)
-        return report_out_of_memory(sweep->campaign->report, "the images");
+    CHECK_MEMORY(sweep->campaign->report, sweep->is_missing, "the images");
     for (uint64_t id = first_id(sweep->params); status == SONJECT_OK && id < plan->images;
          id = next_id(sweep, id)) {
         bool has = false;
@@ -123,12 +121,9 @@ static sonject_status make_folders(struct sweep *sweep)
     sonject_status status = SONJECT_OK;
     if (campaign->has_user_shapes)
         status = context_device(sweep->context, &device);
-    if (status == SONJECT_OK)
-        status = folder_make(campaign->report, folder);
-    if (status == SONJECT_OK)
-        status = data_set_begin(campaign, device, folder, sweep->params->overwrites != 0);
-    if (status == SONJECT_OK)
-        status = data_set_open(&sweep->set, campaign->report, folder);
+    THEN(status, folder_make(campaign->report, folder));
+    THEN(status, data_set_begin(campaign, device, folder, sweep->params->overwrites != 0));
+    THEN(status, data_set_open(&sweep->set, campaign->report, folder));
     for (size_t i = 0; status == SONJECT_OK && i < campaign->campaign.split_count; i++)
         status = split_folders_make(campaign->report, folder, campaign->campaign.splits[i].name,
                                     campaign->campaign.outputs);
@@ -140,8 +135,7 @@ static sonject_status write_times(const struct sweep *sweep)
 {
     const double elapsed = clock_seconds() - sweep->start_s;
     char *path = path_join(sweep->params->folder, "times.json");
-    if (!path)
-        return report_out_of_memory(sweep->campaign->report, "a file name");
+    CHECK_MEMORY(sweep->campaign->report, path, "a file name");
     const sonject_status status = campaign_write_json(
         sweep->campaign->report,
         json_pack("{s:I, s:f, s:f}", "images_made", (json_int_t)sweep->made, "seconds", elapsed,
@@ -170,11 +164,9 @@ static sonject_status run_campaign(struct sweep *sweep, int *was_finished)
 {
     const bool is_whole = sweep->params->shard_count == 1 && !sweep->params->only_one;
     sonject_status status = make_folders(sweep);
-    if (status == SONJECT_OK)
-        status = find_missing(sweep);
+    THEN(status, find_missing(sweep));
     sweep->start_s = clock_seconds();
-    if (status == SONJECT_OK)
-        status = make_missing(sweep);
+    THEN(status, make_missing(sweep));
     if (status == SONJECT_OK && sweep->made > 0)
         status = write_times(sweep);
     if (was_finished)
@@ -222,8 +214,7 @@ sonject_status sonject_campaign_run(sonject_context *context, sonject_campaign *
     sonject_status status =
         params_take(&context->report, &taken, sizeof taken, params,
                     offsetof(sonject_campaign_run_params, exit_after_s), "campaign run parameters");
-    if (status == SONJECT_OK)
-        status = check_params(campaign, &taken);
+    THEN(status, check_params(campaign, &taken));
     if (status != SONJECT_OK)
         return status;
     const double begin_s = clock_seconds();
@@ -250,8 +241,7 @@ sonject_status sonject_campaign_merge(sonject_context *context, const char *fold
     sonject_status status = data_set_open(&set, &context->report, folder);
     set.progress = progress;
     set.user = user;
-    if (status == SONJECT_OK)
-        status = data_set_finish(&set);
+    THEN(status, data_set_finish(&set));
     data_set_clear(&set);
     return status;
 }

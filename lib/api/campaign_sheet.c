@@ -75,8 +75,7 @@ static sonject_status shade(struct report *report, enum pixel_type type, struct 
     float high = 255.0f;
     if (type != PIXEL_UINT8) {
         float *sorted = allocate_array(count, sizeof *sorted);
-        if (!sorted)
-            return report_out_of_memory(report, "the contact sheet");
+        CHECK_MEMORY(report, sorted, "the contact sheet");
         for (size_t i = 0; i < count; i++)
             small->values[i] = 20.0f * log10f(fmaxf(small->values[i], 1e-20f));
         memcpy(sorted, small->values, count * sizeof *sorted);
@@ -99,9 +98,7 @@ static sonject_status load_thumbnail(struct report *report, const char *path,
     size_t bytes;
     void *pixels = NULL;
     memset(small, 0, sizeof *small);
-    sonject_status status = decoded_image_open(report, path, NULL, &file);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(decoded_image_open(report, path, NULL, &file));
     layout = file->layout;
     const struct region all = {0, 0, layout.rows, layout.columns};
     const double longer = (double)(layout.rows > layout.columns ? layout.rows : layout.columns);
@@ -112,8 +109,9 @@ static sonject_status load_thumbnail(struct report *report, const char *path,
         region_bytes(&layout, &all, &bytes))
         pixels = allocate_array(bytes, 1);
     small->values = allocate_array((size_t)small->rows * small->columns, sizeof *small->values);
-    status = pixels && small->values ? decoded_image_read(report, file, &all, pixels)
-                                     : report_out_of_memory(report, "the contact sheet");
+    sonject_status status = pixels && small->values
+                                ? decoded_image_read(report, file, &all, pixels)
+                                : report_out_of_memory(report, "the contact sheet");
     if (status == SONJECT_OK) {
         reduce(&layout, pixels, small);
         status = shade(report, layout.type, small);
@@ -170,10 +168,8 @@ static sonject_status draw_cell(const struct data_set *set, struct canvas *canva
     struct thumbnail small = {0, 0, 0.0, NULL};
     char caption[96];
     char *path;
-    sonject_status status = data_set_image(set, split, id, &record, &truth, &path);
-    if (status != SONJECT_OK)
-        return status;
-    status = load_thumbnail(set->report, path, &small);
+    CHECK(data_set_image(set, split, id, &record, &truth, &path));
+    sonject_status status = load_thumbnail(set->report, path, &small);
     if (status == SONJECT_OK) {
         const char *target = member_text(record, "target");
         draw_thumbnail(canvas, &small, x, y);

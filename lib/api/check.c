@@ -252,16 +252,13 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
     struct patch_view view;
     struct placements placements = {NULL, 0, NULL, 0, NULL};
     sonject_status status = swath_describe(report, scene, &swath);
-    if (status == SONJECT_OK)
-        status = injection_check(report, scene, (double)swath.patch.first_row,
+    THEN(status, injection_check(report, scene, (double)swath.patch.first_row,
                                  (double)swath.patch.first_column, (size_t)swath.patch.rows,
-                                 (size_t)swath.patch.columns, &water, &view, &placements);
+                                 (size_t)swath.patch.columns, &water, &view, &placements));
     struct point_response response;
-    if (status == SONJECT_OK)
-        status = point_response_of_scene(&response, report, scene, &view,
-                                         view.range_ratio * water.straight_speed_mps);
-    if (status == SONJECT_OK)
-        status = cross_range_check(&response, report, scene, &view);
+    THEN(status, point_response_of_scene(&response, report, scene, &view,
+                                         view.range_ratio * water.straight_speed_mps));
+    THEN(status, cross_range_check(&response, report, scene, &view));
     if (status == SONJECT_OK) {
         struct text text = {NULL, 0, 0, false};
         describe_patch(&text, scene, &swath, &view);

@@ -207,8 +207,7 @@ sonject_status sonject_compare_contacts(sonject_context *context, const char *fi
     struct sample_comparison comparisons[COMPARED_NUMBERS];
     memset(sets, 0, sizeof sets);
     sonject_status status = read_set(&sets[0], report, first);
-    if (status == SONJECT_OK)
-        status = read_set(&sets[1], report, second);
+    THEN(status, read_set(&sets[1], report, second));
     for (size_t i = 0; status == SONJECT_OK && i < COMPARED_NUMBERS; i++)
         comparisons[i] = compare_samples(sets[0].samples[i].values, sets[0].samples[i].count,
                                          sets[1].samples[i].values, sets[1].samples[i].count);

@@ -146,9 +146,8 @@ static sonject_status measure_list(struct report *report, const struct contact_l
     for (size_t i = 0; status == SONJECT_OK && i < list->count; i++) {
         struct contact_place place;
         status = place_in_box(report, &list->boxes[i], image->rows, image->columns, &place);
-        if (status == SONJECT_OK)
-            status = contact_measure(report, image, &place, list->row_spacing_m,
-                                     list->column_spacing_m, &measures[i]);
+        THEN(status, contact_measure(report, image, &place, list->row_spacing_m,
+                                     list->column_spacing_m, &measures[i]));
     }
     return status;
 }
@@ -190,14 +189,11 @@ static sonject_status measure_all(struct report *report, const struct contact_li
     sonject_status status = contact_image_create(&image, report, intensity, rows, columns);
     if (status == SONJECT_OK && !measures)
         status = report_out_of_memory(report, params->image);
-    if (status == SONJECT_OK)
-        status = looks ? find_contacts(report, list, contrast, &image, count, measures, &count,
-                                       &left_off)
-                       : measure_list(report, list, &image, measures);
-    if (status == SONJECT_OK)
-        status = contacts_add_seabed(report, &image, measures, count);
-    if (status == SONJECT_OK)
-        status = write_list(report, params->image, measures, count, left_off, text);
+    THEN(status,
+         looks ? find_contacts(report, list, contrast, &image, count, measures, &count, &left_off)
+               : measure_list(report, list, &image, measures));
+    THEN(status, contacts_add_seabed(report, &image, measures, count));
+    THEN(status, write_list(report, params->image, measures, count, left_off, text));
     contact_image_clear(&image);
     free(measures);
     return status;
@@ -210,8 +206,7 @@ static sonject_status take_boxes(struct contact_list *list, struct report *repor
     list->row_spacing_m = params->row_spacing_m;
     list->column_spacing_m = params->column_spacing_m;
     list->boxes = allocate_array((size_t)params->box_count + 1, sizeof *list->boxes);
-    if (!list->boxes)
-        return report_out_of_memory(report, "boxes");
+    CHECK_MEMORY(report, list->boxes, "boxes");
     if (params->box_count > 0)
         memcpy(list->boxes, params->boxes, params->box_count * sizeof *list->boxes);
     list->count = params->box_count;
@@ -234,10 +229,8 @@ static sonject_status check_params(struct report *report, sonject_contact_file_p
                               params->find_contrast_db);
     if (!params->has_transfer)
         sonject_transfer_params_init(&params->transfer);
-    const sonject_status status = check_transfer(&params->transfer, report, NULL);
-    return status == SONJECT_OK
-               ? check_spacings(report, params->row_spacing_m, params->column_spacing_m)
-               : status;
+    CHECK(check_transfer(&params->transfer, report, NULL));
+    return check_spacings(report, params->row_spacing_m, params->column_spacing_m);
 }
 
 sonject_status sonject_measure_contacts(sonject_context *context,
@@ -253,20 +246,14 @@ sonject_status sonject_measure_contacts(sonject_context *context,
     float *intensity = NULL;
     size_t rows, columns;
     sonject_contact_file_params_init(&taken);
-    sonject_status status =
-        params_take(report, &taken, sizeof taken, params, sizeof taken, "contact parameters");
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "contact parameters"));
     if (!taken.image || (taken.box_count > 0 && !taken.boxes))
         return null_argument(report, "image and boxes");
-    status = check_params(report, &taken);
+    sonject_status status = check_params(report, &taken);
     const struct measured_image image = {taken.image, NULL, taken.channel, taken.array};
-    if (status == SONJECT_OK)
-        status = read_intensities(report, &image, &taken.transfer, &rows, &columns, &intensity);
-    if (status == SONJECT_OK)
-        status = take_boxes(&list, report, &taken, rows, columns);
-    if (status == SONJECT_OK)
-        status = measure_all(report, &list, &taken, intensity, rows, columns, text);
+    THEN(status, read_intensities(report, &image, &taken.transfer, &rows, &columns, &intensity));
+    THEN(status, take_boxes(&list, report, &taken, rows, columns));
+    THEN(status, measure_all(report, &list, &taken, intensity, rows, columns, text));
     free(intensity);
     free(list.boxes);
     return status;

@@ -189,9 +189,7 @@ sonject_status contact_measure(struct report *report, struct contact_image *imag
 {
     struct contact_sizes sizes;
     forget(measures);
-    const sonject_status status = measure_contact_sizes(image, report, place, &sizes);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(measure_contact_sizes(image, report, place, &sizes));
     fill(&sizes, row_spacing_m, column_spacing_m, measures);
     measures->box = public_box(&place->box);
     measures->is_cut =
@@ -225,17 +223,13 @@ static sonject_status measure_asked(struct report *report, const float *intensit
     const sonject_box whole = {0, 0, rows, columns};
     struct contact_place place;
     struct contact_image image;
-    sonject_status status =
-        place_in_box(report, params->box.rows > 0 ? &params->box : &whole, rows, columns, &place);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(
+        place_in_box(report, params->box.rows > 0 ? &params->box : &whole, rows, columns, &place));
     place.is_near = params->box.rows == 0;
-    status = contact_image_create(&image, report, intensity, rows, columns);
-    if (status == SONJECT_OK)
-        status = contact_measure(report, &image, &place, params->row_spacing_m,
-                                 params->column_spacing_m, found);
-    if (status == SONJECT_OK)
-        status = contacts_add_seabed(report, &image, found, 1);
+    sonject_status status = contact_image_create(&image, report, intensity, rows, columns);
+    THEN(status, contact_measure(report, &image, &place, params->row_spacing_m,
+                                 params->column_spacing_m, found));
+    THEN(status, contacts_add_seabed(report, &image, found, 1));
     contact_image_clear(&image);
     return status;
 }
@@ -253,17 +247,12 @@ sonject_status sonject_measure_contact(sonject_context *context, const sonject_p
     float *intensity = NULL;
     size_t rows, columns;
     sonject_contact_params_init(&taken);
-    sonject_status status =
-        params_take(report, &taken, sizeof taken, params, sizeof taken, "contact parameters");
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "contact parameters"));
     if (!pixels || !measures)
         return null_argument(report, "pixels and measures");
-    status = check_spacings(report, taken.row_spacing_m, taken.column_spacing_m);
-    if (status == SONJECT_OK)
-        status = take_intensities(report, pixels, &rows, &columns, &intensity);
-    if (status == SONJECT_OK)
-        status = measure_asked(report, intensity, rows, columns, &taken, &found);
+    sonject_status status = check_spacings(report, taken.row_spacing_m, taken.column_spacing_m);
+    THEN(status, take_intensities(report, pixels, &rows, &columns, &intensity));
+    THEN(status, measure_asked(report, intensity, rows, columns, &taken, &found));
     free(intensity);
     return status == SONJECT_OK ? params_give(report, measures, &found, sizeof found, sizeof found,
                                               "contact measures")

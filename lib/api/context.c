@@ -107,11 +107,8 @@ static sonject_status copy_params(struct sonject_context *context,
         return SONJECT_OK;
     sonject_context_params taken;
     sonject_context_params_init(&taken);
-    const sonject_status status =
-        params_take(&context->report, &taken, sizeof taken, params,
-                    offsetof(sonject_context_params, decodes_in_process), "context parameters");
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(params_take(&context->report, &taken, sizeof taken, params,
+                      offsetof(sonject_context_params, decodes_in_process), "context parameters"));
     if ((taken.opencl_context == NULL) != (taken.opencl_device == NULL))
         return SONJECT_ERROR_ARGUMENT;
     context->report.log = taken.log;

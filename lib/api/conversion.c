@@ -58,8 +58,7 @@ sonject_status conversion_to_magnitude(struct report *report, struct conversion 
                               "%s: is not complex, so it has no other magnitude: take that out",
                               input);
     float *magnitudes = allocate_array(count, sizeof *magnitudes);
-    if (!magnitudes)
-        return report_out_of_memory(report, "the magnitudes");
+    CHECK_MEMORY(report, magnitudes, "the magnitudes");
     for (size_t i = 0; i < count; i++)
         magnitudes[i] = hypotf(parts[2 * i], parts[2 * i + 1]);
     replace(conversion, magnitudes);
@@ -109,8 +108,7 @@ sonject_status conversion_to_type(struct report *report, struct conversion *conv
                               "%s: already has %s samples: take the type out", params->input,
                               conversion_type_name(layout));
     void *fresh = allocate_array(count, pixel_bytes(type));
-    if (!fresh)
-        return report_out_of_memory(report, "the samples");
+    CHECK_MEMORY(report, fresh, "the samples");
     for (size_t i = 0; i < count; i++) {
         const double number = sample_at(layout->type, conversion->pixels, i) * params->scale;
         if (put_sample(type, fresh, i, number))
@@ -163,9 +161,7 @@ sonject_status conversion_resample(struct report *report, struct conversion *con
     struct raster_layout *layout = &conversion->layout;
     const bool to_slant = params->range_axis == SONJECT_CONVERT_AXIS_SLANT;
     struct noted_geometry *geometry = &conversion->geometry;
-    const sonject_status status = check_axis(report, geometry, params);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(check_axis(report, geometry, params));
     const double spacing = geometry->column_spacing_m;
     const double last = geometry->first_range_m + spacing * (double)(layout->columns - 1);
     if (!to_slant && last <= geometry->altitude_m)
@@ -184,8 +180,7 @@ sonject_status conversion_resample(struct report *report, struct conversion *con
     const size_t before = (size_t)layout->columns;
     unsigned char *fresh =
         columns <= SIZE_MAX / pixel ? allocate_array((size_t)layout->rows, columns * pixel) : NULL;
-    if (!fresh)
-        return report_out_of_memory(report, "the columns");
+    CHECK_MEMORY(report, fresh, "the columns");
     for (size_t column = 0; column < columns; column++) {
         const double range =
             other_range(geometry->altitude_m, !to_slant, start + spacing * (double)column);

@@ -74,8 +74,7 @@ static sonject_status read_input(struct report *report, const sonject_convert_pa
         status = report_out_of_memory(report, params->input);
     else
         status = swath_file_read(report, file, &whole, conversion->pixels);
-    if (status == SONJECT_OK)
-        status = conversion_take_geometry(report, conversion, file, params);
+    THEN(status, conversion_take_geometry(report, conversion, file, params));
     swath_file_close(&file);
     return status;
 }
@@ -162,12 +161,9 @@ sonject_status sonject_convert(sonject_context *context, const sonject_convert_p
     sonject_convert_params_init(&taken);
     sonject_status status =
         params_take(report, &taken, sizeof taken, params, sizeof taken, "convert parameters");
-    if (status == SONJECT_OK)
-        status = check_choices(report, &taken);
-    if (status == SONJECT_OK)
-        status = check_uses(report, &taken);
-    if (status == SONJECT_OK)
-        status = convert(report, &taken, &conversion);
+    THEN(status, check_choices(report, &taken));
+    THEN(status, check_uses(report, &taken));
+    THEN(status, convert(report, &taken, &conversion));
     free(conversion.pixels);
     return status;
 }

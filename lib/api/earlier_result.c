@@ -104,10 +104,7 @@ static sonject_status check_inputs(struct report *report, const struct earlier_r
     const bool is_elsewhere = !name || !path || strcmp(name, path) != 0;
     bool holds = true;
     if (path) {
-        const sonject_status status =
-            file_entry_holds(report, image, path, request->hashes_all || is_elsewhere, &holds);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(file_entry_holds(report, image, path, request->hashes_all || is_elsewhere, &holds));
     }
     return inputs_check(report, request->folder, json_object_get(document, "inputs"),
                         request->inputs, holds ? NULL : path, request->overwrites, is_same);
@@ -123,8 +120,7 @@ sonject_status earlier_check(struct report *report, const struct earlier_request
         return SONJECT_OK;
     json_t *document;
     sonject_status status = earlier_document(report, request->folder, request->document, &document);
-    if (status == SONJECT_OK)
-        status = check_inputs(report, request, document, &is_same);
+    THEN(status, check_inputs(report, request, document, &is_same));
     if (status == SONJECT_OK && is_same)
         status = file_list_check(json_object_get(document, "files"), report, request->folder,
                                  request->hashes_all, &changed);
@@ -144,9 +140,8 @@ sonject_status earlier_check_merged(struct report *report, const char *folder,
     json_t *document;
     sonject_status status = earlier_document(report, folder, RUN_DOCUMENT, &document);
     const bool lacks_labels = (label_formats & ~labels_of_document(document)) != 0;
-    if (status == SONJECT_OK)
-        status =
-            file_list_check(json_object_get(document, "files"), report, folder, true, &changed);
+    THEN(status,
+         file_list_check(json_object_get(document, "files"), report, folder, true, &changed));
     if (status == SONJECT_OK && lacks_labels)
         status = report_failure(report, SONJECT_ERROR_INPUT,
                                 "%s: is merged already, without those labels: run its scene into "

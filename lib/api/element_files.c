@@ -104,8 +104,7 @@ static sonject_status write_document(struct report *report, json_t *document, co
 {
     char *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
     json_decref(document);
-    if (!text)
-        return report_out_of_memory(report, path);
+    CHECK_MEMORY(report, text, path);
     const sonject_status status = file_write_whole(report, path, text, strlen(text));
     free(text);
     return status;
@@ -150,10 +149,8 @@ static sonject_status write_files(struct report *report, const struct scene *sce
         status = numpy_file_write(report, series_path, shape,
                                   layout->elements.form == SONJECT_SERIES_BASEBAND, series);
     }
-    if (status == SONJECT_OK)
-        status = file_list_add(&files, report, folder, SERIES_FILE, true);
-    if (status == SONJECT_OK)
-        status = earlier_describe(report, &document, inputs, files, scene);
+    THEN(status, file_list_add(&files, report, folder, SERIES_FILE, true));
+    THEN(status, earlier_describe(report, &document, inputs, files, scene));
     if (status == SONJECT_OK)
         status = write_document(report, document, document_path);
     else
@@ -172,13 +169,11 @@ static sonject_status compute(struct sonject_context *context, const struct scen
 {
     struct report *report = &context->report;
     struct device *device = NULL;
-    const sonject_status status = context_device(context, &device);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(context_device(context, &device));
     *series = allocate_array(element_plan_samples(layout), 2 * sizeof **series);
-    if (!*series)
-        return report_out_of_memory(report, "the time series: narrow the window of times, or "
-                                            "give fewer pings");
+    CHECK_MEMORY(report, *series,
+                 "the time series: narrow the window of times, or "
+                 "give fewer pings");
     return element_echoes_compute(report, device, scene, input, progress, user, layout, *series);
 }
 
@@ -192,11 +187,9 @@ static sonject_status run_elements(struct sonject_context *context, const struct
     json_t *inputs = NULL;
     float *series = NULL;
     bool is_finished = false;
-    sonject_status status = element_echoes_describe(report, scene, &input, &layout);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(element_echoes_describe(report, scene, &input, &layout));
     json_t *document = series_document(scene, &input, &layout);
-    status = find_inputs(report, scene, swath, document, &inputs);
+    sonject_status status = find_inputs(report, scene, swath, document, &inputs);
     if (status == SONJECT_OK) {
         const struct earlier_request earlier = {.folder = params->folder,
                                                 .document = DOCUMENT,
@@ -228,11 +221,8 @@ sonject_status sonject_elements_run(sonject_context *context, const sonject_scen
         return null_argument(report, "scene");
     sonject_run_params taken;
     sonject_run_params_init(&taken);
-    sonject_status status =
-        params_take(report, &taken, sizeof taken, params, offsetof(sonject_run_params, shard_index),
-                    "run parameters");
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(params_take(report, &taken, sizeof taken, params,
+                      offsetof(sonject_run_params, shard_index), "run parameters"));
     if (!taken.folder || !taken.folder[0])
         return null_argument(report, "folder");
     if (taken.shard_index > 0 || taken.shard_count > 0 || taken.exit_after_s != 0.0 ||
@@ -240,10 +230,8 @@ sonject_status sonject_elements_run(sonject_context *context, const sonject_scen
         return report_failure(report, SONJECT_ERROR_ARGUMENT,
                               "element data have no shards or checkpoints");
     struct swath swath;
-    status = swath_open(report, &scene->scene, &swath);
-    if (status != SONJECT_OK)
-        return status;
-    status = run_elements(context, &scene->scene, &swath, &taken, progress, user);
+    CHECK(swath_open(report, &scene->scene, &swath));
+    sonject_status status = run_elements(context, &scene->scene, &swath, &taken, progress, user);
     swath_close(&swath);
     return status;
 }

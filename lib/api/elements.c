@@ -42,9 +42,7 @@ sonject_status sonject_elements_describe(sonject_context *context, const sonject
     input.is_complex = true; /* whatever the pixels are, the geometry is the same */
     sonject_element_layout made;
     memset(&made, 0, sizeof made);
-    const sonject_status status = element_echoes_describe(report, &scene->scene, &input, &made);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(element_echoes_describe(report, &scene->scene, &input, &made));
     return params_give(report, layout, &made, sizeof made, sizeof made, "element layout");
 }
 
@@ -75,15 +73,11 @@ sonject_status sonject_element_series(sonject_context *context, const sonject_sc
     struct device *device = NULL;
     sonject_element_layout layout;
     sonject_status status = find_input(report, &scene->scene, pixels, &input, &owned);
-    if (status == SONJECT_OK)
-        status = element_echoes_describe(report, &scene->scene, &input, &layout);
-    if (status == SONJECT_OK)
-        status = check_bytes(report, &layout, bytes);
-    if (status == SONJECT_OK)
-        status = context_device(context, &device);
-    if (status == SONJECT_OK)
-        status = element_echoes_compute(report, device, &scene->scene, &input, progress, user,
-                                        &layout, series);
+    THEN(status, element_echoes_describe(report, &scene->scene, &input, &layout));
+    THEN(status, check_bytes(report, &layout, bytes));
+    THEN(status, context_device(context, &device));
+    THEN(status, element_echoes_compute(report, device, &scene->scene, &input, progress, user,
+                                        &layout, series));
     free(owned);
     return status;
 }

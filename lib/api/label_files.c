@@ -122,8 +122,7 @@ sonject_status write_labels(struct report *report, struct run_facts *facts, cons
             file_discard(path);
         else {
             status = write_file(report, &labels, &classes, (enum label_file)file, path);
-            if (status == SONJECT_OK)
-                status = file_list_add(&facts->files, report, folder, files[file].name, true);
+            THEN(status, file_list_add(&facts->files, report, folder, files[file].name, true));
         }
         free(path);
     }

@@ -76,11 +76,9 @@ static sonject_status draw_panels(struct report *report, const struct scene *sce
     frame.difference_db = 20.0;
     uint8_t *picture = NULL;
     uint32_t height, width;
-    sonject_status status = plot_panels(report, &frame, panels, 3, &picture, &height, &width);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(plot_panels(report, &frame, panels, 3, &picture, &height, &width));
     const struct raster_layout layout = {height, width, 3, PIXEL_UINT8};
-    status = raster_file_write(report, path, &layout, NULL, NULL, 0, picture);
+    sonject_status status = raster_file_write(report, path, &layout, NULL, NULL, 0, picture);
     free(picture);
     return status;
 }
@@ -91,8 +89,7 @@ static sonject_status write_quicklook(struct report *report, const struct scene 
 {
     const size_t count = result->rows * result->columns;
     float *planes = allocate_array(count, 3 * sizeof *planes);
-    if (!planes)
-        return report_out_of_memory(report, "the quicklook");
+    CHECK_MEMORY(report, planes, "the quicklook");
     amplitude_of(swath->pixels, count, result->is_complex, planes);
     amplitude_of(result->image, count, result->is_complex, planes + count);
     difference_of(planes, planes + count, result->influence, count, planes + 2 * count);
@@ -112,8 +109,7 @@ static sonject_status write_order_energies(struct report *report,
         char name[32];
         snprintf(name, sizeof name, "energy_order_%u.tif", (unsigned)i + 1);
         char *path = path_join(folder, name);
-        if (!path)
-            return report_out_of_memory(report, "a path");
+        CHECK_MEMORY(report, path, "a path");
         if (i >= result->orders)
             file_discard(path);
         else
@@ -140,8 +136,7 @@ sonject_status write_layers(struct report *report, struct run_facts *facts, cons
     sonject_status status = SONJECT_OK;
     for (size_t i = 0; status == SONJECT_OK && i < sizeof names / sizeof *names; i++) {
         char *path = path_join(folder, names[i]);
-        if (!path)
-            return report_out_of_memory(report, "a path");
+        CHECK_MEMORY(report, path, "a path");
         if (i == 0)
             status = write_float_layer(report, &notes, swath, 2, result->field, path);
         else if (i == 1)
@@ -157,10 +152,8 @@ sonject_status write_layers(struct report *report, struct run_facts *facts, cons
                                          : result->influence,
                                 path);
         free(path);
-        if (status == SONJECT_OK)
-            status = file_list_add(&facts->files, report, folder, names[i], true);
+        THEN(status, file_list_add(&facts->files, report, folder, names[i], true));
     }
-    if (status == SONJECT_OK)
-        status = write_order_energies(report, &notes, facts, folder);
+    THEN(status, write_order_energies(report, &notes, facts, folder));
     return status;
 }

@@ -85,12 +85,10 @@ static sonject_status measure(struct report *report, struct measured *measured,
     for (size_t i = 0; i < measured->rows * measured->columns; i++)
         if (measured->influence && measured->labels && measured->labels[i])
             measured->influence[i] = 255;
-    if (status == SONJECT_OK)
-        status = square(report, measured);
-    if (status == SONJECT_OK)
-        status = measure_speckle(report, measured->amplitudes,
+    THEN(status, square(report, measured));
+    THEN(status, measure_speckle(report, measured->amplitudes,
                                  measured->influence ? measured->influence : measured->labels,
-                                 measured->rows, measured->columns, measured->columns, &seabed);
+                                 measured->rows, measured->columns, measured->columns, &seabed));
     if (status != SONJECT_OK)
         return status;
     fill_seabed(&seabed, &measurement);
@@ -224,8 +222,7 @@ static sonject_status read_before(struct report *report, const sonject_measure_p
         return status;
     const size_t count = measured->rows * measured->columns;
     measured->influence = allocate_array(count, 1);
-    if (!measured->influence)
-        return report_out_of_memory(report, path);
+    CHECK_MEMORY(report, measured->influence, path);
     for (size_t i = 0; i < count; i++)
         if (measured->before[i] < measured->amplitudes[i] ||
             measured->before[i] > measured->amplitudes[i])
@@ -255,16 +252,11 @@ sonject_status sonject_measure(sonject_context *context, const sonject_measure_p
     else
         sonject_transfer_params_init(&taken.transfer);
     const struct measured_image image = {taken.image, taken.before, taken.channel, taken.array};
-    if (status == SONJECT_OK)
-        status = read_image(report, &image, &taken.transfer, &measured);
-    if (status == SONJECT_OK)
-        status = read_mask(report, taken.labels, &measured, &measured.labels);
-    if (status == SONJECT_OK)
-        status = read_mask(report, taken.influence, &measured, &measured.influence);
-    if (status == SONJECT_OK)
-        status = read_before(report, &taken, &measured);
-    if (status == SONJECT_OK)
-        status = measure(report, &measured, measurement);
+    THEN(status, read_image(report, &image, &taken.transfer, &measured));
+    THEN(status, read_mask(report, taken.labels, &measured, &measured.labels));
+    THEN(status, read_mask(report, taken.influence, &measured, &measured.influence));
+    THEN(status, read_before(report, &taken, &measured));
+    THEN(status, measure(report, &measured, measurement));
     measured_clear(&measured);
     return status;
 }
@@ -275,8 +267,7 @@ static sonject_status copy_mask(struct report *report, const uint8_t *mask, size
     if (!mask)
         return SONJECT_OK;
     *copy = allocate_array(count, 1);
-    if (!*copy)
-        return report_out_of_memory(report, "a mask");
+    CHECK_MEMORY(report, *copy, "a mask");
     memcpy(*copy, mask, count);
     return SONJECT_OK;
 }
@@ -287,9 +278,7 @@ static sonject_status take_amplitudes(struct report *report, const sonject_pixel
 {
     struct injection_input input;
     float *packed = NULL;
-    sonject_status status = take_pixels(report, pixels, &input, &packed);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(take_pixels(report, pixels, &input, &packed));
     measured->rows = input.rows;
     measured->columns = input.columns;
     measured->amplitudes = packed;
@@ -343,12 +332,9 @@ sonject_status sonject_measure_pixels(sonject_context *context, const sonject_pi
         return null_argument(report, "pixels and measurement");
     sonject_status status = take_amplitudes(report, pixels, &measured);
     const size_t count = measured.rows * measured.columns;
-    if (status == SONJECT_OK)
-        status = copy_mask(report, influence, count, &measured.influence);
-    if (status == SONJECT_OK)
-        status = copy_mask(report, labels, count, &measured.labels);
-    if (status == SONJECT_OK)
-        status = measure(report, &measured, measurement);
+    THEN(status, copy_mask(report, influence, count, &measured.influence));
+    THEN(status, copy_mask(report, labels, count, &measured.labels));
+    THEN(status, measure(report, &measured, measurement));
     measured_clear(&measured);
     return status;
 }

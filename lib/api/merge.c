@@ -31,8 +31,7 @@ static sonject_status read_kept_scene(struct report *report, const struct stint_
     sonject_status status = stint_source_read(&head, report, file);
     if (status == SONJECT_OK && strcmp(file->head.identity.version, sonject_version()) != 0)
         status = refuse_foreign_stint(report, file->path, "another version of sonject");
-    if (status == SONJECT_OK)
-        status = read_traced_scene(report, &head, &params, scene);
+    THEN(status, read_traced_scene(report, &head, &params, scene));
     impulse_head_clear(&head);
     return status;
 }
@@ -48,8 +47,7 @@ static sonject_status merge_kept(struct sonject_context *context, const struct r
     struct scene scene;
     scene_init(&scene);
     char *work = stints_folder(request->folder);
-    if (!work)
-        return report_out_of_memory(report, "a file name");
+    CHECK_MEMORY(report, work, "a file name");
     sonject_status status = stint_folder_read(&folder, report, work, 0, false);
     const bool is_merged =
         status == SONJECT_OK && folder.count == 0 && folder_has_result(request->folder);
@@ -104,11 +102,10 @@ static sonject_status merge_folder(struct sonject_context *context,
                                    int *was_finished)
 {
     char *bands;
-    sonject_status status = find_bands(&context->report, request->folder, &bands);
-    if (status != SONJECT_OK)
-        return status;
-    status = *bands ? merge_bands(context, request, allows_user_shapes, bands, was_finished)
-                    : merge_kept(context, request, allows_user_shapes, was_finished);
+    CHECK(find_bands(&context->report, request->folder, &bands));
+    sonject_status status =
+        *bands ? merge_bands(context, request, allows_user_shapes, bands, was_finished)
+               : merge_kept(context, request, allows_user_shapes, was_finished);
     free(bands);
     return status;
 }
@@ -122,10 +119,8 @@ sonject_status sonject_merge(sonject_context *context, const sonject_scene *scen
     context_begin_call(context);
     sonject_merge_params taken;
     sonject_merge_params_init(&taken);
-    const sonject_status status = params_take(&context->report, &taken, sizeof taken, params,
-                                              sizeof taken, "merge parameters");
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(params_take(&context->report, &taken, sizeof taken, params, sizeof taken,
+                      "merge parameters"));
     if (!taken.folder || !taken.folder[0])
         return null_argument(&context->report, "folder");
     struct run_request request;

@@ -129,8 +129,7 @@ static sonject_status to_ground_range(struct report *report, const char *path, e
     const double step =
         columns > 1 ? (end - start) / (double)(columns - 1) : frame->column_spacing_m;
     float *ground = allocate_array(image->rows * columns, sizeof *ground);
-    if (!ground)
-        return report_out_of_memory(report, "the ground range image");
+    CHECK_MEMORY(report, ground, "the ground range image");
     for (size_t column = 0; column < columns; column++) {
         const double range = hypot(start + step * (double)column, altitude);
         const double at = (range - frame->first_range_m) / frame->column_spacing_m + 0.5;
@@ -154,11 +153,9 @@ static sonject_status draw(struct report *report, const struct plot_frame *frame
     const struct plot_panel panel = {"", image->amplitude, false};
     uint8_t *picture = NULL;
     uint32_t height, width;
-    sonject_status status = plot_panels(report, frame, &panel, 1, &picture, &height, &width);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(plot_panels(report, frame, &panel, 1, &picture, &height, &width));
     const struct raster_layout layout = {height, width, 3, PIXEL_UINT8};
-    status = raster_file_write(report, path, &layout, NULL, NULL, 0, picture);
+    sonject_status status = raster_file_write(report, path, &layout, NULL, NULL, 0, picture);
     free(picture);
     return status;
 }
@@ -230,23 +227,19 @@ sonject_status sonject_quicklook(sonject_context *context, const sonject_quicklo
     sonject_quicklook_params_init(&taken);
     sonject_status status =
         params_take(report, &taken, sizeof taken, params, sizeof taken, "quicklook parameters");
-    if (status == SONJECT_OK)
-        status = check_params(report, &taken);
+    THEN(status, check_params(report, &taken));
     struct swath_file *file = NULL;
     struct view_image image = {0, 0, 1, NULL};
     struct plot_frame frame;
     double altitude = 0.0;
-    if (status == SONJECT_OK)
-        status = swath_file_open_array(report, taken.image, taken.channel, taken.array, &file);
-    if (status == SONJECT_OK)
-        status = read_reduced(report, taken.image, file, &taken.transfer, &image);
+    THEN(status, swath_file_open_array(report, taken.image, taken.channel, taken.array, &file));
+    THEN(status, read_reduced(report, taken.image, file, &taken.transfer, &image));
     if (status == SONJECT_OK) {
         const enum range_axis axis = fill_frame(&frame, &taken, file, &image, &altitude);
         if (taken.range_axis == SONJECT_AXIS_GROUND)
             status = to_ground_range(report, taken.image, axis, &image, &frame, altitude);
     }
-    if (status == SONJECT_OK)
-        status = draw(report, &frame, &image, taken.picture);
+    THEN(status, draw(report, &frame, &image, taken.picture));
     swath_file_close(&file);
     free(image.amplitude);
     return status;

@@ -23,8 +23,7 @@ sonject_status sonject_scene_set_pulse(sonject_scene *scene, const sonject_pulse
     sonject_pulse_params taken = scene->scene.pulse;
     sonject_status status =
         params_take(scene->report, &taken, sizeof taken, pulse, sizeof taken, "pulse");
-    if (status == SONJECT_OK)
-        status = check_pulse(&taken, scene->report, NULL);
+    THEN(status, check_pulse(&taken, scene->report, NULL));
     if (status == SONJECT_OK && taken.kind == SONJECT_PULSE_TABLE &&
         scene->scene.pulse_table.count == 0)
         status = report_failure(scene->report, SONJECT_ERROR_INPUT,
@@ -55,9 +54,8 @@ sonject_status sonject_scene_set_pulse_table(sonject_scene *scene, uint32_t axis
     }
     sonject_status status =
         check_samples(scene->report, "pulse table", positions, real_part, imaginary_part, count);
-    if (status == SONJECT_OK)
-        status = response_table_set(&scene->scene.pulse_table, scene->report, positions, real_part,
-                                    imaginary_part, count, axis == SONJECT_PULSE_AXIS_TIME);
+    THEN(status, response_table_set(&scene->scene.pulse_table, scene->report, positions, real_part,
+                                    imaginary_part, count, axis == SONJECT_PULSE_AXIS_TIME));
     if (status == SONJECT_OK)
         scene->scene.pulse.kind = SONJECT_PULSE_TABLE;
     return status;
@@ -73,12 +71,10 @@ sonject_status sonject_scene_set_cross_range_table(sonject_scene *scene, const d
         response_table_clear(&scene->scene.cross_range_table);
         return SONJECT_OK;
     }
-    sonject_status status = check_samples(scene->report, "cross-range table", distances_m,
-                                          real_part, imaginary_part, count);
-    if (status == SONJECT_OK)
-        status = response_table_set(&scene->scene.cross_range_table, scene->report, distances_m,
-                                    real_part, imaginary_part, count, false);
-    return status;
+    CHECK(check_samples(scene->report, "cross-range table", distances_m, real_part, imaginary_part,
+                        count));
+    return response_table_set(&scene->scene.cross_range_table, scene->report, distances_m,
+                              real_part, imaginary_part, count, false);
 }
 
 sonject_status sonject_scene_set_motion(sonject_scene *scene, const sonject_motion_params *motion)
@@ -88,8 +84,7 @@ sonject_status sonject_scene_set_motion(sonject_scene *scene, const sonject_moti
     sonject_motion_params taken = scene->scene.motion.params;
     sonject_status status = params_take(scene->report, &taken, sizeof taken, motion,
                                         offsetof(sonject_motion_params, yaw_advance_m), "motion");
-    if (status == SONJECT_OK)
-        status = check_motion(&taken, scene->report, NULL);
+    THEN(status, check_motion(&taken, scene->report, NULL));
     if (status == SONJECT_OK)
         scene->scene.motion.params = taken;
     return status;

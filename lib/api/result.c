@@ -29,8 +29,7 @@ sonject_status take_pixels(struct report *report, const sonject_pixels *pixels,
                               "the row stride of %zu bytes is shorter than a row of %zu", stride,
                               row_bytes);
     *packed = allocate_array((size_t)pixels->rows, row_bytes);
-    if (!*packed)
-        return report_out_of_memory(report, "the patch");
+    CHECK_MEMORY(report, *packed, "the patch");
     for (size_t row = 0; row < pixels->rows; row++)
         memcpy((char *)*packed + row * row_bytes, (const char *)pixels->data + row * stride,
                row_bytes);
@@ -77,8 +76,7 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *sce
     float *owned = NULL;
     sonject_status status = find_input(&context->report, &scene->scene, pixels, &input, &owned);
     struct device *device = NULL;
-    if (status == SONJECT_OK)
-        status = context_device(context, &device);
+    THEN(status, context_device(context, &device));
     sonject_result *made = NULL;
     if (status == SONJECT_OK) {
         made = allocate_array(1, sizeof *made);

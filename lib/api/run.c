@@ -62,12 +62,9 @@ static sonject_status write_documents(struct report *report, struct run_facts *f
     char *truth = path_join(folder, "truth.json");
     char *run = path_join(folder, RUN_DOCUMENT);
     sonject_status status = truth && run ? SONJECT_OK : report_out_of_memory(report, "a path");
-    if (status == SONJECT_OK)
-        status = write_truth(report, facts, truth);
-    if (status == SONJECT_OK)
-        status = file_list_add(&facts->files, report, folder, "truth.json", true);
-    if (status == SONJECT_OK)
-        status = write_labels(report, facts, folder);
+    THEN(status, write_truth(report, facts, truth));
+    THEN(status, file_list_add(&facts->files, report, folder, "truth.json", true));
+    THEN(status, write_labels(report, facts, folder));
     if (status == SONJECT_OK) {
         const double now = clock_seconds();
         facts->write_s = now - write_start;
@@ -89,23 +86,19 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
     const double start = clock_seconds();
     struct stage_progress writing = {progress, user, WRITE_START, 1.0 - WRITE_START};
     char *path = path_join(folder, facts->image_name);
-    if (!path)
-        return report_out_of_memory(report, "a path");
+    CHECK_MEMORY(report, path, "a path");
     json_t *earlier = earlier_withdraw(folder, RUN_DOCUMENT);
     facts->files = json_array();
     sonject_status status = write_layers(report, facts, folder);
-    if (status == SONJECT_OK)
-        status = swath_write(report, facts->scene, facts->swath, result, path, tell_stage, &writing,
-                             &result->statistics.output_clipped);
+    THEN(status, swath_write(report, facts->scene, facts->swath, result, path, tell_stage, &writing,
+                             &result->statistics.output_clipped));
     free(path);
     if (status == SONJECT_OK && facts->scene->input_kind == SONJECT_INPUT_FILE &&
         !facts->swath->is_patched)
         report_news(report, "note: %s is a new TIFF: files of the input's kind are not changed",
                     facts->image_name);
-    if (status == SONJECT_OK)
-        status = file_list_add(&facts->files, report, folder, facts->image_name, true);
-    if (status == SONJECT_OK)
-        status = write_documents(report, facts, folder, run_start, start);
+    THEN(status, file_list_add(&facts->files, report, folder, facts->image_name, true));
+    THEN(status, write_documents(report, facts, folder, run_start, start));
     earlier_tidy(folder, earlier, facts->files);
     json_decref(facts->files);
     facts->files = NULL;
@@ -200,17 +193,16 @@ sonject_status run_scene(struct sonject_context *context, const struct run_reque
     char hash[HASH_TEXT_CAPACITY];
     bool is_finished = false;
     memset(&facts, 0, sizeof facts);
-    sonject_status status = open_swath(report, request, &swath);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(open_swath(report, request, &swath));
     char *image_name = swath_image_name(request->scene, &swath);
     facts.scene = request->scene;
     facts.swath = &swath;
     facts.scene_hash = hash;
     facts.image_name = image_name;
     facts.label_formats = request->label_formats;
-    status = image_name ? check_earlier(context, request, &swath, &facts, hash, &is_finished)
-                        : report_out_of_memory(report, "a path");
+    sonject_status status =
+        image_name ? check_earlier(context, request, &swath, &facts, hash, &is_finished)
+                   : report_out_of_memory(report, "a path");
     if (status == SONJECT_OK && !is_finished)
         status = folder_make(report, request->folder);
     if (status == SONJECT_OK && !is_finished) {
@@ -250,11 +242,8 @@ sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
         return null_argument(&context->report, "scene");
     sonject_run_params taken;
     sonject_run_params_init(&taken);
-    const sonject_status status =
-        params_take(&context->report, &taken, sizeof taken, params,
-                    offsetof(sonject_run_params, shard_index), "run parameters");
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(params_take(&context->report, &taken, sizeof taken, params,
+                      offsetof(sonject_run_params, shard_index), "run parameters"));
     if (!taken.folder || !taken.folder[0])
         return null_argument(&context->report, "folder");
     if (taken.labels & ~LABEL_FORMATS)

@@ -38,12 +38,9 @@ static sonject_status check_all(struct report *report, const sonject_seabed_file
     if (params->synthetic.complex_pixels && !ends_with(params->image, ".tif"))
         return report_failure(report, SONJECT_ERROR_INPUT, "%s: complex pixels need .tif",
                               params->image);
-    sonject_status status = check_synthetic(&params->synthetic, report, NULL);
-    if (status == SONJECT_OK)
-        status = check_geometry(&params->geometry, report, NULL);
-    if (status == SONJECT_OK)
-        status = check_sonar(&params->sonar, report, NULL);
-    return status;
+    CHECK(check_synthetic(&params->synthetic, report, NULL));
+    CHECK(check_geometry(&params->geometry, report, NULL));
+    return check_sonar(&params->sonar, report, NULL);
 }
 
 /* Amplitudes as 8-bit numbers, 1 = 255; in place, since they need less room. */
@@ -65,8 +62,7 @@ sonject_status sonject_seabed_write(sonject_context *context,
     sonject_seabed_file_params_init(&taken);
     sonject_status status =
         params_take(report, &taken, sizeof taken, params, sizeof taken, "seabed parameters");
-    if (status == SONJECT_OK)
-        status = check_all(report, &taken);
+    THEN(status, check_all(report, &taken));
     if (status != SONJECT_OK)
         return status;
     struct scene scene;

@@ -60,11 +60,9 @@ static sonject_status describe(struct impulse_head *head, struct report *report,
     head->column_spacing_m = geometry->column_spacing_m;
     head->first_slant_range_m = geometry->first_slant_range_m;
     head->image_path = copy_text(scene->scene.input_path ? scene->scene.input_path : "");
-    if (!head->image_path)
-        return report_out_of_memory(report, "a path");
-    const sonject_status status =
-        traced_scene_hash(report, &scene->scene, swath->identity, head->scene_hash);
-    return status == SONJECT_OK ? take_source(head, report, &scene->source) : status;
+    CHECK_MEMORY(report, head->image_path, "a path");
+    CHECK(traced_scene_hash(report, &scene->scene, swath->identity, head->scene_hash));
+    return take_source(head, report, &scene->source);
 }
 
 static sonject_status trace_swath(struct sonject_context *context,
@@ -77,17 +75,14 @@ static sonject_status trace_swath(struct sonject_context *context,
     struct impulse_writer *writer = NULL;
     const struct injection_input input = swath_input(swath);
     sonject_status status = describe(&head, report, scene, swath);
-    if (status == SONJECT_OK)
-        status = impulse_writer_begin(report, path, &writer);
-    if (status == SONJECT_OK)
-        status = context_device(context, &device);
+    THEN(status, impulse_writer_begin(report, path, &writer));
+    THEN(status, context_device(context, &device));
     if (status == SONJECT_OK) {
         const struct impulse_sink sink = impulse_writer_sink(writer);
         status = injection_trace(report, device, &scene->scene, &input, &sink, progress, user,
                                  &head.counts);
     }
-    if (status == SONJECT_OK)
-        status = impulse_writer_publish(writer, &head);
+    THEN(status, impulse_writer_publish(writer, &head));
     impulse_writer_release(&writer);
     impulse_head_clear(&head);
     return status;
@@ -105,16 +100,12 @@ sonject_status sonject_trace(sonject_context *context, const sonject_scene *scen
     sonject_trace_params taken;
     struct swath swath;
     sonject_trace_params_init(&taken);
-    sonject_status status = params_take(&context->report, &taken, sizeof taken, params,
-                                        sizeof taken, "trace parameters");
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(params_take(&context->report, &taken, sizeof taken, params, sizeof taken,
+                      "trace parameters"));
     if (!taken.file || !taken.file[0])
         return null_argument(&context->report, "file");
-    status = swath_open(&context->report, &scene->scene, &swath);
-    if (status != SONJECT_OK)
-        return status;
-    status = trace_swath(context, scene, &swath, taken.file, progress, user);
+    CHECK(swath_open(&context->report, &scene->scene, &swath));
+    sonject_status status = trace_swath(context, scene, &swath, taken.file, progress, user);
     swath_close(&swath);
     return status;
 }
@@ -256,8 +247,7 @@ static sonject_status form_file(struct sonject_context *context, const sonject_s
     if (status == SONJECT_OK && !scene)
         status = read_traced_scene(report, head, params, &read);
     request.scene = scene ? &scene->scene : &read;
-    if (status == SONJECT_OK)
-        status = run_scene(context, &request, was_finished);
+    THEN(status, run_scene(context, &request, was_finished));
     if (!scene)
         scene_clear(&read);
     return status;
@@ -273,19 +263,15 @@ sonject_status sonject_form(sonject_context *context, const sonject_scene *scene
     sonject_form_params taken;
     struct impulse_file *impulses;
     sonject_form_params_init(&taken);
-    sonject_status status =
-        params_take(&context->report, &taken, sizeof taken, params,
-                    offsetof(sonject_form_params, allows_user_shapes), "form parameters");
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(params_take(&context->report, &taken, sizeof taken, params,
+                      offsetof(sonject_form_params, allows_user_shapes), "form parameters"));
     if (!taken.file || !taken.file[0] || !taken.folder || !taken.folder[0])
         return null_argument(&context->report, "file and folder");
     if (taken.labels & ~LABEL_FORMATS)
         return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
                               "labels must be a sum of sonject_labels");
-    status = check_overrides(&context->report, scene, &taken);
-    if (status == SONJECT_OK)
-        status = impulse_file_open(&context->report, taken.file, &impulses);
+    sonject_status status = check_overrides(&context->report, scene, &taken);
+    THEN(status, impulse_file_open(&context->report, taken.file, &impulses));
     if (status != SONJECT_OK)
         return status;
     status = form_file(context, scene, &taken, impulses, progress, user, was_finished);

@@ -110,13 +110,11 @@ static sonject_status open_and_describe(struct report *report, const struct scen
                               "the scene has no input image: give input.path");
     if (scene->input_kind == SONJECT_INPUT_FILE) {
         status = open_input(report, scene, file);
-        if (status == SONJECT_OK)
-            status = describe_file(report, scene, *file, swath);
+        THEN(status, describe_file(report, scene, *file, swath));
     } else {
         status = describe_made(scene, swath);
     }
-    if (status == SONJECT_OK)
-        status = choose_patch(report, scene, swath);
+    THEN(status, choose_patch(report, scene, swath));
     if (status != SONJECT_OK) {
         swath_file_close(file);
         track_clear(&swath->track);
@@ -137,8 +135,7 @@ static sonject_status identify(struct report *report, struct swath *swath, const
                                size_t bytes)
 {
     struct hash *hash = hash_begin();
-    if (!hash)
-        return report_out_of_memory(report, "a hash");
+    CHECK_MEMORY(report, hash, "a hash");
     hash_add(hash, &swath->layout.rows, sizeof swath->layout.rows);
     hash_add(hash, &swath->layout.columns, sizeof swath->layout.columns);
     hash_add(hash, pixels, bytes);
@@ -197,8 +194,7 @@ static sonject_status read_patch(struct report *report, const struct scene *scen
         return report_out_of_memory(report, "the patch");
     swath->stored = allocate_array(bytes, 1);
     swath->pixels = allocate_array(count, sizeof(float));
-    if (!swath->stored || !swath->pixels)
-        return report_out_of_memory(report, "the patch");
+    CHECK_MEMORY(report, swath->stored && swath->pixels, "the patch");
     sonject_status status = read_stored(report, file, whole, swath);
     if (status == SONJECT_OK) {
         status = transfer_to_amplitude(&swath->transfer, swath->layout.type, swath->stored, count,
@@ -245,9 +241,8 @@ sonject_status swath_open(struct report *report, const struct scene *scene, stru
 {
     struct swath_file *file;
     sonject_status status = open_and_describe(report, scene, swath, &file);
-    if (status == SONJECT_OK)
-        status =
-            file ? read_patch(report, scene, file, NULL, swath) : make_patch(report, scene, swath);
+    THEN(status,
+         file ? read_patch(report, scene, file, NULL, swath) : make_patch(report, scene, swath));
     swath_file_close(&file);
     if (status != SONJECT_OK)
         swath_close(swath);
@@ -309,12 +304,9 @@ sonject_status swath_open_stored(struct report *report, const struct scene *scen
 {
     memset(swath, 0, sizeof *swath);
     sonject_status status = store_take(report, scene, store);
-    if (status == SONJECT_OK)
-        status = describe_file(report, scene, store->file, swath);
-    if (status == SONJECT_OK)
-        status = choose_patch(report, scene, swath);
-    if (status == SONJECT_OK)
-        status = read_patch(report, scene, store->file, store->pixels, swath);
+    THEN(status, describe_file(report, scene, store->file, swath));
+    THEN(status, choose_patch(report, scene, swath));
+    THEN(status, read_patch(report, scene, store->file, store->pixels, swath));
     if (status != SONJECT_OK)
         swath_close(swath);
     return status;
@@ -418,13 +410,11 @@ sonject_status swath_write(struct report *report, const struct scene *scene,
     if (scene->input_kind != SONJECT_INPUT_FILE)
         return write_made(report, scene, swath, result, path);
     void *stored = swath_stored_result(swath, result, clipped);
-    if (!stored)
-        return report_out_of_memory(report, "the patch");
+    CHECK_MEMORY(report, stored, "the patch");
     struct swath_file *file;
     sonject_status status = open_input(report, scene, &file);
-    if (status == SONJECT_OK)
-        status =
-            swath_file_copy_with_patch(report, file, path, &swath->patch, stored, progress, user);
+    THEN(status,
+         swath_file_copy_with_patch(report, file, path, &swath->patch, stored, progress, user));
     swath_file_close(&file);
     free(stored);
     return status;

@@ -51,8 +51,7 @@ sonject_status file_entry(struct report *report, const char *path, const char *n
     char hash[HASH_TEXT_CAPACITY];
     *entry = NULL;
     sonject_status status = file_identify(report, path, &identity);
-    if (status == SONJECT_OK)
-        status = file_hash(report, path, hash);
+    THEN(status, file_hash(report, path, hash));
     if (status != SONJECT_OK)
         return status;
     *entry = json_object();

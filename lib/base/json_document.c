@@ -83,8 +83,7 @@ sonject_status json_document_write(struct report *report, json_t *document, cons
 {
     char *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
     json_decref(document);
-    if (!text)
-        return report_out_of_memory(report, path);
+    CHECK_MEMORY(report, text, path);
     const sonject_status status = file_write_whole(report, path, text, strlen(text));
     free(text);
     return status;
@@ -110,9 +109,7 @@ sonject_status json_document_read(struct report *report, const char *path, json_
     size_t bytes;
     bool lacks_memory;
     *document = NULL;
-    const sonject_status status = file_read_whole(report, path, DOCUMENT_BYTES_MAX, &text, &bytes);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(file_read_whole(report, path, DOCUMENT_BYTES_MAX, &text, &bytes));
     *document = load_json(text, bytes, &lacks_memory);
     free(text);
     if (lacks_memory)

@@ -42,6 +42,29 @@ sonject_status report_failure(struct report *report, sonject_status status, cons
 /* The message for an allocation that failed; returns SONJECT_ERROR_MEMORY. what: "histogram". */
 sonject_status report_out_of_memory(struct report *report, const char *what);
 
+/* Returns from the function where expression, a sonject_status, is a failure. */
+#define CHECK(expression)                                                                          \
+    do {                                                                                           \
+        const sonject_status checked_status = (expression);                                        \
+        if (checked_status != SONJECT_OK)                                                          \
+            return checked_status;                                                                 \
+    } while (0)
+
+/* The same for memory that is to be there; what: as of report_out_of_memory. */
+#define CHECK_MEMORY(report, is_there, what)                                                       \
+    do {                                                                                           \
+        if (!(is_there))                                                                           \
+            return report_out_of_memory(report, what);                                             \
+    } while (0)
+
+/* The next step of a function that releases something at its end: taken while status, a variable,
+ * is SONJECT_OK, which becomes the step's. */
+#define THEN(status, expression)                                                                   \
+    do {                                                                                           \
+        if ((status) == SONJECT_OK)                                                                \
+            (status) = (expression);                                                               \
+    } while (0)
+
 /* Sends a line to the log, if there is one. */
 void report_news(struct report *report, const char *format, ...) REPORT_FORMAT(2);
 

@@ -15,9 +15,7 @@ static sonject_status read_scene_name(struct reader *reader, const struct tree_n
                                       void *structure)
 {
     struct campaign *campaign = structure;
-    sonject_status status = read_path(reader, node, &campaign->scene_path);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(read_path(reader, node, &campaign->scene_path));
     campaign->scene_written = copy_text(node->text);
     return campaign->scene_written ? SONJECT_OK
                                    : report_out_of_memory(reader->report, "the campaign");
@@ -226,23 +224,19 @@ sonject_status campaign_read(struct report *report, const char *path, const char
     set_defaults(campaign);
     campaign->path = copy_text(path);
     campaign->folder = path_folder(path);
-    if (!campaign->path || !campaign->folder)
-        return report_out_of_memory(report, "the campaign");
+    CHECK_MEMORY(report, campaign->path && campaign->folder, "the campaign");
     if (!file_exists(path))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: there is no such campaign file; check its name", path);
-    sonject_status status = file_read_whole(report, path, TREE_BYTES_MAX, &text, &bytes);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(file_read_whole(report, path, TREE_BYTES_MAX, &text, &bytes));
     struct mistakes mistakes = {NULL, 0, 0, 0};
     struct tree *tree = &campaign->tree;
     tree_init(tree, report, campaign->path);
     tree->mistakes = &mistakes;
     report->message[0] = 0;
-    status = tree_parse(tree, text, bytes);
+    sonject_status status = tree_parse(tree, text, bytes);
     free(text);
-    if (status == SONJECT_OK)
-        status = fill_campaign(tree, overrides, count, campaign);
+    THEN(status, fill_campaign(tree, overrides, count, campaign));
     tree->mistakes = NULL;
     return mistakes_tell(&mistakes, report, status);
 }

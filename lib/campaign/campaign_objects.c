@@ -17,8 +17,7 @@ sonject_status grow_list(struct report *report, void *list, size_t count, size_t
     size_t bytes;
     memcpy(&old, list, sizeof old);
     char *grown = size_multiply(count + 1, size, &bytes) ? realloc(old, bytes) : NULL;
-    if (!grown)
-        return report_out_of_memory(report, "the campaign");
+    CHECK_MEMORY(report, grown, "the campaign");
     memset(grown + count * size, 0, size);
     memcpy(list, &grown, sizeof grown);
     return SONJECT_OK;
@@ -70,14 +69,11 @@ static sonject_status read_draw(struct reader *reader, struct campaign *campaign
                                 const struct tree_entry *entry, const char *key,
                                 struct draws *draws)
 {
-    sonject_status status =
-        grow_list(reader->report, &draws->list, draws->count, sizeof *draws->list);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(grow_list(reader->report, &draws->list, draws->count, sizeof *draws->list));
     struct distribution *distribution = &draws->list[draws->count++];
     distribution->stream = ++campaign->streams;
     const size_t before = key_path_add(&reader->path, entry->key);
-    status = distribution_read(reader, &entry->value, key, distribution);
+    sonject_status status = distribution_read(reader, &entry->value, key, distribution);
     key_path_shorten(&reader->path, before);
     return status;
 }
@@ -182,15 +178,12 @@ static sonject_status read_item(struct reader *reader, const struct tree_node *n
                                 void *structure)
 {
     struct item_list *list = structure;
-    sonject_status status =
-        grow_list(reader->report, list->items, *list->count, sizeof **list->items);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(grow_list(reader->report, list->items, *list->count, sizeof **list->items));
     struct item *item = &(*list->items)[(*list->count)++];
     struct item_text text = {list->campaign, item};
     item->weight = 1.0;
     item->place = node->place;
-    status = read_section(reader, &item_section, node, &text);
+    sonject_status status = read_section(reader, &item_section, node, &text);
     list->sum += item->weight;
     return status;
 }
@@ -229,9 +222,7 @@ sonject_status read_clutter_number(struct reader *reader, const struct tree_node
     struct campaign *campaign = structure;
     struct distribution *number = &campaign->clutter_number;
     number->stream = ++campaign->streams;
-    const sonject_status status = distribution_read(reader, node, "clutter.number", number);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(distribution_read(reader, node, "clutter.number", number));
     if (number->kind != DISTRIBUTION_FIXED && number->kind != DISTRIBUTION_CHOICE)
         return refuse_value(reader, node, "must be a whole number or a choice of such");
     for (size_t i = 0; i < number->count; i++) {

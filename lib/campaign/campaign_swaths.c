@@ -16,9 +16,7 @@ static sonject_status read_swath_path(struct reader *reader, const struct tree_n
                                       void *structure)
 {
     struct swath_plan *swath = structure;
-    const sonject_status status = read_path(reader, node, &swath->path);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(read_path(reader, node, &swath->path));
     swath->written = copy_text(node->text);
     return swath->written ? SONJECT_OK : report_out_of_memory(reader->report, "the campaign");
 }
@@ -39,10 +37,8 @@ static sonject_status read_swath_key(struct reader *reader, const struct tree_en
 {
     char *value = NULL;
     sonject_status status = check_scene_key(reader, entry, entry->key, false);
-    if (status == SONJECT_OK)
-        status = grow_list(reader->report, &swath->keys, swath->key_count, sizeof *swath->keys);
-    if (status == SONJECT_OK)
-        status = tree_override_text(reader->report, &entry->value, &value);
+    THEN(status, grow_list(reader->report, &swath->keys, swath->key_count, sizeof *swath->keys));
+    THEN(status, tree_override_text(reader->report, &entry->value, &value));
     if (status != SONJECT_OK)
         return status;
     const size_t bytes = strlen(entry->key) + strlen(value) + 2;
@@ -50,8 +46,7 @@ static sonject_status read_swath_key(struct reader *reader, const struct tree_en
     if (pair)
         snprintf(pair, bytes, "%s=%s", entry->key, value);
     free(value);
-    if (!pair)
-        return report_out_of_memory(reader->report, "the campaign");
+    CHECK_MEMORY(reader->report, pair, "the campaign");
     swath->keys[swath->key_count++] = pair;
     return SONJECT_OK;
 }
@@ -78,11 +73,8 @@ static const struct section box_section = {box_fields, COUNT(box_fields), NULL};
 static sonject_status read_box(struct reader *reader, const struct tree_node *node, void *structure)
 {
     struct swath_plan *swath = structure;
-    const sonject_status status =
-        grow_list(reader->report, &swath->avoid, swath->avoid_count, sizeof *swath->avoid);
-    return status == SONJECT_OK
-               ? read_section(reader, &box_section, node, &swath->avoid[swath->avoid_count++])
-               : status;
+    CHECK(grow_list(reader->report, &swath->avoid, swath->avoid_count, sizeof *swath->avoid));
+    return read_section(reader, &box_section, node, &swath->avoid[swath->avoid_count++]);
 }
 
 static sonject_status read_avoid(struct reader *reader, const struct tree_node *node,
@@ -120,13 +112,11 @@ static sonject_status read_swath(struct reader *reader, const struct tree_node *
                                  void *structure)
 {
     struct campaign *campaign = structure;
-    sonject_status status = grow_list(reader->report, &campaign->swaths, campaign->swath_count,
-                                      sizeof *campaign->swaths);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(grow_list(reader->report, &campaign->swaths, campaign->swath_count,
+                    sizeof *campaign->swaths));
     struct swath_plan *swath = &campaign->swaths[campaign->swath_count++];
     swath->place = node->place;
-    status = read_section(reader, &swath_section, node, swath);
+    sonject_status status = read_section(reader, &swath_section, node, swath);
     return reading_ends(status) ? status : check_split_name(reader, campaign, swath, node);
 }
 

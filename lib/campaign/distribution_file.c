@@ -61,9 +61,8 @@ static sonject_status read_limits(struct reader *reader, const struct tree_node 
         return refuse_value(reader, node, "must be two numbers, [lowest, highest]");
     sonject_status status =
         read_number(reader, &node->entries[0].value, distribution, true, &distribution->low);
-    if (status == SONJECT_OK)
-        status =
-            read_number(reader, &node->entries[1].value, distribution, false, &distribution->high);
+    THEN(status,
+         read_number(reader, &node->entries[1].value, distribution, false, &distribution->high));
     return status == SONJECT_OK ? check_limits(reader, node, distribution) : status;
 }
 
@@ -119,8 +118,7 @@ static sonject_status read_normal(struct reader *reader, const struct tree_node 
             status = refuse_value(reader, numbers.nodes[i], "must be above 0");
         key_path_shorten(&reader->path, before);
     }
-    if (status == SONJECT_OK)
-        status = check_limits(reader, node, distribution);
+    THEN(status, check_limits(reader, node, distribution));
     if (status != SONJECT_OK)
         return status;
     const double a = (distribution->low - distribution->mean) / distribution->deviation;
@@ -178,10 +176,7 @@ static sonject_status read_weights(struct reader *reader, const struct tree_node
                             distribution->count);
     for (size_t i = 0; i < node->count; i++) {
         double weight;
-        const sonject_status status =
-            read_quantity(reader, &node->entries[i].value, QUANTITY_NUMBER, &weight);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(read_quantity(reader, &node->entries[i].value, QUANTITY_NUMBER, &weight));
         if (!(weight >= 0.0 && weight <= 1e9))
             return refuse_value(reader, &node->entries[i].value, "must be from 0 to 1e9");
         sum += weight;
@@ -226,8 +221,7 @@ static sonject_status read_kind(struct reader *reader, const struct tree_node *n
         status = read_normal(reader, &entry->value, distribution);
     } else if (distribution->kind == DISTRIBUTION_FIXED) {
         status = make_room(reader, distribution, 1);
-        if (status == SONJECT_OK)
-            status = keep_text(reader, &entry->value, distribution);
+        THEN(status, keep_text(reader, &entry->value, distribution));
     } else {
         status = read_limits(reader, &entry->value, distribution);
     }
@@ -284,18 +278,17 @@ sonject_status distribution_read(struct reader *reader, const struct tree_node *
 {
     distribution->place = node->place;
     distribution->key = copy_text(key);
-    if (!distribution->key)
-        return report_out_of_memory(reader->report, "the campaign");
+    CHECK_MEMORY(reader->report, distribution->key, "the campaign");
     if (node->kind != TREE_SECTION) {
         distribution->kind = DISTRIBUTION_FIXED;
-        const sonject_status status = make_room(reader, distribution, 1);
-        return status == SONJECT_OK ? keep_text(reader, node, distribution) : status;
+        CHECK(make_room(reader, distribution, 1));
+        return keep_text(reader, node, distribution);
     }
     size_t known = 0;
     for (size_t i = 0; i < COUNT(kinds); i++)
         known += tree_find(node, kinds[i]) != NULL;
     if (known != 1)
         return refuse_kind(reader, node);
-    const sonject_status status = read_kind(reader, node, distribution);
-    return status == SONJECT_OK ? read_rest(reader, node, distribution) : status;
+    CHECK(read_kind(reader, node, distribution));
+    return read_rest(reader, node, distribution);
 }

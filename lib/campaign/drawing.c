@@ -28,8 +28,7 @@ uint64_t category_seed(const struct campaign *campaign, uint32_t category)
 sonject_status add_key(struct drawing *drawing, struct tree_place place, char *text)
 {
     struct image_plan *plan = drawing->plan;
-    if (!text)
-        return report_out_of_memory(drawing->report, "an image's scene");
+    CHECK_MEMORY(drawing->report, text, "an image's scene");
     const sonject_status status =
         grow_list(drawing->report, &plan->keys, plan->key_count, sizeof *plan->keys);
     if (status != SONJECT_OK) {

@@ -35,19 +35,16 @@ static sonject_status draw_patch(struct drawing *drawing)
     snprintf(text, sizeof text, "{row: %llu, column: %llu, rows: %llu, columns: %llu}",
              (unsigned long long)chip->first_row, (unsigned long long)chip->first_column,
              (unsigned long long)chip->rows, (unsigned long long)chip->columns);
-    if (status == SONJECT_OK)
-        status = add_value(drawing, nowhere, "", "patch", text);
+    THEN(status, add_value(drawing, nowhere, "", "patch", text));
     snprintf(text, sizeof text, "%llu", (unsigned long long)drawing->plan->seed);
-    if (status == SONJECT_OK)
-        status = add_value(drawing, nowhere, "", "injection.seed", text);
+    THEN(status, add_value(drawing, nowhere, "", "injection.seed", text));
     return status;
 }
 
 static sonject_status fill_plan(struct drawing *drawing, const struct item *trial_clutter)
 {
     sonject_status status = draw_patch(drawing);
-    if (status == SONJECT_OK)
-        status = draw_scene(drawing);
+    THEN(status, draw_scene(drawing));
     return status == SONJECT_OK ? draw_objects(drawing, trial_clutter) : status;
 }
 

@@ -74,8 +74,7 @@ sonject_status campaign_measure(struct report *report, struct campaign *campaign
                             plan->written, campaign->nearest_range_m, campaign->farthest_range_m,
                             altitude_m);
     struct region *forbidden = allocate_array(plan->avoid_count, sizeof *forbidden);
-    if (!forbidden)
-        return report_out_of_memory(report, "the places for images");
+    CHECK_MEMORY(report, forbidden, "the places for images");
     for (size_t i = 0; i < plan->avoid_count; i++)
         forbid(campaign, &plan->avoid[i], &forbidden[i]);
     chip_room_clear(&plan->room);

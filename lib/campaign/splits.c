@@ -136,11 +136,8 @@ static sonject_status fill_splits(struct report *report, struct campaign *campai
         split->images = shares[j];
         first += shares[j];
         split->swaths = allocate_array(campaign->swath_count, sizeof *split->swaths);
-        if (!split->swaths)
-            return report_out_of_memory(report, "the splits");
-        const sonject_status status = share_kinds(report, campaign, split);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK_MEMORY(report, split->swaths, "the splits");
+        CHECK(share_kinds(report, campaign, split));
     }
     for (size_t i = 0; i < campaign->swath_count; i++) {
         struct swath_plan *plan = &campaign->swaths[i];
@@ -161,10 +158,8 @@ sonject_status campaign_split(struct report *report, struct campaign *campaign,
     sonject_status status = groups.group_of && groups.split_of && groups.open
                                 ? find_groups(campaign, identities, &groups)
                                 : report_out_of_memory(report, "the splits");
-    if (status == SONJECT_OK)
-        status = deal(campaign, &groups);
-    if (status == SONJECT_OK)
-        status = fill_splits(report, campaign, &groups);
+    THEN(status, deal(campaign, &groups));
+    THEN(status, fill_splits(report, campaign, &groups));
     free(groups.group_of);
     free(groups.split_of);
     free(groups.open);

@@ -93,13 +93,10 @@ sonject_status impulse_list_add(struct impulse_list *list, const struct line_gri
                               "elements: the patch has more than 2^31 - 1 impulses in one piece: "
                               "use a smaller patch");
     struct impulse_piece *grown = realloc(list->pieces, (list->count + 1) * sizeof *list->pieces);
-    if (!grown)
-        return report_out_of_memory(list->report, "impulses");
+    CHECK_MEMORY(list->report, grown, "impulses");
     list->pieces = grown;
     struct impulse_piece *piece = &list->pieces[list->count];
-    const sonject_status status = piece_init(piece, list->report, grid, strips, count);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(piece_init(piece, list->report, grid, strips, count));
     piece_fill(piece, real_part, imaginary_part);
     list->count++;
     return SONJECT_OK;
@@ -116,11 +113,9 @@ sonject_status impulse_list_add_speckle(struct impulse_list *list, const struct 
     float *imaginary_part = allocate_array(cells, sizeof *imaginary_part);
     sonject_status status =
         real_part && imaginary_part ? SONJECT_OK : report_out_of_memory(list->report, "speckle");
-    if (status == SONJECT_OK)
-        status = speckle_draw(list->report, list->device, grid->bins, strips, energy, seed, stream,
-                              real_part, imaginary_part);
-    if (status == SONJECT_OK)
-        status = impulse_list_add(list, grid, strips, real_part, imaginary_part);
+    THEN(status, speckle_draw(list->report, list->device, grid->bins, strips, energy, seed, stream,
+                              real_part, imaginary_part));
+    THEN(status, impulse_list_add(list, grid, strips, real_part, imaginary_part));
     free(real_part);
     free(imaginary_part);
     return status;

@@ -87,22 +87,17 @@ static sonject_status work_init(struct series_work *work, const struct series_re
     cl_mem *const series[] = {&work->series_real, &work->series_imaginary};
     for (int part = 0; status == SONJECT_OK && part < 2; part++) {
         status = buffer_create(report, device, line_bytes, NULL, lines[part]);
-        if (status == SONJECT_OK)
-            status =
-                buffer_create(report, device, series_cells * sizeof(float), NULL, series[part]);
+        THEN(status,
+             buffer_create(report, device, series_cells * sizeof(float), NULL, series[part]));
     }
-    if (status == SONJECT_OK)
-        status =
-            buffer_create(report, device, pulse_bytes, work->pulse.real_part, &work->pulse_real);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, pulse_bytes, work->pulse.imaginary_part,
-                               &work->pulse_imaginary);
-    if (status == SONJECT_OK)
-        status =
-            kernel_create(report, device, PROGRAM_ELEMENT_SERIES, 0, "hear_elements", &work->hear);
-    if (status == SONJECT_OK)
-        status = kernel_create(report, device, PROGRAM_ELEMENT_SERIES, 0, "pulse_elements",
-                               &work->pulse_kernel);
+    THEN(status,
+         buffer_create(report, device, pulse_bytes, work->pulse.real_part, &work->pulse_real));
+    THEN(status, buffer_create(report, device, pulse_bytes, work->pulse.imaginary_part,
+                               &work->pulse_imaginary));
+    THEN(status,
+         kernel_create(report, device, PROGRAM_ELEMENT_SERIES, 0, "hear_elements", &work->hear));
+    THEN(status, kernel_create(report, device, PROGRAM_ELEMENT_SERIES, 0, "pulse_elements",
+                               &work->pulse_kernel));
     return status;
 }
 
@@ -110,12 +105,9 @@ static sonject_status work_init(struct series_work *work, const struct series_re
 static sonject_status padded_buffer(struct series_work *work, const void *numbers, size_t count,
                                     cl_mem *buffer)
 {
-    sonject_status status = buffer_create(work->report, work->device,
-                                          (count + WIDTH_MAX) * sizeof(float), NULL, buffer);
-    if (status == SONJECT_OK)
-        status =
-            buffer_write(work->report, work->device, *buffer, 0, count * sizeof(float), numbers);
-    return status;
+    CHECK(buffer_create(work->report, work->device, (count + WIDTH_MAX) * sizeof(float), NULL,
+                        buffer));
+    return buffer_write(work->report, work->device, *buffer, 0, count * sizeof(float), numbers);
 }
 
 /* Work-items that share a line: a CPU's do a whole one each. */
@@ -143,21 +135,14 @@ static sonject_status piece_buffers_init(struct piece_buffers *buffers, struct s
     element_pair_records_fill(work->records, &request->layout->elements, request->view, piece,
                               first, count);
     memset(buffers, 0, sizeof *buffers);
-    sonject_status status =
-        buffer_create(work->report, work->device, sizeof grid, &grid, &buffers->grid);
-    if (status == SONJECT_OK)
-        status = buffer_create(work->report, work->device, count * sizeof *work->records,
-                               work->records, &buffers->pairs);
-    if (status == SONJECT_OK)
-        status = padded_buffer(work, piece->starts, (size_t)piece->grid.strips.count + 1,
-                               &buffers->starts);
-    if (status == SONJECT_OK)
-        status = padded_buffer(work, piece->bins, piece->count, &buffers->bins);
-    if (status == SONJECT_OK)
-        status = padded_buffer(work, piece->real_part, piece->count, &buffers->real_part);
-    if (status == SONJECT_OK)
-        status = padded_buffer(work, piece->imaginary_part, piece->count, &buffers->imaginary_part);
-    return status;
+    CHECK(buffer_create(work->report, work->device, sizeof grid, &grid, &buffers->grid));
+    CHECK(buffer_create(work->report, work->device, count * sizeof *work->records, work->records,
+                        &buffers->pairs));
+    CHECK(
+        padded_buffer(work, piece->starts, (size_t)piece->grid.strips.count + 1, &buffers->starts));
+    CHECK(padded_buffer(work, piece->bins, piece->count, &buffers->bins));
+    CHECK(padded_buffer(work, piece->real_part, piece->count, &buffers->real_part));
+    return padded_buffer(work, piece->imaginary_part, piece->count, &buffers->imaginary_part);
 }
 
 static void piece_buffers_clear(struct piece_buffers *buffers)
@@ -207,15 +192,11 @@ static sonject_status pulse_chunk(struct series_work *work, size_t count)
                                                 ARGUMENT(work->series_real),
                                                 ARGUMENT(work->series_imaginary)};
     const size_t global[2] = {(size_t)work->series_stride / work->device->width, count};
-    sonject_status status = kernel_run(work->report, work->device, work->pulse_kernel, arguments,
-                                       sizeof arguments / sizeof *arguments, 2, global);
-    if (status == SONJECT_OK)
-        status =
-            buffer_read(work->report, work->device, work->series_real, 0, bytes, work->real_part);
-    if (status == SONJECT_OK)
-        status = buffer_read(work->report, work->device, work->series_imaginary, 0, bytes,
-                             work->imaginary_part);
-    return status;
+    CHECK(kernel_run(work->report, work->device, work->pulse_kernel, arguments,
+                     sizeof arguments / sizeof *arguments, 2, global));
+    CHECK(buffer_read(work->report, work->device, work->series_real, 0, bytes, work->real_part));
+    return buffer_read(work->report, work->device, work->series_imaginary, 0, bytes,
+                       work->imaginary_part);
 }
 
 /* Puts a chunk's series into the caller's, on the carrier where that is wanted. */
@@ -250,12 +231,10 @@ static sonject_status compute_chunk(struct series_work *work, size_t first, size
     const struct impulse_list *impulses = work->request->impulses;
     const size_t bytes = count * (size_t)work->line_stride * sizeof(float);
     sonject_status status = buffer_clear(work->report, work->device, work->lines_real, bytes);
-    if (status == SONJECT_OK)
-        status = buffer_clear(work->report, work->device, work->lines_imaginary, bytes);
+    THEN(status, buffer_clear(work->report, work->device, work->lines_imaginary, bytes));
     for (size_t i = 0; status == SONJECT_OK && i < impulses->count; i++)
         status = hear_piece(work, &impulses->pieces[i], first, count);
-    if (status == SONJECT_OK)
-        status = pulse_chunk(work, count);
+    THEN(status, pulse_chunk(work, count));
     if (status == SONJECT_OK)
         hand_over(work, first, count, series);
     return status;
@@ -278,8 +257,7 @@ sonject_status series_compute(const struct series_request *request, struct repor
         const size_t left = work.pairs - first;
         const size_t count = left < work.chunk ? left : work.chunk;
         status = compute_chunk(&work, first, count, series);
-        if (status == SONJECT_OK)
-            status = tell(request, report, (double)(first + count) / (double)work.pairs);
+        THEN(status, tell(request, report, (double)(first + count) / (double)work.pairs));
     }
     work_clear(&work);
     return status;

@@ -37,18 +37,12 @@ sonject_status speckle_draw(struct report *report, struct device *device, struct
     struct drawing drawing = {NULL, NULL, NULL, NULL};
     sonject_status status =
         kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "draw_speckle", &drawing.kernel);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, bytes, energy, &drawing.energy);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, bytes, NULL, &drawing.real_part);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, bytes, NULL, &drawing.imaginary_part);
-    if (status == SONJECT_OK)
-        status = drawing_run(&drawing, report, device, bins, strips, seed, stream);
-    if (status == SONJECT_OK)
-        status = buffer_read(report, device, drawing.real_part, 0, bytes, real_part);
-    if (status == SONJECT_OK)
-        status = buffer_read(report, device, drawing.imaginary_part, 0, bytes, imaginary_part);
+    THEN(status, buffer_create(report, device, bytes, energy, &drawing.energy));
+    THEN(status, buffer_create(report, device, bytes, NULL, &drawing.real_part));
+    THEN(status, buffer_create(report, device, bytes, NULL, &drawing.imaginary_part));
+    THEN(status, drawing_run(&drawing, report, device, bins, strips, seed, stream));
+    THEN(status, buffer_read(report, device, drawing.real_part, 0, bytes, real_part));
+    THEN(status, buffer_read(report, device, drawing.imaginary_part, 0, bytes, imaginary_part));
     if (drawing.kernel)
         clReleaseKernel(drawing.kernel);
     buffer_release(&drawing.energy);

@@ -24,8 +24,8 @@ sonject_status contact_image_create(struct contact_image *image, struct report *
         image->taken = allocate_array(count, 1);
         image->seabed_columns = allocate_array(rows, sizeof *image->seabed_columns);
     }
-    if (!image->means || !image->marks || !image->taken || !image->seabed_columns)
-        return report_out_of_memory(report, "contacts' measures");
+    CHECK_MEMORY(report, image->means && image->marks && image->taken && image->seabed_columns,
+                 "contacts' measures");
     mean_of_neighbours(intensity, rows, columns, image->means);
     const sonject_status status =
         find_first_return(report, intensity, rows, columns, image->seabed_columns);
@@ -94,8 +94,7 @@ sonject_status find_seabed_level(const struct contact_image *image, struct repor
 {
     const struct window_box wide = box_with_margin(box, SEABED_MARGIN, image->rows, image->columns);
     float *blocks = allocate_array(seabed_blocks(&wide), sizeof *blocks);
-    if (!blocks)
-        return report_out_of_memory(report, "the seabed's level");
+    CHECK_MEMORY(report, blocks, "the seabed's level");
     *level = level_beside(image, &wide, box, blocks);
     if (*level < 0.0)
         *level = level_within(image, &wide, blocks);

@@ -79,8 +79,7 @@ sonject_status find_contact_parts(struct contact_image *image, struct report *re
                                  place->bright, image->columns,   PART_HIGHLIGHT,
                                  0.0,           image->marks,     NULL};
     search.stack = allocate_array(place->box.rows, place->box.columns * sizeof *search.stack);
-    if (!search.stack)
-        return report_out_of_memory(report, "a contact's measures");
+    CHECK_MEMORY(report, search.stack, "a contact's measures");
     begin_marks(image, &place->box);
     search.threshold = fmax(HIGHLIGHT_OVER_SEABED * seabed,
                             HIGHLIGHT_UNDER_PEAK * brightest_mean(image, &place->bright));

@@ -327,9 +327,8 @@ static sonject_status measure(struct contact_lines *lines, struct contact_image 
                                 "the image is dark around row %zu, column %zu: there is no seabed "
                                 "to measure a contact against",
                                 place->box.first_row, place->box.first_column);
-    if (status == SONJECT_OK)
-        status = find_contact_parts(image, report, place, lines->seabed, &sizes->highlight,
-                                    &sizes->shadow);
+    THEN(status, find_contact_parts(image, report, place, lines->seabed, &sizes->highlight,
+                                    &sizes->shadow));
     if (status != SONJECT_OK)
         return status;
     size_t bright_column = 0;
@@ -354,8 +353,7 @@ sonject_status measure_contact_sizes(struct contact_image *image, struct report 
     sizes->shadow_rows = sizes->shadow_columns = sizes->gap_columns = sizes->dim_columns = unknown;
     sizes->highlight_intensity = sizes->shadow_intensity = NAN;
     sonject_status status = contact_lines_create(&lines, report, image);
-    if (status == SONJECT_OK)
-        status = measure(&lines, image, report, place, sizes);
+    THEN(status, measure(&lines, image, report, place, sizes));
     contact_lines_clear(&lines);
     return status;
 }

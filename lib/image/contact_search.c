@@ -101,8 +101,7 @@ static sonject_status find_place(struct contact_search *search, struct report *r
     const struct window_box bright = box_of_pieces(search, image, &area->box);
     *place = place_of(image, &bright);
     sonject_status status = find_seabed_level(image, report, &bright, &seabed);
-    if (status == SONJECT_OK)
-        status = find_contact_parts(image, report, place, seabed, &highlight, &shadow);
+    THEN(status, find_contact_parts(image, report, place, seabed, &highlight, &shadow));
     if (status != SONJECT_OK)
         return status;
     place->box = shadow.pixels > 0 ? box_around(&bright, &shadow.box) : bright;

@@ -65,8 +65,7 @@ sonject_status find_first_return(struct report *report, const float *intensity, 
     double *sums = allocate_array(columns + 1, sizeof *sums);
     size_t last = 0;
     size_t missing = 0;
-    if (!sums)
-        return report_out_of_memory(report, "the water column");
+    CHECK_MEMORY(report, sums, "the water column");
     for (size_t row = 0; row < rows; row++) {
         sum_levels(intensity, rows, columns, row, sums);
         const size_t column = first_step(sums, columns);

@@ -219,10 +219,7 @@ static sonject_status draw_panel(struct report *report, struct plot *plot, uint3
     const struct plot_panel *panel = &plot->panels[number];
     const struct colour_scale scale = scale_of_panel(plot, number);
     const char *title = panel->title ? panel->title : "";
-    const sonject_status status =
-        plot_cells(report, panel, &plot->along_track, &plot->range, plot->values);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(plot_cells(report, panel, &plot->along_track, &plot->range, plot->values));
     const int64_t cell_height = plot->along_track.up;
     const int64_t cell_width = plot->range.up;
     for (uint32_t row = 0; row < plot->along_track.cells; row++)
@@ -275,9 +272,7 @@ static sonject_status draw_all(struct report *report, struct plot *plot)
     int64_t x = axis_room(plot);
     draw_rows_axis(plot, x, y);
     for (uint32_t i = 0; i < plot->count; i++) {
-        const sonject_status status = draw_panel(report, plot, i, x, y);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(draw_panel(report, plot, i, x, y));
         x += plot->panel_width + (has_bar(plot, i) ? bar_room(plot, i) : 0) + PANEL_GAP;
     }
     return SONJECT_OK;
@@ -305,10 +300,8 @@ sonject_status plot_panels(struct report *report, const struct plot_frame *frame
                                    plot.panel_width, TICK_EVERY_COLUMN);
     plot.values = allocate_array((size_t)plot.along_track.cells * plot.range.cells, sizeof(float));
     sonject_status status = plot.values ? SONJECT_OK : report_out_of_memory(report, "a picture");
-    if (status == SONJECT_OK)
-        status = choose_limits(report, &plot);
-    if (status == SONJECT_OK)
-        status = draw_all(report, &plot);
+    THEN(status, choose_limits(report, &plot));
+    THEN(status, draw_all(report, &plot));
     free(plot.values);
     if (status != SONJECT_OK) {
         free(plot.canvas.rgb);

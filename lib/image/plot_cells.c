@@ -111,8 +111,7 @@ sonject_status plot_limits(struct report *report, const float *decibels, size_t 
 {
     const size_t bin_count = (size_t)(HIGHEST_DB - LOWEST_DB) * BINS_PER_DB;
     uint32_t *bins = allocate_array(bin_count, sizeof *bins);
-    if (!bins)
-        return report_out_of_memory(report, "a picture");
+    CHECK_MEMORY(report, bins, "a picture");
     uint64_t total = 0;
     for (size_t i = 0; i < count; i++) {
         const double value = (double)decibels[i];

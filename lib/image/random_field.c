@@ -97,8 +97,7 @@ sonject_status random_field_create(struct report *report, uint64_t seed, uint32_
 {
     *field = NULL;
     struct random_field *made = allocate_array(1, sizeof *made);
-    if (!made)
-        return report_out_of_memory(report, "a random field");
+    CHECK_MEMORY(report, made, "a random field");
     made->seed = seed;
     made->stream = stream;
     made->columns = columns;

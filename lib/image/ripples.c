@@ -98,8 +98,7 @@ sonject_status ripples_create(struct report *report, const sonject_synthetic_par
 {
     *ripples = NULL;
     struct ripples *made = allocate_array(1, sizeof *made);
-    if (!made)
-        return report_out_of_memory(report, "ripples");
+    CHECK_MEMORY(report, made, "ripples");
     made->columns = synthetic->columns;
     made->contrast = (float)synthetic->ripple_contrast;
     made->carrier[0] = allocate_array(made->columns, sizeof(float));

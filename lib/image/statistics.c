@@ -177,10 +177,8 @@ sonject_status local_mean(struct report *report, const float *values, size_t row
 {
     if (rows == 0 || columns == 0)
         return SONJECT_OK;
-    const sonject_status status =
-        smooth_rows(report, values, rows, columns, column_deviation, mean);
-    return status == SONJECT_OK ? smooth_columns(report, mean, rows, columns, row_deviation)
-                                : status;
+    CHECK(smooth_rows(report, values, rows, columns, column_deviation, mean));
+    return smooth_columns(report, mean, rows, columns, row_deviation);
 }
 
 static double mean_of(const float *values, size_t count)

@@ -73,10 +73,8 @@ static sonject_status create_patches(struct report *report, struct seabed *seabe
 {
     double width = seabed->synthetic->patch_length_m / CHORD_PER_WIDTH;
     for (uint32_t i = 0; i < OCTAVES; i++, width *= 0.5) {
-        const sonject_status status =
-            create_field(report, seabed, geometry, STREAM_PATCHES + i, width, &seabed->octaves[i]);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(
+            create_field(report, seabed, geometry, STREAM_PATCHES + i, width, &seabed->octaves[i]));
     }
     const float decibels_to_nepers = 0.11512925f; /* ln 10 / 20 */
     const float dark =
@@ -207,14 +205,12 @@ sonject_status synthesise_seabed(struct report *report, const sonject_synthetic_
                                  float *pixels)
 {
     struct seabed *seabed = allocate_array(1, sizeof *seabed);
-    if (!seabed)
-        return report_out_of_memory(report, "the synthetic seabed");
+    CHECK_MEMORY(report, seabed, "the synthetic seabed");
     seabed->synthetic = synthetic;
     const size_t row_length = (size_t)synthetic->columns * (synthetic->complex_pixels ? 2 : 1);
     sonject_status status = create_parts(report, seabed, geometry);
-    if (status == SONJECT_OK)
-        status =
-            create_speckle(report, seabed, geometry, along_track_resolution_m, range_resolution_m);
+    THEN(status,
+         create_speckle(report, seabed, geometry, along_track_resolution_m, range_resolution_m));
     for (size_t row = 0; status == SONJECT_OK && row < synthetic->rows; row++)
         next_row(seabed, pixels + row * row_length);
     release_parts(seabed);

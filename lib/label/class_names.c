@@ -27,8 +27,7 @@ sonject_status class_names_take(struct class_names *classes, struct report *repo
         if (strcmp(classes->names[*number], name) == 0)
             return SONJECT_OK;
     char *copy = make_room(classes) ? copy_text(name) : NULL;
-    if (!copy)
-        return report_out_of_memory(report, "the classes");
+    CHECK_MEMORY(report, copy, "the classes");
     classes->names[classes->count++] = copy;
     return SONJECT_OK;
 }
@@ -40,8 +39,7 @@ sonject_status class_names_write(const struct class_names *classes, struct repor
     for (uint32_t i = 0; i < classes->count; i++)
         growing_text_add(&lines, "%s\n", classes->names[i]);
     char *text = growing_text_end(&lines);
-    if (!text)
-        return report_out_of_memory(report, path);
+    CHECK_MEMORY(report, text, path);
     const sonject_status status = file_write_whole(report, path, text, strlen(text));
     free(text);
     return status;

@@ -55,15 +55,11 @@ static bool begin(struct coco *coco)
 sonject_status coco_add(struct coco *coco, struct report *report, const struct image_labels *labels,
                         struct class_names *classes)
 {
-    if (!begin(coco))
-        return report_out_of_memory(report, "annotations");
+    CHECK_MEMORY(report, begin(coco), "annotations");
     for (uint32_t i = 0; i < labels->count; i++) {
         const struct contact *contact = &labels->contacts[i];
         uint32_t class_number;
-        const sonject_status status =
-            class_names_take(classes, report, contact->class_name, &class_number);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(class_names_take(classes, report, contact->class_name, &class_number));
         if (contact->pixels == 0)
             continue;
         json_append(&coco->annotations, annotation_document(coco, labels, contact, class_number));
@@ -83,8 +79,7 @@ sonject_status coco_add(struct coco *coco, struct report *report, const struct i
 sonject_status coco_write(struct coco *coco, struct report *report,
                           const struct class_names *classes, const char *path)
 {
-    if (!begin(coco))
-        return report_out_of_memory(report, path);
+    CHECK_MEMORY(report, begin(coco), path);
     json_t *categories = json_array();
     for (uint32_t i = 0; i < classes->count; i++) {
         json_t *category = json_object();

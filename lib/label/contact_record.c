@@ -138,8 +138,7 @@ sonject_status contacts_write_csv(struct report *report, const struct image_labe
     contacts_add_csv_head(&csv);
     contacts_add_csv(&csv, labels);
     char *text = growing_text_end(&csv);
-    if (!text)
-        return report_out_of_memory(report, path);
+    CHECK_MEMORY(report, text, path);
     const sonject_status status = file_write_whole(report, path, text, strlen(text));
     free(text);
     return status;

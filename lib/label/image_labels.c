@@ -83,8 +83,7 @@ static sonject_status find_pixels(struct contact *contact, struct report *report
         return SONJECT_OK;
     contact->run_count = write_runs(contact, request, NULL);
     contact->runs = allocate_array(contact->run_count, sizeof *contact->runs);
-    if (!contact->runs)
-        return report_out_of_memory(report, "labels");
+    CHECK_MEMORY(report, contact->runs, "labels");
     write_runs(contact, request, contact->runs);
     contact->box.first_row += request->patch.first_row;
     contact->box.first_column += request->patch.first_column;
@@ -124,8 +123,7 @@ sonject_status image_labels_find(struct image_labels *labels, struct report *rep
     sonject_status status = SONJECT_OK;
     memset(labels, 0, sizeof *labels);
     labels->contacts = allocate_array(result->object_count, sizeof *labels->contacts);
-    if (!labels->contacts)
-        return report_out_of_memory(report, "labels");
+    CHECK_MEMORY(report, labels->contacts, "labels");
     labels->file_name = request->file_name;
     labels->rows = request->rows;
     labels->columns = request->columns;

@@ -52,8 +52,7 @@ sonject_status voc_write(struct report *report, const struct image_labels *label
             add_object(&xml, &labels->contacts[i]);
     growing_text_add(&xml, "</annotation>\n");
     char *text = growing_text_end(&xml);
-    if (!text)
-        return report_out_of_memory(report, path);
+    CHECK_MEMORY(report, text, path);
     const sonject_status status = file_write_whole(report, path, text, strlen(text));
     free(text);
     return status;

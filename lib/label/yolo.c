@@ -35,10 +35,8 @@ sonject_status yolo_write(struct report *report, const struct image_labels *labe
             add_line(&lines, labels, &labels->contacts[i], class_number);
     }
     char *text = growing_text_end(&lines);
-    if (!text)
-        return report_out_of_memory(report, path);
-    if (status == SONJECT_OK)
-        status = file_write_whole(report, path, text, strlen(text));
+    CHECK_MEMORY(report, text, path);
+    THEN(status, file_write_whole(report, path, text, strlen(text)));
     free(text);
     return status;
 }
