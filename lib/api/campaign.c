@@ -82,15 +82,26 @@ sonject_status campaign_read_scene(struct sonject_campaign *campaign, const stru
     return status;
 }
 
+static sonject_status take_classes(struct sonject_campaign *campaign)
+{
+    const struct campaign *plan = &campaign->campaign;
+    uint32_t number;
+    for (size_t i = 0; i < plan->target_count + plan->clutter_count; i++) {
+        const struct item *item =
+            i < plan->target_count ? &plan->targets[i] : &plan->clutter[i - plan->target_count];
+        CHECK(class_names_take(&campaign->classes, campaign->report, item->class_name, &number));
+    }
+    return SONJECT_OK;
+}
+
 static sonject_status open_campaign(struct sonject_campaign *campaign, const char *path,
                                     const char *const *overrides, size_t count)
 {
     struct campaign *plan = &campaign->campaign;
-    sonject_status status = campaign_read(campaign->report, path, overrides, count, plan);
-    THEN(status, scene_file_load(campaign->report, plan->scene_path, &campaign->scene_text,
-                                 &campaign->scene_bytes));
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(campaign_read(campaign->report, path, overrides, count, plan));
+    CHECK(scene_file_load(campaign->report, plan->scene_path, &campaign->scene_text,
+                          &campaign->scene_bytes));
+    CHECK(take_classes(campaign));
     campaign->swath_hashes = allocate_array(plan->swath_count, sizeof *campaign->swath_hashes);
     CHECK_MEMORY(campaign->report, campaign->swath_hashes, "the campaign");
     return campaign_check(campaign);
@@ -142,6 +153,7 @@ void sonject_campaign_release(sonject_campaign **campaign)
     campaign_clear(&(*campaign)->campaign);
     swath_store_close(&(*campaign)->store);
     mesh_store_clear(&(*campaign)->meshes);
+    class_names_clear(&(*campaign)->classes);
     json_decref((*campaign)->inputs);
     free((*campaign)->scene_text);
     free((*campaign)->swath_hashes);

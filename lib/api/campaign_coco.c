@@ -9,6 +9,7 @@
 #include "api/campaign_documents.h"
 #include "base/file.h"
 #include "base/json_document.h"
+#include "dataset/labels.h"
 
 /* A document in the making: annotations wait in a file of their own until all images are told. */
 struct coco_file {
@@ -48,11 +49,10 @@ static sonject_status add_image(struct coco_file *coco, uint64_t id, bool is_fir
     const json_t *annotation;
     const struct data_set *set = coco->set;
     CHECK(data_set_image(set, coco->split, id, &record, NULL, NULL));
-    sonject_status status = add_entry(set, coco->images,
-                                      json_pack("{s:I, s:s, s:I, s:I}", "id", (json_int_t)id,
-                                                "file_name", member_text(record, "image"), "width",
-                                                set->columns, "height", set->rows),
-                                      is_first);
+    sonject_status status = add_entry(
+        set, coco->images,
+        coco_image(id, member_text(record, "image"), (uint64_t)set->rows, (uint64_t)set->columns),
+        is_first);
     json_array_foreach(json_object_get(record, "annotations"), i, annotation)
     {
         const bool is_first_of_all = coco->annotation_count == 0;
@@ -97,9 +97,7 @@ static sonject_status add_categories(struct coco_file *coco)
     json_array_foreach(json_object_get(coco->set->head, "classes"), i, name)
     {
         THEN(status, add_entry(coco->set, coco->images,
-                               json_pack("{s:I, s:O, s:s}", "id", (json_int_t)i + 1, "name", name,
-                                         "supercategory", "object"),
-                               i == 0));
+                               coco_category(i + 1, json_string_value(name)), i == 0));
     }
     return status;
 }

@@ -140,7 +140,7 @@ static sonject_status write_data_set(const struct data_set *set)
         json_add(&document, kept[i], json_incref(json_object_get(set->head, kept[i])));
     json_add(&document, "files", files);
     if (status == SONJECT_OK)
-        status = campaign_write_json(set->report, document, path);
+        status = json_document_write(set->report, document, 9, path);
     else
         json_decref(document);
     free(path);
@@ -154,16 +154,13 @@ static sonject_status write_classes(const struct data_set *set)
     const json_t *name;
     struct growing_text text = {NULL, 0, 0, false};
     char *path = path_join(set->folder, "classes.txt");
+    CHECK_MEMORY(set->report, path, "classes.txt");
     json_array_foreach(json_object_get(set->head, "classes"), i, name)
     {
         growing_text_add(&text, "%s\n", json_string_value(name) ? json_string_value(name) : "");
     }
-    char *names = growing_text_end(&text);
-    const sonject_status status = path && names
-                                      ? file_write_whole(set->report, path, names, strlen(names))
-                                      : report_out_of_memory(set->report, "classes.txt");
+    const sonject_status status = growing_text_write(set->report, &text, path);
     free(path);
-    free(names);
     return status;
 }
 

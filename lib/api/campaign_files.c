@@ -197,13 +197,3 @@ void split_folders_tidy(const char *folder, const char *split, uint32_t outputs)
         folder_tidy(path);
     free(path);
 }
-
-sonject_status campaign_write_json(struct report *report, json_t *document, const char *path)
-{
-    char *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
-    json_decref(document);
-    CHECK_MEMORY(report, text, path);
-    const sonject_status status = file_write_whole(report, path, text, strlen(text));
-    free(text);
-    return status;
-}

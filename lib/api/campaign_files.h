@@ -62,8 +62,4 @@ void split_folders_tidy(const char *folder, const char *split, uint32_t outputs)
 /* "folder/split/kind/name" for free(); parts may be NULL from the end. NULL when memory is out. */
 char *campaign_file(const char *folder, const char *split, const char *kind, const char *name);
 
-/* Writes a document, which is given up; NULL counts as memory that was out. Errors: STORAGE,
- * MEMORY. */
-sonject_status campaign_write_json(struct report *report, json_t *document, const char *path);
-
 #endif

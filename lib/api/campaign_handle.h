@@ -11,6 +11,7 @@
 #include "base/hash.h"
 #include "campaign/campaign.h"
 #include "campaign/image_plan.h"
+#include "dataset/labels.h"
 
 struct sonject_campaign {
     struct report *report; /* the context's */
@@ -22,6 +23,7 @@ struct sonject_campaign {
     char (*swath_hashes)[HASH_TEXT_CAPACITY]; /* of the swaths' files; owned */
     json_t *inputs;                           /* all that images depend on, by name; owned */
     char hash[HASH_TEXT_CAPACITY];            /* of inputs */
+    struct class_names classes; /* of all that may be drawn: images number them alike */
     struct swath_store store;
     struct mesh_store meshes; /* of scenes whose mesh_store it is */
 };

@@ -13,26 +13,12 @@
 #define FORMAT_VERSION 2
 #define HEAD_FILE      "campaign.json"
 
-static void add_class(json_t **classes, const char *name)
+static json_t *classes_of(const struct class_names *classes)
 {
-    size_t i;
-    const json_t *known;
-    json_array_foreach(*classes, i, known)
-    {
-        if (strcmp(json_string_value(known), name) == 0)
-            return;
-    }
-    json_append(classes, json_string(name));
-}
-
-static json_t *classes_of(const struct campaign *campaign)
-{
-    json_t *classes = json_array();
-    for (size_t i = 0; i < campaign->target_count; i++)
-        add_class(&classes, campaign->targets[i].class_name);
-    for (size_t i = 0; i < campaign->clutter_count; i++)
-        add_class(&classes, campaign->clutter[i].class_name);
-    return classes;
+    json_t *names = json_array();
+    for (uint32_t i = 0; i < classes->count; i++)
+        json_append(&names, json_string(classes->names[i]));
+    return names;
 }
 
 static json_t *splits_of(const struct campaign *campaign)
@@ -40,9 +26,9 @@ static json_t *splits_of(const struct campaign *campaign)
     json_t *splits = json_array();
     for (size_t i = 0; i < campaign->split_count; i++) {
         const struct split *split = &campaign->splits[i];
-        json_append(&splits,
-                    json_pack("{s:s, s:I, s:I}", "name", split->name, "first_image",
-                              (json_int_t)split->first_image, "images", (json_int_t)split->images));
+        json_append(&splits, JSON_OBJECT({"name", json_string(split->name)},
+                                         {"first_image", json_count(split->first_image)},
+                                         {"images", json_count(split->images)}));
     }
     return splits;
 }
@@ -52,9 +38,10 @@ static json_t *swaths_of(const struct sonject_campaign *campaign)
     json_t *swaths = json_array();
     for (size_t i = 0; i < campaign->campaign.swath_count; i++) {
         const struct swath_plan *swath = &campaign->campaign.swaths[i];
-        json_append(&swaths, json_pack("{s:s, s:s, s:s}", "path", swath->written, "hash",
-                                       campaign->swath_hashes[i], "split",
-                                       campaign->campaign.splits[swath->split_number].name));
+        const char *split = campaign->campaign.splits[swath->split_number].name;
+        json_append(&swaths, JSON_OBJECT({"path", json_string(swath->written)},
+                                         {"hash", json_string(campaign->swath_hashes[i])},
+                                         {"split", json_string(split)}));
     }
     return swaths;
 }
@@ -72,13 +59,14 @@ static json_t *head_of(const struct sonject_campaign *campaign, const struct dev
                        json_t *inputs)
 {
     const struct campaign *plan = &campaign->campaign;
-    return json_pack(
-        "{s:i, s:s, s:s, s:O, s:o, s:I, s:I, s:I, s:o, s:o, s:o, s:o}", "sonject_campaign",
-        FORMAT_VERSION, "sonject", sonject_version(), "hash", campaign->hash, "inputs", inputs,
-        "device", device ? device_document(device) : json_null(), "images",
-        (json_int_t)plan->images, "rows", (json_int_t)plan->chip_rows, "columns",
-        (json_int_t)plan->chip_columns, "splits", splits_of(plan), "classes", classes_of(plan),
-        "outputs", outputs_of(plan->outputs), "swaths", swaths_of(campaign));
+    return JSON_OBJECT({"sonject_campaign", json_integer(FORMAT_VERSION)},
+                       {"sonject", json_string(sonject_version())},
+                       {"hash", json_string(campaign->hash)}, {"inputs", json_incref(inputs)},
+                       {"device", device ? device_document(device) : json_null()},
+                       {"images", json_count(plan->images)}, {"rows", json_count(plan->chip_rows)},
+                       {"columns", json_count(plan->chip_columns)}, {"splits", splits_of(plan)},
+                       {"classes", classes_of(&campaign->classes)},
+                       {"outputs", outputs_of(plan->outputs)}, {"swaths", swaths_of(campaign)});
 }
 
 /* Whose images the folder holds; those of another campaign are removed where they may be. */
@@ -109,7 +97,7 @@ sonject_status data_set_begin(struct sonject_campaign *campaign, const struct de
     if (status == SONJECT_OK && file_exists(path))
         status = check_head(campaign, inputs, folder, overwrites, &is_same);
     if (status == SONJECT_OK && !is_same)
-        status = campaign_write_json(report, head_of(campaign, device, inputs), path);
+        status = json_document_write(report, head_of(campaign, device, inputs), 9, path);
     json_decref(inputs);
     free(path);
     return status;

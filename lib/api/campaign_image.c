@@ -15,11 +15,9 @@
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
+#include "dataset/labels.h"
 #include "io/geometry_notes.h"
 #include "io/raster_file.h"
-#include "label/coco.h"
-#include "label/voc.h"
-#include "label/yolo.h"
 
 void campaign_image_clear(struct campaign_image *image)
 {
@@ -147,79 +145,51 @@ static json_t *record_of(const struct sonject_campaign *campaign,
     json_t *keys = json_array();
     for (size_t i = 0; i < plan->key_count; i++)
         json_append(&keys, json_string(plan->keys[i].text));
-    return json_pack(
-        "{s:I, s:s, s:s, s:s?, s:{s:s, s:s, s:I, s:I, s:I, s:I}, s:o, s:s, s:o, s:s, s:s, s:s, "
-        "s:o, s:o}",
-        "id", (json_int_t)plan->id, "split", campaign->campaign.splits[plan->split].name, "image",
-        image_name, "target",
-        has_target ? campaign->campaign.targets[plan->category - CATEGORY_TARGET].class_name : NULL,
-        "swath", "path", swath->written, "hash", campaign->swath_hashes[plan->swath], "row",
-        (json_int_t)plan->chip.first_row, "column", (json_int_t)plan->chip.first_column, "rows",
-        (json_int_t)plan->chip.rows, "columns", (json_int_t)plan->chip.columns, "seed",
-        json_seed(image->scene.injection.seed), "scene", campaign->campaign.scene_written, "set",
-        keys, "scene_hash", scene_hash_text, "campaign_hash", campaign->hash, "sonject",
-        sonject_version(), "files", files, "annotations", annotations);
+    json_t *place = JSON_OBJECT(
+        {"path", json_string(swath->written)},
+        {"hash", json_string(campaign->swath_hashes[plan->swath])},
+        {"row", json_count(plan->chip.first_row)}, {"column", json_count(plan->chip.first_column)},
+        {"rows", json_count(plan->chip.rows)}, {"columns", json_count(plan->chip.columns)});
+    return JSON_OBJECT(
+        {"id", json_count(plan->id)},
+        {"split", json_string(campaign->campaign.splits[plan->split].name)},
+        {"image", json_string(image_name)},
+        {"target",
+         has_target
+             ? json_string(campaign->campaign.targets[plan->category - CATEGORY_TARGET].class_name)
+             : json_null()},
+        {"swath", place}, {"seed", json_seed(image->scene.injection.seed)},
+        {"scene", json_string(campaign->campaign.scene_written)}, {"set", keys},
+        {"scene_hash", json_string(scene_hash_text)},
+        {"campaign_hash", json_string(campaign->hash)}, {"sonject", json_string(sonject_version())},
+        {"files", files}, {"annotations", annotations});
 }
 
 static sonject_status write_record(struct sonject_campaign *campaign,
                                    const struct campaign_image *image,
-                                   const struct image_labels *labels, struct class_names *classes,
+                                   const struct image_labels *labels,
                                    const struct image_files *files)
 {
     char hash[HASH_TEXT_CAPACITY];
-    json_t *list = NULL;
-    struct coco coco;
-    memset(&coco, 0, sizeof coco);
-    sonject_status status =
-        scene_hash(campaign->report, &image->scene, image->swath.identity, hash);
-    THEN(status, coco_add(&coco, campaign->report, labels, classes));
-    THEN(status, image_files_list(files, campaign->report, &list));
-    THEN(status, campaign_write_json(campaign->report,
-                                     record_of(campaign, image, labels->file_name, hash,
-                                               json_incref(list), json_incref(coco.annotations)),
-                                     files->record));
-    json_decref(list);
-    coco_clear(&coco);
-    return status;
-}
-
-/* Labels number the campaign's classes alike in all images. */
-static sonject_status take_classes(const struct campaign *campaign, struct report *report,
-                                   struct class_names *classes)
-{
-    uint32_t number;
-    sonject_status status = SONJECT_OK;
-    for (size_t i = 0; status == SONJECT_OK && i < campaign->target_count; i++)
-        status = class_names_take(classes, report, campaign->targets[i].class_name, &number);
-    for (size_t i = 0; status == SONJECT_OK && i < campaign->clutter_count; i++)
-        status = class_names_take(classes, report, campaign->clutter[i].class_name, &number);
-    return status;
-}
-
-static sonject_status write_truth_of(struct sonject_campaign *campaign, const struct scene *scene,
-                                     const struct swath *swath,
-                                     const struct injection_result *result, const char *image_name,
-                                     const char *path)
-{
-    struct run_facts facts;
-    memset(&facts, 0, sizeof facts);
-    facts.scene = scene;
-    facts.swath = swath;
-    facts.result = result;
-    facts.image_name = image_name;
-    return write_truth(campaign->report, &facts, path);
+    json_t *list;
+    CHECK(scene_hash(campaign->report, &image->scene, image->swath.identity, hash));
+    CHECK(image_files_list(files, campaign->report, &list));
+    return json_document_write(
+        campaign->report,
+        record_of(campaign, image, labels->file_name, hash, list, coco_annotations(labels)), 9,
+        files->record);
 }
 
 static sonject_status write_output(struct sonject_campaign *campaign,
                                    const struct campaign_image *image, const struct scene *scene,
                                    const struct swath *swath, const struct image_labels *labels,
-                                   struct class_names *classes, uint32_t output, const char *path)
+                                   uint32_t output, const char *path)
 {
     switch (output) {
     case OUTPUT_YOLO:
-        return yolo_write(campaign->report, labels, classes, path);
+        return labels_write(campaign->report, labels, &campaign->classes, LABEL_YOLO, path);
     case OUTPUT_VOC:
-        return voc_write(campaign->report, labels, path);
+        return labels_write(campaign->report, labels, &campaign->classes, LABEL_VOC, path);
     case OUTPUT_ENERGY:
     case OUTPUT_FIELD:
         return write_layer(campaign, scene, swath, &image->result, output, path);
@@ -234,15 +204,14 @@ static sonject_status write_rest(struct sonject_campaign *campaign,
                                  const struct swath *swath, const struct image_labels *labels,
                                  const struct image_files *files)
 {
-    struct class_names classes = {NULL, 0, 0};
-    sonject_status status = take_classes(&campaign->campaign, campaign->report, &classes);
+    const struct run_facts facts = {
+        .scene = scene, .swath = swath, .result = &image->result, .image_name = labels->file_name};
+    sonject_status status = SONJECT_OK;
     for (size_t i = 0; status == SONJECT_OK && i < files->output_count; i++)
-        status = write_output(campaign, image, scene, swath, labels, &classes,
-                              files->outputs[i].kind->output, files->outputs[i].path);
-    THEN(status,
-         write_truth_of(campaign, scene, swath, &image->result, labels->file_name, files->truth));
-    THEN(status, write_record(campaign, image, labels, &classes, files));
-    class_names_clear(&classes);
+        status = write_output(campaign, image, scene, swath, labels, files->outputs[i].kind->output,
+                              files->outputs[i].path);
+    THEN(status, write_truth(campaign->report, &facts, files->truth));
+    THEN(status, write_record(campaign, image, labels, files));
     return status;
 }
 
@@ -259,9 +228,9 @@ sonject_status campaign_image_write(struct sonject_campaign *campaign, struct ca
     snprintf(image_name, sizeof image_name, "images/%08llu%s", (unsigned long long)image->plan.id,
              image_extension(swath.layout.type, swath.is_complex));
     const struct label_request request = {
-        &scene, &image->result, image_name, swath.layout.rows, swath.layout.columns, swath.patch, 0,
-        0,      &swath.track};
-    CHECK(image_labels_find(&labels, campaign->report, &request));
+        &scene,      &image->result, image_name, swath.layout.rows, swath.layout.columns,
+        swath.patch, &swath.track};
+    CHECK(image_labels_find(&labels, campaign->report, &request, &campaign->classes));
     sonject_status status =
         image_files_init(&files, campaign->report, folder, split, image->plan.id, swath.layout.type,
                          swath.is_complex, campaign->campaign.outputs);

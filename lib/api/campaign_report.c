@@ -251,10 +251,7 @@ sonject_status write_report_page(const struct data_set *set)
     THEN(status, gather(page));
     if (status == SONJECT_OK) {
         write_page(page, &text);
-        char *whole = growing_text_end(&text);
-        status = whole ? file_write_whole(set->report, path, whole, strlen(whole))
-                       : report_out_of_memory(set->report, "the report");
-        free(whole);
+        status = growing_text_write(set->report, &text, path);
     }
     for (size_t i = 0; page && i < page->series_count; i++)
         free(page->series[i].values);

@@ -8,6 +8,7 @@
 #include "api/campaign_documents.h"
 #include "base/clock.h"
 #include "base/file.h"
+#include "base/json_document.h"
 #include "base/memory.h"
 
 void sonject_campaign_run_params_init(sonject_campaign_run_params *params)
@@ -136,11 +137,10 @@ static sonject_status write_times(const struct sweep *sweep)
     const double elapsed = clock_seconds() - sweep->start_s;
     char *path = path_join(sweep->params->folder, "times.json");
     CHECK_MEMORY(sweep->campaign->report, path, "a file name");
-    const sonject_status status = campaign_write_json(
-        sweep->campaign->report,
-        json_pack("{s:I, s:f, s:f}", "images_made", (json_int_t)sweep->made, "seconds", elapsed,
-                  "images_per_second", elapsed > 0.0 ? (double)sweep->made / elapsed : 0.0),
-        path);
+    json_t *document = JSON_OBJECT(
+        {"images_made", json_count(sweep->made)}, {"seconds", json_number(elapsed)},
+        {"images_per_second", json_number(elapsed > 0.0 ? (double)sweep->made / elapsed : 0.0)});
+    const sonject_status status = json_document_write(sweep->campaign->report, document, 9, path);
     free(path);
     return status;
 }

@@ -103,22 +103,18 @@ static sonject_status read_set(struct contact_set *set, struct report *report, c
 
 static json_t *summary_document(const struct sample_summary *summary)
 {
-    json_t *document = json_object();
-    json_add(&document, "count", json_count(summary->count));
-    json_add(&document, "mean", json_number(summary->mean));
-    json_add(&document, "standard_error", json_number(summary->error));
-    return document;
+    return JSON_OBJECT({"count", json_count(summary->count)}, {"mean", json_number(summary->mean)},
+                       {"standard_error", json_number(summary->error)});
 }
 
 static char *comparison_text(const struct sample_comparison *comparisons)
 {
     json_t *document = json_object();
     for (size_t i = 0; i < COMPARED_NUMBERS; i++) {
-        json_t *entry = json_object();
-        json_add(&entry, "first", summary_document(&comparisons[i].first));
-        json_add(&entry, "second", summary_document(&comparisons[i].second));
-        json_add(&entry, "ks_distance", json_number(comparisons[i].distance));
-        json_add(&entry, "p_value", json_number(comparisons[i].probability));
+        json_t *entry = JSON_OBJECT({"first", summary_document(&comparisons[i].first)},
+                                    {"second", summary_document(&comparisons[i].second)},
+                                    {"ks_distance", json_number(comparisons[i].distance)},
+                                    {"p_value", json_number(comparisons[i].probability)});
         json_add(&document, contact_numbers[i].name, entry);
     }
     char *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9));

@@ -8,9 +8,9 @@
 #include "api/handles.h"
 #include "base/file.h"
 #include "base/json_document.h"
+#include "dataset/labels.h"
 #include "base/memory.h"
 #include "image/contact_search.h"
-#include "label/contact_record.h"
 
 #define TRUTH_BYTES_MAX ((size_t)1 << 26)
 #define BOXES_MAX       100000
@@ -108,12 +108,10 @@ static sonject_status take_truth(struct contact_list *list, struct report *repor
 
 static json_t *measures_document(const char *image, const sonject_contact_measures *measures)
 {
-    json_t *document = json_object();
-    json_add(&document, "image", json_text(image));
-    json_add(&document, "measured_box", box_document(&measures->box));
-    json_add(&document, "highlight_box", box_document(&measures->highlight));
-    json_add(&document, "shadow_box", box_document(&measures->shadow));
-    json_add(&document, "cut", json_boolean(measures->is_cut));
+    json_t *document = JSON_OBJECT(
+        {"image", json_text(image)}, {"measured_box", box_document(&measures->box)},
+        {"highlight_box", box_document(&measures->highlight)},
+        {"shadow_box", box_document(&measures->shadow)}, {"cut", json_boolean(measures->is_cut)});
     for (size_t i = 0; i < CONTACT_NUMBERS; i++) {
         double value;
         memcpy(&value, (const char *)measures + contact_numbers[i].offset, sizeof value);
@@ -130,9 +128,7 @@ static sonject_status write_list(struct report *report, const char *image,
     json_t *contacts = json_array();
     for (size_t i = 0; i < count; i++)
         json_append(&contacts, measures_document(image, &measures[i]));
-    json_t *document = json_object();
-    json_add(&document, "contacts", contacts);
-    json_add(&document, "left_off", json_count(left_off));
+    json_t *document = JSON_OBJECT({"contacts", contacts}, {"left_off", json_count(left_off)});
     *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(9));
     json_decref(document);
     return *text ? SONJECT_OK : report_out_of_memory(report, image);

@@ -15,7 +15,7 @@
 #include "api/label_files.h"
 #include "base/file.h"
 #include "base/json_document.h"
-#include "label/contact_record.h"
+#include "dataset/labels.h"
 
 /* Horizontal range of a level seabed at a slant range; NaN before the first return. */
 static double level_ground_range(const struct run_facts *facts, double slant_range_m)
@@ -37,21 +37,15 @@ static json_t *swath_box_document(const struct run_facts *facts, const sonject_b
         geometry->first_slant_range_m + ((double)column - 0.5) * geometry->column_spacing_m;
     const double width = (double)box->columns * geometry->column_spacing_m;
     const double ground = level_ground_range(facts, near);
-    json_t *document = json_object();
-    json_add(&document, "row", json_count(row));
-    json_add(&document, "column", json_count(column));
-    json_add(&document, "rows", json_count(box->rows));
-    json_add(&document, "columns", json_count(box->columns));
-    json_add(
-        &document, "along_track_m",
-        json_number(geometry->first_along_track_m + ((double)row - 0.5) * geometry->row_spacing_m));
-    json_add(&document, "slant_range_m", json_number(near));
-    json_add(&document, "ground_range_m", json_number(ground));
-    json_add(&document, "length_m", json_number((double)box->rows * geometry->row_spacing_m));
-    json_add(&document, "width_m", json_number(width));
-    json_add(&document, "ground_width_m",
-             json_number(level_ground_range(facts, near + width) - ground));
-    return document;
+    return JSON_OBJECT(
+        {"row", json_count(row)}, {"column", json_count(column)}, {"rows", json_count(box->rows)},
+        {"columns", json_count(box->columns)},
+        {"along_track_m", json_number(geometry->first_along_track_m +
+                                      ((double)row - 0.5) * geometry->row_spacing_m)},
+        {"slant_range_m", json_number(near)}, {"ground_range_m", json_number(ground)},
+        {"length_m", json_number((double)box->rows * geometry->row_spacing_m)},
+        {"width_m", json_number(width)},
+        {"ground_width_m", json_number(level_ground_range(facts, near + width) - ground)});
 }
 
 #define DEGREES_PER_RADIAN 57.29577951308232
@@ -63,13 +57,11 @@ static json_t *level_document(const struct run_facts *facts, uint32_t index)
     const sonject_object_params *object = &facts->scene->objects[index];
     const sonject_object_truth *truth = &facts->result->objects[index];
     const bool is_physical = truth->level_kind == SONJECT_LEVEL_PHYSICAL;
-    json_t *document = json_object();
-    json_add(&document, "set_by", json_string(kinds[truth->level_kind]));
-    json_add(&document, "asked_db", is_physical ? json_null() : json_number(object->level_db));
-    json_add(&document, "gain_db", json_number(truth->level_gain_db));
-    json_add(&document, "over_seabed_db", json_number(truth->over_seabed_db));
-    json_add(&document, "seabed_strength_db", json_number(truth->seabed_strength_db));
-    return document;
+    return JSON_OBJECT({"set_by", json_string(kinds[truth->level_kind])},
+                       {"asked_db", is_physical ? json_null() : json_number(object->level_db)},
+                       {"gain_db", json_number(truth->level_gain_db)},
+                       {"over_seabed_db", json_number(truth->over_seabed_db)},
+                       {"seabed_strength_db", json_number(truth->seabed_strength_db)});
 }
 
 /* Which edge a box of the patch touches: "swath", where the swath goes on "patch", or null. */
@@ -99,11 +91,9 @@ static json_t *position_document(const struct run_facts *facts, double row, doub
 
 static json_t *dimensions_document(const sonject_object_truth *truth)
 {
-    json_t *document = json_object();
-    json_add(&document, "length_m", json_number(truth->overall_length_m));
-    json_add(&document, "width_m", json_number(truth->overall_width_m));
-    json_add(&document, "height_m", json_number(truth->overall_height_m));
-    return document;
+    return JSON_OBJECT({"length_m", json_number(truth->overall_length_m)},
+                       {"width_m", json_number(truth->overall_width_m)},
+                       {"height_m", json_number(truth->overall_height_m)});
 }
 
 /* The size that a key gives, or where the shape has no such key what is left of its extent. */
@@ -116,82 +106,72 @@ static json_t *object_document(const struct run_facts *facts, uint32_t index)
 {
     const sonject_object_params *object = &facts->scene->objects[index];
     const sonject_object_truth *truth = &facts->result->objects[index];
-    json_t *pose = json_object();
-    json_add(&pose, "heading_deg", json_number(object->heading_rad * DEGREES_PER_RADIAN));
-    json_add(&pose, "pitch_deg", json_number(object->pitch_rad * DEGREES_PER_RADIAN));
-    json_add(&pose, "roll_deg", json_number(object->roll_rad * DEGREES_PER_RADIAN));
-    json_t *document = json_object();
-    json_add(&document, "id", json_count(index + 1));
-    json_add(&document, "name", json_text(object->name));
-    json_add(&document, "class", json_text(object->class_name));
-    json_add(&document, "shape", json_string(shape_name(object->shape)));
-    json_add(&document, "length_m", size_document(object->length_m, truth->overall_length_m));
-    json_add(&document, "width_m", size_document(object->width_m, truth->overall_width_m));
-    json_add(&document, "diameter_m", json_number(object->diameter_m));
-    json_add(&document, "body_height_m", size_document(object->height_m, truth->overall_height_m));
-    json_add(&document, "top_diameter_m", json_number(object->top_diameter_m));
-    json_add(&document, "front_height_m", json_number(object->front_height_m));
-    json_add(&document, "cuts", json_count(object->cut_count));
-    json_add(&document, "pose", pose);
-    json_add(&document, "burial_m", json_number(truth->burial_m));
-    json_add(&document, "along_track_m", json_number(truth->along_track_m));
-    json_add(&document, "slant_range_m", json_number(truth->slant_range_m));
-    json_add(&document, "ground_range_m", json_number(truth->ground_range_m));
-    json_add(&document, "height_m", json_number(truth->height_m));
-    json_add(&document, "grazing_deg", json_number(truth->grazing_rad * DEGREES_PER_RADIAN));
-    json_add(&document, "transmission_loss_db", json_number(truth->transmission_loss_db));
-    json_add(&document, "row", json_number(truth->row + (double)facts->swath->patch.first_row));
-    json_add(&document, "column",
-             json_number(truth->column + (double)facts->swath->patch.first_column));
-    json_add(&document, "visible", json_boolean(truth->is_visible));
-    json_add(&document, "highlight_cut", json_boolean(truth->highlight_is_cut));
-    json_add(&document, "shadow_cut", json_boolean(truth->shadow_is_cut));
-    json_add(&document, "highlight_cut_by",
-             cut_document(facts, truth->highlight_is_cut, &truth->highlight));
-    json_add(&document, "shadow_cut_by", cut_document(facts, truth->shadow_is_cut, &truth->shadow));
-    json_add(&document, "highlight_visible", json_number(truth->highlight_visible));
-    json_add(&document, "shadow_visible", json_number(truth->shadow_visible));
-    json_add(&document, "dimensions", dimensions_document(truth));
-    json_add(&document, "position",
-             position_document(facts, truth->row + (double)facts->swath->patch.first_row,
-                               truth->ground_range_m));
-    json_add(&document, "highlight", swath_box_document(facts, &truth->highlight));
-    json_add(&document, "shadow", swath_box_document(facts, &truth->shadow));
-    json_add(&document, "box", swath_box_document(facts, &truth->both));
-    json_add(&document, "highlight_pixels", json_count(truth->highlight_pixels));
-    json_add(&document, "shadow_pixels", json_count(truth->shadow_pixels));
-    json_add(&document, "target_strength_db", json_number(truth->target_strength_db));
-    json_add(&document, "highlight_contrast_db", json_number(truth->highlight_contrast_db));
-    json_add(&document, "shadow_contrast_db", json_number(truth->shadow_contrast_db));
-    json_add(&document, "highlight_along_m", json_number(truth->highlight_along_m));
-    json_add(&document, "highlight_range_m", json_number(truth->highlight_range_m));
-    json_add(&document, "shadow_along_m", json_number(truth->shadow_along_m));
-    json_add(&document, "shadow_range_m", json_number(truth->shadow_range_m));
-    json_add(&document, "gap_range_m", json_number(truth->gap_range_m));
-    json_add(&document, "dim_range_m", json_number(truth->dim_range_m));
-    json_add(&document, "level", level_document(facts, index));
-    return document;
+    json_t *pose =
+        JSON_OBJECT({"heading_deg", json_number(object->heading_rad * DEGREES_PER_RADIAN)},
+                    {"pitch_deg", json_number(object->pitch_rad * DEGREES_PER_RADIAN)},
+                    {"roll_deg", json_number(object->roll_rad * DEGREES_PER_RADIAN)});
+    return JSON_OBJECT(
+        {"id", json_count(index + 1)}, {"name", json_text(object->name)},
+        {"class", json_text(object->class_name)}, {"shape", json_string(shape_name(object->shape))},
+        {"length_m", size_document(object->length_m, truth->overall_length_m)},
+        {"width_m", size_document(object->width_m, truth->overall_width_m)},
+        {"diameter_m", json_number(object->diameter_m)},
+        {"body_height_m", size_document(object->height_m, truth->overall_height_m)},
+        {"top_diameter_m", json_number(object->top_diameter_m)},
+        {"front_height_m", json_number(object->front_height_m)},
+        {"cuts", json_count(object->cut_count)}, {"pose", pose},
+        {"burial_m", json_number(truth->burial_m)},
+        {"along_track_m", json_number(truth->along_track_m)},
+        {"slant_range_m", json_number(truth->slant_range_m)},
+        {"ground_range_m", json_number(truth->ground_range_m)},
+        {"height_m", json_number(truth->height_m)},
+        {"grazing_deg", json_number(truth->grazing_rad * DEGREES_PER_RADIAN)},
+        {"transmission_loss_db", json_number(truth->transmission_loss_db)},
+        {"row", json_number(truth->row + (double)facts->swath->patch.first_row)},
+        {"column", json_number(truth->column + (double)facts->swath->patch.first_column)},
+        {"visible", json_boolean(truth->is_visible)},
+        {"highlight_cut", json_boolean(truth->highlight_is_cut)},
+        {"shadow_cut", json_boolean(truth->shadow_is_cut)},
+        {"highlight_cut_by", cut_document(facts, truth->highlight_is_cut, &truth->highlight)},
+        {"shadow_cut_by", cut_document(facts, truth->shadow_is_cut, &truth->shadow)},
+        {"highlight_visible", json_number(truth->highlight_visible)},
+        {"shadow_visible", json_number(truth->shadow_visible)},
+        {"dimensions", dimensions_document(truth)},
+        {"position", position_document(facts, truth->row + (double)facts->swath->patch.first_row,
+                                       truth->ground_range_m)},
+        {"highlight", swath_box_document(facts, &truth->highlight)},
+        {"shadow", swath_box_document(facts, &truth->shadow)},
+        {"box", swath_box_document(facts, &truth->both)},
+        {"highlight_pixels", json_count(truth->highlight_pixels)},
+        {"shadow_pixels", json_count(truth->shadow_pixels)},
+        {"target_strength_db", json_number(truth->target_strength_db)},
+        {"highlight_contrast_db", json_number(truth->highlight_contrast_db)},
+        {"shadow_contrast_db", json_number(truth->shadow_contrast_db)},
+        {"highlight_along_m", json_number(truth->highlight_along_m)},
+        {"highlight_range_m", json_number(truth->highlight_range_m)},
+        {"shadow_along_m", json_number(truth->shadow_along_m)},
+        {"shadow_range_m", json_number(truth->shadow_range_m)},
+        {"gap_range_m", json_number(truth->gap_range_m)},
+        {"dim_range_m", json_number(truth->dim_range_m)}, {"level", level_document(facts, index)});
 }
 
 /* The measured image around the objects, and what was put in with it. */
 static json_t *blending_document(const sonject_statistics *statistics)
 {
     const bool has_texture = isfinite(statistics->seabed_shape);
-    json_t *seabed = json_object();
-    json_add(&seabed, "amplitude_contrast", json_number(statistics->seabed_amplitude_contrast));
-    json_add(&seabed, "looks", json_number(statistics->seabed_looks));
-    json_add(&seabed, "k_shape", has_texture ? json_number(statistics->seabed_shape) : json_null());
-    json_add(&seabed, "row_correlation", json_number(statistics->seabed_row_correlation));
-    json_add(&seabed, "column_correlation", json_number(statistics->seabed_column_correlation));
-    json_t *document = json_object();
-    json_add(&document, "seabed_estimated", seabed);
-    json_add(&document, "along_track_resolution_m",
-             json_number(statistics->along_track_resolution_m));
-    json_add(&document, "range_resolution_m", json_number(statistics->range_resolution_m));
-    json_add(&document, "looks", json_number(statistics->looks));
-    json_add(&document, "noise_floor_db", json_number(statistics->noise_floor_db));
-    json_add(&document, "saturation_amplitude", json_number(statistics->saturation_amplitude));
-    return document;
+    json_t *seabed =
+        JSON_OBJECT({"amplitude_contrast", json_number(statistics->seabed_amplitude_contrast)},
+                    {"looks", json_number(statistics->seabed_looks)},
+                    {"k_shape", has_texture ? json_number(statistics->seabed_shape) : json_null()},
+                    {"row_correlation", json_number(statistics->seabed_row_correlation)},
+                    {"column_correlation", json_number(statistics->seabed_column_correlation)});
+    return JSON_OBJECT(
+        {"seabed_estimated", seabed},
+        {"along_track_resolution_m", json_number(statistics->along_track_resolution_m)},
+        {"range_resolution_m", json_number(statistics->range_resolution_m)},
+        {"looks", json_number(statistics->looks)},
+        {"noise_floor_db", json_number(statistics->noise_floor_db)},
+        {"saturation_amplitude", json_number(statistics->saturation_amplitude)});
 }
 
 /* Where the patch's corners lie on the map: first row near and far, last row far and near; null
@@ -218,22 +198,19 @@ static json_t *corners_document(const struct run_facts *facts)
 
 sonject_status write_truth(struct report *report, const struct run_facts *facts, const char *path)
 {
-    json_t *patch = json_object();
-    json_add(&patch, "row", json_count(facts->swath->patch.first_row));
-    json_add(&patch, "column", json_count(facts->swath->patch.first_column));
-    json_add(&patch, "rows", json_count(facts->swath->patch.rows));
-    json_add(&patch, "columns", json_count(facts->swath->patch.columns));
-    json_add(&patch, "corners", corners_document(facts));
+    json_t *patch = JSON_OBJECT({"row", json_count(facts->swath->patch.first_row)},
+                                {"column", json_count(facts->swath->patch.first_column)},
+                                {"rows", json_count(facts->swath->patch.rows)},
+                                {"columns", json_count(facts->swath->patch.columns)},
+                                {"corners", corners_document(facts)});
     json_t *objects = json_array();
     for (uint32_t i = 0; i < facts->result->object_count; i++)
         json_append(&objects, object_document(facts, i));
-    json_t *document = json_object();
-    json_add(&document, "image", json_text(facts->image_name));
-    json_add(&document, "range_axis", json_string("slant"));
-    json_add(&document, "patch", patch);
-    json_add(&document, "blending", blending_document(&facts->result->statistics));
-    json_add(&document, "objects", objects);
-    return json_document_write(report, document, path);
+    json_t *document =
+        JSON_OBJECT({"image", json_text(facts->image_name)}, {"range_axis", json_string("slant")},
+                    {"patch", patch}, {"blending", blending_document(&facts->result->statistics)},
+                    {"objects", objects});
+    return json_document_write(report, document, 12, path);
 }
 
 static uint64_t peak_memory(void)
@@ -245,52 +222,43 @@ static uint64_t peak_memory(void)
 static json_t *times_document(const struct run_facts *facts)
 {
     const sonject_statistics *statistics = &facts->result->statistics;
-    json_t *document = json_object();
-    json_add(&document, "read", json_number(facts->read_s));
-    json_add(&document, "trace", json_number(statistics->trace_s));
-    json_add(&document, "form", json_number(statistics->form_s));
-    json_add(&document, "inject", json_number(statistics->inject_s));
-    json_add(&document, "write", json_number(facts->write_s));
-    json_add(&document, "total", json_number(facts->total_s));
-    return document;
+    return JSON_OBJECT(
+        {"read", json_number(facts->read_s)}, {"trace", json_number(statistics->trace_s)},
+        {"form", json_number(statistics->form_s)}, {"inject", json_number(statistics->inject_s)},
+        {"write", json_number(facts->write_s)}, {"total", json_number(facts->total_s)});
 }
 
 static json_t *options_document(const struct scene *scene)
 {
     const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
-    json_t *document = json_object();
-    json_add(&document, "mode", json_string(resynthesises ? "resynthesise" : "composite"));
-    json_add(
-        &document, "columns",
-        json_string(scene->injection.column_rule == SONJECT_COLUMNS_PAPER ? "paper" : "focused"));
-    json_add(&document, "ray_scale", json_number(scene->injection.ray_scale));
-    json_add(&document, "influence_db", json_number(scene->injection.influence_db));
-    json_add(
-        &document, "match_response",
-        json_string(scene->injection.match_response == SONJECT_MATCH_IMAGE ? "image" : "nominal"));
-    json_add(&document, "match_looks",
-             scene->injection.match_looks == 0.0 ? json_string("image")
-                                                 : json_number(scene->injection.match_looks));
-    json_add(&document, "match_saturation",
-             json_string(scene->injection.match_saturation == SONJECT_MATCH_IMAGE ? "image"
-                                                                                  : "full_scale"));
-    json_add(&document, "seabed_lambert_db", json_number(10.0 * log10(scene->seabed.lambert)));
-    json_add(&document, "interactions", json_count(scene->injection.interactions));
-    json_add(&document, "estimator",
-             json_string(scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE ? "brute_force"
-                                                                                     : "connect"));
-    return document;
+    return JSON_OBJECT(
+        {"mode", json_string(resynthesises ? "resynthesise" : "composite")},
+        {"columns",
+         json_string(scene->injection.column_rule == SONJECT_COLUMNS_PAPER ? "paper" : "focused")},
+        {"ray_scale", json_number(scene->injection.ray_scale)},
+        {"influence_db", json_number(scene->injection.influence_db)},
+        {"match_response",
+         json_string(scene->injection.match_response == SONJECT_MATCH_IMAGE ? "image" : "nominal")},
+        {"match_looks", scene->injection.match_looks == 0.0
+                            ? json_string("image")
+                            : json_number(scene->injection.match_looks)},
+        {"match_saturation",
+         json_string(scene->injection.match_saturation == SONJECT_MATCH_IMAGE ? "image"
+                                                                              : "full_scale")},
+        {"seabed_lambert_db", json_number(10.0 * log10(scene->seabed.lambert))},
+        {"interactions", json_count(scene->injection.interactions)},
+        {"estimator",
+         json_string(scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE ? "brute_force"
+                                                                                 : "connect")});
 }
 
 static json_t *comparison_document(const sonject_statistics *statistics)
 {
-    json_t *document = json_object();
-    json_add(&document, "level_change_db", json_number(statistics->level_change_db));
-    json_add(&document, "input_contrast", json_number(statistics->input_contrast));
-    json_add(&document, "output_contrast", json_number(statistics->output_contrast));
-    json_add(&document, "histogram_distance", json_number(statistics->histogram_distance));
-    json_add(&document, "correlation", json_number(statistics->correlation));
-    return document;
+    return JSON_OBJECT({"level_change_db", json_number(statistics->level_change_db)},
+                       {"input_contrast", json_number(statistics->input_contrast)},
+                       {"output_contrast", json_number(statistics->output_contrast)},
+                       {"histogram_distance", json_number(statistics->histogram_distance)},
+                       {"correlation", json_number(statistics->correlation)});
 }
 
 /* All bands of the scene's file. */
@@ -307,23 +275,17 @@ static json_t *bands_document(const struct scene *scene)
 
 json_t *device_document(const struct device *device)
 {
-    json_t *document = json_object();
-    json_add(&document, "name", json_text(device->name));
-    json_add(&document, "platform", json_text(device->platform));
-    json_add(&document, "driver", json_text(device->driver));
-    json_add(&document, "width", json_count(device->width));
-    return document;
+    return JSON_OBJECT({"name", json_text(device->name)}, {"platform", json_text(device->platform)},
+                       {"driver", json_text(device->driver)}, {"width", json_count(device->width)});
 }
 
 sonject_status write_run(struct report *report, const struct run_facts *facts, const char *path)
 {
     const sonject_statistics *statistics = &facts->result->statistics;
-    json_t *document = json_object();
-    json_add(&document, "sonject", json_string(sonject_version()));
-    json_add(&document, "scene_hash", json_string(facts->scene_hash));
-    json_add(&document, "seed", json_seed(facts->scene->injection.seed));
-    json_add(&document, "device", device_document(facts->device));
-    json_add(&document, "options", options_document(facts->scene));
+    json_t *document = JSON_OBJECT(
+        {"sonject", json_string(sonject_version())}, {"scene_hash", json_string(facts->scene_hash)},
+        {"seed", json_seed(facts->scene->injection.seed)},
+        {"device", device_document(facts->device)}, {"options", options_document(facts->scene)});
     if (facts->scene->band) {
         json_add(&document, "band", json_text(facts->scene->band));
         json_add(&document, "bands", bands_document(facts->scene));
@@ -349,7 +311,7 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
     const sonject_status status =
         earlier_describe(report, &document, facts->inputs, facts->files, facts->scene);
     if (status == SONJECT_OK)
-        return json_document_write(report, document, path);
+        return json_document_write(report, document, 12, path);
     json_decref(document);
     return status;
 }

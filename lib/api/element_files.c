@@ -26,36 +26,31 @@
 
 static json_t *array_document(const sonject_elements_params *elements)
 {
-    json_t *document = json_object();
-    json_add(&document, "pings", json_integer((json_int_t)elements->pings));
-    json_add(&document, "first_ping_m", json_number(elements->first_ping_m));
-    json_add(&document, "ping_spacing_m", json_number(elements->ping_spacing_m));
-    json_add(&document, "transmitter_offset_m", json_number(elements->transmitter_offset_m));
-    json_add(&document, "transmitter_length_m", json_number(elements->transmitter_length_m));
-    json_add(&document, "hydrophones", json_integer((json_int_t)elements->hydrophones));
-    json_add(&document, "first_hydrophone_m", json_number(elements->first_hydrophone_m));
-    json_add(&document, "hydrophone_spacing_m", json_number(elements->hydrophone_spacing_m));
-    json_add(&document, "hydrophone_length_m", json_number(elements->hydrophone_length_m));
-    json_add(&document, "aspect_limit_rad", json_number(elements->aspect_limit_rad));
-    return document;
+    return JSON_OBJECT({"pings", json_integer((json_int_t)elements->pings)},
+                       {"first_ping_m", json_number(elements->first_ping_m)},
+                       {"ping_spacing_m", json_number(elements->ping_spacing_m)},
+                       {"transmitter_offset_m", json_number(elements->transmitter_offset_m)},
+                       {"transmitter_length_m", json_number(elements->transmitter_length_m)},
+                       {"hydrophones", json_integer((json_int_t)elements->hydrophones)},
+                       {"first_hydrophone_m", json_number(elements->first_hydrophone_m)},
+                       {"hydrophone_spacing_m", json_number(elements->hydrophone_spacing_m)},
+                       {"hydrophone_length_m", json_number(elements->hydrophone_length_m)},
+                       {"aspect_limit_rad", json_number(elements->aspect_limit_rad)});
 }
 
 /* Where the scene's image lies, for those who want to see the same. */
 static json_t *image_document(const struct scene *scene, const struct injection_input *input)
 {
     const sonject_geometry_params *geometry = &scene->geometry;
-    json_t *document = json_object();
-    json_add(&document, "rows", json_integer((json_int_t)input->rows));
-    json_add(&document, "columns", json_integer((json_int_t)input->columns));
-    json_add(&document, "row_spacing_m", json_number(geometry->row_spacing_m));
-    json_add(&document, "column_spacing_m", json_number(geometry->column_spacing_m));
-    json_add(
-        &document, "first_along_track_m",
-        json_number(geometry->first_along_track_m + input->first_row * geometry->row_spacing_m));
-    json_add(&document, "first_slant_range_m",
-             json_number(geometry->first_slant_range_m +
-                         input->first_column * geometry->column_spacing_m));
-    return document;
+    return JSON_OBJECT(
+        {"rows", json_integer((json_int_t)input->rows)},
+        {"columns", json_integer((json_int_t)input->columns)},
+        {"row_spacing_m", json_number(geometry->row_spacing_m)},
+        {"column_spacing_m", json_number(geometry->column_spacing_m)},
+        {"first_along_track_m",
+         json_number(geometry->first_along_track_m + input->first_row * geometry->row_spacing_m)},
+        {"first_slant_range_m", json_number(geometry->first_slant_range_m +
+                                            input->first_column * geometry->column_spacing_m)});
 }
 
 static json_t *series_document(const struct scene *scene, const struct injection_input *input,
@@ -65,49 +60,32 @@ static json_t *series_document(const struct scene *scene, const struct injection
     const bool is_pressure = !isnan(elements->source_level_db);
     const bool is_chirp = elements->pulse == SONJECT_SERIES_CHIRP;
     const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
-    json_t *document = json_object();
-    json_add(&document, "sonject", json_string(sonject_version()));
-    json_add(&document, "series", json_string(SERIES_FILE));
-    json_add(&document, "axes", json_pack("[s, s, s]", "ping", "hydrophone", "sample"));
-    json_add(&document, "form",
-             json_string(elements->form == SONJECT_SERIES_PASSBAND ? "passband" : "baseband"));
-    json_add(&document, "pulse", json_string(is_chirp ? "chirp" : "compressed"));
-    json_add(&document, "chirp_duration_s",
-             is_chirp ? json_number(elements->chirp_duration_s) : json_null());
-    json_add(
-        &document, "phase",
-        json_string("an echo of delay tau has phase +2 pi f0 tau; pass band: real part of base "
-                    "band times exp(-i 2 pi f0 t)"));
-    json_add(&document, "normalisation",
-             json_string(is_pressure
-                             ? "pressure in Pa, sqrt(2) times the rms of a tone, less absorption"
-                             : "pressure over that of the source at 1 m, without absorption"));
-    json_add(&document, "source_level_db",
-             is_pressure ? json_number(elements->source_level_db) : json_null());
-    json_add(&document, "heard", json_string(resynthesises ? "targets and seabed" : "targets"));
-    json_add(&document, "samples", json_integer((json_int_t)layout->samples));
-    json_add(&document, "sampling_rate_hz", json_number(elements->sampling_rate_hz));
-    json_add(&document, "first_time_s", json_number(elements->first_time_s));
-    json_add(&document, "sound_speed_mps", json_number(layout->sound_speed_mps));
-    json_add(&document, "centre_frequency_hz", json_number(layout->centre_frequency_hz));
-    json_add(&document, "bandwidth_hz", json_number(layout->bandwidth_hz));
-    json_add(&document, "along_track_resolution_m", json_number(layout->along_track_resolution_m));
-    json_add(&document, "altitude_m", json_number(scene->sonar.altitude_m));
-    json_add(&document, "side",
-             json_string(scene->geometry.side == SONJECT_SIDE_STARBOARD ? "starboard" : "port"));
-    json_add(&document, "array", array_document(elements));
-    json_add(&document, "image", image_document(scene, input));
-    return document;
-}
-
-static sonject_status write_document(struct report *report, json_t *document, const char *path)
-{
-    char *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(17));
-    json_decref(document);
-    CHECK_MEMORY(report, text, path);
-    const sonject_status status = file_write_whole(report, path, text, strlen(text));
-    free(text);
-    return status;
+    return JSON_OBJECT(
+        {"sonject", json_string(sonject_version())}, {"series", json_string(SERIES_FILE)},
+        {"axes", json_pack("[s, s, s]", "ping", "hydrophone", "sample")},
+        {"form", json_string(elements->form == SONJECT_SERIES_PASSBAND ? "passband" : "baseband")},
+        {"pulse", json_string(is_chirp ? "chirp" : "compressed")},
+        {"chirp_duration_s", is_chirp ? json_number(elements->chirp_duration_s) : json_null()},
+        {"phase",
+         json_string("an echo of delay tau has phase +2 pi f0 tau; pass band: real part of base "
+                     "band times exp(-i 2 pi f0 t)")},
+        {"normalisation",
+         json_string(is_pressure
+                         ? "pressure in Pa, sqrt(2) times the rms of a tone, less absorption"
+                         : "pressure over that of the source at 1 m, without absorption")},
+        {"source_level_db", is_pressure ? json_number(elements->source_level_db) : json_null()},
+        {"heard", json_string(resynthesises ? "targets and seabed" : "targets")},
+        {"samples", json_integer((json_int_t)layout->samples)},
+        {"sampling_rate_hz", json_number(elements->sampling_rate_hz)},
+        {"first_time_s", json_number(elements->first_time_s)},
+        {"sound_speed_mps", json_number(layout->sound_speed_mps)},
+        {"centre_frequency_hz", json_number(layout->centre_frequency_hz)},
+        {"bandwidth_hz", json_number(layout->bandwidth_hz)},
+        {"along_track_resolution_m", json_number(layout->along_track_resolution_m)},
+        {"altitude_m", json_number(scene->sonar.altitude_m)},
+        {"side",
+         json_string(scene->geometry.side == SONJECT_SIDE_STARBOARD ? "starboard" : "port")},
+        {"array", array_document(elements)}, {"image", image_document(scene, input)});
 }
 
 /* The scene's inputs, and what elements.json says of the array and of what is asked of it. */
@@ -152,7 +130,7 @@ static sonject_status write_files(struct report *report, const struct scene *sce
     THEN(status, file_list_add(&files, report, folder, SERIES_FILE, true));
     THEN(status, earlier_describe(report, &document, inputs, files, scene));
     if (status == SONJECT_OK)
-        status = write_document(report, document, document_path);
+        status = json_document_write(report, document, 17, document_path);
     else
         json_decref(document);
     earlier_tidy(folder, earlier, files);

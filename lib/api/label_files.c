@@ -8,22 +8,9 @@
 #include "base/file.h"
 #include "base/file_list.h"
 #include "base/json_document.h"
+#include "dataset/labels.h"
 #include "io/png_chunks.h"
 #include "io/raster_file.h"
-#include "label/coco.h"
-#include "label/contact_record.h"
-#include "label/voc.h"
-#include "label/yolo.h"
-
-enum label_file {
-    FILE_COCO,
-    FILE_CONTACTS_JSON,
-    FILE_CONTACTS_CSV,
-    FILE_YOLO,
-    FILE_CLASSES,
-    FILE_VOC,
-    LABEL_FILES
-};
 
 static const struct {
     const char *name;
@@ -64,56 +51,15 @@ uint32_t labels_of_document(const json_t *run)
     return formats;
 }
 
-static sonject_status write_coco(struct report *report, const struct image_labels *labels,
-                                 struct class_names *classes, const char *path)
-{
-    struct coco coco;
-    memset(&coco, 0, sizeof coco);
-    const sonject_status status = coco_add(&coco, report, labels, classes);
-    if (status != SONJECT_OK) {
-        coco_clear(&coco);
-        return status;
-    }
-    return coco_write(&coco, report, classes, path);
-}
-
-static sonject_status write_file(struct report *report, const struct image_labels *labels,
-                                 struct class_names *classes, enum label_file file,
-                                 const char *path)
-{
-    switch (file) {
-    case FILE_COCO:
-        return write_coco(report, labels, classes, path);
-    case FILE_CONTACTS_JSON:
-        return contacts_write_json(report, labels, path);
-    case FILE_CONTACTS_CSV:
-        return contacts_write_csv(report, labels, path);
-    case FILE_YOLO:
-        return yolo_write(report, labels, classes, path);
-    case FILE_CLASSES:
-        return class_names_write(classes, report, path);
-    default:
-        return voc_write(report, labels, path);
-    }
-}
-
 sonject_status write_labels(struct report *report, struct run_facts *facts, const char *folder)
 {
     const struct swath *swath = facts->swath;
-    const struct label_request request = {facts->scene,
-                                          facts->result,
-                                          facts->image_name,
-                                          swath->layout.rows,
-                                          swath->layout.columns,
-                                          swath->patch,
-                                          0,
-                                          0,
-                                          &swath->track};
+    const struct label_request request = {
+        facts->scene,          facts->result, facts->image_name, swath->layout.rows,
+        swath->layout.columns, swath->patch,  &swath->track};
     struct image_labels labels;
-    struct class_names classes = {NULL, 0, 0};
-    sonject_status status = image_labels_find(&labels, report, &request);
-    if (status != SONJECT_OK)
-        return status;
+    struct class_names classes = {NULL, 0};
+    sonject_status status = image_labels_find(&labels, report, &request, &classes);
     for (int file = 0; status == SONJECT_OK && file < LABEL_FILES; file++) {
         char *path = path_join(folder, files[file].name);
         if (!path)
@@ -121,7 +67,7 @@ sonject_status write_labels(struct report *report, struct run_facts *facts, cons
         else if (files[file].format && !(files[file].format & facts->label_formats))
             file_discard(path);
         else {
-            status = write_file(report, &labels, &classes, (enum label_file)file, path);
+            status = labels_write(report, &labels, &classes, (enum label_file)file, path);
             THEN(status, file_list_add(&facts->files, report, folder, files[file].name, true));
         }
         free(path);

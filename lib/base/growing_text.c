@@ -3,7 +3,9 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 
 static bool make_room(struct growing_text *text, size_t more)
@@ -44,4 +46,14 @@ char *growing_text_end(struct growing_text *text)
         return text->characters;
     free(text->characters);
     return NULL;
+}
+
+sonject_status growing_text_write(struct report *report, struct growing_text *text,
+                                  const char *path)
+{
+    char *whole = growing_text_end(text);
+    CHECK_MEMORY(report, whole, path);
+    const sonject_status status = file_write_whole(report, path, whole, strlen(whole));
+    free(whole);
+    return status;
 }

@@ -19,4 +19,9 @@ void growing_text_add(struct growing_text *text, const char *format, ...) REPORT
 /* The text, for free(); NULL where memory was out. */
 char *growing_text_end(struct growing_text *text);
 
+/* Writes the text to a file, whole or not at all, and releases it. Errors: STORAGE, MEMORY (also
+ * where it was out before). */
+sonject_status growing_text_write(struct report *report, struct growing_text *text,
+                                  const char *path);
+
 #endif

@@ -64,6 +64,22 @@ void json_append(json_t **array, json_t *value)
         give_up(array);
 }
 
+json_t *json_object_of(const struct json_member *members)
+{
+    json_t *object = json_object();
+    for (; members->key; members++)
+        json_add(&object, members->key, members->value);
+    return object;
+}
+
+json_t *json_counts(const uint64_t *values, size_t count)
+{
+    json_t *array = json_array();
+    for (size_t i = 0; i < count; i++)
+        json_append(&array, json_count(values[i]));
+    return array;
+}
+
 static int add_piece(const char *piece, size_t length, void *text)
 {
     struct growing_text *whole = text;
@@ -71,22 +87,26 @@ static int add_piece(const char *piece, size_t length, void *text)
     return whole->failed ? -1 : 0;
 }
 
+static void add_document(struct growing_text *text, const json_t *document, size_t flags)
+{
+    if (json_dump_callback(document, add_piece, text, flags) != 0)
+        text->failed = true;
+}
+
 char *json_document_text(const json_t *document, size_t flags)
 {
     struct growing_text text = {NULL, 0, 0, false};
-    if (json_dump_callback(document, add_piece, &text, flags) != 0)
-        text.failed = true;
+    add_document(&text, document, flags);
     return growing_text_end(&text);
 }
 
-sonject_status json_document_write(struct report *report, json_t *document, const char *path)
+sonject_status json_document_write(struct report *report, json_t *document, int digits,
+                                   const char *path)
 {
-    char *text = json_document_text(document, JSON_INDENT(2) | JSON_REAL_PRECISION(12));
+    struct growing_text text = {NULL, 0, 0, false};
+    add_document(&text, document, JSON_INDENT(2) | JSON_REAL_PRECISION(digits));
     json_decref(document);
-    CHECK_MEMORY(report, text, path);
-    const sonject_status status = file_write_whole(report, path, text, strlen(text));
-    free(text);
-    return status;
+    return growing_text_write(report, &text, path);
 }
 
 /* Where memory is out jansson may find fault with the text: it is asked twice, and memory is. */

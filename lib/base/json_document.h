@@ -2,6 +2,7 @@
 #ifndef SONJECT_BASE_JSON_DOCUMENT_H
 #define SONJECT_BASE_JSON_DOCUMENT_H
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include <jansson.h>
@@ -21,6 +22,18 @@ json_t *json_seed(uint64_t seed);
  * '?' for all of its bytes that are not printable ASCII. */
 json_t *json_text(const char *text);
 
+/* An object of members, in their order; the values go into it. NULL where memory is out or a value
+ * is NULL: what was made of the others is released. */
+struct json_member {
+    const char *key; /* NULL: there are no more */
+    json_t *value;
+};
+json_t *json_object_of(const struct json_member *members);
+#define JSON_OBJECT(...) json_object_of((const struct json_member[]){__VA_ARGS__, {NULL, NULL}})
+
+/* An array of numbers. */
+json_t *json_counts(const uint64_t *values, size_t count);
+
 /* Adds a member to an object, or an element to an array; the value goes into it. Where memory is
  * out or the value is NULL, *object or *array is released and becomes NULL, and what is added to
  * NULL is released, so that a document that lacks something is NULL in the end. */
@@ -31,9 +44,10 @@ void json_append(json_t **array, json_t *value);
  * json_dumps overlooks among keys, or where the document is NULL. */
 char *json_document_text(const json_t *document, size_t flags);
 
-/* Writes the document, indented, whole or not at all, and releases it. Errors: STORAGE, MEMORY
- * (also where the document is NULL). */
-sonject_status json_document_write(struct report *report, json_t *document, const char *path);
+/* Writes the document, indented, numbers with so many digits, whole or not at all, and releases it.
+ * Errors: STORAGE, MEMORY (also where the document is NULL). */
+sonject_status json_document_write(struct report *report, json_t *document, int digits,
+                                   const char *path);
 
 /* Reads a JSON object of at most 64 MB. Errors: STORAGE, INPUT, MEMORY. */
 sonject_status json_document_read(struct report *report, const char *path, json_t **document);

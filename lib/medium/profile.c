@@ -150,8 +150,7 @@ sonject_status layers_of_profile(const double *heights_m, const double *speeds_m
                                  size_t *layer_count)
 {
     struct stack stack = {allocate_array(WATER_LAYERS_MAX, sizeof **layers), 0, false};
-    if (!stack.layers)
-        return report_out_of_memory(report, "the layers of a profile");
+    CHECK_MEMORY(report, stack.layers, "the layers of a profile");
     add_profile(&stack, heights_m, speeds_mps, count);
     if (stack.is_full) {
         free(stack.layers);

@@ -74,8 +74,7 @@ sonject_status water_init(struct water *water, struct report *report,
     memset(water, 0, sizeof *water);
     water->count = count > 0 ? count : 1;
     water->layers = allocate_array(water->count, sizeof *water->layers);
-    if (!water->layers)
-        return report_out_of_memory(report, "the layers of water");
+    CHECK_MEMORY(report, water->layers, "the layers of water");
     memcpy(water->layers, count > 0 ? layers : &isovelocity, water->count * sizeof *water->layers);
     join_equals(water);
     const sonject_status status = join_below(water, report, highest_m);

@@ -148,8 +148,7 @@ static sonject_status weld_all(struct report *report, const char *name,
     }
     weld_clear(&weld);
     free(numbers);
-    if (!has_memory)
-        return report_out_of_memory(report, name);
+    CHECK_MEMORY(report, has_memory, name);
     if (welded->triangles == 0)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: none of its %zu triangles has an area: export the mesh again",
@@ -163,8 +162,7 @@ static sonject_status take_welded(struct report *report, const char *name, struc
 {
     double square = 0.0;
     mesh->vertices = allocate_array(welded->vertices, 3 * sizeof *mesh->vertices);
-    if (!mesh->vertices)
-        return report_out_of_memory(report, name);
+    CHECK_MEMORY(report, mesh->vertices, name);
     mesh->vertex_count = welded->vertices;
     for (int axis = 0; axis < 3; axis++) {
         mesh->lower_m[axis] = FLT_MAX;
@@ -223,8 +221,7 @@ static sonject_status weld_and_orient(struct report *report, const char *name,
     mesh->vertices = NULL;
     mesh->corners = NULL;
     sonject_status status = weld_all(report, name, soup, options, tolerance, mesh, &welded);
-    if (status == SONJECT_OK)
-        status = take_welded(report, name, &welded, mesh);
+    THEN(status, take_welded(report, name, &welded, mesh));
     mesh_soup_clear(&welded);
     return status == SONJECT_OK
                ? mesh_topology_find(report, mesh->vertices, mesh->vertex_count, mesh->corners,
@@ -254,8 +251,7 @@ static sonject_status prepare(struct report *report, const char *name, const str
 {
     mesh->options = *options;
     mesh->name = copy_text(name);
-    if (!mesh->name)
-        return report_out_of_memory(report, name);
+    CHECK_MEMORY(report, mesh->name, name);
     if (soup->triangles == 0)
         return report_failure(report, SONJECT_ERROR_INPUT, "%s: the mesh has no triangles", name);
     if (soup->triangles > MESH_TRIANGLES_MAX)
@@ -265,8 +261,7 @@ static sonject_status prepare(struct report *report, const char *name, const str
             "it",
             name, soup->triangles, MESH_TRIANGLES_MAX);
     sonject_status status = find_centre(report, name, soup, options, mesh);
-    if (status == SONJECT_OK)
-        status = weld_and_orient(report, name, soup, options, 0.0, mesh);
+    THEN(status, weld_and_orient(report, name, soup, options, 0.0, mesh));
     if (status == SONJECT_OK && !mesh->topology.is_closed)
         status = close_seams(report, name, soup, options, mesh);
     if (status == SONJECT_OK) {
@@ -286,12 +281,9 @@ sonject_status mesh_load(struct report *report, const char *path,
     memset(&soup, 0, sizeof soup);
     memset(mesh, 0, sizeof *mesh);
     sonject_status status = check_options(report, path, options);
-    if (status == SONJECT_OK)
-        status = file_identify(report, path, &mesh->file);
-    if (status == SONJECT_OK)
-        status = mesh_file_read(report, path, &soup);
-    if (status == SONJECT_OK)
-        status = prepare(report, path, &soup, options, mesh);
+    THEN(status, file_identify(report, path, &mesh->file));
+    THEN(status, mesh_file_read(report, path, &soup));
+    THEN(status, prepare(report, path, &soup, options, mesh));
     mesh_soup_clear(&soup);
     if (status != SONJECT_OK)
         mesh_clear(mesh);
@@ -327,10 +319,8 @@ sonject_status mesh_from_arrays(struct report *report, const char *name, const d
     soup.vertices = vertex_count;
     soup.triangles = triangle_count;
     sonject_status status = check_options(report, name, options);
-    if (status == SONJECT_OK)
-        status = check_arrays(report, name, &soup);
-    if (status == SONJECT_OK)
-        status = prepare(report, name, &soup, options, mesh);
+    THEN(status, check_arrays(report, name, &soup));
+    THEN(status, prepare(report, name, &soup, options, mesh));
     if (status != SONJECT_OK)
         mesh_clear(mesh);
     return status;

@@ -38,10 +38,8 @@ sonject_status mesh_file_read(struct report *report, const char *path, struct me
         return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
                               "%s: meshes are read from STL, OBJ and PLY files; convert it to PLY",
                               path);
-    sonject_status status = file_read_whole(report, path, FILE_BYTES_MAX, &bytes, &count);
-    if (status != SONJECT_OK)
-        return status;
-    status = read(report, path, bytes, count, soup);
+    CHECK(file_read_whole(report, path, FILE_BYTES_MAX, &bytes, &count));
+    sonject_status status = read(report, path, bytes, count, soup);
     free(bytes);
     return status;
 }

@@ -5,9 +5,7 @@ static sonject_status read_vertex(struct words *words, struct mesh_soup *soup)
 {
     double position[3];
     for (int axis = 0; axis < 3; axis++) {
-        const sonject_status status = words_number(words, "a finite coordinate", &position[axis]);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(words_number(words, "a finite coordinate", &position[axis]));
     }
     /* a weight or a colour may follow */
     return mesh_soup_add_vertex(soup, position)
@@ -22,9 +20,7 @@ static sonject_status read_corner(struct words *words, const struct mesh_soup *s
 {
     const char *start = words->at;
     int64_t number;
-    const sonject_status status = words_whole(words, "the number of a vertex", &number);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(words_whole(words, "the number of a vertex", &number));
     while (words->at < words->end &&
            (*words->at == '/' || *words->at == '-' || (*words->at >= '0' && *words->at <= '9')))
         words->at++;
@@ -45,9 +41,7 @@ static sonject_status read_face(struct words *words, struct mesh_soup *soup)
     uint32_t fan[2];
     while (words_on_line(words) && *words->at != '#') {
         uint32_t corner = 0;
-        const sonject_status status = read_corner(words, soup, &corner);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(read_corner(words, soup, &corner));
         if (!mesh_soup_add_polygon_corner(soup, corners++, corner, fan))
             return mesh_soup_failure(words->report, words->path, soup);
     }

@@ -62,16 +62,12 @@ static sonject_status read_list(struct words *words, const struct ply_header *he
 {
     double length = 0.0;
     uint32_t fan[2];
-    sonject_status status = next_number(words, header, property->length_type, &length);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(next_number(words, header, property->length_type, &length));
     if (!(length >= 0.0) || length != floor(length))
         return words_failure(words, "the length of a list");
     for (size_t i = 0; (double)i < length; i++) {
         double number = 0.0;
-        status = next_number(words, header, property->type, &number);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(next_number(words, header, property->type, &number));
         if (property->role != PLY_CORNERS)
             continue;
         if (!(number >= 0.0) || number >= 4294967295.0 || number != floor(number))
@@ -93,11 +89,8 @@ static sonject_status read_one(struct words *words, const struct ply_header *hea
     for (int i = 0; i < element->property_count; i++) {
         const struct ply_property *property = &element->properties[i];
         double number = 0.0;
-        const sonject_status status = property->is_list
-                                          ? read_list(words, header, property, soup)
-                                          : next_number(words, header, property->type, &number);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(property->is_list ? read_list(words, header, property, soup)
+                                : next_number(words, header, property->type, &number));
         if (property->role >= PLY_X && property->role <= PLY_Z)
             position[property->role - PLY_X] = number;
     }

@@ -65,15 +65,11 @@ static sonject_status read_property(struct words *words, struct ply_header *head
     struct ply_property *property = &element->properties[element->property_count++];
     property->is_list = words_on_line(words) && words_take(words, "list");
     if (property->is_list) {
-        const sonject_status status = take_type(words, &property->length_type);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(take_type(words, &property->length_type));
         if (property->length_type >= PLY_FLOAT32)
             return words_failure(words, "a list whose length is a whole number");
     }
-    const sonject_status status = take_type(words, &property->type);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(take_type(words, &property->type));
     property->role = take_role(words, element, property->is_list);
     if (property->role == PLY_CORNERS && property->type >= PLY_FLOAT32)
         return words_failure(words, "vertex numbers that are whole");
@@ -93,9 +89,7 @@ static sonject_status read_element(struct words *words, struct ply_header *heade
     element->is_face = !element->is_vertex && words_take(words, "face");
     while (words->at < words->end && !strchr(" \t\r\n", *words->at))
         words->at++; /* any other name */
-    const sonject_status status = words_whole(words, "the number of elements", &count);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(words_whole(words, "the number of elements", &count));
     if (count < 0)
         return words_failure(words, "a number of elements that is not negative");
     element->count = (uint64_t)count;
@@ -180,9 +174,7 @@ sonject_status ply_header_read(struct words *words, struct ply_header *header)
     while (!is_end) {
         if (!words_left(words, '\0'))
             return words_failure(words, "'end_header'");
-        const sonject_status status = read_line(words, header, &is_end);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(read_line(words, header, &is_end));
         words_skip_line(words);
     }
     return check_header(words, header);

@@ -56,10 +56,8 @@ static sonject_status read_binary(struct report *report, const char *path, const
             held * TRIANGLE_BYTES + HEADER_BYTES == count ? "" : " and a part of one",
             promised > held ? "it is cut short, copy or export it again" : "export it again");
     for (size_t i = 0; i < (size_t)promised; i++) {
-        const sonject_status status = read_binary_triangle(
-            report, path, bytes + HEADER_BYTES + i * TRIANGLE_BYTES, i, weld, soup);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(read_binary_triangle(report, path, bytes + HEADER_BYTES + i * TRIANGLE_BYTES, i, weld,
+                                   soup));
     }
     return SONJECT_OK;
 }
@@ -96,8 +94,7 @@ static sonject_status read_facet(struct words *words, struct weld *weld, struct 
     sonject_status status = take_all(words, begin);
     for (int corner = 0; corner < 3 && status == SONJECT_OK; corner++)
         status = read_vertex(words, weld, soup, &corners[corner]);
-    if (status == SONJECT_OK)
-        status = take_all(words, end);
+    THEN(status, take_all(words, end));
     if (status == SONJECT_OK && !mesh_soup_add_triangle(soup, corners[0], corners[1], corners[2]))
         status = mesh_soup_failure(words->report, words->path, soup);
     return status;
@@ -116,9 +113,7 @@ static sonject_status read_text(struct words *words, struct weld *weld, struct m
                 break;
             if (!words_take(words, "facet"))
                 return words_failure(words, "'facet' or 'endsolid'");
-            const sonject_status status = read_facet(words, weld, soup);
-            if (status != SONJECT_OK)
-                return status;
+            CHECK(read_facet(words, weld, soup));
         }
         words_skip_line(words);
     }

@@ -1,4 +1,4 @@
-#include "label/image_labels.h"
+#include "dataset/labels.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,6 +7,29 @@
 #include "base/memory.h"
 
 #define DEGREES_PER_RADIAN 57.29577951308232
+
+sonject_status class_names_take(struct class_names *classes, struct report *report,
+                                const char *name, uint32_t *number)
+{
+    for (*number = 0; *number < classes->count; ++*number)
+        if (strcmp(classes->names[*number], name) == 0)
+            return SONJECT_OK;
+    char **names = realloc(classes->names, (classes->count + 1) * sizeof *names);
+    CHECK_MEMORY(report, names, "the classes");
+    classes->names = names;
+    names[classes->count] = copy_text(name);
+    CHECK_MEMORY(report, names[classes->count], "the classes");
+    classes->count++;
+    return SONJECT_OK;
+}
+
+void class_names_clear(struct class_names *classes)
+{
+    for (uint32_t i = 0; i < classes->count; i++)
+        free(classes->names[i]);
+    free(classes->names);
+    memset(classes, 0, sizeof *classes);
+}
 
 /* Widens a contact's box by a pixel of the patch. */
 static void add_pixel(struct contact *contact, uint64_t row, uint64_t column)
@@ -111,13 +134,12 @@ static void describe(struct contact *contact, const struct label_request *reques
     contact->is_truncated = truth->highlight_is_cut || truth->shadow_is_cut;
     contact->has_place =
         request->track &&
-        track_place(request->track, contact->row + (double)request->first_row,
-                    contact->ground_range_m, request->scene->geometry.side == SONJECT_SIDE_PORT,
-                    &contact->place);
+        track_place(request->track, contact->row, contact->ground_range_m,
+                    request->scene->geometry.side == SONJECT_SIDE_PORT, &contact->place);
 }
 
 sonject_status image_labels_find(struct image_labels *labels, struct report *report,
-                                 const struct label_request *request)
+                                 const struct label_request *request, struct class_names *classes)
 {
     const struct injection_result *result = request->result;
     sonject_status status = SONJECT_OK;
@@ -134,7 +156,8 @@ sonject_status image_labels_find(struct image_labels *labels, struct report *rep
         struct contact *contact = &labels->contacts[i];
         const sonject_object_truth *truth = &result->objects[i];
         describe(contact, request, i);
-        status = find_pixels(contact, report, request);
+        status = class_names_take(classes, report, contact->class_name, &contact->class_number);
+        THEN(status, find_pixels(contact, report, request));
         contact->is_occluded = contact->pixels < truth->highlight_pixels + truth->shadow_pixels;
     }
     if (status != SONJECT_OK)
