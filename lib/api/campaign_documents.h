@@ -60,6 +60,13 @@ sonject_status data_set_has_image(const struct data_set *set, size_t split, uint
 /* The text of a member, "" if there is none. */
 const char *member_text(const json_t *object, const char *key);
 
+/* Whether a member is a text that may stand in documents and on terminals, and is not empty. */
+bool has_plain(const json_t *object, const char *key);
+
+/* Whether a value is a list, and all of its elements are what is_one takes. */
+bool all_are(const struct data_set *set, const json_t *list,
+             bool (*is_one)(const struct data_set *set, const json_t *element));
+
 /* Each writes its documents from images that are all there. Errors: as data_set_finish. */
 sonject_status write_data_set_coco(const struct data_set *set);
 sonject_status write_contact_sheet(const struct data_set *set);

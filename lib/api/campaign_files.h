@@ -8,7 +8,7 @@
 #include <jansson.h>
 
 #include "base/report.h"
-#include "campaign/campaign.h"
+#include "dataset/campaign.h"
 #include "image/raster.h"
 
 #define OUTPUT_KINDS 7

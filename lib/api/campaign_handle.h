@@ -9,8 +9,8 @@
 #include "api/handles.h"
 #include "api/swath.h"
 #include "base/hash.h"
-#include "campaign/campaign.h"
-#include "campaign/image_plan.h"
+#include "dataset/campaign.h"
+#include "dataset/image_plan.h"
 #include "dataset/labels.h"
 
 struct sonject_campaign {

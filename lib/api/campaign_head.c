@@ -123,37 +123,18 @@ static bool take_splits(struct data_set *set, const json_t *splits)
     return set->images > 0;
 }
 
-/* A text that may stand in documents and on terminals. */
-static bool is_plain(const json_t *value)
+static bool is_class_name(const struct data_set *set, const json_t *name)
 {
-    return json_is_string(value) && *json_string_value(value) &&
-           text_is_printable(json_string_value(value));
+    (void)set;
+    return json_is_string(name) && *json_string_value(name) &&
+           text_is_printable(json_string_value(name));
 }
 
-static bool has_classes(const json_t *classes)
+static bool is_swath(const struct data_set *set, const json_t *swath)
 {
-    size_t i;
-    const json_t *name;
-    json_array_foreach(classes, i, name)
-    {
-        if (!is_plain(name))
-            return false;
-    }
-    return json_is_array(classes) && json_array_size(classes) <= CLASSES_MAX;
-}
-
-static bool has_swaths(const json_t *swaths)
-{
-    size_t i;
-    const json_t *swath;
-    json_array_foreach(swaths, i, swath)
-    {
-        if (!is_plain(json_object_get(swath, "path")) ||
-            !is_plain(json_object_get(swath, "hash")) ||
-            !is_split_name(member_text(swath, "split")))
-            return false;
-    }
-    return json_is_array(swaths);
+    (void)set;
+    return has_plain(swath, "path") && has_plain(swath, "hash") &&
+           is_split_name(member_text(swath, "split"));
 }
 
 static bool is_side(const json_t *pixels)
@@ -174,26 +155,22 @@ static void take_outputs(struct data_set *set, const json_t *outputs)
     }
 }
 
-/* What documents take over as it is. */
-static bool has_facts(const json_t *head)
-{
-    const json_t *device = json_object_get(head, "device");
-    return is_plain(json_object_get(head, "sonject")) && is_plain(json_object_get(head, "hash")) &&
-           is_side(json_object_get(head, "rows")) && is_side(json_object_get(head, "columns")) &&
-           has_swaths(json_object_get(head, "swaths")) &&
-           (json_is_null(device) || json_is_object(device));
-}
-
 /* True if what documents need of the head is as it should be. */
 static bool take_head(struct data_set *set)
 {
     const json_t *outputs = json_object_get(set->head, "outputs");
+    const json_t *device = json_object_get(set->head, "device");
+    const json_t *classes = json_object_get(set->head, "classes");
     take_outputs(set, outputs);
     set->rows = json_integer_value(json_object_get(set->head, "rows"));
     set->columns = json_integer_value(json_object_get(set->head, "columns"));
     return json_integer_value(json_object_get(set->head, "sonject_campaign")) == FORMAT_VERSION &&
-           has_facts(set->head) && json_is_array(outputs) &&
-           has_classes(json_object_get(set->head, "classes")) &&
+           has_plain(set->head, "sonject") && has_plain(set->head, "hash") &&
+           is_side(json_object_get(set->head, "rows")) &&
+           is_side(json_object_get(set->head, "columns")) && json_is_array(outputs) &&
+           all_are(set, json_object_get(set->head, "swaths"), is_swath) &&
+           (json_is_null(device) || json_is_object(device)) &&
+           all_are(set, classes, is_class_name) && json_array_size(classes) <= CLASSES_MAX &&
            take_splits(set, json_object_get(set->head, "splits")) &&
            json_integer_value(json_object_get(set->head, "images")) == (json_int_t)set->images;
 }

@@ -25,22 +25,25 @@ static json_int_t member_within(const json_t *object, const char *key, json_int_
     return whole >= smallest && whole <= largest ? whole : -1;
 }
 
-static bool has_plain(const json_t *object, const char *key)
+bool has_plain(const json_t *object, const char *key)
 {
     const char *text = member_text(object, key);
     return *text && text_is_printable(text);
 }
 
-static bool has_plain_texts(const json_t *list)
+bool all_are(const struct data_set *set, const json_t *list,
+             bool (*is_one)(const struct data_set *set, const json_t *element))
 {
-    size_t i;
-    const json_t *text;
-    json_array_foreach(list, i, text)
-    {
-        if (!json_is_string(text) || !text_is_printable(json_string_value(text)))
+    for (size_t i = 0; i < json_array_size(list); i++)
+        if (!is_one(set, json_array_get(list, i)))
             return false;
-    }
     return json_is_array(list);
+}
+
+static bool is_printable(const struct data_set *set, const json_t *text)
+{
+    (void)set;
+    return json_is_string(text) && text_is_printable(json_string_value(text));
 }
 
 static bool is_class(const struct data_set *set, const char *name)
@@ -100,8 +103,8 @@ static bool is_segmentation(const struct data_set *set, const json_t *segmentati
            size[1] == set->columns && are_runs(set, json_object_get(segmentation, "counts"), area);
 }
 
-#define ANNOTATION_MEMBERS                                                                         \
-    10 /* of coco.c; annotations are copied as they are, so no others may be */
+/* Of coco_annotations; annotations are copied as they are, so no others may be. */
+#define ANNOTATION_MEMBERS 10
 
 static bool is_annotation(const struct data_set *set, const json_t *annotation)
 {
@@ -120,18 +123,6 @@ static bool is_annotation(const struct data_set *set, const json_t *annotation)
            member_within(annotation, "object_id", 1, UINT32_MAX) > 0 &&
            json_is_boolean(json_object_get(annotation, "truncated")) &&
            json_is_boolean(json_object_get(annotation, "occluded"));
-}
-
-static bool are_annotations(const struct data_set *set, const json_t *annotations)
-{
-    size_t i;
-    const json_t *annotation;
-    json_array_foreach(annotations, i, annotation)
-    {
-        if (!is_annotation(set, annotation))
-            return false;
-    }
-    return json_is_array(annotations);
 }
 
 static bool is_place(const struct data_set *set, const json_t *swath)
@@ -183,12 +174,12 @@ static const char *find_fault(const struct data_set *set, size_t split, uint64_t
         return "swath: is no place of an image in a swath";
     if (!is_seed(json_object_get(record, "seed")))
         return "seed: is none";
-    if (!has_plain_texts(json_object_get(record, "set")))
+    if (!all_are(set, json_object_get(record, "set"), is_printable))
         return "set: is no list of keys with values";
     if (!has_plain(record, "scene") || !has_plain(record, "scene_hash") ||
         !has_plain(record, "sonject"))
         return "scene, scene_hash or sonject: is no text";
-    if (!are_annotations(set, json_object_get(record, "annotations")))
+    if (!all_are(set, json_object_get(record, "annotations"), is_annotation))
         return "annotations: has one that is damaged, of no class, or not within the image";
     return NULL;
 }
@@ -201,17 +192,9 @@ static bool is_box(const struct data_set *set, const json_t *box)
                                           member_within(box, "columns", 1, set->columns));
 }
 
-static bool is_truth(const struct data_set *set, const json_t *truth)
+static bool is_object(const struct data_set *set, const json_t *object)
 {
-    size_t i;
-    const json_t *object;
-    const json_t *objects = json_object_get(truth, "objects");
-    json_array_foreach(objects, i, object)
-    {
-        if (!has_plain(object, "class") || !is_box(set, json_object_get(object, "box")))
-            return false;
-    }
-    return json_is_array(objects);
+    return has_plain(object, "class") && is_box(set, json_object_get(object, "box"));
 }
 
 static sonject_status refuse_record(const struct data_set *set, const char *path, const char *what)
@@ -248,7 +231,8 @@ sonject_status data_set_image(const struct data_set *set, size_t split, uint64_t
     sonject_status status = read_record(set, split, id, &files, record);
     if (status == SONJECT_OK && truth)
         status = json_document_read(set->report, files.truth, truth);
-    if (status == SONJECT_OK && truth && !is_truth(set, *truth))
+    if (status == SONJECT_OK && truth &&
+        !all_are(set, json_object_get(*truth, "objects"), is_object))
         status = refuse_record(set, files.truth,
                                "objects: has one without a class, or whose box "
                                "is not within the image");

@@ -2,7 +2,7 @@
 #ifndef SONJECT_IMAGE_BRIGHT_AREAS_H
 #define SONJECT_IMAGE_BRIGHT_AREAS_H
 
-#include "image/contact_image.h"
+#include "image/contact_parts.h"
 
 /* A connected area that is HIGHLIGHT_OVER_SEABED and more over the seabed around it. */
 struct bright_area {

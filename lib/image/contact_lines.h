@@ -3,7 +3,7 @@
 #define SONJECT_IMAGE_CONTACT_LINES_H
 
 #include "image/contact_edges.h"
-#include "image/contact_image.h"
+#include "image/contact_parts.h"
 
 /* How lines lie. Columns of boxes that are used with it count along row middle_row: in a row
  * further on they lie slant more to the right, in one of a tilted edge as much more as it is

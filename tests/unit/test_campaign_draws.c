@@ -11,9 +11,9 @@
 
 #include "base/memory.h"
 #include "base/text.h"
-#include "campaign/campaign.h"
-#include "campaign/design.h"
-#include "campaign/distribution.h"
+#include "dataset/campaign.h"
+#include "dataset/distribution.h"
+#include "dataset/distribution.h"
 
 #define DRAWS 40000
 

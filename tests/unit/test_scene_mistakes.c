@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "campaign/campaign.h"
+#include "dataset/campaign.h"
 #include "scene_folder.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])

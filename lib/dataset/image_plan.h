@@ -1,8 +1,8 @@
 /* One image of a campaign: which swath, where, and what of the scene is drawn how. */
-#ifndef SONJECT_CAMPAIGN_IMAGE_PLAN_H
-#define SONJECT_CAMPAIGN_IMAGE_PLAN_H
+#ifndef SONJECT_DATASET_IMAGE_PLAN_H
+#define SONJECT_DATASET_IMAGE_PLAN_H
 
-#include "campaign/campaign.h"
+#include "dataset/campaign.h"
 
 /* "key=value" for the scene, and where the campaign file says so. */
 struct plan_key {

@@ -1,11 +1,12 @@
-/* What is drawn and what is put into images, as campaign files write it. */
+/* What is drawn, what is put into images, swaths and splits, as campaign files write them. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
 #include "base/text.h"
-#include "campaign/campaign_fields.h"
+#include "dataset/campaign_fields.h"
 #include "io/scene_key.h"
 #include "io/yaml_flow.h"
 
@@ -232,4 +233,162 @@ sonject_status read_clutter_number(struct reader *reader, const struct tree_node
                                 CAMPAIGN_CLUTTER_MAX);
     }
     return SONJECT_OK;
+}
+
+#define PIXELS_MAX (UINT64_C(1) << 40)
+#define BOXES_MAX  1000 /* in a swath */
+
+static sonject_status read_swath_path(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    struct swath_plan *swath = structure;
+    CHECK(read_path(reader, node, &swath->path));
+    swath->written = copy_text(node->text);
+    return swath->written ? SONJECT_OK : report_out_of_memory(reader->report, "the campaign");
+}
+
+static sonject_status read_split_name(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    struct swath_plan *swath = structure;
+    const char *name = read_text(reader, node);
+    if (!name)
+        return SONJECT_ERROR_INPUT;
+    swath->split = copy_text(name);
+    return swath->split ? SONJECT_OK : report_out_of_memory(reader->report, "the campaign");
+}
+
+static sonject_status read_swath_key(struct reader *reader, const struct tree_entry *entry,
+                                     struct swath_plan *swath)
+{
+    char *value = NULL;
+    sonject_status status = check_scene_key(reader, entry, entry->key, false);
+    THEN(status, grow_list(reader->report, &swath->keys, swath->key_count, sizeof *swath->keys));
+    THEN(status, tree_override_text(reader->report, &entry->value, &value));
+    if (status != SONJECT_OK)
+        return status;
+    const size_t bytes = strlen(entry->key) + strlen(value) + 2;
+    char *pair = allocate_array(bytes, 1);
+    if (pair)
+        snprintf(pair, bytes, "%s=%s", entry->key, value);
+    free(value);
+    CHECK_MEMORY(reader->report, pair, "the campaign");
+    swath->keys[swath->key_count++] = pair;
+    return SONJECT_OK;
+}
+
+static sonject_status read_swath_keys(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    sonject_status status = SONJECT_OK;
+    if (node->kind != TREE_SECTION)
+        return refuse_value(reader, node, "must be a section of 'key: value' lines");
+    for (size_t i = 0; !reading_ends(status) && i < node->count; i++)
+        status = read_swath_key(reader, &node->entries[i], structure);
+    return status;
+}
+
+static const struct field box_fields[] = {
+    {"row", "first row", COUNT64(struct region, first_row, PIXELS_MAX), REQUIRED},
+    {"column", "first column", COUNT64(struct region, first_column, PIXELS_MAX), REQUIRED},
+    {"rows", "number of rows", COUNT64(struct region, rows, PIXELS_MAX), REQUIRED},
+    {"columns", "number of columns", COUNT64(struct region, columns, PIXELS_MAX), REQUIRED},
+};
+static const struct section box_section = {box_fields, COUNT(box_fields), NULL};
+
+static sonject_status read_box(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    struct swath_plan *swath = structure;
+    CHECK(grow_list(reader->report, &swath->avoid, swath->avoid_count, sizeof *swath->avoid));
+    return read_section(reader, &box_section, node, &swath->avoid[swath->avoid_count++]);
+}
+
+static sonject_status read_avoid(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    static const struct list boxes = {BOXES_MAX, " of {row: , column: , rows: , columns: }",
+                                      read_box};
+    return read_list(reader, node, &boxes, structure);
+}
+
+static const struct field swath_fields[] = {
+    {"path", "image file", .kind = FIELD_SPECIAL, .read = read_swath_path, REQUIRED},
+    {"split", "that all of its images are in", .kind = FIELD_SPECIAL, .read = read_split_name},
+    {"set", "keys of the scene for this swath", .kind = FIELD_SPECIAL, .read = read_swath_keys},
+    {"avoid", "boxes of contacts that images are not to show", .kind = FIELD_SPECIAL,
+     .read = read_avoid},
+};
+static const struct section swath_section = {swath_fields, COUNT(swath_fields), NULL};
+
+static sonject_status check_split_name(struct reader *reader, const struct campaign *campaign,
+                                       const struct swath_plan *swath, const struct tree_node *node)
+{
+    struct word_list list = {{0}, 0};
+    for (size_t i = 0; i < campaign->split_count; i++) {
+        if (!swath->split || strcmp(swath->split, campaign->splits[i].name) == 0)
+            return SONJECT_OK;
+        list_word(&list, campaign->splits[i].name);
+    }
+    if (mistakes_concern(reader->tree->mistakes, reader->tree, "splits"))
+        return SONJECT_ERROR_INPUT;
+    return refuse_key(reader, node, "split", "is none of the splits, which are %s", list.text);
+}
+
+static sonject_status read_swath(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    struct campaign *campaign = structure;
+    CHECK(grow_list(reader->report, &campaign->swaths, campaign->swath_count,
+                    sizeof *campaign->swaths));
+    struct swath_plan *swath = &campaign->swaths[campaign->swath_count++];
+    swath->place = node->place;
+    sonject_status status = read_section(reader, &swath_section, node, swath);
+    return reading_ends(status) ? status : check_split_name(reader, campaign, swath, node);
+}
+
+sonject_status read_swaths(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    static const struct list swaths = {CAMPAIGN_SWATHS_MAX, "", read_swath};
+    if (node->kind != TREE_LIST || node->count == 0 || node->count > CAMPAIGN_SWATHS_MAX)
+        return refuse_value(reader, node, "must be a list of 1 to %d entries", CAMPAIGN_SWATHS_MAX);
+    return read_list(reader, node, &swaths, structure);
+}
+
+bool is_split_name(const char *name)
+{
+    static const char signs[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    return *name && *name != '-' && strspn(name, signs) == strlen(name) &&
+           strlen(name) < SPLIT_NAME_CAPACITY;
+}
+
+sonject_status read_splits(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    struct campaign *campaign = structure;
+    double sum = 0.0;
+    sonject_status status = SONJECT_OK;
+    if (node->kind != TREE_SECTION || node->count == 0 || node->count > CAMPAIGN_SPLITS_MAX)
+        return refuse_value(reader, node, "must be a section of 1 to %d 'name: fraction' lines",
+                            CAMPAIGN_SPLITS_MAX);
+    campaign->split_count = 0;
+    for (size_t i = 0; i < node->count; i++) {
+        const struct tree_entry *entry = &node->entries[i];
+        struct split *split = &campaign->splits[campaign->split_count++];
+        memset(split, 0, sizeof *split);
+        const size_t before = key_path_add(&reader->path, entry->key);
+        if (is_split_name(entry->key))
+            strcpy(split->name, entry->key);
+        else
+            status = tree_failure(reader->tree, entry->place, reader->path.text,
+                                  "names a folder: use up to %d letters, digits, _ and -",
+                                  SPLIT_NAME_CAPACITY - 1);
+        if (read_quantity(reader, &entry->value, QUANTITY_NUMBER, &split->fraction) != SONJECT_OK)
+            status = SONJECT_ERROR_INPUT;
+        else if (!(split->fraction > 0.0 && split->fraction <= 1.0))
+            status = refuse_value(reader, &entry->value, "must be above 0 and at most 1");
+        sum += split->fraction;
+        key_path_shorten(&reader->path, before);
+    }
+    if (status == SONJECT_OK && fabs(sum - 1.0) > 1e-6)
+        return refuse_value(reader, node, "add up to %g; make that 1", sum);
+    return status;
 }

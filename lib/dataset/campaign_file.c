@@ -5,7 +5,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "campaign/campaign_fields.h"
+#include "dataset/campaign_fields.h"
 #include "io/scene_file.h"
 #include "io/yaml_flow.h"
 

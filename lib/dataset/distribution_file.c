@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "base/text.h"
-#include "campaign/distribution.h"
+#include "dataset/distribution.h"
 #include "io/scene_fields.h"
 #include "io/yaml_flow.h"
 

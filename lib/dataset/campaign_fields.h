@@ -1,8 +1,8 @@
 /* Readers of parts of campaign files. */
-#ifndef SONJECT_CAMPAIGN_CAMPAIGN_FIELDS_H
-#define SONJECT_CAMPAIGN_CAMPAIGN_FIELDS_H
+#ifndef SONJECT_DATASET_CAMPAIGN_FIELDS_H
+#define SONJECT_DATASET_CAMPAIGN_FIELDS_H
 
-#include "campaign/campaign.h"
+#include "dataset/campaign.h"
 #include "io/scene_fields.h"
 
 /* The special readers of the tables; structure: the campaign. Draws of "objects[].heading" and the

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "campaign/campaign.h"
-#include "campaign/design.h"
+#include "dataset/campaign.h"
+#include "dataset/distribution.h"
 
 #define SWATH_STREAM 0x30000001u /* beyond those of distributions */
 

@@ -1,0 +1,462 @@
+/* How an image's plan comes about: where it lies, of what kind it is, which objects lie in it, and
+ * values drawn one after the other, as "key=value" of its scene. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/growing_text.h"
+#include "base/memory.h"
+#include "base/text.h"
+#include "dataset/campaign_fields.h"
+#include "dataset/distribution.h"
+#include "dataset/image_plan.h"
+#include "io/yaml_flow.h"
+
+/* Streams of random numbers beyond those of distributions. */
+enum {
+    STREAM_KIND = 0x31000000,
+    STREAM_GRID = 0x31000001,
+    STREAM_SEED = 0x31000002,
+    STREAM_ITEM = 0x31000003,
+    STREAM_OBJECT_ROW = 0x31000004,
+    STREAM_OBJECT_COLUMN = 0x31000005,
+    STREAM_CHIP_ROW = 0x32000000,   /* and a swath's number */
+    STREAM_CHIP_COLUMN = 0x33000000 /* likewise */
+};
+
+#define OBJECTS_OF_IMAGE 64 /* more than there are */
+#define NO_TRIAL         UINT32_MAX
+
+/* What a plan is drawn with. */
+struct drawing {
+    struct report *report;
+    const struct campaign *campaign;
+    struct image_plan *plan;
+    uint32_t trial;        /* step of a trial */
+    uint64_t index, count; /* of the image among those of its category */
+    uint64_t cell;         /* of the grid, what is left of it */
+    double rows[OBJECTS_OF_IMAGE], columns[OBJECTS_OF_IMAGE]; /* where objects lie */
+    uint32_t objects;
+};
+
+/* Begins an empty plan, for image_plan_clear. trial: its step, or NO_TRIAL. */
+static void drawing_init(struct drawing *drawing, struct report *report,
+                         const struct campaign *campaign, uint32_t trial, struct image_plan *plan)
+{
+    memset(plan, 0, sizeof *plan);
+    plan->chip.rows = campaign->chip_rows;
+    plan->chip.columns = campaign->chip_columns;
+    memset(drawing, 0, sizeof *drawing);
+    drawing->report = report;
+    drawing->campaign = campaign;
+    drawing->plan = plan;
+    drawing->trial = trial;
+}
+
+/* A seed for each category, so that they do not draw alike. */
+static uint64_t category_seed(const struct campaign *campaign, uint32_t category)
+{
+    return campaign->seed ^ (UINT64_C(0x9E3779B97F4A7C15) * (category + 1));
+}
+
+/* Adds a key to the plan; text is given up, and NULL counts as memory that was out. Errors: MEMORY.
+ */
+static sonject_status add_key(struct drawing *drawing, struct tree_place place, char *text)
+{
+    struct image_plan *plan = drawing->plan;
+    CHECK_MEMORY(drawing->report, text, "an image's scene");
+    const sonject_status status =
+        grow_list(drawing->report, &plan->keys, plan->key_count, sizeof *plan->keys);
+    if (status != SONJECT_OK) {
+        free(text);
+        return status;
+    }
+    plan->keys[plan->key_count].text = text;
+    plan->keys[plan->key_count++].place = place;
+    return SONJECT_OK;
+}
+
+static sonject_status add_value(struct drawing *drawing, struct tree_place place,
+                                const char *prefix, const char *key, const char *value)
+{
+    struct growing_text text = {NULL, 0, 0, false};
+    growing_text_add(&text, "%s%s=%s", prefix, key, value);
+    return add_key(drawing, place, growing_text_end(&text));
+}
+
+static const char *trial_value(const struct distribution *distribution, uint32_t step,
+                               char text[DISTRIBUTION_TEXT_CAPACITY])
+{
+    if (distribution->count > 0)
+        return distribution->texts[step % distribution->count];
+    return distribution_value(distribution, step % 2 == 0 ? 0.0 : 1.0, text);
+}
+
+/* The index-th of count values; random designs count by image instead. */
+static const char *draw_value(struct drawing *drawing, const struct distribution *distribution,
+                              uint64_t seed, uint64_t index, uint64_t count,
+                              char text[DISTRIBUTION_TEXT_CAPACITY])
+{
+    const struct campaign *campaign = drawing->campaign;
+    const uint32_t steps = distribution_steps(distribution);
+    if (drawing->trial != NO_TRIAL)
+        return trial_value(distribution, drawing->trial, text);
+    if (campaign->design == DESIGN_GRID && steps > 0) {
+        const uint32_t step = (uint32_t)(drawing->cell % steps);
+        drawing->cell /= steps;
+        return distribution_step(distribution, step, text);
+    }
+    const double u = campaign->design == DESIGN_STRATIFIED
+                         ? stratified_number(seed, distribution->stream, index, count)
+                         : uniform_number(seed, distribution->stream, drawing->plan->id);
+    return distribution_value(distribution, u, text);
+}
+
+static bool draws_have_key(const struct draws *draws, const char *key)
+{
+    for (size_t i = 0; i < draws->count; i++)
+        if (strcmp(draws->list[i].key, key) == 0)
+            return true;
+    return false;
+}
+
+static void choose_chip(const struct campaign *campaign, struct image_plan *plan, uint64_t index,
+                        uint64_t count)
+{
+    double u, v;
+    if (campaign->design == DESIGN_STRATIFIED) {
+        u = stratified_number(campaign->seed, STREAM_CHIP_ROW + plan->swath, index, count);
+        v = stratified_number(campaign->seed, STREAM_CHIP_COLUMN + plan->swath, index, count);
+    } else {
+        u = uniform_number(campaign->seed, STREAM_CHIP_ROW, plan->id);
+        v = uniform_number(campaign->seed, STREAM_CHIP_COLUMN, plan->id);
+    }
+    chip_room_choose(&campaign->swaths[plan->swath].room, u, v, &plan->chip.first_row,
+                     &plan->chip.first_column);
+}
+
+uint32_t image_split(const struct campaign *campaign, uint64_t id)
+{
+    uint32_t number = 0;
+    while (id - campaign->splits[number].first_image >= campaign->splits[number].images)
+        number++;
+    return number;
+}
+
+/* Images of a split follow its swaths: as many from each, but for one. */
+static uint64_t swath_within(const struct split *split, uint64_t within)
+{
+    return within * split->swath_count / split->images;
+}
+
+uint32_t image_swath(const struct campaign *campaign, uint64_t id)
+{
+    const struct split *split = &campaign->splits[image_split(campaign, id)];
+    return split->swaths[swath_within(split, id - split->first_image)];
+}
+
+static void choose_swath(const struct campaign *campaign, struct image_plan *plan, uint64_t within)
+{
+    const struct split *split = &campaign->splits[plan->split];
+    const uint64_t swaths = split->swath_count;
+    const uint64_t number = swath_within(split, within);
+    const uint64_t first = (number * split->images + swaths - 1) / swaths;
+    const uint64_t end = ((number + 1) * split->images + swaths - 1) / swaths;
+    plan->swath = split->swaths[number];
+    choose_chip(campaign, plan, within - first, end - first);
+}
+
+/* The kind of image, in random order; index and count of the image among those of its kind. */
+static void choose_kind(struct drawing *drawing, uint64_t within)
+{
+    const struct campaign *campaign = drawing->campaign;
+    struct image_plan *plan = drawing->plan;
+    const struct split *split = &campaign->splits[plan->split];
+    uint64_t slot =
+        permuted_index(category_seed(campaign, plan->split), STREAM_KIND, within, split->images);
+    while (slot >= split->shares[plan->category])
+        slot -= split->shares[plan->category++];
+    drawing->index = slot;
+    for (size_t i = 0; i < campaign->split_count; i++) {
+        const uint64_t share = campaign->splits[i].shares[plan->category];
+        drawing->index += i < plan->split ? share : 0;
+        drawing->count += share;
+    }
+    drawing->cell = permuted_index(category_seed(campaign, plan->category), STREAM_GRID,
+                                   drawing->index, drawing->count);
+}
+
+/* The image's swath, its place there, and its category: all that its id alone says. */
+static void choose_place(struct drawing *drawing)
+{
+    struct image_plan *plan = drawing->plan;
+    plan->split = image_split(drawing->campaign, plan->id);
+    const uint64_t within = plan->id - drawing->campaign->splits[plan->split].first_image;
+    choose_swath(drawing->campaign, plan, within);
+    choose_kind(drawing, within);
+}
+
+#define CANDIDATES 16 /* places that are tried for an object beside others */
+
+/* Draws that an object has of its own, and those of all objects that it has not. number: of the
+ * object; 0 is the target, if there is one. */
+static sonject_status draw_object(struct drawing *drawing, const struct item *item, uint32_t number,
+                                  bool is_clutter)
+{
+    const struct campaign *campaign = drawing->campaign;
+    const struct draws *both[] = {&campaign->object_draws, &item->draws};
+    const uint64_t place = drawing->plan->id * OBJECTS_OF_IMAGE + number;
+    const uint64_t seed =
+        category_seed(campaign, is_clutter ? UINT32_MAX - 1 : drawing->plan->category);
+    char prefix[32];
+    sonject_status status = SONJECT_OK;
+    snprintf(prefix, sizeof prefix, "objects[%u].", (unsigned)number);
+    for (int k = 0; k < 2; k++)
+        for (size_t i = 0; status == SONJECT_OK && i < both[k]->count; i++) {
+            char text[DISTRIBUTION_TEXT_CAPACITY];
+            const char *value;
+            const struct distribution *distribution = &both[k]->list[i];
+            if (k == 0 && draws_have_key(&item->draws, distribution->key))
+                continue;
+            if (is_clutter && drawing->trial == NO_TRIAL)
+                value = distribution_value(distribution,
+                                           uniform_number(seed, distribution->stream, place), text);
+            else
+                value =
+                    draw_value(drawing, distribution, seed, drawing->index, drawing->count, text);
+            status = add_value(drawing, distribution->place, prefix, distribution->key, value);
+        }
+    return status;
+}
+
+/* A place in the middle part of the chip: the first candidate for the first object, for others the
+ * one that is farthest from all before. */
+static void place_object(struct drawing *drawing)
+{
+    const struct campaign *campaign = drawing->campaign;
+    const struct region *chip = &drawing->plan->chip;
+    const uint32_t number = drawing->objects;
+    double farthest = -1.0;
+    for (uint32_t i = 0; i < (number > 0 ? CANDIDATES : 1u); i++) {
+        const uint64_t index = (drawing->plan->id * OBJECTS_OF_IMAGE + number) * CANDIDATES + i;
+        const double u = uniform_number(campaign->seed, STREAM_OBJECT_ROW, index) - 0.5;
+        const double v = uniform_number(campaign->seed, STREAM_OBJECT_COLUMN, index) - 0.5;
+        const double row =
+            0.5 * (double)(chip->rows - 1) + campaign->spread * (double)(chip->rows - 1) * u;
+        const double column =
+            0.5 * (double)(chip->columns - 1) + campaign->spread * (double)(chip->columns - 1) * v;
+        double nearest = HUGE_VAL;
+        for (uint32_t j = 0; j < number; j++)
+            nearest = fmin(nearest, hypot(row - drawing->rows[j], column - drawing->columns[j]));
+        if (nearest > farthest) {
+            farthest = nearest;
+            drawing->rows[number] = row;
+            drawing->columns[number] = column;
+        }
+    }
+    drawing->objects++;
+}
+
+static void write_object(struct drawing *drawing, const struct item *item,
+                         struct growing_text *text)
+{
+    const struct region *chip = &drawing->plan->chip;
+    const struct tree_node class_name = {
+        .kind = TREE_TEXT, .is_quoted = true, .text = (char *)item->class_name};
+    const uint32_t number = drawing->objects;
+    char row[32], column[32];
+    place_object(drawing);
+    text_of_number(row, sizeof row, (double)chip->first_row + drawing->rows[number], 9);
+    text_of_number(column, sizeof column, (double)chip->first_column + drawing->columns[number], 9);
+    growing_text_add(text, "%s{\"class\": ", number > 0 ? ", " : "");
+    tree_write_flow(&class_name, text);
+    growing_text_add(text, ", \"position\": {\"row\": %s, \"column\": %s}%s%s", row, column,
+                     item->object[1] == '}' ? "" : ", ", item->object + 1);
+}
+
+static uint32_t clutter_objects(struct drawing *drawing)
+{
+    const struct campaign *campaign = drawing->campaign;
+    const struct distribution *number = &campaign->clutter_number;
+    const uint32_t category = drawing->plan->category;
+    char text[DISTRIBUTION_TEXT_CAPACITY];
+    uint64_t count = 1;
+    if (category == CATEGORY_EMPTY || campaign->clutter_count == 0)
+        return 0;
+    if (number->count > 0)
+        text_to_count(
+            distribution_value(
+                number, uniform_number(campaign->seed, number->stream, drawing->plan->id), text),
+            &count);
+    return (uint32_t)(category == CATEGORY_CLUTTER && count == 0 ? 1 : count);
+}
+
+static const struct item *choose_clutter(const struct drawing *drawing, uint32_t number)
+{
+    const struct campaign *campaign = drawing->campaign;
+    double left = 0.0;
+    for (size_t i = 0; i < campaign->clutter_count; i++)
+        left += campaign->clutter[i].weight;
+    left *=
+        uniform_number(campaign->seed, STREAM_ITEM, drawing->plan->id * OBJECTS_OF_IMAGE + number);
+    const struct item *item = campaign->clutter;
+    while (item + 1 < campaign->clutter + campaign->clutter_count && left >= item->weight)
+        left -= (item++)->weight;
+    return item;
+}
+
+/* All of the image; the target comes first, if there is one. */
+static uint32_t choose_objects(struct drawing *drawing, const struct item *trial_clutter,
+                               const struct item **items)
+{
+    const uint32_t category = drawing->plan->category;
+    uint32_t count = 0;
+    if (category >= CATEGORY_TARGET)
+        items[count++] = &drawing->campaign->targets[category - CATEGORY_TARGET];
+    if (trial_clutter) {
+        items[count++] = trial_clutter;
+    } else if (drawing->trial == NO_TRIAL) {
+        const uint32_t end = count + clutter_objects(drawing);
+        for (; count < end; count++)
+            items[count] = choose_clutter(drawing, count);
+    }
+    return count;
+}
+
+/* The objects in one value, and then what is drawn of each. */
+static sonject_status draw_objects(struct drawing *drawing, const struct item *trial_clutter)
+{
+    const struct tree_place nowhere = {NULL, 0, 0};
+    const struct item *items[OBJECTS_OF_IMAGE];
+    struct growing_text text = {NULL, 0, 0, false};
+    const uint32_t count = choose_objects(drawing, trial_clutter, items);
+    const uint32_t first_clutter = drawing->plan->category >= CATEGORY_TARGET ? 1 : 0;
+    drawing->plan->object_count = count;
+    growing_text_add(&text, "objects=[");
+    for (uint32_t i = 0; i < count; i++)
+        write_object(drawing, items[i], &text);
+    growing_text_add(&text, "]");
+    sonject_status status = add_key(drawing, nowhere, growing_text_end(&text));
+    for (uint32_t i = 0; status == SONJECT_OK && i < count; i++)
+        status = draw_object(drawing, items[i], i, i >= first_clutter);
+    return status;
+}
+
+static sonject_status draw_scene(struct drawing *drawing)
+{
+    const struct campaign *campaign = drawing->campaign;
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; status == SONJECT_OK && i < campaign->draws.count; i++) {
+        char text[DISTRIBUTION_TEXT_CAPACITY];
+        const struct distribution *distribution = &campaign->draws.list[i];
+        const char *value = draw_value(drawing, distribution, campaign->seed, drawing->plan->id,
+                                       campaign->images, text);
+        status = add_value(drawing, distribution->place, "", distribution->key, value);
+    }
+    return status;
+}
+
+static sonject_status draw_patch(struct drawing *drawing)
+{
+    const struct campaign *campaign = drawing->campaign;
+    const struct region *chip = &drawing->plan->chip;
+    const struct tree_place nowhere = {NULL, 0, 0};
+    const struct swath_plan *swath = &campaign->swaths[drawing->plan->swath];
+    char text[160];
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; status == SONJECT_OK && i < swath->key_count; i++)
+        status = add_key(drawing, swath->place, copy_text(swath->keys[i]));
+    snprintf(text, sizeof text, "{row: %llu, column: %llu, rows: %llu, columns: %llu}",
+             (unsigned long long)chip->first_row, (unsigned long long)chip->first_column,
+             (unsigned long long)chip->rows, (unsigned long long)chip->columns);
+    THEN(status, add_value(drawing, nowhere, "", "patch", text));
+    snprintf(text, sizeof text, "%llu", (unsigned long long)drawing->plan->seed);
+    THEN(status, add_value(drawing, nowhere, "", "injection.seed", text));
+    return status;
+}
+
+static sonject_status fill_plan(struct drawing *drawing, const struct item *trial_clutter)
+{
+    sonject_status status = draw_patch(drawing);
+    THEN(status, draw_scene(drawing));
+    return status == SONJECT_OK ? draw_objects(drawing, trial_clutter) : status;
+}
+
+sonject_status image_plan_make(struct report *report, const struct campaign *campaign, uint64_t id,
+                               struct image_plan *plan)
+{
+    struct drawing drawing;
+    drawing_init(&drawing, report, campaign, NO_TRIAL, plan);
+    plan->id = id;
+    plan->seed = (uint64_t)(uniform_number(campaign->seed, STREAM_SEED, id) * 0x1p52);
+    choose_place(&drawing);
+    return fill_plan(&drawing, NULL);
+}
+
+sonject_status image_plan_try(struct report *report, const struct campaign *campaign,
+                              uint32_t swath, uint32_t category, uint32_t item, uint32_t step,
+                              struct image_plan *plan)
+{
+    struct drawing drawing;
+    drawing_init(&drawing, report, campaign, step, plan);
+    plan->swath = swath;
+    plan->category = category;
+    if (campaign->swaths[swath].room.places > 0)
+        chip_room_choose(&campaign->swaths[swath].room, 0.0, 0.0, &plan->chip.first_row,
+                         &plan->chip.first_column);
+    return fill_plan(&drawing, category == CATEGORY_CLUTTER ? &campaign->clutter[item] : NULL);
+}
+
+void image_plan_clear(struct image_plan *plan)
+{
+    for (size_t i = 0; i < plan->key_count; i++)
+        free(plan->keys[i].text);
+    free(plan->keys);
+    memset(plan, 0, sizeof *plan);
+}
+
+static uint32_t longest(const struct draws *draws, uint32_t steps)
+{
+    for (size_t i = 0; i < draws->count; i++)
+        if (draws->list[i].count > steps)
+            steps = (uint32_t)draws->list[i].count;
+    return steps;
+}
+
+uint32_t image_plan_steps(const struct campaign *campaign, const struct item *item)
+{
+    return item ? longest(&campaign->object_draws, longest(&item->draws, 2))
+                : longest(&campaign->draws, 2);
+}
+
+/* Times the cells of these axes; what is too many stays so. */
+static uint64_t count_cells(const struct draws *draws, const struct draws *but, uint64_t cells)
+{
+    for (size_t i = 0; i < draws->count; i++) {
+        const uint32_t steps = distribution_steps(&draws->list[i]);
+        if (steps > 0 && !(but && draws_have_key(but, draws->list[i].key)))
+            cells = cells > UINT64_MAX / steps ? UINT64_MAX : cells * steps;
+    }
+    return cells;
+}
+
+sonject_status image_plan_check_grid(const struct campaign *campaign)
+{
+    for (size_t i = 0; campaign->design == DESIGN_GRID && i < campaign->target_count; i++) {
+        const struct item *item = &campaign->targets[i];
+        uint64_t images = 0;
+        for (size_t j = 0; j < campaign->split_count; j++)
+            images += campaign->splits[j].shares[CATEGORY_TARGET + i];
+        uint64_t cells = count_cells(&campaign->draws, NULL, 1);
+        cells = count_cells(&campaign->object_draws, &item->draws, cells);
+        cells = count_cells(&item->draws, NULL, cells);
+        if (item->weight > 0.0 && cells > images)
+            return tree_failure(&campaign->tree, item->place, "targets",
+                                "%s comes in %llu images, but the grid of its values has %s%llu "
+                                "cells; ask for more images or fewer steps",
+                                item->class_name, (unsigned long long)images,
+                                cells == UINT64_MAX ? "more than " : "", (unsigned long long)cells);
+    }
+    return SONJECT_OK;
+}
