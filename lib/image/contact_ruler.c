@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "image/contact_lines.h"
+#include "image/contact_edges.h"
 
 #define EDGE_REACH 8 /* pixels beyond a part in which its edge is looked for */
 #define END_ROWS   4 /* of a highlight, whose columns tell where its end is looked for */

@@ -2,10 +2,15 @@
 #ifndef SONJECT_IMAGE_CONTACT_SEARCH_H
 #define SONJECT_IMAGE_CONTACT_SEARCH_H
 
-#include "image/bright_areas.h"
 #include "image/contact_parts.h"
 
 #define CONTACT_MARGIN 6 /* pixels around highlight and shadow in a contact's box */
+
+/* A connected area that is HIGHLIGHT_OVER_SEABED and more over the seabed around it. */
+struct bright_area {
+    struct window_box box;
+    double contrast; /* of its brightest mean of 3 x 3 pixels over the seabed */
+};
 
 struct found_contact {
     struct contact_place place;
