@@ -8,8 +8,8 @@
 #include "api/handles.h"
 #include "base/file.h"
 #include "base/json_document.h"
-#include "dataset/labels.h"
 #include "base/memory.h"
+#include "dataset/labels.h"
 #include "image/contact_search.h"
 
 #define TRUTH_BYTES_MAX ((size_t)1 << 26)

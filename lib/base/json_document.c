@@ -100,7 +100,7 @@ char *json_document_text(const json_t *document, size_t flags)
     return growing_text_end(&text);
 }
 
-sonject_status json_document_write(struct report *report, json_t *document, int digits,
+sonject_status json_document_write(struct report *report, json_t *document, size_t digits,
                                    const char *path)
 {
     struct growing_text text = {NULL, 0, 0, false};

@@ -46,7 +46,7 @@ char *json_document_text(const json_t *document, size_t flags);
 
 /* Writes the document, indented, numbers with so many digits, whole or not at all, and releases it.
  * Errors: STORAGE, MEMORY (also where the document is NULL). */
-sonject_status json_document_write(struct report *report, json_t *document, int digits,
+sonject_status json_document_write(struct report *report, json_t *document, size_t digits,
                                    const char *path);
 
 /* Reads a JSON object of at most 64 MB. Errors: STORAGE, INPUT, MEMORY. */

@@ -13,7 +13,6 @@
 #include "base/text.h"
 #include "dataset/campaign.h"
 #include "dataset/distribution.h"
-#include "dataset/distribution.h"
 
 #define DRAWS 40000
 
