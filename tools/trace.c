@@ -10,11 +10,14 @@
 struct trace_options {
     struct stage_options stage;
     struct scene_arguments scene;
+    const char *export_file;
 };
 
 static const struct argument arguments[] = {
-    {"--output", "-o", "FILE", "file of impulses to write, for sonject form", ARGUMENT_TEXT, true,
+    {"--output", "-o", "FILE", "file of sums to write, for sonject form", ARGUMENT_TEXT, true,
      offsetof(struct trace_options, stage.output)},
+    {"--export", NULL, "FILE.h5", "also writes the impulses as HDF5 arrays, for other programs",
+     ARGUMENT_TEXT, false, offsetof(struct trace_options, export_file)},
     SCENE_ARGUMENTS(struct trace_options),
     STAGE_ARGUMENTS(struct trace_options),
 };
@@ -28,6 +31,7 @@ static sonject_status trace(sonject_context *context, const void *verb_options,
     sonject_trace_params params;
     sonject_trace_params_init(&params);
     params.file = options->stage.output;
+    params.export_file = options->export_file;
     sonject_status status = scene_arguments_read(context, &options->scene, &scene);
     if (status == SONJECT_OK)
         status = sonject_trace(context, scene, &params, progress_update, progress);

@@ -1,6 +1,5 @@
 /* The two stages of a run apart: tracing, whose impulses go to a file, and forming images of them,
- * as often as wanted, also with another bandwidth or cross-range response. Builds without HDF5
- * answer UNSUPPORTED. */
+ * as often as wanted, also with another bandwidth or cross-range response. */
 #ifndef SONJECT_STAGES_H
 #define SONJECT_STAGES_H
 
@@ -16,12 +15,15 @@ SONJECT_BEGIN_DECLARATIONS
 typedef struct sonject_trace_params {
     uint32_t struct_size;
     uint32_t reserved;
-    const char *file; /* to write; HDF5, described in lib/inject/impulse_file.h */
+    const char *file;        /* to write, for sonject_form */
+    const char *export_file; /* NULL, or the same as arrays of HDF5, described in
+                                lib/inject/impulse_export.h; builds without it: UNSUPPORTED */
 } sonject_trace_params;
 
 SONJECT_API void sonject_trace_params_init(sonject_trace_params *params);
 
-/* Traces the scene and writes its impulses to params->file, which appears whole or not at all. The
+/* Traces the scene and writes its impulses to params->file, which appears whole or not at all, as
+ * does the export. The
  * file keeps the text of a scene that was read from a file, and the names of the files that it
  * names, but not these: they, and the input image, are needed again. Errors: ARGUMENT, INPUT,
  * DEVICE, STORAGE, MEMORY, UNSUPPORTED, CANCELLED. */

@@ -5,13 +5,13 @@
 #include <sonject/run.h>
 #include <sonject/version.h>
 
+#include "api/checkpoints.h"
 #include "api/earlier_result.h"
+#include "api/kept_scene.h"
 #include "api/merged_bands.h"
 #include "api/run_scene.h"
-#include "api/stint_source.h"
-#include "api/stints.h"
 #include "base/file.h"
-#include "trace/stint_folder.h"
+#include "trace/sums_folder.h"
 
 void sonject_merge_params_init(sonject_merge_params *params)
 {
@@ -20,19 +20,20 @@ void sonject_merge_params_init(sonject_merge_params *params)
 }
 
 /* The scene that the first of the shards keeps. */
-static sonject_status read_kept_scene(struct report *report, const struct stint_file *file,
+static sonject_status read_kept_scene(struct report *report, const struct sums_file *file,
                                       bool allows_user_shapes, struct scene *scene)
 {
-    struct impulse_head head;
+    struct kept_scene kept;
     sonject_form_params params;
     sonject_form_params_init(&params);
     params.file = file->path;
     params.allows_user_shapes = allows_user_shapes;
-    sonject_status status = stint_source_read(&head, report, file);
+    sonject_status status = kept_scene_find(&kept, report, file);
     if (status == SONJECT_OK && strcmp(file->head.identity.version, sonject_version()) != 0)
-        status = refuse_foreign_stint(report, file->path, "another version of sonject");
-    THEN(status, read_traced_scene(report, &head, &params, scene));
-    impulse_head_clear(&head);
+        status = refuse_foreign_sums(report, file->path, "another version of sonject");
+    if (status == SONJECT_OK)
+        status = read_traced_scene(report, &kept, &params, scene);
+    free(kept.overrides);
     return status;
 }
 
@@ -43,12 +44,13 @@ static sonject_status merge_kept(struct sonject_context *context, const struct r
     struct report *report = &context->report;
     struct run_request of_kept = *asked;
     struct run_request *request = &of_kept;
-    struct stint_folder folder;
+    struct sums_folder folder;
     struct scene scene;
     scene_init(&scene);
-    char *work = stints_folder(request->folder);
-    CHECK_MEMORY(report, work, "a file name");
-    sonject_status status = stint_folder_read(&folder, report, work, 0, false);
+    char *work = checkpoints_folder(request->folder);
+    if (!work)
+        return report_out_of_memory(report, "a file name");
+    sonject_status status = sums_folder_read(&folder, report, work, 0, false);
     const bool is_merged =
         status == SONJECT_OK && folder.count == 0 && folder_has_result(request->folder);
     if (status == SONJECT_OK && folder.count == 0 && !is_merged)
@@ -59,7 +61,7 @@ static sonject_status merge_kept(struct sonject_context *context, const struct r
                            work);
     if (status == SONJECT_OK && !is_merged)
         status = read_kept_scene(report, &folder.files[0], allows_user_shapes, &scene);
-    stint_folder_clear(&folder);
+    sums_folder_clear(&folder);
     request->scene = &scene;
     if (is_merged)
         status = earlier_check_merged(report, request->folder, request->label_formats);

@@ -3,50 +3,50 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "api/checkpoints.h"
 #include "api/earlier_result.h"
-#include "api/stint_source.h"
-#include "api/stints.h"
+#include "api/kept_scene.h"
 #include "base/file.h"
 #include "base/folder.h"
 #include "base/growing_text.h"
 #include "base/memory.h"
 #include "io/scene_bands.h"
 #include "io/scene_file.h"
-#include "trace/stint_folder.h"
+#include "trace/sums_folder.h"
 
 #define CHOICE "band=" /* the override that chooses a band */
 
 /* How many shards the work in a folder speaks of; 0: there is none. */
 static sonject_status count_shards(struct report *report, const char *folder, uint64_t *shards)
 {
-    char *work = stints_folder(folder);
-    const sonject_status status = work ? stint_folder_shards(report, work, 0, shards)
+    char *work = checkpoints_folder(folder);
+    const sonject_status status = work ? sums_folder_shards(report, work, 0, shards)
                                        : report_out_of_memory(report, "a file name");
     free(work);
     return status;
 }
 
 /* The bands of a scene that was traced with this one chosen; nothing where another was, or none. */
-static sonject_status list_kept(struct report *report, const struct impulse_head *head,
+static sonject_status list_kept(struct report *report, const struct kept_scene *kept,
                                 const char *band, char **names)
 {
     bool is_chosen = false;
     size_t count = 0;
-    if (!head->scene_text)
+    if (!kept->text)
         return SONJECT_OK;
-    const char **others = allocate_array(head->override_count, sizeof *others);
+    const char **others = allocate_array(kept->override_count, sizeof *others);
     if (!others)
         return report_out_of_memory(report, "the names of bands");
-    for (size_t i = 0; i < head->override_count; i++)
-        if (strncmp(head->overrides[i], CHOICE, strlen(CHOICE)) == 0)
-            is_chosen = strcmp(head->overrides[i] + strlen(CHOICE), band) == 0;
+    for (size_t i = 0; i < kept->override_count; i++)
+        if (strncmp(kept->overrides[i], CHOICE, strlen(CHOICE)) == 0)
+            is_chosen = strcmp(kept->overrides[i] + strlen(CHOICE), band) == 0;
         else
-            others[count++] = head->overrides[i];
+            others[count++] = kept->overrides[i];
     struct scene_text source;
     memset(&source, 0, sizeof source);
-    source.path = head->scene_path;
-    source.text = head->scene_text;
-    source.bytes = strlen(head->scene_text);
+    source.path = kept->path;
+    source.text = kept->text;
+    source.bytes = strlen(kept->text);
     source.overrides = others;
     source.override_count = count;
     const sonject_status status = is_chosen ? scene_text_bands(report, &source, names) : SONJECT_OK;
@@ -58,18 +58,18 @@ static sonject_status list_kept(struct report *report, const struct impulse_head
 static sonject_status find_in_shards(struct report *report, const char *folder, const char *band,
                                      char **names)
 {
-    struct stint_file file;
+    struct sums_file file;
     bool is_there = false;
-    char *work = stints_folder(folder);
-    sonject_status status = work ? stint_folder_first(&file, report, work, &is_there)
+    char *work = checkpoints_folder(folder);
+    sonject_status status = work ? sums_folder_first(&file, report, work, &is_there)
                                  : report_out_of_memory(report, "a file name");
     if (status == SONJECT_OK && is_there) {
-        struct impulse_head head;
-        status = stint_source_read(&head, report, &file);
+        struct kept_scene kept;
+        status = kept_scene_find(&kept, report, &file);
         if (status == SONJECT_OK)
-            status = list_kept(report, &head, band, names);
-        impulse_head_clear(&head);
-        stint_file_close(&file);
+            status = list_kept(report, &kept, band, names);
+        free(kept.overrides);
+        sums_file_close(&file);
     }
     free(work);
     return status;

@@ -6,13 +6,13 @@
 
 #include <sonject/run.h>
 
+#include "api/checkpoints.h"
 #include "api/documents.h"
 #include "api/earlier_result.h"
 #include "api/label_files.h"
 #include "api/layers.h"
 #include "api/run_scene.h"
 #include "api/scene_hash.h"
-#include "api/stints.h"
 #include "api/swath.h"
 #include "base/clock.h"
 #include "base/file.h"
@@ -122,9 +122,9 @@ static sonject_status run_swath(struct sonject_context *context, const struct ru
         status = injection_form(&context->report, device, scene, &input, &source, tell_stage,
                                 &stage, &result);
     } else if (status == SONJECT_OK) {
-        const struct stint_job job = {context, device, request,    facts->scene_hash,
-                                      &input,  start,  tell_stage, &stage};
-        status = inject_by_stints(&job, &result, &is_formed);
+        const struct checkpoint_job job = {context, device, request,    facts->scene_hash,
+                                           &input,  start,  tell_stage, &stage};
+        status = inject_by_checkpoints(&job, &result, &is_formed);
     }
     if (status != SONJECT_OK || !is_formed)
         return status;
@@ -135,7 +135,7 @@ static sonject_status run_swath(struct sonject_context *context, const struct ru
     status = write_results(&context->report, facts, &result, request->folder, start,
                            request->progress, request->user);
     if (status == SONJECT_OK && !request->impulses)
-        stints_remove(request->folder);
+        checkpoints_remove(request->folder);
     if (status == SONJECT_OK)
         tell_clipped(&context->report, &result.statistics);
     injection_result_clear(&result);
@@ -149,7 +149,7 @@ static sonject_status open_swath(struct report *report, const struct run_request
 {
     struct scene traced = *request->scene;
     if (request->impulses)
-        impulse_head_take_sonar(impulse_file_head(request->impulses), &traced.sonar);
+        impulse_facts_take_sonar(&request->impulses->facts, &traced.sonar);
     const sonject_status status = swath_open(report, &traced, swath);
     if (status != SONJECT_OK || !request->impulses)
         return status;

@@ -6,6 +6,7 @@
 #include <sonject/stages.h>
 
 #include "api/handles.h"
+#include "api/kept_scene.h"
 #include "api/swath.h"
 #include "inject/impulse_file.h"
 
@@ -35,14 +36,10 @@ sonject_status run_scene(struct sonject_context *context, const struct run_reque
 sonject_status check_traced(struct report *report, const struct impulse_file *impulses,
                             const struct scene *scene, const struct swath *swath);
 
-/* Copies where a scene came from into a head. Errors: MEMORY. */
-sonject_status take_source(struct impulse_head *head, struct report *report,
-                           const struct scene_source *source);
-
-/* Reads the scene whose text a head keeps, with the overrides of params, whose file is for the
+/* Reads the scene whose text a file keeps, with the overrides of params, whose file is for the
  * message. Names of files are meant from where it was traced. scene is the caller's for
  * scene_clear, also on failure. Errors: INPUT, STORAGE, MEMORY. */
-sonject_status read_traced_scene(struct report *report, const struct impulse_head *head,
+sonject_status read_traced_scene(struct report *report, const struct kept_scene *kept,
                                  const sonject_form_params *params, struct scene *scene);
 
 #endif

@@ -310,9 +310,9 @@ sonject_status scene_inputs(struct report *report, const struct scene *scene,
 sonject_status traced_scene_hash(struct report *report, const struct scene *scene,
                                  const char *input_identity, char text[HASH_TEXT_CAPACITY])
 {
-    static const struct impulse_head none;
+    static const struct impulse_facts none;
     struct scene traced = *scene;
-    impulse_head_take_sonar(&none, &traced.sonar);
+    impulse_facts_take_sonar(&none, &traced.sonar);
     sonject_pulse_params_init(&traced.pulse);
     memset(&traced.pulse_table, 0, sizeof traced.pulse_table);
     memset(&traced.cross_range_table, 0, sizeof traced.cross_range_table);

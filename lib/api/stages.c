@@ -10,6 +10,7 @@
 #include "api/scene_hash.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "inject/impulse_export.h"
 #include "io/scene_file.h"
 
 void sonject_trace_params_init(sonject_trace_params *params)
@@ -24,67 +25,77 @@ void sonject_form_params_init(sonject_form_params *params)
     params->struct_size = sizeof *params;
 }
 
-sonject_status take_source(struct impulse_head *head, struct report *report,
-                           const struct scene_source *source)
+static sonject_status describe(struct report *report, const struct sonject_scene *scene,
+                               const struct swath *swath, struct sums_head *head,
+                               struct sums_source *source, struct impulse_facts *facts)
 {
-    if (!source->text)
-        return SONJECT_OK;
-    head->scene_text = copy_text(source->text);
-    head->scene_path = copy_text(source->path);
-    head->scene_folder = working_folder();
-    head->overrides = allocate_array(source->override_count, sizeof *head->overrides);
-    bool is_whole = head->scene_text && head->scene_path && head->scene_folder && head->overrides;
-    for (size_t i = 0; is_whole && i < source->override_count; i++) {
-        head->overrides[i] = copy_text(source->overrides[i]);
-        is_whole = head->overrides[i] != NULL;
-        head->override_count = i + 1;
-    }
-    return is_whole ? SONJECT_OK : report_out_of_memory(report, "the scene's text");
+    char hash[HASH_TEXT_CAPACITY];
+    memset(head, 0, sizeof *head);
+    memset(facts, 0, sizeof *facts);
+    head->shard = head->shards = 1;
+    strncpy(head->identity.version, sonject_version(), sizeof head->identity.version - 1);
+    facts->image_rows = swath->layout.rows;
+    facts->image_columns = swath->layout.columns;
+    strncpy(facts->image_hash, swath->identity, sizeof facts->image_hash - 1);
+    impulse_facts_note_sonar(facts, &scene->scene.sonar);
+    sonject_status status = kept_scene_join(source, report, &scene->source);
+    if (status == SONJECT_OK)
+        status = traced_scene_hash(report, &scene->scene, swath->identity, hash);
+    if (status == SONJECT_OK)
+        memcpy(head->identity.scene, hash, sizeof hash);
+    return status;
 }
 
-static sonject_status describe(struct impulse_head *head, struct report *report,
-                               const struct sonject_scene *scene, const struct swath *swath)
+/* The lines go to the file and, where one is wanted, to its export. */
+struct two_files {
+    struct sums_writer *sums;
+    struct impulse_export *export;
+};
+
+static sonject_status write_lines(void *taker, const struct impulse_lines *lines)
 {
-    const sonject_geometry_params *geometry = &scene->scene.geometry;
-    memset(head, 0, sizeof *head);
-    head->seed = scene->scene.injection.seed;
-    head->image_rows = swath->layout.rows;
-    head->image_columns = swath->layout.columns;
-    memcpy(head->image_hash, swath->identity, sizeof head->image_hash);
-    head->sonar = scene->scene.sonar;
-    head->first_row = swath->patch.first_row;
-    head->first_column = swath->patch.first_column;
-    head->rows = swath->patch.rows;
-    head->columns = swath->patch.columns;
-    head->row_spacing_m = geometry->row_spacing_m;
-    head->column_spacing_m = geometry->column_spacing_m;
-    head->first_slant_range_m = geometry->first_slant_range_m;
-    head->image_path = copy_text(scene->scene.input_path ? scene->scene.input_path : "");
-    CHECK_MEMORY(report, head->image_path, "a path");
-    CHECK(traced_scene_hash(report, &scene->scene, swath->identity, head->scene_hash));
-    return take_source(head, report, &scene->source);
+    const struct two_files *files = taker;
+    const sonject_status status = impulse_lines_write(files->sums, lines);
+    return status == SONJECT_OK && files->export ? impulse_export_lines(files->export, lines)
+                                                 : status;
 }
 
 static sonject_status trace_swath(struct sonject_context *context,
                                   const struct sonject_scene *scene, const struct swath *swath,
-                                  const char *path, sonject_progress_function progress, void *user)
+                                  const sonject_trace_params *params,
+                                  sonject_progress_function progress, void *user)
 {
     struct report *report = &context->report;
-    struct device *device;
-    struct impulse_head head;
-    struct impulse_writer *writer = NULL;
+    const char *image_path = scene->scene.input_path ? scene->scene.input_path : "";
+    const char *export_file =
+        params->export_file && *params->export_file ? params->export_file : NULL;
     const struct injection_input input = swath_input(swath);
-    sonject_status status = describe(&head, report, scene, swath);
-    THEN(status, impulse_writer_begin(report, path, &writer));
-    THEN(status, context_device(context, &device));
-    if (status == SONJECT_OK) {
-        const struct impulse_sink sink = impulse_writer_sink(writer);
+    struct device *device;
+    struct sums_head head;
+    struct sums_source source;
+    struct impulse_facts facts;
+    struct sums_writer writer;
+    struct two_files files = {&writer, NULL};
+    const struct impulse_sink sink = {write_lines, &files};
+    memset(&writer, 0, sizeof writer);
+    sonject_status status = describe(report, scene, swath, &head, &source, &facts);
+    if (status == SONJECT_OK)
+        status = sums_writer_begin_file(&writer, report, params->file, &head, source);
+    if (status == SONJECT_OK && export_file)
+        status = impulse_export_begin(report, export_file, &files.export);
+    if (status == SONJECT_OK)
+        status = context_device(context, &device);
+    if (status == SONJECT_OK)
         status = injection_trace(report, device, &scene->scene, &input, &sink, progress, user,
-                                 &head.counts);
-    }
-    THEN(status, impulse_writer_publish(writer, &head));
-    impulse_writer_release(&writer);
-    impulse_head_clear(&head);
+                                 &facts.counts);
+    if (status == SONJECT_OK && files.export)
+        status = impulse_export_publish(files.export, &scene->scene, &input, &facts,
+                                        head.identity.scene, image_path);
+    if (status == SONJECT_OK)
+        status = impulse_file_publish(&writer, &facts, image_path);
+    impulse_export_release(&files.export);
+    sums_writer_clear(&writer);
+    free((void *)source.texts);
     return status;
 }
 
@@ -100,12 +111,17 @@ sonject_status sonject_trace(sonject_context *context, const sonject_scene *scen
     sonject_trace_params taken;
     struct swath swath;
     sonject_trace_params_init(&taken);
-    CHECK(params_take(&context->report, &taken, sizeof taken, params, sizeof taken,
-                      "trace parameters"));
+    sonject_status status =
+        params_take(&context->report, &taken, sizeof taken, params,
+                    offsetof(sonject_trace_params, export_file), "trace parameters");
+    if (status != SONJECT_OK)
+        return status;
     if (!taken.file || !taken.file[0])
         return null_argument(&context->report, "file");
-    CHECK(swath_open(&context->report, &scene->scene, &swath));
-    sonject_status status = trace_swath(context, scene, &swath, taken.file, progress, user);
+    status = swath_open(&context->report, &scene->scene, &swath);
+    if (status != SONJECT_OK)
+        return status;
+    status = trace_swath(context, scene, &swath, &taken, progress, user);
     swath_close(&swath);
     return status;
 }
@@ -152,32 +168,32 @@ static sonject_status check_overrides(struct report *report, const sonject_scene
 }
 
 static sonject_status check_version(struct report *report, const char *path,
-                                    const struct impulse_head *head)
+                                    const struct sums_identity *identity)
 {
-    if (strcmp(head->version, sonject_version()) == 0)
+    if (strcmp(identity->version, sonject_version()) == 0)
         return SONJECT_OK;
     return report_failure(report, SONJECT_ERROR_INPUT,
                           "%s: traced by sonject %s, but this is %s: trace again", path,
-                          head->version, sonject_version());
+                          identity->version, sonject_version());
 }
 
 sonject_status check_traced(struct report *report, const struct impulse_file *impulses,
                             const struct scene *scene, const struct swath *swath)
 {
-    const struct impulse_head *head = impulse_file_head(impulses);
+    const struct impulse_facts *facts = &impulses->facts;
     char hash[HASH_TEXT_CAPACITY];
-    if (head->image_rows != swath->layout.rows || head->image_columns != swath->layout.columns ||
-        strcmp(head->image_hash, swath->identity) != 0)
+    if (facts->image_rows != swath->layout.rows || facts->image_columns != swath->layout.columns ||
+        strcmp(facts->image_hash, swath->identity) != 0)
         return report_failure(
             report, SONJECT_ERROR_INPUT,
             "%s: not the image that was traced, %s of %llu x %llu pixels (XXH3 %s): name that one "
             "with input.path, or trace again",
             scene->input_path ? scene->input_path : "the made seabed",
-            *head->image_path ? head->image_path : "a made one",
-            (unsigned long long)head->image_rows, (unsigned long long)head->image_columns,
-            head->image_hash);
+            *impulses->image_path ? impulses->image_path : "a made one",
+            (unsigned long long)facts->image_rows, (unsigned long long)facts->image_columns,
+            facts->image_hash);
     const sonject_status status = traced_scene_hash(report, scene, swath->identity, hash);
-    if (status == SONJECT_OK && strcmp(hash, head->scene_hash) != 0)
+    if (status == SONJECT_OK && strcmp(hash, impulses->sums.head.identity.scene) != 0)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "the scene, or a file that it names, is not what was traced: trace "
                               "again");
@@ -185,38 +201,36 @@ sonject_status check_traced(struct report *report, const struct impulse_file *im
 }
 
 /* All overrides, the file's first, in one list to be given to free(). */
-static const char **join_overrides(const struct impulse_head *head,
-                                   const sonject_form_params *params)
+static const char **join_overrides(const struct kept_scene *kept, const sonject_form_params *params)
 {
-    const char **all = allocate_array(head->override_count + params->override_count, sizeof(*all));
-    for (size_t i = 0; all && i < head->override_count; i++)
-        all[i] = head->overrides[i];
+    const char **all = allocate_array(kept->override_count + params->override_count, sizeof(*all));
+    for (size_t i = 0; all && i < kept->override_count; i++)
+        all[i] = kept->overrides[i];
     for (uint32_t i = 0; all && i < params->override_count; i++)
-        all[head->override_count + i] = params->overrides[i];
+        all[kept->override_count + i] = params->overrides[i];
     return all;
 }
 
-sonject_status read_traced_scene(struct report *report, const struct impulse_head *head,
+sonject_status read_traced_scene(struct report *report, const struct kept_scene *kept,
                                  const sonject_form_params *params, struct scene *scene)
 {
-    if (!head->scene_text)
+    if (!kept->text)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: traced from a scene that was in no file: give the scene",
                               params->file);
     char *here = working_folder();
-    const bool is_here = here && strcmp(here, head->scene_folder) == 0;
-    char *path =
-        is_here ? copy_text(head->scene_path) : path_join(head->scene_folder, head->scene_path);
-    const char **overrides = join_overrides(head, params);
+    const bool is_here = here && strcmp(here, kept->folder) == 0;
+    char *path = is_here ? copy_text(kept->path) : path_join(kept->folder, kept->path);
+    const char **overrides = join_overrides(kept, params);
     struct scene_text source;
     memset(&source, 0, sizeof source);
     source.path = path;
-    source.text = head->scene_text;
-    source.bytes = strlen(head->scene_text);
+    source.text = kept->text;
+    source.bytes = strlen(kept->text);
     source.overrides = overrides;
-    source.override_count = head->override_count + params->override_count;
-    source.moved_folder = is_here ? NULL : head->scene_folder;
-    source.moved_overrides = head->override_count;
+    source.override_count = kept->override_count + params->override_count;
+    source.moved_folder = is_here ? NULL : kept->folder;
+    source.moved_overrides = kept->override_count;
     source.allows_user_shapes = params->allows_user_shapes != 0;
     const sonject_status status = path && overrides
                                       ? scene_text_read(report, &source, scene)
@@ -232,9 +246,11 @@ static sonject_status form_file(struct sonject_context *context, const sonject_s
                                 sonject_progress_function progress, void *user, int *was_finished)
 {
     struct report *report = &context->report;
-    const struct impulse_head *head = impulse_file_head(impulses);
+    const struct sums_file *sums = &impulses->sums;
+    struct kept_scene kept;
     struct run_request request;
     struct scene read;
+    memset(&kept, 0, sizeof kept);
     memset(&request, 0, sizeof request);
     request.impulses = impulses;
     request.folder = params->folder;
@@ -243,13 +259,16 @@ static sonject_status form_file(struct sonject_context *context, const sonject_s
     request.progress = progress;
     request.user = user;
     scene_init(&read);
-    sonject_status status = check_version(report, params->file, head);
+    sonject_status status = check_version(report, params->file, &sums->head.identity);
+    if (status == SONJECT_OK)
+        status = kept_scene_find(&kept, report, sums);
     if (status == SONJECT_OK && !scene)
-        status = read_traced_scene(report, head, params, &read);
+        status = read_traced_scene(report, &kept, params, &read);
     request.scene = scene ? &scene->scene : &read;
     THEN(status, run_scene(context, &request, was_finished));
     if (!scene)
         scene_clear(&read);
+    free(kept.overrides);
     return status;
 }
 
@@ -261,7 +280,7 @@ sonject_status sonject_form(sonject_context *context, const sonject_scene *scene
         return SONJECT_ERROR_ARGUMENT;
     context_begin_call(context);
     sonject_form_params taken;
-    struct impulse_file *impulses;
+    struct impulse_file impulses;
     sonject_form_params_init(&taken);
     CHECK(params_take(&context->report, &taken, sizeof taken, params,
                       offsetof(sonject_form_params, allows_user_shapes), "form parameters"));
@@ -274,7 +293,7 @@ sonject_status sonject_form(sonject_context *context, const sonject_scene *scene
     THEN(status, impulse_file_open(&context->report, taken.file, &impulses));
     if (status != SONJECT_OK)
         return status;
-    status = form_file(context, scene, &taken, impulses, progress, user, was_finished);
+    status = form_file(context, scene, &taken, &impulses, progress, user, was_finished);
     impulse_file_close(&impulses);
     return status;
 }

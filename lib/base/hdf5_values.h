@@ -19,7 +19,7 @@ struct hdf5_session {
 void hdf5_enter(struct hdf5_session *session);
 void hdf5_leave(const struct hdf5_session *session);
 
-/* Groups without times, so that the same contents make the same file. A negative answer: failed. */
+/* A group, and those above it that are missing. A negative answer: failed. */
 hid_t hdf5_make_group(hid_t file, const char *path);
 
 /* Lets a file that cannot be written be closed: what HDF5 still wants to write goes nowhere. */
@@ -30,16 +30,8 @@ bool hdf5_write_whole(hid_t object, const char *name, uint64_t value);
 bool hdf5_write_integer(hid_t object, const char *name, int64_t value);
 bool hdf5_write_number(hid_t object, const char *name, double value);
 bool hdf5_write_text(hid_t object, const char *name, const char *text);
-bool hdf5_read_whole(hid_t object, const char *name, uint64_t *value);
-bool hdf5_read_integer(hid_t object, const char *name, int64_t low, int64_t high, int32_t *value);
-bool hdf5_read_number(hid_t object, const char *name, double *value);
 
 /* *text is to be given to free(); at most 65535 bytes. */
 bool hdf5_read_text(hid_t object, const char *name, char **text);
-
-/* Datasets of texts, count of them; each read text is to be given to free(), and *texts. At most
- * 2^24 bytes together. */
-bool hdf5_write_texts(hid_t group, const char *name, const char *const *texts, size_t count);
-bool hdf5_read_texts(hid_t group, const char *name, char ***texts, size_t *count);
 
 #endif

@@ -20,7 +20,7 @@ struct injection_input {
     bool is_complex;
     bool is_made;        /* by sonject, so that it is what the sonar's parameters say */
     const float *pixels; /* rows x columns amplitudes, or pairs of real and imaginary part */
-    struct stint *stint; /* how tracing is cut; NULL: not at all */
+    struct checkpoint *checkpoint; /* how tracing is cut; NULL: not at all */
 };
 
 /* What sonject_result is. All layers rows x columns in the image's row order; owned. */

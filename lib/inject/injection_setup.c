@@ -131,7 +131,7 @@ sonject_status injection_setup_lay(struct injection_setup *setup, struct report 
     tracer->report = report;
     tracer->device = device;
     tracer->scene = scene;
-    tracer->stint = input->stint;
+    tracer->checkpoint = input->checkpoint;
     sonject_status status = check_combination(report, scene, input->is_complex);
     if (status == SONJECT_OK)
         status = injection_check(report, scene, input->first_row, input->first_column, input->rows,

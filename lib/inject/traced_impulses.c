@@ -8,9 +8,9 @@
 #include "inject/beam_shadows.h"
 #include "inject/level_seabed.h"
 #include "trace/chains.h"
+#include "trace/checkpoint.h"
 #include "trace/glints.h"
 #include "trace/rough_mirrored.h"
-#include "trace/stint.h"
 
 #define STRIPS_A_LAUNCH 64 /* between two looks at whether the caller cancels */
 
@@ -29,7 +29,7 @@ static sonject_status hand_out(const struct tracing *tracing, enum impulse_kind 
                                uint32_t planes, const float *const *plane)
 {
     struct impulse_lines lines;
-    if (stint_is_cut_short(tracing->tracer->stint))
+    if (checkpoint_is_cut_short(tracing->tracer->checkpoint))
         return SONJECT_OK;
     memset(&lines, 0, sizeof lines);
     lines.kind = kind;
@@ -367,8 +367,8 @@ sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *
     free(tracing.second);
     if (status == SONJECT_OK)
         status = trace_chains(&tracing);
-    if (status == SONJECT_OK && tracer->stint)
-        status = stint_finish(tracer->stint, &tracer->counts);
+    if (status == SONJECT_OK && tracer->checkpoint)
+        status = checkpoint_finish(tracer->checkpoint, &tracer->counts);
     return status;
 }
 

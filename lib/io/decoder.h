@@ -24,25 +24,16 @@
 
 /* What is asked. `in`: the request's bytes, texts that each end with a 0, or samples. `out`: the
  * reply's. Images are files of
- * OpenImageIO's, or an array of HDF5's; trees are files whose parts have names. */
+ * OpenImageIO's, or an array of HDF5's. */
 enum decoder_function {
     DECODER_OPEN_IMAGE, /* in: its name, where it lies, the array ("": the only one);
                            -> handle, layout, largest, is_turned */
     DECODER_OPEN_COPY,  /* the same, to be written to */
-    DECODER_OPEN_TREE,  /* in: its name, where it lies; -> handle */
     DECODER_CLOSE,      /* handle; what was written to a copy may be lost */
     DECODER_ATTRIBUTE,  /* handle of an image; in: its name -> out: text; value 0: it has none */
     DECODER_READ,       /* handle of an image, region -> out: its samples, row after row */
     DECODER_WRITE,      /* handle of a copy, region; in: samples */
     DECODER_FINISH,     /* handle of a copy, which is then closed: all is to be in the file */
-    DECODER_HAS_GROUP,  /* handle of a tree; in: group -> value */
-    DECODER_WHOLE,      /* handle of a tree; in: group, attribute -> value */
-    DECODER_INTEGER,    /* the same: an int32_t */
-    DECODER_NUMBER,     /* the same: the bits of a double */
-    DECODER_TEXT,       /* the same -> out */
-    DECODER_TEXTS,      /* handle of a tree; in: group, dataset -> out: texts; value: how many */
-    DECODER_PLANE,      /* the same, and region, all columns: float32 -> layout, out: samples; no
-                           rows: the layout alone */
     DECODER_FUNCTIONS
 };
 
@@ -98,7 +89,7 @@ struct decoder_file {
 };
 
 /* Opens a file by one of the functions above. path: its name in messages; place: the file, NULL: of
- * that name. array: NULL for the only one, and for trees. Errors: INPUT (not a regular file,
+ * that name. array: NULL for the only one. Errors: INPUT (not a regular file,
  * damaged, what opening refuses), STORAGE (the system's), MEMORY, UNSUPPORTED (no decoder). On
  * failure there is nothing to be closed. */
 sonject_status decoder_open(struct report *report, enum decoder_function function, const char *path,

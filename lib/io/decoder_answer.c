@@ -1,5 +1,5 @@
 /* What the decoder does, in its own process or in the library's: images are OpenImageIO's or
- * HDF5's, trees HDF5's. */
+ * HDF5's. */
 #include <errno.h>
 #include <stdlib.h>
 #include <string.h>
@@ -12,9 +12,6 @@
 #include "io/decoder.h"
 #include "io/hdf5_array.h"
 #include "io/raster_module.h"
-#ifdef HAS_HDF5
-#include "base/hdf5_values.h"
-#endif
 
 #define TEXT_OF(number)   #number
 #define DIGITS_OF(number) TEXT_OF(number)
@@ -29,11 +26,10 @@ void decoder_stamp(char stamp[64])
 
 struct opened {
     char *path;                         /* in messages; NULL: none is open */
-    struct raster_image *raster;        /* NULL, and so is image: it is a tree */
+    struct raster_image *raster;        /* NULL: it is image */
     const struct raster_module *module; /* whose raster is */
     struct raster_layout layout;        /* of raster */
     struct hdf5_array *image;
-    int64_t tree; /* HDF5's number */
 };
 
 struct decoder_state {
@@ -59,18 +55,10 @@ struct decoder_state *decoder_state_make(void)
 
 static void close_file(struct opened *file)
 {
-    if (file->raster) {
+    if (file->raster)
         file->module->close(&file->raster);
-    } else if (file->image) {
+    else if (file->image)
         hdf5_array_close(&file->image);
-    } else if (file->path) {
-#ifdef HAS_HDF5
-        struct hdf5_session session;
-        hdf5_enter(&session);
-        H5Fclose(file->tree);
-        hdf5_leave(&session);
-#endif
-    }
     free(file->path);
     memset(file, 0, sizeof *file);
 }
@@ -213,205 +201,16 @@ static sonject_status finish_copy(struct question *question)
     return status;
 }
 
-#ifdef HAS_HDF5
-static sonject_status refuse(struct question *question, const char *what)
-{
-    return report_failure(question->report, SONJECT_ERROR_INPUT, "%s: %s %s is damaged",
-                          question->file->path, question->texts[0], what);
-}
-
-static sonject_status open_tree(struct question *question)
-{
-    struct opened *place = free_place(question);
-    if (!place)
-        return SONJECT_ERROR_STORAGE;
-    const hid_t tree = H5Fopen(question->texts[1], H5F_ACC_RDONLY, H5P_DEFAULT);
-    place->path = tree < 0 ? NULL : copy_text(question->texts[0]);
-    if (place->path) {
-        place->tree = tree;
-        return SONJECT_OK;
-    }
-    if (tree >= 0)
-        H5Fclose(tree);
-    return report_failure(question->report, SONJECT_ERROR_INPUT,
-                          "%s: HDF5 cannot open it: it is damaged or cut short",
-                          question->texts[0]);
-}
-
-/* Groups are asked for one after the other, since HDF5 fails where one in between is missing. */
-static bool has_link(hid_t tree, const char *path)
-{
-    char part[256];
-    const size_t length = strlen(path);
-    for (size_t end = 1; end <= length && length < sizeof part; end++)
-        if (end == length || path[end] == '/') {
-            memcpy(part, path, end);
-            part[end] = '\0';
-            if (strcmp(part, "/") != 0 && H5Lexists(tree, part, H5P_DEFAULT) <= 0)
-                return false;
-        }
-    return length < sizeof part;
-}
-
-static hid_t open_group(const struct question *question)
-{
-    const char *path = question->texts[0];
-    return has_link(question->file->tree, path) ? H5Gopen2(question->file->tree, path, H5P_DEFAULT)
-                                                : -1;
-}
-
-static sonject_status has_group(struct question *question)
-{
-    const hid_t group = open_group(question);
-    question->reply->value = group >= 0;
-    if (group >= 0)
-        H5Gclose(group);
-    return SONJECT_OK;
-}
-
-static bool read_value(struct question *question, hid_t group, const char *name)
-{
-    uint64_t *value = &question->reply->value;
-    double number = 0.0;
-    int32_t integer = 0;
-    char *text = NULL;
-    bool is_read = false;
-    switch (question->request->function) {
-    case DECODER_WHOLE:
-        return hdf5_read_whole(group, name, value);
-    case DECODER_INTEGER:
-        is_read = hdf5_read_integer(group, name, INT32_MIN, INT32_MAX, &integer);
-        *value = (uint64_t)(int64_t)integer;
-        return is_read;
-    case DECODER_NUMBER:
-        is_read = hdf5_read_number(group, name, &number);
-        memcpy(value, &number, sizeof number);
-        return is_read;
-    default:
-        return hdf5_read_text(group, name, &text) && give_text(question, text) == SONJECT_OK;
-    }
-}
-
-static sonject_status read_group_value(struct question *question)
-{
-    const hid_t group = open_group(question);
-    const bool is_read = group >= 0 && read_value(question, group, question->texts[1]);
-    if (group >= 0)
-        H5Gclose(group);
-    return is_read ? SONJECT_OK : refuse(question, question->texts[1]);
-}
-
-/* One after the other, each with its 0. */
-static sonject_status join(struct question *question, char **texts, size_t count)
-{
-    size_t bytes = 0;
-    for (size_t i = 0; i < count; i++)
-        bytes += strlen(texts[i]) + 1;
-    char *joined = allocate_array(bytes, 1);
-    question->out = joined;
-    question->reply->bytes = bytes;
-    question->reply->value = count;
-    for (size_t i = 0; i < count; i++) {
-        if (joined)
-            joined = (char *)memcpy(joined, texts[i], strlen(texts[i]) + 1) + strlen(texts[i]) + 1;
-        free(texts[i]);
-    }
-    free(texts);
-    return question->out ? SONJECT_OK : report_out_of_memory(question->report, "texts");
-}
-
-static sonject_status read_texts(struct question *question)
-{
-    char **texts = NULL;
-    size_t count = 0;
-    const hid_t group = open_group(question);
-    const bool is_there = group >= 0 && H5Lexists(group, question->texts[1], H5P_DEFAULT) > 0;
-    const bool is_read = is_there && hdf5_read_texts(group, question->texts[1], &texts, &count);
-    if (group >= 0)
-        H5Gclose(group);
-    if (is_there && !is_read)
-        return refuse(question, question->texts[1]);
-    return is_read ? join(question, texts, count) : SONJECT_OK;
-}
-
-/* 32-bit floats of two dimensions. */
-static bool look_at_plane(hid_t plane, hid_t space, struct raster_layout *layout)
-{
-    hsize_t sides[2] = {0, 0};
-    const hid_t type = H5Dget_type(plane);
-    const bool is_sound = type >= 0 && space >= 0 && H5Tget_class(type) == H5T_FLOAT &&
-                          H5Tget_size(type) == sizeof(float) &&
-                          H5Sget_simple_extent_ndims(space) == 2 &&
-                          H5Sget_simple_extent_dims(space, sides, NULL) == 2;
-    if (type >= 0)
-        H5Tclose(type);
-    *layout = (struct raster_layout){sides[0], sides[1], 1, PIXEL_FLOAT32};
-    return is_sound;
-}
-
-static bool read_lines(struct question *question, hid_t plane, hid_t space)
-{
-    struct raster_layout *layout = &question->reply->layout;
-    const struct region *region = &question->request->region;
-    if (!look_at_plane(plane, space, layout))
-        return false;
-    if (region->rows == 0)
-        return true;
-    if (!region_is_inside(layout, region) || !make_room(question, layout))
-        return false;
-    const hsize_t first[2] = {region->first_row, region->first_column};
-    const hsize_t count[2] = {region->rows, region->columns};
-    const hid_t memory = H5Screate_simple(2, count, NULL);
-    const bool is_done =
-        memory >= 0 && H5Sselect_hyperslab(space, H5S_SELECT_SET, first, NULL, count, NULL) >= 0 &&
-        H5Dread(plane, H5T_NATIVE_FLOAT, memory, space, H5P_DEFAULT, question->out) >= 0;
-    if (memory >= 0)
-        H5Sclose(memory);
-    return is_done;
-}
-
-static sonject_status read_plane(struct question *question)
-{
-    const char *name = question->texts[1];
-    const hid_t group = open_group(question);
-    const hid_t plane = group >= 0 && H5Lexists(group, name, H5P_DEFAULT) > 0
-                            ? H5Dopen2(group, name, H5P_DEFAULT)
-                            : -1;
-    const hid_t space = plane < 0 ? -1 : H5Dget_space(plane);
-    const bool is_read = space >= 0 && read_lines(question, plane, space);
-    if (space >= 0)
-        H5Sclose(space);
-    if (plane >= 0)
-        H5Dclose(plane);
-    if (group >= 0)
-        H5Gclose(group);
-    return is_read ? SONJECT_OK : refuse(question, name);
-}
-#endif
-
-/* What each function needs: texts, a handle of an image or a tree. */
+/* What each function needs: texts, a handle of an image. */
 static const struct answer {
     sonject_status (*give)(struct question *question);
     unsigned texts;
-    bool needs_image, needs_tree;
+    bool needs_image;
 } answers[DECODER_FUNCTIONS] = {
-    [DECODER_OPEN_IMAGE] = {open_image, 3, false, false},
-    [DECODER_OPEN_COPY] = {open_image, 3, false, false},
-    [DECODER_CLOSE] = {close_handle, 0, false, false},
-    [DECODER_ATTRIBUTE] = {read_attribute, 1, true, false},
-    [DECODER_READ] = {read_samples, 0, true, false},
-    [DECODER_WRITE] = {write_samples, 0, true, false},
-    [DECODER_FINISH] = {finish_copy, 0, true, false},
-#ifdef HAS_HDF5
-    [DECODER_OPEN_TREE] = {open_tree, 3, false, false},
-    [DECODER_HAS_GROUP] = {has_group, 1, false, true},
-    [DECODER_WHOLE] = {read_group_value, 2, false, true},
-    [DECODER_INTEGER] = {read_group_value, 2, false, true},
-    [DECODER_NUMBER] = {read_group_value, 2, false, true},
-    [DECODER_TEXT] = {read_group_value, 2, false, true},
-    [DECODER_TEXTS] = {read_texts, 2, false, true},
-    [DECODER_PLANE] = {read_plane, 2, false, true},
-#endif
+    [DECODER_OPEN_IMAGE] = {open_image, 3, false}, [DECODER_OPEN_COPY] = {open_image, 3, false},
+    [DECODER_CLOSE] = {close_handle, 0, false},    [DECODER_ATTRIBUTE] = {read_attribute, 1, true},
+    [DECODER_READ] = {read_samples, 0, true},      [DECODER_WRITE] = {write_samples, 0, true},
+    [DECODER_FINISH] = {finish_copy, 0, true},
 };
 
 static bool is_possible(struct question *question, const struct answer *answer)
@@ -431,8 +230,7 @@ static bool is_possible(struct question *question, const struct answer *answer)
     const struct opened *file = question->file;
     const bool changes = request->function == DECODER_WRITE || request->function == DECODER_FINISH;
     const bool is_image = file && (file->image || (file->raster && !changes));
-    const bool is_tree = file && file->path && !file->image && !file->raster;
-    return (!answer->needs_image || is_image) && (!answer->needs_tree || is_tree) &&
+    return (!answer->needs_image || is_image) &&
            (request->function != DECODER_CLOSE || question->file);
 }
 
@@ -445,7 +243,7 @@ static sonject_status tell_disk(struct question *question, sonject_status status
     if ((status != SONJECT_OK && status != SONJECT_ERROR_INPUT) ||
         file_check_disk(question->report, path, SONJECT_ERROR_INPUT) == SONJECT_ERROR_INPUT)
         return status;
-    if (question->file && question->request->function <= DECODER_OPEN_TREE)
+    if (question->file && question->request->function <= DECODER_OPEN_COPY)
         close_file(question->file);
     return SONJECT_ERROR_STORAGE;
 }
@@ -462,19 +260,8 @@ sonject_status decoder_answer(struct report *report, struct decoder_state *state
         status =
             report_failure(report, SONJECT_ERROR_INPUT, "a decoder was asked what it cannot do");
     } else {
-#ifdef HAS_HDF5
-        /* images see to it themselves */
-        const bool enters = answer->needs_tree || request->function == DECODER_OPEN_TREE;
-        struct hdf5_session session;
-        if (enters)
-            hdf5_enter(&session);
-#endif
         errno = 0;
         status = answer->give(&question);
-#ifdef HAS_HDF5
-        if (enters)
-            hdf5_leave(&session);
-#endif
         status = tell_disk(&question, status);
     }
     if (status != SONJECT_OK) {

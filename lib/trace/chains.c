@@ -7,11 +7,11 @@
 #include "base/memory.h"
 #include "cl/launch.h"
 #include "scene/surface_material.h"
+#include "trace/checkpoint.h"
 #include "trace/object_buffer.h"
 #include "trace/patch_fan.h"
 #include "trace/sea_surface.h"
 #include "trace/sources.h"
-#include "trace/stint.h"
 #include "trace/target_spheres.h"
 
 #define PI              3.14159265358979323846
@@ -242,7 +242,8 @@ sonject_status chain_trace_read(struct chain_trace *trace, struct tracer *tracer
                                        trace->planes * cells * sizeof(int64_t), &mapped);
     if (status != SONJECT_OK)
         return status;
-    status = stint_sums(tracer->stint, (const int64_t *)mapped + plane * cells, cells, &tallies);
+    status = checkpoint_sums(tracer->checkpoint, (const int64_t *)mapped + plane * cells, cells,
+                             &tallies);
     for (size_t i = 0; status == SONJECT_OK && i < cells; i++)
         energy[i] = (float)((double)tallies[i] * energy_of_quantum);
     buffer_unmap(tracer->device, trace->tallies, mapped);

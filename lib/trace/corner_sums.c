@@ -72,19 +72,20 @@ static bool add_tile(void *user, uint64_t first, const int64_t *values, size_t c
     return true;
 }
 
-sonject_status corner_sums_share(struct corner_sums *sums, struct stint *stint)
+sonject_status corner_sums_share(struct corner_sums *sums, struct checkpoint *checkpoint)
 {
     const size_t tiles = sums->rows * sums->columns;
-    if (!stint)
+    if (!checkpoint)
         return SONJECT_OK;
-    if (stint->files)
-        return stint_add_up(stint, (uint64_t)tiles * TILE_SUMS, add_tile, sums);
-    sonject_status status = stint_writer_begin_sums(&stint->writer, (uint64_t)tiles * TILE_SUMS);
+    if (checkpoint->files)
+        return checkpoint_add_up(checkpoint, (uint64_t)tiles * TILE_SUMS, add_tile, sums);
+    sonject_status status =
+        sums_writer_begin_sums(&checkpoint->writer, (uint64_t)tiles * TILE_SUMS);
     for (size_t i = 0; status == SONJECT_OK && i < tiles; i++)
         if (sums->tiles[i])
-            status = stint_writer_run(&stint->writer, (uint64_t)i * TILE_SUMS, sums->tiles[i],
-                                      TILE_SUMS);
-    return status == SONJECT_OK ? stint_writer_end_sums(&stint->writer) : status;
+            status = sums_writer_run(&checkpoint->writer, (uint64_t)i * TILE_SUMS, sums->tiles[i],
+                                     TILE_SUMS);
+    return status == SONJECT_OK ? sums_writer_end_sums(&checkpoint->writer) : status;
 }
 
 /* Strips or bins of one tile. */

@@ -8,7 +8,7 @@
 
 #include "kernels/layout.h"
 #include "scene/line_grid.h"
-#include "trace/stint.h"
+#include "trace/checkpoint.h"
 
 #define TILE_STRIPS 16
 #define TILE_BINS   256
@@ -29,9 +29,9 @@ void corner_sums_clear(struct corner_sums *sums);
 bool corner_sums_add(struct corner_sums *sums, const struct corner_echo_record *echoes,
                      size_t count);
 
-/* Sums of a stint: keeps the tiles that were traced, or adds up those of all stints. Nothing where
- * stint is NULL. Errors: INPUT, STORAGE, MEMORY. */
-sonject_status corner_sums_share(struct corner_sums *sums, struct stint *stint);
+/* Sums of a checkpoint: keeps the tiles that were traced, or adds up those of all checkpoints.
+ * Nothing where checkpoint is NULL. Errors: INPUT, STORAGE, MEMORY. */
+sonject_status corner_sums_share(struct corner_sums *sums, struct checkpoint *checkpoint);
 
 /* The strips and bins of the tiles that there are; counts 0 where there is none. */
 void corner_sums_extent(const struct corner_sums *sums, struct span *strips, struct span *bins);

@@ -176,7 +176,7 @@ static sonject_status trace_pair(struct corner_trace *trace, struct corner_launc
         const struct span strips = {all.first + done, left < launch->chunk ? left : launch->chunk};
         status = corner_launch_strips(launch, tracer, strips, &trace->sums);
     }
-    return status == SONJECT_OK ? corner_sums_share(&trace->sums, tracer->stint) : status;
+    return status == SONJECT_OK ? corner_sums_share(&trace->sums, tracer->checkpoint) : status;
 }
 
 static sonject_status trace_pairs(struct corners *corners, struct tracer *tracer, uint32_t part)

@@ -8,10 +8,10 @@
 #include "cl/launch.h"
 #include "trace/aspects.h"
 #include "trace/beam.h"
+#include "trace/checkpoint.h"
 #include "trace/corners.h"
 #include "trace/patch_fan.h"
 #include "trace/source_pairs.h"
-#include "trace/stint.h"
 
 #define RAYS_PER_BIN 1.0
 #define RAYS_PER_BIN_OF_BEAM                                                                       \
@@ -281,7 +281,7 @@ static sonject_status read_tallies(struct tracer *tracer, cl_mem buffer, size_t 
         buffer_map(tracer->report, tracer->device, buffer, count * sizeof(int64_t), &mapped);
     if (status != SONJECT_OK)
         return status;
-    status = stint_sums(tracer->stint, mapped, count, &tallies);
+    status = checkpoint_sums(tracer->checkpoint, mapped, count, &tallies);
     for (size_t i = 0; status == SONJECT_OK && i < count; i++)
         values[i] = (float)((double)tallies[i] * unit);
     buffer_unmap(tracer->device, buffer, mapped);

@@ -6,10 +6,10 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "trace/checkpoint.h"
 #include "trace/launch_parts.h"
 #include "trace/object_buffer.h"
 #include "trace/object_rays.h"
-#include "trace/stint.h"
 
 #define STRIP_WAVELENGTHS  0.25 /* widest sub-strip: wider ones alias glints (physics.md 2) */
 #define BINS_PER_DEVIATION 16.0 /* linear sharing between bins then errs by 5e-4 */
@@ -180,7 +180,7 @@ sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tr
     if (status != SONJECT_OK)
         return status;
     const int64_t *tallies;
-    status = stint_sums(tracer->stint, mapped, 2 * count, &tallies);
+    status = checkpoint_sums(tracer->checkpoint, mapped, 2 * count, &tallies);
     for (size_t i = 0; status == SONJECT_OK && i < count; i++) {
         real_part[i] = (float)((double)tallies[2 * i] * trace->amplitude_of_quantum);
         imaginary_part[i] = (float)((double)tallies[2 * i + 1] * trace->amplitude_of_quantum);

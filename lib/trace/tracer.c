@@ -7,9 +7,9 @@
 #include "base/memory.h"
 #include "cl/launch.h"
 #include "trace/aspects.h"
+#include "trace/checkpoint.h"
 #include "trace/object_buffer.h"
 #include "trace/object_shape.h"
-#include "trace/stint.h"
 #include "user/user_program.h"
 
 #define PI          3.14159265358979323846
@@ -242,21 +242,21 @@ sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_
                             const struct ray_table *rays, const cl_mem *buffers,
                             size_t buffer_count)
 {
-    struct stint *stint = tracer->stint;
+    struct checkpoint *checkpoint = tracer->checkpoint;
     struct span turns = {0, fan->strips};
     fan->segments = 1;
     fan->first_turn = 0;
     fan->strip_stride = stride_of(fan->strips);
-    if (stint)
-        stint_launch(stint, fan, rays);
+    if (checkpoint)
+        checkpoint_launch(checkpoint, fan, rays);
     fan->segments = segments_for(tracer, fan);
-    if (!stint)
+    if (!checkpoint)
         return launch_turns(tracer, kernel, fan, rays, buffers, buffer_count, turns);
     sonject_status status = SONJECT_OK;
-    while (status == SONJECT_OK && stint_next(stint, &turns)) {
+    while (status == SONJECT_OK && checkpoint_next(checkpoint, &turns)) {
         status = launch_turns(tracer, kernel, fan, rays, buffers, buffer_count, turns);
         if (status == SONJECT_OK)
-            stint_advance(stint, turns);
+            checkpoint_advance(checkpoint, turns);
     }
     return status;
 }
@@ -265,7 +265,7 @@ sonject_status trace_kernel_create(struct tracer *tracer, uint32_t variant,
                                    enum device_program program, const char *name, cl_kernel *kernel)
 {
     *kernel = NULL;
-    if (tracer->stint && tracer->stint->files)
+    if (tracer->checkpoint && tracer->checkpoint->files)
         return SONJECT_OK;
     return scene_kernel_create(tracer->report, tracer->device, tracer->scene, variant, program,
                                name, kernel);

@@ -14,7 +14,7 @@
 #include "scene/scene.h"
 #include "trace/ray_table.h"
 
-struct stint;
+struct checkpoint;
 
 struct trace_counts {
     uint64_t pings, rays, queries, impulses;
@@ -32,7 +32,7 @@ struct tracer {
     const struct placed_object *objects; /* of scene->objects: where their parts are */
     const struct relief *relief;         /* NULL: the seabed is the plane */
     struct trace_counts counts;
-    struct stint *stint; /* NULL: everything is traced, and nothing kept */
+    struct checkpoint *checkpoint; /* NULL: everything is traced, and nothing kept */
 };
 
 /* A fan record for a frame centred on a point of the view (x, horizontal range, height). Fills what
@@ -66,8 +66,8 @@ double material_brightness(const sonject_material_params *material);
  */
 double brightest_scattering(const struct tracer *tracer);
 
-/* Runs a trace kernel over the fan's strips, or those of them that are the stint's, and adds up
- * what the work-items report. Arguments: the fan and its rays first, then `buffers`, then the
+/* Runs a trace kernel over the fan's strips, or those of them that are the checkpoint's, and adds
+ * up what the work-items report. Arguments: the fan and its rays first, then `buffers`, then the
  * outcomes. Sets the fan's segments and turns. Errors: DEVICE (also faults that the kernel
  * reports), MEMORY.
  */
@@ -75,8 +75,8 @@ sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_
                             const struct ray_table *rays, const cl_mem *buffers,
                             size_t buffer_count);
 
-/* A kernel of the scene, to be given to clReleaseKernel; NULL where stints are added up and nothing
- * is traced. Errors: as kernel_create. */
+/* A kernel of the scene, to be given to clReleaseKernel; NULL where checkpoints are added up and
+ * nothing is traced. Errors: as kernel_create. */
 sonject_status trace_kernel_create(struct tracer *tracer, uint32_t variant,
                                    enum device_program program, const char *name,
                                    cl_kernel *kernel);

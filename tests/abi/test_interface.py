@@ -95,7 +95,7 @@ SIZES = {
     "sonject_quicklook_params": 144,
     "sonject_convert_params": 112,
     "sonject_seabed_file_params": 256,
-    "sonject_trace_params": 16,
+    "sonject_trace_params": 24,
     "sonject_form_params": 48,
     "sonject_measure_params": 88,
     "sonject_measurement": 112,

@@ -62,7 +62,7 @@ def test_an_unknown_key(sonject, scene):
     refuse(sonject, scene, 3, f"scene.yaml:{line}:5", "diametre", "diameter")
 
 
-@pytest.mark.parametrize("verb", [["check"], ["run", "-o", "result"], ["trace", "-o", "x.h5"]])
+@pytest.mark.parametrize("verb", [["check"], ["run", "-o", "result"], ["trace", "-o", "x.sums"]])
 def test_every_verb_tells_all_mistakes_in_their_order(sonject, scene, verb):
     edit(scene, "100 kHz", "100 parsec")
     edit(scene, "column_spacing: 2.5 cm", "colum_spacing: 2.5 cm")

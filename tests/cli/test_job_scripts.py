@@ -41,8 +41,8 @@ def documented(*words):
     return next(line for line in COMMANDS if all(word in line for word in words))
 
 
-def stints(folder, shard):
-    return sorted((folder / "out" / "work").glob(f"shard-{shard}-of-4-*-*[0-9].stint"))
+def checkpoints(folder, shard):
+    return sorted((folder / "out" / "work").glob(f"shard-{shard}-of-4-*-*[0-9].sums"))
 
 
 @pytest.fixture(scope="module")
@@ -119,14 +119,14 @@ class Parts:
 
         def are_stopped():
             for shard in set(shards) - set(stopped):
-                if stints(self.folder, shard):
+                if checkpoints(self.folder, shard):
                     process = stopped[shard] = self.renderer(shard)
                     if process:
                         cluster.send(process, signal.SIGSTOP)
             return len(stopped) == len(shards)
 
         wait_for("checkpoints", are_stopped, 10)
-        in_time = all(process and has_stopped(process) and len(stints(self.folder, shard)) == 1
+        in_time = all(process and has_stopped(process) and len(checkpoints(self.folder, shard)) == 1
                       for shard, process in stopped.items())
         self.stopped = [process for process in stopped.values() if process]
         return [stopped[shard] for shard in shards] if in_time else None
@@ -138,7 +138,7 @@ class Parts:
         wait_for("the end of an array", lambda: not (self.slurm.queue(self.array) or
                                                      self.slurm.queue(self.merge)))
         for shard in shards:
-            for path in stints(self.folder, shard):
+            for path in checkpoints(self.folder, shard):
                 path.unlink()
 
     def merge_early(self):

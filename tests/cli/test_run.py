@@ -398,7 +398,7 @@ def test_signals_stop_a_run(scene, tmp_path, environment, number, code, words):
     assert words in text
     assert not (tmp_path / "result" / "run.json").exists()
     (kept,) = files_below(tmp_path / "result")  # what was traced
-    assert kept.parent.name == "work" and kept.suffix == ".stint"
+    assert kept.parent.name == "work" and kept.suffix == ".sums"
 
 
 def test_a_killed_run_is_completed_by_the_next(sonject, scene, tmp_path, environment):

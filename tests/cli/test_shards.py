@@ -21,8 +21,8 @@ def command(sonject, *arguments):
     assert (answer.returncode, answer.stdout, answer.stderr) == (0, "", "")
 
 
-def stints(folder):
-    return sorted((folder / "work").glob("*.stint"))
+def checkpoints(folder):
+    return sorted((folder / "work").glob("*.sums"))
 
 
 @pytest.fixture
@@ -47,11 +47,11 @@ def test_what_shards_lack_is_named_and_the_rest_is_a_run(sonject, scene, tmp_pat
     # Another process does the whole shard meanwhile, and one does again what is there.
     other = tmp_path / "other"
     command(sonject, "run", scene, "-o", "other", "--shard", "2/4")
-    (complete,) = stints(other)
+    (complete,) = checkpoints(other)
     complete.rename(folder / "work" / complete.name)
-    before = {path: path.stat().st_mtime_ns for path in stints(folder)}
+    before = {path: path.stat().st_mtime_ns for path in checkpoints(folder)}
     command(sonject, "run", scene, "-o", "result", "--shard", "2/4")
-    assert before == {path: path.stat().st_mtime_ns for path in stints(folder)}
+    assert before == {path: path.stat().st_mtime_ns for path in checkpoints(folder)}
     assert {path.name for path in folder.iterdir()} == {"work"}
     command(sonject, "merge", "result")
     assert {path.name for path in folder.iterdir()} == RESULTS
@@ -72,7 +72,7 @@ def test_what_shards_lack_is_named_and_the_rest_is_a_run(sonject, scene, tmp_pat
 def test_what_is_not_a_shard_of_the_run_is_refused(sonject, scene, tmp_path, whole):
     for shard in ("1/2", "2/2"):
         command(sonject, "run", scene, "-o", "result", "--shard", shard)
-    first, second = stints(tmp_path / "result")
+    first, second = checkpoints(tmp_path / "result")
     sound = first.read_bytes()
     changed = bytearray(sound)
     changed[len(sound) // 2] ^= 1
@@ -91,7 +91,7 @@ def test_what_is_not_a_shard_of_the_run_is_refused(sonject, scene, tmp_path, who
     first.write_bytes(sound)
     # Another scene's: merged, and run into the same folder.
     command(sonject, "run", scene, "-o", "other", "--shard", "1/2", "--seed", "9")
-    foreign = stints(tmp_path / "other")[0].read_bytes()
+    foreign = checkpoints(tmp_path / "other")[0].read_bytes()
     first.write_bytes(foreign)
     assert_refused(sonject("merge", "result"), 3, "work/shard-", "another scene or image")
     answer = sonject("run", scene, "-o", "result", "--shard", "1/2")
@@ -125,7 +125,7 @@ def test_a_run_that_stops_by_itself_goes_on(sonject, scene, tmp_path):
         assert answer.returncode == 85
         assert answer.stderr == "sonject: stopped; run the same command again\n"
         stops += 1
-        assert len(stints(folder)) == stops
+        assert len(checkpoints(folder)) == stops
         assert {path.name for path in folder.iterdir()} == {"work"}
     assert stops > 1
     assert contents(folder) == contents(tmp_path / "whole")
@@ -158,15 +158,15 @@ def test_killed_shards_go_on_with_what_they_had_kept(scene, tmp_path, environmen
     for shard in ("1/2", "2/2"):
         arguments = ["run", scene, "-o", "result", "--quiet", *MANY_RAYS, "--shard", shard]
         for _ in range(4):
-            before = len(stints(folder))
+            before = len(checkpoints(folder))
             process = subprocess.Popen([COMMAND, *map(str, arguments), "--checkpoint", "1e-9"],
                                        cwd=tmp_path, env=environment)
-            while process.poll() is None and len(stints(folder)) == before:
+            while process.poll() is None and len(checkpoints(folder)) == before:
                 time.sleep(0.002)
             time.sleep(chance.uniform(0, 0.05))
             process.kill()
             process.wait()
-        assert stints(folder)
+        assert checkpoints(folder)
         command(sonject, *arguments)
     command(sonject, "merge", "result")
     assert contents(folder) == contents(tmp_path / "whole")

@@ -12,7 +12,6 @@ from conftest import assert_refused, files_below
 from test_run import DEMO, contents, limit_file_size, small_disk, stop_at_the_bar  # noqa: F401
 
 HAS_HDF5 = os.environ.get("SONJECT_HAS_HDF5") == "1"
-needs_hdf5 = pytest.mark.skipif(not HAS_HDF5, reason="built without HDF5")
 
 # A rough and smooth object of two parts.
 PARTS = """\
@@ -38,8 +37,8 @@ def compare_with_run(sonject, folder, scene, *options):
     """The result of the stages, and of shards, with a run's."""
     command(sonject, "run", scene, "-o", "run", *options)
     compare_shards_with_run(sonject, folder, scene, *options)
-    command(sonject, "trace", scene, "-o", "impulses.h5", *options)
-    command(sonject, "form", "impulses.h5", "-o", "formed")
+    command(sonject, "trace", scene, "-o", "impulses.sums", *options)
+    command(sonject, "form", "impulses.sums", "-o", "formed")
     assert contents(folder / "formed") == contents(folder / "run")
 
 
@@ -56,7 +55,6 @@ def compare_shards_with_run(sonject, folder, scene, *options):
     assert facts[0] == facts[1]
 
 
-@needs_hdf5
 @pytest.mark.parametrize("interactions, mode", [(1, "composite"), (2, "resynthesise")])
 def test_the_stages_leave_what_a_run_leaves(sonject, scene, tmp_path, interactions, mode):
     scene.write_text(scene.read_text() + PARTS)
@@ -67,7 +65,6 @@ def test_the_stages_leave_what_a_run_leaves(sonject, scene, tmp_path, interactio
     assert len(list((tmp_path / "formed").glob("energy_order_*.tif"))) == interactions
 
 
-@needs_hdf5
 @pytest.mark.parametrize(
     "chosen",
     [
@@ -83,11 +80,10 @@ def test_the_stages_of_other_sonars(sonject, scene, tmp_path, chosen):
     compare_with_run(sonject, tmp_path, scene, *(word for each in chosen for word in ("--set", each)))
 
 
-@needs_hdf5
 def test_another_pulse_needs_no_new_trace(sonject, scene, tmp_path):
     other = ["--set", "sonar.pulse={kind: chirp, window: hann}"]
-    command(sonject, "trace", scene, "-o", "impulses.h5", *NOMINAL)
-    command(sonject, "form", "impulses.h5", "-o", "formed", *other)
+    command(sonject, "trace", scene, "-o", "impulses.sums", *NOMINAL)
+    command(sonject, "form", "impulses.sums", "-o", "formed", *other)
     command(sonject, "run", scene, "-o", "run", *other, *NOMINAL)
     formed, run = (images.read_tiff(tmp_path / folder / "energy.tif").astype(float)
                    for folder in ("formed", "run"))
@@ -95,7 +91,6 @@ def test_another_pulse_needs_no_new_trace(sonject, scene, tmp_path):
     assert abs(formed.sum() / run.sum() - 1) < 0.02
 
 
-@needs_hdf5
 def test_the_stages_of_a_complex_image_to_starboard(sonject, scene, tmp_path, swath):
     pixels = numpy.stack([swath, swath[::-1]], axis=2)
     (tmp_path / "swath.tif").write_bytes(images.tiff_bytes(pixels))
@@ -105,38 +100,35 @@ def test_the_stages_of_a_complex_image_to_starboard(sonject, scene, tmp_path, sw
     compare_with_run(sonject, tmp_path, scene, *options)
 
 
-@needs_hdf5
 def test_the_same_trace_is_the_same_file(sonject, scene, tmp_path):
-    command(sonject, "trace", scene, "-o", "a.h5")
-    command(sonject, "trace", scene, "-o", "b.h5")
-    assert (tmp_path / "a.h5").read_bytes() == (tmp_path / "b.h5").read_bytes()
-    command(sonject, "form", "a.h5", "-o", "result")
-    answer = sonject("form", "a.h5", "-o", "result")
+    command(sonject, "trace", scene, "-o", "a.sums")
+    command(sonject, "trace", scene, "-o", "b.sums")
+    assert (tmp_path / "a.sums").read_bytes() == (tmp_path / "b.sums").read_bytes()
+    command(sonject, "form", "a.sums", "-o", "result")
+    answer = sonject("form", "a.sums", "-o", "result")
     assert answer.returncode == 0 and "already" in answer.stderr
     answer = sonject("run", scene, "-o", "result")  # the same inputs, so finished too
     assert answer.returncode == 0 and "already" in answer.stderr
 
 
-@needs_hdf5
 def test_where_the_fine_grid_is_the_same_another_bandwidth_gives_a_runs_bits(
     sonject, scene, tmp_path
 ):
     # 4 bins a pixel, 13 bins of margin and 27 glint bins a pixel for both
-    command(sonject, "trace", scene, "-o", "impulses.h5", *NOMINAL)
+    command(sonject, "trace", scene, "-o", "impulses.sums", *NOMINAL)
     other = ["--set", "sonar.bandwidth=29.9 kHz"]
-    command(sonject, "form", "impulses.h5", "-o", "formed", *other)
+    command(sonject, "form", "impulses.sums", "-o", "formed", *other)
     command(sonject, "run", scene, "-o", "run", *other, *NOMINAL)
     command(sonject, "run", scene, "-o", "as traced", *NOMINAL)
     assert contents(tmp_path / "formed") == contents(tmp_path / "run")
     assert contents(tmp_path / "formed")["patch.tif"] != contents(tmp_path / "as traced")["patch.tif"]
 
 
-@needs_hdf5
 def test_other_responses_give_a_runs_image_but_for_the_noise_of_rays(sonject, scene, tmp_path):
-    command(sonject, "trace", scene, "-o", "impulses.h5", *NOMINAL)
+    command(sonject, "trace", scene, "-o", "impulses.sums", *NOMINAL)
     changes = ["sonar.bandwidth=15 kHz", "sonar.response=hamming", "sonar.resolution=7 cm"]
     options = [word for change in changes for word in ("--set", change)]
-    command(sonject, "form", "impulses.h5", "-o", "formed", *options)
+    command(sonject, "form", "impulses.sums", "-o", "formed", *options)
     energies = [images.read_tiff(tmp_path / "formed" / "energy.tif")]
     for seed in (1, 2):
         command(sonject, "run", scene, "-o", str(seed), *options, "--seed", str(seed),
@@ -155,9 +147,8 @@ def test_other_responses_give_a_runs_image_but_for_the_noise_of_rays(sonject, sc
     assert abs(formed.sum() / first.sum() - 1) < 0.02
 
 
-@needs_hdf5
 def test_what_needs_a_new_trace_is_refused(sonject, scene, tmp_path):
-    command(sonject, "trace", scene, "-o", "impulses.h5", *NOMINAL)
+    command(sonject, "trace", scene, "-o", "impulses.sums", *NOMINAL)
     for change, *words in (
         ("sonar.bandwidth=31 kHz", "sonar.bandwidth", "31 kHz", "to 30 kHz", "trace again"),
         ("sonar.bandwidth=5 kHz", "sonar.bandwidth", "5 kHz", "trace again"),
@@ -168,60 +159,56 @@ def test_what_needs_a_new_trace_is_refused(sonject, scene, tmp_path):
         ("sonar={}", "--set sonar:", "needs a new trace"),
         ("sonar.bandwidth=broad", "sonar.bandwidth", "broad"),
     ):
-        assert_refused(sonject("form", "impulses.h5", "-o", "result", "--set", change), 3, *words)
+        assert_refused(sonject("form", "impulses.sums", "-o", "result", "--set", change), 3, *words)
         assert not files_below(tmp_path / "result")
 
 
-@needs_hdf5
 def test_names_of_files_are_meant_from_where_the_scene_was_traced(sonject, scene, tmp_path):
     folder = tmp_path / "scenes"
     folder.mkdir()
     scene.rename(folder / "scene.yaml")
     (tmp_path / "swath.tif").rename(folder / "swath.tif")
-    command(sonject, "trace", "scenes/scene.yaml", "-o", "a.h5")
-    command(sonject, "trace", "scenes/scene.yaml", "-o", "b.h5", "--set",
+    command(sonject, "trace", "scenes/scene.yaml", "-o", "a.sums")
+    command(sonject, "trace", "scenes/scene.yaml", "-o", "b.sums", "--set",
             "input.path=scenes/swath.tif")
-    command(sonject, "form", "a.h5", "-o", "near")
+    command(sonject, "form", "a.sums", "-o", "near")
     (tmp_path / "elsewhere").mkdir()
-    for name in ("a.h5", "b.h5"):
+    for name in ("a.sums", "b.sums"):
         answer = sonject("form", f"../{name}", "-o", f"result {name}", folder="elsewhere")
         assert answer.returncode == 0, answer.stderr
         assert contents(tmp_path / "elsewhere" / f"result {name}") == contents(tmp_path / "near")
 
 
-@needs_hdf5
 def test_another_image_or_scene_is_refused(sonject, scene, tmp_path, swath):
-    command(sonject, "trace", scene, "-o", "impulses.h5")
-    command(sonject, "form", "impulses.h5", "-o", "first")
+    command(sonject, "trace", scene, "-o", "impulses.sums")
+    command(sonject, "form", "impulses.sums", "-o", "first")
     moved = tmp_path / "moved.tif"
     (tmp_path / "swath.tif").rename(moved)
-    assert_refused(sonject("form", "impulses.h5", "-o", "result"), 3, "swath.tif")
-    command(sonject, "form", "impulses.h5", "-o", "result", "--set", "input.path=moved.tif")
+    assert_refused(sonject("form", "impulses.sums", "-o", "result"), 3, "swath.tif")
+    command(sonject, "form", "impulses.sums", "-o", "result", "--set", "input.path=moved.tif")
     assert contents(tmp_path / "result") == contents(tmp_path / "first")
     swath[3, 4] *= 2
     moved.write_bytes(images.tiff_bytes(swath))
-    answer = sonject("form", "impulses.h5", "-o", "other", "--set", "input.path=moved.tif")
+    answer = sonject("form", "impulses.sums", "-o", "other", "--set", "input.path=moved.tif")
     assert_refused(answer, 3, "moved.tif", "swath.tif", "96 x 128", "XXH3")
     assert not files_below(tmp_path / "other")
 
 
-@needs_hdf5
 def test_a_changed_target_file_is_refused(sonject, scene, tmp_path):
     target = tmp_path / "target.yaml"
     target.write_text("sonject_target: 1\nshape: sphere\ndiameter: 0.3 m\n")
     scene.write_text(scene.read_text().split("objects:")[0] +
                      "objects: [{target: target.yaml, position: centre}]\n")
-    command(sonject, "trace", scene, "-o", "impulses.h5")
-    command(sonject, "form", "impulses.h5", "-o", "result")
+    command(sonject, "trace", scene, "-o", "impulses.sums")
+    command(sonject, "form", "impulses.sums", "-o", "result")
     target.write_text(target.read_text().replace("0.3", "0.4"))
-    answer = sonject("form", "impulses.h5", "-o", "other")
+    answer = sonject("form", "impulses.sums", "-o", "other")
     assert_refused(answer, 3, "not what was traced", "trace again")
 
 
-@needs_hdf5
 def test_damaged_files_are_refused(sonject, scene, tmp_path):
-    command(sonject, "trace", scene, "-o", "impulses.h5")
-    whole = (tmp_path / "impulses.h5").read_bytes()
+    command(sonject, "trace", scene, "-o", "impulses.sums")
+    whole = (tmp_path / "impulses.sums").read_bytes()
     changed = bytearray(whole)
     changed[len(whole) // 2] ^= 4
     for name, content in {
@@ -231,15 +218,18 @@ def test_damaged_files_are_refused(sonject, scene, tmp_path):
         "long": whole + b"\0",
         "head": whole[:600],
         "changed": bytes(changed),
-        "without its seal": whole[512:],
-        "another": b"sonject impulses, XXH3 " + b"0" * 32 + b"\n" + whole[56:],
+        "without its magic": whole[16:],
+        "of an earlier format": b"sonject impulses, XXH3 " + b"0" * 32 + b"\n" + whole[56:],
         "text": b"sonject: 1\n" * 100,
     }.items():
-        (tmp_path / "damaged.h5").write_bytes(content)
-        answer = sonject("form", "damaged.h5", "-o", "result")
-        assert_refused(answer, 3, "damaged.h5")
+        (tmp_path / "damaged.sums").write_bytes(content)
+        answer = sonject("form", "damaged.sums", "-o", "result")
+        assert_refused(answer, 3, "damaged.sums")
         assert not files_below(tmp_path / "result"), name
-    assert_refused(sonject("form", "none.h5", "-o", "result"), 3, "none.h5", "no such")
+    command(sonject, "run", scene, "-o", "half", "--shard", "1/2")
+    (shard,) = (tmp_path / "half" / "work").glob("*.sums")
+    assert_refused(sonject("form", shard, "-o", "result"), 3, shard.name, "sonject merge")
+    assert_refused(sonject("form", "none.sums", "-o", "result"), 3, "none.sums", "no such")
     assert_refused(sonject("form", tmp_path, "-o", "result"), 5, str(tmp_path))
 
 
@@ -247,41 +237,60 @@ def left_by_trace(folder):
     return {path.name for path in folder.iterdir()} - {"home", "scene.yaml", "swath.tif"}
 
 
-@needs_hdf5
 def test_a_limit_on_file_sizes_leaves_no_trace(sonject, tmp_path):
-    command(sonject, "trace", DEMO, "-o", "first.h5")  # fills the driver's cache too
-    answer = sonject("trace", DEMO, "-o", "impulses.h5", preexec_fn=limit_file_size)
-    assert_refused(answer, 5, "impulses.h5", "cannot write")
-    assert left_by_trace(tmp_path) == {"first.h5"}
+    command(sonject, "trace", DEMO, "-o", "first.sums")  # fills the driver's cache too
+    answer = sonject("trace", DEMO, "-o", "impulses.sums", preexec_fn=limit_file_size)
+    assert_refused(answer, 5, "impulses.sums", "cannot write")
+    assert left_by_trace(tmp_path) == {"first.sums"}
 
 
-@needs_hdf5
 def test_a_full_disk_leaves_no_trace(sonject, scene, small_disk):
     if small_disk is None:
         pytest.skip("nothing can be mounted here; the limit on file sizes is tested instead")
-    assert_refused(sonject("trace", scene, "-o", small_disk / "a.h5"), 5, "No space left")
+    assert_refused(sonject("trace", scene, "-o", small_disk / "a.sums"), 5, "No space left")
     assert not files_below(small_disk)
 
 
-@needs_hdf5
 def test_a_folder_that_is_not_there(sonject, scene, tmp_path):
-    assert_refused(sonject("trace", scene, "-o", "none/impulses.h5"), 5, "none/impulses.h5")
+    assert_refused(sonject("trace", scene, "-o", "none/impulses.sums"), 5, "none/impulses.sums")
 
 
-@needs_hdf5
 @pytest.mark.parametrize("number, code", [(signal.SIGTERM, 85), (signal.SIGKILL, -signal.SIGKILL)])
 def test_a_trace_that_is_stopped_leaves_no_file(sonject, scene, tmp_path, environment, number, code):
-    arguments = ["trace", scene, "-o", "impulses.h5", "--set", "injection.rays=512"]
-    output = tmp_path / "impulses.h5"
+    arguments = ["trace", scene, "-o", "impulses.sums", "--set", "injection.rays=512"]
+    output = tmp_path / "impulses.sums"
     assert stop_at_the_bar(arguments, output, tmp_path, environment, number)[0] == code
-    assert not (tmp_path / "impulses.h5").exists()
+    assert not (tmp_path / "impulses.sums").exists()
     if number == signal.SIGTERM:
         assert not left_by_trace(tmp_path)
 
 
-if not HAS_HDF5:
-
-    def test_without_hdf5_the_stages_say_so(sonject, scene):
-        assert_refused(sonject("trace", scene, "-o", "impulses.h5"), 3, "HDF5")
-        scene.with_name("impulses.h5").write_bytes(b"")
-        assert_refused(sonject("form", "impulses.h5", "-o", "result"), 3, "HDF5")
+def test_the_export_holds_what_is_formed(sonject, scene, tmp_path):
+    if not HAS_HDF5:
+        assert_refused(sonject("trace", scene, "-o", "a", "--export", "a.h5"), 3, "HDF5")
+        return
+    h5py = pytest.importorskip("h5py")
+    scene.write_text(scene.read_text() + PARTS)
+    command(sonject, "trace", scene, "-o", "a", "--export", "a.h5", *NOMINAL)
+    command(sonject, "trace", scene, "-o", "b", *NOMINAL)
+    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
+    command(sonject, "form", "a", "-o", "formed")
+    facts = json.loads((tmp_path / "formed" / "run.json").read_text())
+    with h5py.File(tmp_path / "a.h5") as file:
+        assert file.attrs["rays"] == facts["rays"] > 0
+        assert file.attrs["bandwidth_hz"] == 30e3
+        assert sorted(file["objects"]) == ["0", "1"]
+        lost = file["objects/0/lost"]
+        units = {name: data.attrs["units"].decode() if isinstance(data.attrs["units"], bytes)
+                 else data.attrs["units"] for name, data in file["objects/0"].items()}
+        assert units == {"energy": "m^2", "footprint": "rays", "lost": "m^2"}
+        seabed, tile = file["seabed"], file["objects/0"]
+        assert seabed["energy"].shape == (seabed.attrs["strips"], seabed.attrs["bins"])
+        # an object hides no more than the seabed under it returns
+        row = tile.attrs["first_strip"] - seabed.attrs["first_strip"]
+        column = tile.attrs["first_bin"] - seabed.attrs["first_bin"]
+        under = seabed["energy"][row:row + lost.shape[0], column:column + lost.shape[1]]
+        assert 0 < lost[()].sum() <= under.sum()
+    assert_refused(sonject("form", "a.h5", "-o", "result"), 3, "a.h5", "trace again")
+    assert_refused(sonject("trace", scene, "-o", "c", "--export", "none/c.h5"), 5, "none/c.h5")
+    assert not (tmp_path / "c").exists()

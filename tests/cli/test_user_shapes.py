@@ -1,7 +1,6 @@
 """Scenes whose shapes are code: consent, errors with the user's lines, the check, and a run."""
 
 import json
-import os
 
 import numpy
 import pytest
@@ -133,21 +132,20 @@ def test_hostile_code_is_refused_before_any_compiler(sonject, user_scene):
         assert_refused(sonject("check", ALLOW, user_scene), 3, words)
 
 
-@pytest.mark.skipif(os.environ.get("SONJECT_HAS_HDF5") != "1", reason="built without HDF5")
 def test_code_that_impulses_name_needs_consent(sonject, scene, tmp_path):
     """What a target was when its impulses were traced says nothing about what it is now."""
     target = tmp_path / "ball.yaml"
     target.write_text("sonject_target: 1\nshape: sphere\ndiameter: 0.5 m\n")
     text = scene.read_text()
     scene.write_text(text.replace("shape: sphere\n    diameter: 0.5 m", "target: ball.yaml"))
-    assert sonject("trace", scene, "-o", "impulses.h5").returncode == 0
+    assert sonject("trace", scene, "-o", "impulses.sums").returncode == 0
     target.write_text(
         "sonject_target: 1\nshape: user\n"
         "user: {file: ball.cl, bounding_radius: 25 cm, parameters: [0.25]}\n"
     )
     (tmp_path / "ball.cl").write_text(SPHERE)
     before = files_below(tmp_path)
-    form = ["form", "impulses.h5", "-o", "result"]
+    form = ["form", "impulses.sums", "-o", "result"]
     assert_refused(sonject(*form), 3, "ball.yaml:3:7: user: ", ALLOW)
     assert_refused(sonject(*form, ALLOW), 3, "is not what was traced")
     assert files_below(tmp_path) == before

@@ -171,7 +171,6 @@ static void test_discovery_short_of_memory_says_so(void **state)
     }
 }
 
-#if defined(HAS_HDF5)
 static void test_tracing(void **state)
 {
     test_piece(*state, "trace", work_trace);
@@ -182,7 +181,6 @@ static void test_forming(void **state)
     expect_done(*state, "trace", work_trace);
     test_piece(*state, "form", work_form);
 }
-#endif
 
 /* Without memory OpenImageIO 2.4 ends the process (where functions that may not throw do), and HDF5
  * 1.10 loses what all its later calls need: what uses them is left out where libraries lack it. */
@@ -192,10 +190,8 @@ int main(void)
         cmocka_unit_test(test_injecting),
         cmocka_unit_test(test_discovery_short_of_memory_says_so),
         cmocka_unit_test(test_running),
-#if defined(HAS_HDF5)
         cmocka_unit_test(test_tracing),
         cmocka_unit_test(test_forming),
-#endif
     };
     /* whose OpenCL calls are those of the others */
     const struct CMUnitTest repeating[] = {

@@ -135,7 +135,7 @@ int work_prepare(void **state)
     set_path(work, work->campaign, "campaign.yaml");
     set_path(work, work->image, "swath.npy");
     set_path(work, work->seabed, "seabed.tif");
-    set_path(work, work->impulses, "impulses.h5");
+    set_path(work, work->impulses, "impulses");
     set_path(work, work->results, "results");
     write_bytes(work->scene, scene_text, strlen(scene_text));
     write_bytes(work->campaign, campaign_text, strlen(campaign_text));
@@ -387,7 +387,7 @@ static void list_below(const struct work *work, const char *below,
         if (stat(path, &facts) == 0 && S_ISDIR(facts.st_mode)) {
             strcat(name, "/");
             list_below(work, name, files, count);
-        } else if (!strstr(name, ".stint")) { /* what was traced may stay */
+        } else if (!strstr(name, ".sums")) { /* what was traced may stay */
             if (*count == WORK_FILES || strlen(name) >= sizeof files->name)
                 fail_msg("too many files, or too long a name: %s", name);
             strcpy(files[*count].name, name);

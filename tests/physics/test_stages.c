@@ -1,4 +1,4 @@
-/* What is formed from a file of impulses is, bit for bit, what is formed as they are traced. */
+/* What is formed from a file of sums is, bit for bit, what is formed as they are traced. */
 #define _POSIX_C_SOURCE 200809L
 #include <setjmp.h>
 #include <stdarg.h>
@@ -42,27 +42,29 @@ static void open_bench(struct bench *bench)
 static void trace_to_file(struct bench *bench, const struct injection_input *input,
                           const char *path)
 {
-    struct impulse_writer *writer;
-    struct impulse_head head;
-    char empty[] = "";
+    struct sums_writer writer;
+    struct sums_head head;
+    struct impulse_facts facts;
+    const struct sums_source none = {NULL, 0};
+    const struct impulse_sink sink = {impulse_lines_write, &writer};
     memset(&head, 0, sizeof head);
-    head.image_path = empty;
-    head.sonar = bench->scene.sonar;
-    assert_int_equal(impulse_writer_begin(&bench->report, path, &writer), SONJECT_OK);
-    const struct impulse_sink sink = impulse_writer_sink(writer);
-    if (injection_trace(&bench->report, bench->tracer.device, &bench->scene, input, &sink, NULL,
-                        NULL, &head.counts) != SONJECT_OK ||
-        impulse_writer_publish(writer, &head) != SONJECT_OK)
+    memset(&facts, 0, sizeof facts);
+    head.shard = head.shards = 1;
+    impulse_facts_note_sonar(&facts, &bench->scene.sonar);
+    if (sums_writer_begin_file(&writer, &bench->report, path, &head, none) != SONJECT_OK ||
+        injection_trace(&bench->report, bench->tracer.device, &bench->scene, input, &sink, NULL,
+                        NULL, &facts.counts) != SONJECT_OK ||
+        impulse_file_publish(&writer, &facts, "") != SONJECT_OK)
         fail_msg("%s", bench->report.message);
-    impulse_writer_release(&writer);
+    sums_writer_clear(&writer);
 }
 
 static void form_from_file(struct bench *bench, const struct injection_input *input,
                            const char *path, struct injection_result *result)
 {
-    struct impulse_file *file;
+    struct impulse_file file;
     assert_int_equal(impulse_file_open(&bench->report, path, &file), SONJECT_OK);
-    const struct impulse_source source = impulse_file_source(file);
+    const struct impulse_source source = impulse_file_source(&file);
     if (injection_form(&bench->report, bench->tracer.device, &bench->scene, input, &source, NULL,
                        NULL, result) != SONJECT_OK)
         fail_msg("%s", bench->report.message);
@@ -94,7 +96,7 @@ static void compare(struct bench *bench, struct temporary_folder *folder)
     input.rows = ROWS;
     input.columns = COLUMNS;
     input.pixels = pixels;
-    const char *path = temporary_file(folder, "impulses.h5");
+    const char *path = temporary_file(folder, "traced.sums");
     if (injection_run(&bench->report, bench->tracer.device, &bench->scene, &input, NULL, NULL,
                       &run) != SONJECT_OK)
         fail_msg("%s", bench->report.message);

@@ -1,4 +1,5 @@
-/* Files of impulses: what is written comes back bit for bit, and what others wrote is refused. */
+/* What tracing leaves: lines come back bit for bit, and none are formed that are not the scene's.
+ */
 #define _POSIX_C_SOURCE 200809L
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,14 +12,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <hdf5.h>
-
 #include <sonject/version.h>
 
+#include "base/file.h"
 #include "base/memory.h"
 #include "inject/echoes.h"
 #include "inject/impulse_file.h"
-#include "inject/impulse_seal.h"
 #include "inject/injection.h"
 #include "trace/smooth.h"
 #include "unit/temporary_folder.h"
@@ -79,75 +78,88 @@ static float value_of(enum impulse_kind kind, uint32_t plane, size_t cell)
     return cell % 7 == 0 ? 0.0f : (float)mixed * 1e-9f;
 }
 
-static void give(const struct impulse_sink *sink, enum impulse_kind kind, uint32_t number,
-                 const struct line_grid *grid, uint32_t planes)
+static size_t cells_of(const struct impulse_lines *lines)
 {
-    const size_t width = (size_t)grid->bins.count;
-    const int32_t most = kind == IMPULSES_OBJECT || kind == IMPULSES_CHAINS ? INT32_MAX : 5;
-    struct impulse_lines lines;
-    memset(&lines, 0, sizeof lines);
-    lines.kind = kind;
-    lines.number = number;
-    lines.grid = *grid;
-    lines.planes = planes;
-    lines.strips.first = grid->strips.first;
+    return (size_t)lines->strips.count * (size_t)lines->grid.bins.count;
+}
+
+/* A set, seabed and glints in pieces of five strips. */
+static void write_set(struct sums_writer *writer, struct impulse_lines lines)
+{
+    const int32_t end = lines.grid.strips.first + lines.grid.strips.count;
+    const bool is_whole = lines.kind == IMPULSES_OBJECT || lines.kind == IMPULSES_CHAINS;
+    lines.strips.first = lines.grid.strips.first;
     do {
-        const int32_t done = lines.strips.first - grid->strips.first;
-        const int32_t left = grid->strips.count - done;
+        const int32_t left = end - lines.strips.first;
+        const size_t before =
+            (size_t)(lines.strips.first - lines.grid.strips.first) * (size_t)lines.grid.bins.count;
         float *values[IMPULSE_PLANES_MAX] = {NULL, NULL, NULL};
-        lines.strips.count = left < most ? left : most;
-        for (uint32_t i = 0; i < planes; i++) {
-            const size_t cells = (size_t)lines.strips.count * width;
-            values[i] = allocate_array(cells, sizeof(float));
+        lines.strips.count = is_whole || left < 5 ? left : 5;
+        for (uint32_t i = 0; i < lines.planes; i++) {
+            lines.plane[i] = values[i] = allocate_array(cells_of(&lines), sizeof(float));
             assert_non_null(values[i]);
-            for (size_t k = 0; k < cells; k++)
-                values[i][k] = value_of(kind, i, (size_t)done * width + k);
-            lines.plane[i] = values[i];
+            for (size_t k = 0; k < cells_of(&lines); k++)
+                values[i][k] = value_of(lines.kind, i, before + k);
         }
-        assert_int_equal(sink->take(sink->taker, &lines), SONJECT_OK);
+        assert_int_equal(impulse_lines_write(writer, &lines), SONJECT_OK);
         for (int i = 0; i < IMPULSE_PLANES_MAX; i++)
             free(values[i]);
         lines.strips.first += lines.strips.count;
-    } while (lines.strips.first < grid->strips.first + grid->strips.count);
+    } while (lines.strips.first < end);
 }
 
-static void describe(struct impulse_head *head, const struct set_up *set)
+/* What a trace of the scene hands out, as it is or not. */
+#define SETS 4
+struct draft {
+    struct impulse_lines sets[SETS];
+    size_t count;
+    struct sums_head head;
+    struct impulse_facts facts;
+};
+
+static const char texts[] = "scene.yaml\0/data\0sonject: 1\n\0injection.seed=7";
+
+static struct draft draft_of(const struct set_up *set)
 {
-    static char *overrides[] = {"injection.seed=7", "input.path=a b.tif"};
-    memset(head, 0, sizeof *head);
-    strcpy(head->scene_hash, "0123456789abcdef0123456789abcdef");
-    head->scene_text = "sonject: 1\n# \xc3\xa4\n";
-    head->scene_path = "scene.yaml";
-    head->scene_folder = "/data";
-    head->overrides = overrides;
-    head->override_count = 2;
-    head->seed = UINT64_MAX;
-    head->image_path = "";
-    strcpy(head->image_hash, "fedcba9876543210fedcba9876543210");
-    head->image_rows = ROWS;
-    head->image_columns = COLUMNS;
-    head->sonar = set->scene.sonar;
-    head->rows = ROWS;
-    head->columns = COLUMNS;
-    head->counts.rays = (uint64_t)1 << 40;
+    struct draft draft;
+    memset(&draft, 0, sizeof draft);
+    draft.count = SETS;
+    draft.sets[0] = (struct impulse_lines){.grid = set->patch, .planes = 1};
+    draft.sets[1] =
+        (struct impulse_lines){.kind = IMPULSES_OBJECT, .grid = set->patch, .planes = 3};
+    draft.sets[1].grid.strips.count = 4;
+    draft.sets[1].grid.bins.count = 5;
+    draft.sets[2] =
+        (struct impulse_lines){.kind = IMPULSES_GLINT, .grid = set->glints, .planes = 2};
+    draft.sets[3] = (struct impulse_lines){
+        .kind = IMPULSES_CHAINS, .number = 2, .grid = set->patch, .planes = 1};
+    strcpy(draft.head.identity.version, "1.2");
+    strcpy(draft.head.identity.scene, "0123456789abcdef0123456789abcdef");
+    draft.head.shard = draft.head.shards = 1;
+    strcpy(draft.facts.image_hash, "fedcba9876543210fedcba9876543210");
+    draft.facts.image_rows = ROWS;
+    draft.facts.image_columns = COLUMNS;
+    impulse_facts_note_sonar(&draft.facts, &set->scene.sonar);
+    draft.facts.counts.rays = (uint64_t)1 << 40;
+    return draft;
+}
+
+static void write_draft(struct set_up *set, const char *path, const struct draft *draft)
+{
+    struct sums_writer writer;
+    const struct sums_source source = {texts, sizeof texts};
+    assert_int_equal(sums_writer_begin_file(&writer, &set->report, path, &draft->head, source),
+                     SONJECT_OK);
+    for (size_t i = 0; i < draft->count; i++)
+        write_set(&writer, draft->sets[i]);
+    assert_int_equal(impulse_file_publish(&writer, &draft->facts, "line.tif"), SONJECT_OK);
+    sums_writer_clear(&writer);
 }
 
 static void write_file(struct set_up *set, const char *path)
 {
-    struct impulse_head head;
-    struct impulse_writer *writer;
-    struct line_grid tile = set->patch;
-    tile.strips.count = 4;
-    tile.bins.count = 5;
-    assert_int_equal(impulse_writer_begin(&set->report, path, &writer), SONJECT_OK);
-    const struct impulse_sink sink = impulse_writer_sink(writer);
-    give(&sink, IMPULSES_SEABED, 0, &set->patch, 1);
-    give(&sink, IMPULSES_OBJECT, 0, &tile, 3);
-    give(&sink, IMPULSES_GLINT, 0, &set->glints, 2);
-    give(&sink, IMPULSES_CHAINS, 2, &set->patch, 1);
-    describe(&head, set);
-    assert_int_equal(impulse_writer_publish(writer, &head), SONJECT_OK);
-    impulse_writer_release(&writer);
+    const struct draft draft = draft_of(set);
+    write_draft(set, path, &draft);
 }
 
 /* Counts the cells of each kind and checks their values. */
@@ -172,7 +184,7 @@ static sonject_status take(void *taker, const struct impulse_lines *lines)
 
 static sonject_status read_file(struct set_up *set, const char *path, struct taken *taken)
 {
-    struct impulse_file *file;
+    struct impulse_file file;
     struct echo_request request;
     const struct impulse_sink sink = {take, taken};
     memset(taken, 0, sizeof *taken);
@@ -180,7 +192,7 @@ static sonject_status read_file(struct set_up *set, const char *path, struct tak
     sonject_status status = impulse_file_open(&set->report, path, &file);
     if (status != SONJECT_OK)
         return status;
-    const struct impulse_source source = impulse_file_source(file);
+    const struct impulse_source source = impulse_file_source(&file);
     status = source.deliver(source.giver, &set->tracer, &request, &sink);
     impulse_file_close(&file);
     return status;
@@ -192,7 +204,7 @@ static void lines_come_back(void **state)
     struct set_up set;
     struct taken taken;
     set_up_init(&set);
-    const char *path = temporary_file(folder, "impulses.h5");
+    const char *path = temporary_file(folder, "traced.sums");
     write_file(&set, path);
     assert_int_equal(read_file(&set, path, &taken), SONJECT_OK);
     assert_int_equal(taken.cells[IMPULSES_SEABED], line_grid_cells(&set.patch));
@@ -204,279 +216,145 @@ static void lines_come_back(void **state)
     set_up_clear(&set);
 }
 
-static void the_head_comes_back(void **state)
+static void facts_and_head_come_back(void **state)
 {
     struct temporary_folder *folder = *state;
     struct set_up set;
-    struct impulse_file *file;
-    struct impulse_head written;
+    struct impulse_file file;
+    sonject_sonar_params sonar;
     set_up_init(&set);
-    const char *path = temporary_file(folder, "impulses.h5");
-    write_file(&set, path);
+    const char *path = temporary_file(folder, "traced.sums");
+    const struct draft draft = draft_of(&set);
+    write_draft(&set, path, &draft);
     assert_int_equal(impulse_file_open(&set.report, path, &file), SONJECT_OK);
-    const struct impulse_head *head = impulse_file_head(file);
-    describe(&written, &set);
-    assert_string_equal(head->version, sonject_version());
-    assert_string_equal(head->scene_hash, written.scene_hash);
-    assert_string_equal(head->scene_text, written.scene_text);
-    assert_string_equal(head->scene_path, written.scene_path);
-    assert_string_equal(head->scene_folder, written.scene_folder);
-    assert_int_equal(head->override_count, 2);
-    assert_string_equal(head->overrides[0], written.overrides[0]);
-    assert_string_equal(head->overrides[1], written.overrides[1]);
-    assert_true(head->seed == UINT64_MAX);
-    assert_string_equal(head->image_path, "");
-    assert_string_equal(head->image_hash, written.image_hash);
-    assert_true(head->image_rows == ROWS && head->image_columns == COLUMNS);
-    assert_true(head->sonar.bandwidth_hz == written.sonar.bandwidth_hz);
-    assert_true(head->rows == ROWS && head->columns == COLUMNS);
+    assert_memory_equal(&file.facts, &draft.facts, sizeof draft.facts);
+    assert_memory_equal(&file.sums.head, &draft.head, sizeof draft.head);
+    assert_int_equal(file.sums.source.bytes, sizeof texts);
+    assert_memory_equal(file.sums.source.texts, texts, sizeof texts);
+    assert_string_equal(file.image_path, "line.tif");
+    memset(&sonar, 0, sizeof sonar);
+    impulse_facts_take_sonar(&file.facts, &sonar);
+    assert_true(sonar.bandwidth_hz == set.scene.sonar.bandwidth_hz);
     impulse_file_close(&file);
     set_up_clear(&set);
 }
 
-/* What another program might have put there. */
+/* What another program might have put there, with sound digests. */
 
-static void remove_attribute(hid_t file, const char *path, const char *name)
+static void bandwidth_is_zero(struct draft *draft)
 {
-    assert_true(H5Adelete_by_name(file, path, name, H5P_DEFAULT) >= 0);
+    draft->facts.bandwidth_hz = 0.0;
 }
 
-static void put_attribute(hid_t file, const char *path, const char *name, hid_t type, hid_t space,
-                          const void *value)
+static void bandwidth_is_not_a_number(struct draft *draft)
 {
-    remove_attribute(file, path, name);
-    const hid_t attribute =
-        H5Acreate_by_name(file, path, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    assert_true(attribute >= 0 && H5Awrite(attribute, type, value) >= 0);
-    H5Aclose(attribute);
-    H5Sclose(space);
+    draft->facts.bandwidth_hz = NAN;
 }
 
-static void put_whole(hid_t file, const char *path, const char *name, int64_t value)
+static void window_is_unknown(struct draft *draft)
 {
-    put_attribute(file, path, name, H5T_NATIVE_INT64, H5Screate(H5S_SCALAR), &value);
+    draft->facts.response_window = 77;
 }
 
-static void put_number(hid_t file, const char *path, const char *name, double value)
+static void hash_is_endless(struct draft *draft)
 {
-    put_attribute(file, path, name, H5T_NATIVE_DOUBLE, H5Screate(H5S_SCALAR), &value);
+    memset(draft->facts.image_hash, 'a', sizeof draft->facts.image_hash);
 }
 
-/* Zeros; no byte of them is stored where they are many. */
-static void put_plane(hid_t file, const char *path, hid_t type, hsize_t strips, hsize_t bins,
-                      hsize_t chunk_strips)
+static void there_is_nothing(struct draft *draft)
 {
-    const hsize_t extent[2] = {strips, bins};
-    const hsize_t chunk[2] = {chunk_strips, bins};
-    const hid_t space = H5Screate_simple(2, extent, NULL);
-    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
-    assert_true(H5Ldelete(file, path, H5P_DEFAULT) >= 0);
-    assert_true(H5Pset_chunk(creation, 2, chunk) >= 0);
-    const hid_t plane = H5Dcreate2(file, path, type, space, H5P_DEFAULT, creation, H5P_DEFAULT);
-    assert_true(plane >= 0);
-    if (strips * bins < 1000000) {
-        double *values = allocate_array((size_t)(strips * bins), sizeof *values);
-        assert_non_null(values);
-        assert_true(H5Dwrite(plane, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0);
-        free(values);
-    }
-    H5Dclose(plane);
-    H5Pclose(creation);
-    H5Sclose(space);
+    draft->count = 0;
 }
 
-static void hash_is_missing(hid_t file, const struct set_up *set)
+static void seabed_is_missing(struct draft *draft)
 {
-    (void)set;
-    remove_attribute(file, "/scene", "hash");
+    memmove(draft->sets, draft->sets + 1, --draft->count * sizeof *draft->sets);
 }
 
-static void hash_is_a_number(hid_t file, const struct set_up *set)
+static void seabed_comes_twice(struct draft *draft)
 {
-    (void)set;
-    put_whole(file, "/scene", "hash", 5);
+    draft->sets[1] = draft->sets[0];
 }
 
-static void hash_is_long(hid_t file, const struct set_up *set)
+static void there_are_more_planes(struct draft *draft)
 {
-    static const char text[100] = "0123456789012345678901234567890123456789";
-    const hid_t type = H5Tcopy(H5T_C_S1);
-    (void)set;
-    H5Tset_size(type, sizeof text);
-    put_attribute(file, "/scene", "hash", type, H5Screate(H5S_SCALAR), text);
-    H5Tclose(type);
+    draft->sets[0].planes = 2;
 }
 
-static void path_is_of_variable_length(hid_t file, const struct set_up *set)
+static void object_is_of_no_scene(struct draft *draft)
 {
-    const char *text = "scene.yaml";
-    const hid_t type = H5Tcopy(H5T_C_S1);
-    (void)set;
-    H5Tset_size(type, H5T_VARIABLE);
-    put_attribute(file, "/scene", "path", type, H5Screate(H5S_SCALAR), &text);
-    H5Tclose(type);
+    draft->sets[1].number = 1;
 }
 
-static void rows_are_many_numbers(hid_t file, const struct set_up *set)
+static void chains_are_too_long(struct draft *draft)
 {
-    const hsize_t extent = 2;
-    const uint64_t values[2] = {1, 2};
-    (void)set;
-    put_attribute(file, "/image", "rows", H5T_NATIVE_UINT64, H5Screate_simple(1, &extent, NULL),
-                  values);
+    draft->sets[3].number = SCENE_INTERACTIONS_MAX + 1;
 }
 
-static void format_is_newer(hid_t file, const struct set_up *set)
+static void first_bin_overflows(struct draft *draft)
 {
-    (void)set;
-    put_whole(file, "/", "format_version", IMPULSE_FORMAT_VERSION + 1);
+    draft->sets[1].grid.bins.first = INT32_MAX;
 }
 
-static void text_is_a_plane(hid_t file, const struct set_up *set)
+static void tile_is_elsewhere(struct draft *draft)
 {
-    (void)set;
-    put_plane(file, "/scene/text", H5T_NATIVE_FLOAT, 3, 3, 1);
+    draft->sets[1].grid.bins.first = draft->sets[0].grid.bins.first - 1;
 }
 
-static void bandwidth_is_zero(hid_t file, const struct set_up *set)
+static void grid_is_finer(struct draft *draft)
 {
-    (void)set;
-    put_number(file, "/sonar", "bandwidth_hz", 0.0);
+    draft->sets[3].grid.bins_per_pixel++;
 }
 
-static void bandwidth_is_not_a_number(hid_t file, const struct set_up *set)
+static void glints_are_coarse(struct draft *draft)
 {
-    (void)set;
-    put_number(file, "/sonar", "bandwidth_hz", NAN);
+    draft->sets[2].grid.bins_per_pixel = 1;
 }
 
-static void window_is_unknown(hid_t file, const struct set_up *set)
+static void seabed_is_smaller_than_the_patch(struct draft *draft)
 {
-    (void)set;
-    put_whole(file, "/sonar", "response_window", 77);
+    draft->sets[0].grid.bins.count = 3;
 }
 
-static void seabed_is_missing(hid_t file, const struct set_up *set)
+static void it_is_a_shard(struct draft *draft)
 {
-    (void)set;
-    assert_true(H5Ldelete(file, "/seabed", H5P_DEFAULT) >= 0);
-}
-
-static void seabed_is_a_plane(hid_t file, const struct set_up *set)
-{
-    seabed_is_missing(file, set);
-    assert_true(
-        H5Lcreate_hard(file, "/objects/0/energy", file, "/seabed", H5P_DEFAULT, H5P_DEFAULT) >= 0);
-}
-
-static void energy_leads_nowhere(hid_t file, const struct set_up *set)
-{
-    (void)set;
-    assert_true(H5Ldelete(file, "/seabed/energy", H5P_DEFAULT) >= 0);
-    assert_true(H5Lcreate_soft("/none", file, "/seabed/energy", H5P_DEFAULT, H5P_DEFAULT) >= 0);
-}
-
-static void energies_are_integers(hid_t file, const struct set_up *set)
-{
-    put_plane(file, "/seabed/energy", H5T_NATIVE_INT32, (hsize_t)set->patch.strips.count,
-              (hsize_t)set->patch.bins.count, 1);
-}
-
-static void energies_are_double(hid_t file, const struct set_up *set)
-{
-    put_plane(file, "/seabed/energy", H5T_NATIVE_DOUBLE, (hsize_t)set->patch.strips.count,
-              (hsize_t)set->patch.bins.count, 1);
-}
-
-static void energies_are_fewer(hid_t file, const struct set_up *set)
-{
-    put_plane(file, "/seabed/energy", H5T_NATIVE_FLOAT, (hsize_t)set->patch.strips.count - 1,
-              (hsize_t)set->patch.bins.count, 1);
-}
-
-static void strips_overflow(hid_t file, const struct set_up *set)
-{
-    (void)set;
-    put_whole(file, "/seabed", "strips", (int64_t)1 << 40);
-}
-
-static void strips_are_negative(hid_t file, const struct set_up *set)
-{
-    (void)set;
-    put_whole(file, "/seabed", "strips", -1);
-}
-
-static void first_bin_overflows(hid_t file, const struct set_up *set)
-{
-    (void)set;
-    put_whole(file, "/objects/0", "first_bin", INT32_MAX);
-}
-
-static void tile_is_elsewhere(hid_t file, const struct set_up *set)
-{
-    put_whole(file, "/objects/0", "first_bin", set->patch.bins.first - 1);
-}
-
-static void grid_is_finer(hid_t file, const struct set_up *set)
-{
-    put_whole(file, "/chains/2", "bins_per_pixel", set->patch.bins_per_pixel + 1);
-}
-
-/* Terabytes that no byte is stored of. */
-static void glints_are_empty_and_huge(hid_t file, const struct set_up *set)
-{
-    (void)set;
-    put_whole(file, "/glints/0", "strips", (int64_t)1 << 20);
-    put_whole(file, "/glints/0", "bins", (int64_t)1 << 12);
-    put_plane(file, "/glints/0/real", H5T_NATIVE_FLOAT, (hsize_t)1 << 20, (hsize_t)1 << 12, 4);
-    put_plane(file, "/glints/0/imaginary", H5T_NATIVE_FLOAT, (hsize_t)1 << 20, (hsize_t)1 << 12, 4);
+    draft->head.shards = 2;
 }
 
 static const struct {
     const char *name;
-    void (*change)(hid_t file, const struct set_up *set);
+    void (*change)(struct draft *draft);
     const char *word; /* of the message */
 } changes[] = {
-    {"hash is missing", hash_is_missing, "/scene"},
-    {"hash is a number", hash_is_a_number, "/scene"},
-    {"hash is long", hash_is_long, "/scene"},
-    {"path of variable length", path_is_of_variable_length, "/scene"},
-    {"text is a plane", text_is_a_plane, "/scene"},
-    {"many rows", rows_are_many_numbers, "/image"},
-    {"newer format", format_is_newer, "format is 2"},
-    {"bandwidth 0", bandwidth_is_zero, "/sonar"},
-    {"bandwidth NaN", bandwidth_is_not_a_number, "/sonar"},
-    {"unknown window", window_is_unknown, "/sonar"},
-    {"no seabed", seabed_is_missing, "/seabed is missing"},
-    {"seabed is a plane", seabed_is_a_plane, "/seabed"},
-    {"energy leads nowhere", energy_leads_nowhere, "/seabed"},
-    {"integers", energies_are_integers, "/seabed"},
-    {"doubles", energies_are_double, "/seabed"},
-    {"fewer strips", energies_are_fewer, "/seabed"},
-    {"strips overflow", strips_overflow, "/seabed"},
-    {"negative strips", strips_are_negative, "/seabed"},
-    {"first bin overflows", first_bin_overflows, "/objects/0"},
-    {"tile elsewhere", tile_is_elsewhere, "/objects/0"},
-    {"finer grid", grid_is_finer, "/chains/2"},
-    {"empty and huge", glints_are_empty_and_huge, "announces 1048576 x 4096"},
+    {"bandwidth 0", bandwidth_is_zero, "not those of this scene"},
+    {"bandwidth NaN", bandwidth_is_not_a_number, "not those of this scene"},
+    {"unknown window", window_is_unknown, "not those of this scene"},
+    {"endless hash", hash_is_endless, "not what sonject trace leaves"},
+    {"nothing", there_is_nothing, "not those of this scene"},
+    {"no seabed", seabed_is_missing, "not those of this scene"},
+    {"two seabeds", seabed_comes_twice, "not those of this scene"},
+    {"more planes", there_are_more_planes, "not those of this scene"},
+    {"no such object", object_is_of_no_scene, "not those of this scene"},
+    {"long chains", chains_are_too_long, "not those of this scene"},
+    {"first bin overflows", first_bin_overflows, "not those of this scene"},
+    {"tile elsewhere", tile_is_elsewhere, "not those of this scene"},
+    {"finer grid", grid_is_finer, "not those of this scene"},
+    {"coarse glints", glints_are_coarse, "the glints of"},
+    {"small seabed", seabed_is_smaller_than_the_patch, "is damaged"},
+    {"a shard", it_is_a_shard, "sonject merge"},
 };
 
-static void what_others_wrote_is_refused(void **state)
+static void what_is_not_of_the_scene_is_refused(void **state)
 {
     struct temporary_folder *folder = *state;
     struct set_up set;
     struct taken taken;
     set_up_init(&set);
     for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
-        const char *path = temporary_file(folder, "impulses.h5");
-        write_file(&set, path);
-        const hid_t file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
-        assert_true(file >= 0);
-        changes[i].change(file, &set);
-        assert_true(H5Fclose(file) >= 0);
-        /* unsealed, then sealed anew */
-        assert_int_equal(read_file(&set, path, &taken), SONJECT_ERROR_INPUT);
-        assert_int_equal(impulse_seal_write(&set.report, path, path), SONJECT_OK);
+        const char *path = temporary_file(folder, "traced.sums");
+        struct draft draft = draft_of(&set);
+        changes[i].change(&draft);
+        write_draft(&set, path, &draft);
         const sonject_status status = read_file(&set, path, &taken);
         if (status != SONJECT_ERROR_INPUT || !strstr(set.report.message, changes[i].word))
             print_error("%s: status %d, %s\n", changes[i].name, (int)status, set.report.message);
@@ -486,37 +364,71 @@ static void what_others_wrote_is_refused(void **state)
     set_up_clear(&set);
 }
 
-/* None of its bytes may change; where they do on purpose, with the right hash, the host goes on. */
-static void what_is_damaged_is_refused(void **state)
+/* Records of numbers that are no lines, and more numbers than the file could hold. */
+static void words_that_are_no_lines_are_refused(void **state)
 {
+    static const int64_t records[][LINES_HEAD_WORDS + 1] = {
+        {IMPULSE_KINDS, 0, 1, 1, 0, 1, 0, 1, 0, 1, 1},
+        {-1, 0, 1, 1, 0, 1, 0, 1, 0, 1, 1},
+        {0, 0, 0, 1, 0, 1, 0, 1, 0, 1, 1},
+        {0, 0, 1, 1, 0, -1, 0, 1, 0, 1, 1},
+        {0, 0, 1, 1, 0, INT64_MAX, 0, 1, 0, 1, 1},
+        {0, 0, 1, 1, 0, 1, 0, 2, 0, 2, 1},
+        {0, 0, 1, 1, 0, 1, 0, 1, 1, 1, 1},
+        {0, 0, 1, 1, 0, 1, 0, 1, 0, 1, IMPULSE_PLANES_MAX + 1},
+        {0, 0, 1, 1, 0, 1, 0, 1, 0, 1, 0},
+    };
     struct temporary_folder *folder = *state;
     struct set_up set;
     struct taken taken;
     set_up_init(&set);
-    const char *path = temporary_file(folder, "impulses.h5");
-    write_file(&set, path);
-    FILE *file = fopen(path, "r+b");
-    assert_non_null(file);
-    assert_int_equal(fseek(file, 0, SEEK_END), 0);
-    const long bytes = ftell(file);
-    for (long i = 0; i < 40; i++) {
-        const long at = (bytes - 1) * i / 39;
-        fseek(file, at, SEEK_SET);
-        const int byte = fgetc(file);
-        fseek(file, at, SEEK_SET);
-        fputc(byte ^ 16, file);
-        fflush(file);
+    const struct draft draft = draft_of(&set);
+    const size_t count = sizeof records / sizeof *records;
+    for (size_t i = 0; i < count + 2; i++) {
+        const char *path = temporary_file(folder, "traced.sums");
+        struct sums_writer writer;
+        const struct sums_source none = {NULL, 0};
+        assert_int_equal(sums_writer_begin_file(&writer, &set.report, path, &draft.head, none),
+                         SONJECT_OK);
+        if (i < count)
+            assert_int_equal(sums_writer_sums(&writer, records[i], LINES_HEAD_WORDS + 1),
+                             SONJECT_OK);
+        else if (i == count)
+            assert_int_equal(sums_writer_sums(&writer, records[0], 3), SONJECT_OK);
+        else
+            assert_true(sums_writer_begin_sums(&writer, (uint64_t)1 << 40) == SONJECT_OK &&
+                        sums_writer_end_sums(&writer) == SONJECT_OK);
+        assert_int_equal(impulse_file_publish(&writer, &draft.facts, ""), SONJECT_OK);
+        sums_writer_clear(&writer);
         assert_int_equal(read_file(&set, path, &taken), SONJECT_ERROR_INPUT);
-        assert_int_equal(impulse_seal_write(&set.report, path, path), SONJECT_OK);
-        const sonject_status status = read_file(&set, path, &taken);
-        assert_true(status == SONJECT_OK || status == SONJECT_ERROR_INPUT);
-        fseek(file, at, SEEK_SET);
-        fputc(byte, file);
-        fflush(file);
+        assert_int_equal(taken.cells[IMPULSES_SEABED], 0);
     }
-    fclose(file);
-    assert_int_equal(impulse_seal_write(&set.report, path, path), SONJECT_OK);
-    assert_int_equal(read_file(&set, path, &taken), SONJECT_OK);
+    set_up_clear(&set);
+}
+
+/* test_sums_file.c changes every byte of such a file. */
+static void what_is_damaged_or_of_another_format_is_refused(void **state)
+{
+    struct temporary_folder *folder = *state;
+    struct set_up set;
+    struct taken taken;
+    size_t count;
+    set_up_init(&set);
+    char path[TEMPORARY_CAPACITY + 300];
+    strcpy(path, temporary_file(folder, "traced.sums"));
+    write_file(&set, path);
+    unsigned char *bytes = bytes_of_file(path, &count);
+    for (size_t i = 0; i < 40; i++) {
+        const size_t at = (count - 1) * i / 39;
+        bytes[at] ^= 16;
+        write_bytes(path, bytes, count);
+        assert_int_equal(read_file(&set, path, &taken), SONJECT_ERROR_INPUT);
+        bytes[at] ^= 16;
+    }
+    free(bytes);
+    write_bytes(path, "sonject impulses, XXH3 0123456789abcdef", 39);
+    assert_int_equal(read_file(&set, path, &taken), SONJECT_ERROR_INPUT);
+    assert_non_null(strstr(set.report.message, "not sums as this version of sonject writes them"));
     set_up_clear(&set);
 }
 
@@ -525,12 +437,14 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(lines_come_back, make_temporary_folder,
                                         remove_temporary_folder),
-        cmocka_unit_test_setup_teardown(the_head_comes_back, make_temporary_folder,
+        cmocka_unit_test_setup_teardown(facts_and_head_come_back, make_temporary_folder,
                                         remove_temporary_folder),
-        cmocka_unit_test_setup_teardown(what_others_wrote_is_refused, make_temporary_folder,
+        cmocka_unit_test_setup_teardown(what_is_not_of_the_scene_is_refused, make_temporary_folder,
                                         remove_temporary_folder),
-        cmocka_unit_test_setup_teardown(what_is_damaged_is_refused, make_temporary_folder,
+        cmocka_unit_test_setup_teardown(words_that_are_no_lines_are_refused, make_temporary_folder,
                                         remove_temporary_folder),
+        cmocka_unit_test_setup_teardown(what_is_damaged_or_of_another_format_is_refused,
+                                        make_temporary_folder, remove_temporary_folder),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -97,11 +97,14 @@ class scene : public scene_content
             });
     }
 
-    /* Traces alone, and keeps the impulses in the file, for sonject::form. */
-    void trace(const std::string &file, const progress &callback = progress()) const
+    /* Traces alone, and keeps the impulses in the file, for sonject::form; in export_file, if one
+     * is named, as HDF5 arrays for other programs. */
+    void trace(const std::string &file, const progress &callback = progress(),
+               const std::string &export_file = std::string()) const
     {
         sonject_trace_params params = defaults<sonject_trace_params>();
         params.file = file.c_str();
+        params.export_file = export_file.empty() ? nullptr : export_file.c_str();
         detail::tell_progress(context_, callback, [&](sonject_progress_function tell, void *user) {
             return sonject_trace(context_, handle_, &params, tell, user);
         });

@@ -136,11 +136,22 @@ def merge(
     )
 
 
-def trace(scene: Scene, file: PathLike, progress: Optional[Progress] = None) -> None:
-    """Traces the scene and writes its impulses to a file, which form makes images of."""
+def trace(
+    scene: Scene,
+    file: PathLike,
+    progress: Optional[Progress] = None,
+    *,
+    export_file: Optional[PathLike] = None,
+) -> None:
+    """Traces the scene and writes its impulses to a file, which form makes images of.
+
+    export_file: the same as HDF5 arrays, for other programs.
+    """
     context = scene.context
     params = initialised(s.sonject_trace_params)
     params.file = file_name("file", file)
+    if export_file is not None:
+        params.export_file = file_name("export_file", export_file)
     context.work("sonject_trace", context, scene, ctypes.byref(params), progress=progress)
 
 

@@ -5,10 +5,6 @@ import os
 import pytest
 import sonject
 
-pytestmark = pytest.mark.skipif(
-    os.environ.get("SONJECT_HAS_HDF5") != "1", reason="built without HDF5 or image files"
-)
-
 
 def make_scene(bandwidth_hz=30e3):
     scene = sonject.Scene(
@@ -27,7 +23,7 @@ def contents(folder):
 
 
 def test_a_scene_in_memory_is_formed_with_the_scene_at_hand(tmp_path):
-    impulses = tmp_path / "impulses.h5"
+    impulses = tmp_path / "impulses.sums"
     sonject.trace(make_scene(), impulses)
     with pytest.raises(sonject.SonjectError, match="give the scene"):
         sonject.form(impulses, tmp_path / "none")
@@ -53,8 +49,14 @@ def test_a_scene_in_memory_is_formed_with_the_scene_at_hand(tmp_path):
         sonject.form(impulses, tmp_path / "other", {"sonar.bandwidth": "29 kHz"}, make_scene())
 
 
+@pytest.mark.skipif(os.environ.get("SONJECT_HAS_HDF5") != "1", reason="built without HDF5")
+def test_impulses_are_exported_too(tmp_path):
+    sonject.trace(make_scene(), tmp_path / "impulses.sums", export_file=tmp_path / "arrays.h5")
+    assert (tmp_path / "arrays.h5").read_bytes().startswith(b"\x89HDF")
+
+
 def test_progress_cancels_both_stages(tmp_path):
-    impulses = tmp_path / "impulses.h5"
+    impulses = tmp_path / "impulses.sums"
     with pytest.raises(sonject.Cancelled):
         sonject.trace(make_scene(), impulses, progress=lambda fraction, stage: True)
     assert not list(tmp_path.iterdir())

@@ -63,6 +63,7 @@ class sonject_trace_params(Structure):
         ("struct_size", c_uint32),
         ("reserved", c_uint32),
         ("file", c_char_p),
+        ("export_file", c_char_p),
     ]
 
 

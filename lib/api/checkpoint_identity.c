@@ -3,10 +3,10 @@
 
 #include <sonject/version.h>
 
+#include "api/checkpoint_tracing.h"
 #include "api/scene_hash.h"
-#include "api/stint_tracing.h"
 
-static sonject_status take_code(struct report *report, char code[STINT_DIGEST_CAPACITY])
+static sonject_status take_code(struct report *report, char code[SUMS_DIGEST_CAPACITY])
 {
     char digest[HASH_TEXT_CAPACITY];
     const sonject_status status = code_hash(report, digest);
@@ -16,8 +16,8 @@ static sonject_status take_code(struct report *report, char code[STINT_DIGEST_CA
 }
 
 /* Code of users may answer differently on another device. */
-static sonject_status take_device(struct report *report, const struct stint_job *job,
-                                  char device[STINT_DIGEST_CAPACITY])
+static sonject_status take_device(struct report *report, const struct checkpoint_job *job,
+                                  char device[SUMS_DIGEST_CAPACITY])
 {
     char digest[HASH_TEXT_CAPACITY];
     if (job->request->scene->user_shapes.count == 0)
@@ -33,10 +33,10 @@ static sonject_status take_device(struct report *report, const struct stint_job 
     return SONJECT_OK;
 }
 
-sonject_status take_stint_head(struct tracing *tracing)
+sonject_status take_sums_head(struct tracing *tracing)
 {
-    const struct stint_job *job = tracing->job;
-    struct stint_identity *identity = &tracing->head.identity;
+    const struct checkpoint_job *job = tracing->job;
+    struct sums_identity *identity = &tracing->head.identity;
     tracing->head.shard = job->request->shards > 0 ? job->request->shard : 1;
     tracing->head.shards = job->request->shards > 0 ? job->request->shards : 1;
     strncpy(identity->version, sonject_version(), sizeof identity->version - 1);
@@ -47,7 +47,7 @@ sonject_status take_stint_head(struct tracing *tracing)
 
 /* NULL where the tallies are of the same scene, image and version, and traced on that device; else
  * what differs. */
-static const char *difference(const struct stint_identity *found, const struct stint_identity *mine,
+static const char *difference(const struct sums_identity *found, const struct sums_identity *mine,
                               const char *device)
 {
     if (strcmp(found->version, mine->version) != 0 || strcmp(found->code, mine->code) != 0)
@@ -59,27 +59,27 @@ static const char *difference(const struct stint_identity *found, const struct s
                : "another device, on which code of shapes may answer differently";
 }
 
-sonject_status refuse_foreign_stint(struct report *report, const char *path, const char *what)
+sonject_status refuse_foreign_sums(struct report *report, const char *path, const char *what)
 {
     return report_failure(report, SONJECT_ERROR_INPUT,
                           "%s: traced by %s: choose another folder, or delete the work in this one",
                           path, what);
 }
 
-sonject_status check_folder(struct tracing *tracing, struct stint_folder *folder)
+sonject_status check_folder(struct tracing *tracing, struct sums_folder *folder)
 {
     struct report *report = tracing->report;
-    const struct stint_identity *mine = &tracing->head.identity;
+    const struct sums_identity *mine = &tracing->head.identity;
     const bool is_shard = tracing->job->request->shards > 0;
     for (size_t i = 0; i < folder->count; i++) {
-        const struct stint_file *file = &folder->files[i];
+        const struct sums_file *file = &folder->files[i];
         const char *what = difference(&file->head.identity, mine, mine->device);
         if (what && is_shard)
-            return refuse_foreign_stint(report, file->path, what);
+            return refuse_foreign_sums(report, file->path, what);
         if (what) {
             report_news(report, "%s was traced by %s and is dropped", tracing->folder, what);
-            stint_folder_clear(folder);
-            stint_folder_remove(tracing->folder);
+            sums_folder_clear(folder);
+            sums_folder_remove(tracing->folder);
         }
     }
     return SONJECT_OK;
@@ -90,7 +90,7 @@ sonject_status check_shards(struct tracing *tracing)
     uint64_t others;
     const uint64_t mine = tracing->head.shards;
     const sonject_status status =
-        stint_folder_shards(tracing->report, tracing->folder, mine, &others);
+        sums_folder_shards(tracing->report, tracing->folder, mine, &others);
     if (status != SONJECT_OK || others == 0)
         return status;
     return report_failure(tracing->report, SONJECT_ERROR_INPUT,
@@ -100,15 +100,15 @@ sonject_status check_shards(struct tracing *tracing)
                           (unsigned long long)mine);
 }
 
-sonject_status check_merged(struct tracing *tracing, const struct stint_folder *folder)
+sonject_status check_merged(struct tracing *tracing, const struct sums_folder *folder)
 {
-    const struct stint_head *first = &folder->files[0].head;
+    const struct sums_head *first = &folder->files[0].head;
     for (size_t i = 0; i < folder->count; i++) {
-        const struct stint_file *file = &folder->files[i];
+        const struct sums_file *file = &folder->files[i];
         const char *what =
             difference(&file->head.identity, &tracing->head.identity, first->identity.device);
         if (what)
-            return refuse_foreign_stint(tracing->report, file->path, what);
+            return refuse_foreign_sums(tracing->report, file->path, what);
     }
     tracing->head.shards = first->shards;
     return first->shards <= SHARDS_MAX

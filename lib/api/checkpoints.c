@@ -1,27 +1,27 @@
-#include "api/stints.h"
+#include "api/checkpoints.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "api/stint_source.h"
-#include "api/stint_tracing.h"
+#include "api/checkpoint_tracing.h"
+#include "api/kept_scene.h"
 #include "base/file.h"
 #include "base/growing_text.h"
 #include "base/memory.h"
 
 #define NAMES_MOST 12 /* shards that a message names */
 
-char *stints_folder(const char *folder)
+char *checkpoints_folder(const char *folder)
 {
     return path_join(folder, "work");
 }
 
-void stints_remove(const char *folder)
+void checkpoints_remove(const char *folder)
 {
-    char *work = stints_folder(folder);
+    char *work = checkpoints_folder(folder);
     if (work)
-        stint_folder_remove(work);
+        sums_folder_remove(work);
     free(work);
 }
 
@@ -52,11 +52,11 @@ static sonject_status refuse_incomplete(struct tracing *tracing, struct growing_
 
 /* All that all shards traced, in the order of shards. */
 struct collection {
-    const struct stint_file **files; /* owned */
+    const struct sums_file **files; /* owned */
     size_t count;
 };
 
-static sonject_status collect(struct tracing *tracing, const struct stint_folder *folder,
+static sonject_status collect(struct tracing *tracing, const struct sums_folder *folder,
                               struct collection *all)
 {
     const uint64_t shards = tracing->head.shards;
@@ -69,15 +69,15 @@ static sonject_status collect(struct tracing *tracing, const struct stint_folder
     if (!all->files)
         return report_out_of_memory(tracing->report, "shards");
     for (uint64_t shard = 1; status == SONJECT_OK && shard <= shards; shard++) {
-        struct stint_chain chain;
-        status = stint_chain_find(&chain, tracing->report, folder, shard);
+        struct sums_chain chain;
+        status = sums_chain_find(&chain, tracing->report, folder, shard);
         if (status != SONJECT_OK)
             break;
         if (!chain.is_complete)
             note_shard(&missing, &missing_count, shard, chain.count > 0);
         for (size_t i = 0; i < chain.count; i++)
             all->files[all->count++] = chain.files[i];
-        stint_chain_clear(&chain);
+        sums_chain_clear(&chain);
     }
     if (status == SONJECT_OK && missing_count > 0)
         return refuse_incomplete(tracing, &missing, missing_count, shards);
@@ -85,17 +85,18 @@ static sonject_status collect(struct tracing *tracing, const struct stint_folder
     return status;
 }
 
-/* Forms what the stints in the folder are together. */
-static sonject_status add_up(struct tracing *tracing, const struct stint_folder *folder,
+/* Forms what the checkpoints in the folder are together. */
+static sonject_status add_up(struct tracing *tracing, const struct sums_folder *folder,
                              struct injection_result *result)
 {
     struct collection all;
     sonject_status status = collect(tracing, folder, &all);
     if (status == SONJECT_OK)
-        status = stint_begin_adding(&tracing->stint, tracing->report, all.files, all.count);
+        status =
+            checkpoint_begin_adding(&tracing->checkpoint, tracing->report, all.files, all.count);
     if (status == SONJECT_OK) {
         status = form_traced(tracing, result);
-        stint_clear(&tracing->stint);
+        checkpoint_clear(&tracing->checkpoint);
     }
     free(all.files);
     return status;
@@ -105,41 +106,40 @@ static sonject_status add_up(struct tracing *tracing, const struct stint_folder 
 static sonject_status run_shard(struct tracing *tracing, struct injection_result *result,
                                 bool *is_formed)
 {
-    struct stint_folder folder;
-    struct stint_chain chain = {NULL, 0, 0, false};
+    struct sums_folder folder;
+    struct sums_chain chain = {NULL, 0, 0, false};
     const bool is_whole = tracing->job->request->shards == 0;
     sonject_status status = check_shards(tracing);
     if (status != SONJECT_OK)
         return status;
-    status =
-        stint_folder_read(&folder, tracing->report, tracing->folder, tracing->head.shard, true);
+    status = sums_folder_read(&folder, tracing->report, tracing->folder, tracing->head.shard, true);
     if (status == SONJECT_OK)
         status = check_folder(tracing, &folder);
     if (status == SONJECT_OK)
-        status = stint_chain_find(&chain, tracing->report, &folder, tracing->head.shard);
+        status = sums_chain_find(&chain, tracing->report, &folder, tracing->head.shard);
     if (status == SONJECT_OK && chain.count > 0)
         report_news(tracing->report, "goes on with what is in %s", tracing->folder);
     if (status == SONJECT_OK && is_whole && chain.count == 0)
         status = trace_and_form(tracing, result, is_formed);
     else if (status == SONJECT_OK)
         status = trace_rest(tracing, chain.next, chain.is_complete);
-    stint_chain_clear(&chain);
-    stint_folder_clear(&folder);
+    sums_chain_clear(&chain);
+    sums_folder_clear(&folder);
     if (status != SONJECT_OK || !is_whole || *is_formed)
         return status;
-    status = stint_folder_read(&folder, tracing->report, tracing->folder, 1, false);
+    status = sums_folder_read(&folder, tracing->report, tracing->folder, 1, false);
     if (status == SONJECT_OK)
         status = add_up(tracing, &folder, result);
     *is_formed = status == SONJECT_OK;
-    stint_folder_clear(&folder);
+    sums_folder_clear(&folder);
     return status;
 }
 
 static sonject_status merge(struct tracing *tracing, struct injection_result *result,
                             bool *is_formed)
 {
-    struct stint_folder folder;
-    sonject_status status = stint_folder_read(&folder, tracing->report, tracing->folder, 0, false);
+    struct sums_folder folder;
+    sonject_status status = sums_folder_read(&folder, tracing->report, tracing->folder, 0, false);
     if (status == SONJECT_OK && folder.count == 0)
         status =
             report_failure(tracing->report, SONJECT_ERROR_INPUT,
@@ -149,23 +149,23 @@ static sonject_status merge(struct tracing *tracing, struct injection_result *re
     if (status == SONJECT_OK)
         status = add_up(tracing, &folder, result);
     *is_formed = status == SONJECT_OK;
-    stint_folder_clear(&folder);
+    sums_folder_clear(&folder);
     return status;
 }
 
-sonject_status inject_by_stints(const struct stint_job *job, struct injection_result *result,
-                                bool *is_formed)
+sonject_status inject_by_checkpoints(const struct checkpoint_job *job,
+                                     struct injection_result *result, bool *is_formed)
 {
     struct tracing tracing;
     memset(&tracing, 0, sizeof tracing);
     tracing.job = job;
     tracing.report = &job->context->report;
-    tracing.folder = stints_folder(job->request->folder);
+    tracing.folder = checkpoints_folder(job->request->folder);
     *is_formed = false;
-    sonject_status status = tracing.folder ? take_stint_head(&tracing)
+    sonject_status status = tracing.folder ? take_sums_head(&tracing)
                                            : report_out_of_memory(tracing.report, "a file name");
     if (status == SONJECT_OK)
-        status = stint_source_take(&tracing.source, tracing.report, job->request->source);
+        status = kept_scene_join(&tracing.source, tracing.report, job->request->source);
     if (status == SONJECT_OK)
         status = job->request->merges ? merge(&tracing, result, is_formed)
                                       : run_shard(&tracing, result, is_formed);

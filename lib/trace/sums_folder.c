@@ -1,5 +1,5 @@
 #define _POSIX_C_SOURCE 200809L
-#include "trace/stint_folder.h"
+#include "trace/sums_folder.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -14,24 +14,24 @@
 #define PREFIX "shard-" /* of all their names */
 
 /* What a name says. */
-struct stint_name {
+struct sums_name {
     uint64_t shard, shards;
 };
 
-static bool parse_name(const char *text, struct stint_name *name)
+static bool parse_name(const char *text, struct sums_name *name)
 {
     uint64_t first, last;
     int end = 0;
-    return sscanf(text, "shard-%" SCNu64 "-of-%" SCNu64 "-%" SCNu64 "-%" SCNu64 ".stint%n",
+    return sscanf(text, "shard-%" SCNu64 "-of-%" SCNu64 "-%" SCNu64 "-%" SCNu64 ".sums%n",
                   &name->shard, &name->shards, &first, &last, &end) == 4 &&
            end > 0 && text[end] == '\0';
 }
 
-static sonject_status open_one(struct stint_folder *folder, struct report *report, const char *path,
-                               const struct stint_name *name, bool drops_damaged)
+static sonject_status open_one(struct sums_folder *folder, struct report *report, const char *path,
+                               const struct sums_name *name, bool drops_damaged)
 {
-    struct stint_file *file = &folder->files[folder->count];
-    const sonject_status status = stint_file_open(file, report, path);
+    struct sums_file *file = &folder->files[folder->count];
+    const sonject_status status = sums_file_open(file, report, path);
     if (status == SONJECT_ERROR_INPUT && drops_damaged) {
         file_discard(path);
         report_news(report, "%s was damaged: it is traced again", path);
@@ -40,7 +40,7 @@ static sonject_status open_one(struct stint_folder *folder, struct report *repor
     }
     if (status == SONJECT_OK &&
         (file->head.shard != name->shard || file->head.shards != name->shards)) {
-        stint_file_close(file);
+        sums_file_close(file);
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: is another shard's: give it back its name, or delete it", path);
     }
@@ -48,11 +48,11 @@ static sonject_status open_one(struct stint_folder *folder, struct report *repor
     return status;
 }
 
-sonject_status stint_folder_read(struct stint_folder *folder, struct report *report,
-                                 const char *path, uint64_t shard, bool drops_damaged)
+sonject_status sums_folder_read(struct sums_folder *folder, struct report *report, const char *path,
+                                uint64_t shard, bool drops_damaged)
 {
     struct folder_names list;
-    struct stint_name name;
+    struct sums_name name;
     memset(folder, 0, sizeof *folder);
     sonject_status status = folder_names_read(&list, report, path, PREFIX);
     if (status != SONJECT_OK)
@@ -72,19 +72,19 @@ sonject_status stint_folder_read(struct stint_folder *folder, struct report *rep
     return status;
 }
 
-void stint_folder_clear(struct stint_folder *folder)
+void sums_folder_clear(struct sums_folder *folder)
 {
     for (size_t i = 0; i < folder->count; i++)
-        stint_file_close(&folder->files[i]);
+        sums_file_close(&folder->files[i]);
     free(folder->files);
     memset(folder, 0, sizeof *folder);
 }
 
-sonject_status stint_folder_first(struct stint_file *file, struct report *report, const char *path,
-                                  bool *is_there)
+sonject_status sums_folder_first(struct sums_file *file, struct report *report, const char *path,
+                                 bool *is_there)
 {
     struct folder_names list;
-    struct stint_name name;
+    struct sums_name name;
     *is_there = false;
     sonject_status status = folder_names_read(&list, report, path, PREFIX);
     if (status != SONJECT_OK)
@@ -94,7 +94,7 @@ sonject_status stint_folder_first(struct stint_file *file, struct report *report
         first++;
     if (first < list.count) {
         char *found = path_join(path, list.names[first]);
-        status = found ? stint_file_open(file, report, found)
+        status = found ? sums_file_open(file, report, found)
                        : report_out_of_memory(report, "a file name");
         *is_there = status == SONJECT_OK;
         free(found);
@@ -103,11 +103,11 @@ sonject_status stint_folder_first(struct stint_file *file, struct report *report
     return status;
 }
 
-sonject_status stint_folder_shards(struct report *report, const char *path, uint64_t but,
-                                   uint64_t *shards)
+sonject_status sums_folder_shards(struct report *report, const char *path, uint64_t but,
+                                  uint64_t *shards)
 {
     struct folder_names list;
-    struct stint_name name;
+    struct sums_name name;
     *shards = 0;
     const sonject_status status = folder_names_read(&list, report, path, PREFIX);
     for (size_t i = 0; *shards == 0 && i < list.count; i++)
@@ -120,8 +120,8 @@ sonject_status stint_folder_shards(struct report *report, const char *path, uint
 /* By where they begin; what ends there too comes before what goes on from there. */
 static int compare_spans(const void *a, const void *b)
 {
-    const struct stint_end *first = &(*(const struct stint_file *const *)a)->end;
-    const struct stint_end *second = &(*(const struct stint_file *const *)b)->end;
+    const struct sums_end *first = &(*(const struct sums_file *const *)a)->end;
+    const struct sums_end *second = &(*(const struct sums_file *const *)b)->end;
     if (first->first != second->first)
         return first->first < second->first ? -1 : 1;
     return first->last < second->last ? -1 : first->last > second->last;
@@ -129,7 +129,7 @@ static int compare_spans(const void *a, const void *b)
 
 /* From which of the sorted files each is reached; its own number where it begins the shard; count:
  * it is not. */
-static void reach(const struct stint_file *const *files, size_t count, size_t *from)
+static void reach(const struct sums_file *const *files, size_t count, size_t *from)
 {
     for (size_t i = 0; i < count; i++) {
         from[i] = files[i]->end.first == 0 ? i : count;
@@ -140,14 +140,14 @@ static void reach(const struct stint_file *const *files, size_t count, size_t *f
 }
 
 /* Whether a file's end is farther than another's. */
-static bool is_farther(const struct stint_end *end, const struct stint_end *than)
+static bool is_farther(const struct sums_end *end, const struct sums_end *than)
 {
     return end->is_last > than->is_last ||
            (end->is_last == than->is_last && end->last > than->last);
 }
 
 /* The last file of the chain that goes farthest; count: there is none. */
-static size_t find_farthest(const struct stint_file *const *files, size_t count, const size_t *from)
+static size_t find_farthest(const struct sums_file *const *files, size_t count, const size_t *from)
 {
     size_t last = count;
     for (size_t i = 0; i < count; i++)
@@ -156,19 +156,19 @@ static size_t find_farthest(const struct stint_file *const *files, size_t count,
     return last;
 }
 
-sonject_status stint_chain_find(struct stint_chain *chain, struct report *report,
-                                const struct stint_folder *folder, uint64_t shard)
+sonject_status sums_chain_find(struct sums_chain *chain, struct report *report,
+                               const struct sums_folder *folder, uint64_t shard)
 {
     size_t count = 0;
     memset(chain, 0, sizeof *chain);
-    const struct stint_file **files = allocate_array(folder->count, sizeof *files);
+    const struct sums_file **files = allocate_array(folder->count, sizeof *files);
     size_t *from = allocate_array(folder->count, sizeof *from);
     chain->files = allocate_array(folder->count, sizeof *chain->files);
     if (!files || !from || !chain->files) {
         free(files);
         free(from);
-        stint_chain_clear(chain);
-        return report_out_of_memory(report, "stints");
+        sums_chain_clear(chain);
+        return report_out_of_memory(report, "checkpoints");
     }
     for (size_t i = 0; i < folder->count; i++)
         if (folder->files[i].head.shard == shard)
@@ -187,20 +187,20 @@ sonject_status stint_chain_find(struct stint_chain *chain, struct report *report
     return SONJECT_OK;
 }
 
-void stint_chain_clear(struct stint_chain *chain)
+void sums_chain_clear(struct sums_chain *chain)
 {
     free(chain->files);
     memset(chain, 0, sizeof *chain);
 }
 
-void stint_folder_remove(const char *path)
+void sums_folder_remove(const char *path)
 {
     struct report ignored = {{0}, NULL, NULL};
     struct folder_names list;
     if (folder_names_read(&list, &ignored, path, PREFIX) != SONJECT_OK)
         return;
     for (size_t i = 0; i < list.count; i++) {
-        struct stint_name name;
+        struct sums_name name;
         char *file = parse_name(list.names[i], &name) ? path_join(path, list.names[i]) : NULL;
         if (file)
             file_discard(file);

@@ -6,13 +6,13 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "trace/stint_block.h"
+#include "trace/sums_block.h"
 
 #define MEMORY_MOST ((size_t)32 << 20) /* short runs touch no file */
 #define ZEROS_MOST  4                  /* within a run: a new one takes two numbers */
 
 /* Room for so many more bytes, which are the caller's to fill; NULL where memory lacks. */
-static unsigned char *make_room(struct stint_writer *writer, size_t count)
+static unsigned char *make_room(struct sums_writer *writer, size_t count)
 {
     if (count > SIZE_MAX / 4 - writer->count)
         return NULL;
@@ -30,7 +30,7 @@ static unsigned char *make_room(struct stint_writer *writer, size_t count)
     return room;
 }
 
-static sonject_status add(struct stint_writer *writer, const void *bytes, size_t count)
+static sonject_status add(struct sums_writer *writer, const void *bytes, size_t count)
 {
     unsigned char *room = make_room(writer, count);
     if (!room)
@@ -40,33 +40,38 @@ static sonject_status add(struct stint_writer *writer, const void *bytes, size_t
     return SONJECT_OK;
 }
 
-static char *name_in(const struct stint_writer *writer, const char *rest)
+static char *name_in(const struct sums_writer *writer, const char *rest)
 {
     char name[128];
-    snprintf(name, sizeof name, "shard-%" PRIu64 "-of-%" PRIu64 "%s.stint", writer->head.shard,
+    snprintf(name, sizeof name, "shard-%" PRIu64 "-of-%" PRIu64 "%s.sums", writer->head.shard,
              writer->head.shards, rest);
     return path_join(writer->folder, name);
 }
 
+static sonject_status open_part(struct sums_writer *writer, const char *name)
+{
+    if (!name || !(writer->private_name = file_part_name(name)))
+        return report_out_of_memory(writer->report, "a file name");
+    writer->file = fopen(writer->private_name, "wb");
+    if (writer->file)
+        return SONJECT_OK;
+    const int error = errno;
+    free(writer->private_name);
+    writer->private_name = NULL;
+    return file_failure(writer->report, writer->folder ? writer->folder : name, "write to", error);
+}
+
 /* Moves what is in memory to the file. */
-static sonject_status spill(struct stint_writer *writer)
+static sonject_status spill(struct sums_writer *writer)
 {
     if (!writer->file) {
-        const sonject_status made = folder_make(writer->report, writer->folder);
-        if (made != SONJECT_OK)
-            return made;
+        sonject_status status = folder_make(writer->report, writer->folder);
         char *name = name_in(writer, "");
-        writer->private_name = name ? file_part_name(name) : NULL;
+        if (status == SONJECT_OK)
+            status = open_part(writer, name);
         free(name);
-        if (!writer->private_name)
-            return report_out_of_memory(writer->report, "a file name");
-        writer->file = fopen(writer->private_name, "wb");
-        if (!writer->file) {
-            const int error = errno;
-            free(writer->private_name);
-            writer->private_name = NULL;
-            return file_failure(writer->report, writer->folder, "write to", error);
-        }
+        if (status != SONJECT_OK)
+            return status;
     }
     errno = 0;
     if (fwrite(writer->bytes, 1, writer->count, writer->file) != writer->count)
@@ -75,14 +80,14 @@ static sonject_status spill(struct stint_writer *writer)
     return SONJECT_OK;
 }
 
-static sonject_status begin_block(struct stint_writer *writer)
+static sonject_status begin_block(struct sums_writer *writer)
 {
     static const struct block_head none;
     writer->block = writer->count;
     return add(writer, &none, sizeof none);
 }
 
-static sonject_status end_block(struct stint_writer *writer, enum block_kind kind)
+static sonject_status end_block(struct sums_writer *writer, enum block_kind kind)
 {
     struct block_head head;
     const size_t content = writer->block + sizeof head;
@@ -95,18 +100,11 @@ static sonject_status end_block(struct stint_writer *writer, enum block_kind kin
     return writer->count > MEMORY_MOST ? spill(writer) : SONJECT_OK;
 }
 
-sonject_status stint_writer_begin(struct stint_writer *writer, struct report *report,
-                                  const char *folder, const struct stint_head *head,
-                                  struct stint_source source)
+static sonject_status begin(struct sums_writer *writer, const struct sums_head *head,
+                            struct sums_source source)
 {
-    memset(writer, 0, sizeof *writer);
-    writer->report = report;
     writer->head = *head;
-    writer->folder = copy_text(folder);
-    sonject_status status =
-        writer->folder ? SONJECT_OK : report_out_of_memory(report, "a file name");
-    if (status == SONJECT_OK)
-        status = add(writer, STINT_MAGIC, STINT_MAGIC_BYTES);
+    sonject_status status = add(writer, SUMS_MAGIC, SUMS_MAGIC_BYTES);
     if (status == SONJECT_OK)
         status = begin_block(writer);
     if (status == SONJECT_OK)
@@ -116,11 +114,33 @@ sonject_status stint_writer_begin(struct stint_writer *writer, struct report *re
     if (status == SONJECT_OK)
         status = end_block(writer, BLOCK_HEAD);
     if (status != SONJECT_OK)
-        stint_writer_clear(writer);
+        sums_writer_clear(writer);
     return status;
 }
 
-void stint_writer_clear(struct stint_writer *writer)
+sonject_status sums_writer_begin(struct sums_writer *writer, struct report *report,
+                                 const char *folder, const struct sums_head *head,
+                                 struct sums_source source)
+{
+    memset(writer, 0, sizeof *writer);
+    writer->report = report;
+    writer->folder = copy_text(folder);
+    return writer->folder ? begin(writer, head, source)
+                          : report_out_of_memory(report, "a file name");
+}
+
+sonject_status sums_writer_begin_file(struct sums_writer *writer, struct report *report,
+                                      const char *path, const struct sums_head *head,
+                                      struct sums_source source)
+{
+    memset(writer, 0, sizeof *writer);
+    writer->report = report;
+    writer->path = path;
+    const sonject_status status = open_part(writer, path);
+    return status == SONJECT_OK ? begin(writer, head, source) : status;
+}
+
+void sums_writer_clear(struct sums_writer *writer)
 {
     if (writer->file)
         fclose(writer->file);
@@ -132,29 +152,29 @@ void stint_writer_clear(struct stint_writer *writer)
     memset(writer, 0, sizeof *writer);
 }
 
-sonject_status stint_writer_begin_sums(struct stint_writer *writer, uint64_t count)
+sonject_status sums_writer_begin_sums(struct sums_writer *writer, uint64_t count)
 {
     const sonject_status status = begin_block(writer);
     return status == SONJECT_OK ? add(writer, &count, sizeof count) : status;
 }
 
-sonject_status stint_writer_run(struct stint_writer *writer, uint64_t first, const int64_t *values,
-                                size_t count)
+sonject_status sums_writer_run(struct sums_writer *writer, uint64_t first, const int64_t *values,
+                               size_t count)
 {
     const uint64_t head[2] = {first, count};
     const sonject_status status = add(writer, head, sizeof head);
     return status == SONJECT_OK ? add(writer, values, count * sizeof *values) : status;
 }
 
-sonject_status stint_writer_end_sums(struct stint_writer *writer)
+sonject_status sums_writer_end_sums(struct sums_writer *writer)
 {
     writer->records++;
     return end_block(writer, BLOCK_SUMS);
 }
 
-sonject_status stint_writer_sums(struct stint_writer *writer, const int64_t *values, size_t count)
+sonject_status sums_writer_sums(struct sums_writer *writer, const int64_t *values, size_t count)
 {
-    sonject_status status = stint_writer_begin_sums(writer, count);
+    sonject_status status = sums_writer_begin_sums(writer, count);
     for (size_t i = 0; status == SONJECT_OK && i < count;) {
         if (values[i] == 0) {
             i++;
@@ -165,17 +185,17 @@ sonject_status stint_writer_sums(struct stint_writer *writer, const int64_t *val
         for (; i < count && i - last <= ZEROS_MOST; i++)
             if (values[i] != 0)
                 last = i;
-        status = stint_writer_run(writer, first, values + first, last + 1 - first);
+        status = sums_writer_run(writer, first, values + first, last + 1 - first);
     }
-    return status == SONJECT_OK ? stint_writer_end_sums(writer) : status;
+    return status == SONJECT_OK ? sums_writer_end_sums(writer) : status;
 }
 
-sonject_status stint_writer_publish(struct stint_writer *writer, struct stint_end *end)
+sonject_status sums_writer_publish(struct sums_writer *writer, struct sums_end *end)
 {
     char rest[64];
     end->records = writer->records;
     snprintf(rest, sizeof rest, "-%" PRIu64 "-%" PRIu64, end->first, end->last);
-    char *path = name_in(writer, rest);
+    char *path = writer->path ? copy_text(writer->path) : name_in(writer, rest);
     sonject_status status = path ? SONJECT_OK : report_out_of_memory(writer->report, "a file name");
     if (status == SONJECT_OK)
         status = begin_block(writer);

@@ -1,5 +1,5 @@
-/* Tracing in stints, each of which ends with a file of tallies. */
-#include "api/stint_tracing.h"
+/* Tracing in checkpoints, each of which ends with a file of tallies. */
+#include "api/checkpoint_tracing.h"
 
 #include "base/clock.h"
 #include "inject/traced_impulses.h"
@@ -11,14 +11,14 @@
 static int tell(void *user, double fraction, const char *stage)
 {
     struct tracing *tracing = user;
-    const struct stint_job *job = tracing->job;
+    const struct checkpoint_job *job = tracing->job;
     tracing->fraction = fraction;
     tracing->stage = stage;
     if (!tracing->is_cancelled && job->progress && job->progress(job->user, fraction, stage))
         tracing->is_cancelled = true;
-    if (!tracing->is_cancelled || !tracing->stint.course || tracing->stint.files)
+    if (!tracing->is_cancelled || !tracing->checkpoint.course || tracing->checkpoint.files)
         return tracing->is_cancelled;
-    tracing->stint.is_stopping = true;
+    tracing->checkpoint.is_stopping = true;
     return 0;
 }
 
@@ -32,46 +32,48 @@ static int ask(void *user)
         tell(tracing, tracing->fraction, tracing->stage);
     if (request->exit_after_s > 0.0 && now - tracing->job->start_s >= request->exit_after_s)
         tracing->is_over = true;
-    return tracing->is_cancelled || tracing->is_over || now - tracing->stint_start_s >= checkpoint;
+    return tracing->is_cancelled || tracing->is_over ||
+           now - tracing->checkpoint_start_s >= checkpoint;
 }
 
-static sonject_status begin_stint(struct tracing *tracing, uint64_t first)
+static sonject_status begin_checkpoint(struct tracing *tracing, uint64_t first)
 {
-    const sonject_status status = stint_begin(&tracing->stint, tracing->report, tracing->folder,
-                                              &tracing->head, tracing->source, first);
-    tracing->stint.ask = ask;
-    tracing->stint.user = tracing;
-    tracing->stint_start_s = clock_seconds();
+    const sonject_status status =
+        checkpoint_begin(&tracing->checkpoint, tracing->report, tracing->folder, &tracing->head,
+                         tracing->source, first);
+    tracing->checkpoint.ask = ask;
+    tracing->checkpoint.user = tracing;
+    tracing->checkpoint_start_s = clock_seconds();
     return status;
 }
 
-/* Keeps what a stint traced that ended, whether it got to the end or not. */
-static sonject_status keep_stint(struct tracing *tracing)
+/* Keeps what a checkpoint traced that ended, whether it got to the end or not. */
+static sonject_status keep_checkpoint(struct tracing *tracing)
 {
-    const struct stint *stint = &tracing->stint;
-    if (stint->next == stint->first && stint->next < stint->strips)
+    const struct checkpoint *checkpoint = &tracing->checkpoint;
+    if (checkpoint->next == checkpoint->first && checkpoint->next < checkpoint->strips)
         return SONJECT_OK;
-    return stint_publish(&tracing->stint);
+    return checkpoint_publish(&tracing->checkpoint);
 }
 
-/* After a stint: publishes it where tracing was cut short or is a shard's; CANCELLED where the call
- * is to end. */
-static sonject_status end_stint(struct tracing *tracing, sonject_status traced, uint64_t *next,
-                                bool *is_complete)
+/* After a checkpoint: publishes it where tracing was cut short or is a shard's; CANCELLED where the
+ * call is to end. */
+static sonject_status end_checkpoint(struct tracing *tracing, sonject_status traced, uint64_t *next,
+                                     bool *is_complete)
 {
-    struct stint *stint = &tracing->stint;
+    struct checkpoint *checkpoint = &tracing->checkpoint;
     sonject_status status = traced;
-    const bool is_through = !stint->course; /* all launches were gone through */
+    const bool is_through = !checkpoint->course; /* all launches were gone through */
     if ((traced == SONJECT_OK || traced == SONJECT_CANCELLED) && is_through)
-        status = keep_stint(tracing);
-    *next = stint->next;
-    *is_complete = is_through && stint->next >= stint->strips;
+        status = keep_checkpoint(tracing);
+    *next = checkpoint->next;
+    *is_complete = is_through && checkpoint->next >= checkpoint->strips;
     if (status == SONJECT_OK && tracing->is_cancelled)
         status = report_failure(tracing->report, SONJECT_CANCELLED, "cancelled while tracing");
     else if (status == SONJECT_OK && tracing->is_over && !*is_complete)
         status = report_failure(tracing->report, SONJECT_CANCELLED, "stopped after %g s",
                                 tracing->job->request->exit_after_s);
-    stint_clear(stint);
+    checkpoint_clear(checkpoint);
     return status;
 }
 
@@ -84,29 +86,29 @@ static sonject_status take_nothing(void *taker, const struct impulse_lines *line
 
 sonject_status trace_rest(struct tracing *tracing, uint64_t next, bool is_complete)
 {
-    const struct stint_job *job = tracing->job;
+    const struct checkpoint_job *job = tracing->job;
     const struct impulse_sink nobody = {take_nothing, NULL};
     struct injection_input input = *job->input;
     sonject_status status = SONJECT_OK;
-    input.stint = &tracing->stint;
+    input.checkpoint = &tracing->checkpoint;
     while (status == SONJECT_OK && !is_complete) {
         struct trace_counts counts;
-        status = begin_stint(tracing, next);
+        status = begin_checkpoint(tracing, next);
         if (status != SONJECT_OK)
             return status;
         status = injection_trace(tracing->report, job->device, job->request->scene, &input, &nobody,
                                  tell, tracing, &counts);
-        status = end_stint(tracing, status, &next, &is_complete);
+        status = end_checkpoint(tracing, status, &next, &is_complete);
     }
     return status;
 }
 
 sonject_status form_traced(struct tracing *tracing, struct injection_result *result)
 {
-    const struct stint_job *job = tracing->job;
+    const struct checkpoint_job *job = tracing->job;
     const struct impulse_source source = traced_impulses();
     struct injection_input input = *job->input;
-    input.stint = &tracing->stint;
+    input.checkpoint = &tracing->checkpoint;
     return injection_form(tracing->report, job->device, job->request->scene, &input, &source, tell,
                           tracing, result);
 }
@@ -116,15 +118,15 @@ sonject_status trace_and_form(struct tracing *tracing, struct injection_result *
 {
     uint64_t next;
     bool is_complete;
-    sonject_status status = begin_stint(tracing, 0);
+    sonject_status status = begin_checkpoint(tracing, 0);
     if (status != SONJECT_OK)
         return status;
     status = form_traced(tracing, result);
     *is_formed = status == SONJECT_OK;
     if (*is_formed) {
-        stint_clear(&tracing->stint);
+        checkpoint_clear(&tracing->checkpoint);
         return SONJECT_OK;
     }
-    status = end_stint(tracing, status, &next, &is_complete);
+    status = end_checkpoint(tracing, status, &next, &is_complete);
     return status == SONJECT_OK ? trace_rest(tracing, next, is_complete) : status;
 }

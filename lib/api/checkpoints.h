@@ -1,13 +1,13 @@
 /* Tracing that is shared out, and that can be stopped and gone on with: tallies in a run's folder
  * work. */
-#ifndef SONJECT_API_STINTS_H
-#define SONJECT_API_STINTS_H
+#ifndef SONJECT_API_CHECKPOINTS_H
+#define SONJECT_API_CHECKPOINTS_H
 
 #include "api/run_scene.h"
 
 #define SHARDS_MAX 9999
 
-struct stint_job {
+struct checkpoint_job {
     struct sonject_context *context;
     struct device *device;
     const struct run_request *request;
@@ -20,17 +20,17 @@ struct stint_job {
 
 /* The result of a run by rays; of the whole of it, or of all shards where the request merges. Of a
  * request for one shard its tallies, and *is_formed is false. What was traced before is not traced
- * again, and stays until stints_remove. Errors: as sonject_run and sonject_merge. */
-sonject_status inject_by_stints(const struct stint_job *job, struct injection_result *result,
-                                bool *is_formed);
+ * again, and stays until checkpoints_remove. Errors: as sonject_run and sonject_merge. */
+sonject_status inject_by_checkpoints(const struct checkpoint_job *job,
+                                     struct injection_result *result, bool *is_formed);
 
 /* Where the tallies of a run's folder are, for free(); NULL where memory lacks. */
-char *stints_folder(const char *folder);
+char *checkpoints_folder(const char *folder);
 
 /* Says that the file at path was traced by something else. Returns INPUT. */
-sonject_status refuse_foreign_stint(struct report *report, const char *path, const char *what);
+sonject_status refuse_foreign_sums(struct report *report, const char *path, const char *what);
 
 /* Removes the tallies of a run whose results are written. */
-void stints_remove(const char *folder);
+void checkpoints_remove(const char *folder);
 
 #endif

@@ -1,4 +1,4 @@
-#include "trace/stint_file.h"
+#include "trace/sums_file.h"
 
 #include <errno.h>
 #include <stdlib.h>
@@ -6,12 +6,31 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "trace/stint_block.h"
+#include "trace/sums_block.h"
+
+/* A record of more sums than these is none that was written. */
+#define ANNOUNCED_MAX    ((uint64_t)1 << 27)
+#define ZEROS_A_BYTE_MAX 256
+
+bool block_digest(struct block_head *head, const void *content)
+{
+    char digest[HASH_TEXT_CAPACITY];
+    struct hash *hash = hash_begin();
+    if (!hash)
+        return false;
+    hash_add(hash, &head->kind, sizeof head->kind);
+    hash_add(hash, &head->bytes, sizeof head->bytes);
+    hash_add(hash, content, (size_t)head->bytes);
+    hash_end(hash, digest);
+    memset(head->digest, 0, sizeof head->digest);
+    memcpy(head->digest, digest, sizeof digest);
+    return true;
+}
 
 static sonject_status refuse(struct report *report, const char *path)
 {
     return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: damaged, or cut short: delete it and run its shard again", path);
+                          "%s: damaged, or cut short: delete it and trace again", path);
 }
 
 /* So many bytes. A file that cannot be read is not damaged: STORAGE. */
@@ -55,11 +74,11 @@ static bool is_terminated(const char *text, size_t capacity)
     return memchr(text, 0, capacity) != NULL;
 }
 
-static bool take_head(struct stint_file *file, const struct block_head *block,
+static bool take_head(struct sums_file *file, const struct block_head *block,
                       unsigned char *content)
 {
-    struct stint_head *head = &file->head;
-    const struct stint_identity *identity = &head->identity;
+    struct sums_head *head = &file->head;
+    const struct sums_identity *identity = &head->identity;
     if (block->bytes < sizeof *head || file->source.texts)
         return false;
     memcpy(head, content, sizeof *head);
@@ -74,10 +93,10 @@ static bool take_head(struct stint_file *file, const struct block_head *block,
            (file->source.bytes == 0 || file->source.texts[file->source.bytes - 1] == '\0');
 }
 
-static bool take_end(struct stint_file *file, const struct block_head *block,
+static bool take_end(struct sums_file *file, const struct block_head *block,
                      const unsigned char *content, uint64_t records)
 {
-    struct stint_end *end = &file->end;
+    struct sums_end *end = &file->end;
     if (block->bytes != sizeof *end)
         return false;
     memcpy(end, content, sizeof *end);
@@ -86,10 +105,11 @@ static bool take_end(struct stint_file *file, const struct block_head *block,
 }
 
 /* False where memory lacks. */
-static bool note_sums(struct stint_file *file, uint64_t records, uint64_t at, uint64_t bytes)
+static bool note_sums(struct sums_file *file, uint64_t records, uint64_t at, uint64_t bytes,
+                      const unsigned char *content)
 {
     if ((records & (records + 1)) == 0) { /* 0, 1, 3, 7...: room for twice as many */
-        struct stint_block *more =
+        struct sums_block *more =
             records < SIZE_MAX / sizeof *more / 4
                 ? realloc(file->sums, (size_t)(2 * records + 1) * sizeof *more)
                 : NULL;
@@ -99,14 +119,17 @@ static bool note_sums(struct stint_file *file, uint64_t records, uint64_t at, ui
     }
     file->sums[records].at = at;
     file->sums[records].bytes = bytes;
+    file->sums[records].count = 0;
+    if (bytes >= sizeof(uint64_t))
+        memcpy(&file->sums[records].count, content, sizeof(uint64_t));
     return true;
 }
 
 /* Blocks up to the end, `left` bytes of them. */
-static sonject_status read_blocks(struct stint_file *file, struct report *report, FILE *opened,
+static sonject_status read_blocks(struct sums_file *file, struct report *report, FILE *opened,
                                   uint64_t left)
 {
-    const uint64_t size = left + STINT_MAGIC_BYTES;
+    const uint64_t size = left + SUMS_MAGIC_BYTES;
     uint64_t records = 0;
     bool is_ended = false;
     while (left > 0 && !is_ended) {
@@ -119,7 +142,7 @@ static sonject_status read_blocks(struct stint_file *file, struct report *report
             if ((unsigned char *)file->source.texts == content)
                 content = NULL; /* handed over */
         } else if (is_sound && block.kind == BLOCK_SUMS && file->source.texts) {
-            if (!note_sums(file, records++, size - left + sizeof block, block.bytes))
+            if (!note_sums(file, records++, size - left + sizeof block, block.bytes, content))
                 status = report_out_of_memory(report, file->path);
         } else if (is_sound && block.kind == BLOCK_END && file->source.texts) {
             is_sound = take_end(file, &block, content, records);
@@ -138,19 +161,21 @@ static sonject_status read_blocks(struct stint_file *file, struct report *report
 }
 
 /* The whole file, of so many bytes. */
-static sonject_status read_all(struct stint_file *file, struct report *report, FILE *opened,
+static sonject_status read_all(struct sums_file *file, struct report *report, FILE *opened,
                                uint64_t bytes)
 {
-    char magic[STINT_MAGIC_BYTES];
+    char magic[SUMS_MAGIC_BYTES];
     if (bytes < sizeof magic)
         return refuse(report, file->path);
     const sonject_status status = read_bytes(report, file->path, opened, magic, sizeof magic);
-    if (status == SONJECT_OK && memcmp(magic, STINT_MAGIC, sizeof magic) != 0)
-        return refuse(report, file->path);
+    if (status == SONJECT_OK && memcmp(magic, SUMS_MAGIC, sizeof magic) != 0)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: not sums as this version of sonject writes them: trace again",
+                              file->path);
     return status == SONJECT_OK ? read_blocks(file, report, opened, bytes - sizeof magic) : status;
 }
 
-sonject_status stint_file_open(struct stint_file *file, struct report *report, const char *path)
+sonject_status sums_file_open(struct sums_file *file, struct report *report, const char *path)
 {
     struct file_identity identity;
     memset(file, 0, sizeof *file);
@@ -168,11 +193,11 @@ sonject_status stint_file_open(struct stint_file *file, struct report *report, c
     if (opened)
         fclose(opened);
     if (status != SONJECT_OK)
-        stint_file_close(file);
+        sums_file_close(file);
     return status;
 }
 
-void stint_file_close(struct stint_file *file)
+void sums_file_close(struct sums_file *file)
 {
     free(file->path);
     free((void *)file->source.texts);
@@ -182,7 +207,7 @@ void stint_file_close(struct stint_file *file)
 
 /* Hands out what a block holds; false where that is not runs of `count` sums. */
 static bool hand_out(const unsigned char *content, uint64_t bytes, uint64_t count,
-                     stint_run_function *take, void *user)
+                     sums_run_function *take, void *user)
 {
     uint64_t numbers[2];
     uint64_t at = sizeof count;
@@ -204,15 +229,14 @@ static bool hand_out(const unsigned char *content, uint64_t bytes, uint64_t coun
     return true;
 }
 
-sonject_status stint_file_runs(const struct stint_file *file, struct report *report,
-                               uint64_t record, uint64_t count, stint_run_function *take,
-                               void *user)
+sonject_status sums_file_runs(const struct sums_file *file, struct report *report, uint64_t record,
+                              uint64_t count, sums_run_function *take, void *user)
 {
     struct block_head block;
     unsigned char *content = NULL;
     if (record >= file->end.records)
         return refuse(report, file->path);
-    const struct stint_block *sums = &file->sums[record];
+    const struct sums_block *sums = &file->sums[record];
     FILE *opened = fopen(file->path, "rb");
     if (!opened)
         return file_failure(report, file->path, "read", errno);
@@ -225,5 +249,32 @@ sonject_status stint_file_runs(const struct stint_file *file, struct report *rep
         status = refuse(report, file->path);
     free(content);
     fclose(opened);
+    return status;
+}
+
+static bool copy_run(void *user, uint64_t first, const int64_t *values, size_t count)
+{
+    memcpy((int64_t *)user + first, values, count * sizeof *values);
+    return true;
+}
+
+sonject_status sums_file_record(const struct sums_file *file, struct report *report,
+                                uint64_t record, int64_t **values, uint64_t *count)
+{
+    *values = NULL;
+    if (record >= file->end.records)
+        return refuse(report, file->path);
+    const struct sums_block *sums = &file->sums[record];
+    *count = sums->count;
+    if (*count > ZEROS_A_BYTE_MAX * sums->bytes + ANNOUNCED_MAX)
+        return refuse(report, file->path);
+    *values = allocate_array((size_t)*count, sizeof **values);
+    if (!*values)
+        return report_out_of_memory(report, file->path);
+    const sonject_status status = sums_file_runs(file, report, record, *count, copy_run, *values);
+    if (status != SONJECT_OK) {
+        free(*values);
+        *values = NULL;
+    }
     return status;
 }

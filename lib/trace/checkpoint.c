@@ -1,0 +1,192 @@
+#include "trace/checkpoint.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+/* Strips are traced some at a time, so that a signal does not wait for long. */
+#define SLICE_RAYS   ((uint64_t)1 << 23)
+#define SLICE_STRIPS 64 /* or at least so many: for all cores */
+
+static sonject_status begin(struct checkpoint *checkpoint, struct report *report)
+{
+    memset(checkpoint, 0, sizeof *checkpoint);
+    checkpoint->report = report;
+    checkpoint->shard = checkpoint->shards = 1;
+    checkpoint->course = hash_begin();
+    return checkpoint->course ? SONJECT_OK : report_out_of_memory(report, "a hash");
+}
+
+sonject_status checkpoint_begin(struct checkpoint *checkpoint, struct report *report,
+                                const char *folder, const struct sums_head *head,
+                                struct sums_source source, uint64_t first)
+{
+    sonject_status status = begin(checkpoint, report);
+    if (status == SONJECT_OK)
+        status = sums_writer_begin(&checkpoint->writer, report, folder, head, source);
+    if (status != SONJECT_OK) {
+        checkpoint_clear(checkpoint);
+        return status;
+    }
+    checkpoint->shard = head->shard;
+    checkpoint->shards = head->shards;
+    checkpoint->first = checkpoint->next = first;
+    return SONJECT_OK;
+}
+
+sonject_status checkpoint_begin_adding(struct checkpoint *checkpoint, struct report *report,
+                                       const struct sums_file *const *files, size_t count)
+{
+    const sonject_status status = begin(checkpoint, report);
+    checkpoint->files = files;
+    checkpoint->file_count = count;
+    checkpoint->is_stopping = true; /* nothing is traced */
+    return status;
+}
+
+void checkpoint_clear(struct checkpoint *checkpoint)
+{
+    char digest[HASH_TEXT_CAPACITY];
+    if (checkpoint->course)
+        hash_end(checkpoint->course, digest);
+    sums_writer_clear(&checkpoint->writer);
+    free(checkpoint->sums);
+    memset(checkpoint, 0, sizeof *checkpoint);
+}
+
+void checkpoint_launch(struct checkpoint *checkpoint, const struct fan_record *fan,
+                       const struct ray_table *rays)
+{
+    const uint64_t strips = (uint64_t)fan->strips;
+    const uint64_t most = SLICE_RAYS / ((uint64_t)fan->rays * fan->strata + 1);
+    checkpoint->turn = strips * (checkpoint->shard - 1) / checkpoint->shards;
+    checkpoint->before = checkpoint->strips;
+    checkpoint->strips += strips * checkpoint->shard / checkpoint->shards - checkpoint->turn;
+    checkpoint->slice = (int32_t)(most < SLICE_STRIPS ? SLICE_STRIPS : most);
+    hash_add(checkpoint->course, fan, sizeof *fan);
+    if (rays->count > 0)
+        hash_add(checkpoint->course, rays->pieces, rays->count * sizeof *rays->pieces);
+}
+
+bool checkpoint_next(struct checkpoint *checkpoint, struct span *turns)
+{
+    if (checkpoint->is_stopping || checkpoint->next >= checkpoint->strips)
+        return false;
+    const uint64_t left = checkpoint->strips - checkpoint->next;
+    turns->first = (int32_t)(checkpoint->turn + (checkpoint->next - checkpoint->before));
+    turns->count = left < (uint64_t)checkpoint->slice ? (int32_t)left : checkpoint->slice;
+    return true;
+}
+
+void checkpoint_advance(struct checkpoint *checkpoint, struct span turns)
+{
+    checkpoint->next += (uint64_t)turns.count;
+    if (checkpoint->ask && checkpoint->ask(checkpoint->user))
+        checkpoint->is_stopping = true;
+}
+
+bool checkpoint_is_cut_short(const struct checkpoint *checkpoint)
+{
+    return checkpoint && !checkpoint->files && checkpoint->is_stopping;
+}
+
+sonject_status checkpoint_add_up(struct checkpoint *checkpoint, uint64_t count,
+                                 sums_run_function *take, void *user)
+{
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; status == SONJECT_OK && i < checkpoint->file_count; i++)
+        status = sums_file_runs(checkpoint->files[i], checkpoint->report, checkpoint->record, count,
+                                take, user);
+    checkpoint->record++;
+    return status;
+}
+
+bool add_without_overflow(int64_t *sum, int64_t value)
+{
+    if (value > 0 ? *sum > INT64_MAX - value : *sum < INT64_MIN - value)
+        return false;
+    *sum += value;
+    return true;
+}
+
+struct sums {
+    int64_t *values;
+};
+
+static bool add_run(void *user, uint64_t first, const int64_t *values, size_t count)
+{
+    int64_t *sums = ((struct sums *)user)->values + first;
+    for (size_t i = 0; i < count; i++)
+        if (!add_without_overflow(&sums[i], values[i]))
+            return false;
+    return true;
+}
+
+sonject_status checkpoint_sums(struct checkpoint *checkpoint, const int64_t *traced, size_t count,
+                               const int64_t **sums)
+{
+    *sums = traced;
+    if (!checkpoint)
+        return SONJECT_OK;
+    if (!checkpoint->files)
+        return sums_writer_sums(&checkpoint->writer, traced, count);
+    free(checkpoint->sums);
+    checkpoint->sums = allocate_array(count, sizeof *checkpoint->sums);
+    if (!checkpoint->sums)
+        return report_out_of_memory(checkpoint->report, "tallies");
+    struct sums all = {checkpoint->sums};
+    *sums = checkpoint->sums;
+    return checkpoint_add_up(checkpoint, count, add_run, &all);
+}
+
+static void end_course(struct checkpoint *checkpoint)
+{
+    char digest[HASH_TEXT_CAPACITY];
+    hash_end(checkpoint->course, digest);
+    checkpoint->course = NULL;
+    memcpy(checkpoint->end.course, digest, sizeof digest);
+}
+
+static sonject_status compare_courses(const struct checkpoint *checkpoint)
+{
+    for (size_t i = 0; i < checkpoint->file_count; i++) {
+        const struct sums_file *file = checkpoint->files[i];
+        if (strcmp(file->end.course, checkpoint->end.course) != 0 ||
+            file->end.records != checkpoint->record)
+            return report_failure(checkpoint->report, SONJECT_ERROR_INPUT,
+                                  "%s: traced other rays than this machine would, whose "
+                                  "mathematics may differ: run all shards and merge on machines "
+                                  "of one kind",
+                                  file->path);
+    }
+    return SONJECT_OK;
+}
+
+sonject_status checkpoint_finish(struct checkpoint *checkpoint, struct trace_counts *counts)
+{
+    end_course(checkpoint);
+    checkpoint->end.rays = counts->rays;
+    checkpoint->end.queries = counts->queries;
+    checkpoint->end.impulses = counts->impulses;
+    if (!checkpoint->files)
+        return checkpoint->next >= checkpoint->strips
+                   ? SONJECT_OK
+                   : report_failure(checkpoint->report, SONJECT_CANCELLED,
+                                    "cancelled while tracing");
+    counts->rays = counts->queries = counts->impulses = 0;
+    for (size_t i = 0; i < checkpoint->file_count; i++) {
+        counts->rays += checkpoint->files[i]->end.rays;
+        counts->queries += checkpoint->files[i]->end.queries;
+        counts->impulses += checkpoint->files[i]->end.impulses;
+    }
+    return compare_courses(checkpoint);
+}
+
+sonject_status checkpoint_publish(struct checkpoint *checkpoint)
+{
+    checkpoint->end.first = checkpoint->first;
+    checkpoint->end.last = checkpoint->next;
+    checkpoint->end.is_last = checkpoint->next >= checkpoint->strips;
+    return sums_writer_publish(&checkpoint->writer, &checkpoint->end);
+}
