@@ -18,13 +18,14 @@ struct sums_name {
     uint64_t shard, shards;
 };
 
+/* Files of an earlier format have their names, too, so that they are refused, not overlooked. */
 static bool parse_name(const char *text, struct sums_name *name)
 {
     uint64_t first, last;
     int end = 0;
-    return sscanf(text, "shard-%" SCNu64 "-of-%" SCNu64 "-%" SCNu64 "-%" SCNu64 ".sums%n",
-                  &name->shard, &name->shards, &first, &last, &end) == 4 &&
-           end > 0 && text[end] == '\0';
+    return sscanf(text, "shard-%" SCNu64 "-of-%" SCNu64 "-%" SCNu64 "-%" SCNu64 "%n", &name->shard,
+                  &name->shards, &first, &last, &end) == 4 &&
+           end > 0 && (strcmp(text + end, ".sums") == 0 || strcmp(text + end, ".stint") == 0);
 }
 
 static sonject_status open_one(struct sums_folder *folder, struct report *report, const char *path,

@@ -80,6 +80,11 @@ def test_what_is_not_a_shard_of_the_run_is_refused(sonject, scene, tmp_path, who
         first.write_bytes(bad)
         assert_refused(sonject("merge", "result"), 3, first.name, "damaged, or cut short")
         assert second.exists() and not (tmp_path / "result" / "run.json").exists()
+    first.unlink()
+    old = first.with_suffix(".stint")
+    old.write_bytes(b"sonject stint 2\n" + sound[16:])
+    assert_refused(sonject("merge", "result"), 3, old.name, "trace again")
+    old.rename(first)
     # A shard that is run again traces what was damaged.
     answer = sonject("run", scene, "-o", "result", "--shard", "1/2", "--verbose")
     assert answer.returncode == 0 and "was damaged: it is traced again" in answer.stderr
