@@ -187,10 +187,8 @@ static void test_forming(void **state)
 int main(void)
 {
     const struct CMUnitTest with_device[] = {
-        cmocka_unit_test(test_injecting),
-        cmocka_unit_test(test_discovery_short_of_memory_says_so),
-        cmocka_unit_test(test_running),
-        cmocka_unit_test(test_tracing),
+        cmocka_unit_test(test_injecting), cmocka_unit_test(test_discovery_short_of_memory_says_so),
+        cmocka_unit_test(test_running),   cmocka_unit_test(test_tracing),
         cmocka_unit_test(test_forming),
     };
     /* whose OpenCL calls are those of the others */
