@@ -13,6 +13,8 @@ from test_interface import LIBRARY, SOURCE, exported_symbols
 
 READERS = os.environ.get("SONJECT_READERS")
 PACKAGE = SOURCE / "bindings" / "python" / "sonject"
+MODULES = {f"sonject/{path.name}" for path in PACKAGE.iterdir() if path.suffix in (".py", ".typed")}
+MODULES |= {f"sonject/{name}.py" for name in ("_interface", "_classes", "enumerations")}  # made
 CORE = ["-Dopenimageio=disabled", "-Dhdf5=disabled", "-Dtests=disabled",
         "-Dstatic=disabled", "-Dbuildtype=debug", "-Db_sanitize=none"]
 # What pip asks meson-python for. The build folder is said, so that none is made among the sources.
@@ -80,10 +82,8 @@ def test_core_loads_no_cxx_runtime(library):
 def test_the_wheel_holds_package_and_library(wheel):
     with zipfile.ZipFile(wheel) as archive:
         names = {name for name in archive.namelist() if ".dist-info/" not in name}
-    sources = {f"sonject/{path.relative_to(PACKAGE)}" for path in PACKAGE.rglob("*")
-               if path.is_file() and "__pycache__" not in path.parts}
-    assert {"sonject/_structures/__init__.py", "sonject/py.typed"} <= sources
-    assert names == sources | {"sonject/libsonject.so", "sonject/sonject-decoder"}
+    assert {"sonject/scene.py", "sonject/py.typed"} <= MODULES
+    assert names == MODULES | {"sonject/libsonject.so", "sonject/sonject-decoder"}
 
 
 def test_a_wheel_with_image_files_has_their_module(tmp_path):
@@ -98,7 +98,7 @@ def test_a_wheel_with_image_files_has_their_module(tmp_path):
     entries = [entry for kind in plan.values() for entry in kind.values()]
     assert settings["install"] == ["--tags=python-runtime"]
     assert {entry["destination"] for entry in entries if entry["tag"] == "python-runtime"} == {
-        "{py_platlib}/sonject", "{py_platlib}/sonject/libsonject.so",
+        *(f"{{py_platlib}}/{name}" for name in MODULES), "{py_platlib}/sonject/libsonject.so",
         "{py_platlib}/sonject/openimageio.so", "{py_platlib}/sonject/sonject-decoder"}
 
 

@@ -4,7 +4,6 @@ the C interface through the Python bindings, for a 512 x 512 patch. Prints one l
 import os
 import pathlib
 import subprocess
-import sys
 import tempfile
 import time
 
@@ -12,7 +11,6 @@ import numpy
 
 SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
 COMMAND = os.environ["SONJECT_COMMAND"]
-sys.path.insert(0, str(SOURCE / "bindings" / "python"))
 
 
 def best_time(action, repeats=5):

@@ -11,12 +11,9 @@ import tempfile
 import time
 
 import numpy
+import sonject
 
-SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
 ROUNDS = int(os.environ.get("SONJECT_BENCHMARK_ROUNDS", "21"))
-sys.path.insert(0, str(SOURCE / "bindings" / "python"))
-
-import sonject  # noqa: E402
 
 
 def inject_in_python(patch):

@@ -4,13 +4,11 @@ is nearly all of a run. One process, warm program caches. Prints one line each."
 import os
 import pathlib
 import subprocess
-import sys
 import tempfile
 import time
 
 SOURCE = pathlib.Path(os.environ["SONJECT_SOURCE"])
 COMMAND = os.environ["SONJECT_COMMAND"]
-sys.path.insert(0, str(SOURCE / "bindings" / "python"))
 
 
 def time_stages(folder, swath, rays):

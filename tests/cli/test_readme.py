@@ -16,8 +16,6 @@ from conftest import COMMAND, SCENE
 from documents import (MARKDOWN, SOURCE, comment_commands, markdown_commands, read, spans,
                        suggested_settings)
 
-sys.path.insert(0, str(SOURCE / "bindings" / "python"))
-
 BUILD = pathlib.Path(COMMAND).resolve().parent.parent
 SCENES = sorted(f"tools/scenes/{path.name}" for path in (SOURCE / "tools" / "scenes").glob("*.yaml"))
 
@@ -47,8 +45,8 @@ TYPED = {
         "SONJECT_MUTATIONS=500 build/tests/unit/unit_scene_hostile",
     "build/tests/unit/unit_scene_reference tools/scenes/KEYS.md":
         "build/tests/unit/unit_scene_reference KEYS.md && cmp KEYS.md tools/scenes/KEYS.md",
-    "export PYTHONPATH=bindings/python SONJECT_LIBRARY=build/lib/libsonject.so.0":
-        "export PYTHONPATH=bindings/python SONJECT_LIBRARY=build/lib/libsonject.so.0; "
+    "export PYTHONPATH=build/bindings/python SONJECT_LIBRARY=build/lib/libsonject.so.0":
+        "export PYTHONPATH=build/bindings/python SONJECT_LIBRARY=build/lib/libsonject.so.0; "
         "python3 -c 'import sonject; print(sonject.version())'",
     "array=$(sbatch --parsable --array=1-4 tools/slurm/shards.sh 4 campaign campaign.yaml -o data)":
         "array=$(sbatch --parsable --array=1-4 tools/slurm/shards.sh 4 campaign campaign.yaml "
@@ -77,7 +75,7 @@ ELSEWHERE = {
     "apt install libopenimageio2.4 libhdf5-103-1 libyaml-0-2 libjansson4 libxxhash0 pocl-opencl-icd "
     "# there, as root, on Debian 12": "packages of Debian, which tools/setup.sh installs to build with",
     "pip install .": "tests/abi/test_core.py",
-    "SONJECT_LIBRARY=... python3 -m pytest bindings/python/tests": "tests/meson.build",
+    "PYTHONPATH=... SONJECT_LIBRARY=... python3 -m pytest bindings/python/tests": "tests/meson.build",
     "sbatch --dependency=afterany:$array tools/slurm/merge.sh out": "tests/cli/test_job_scripts.py",
     "sbatch --dependency=afterany:$array tools/slurm/merge.sh data": "behind the campaign's parts, above",
     "array=$(sbatch --parsable --array=1-4 tools/slurm/shards.sh 4 run scene.yaml -o out)":
@@ -163,7 +161,7 @@ def project(tmp_path_factory, environment):
     (folder / "scene.yaml").write_text(SCENE)
     (folder / "campaign.yaml").write_text(CAMPAIGN)
     variables = {**environment, "PATH": f"{programs}:{environment['PATH']}",
-                 "PYTHONPATH": str(SOURCE / "bindings" / "python")}
+                 "PYTHONPATH": str(BUILD / "bindings" / "python")}
 
     def type_in(line):
         answer = subprocess.run(["bash", "-euc", line], cwd=folder, env=variables, text=True,

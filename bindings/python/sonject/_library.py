@@ -10,10 +10,7 @@ import pathlib
 import sys
 from typing import Iterator
 
-from ._functions import declare
-
-# Of the headers that _structures and _functions.py mirror.
-VERSION = (0, 1, 0)
+from ._interface import FUNCTIONS, VERSION
 
 
 def _file_names() -> list[str]:
@@ -65,7 +62,9 @@ def load() -> ctypes.CDLL:
             failures.append(str(error))
             continue
         try:
-            declare(library)
+            for function, (result, parameters) in FUNCTIONS.items():
+                getattr(library, function).restype = result
+                getattr(library, function).argtypes = parameters
         except AttributeError as error:
             raise ImportError(f"{name} is not the libsonject of this package: {error}") from None
         _check_version(library)

@@ -1,4 +1,4 @@
-"""Python values into C fields, refusing what ctypes would quietly cut or wrap."""
+"""Python values into C fields, refusing what ctypes would quietly cut or wrap, and arrays as pixels."""
 
 from __future__ import annotations
 
@@ -11,7 +11,9 @@ from typing import Any, Iterable, Mapping, Optional, Tuple, Type, TypeVar, Union
 
 import numpy
 
+from . import _interface as s
 from ._library import load
+from .enumerations import PixelKind
 
 PathLike = Union[str, bytes, "os.PathLike[str]", "os.PathLike[bytes]"]
 Overrides = Union[Iterable[str], Mapping[str, Any]]
@@ -64,6 +66,11 @@ def choice(name: str, kind: Type[AnyEnum], value: Any) -> AnyEnum:
     raise ValueError(f"{name} must be one of {names}, not {value!r}")
 
 
+def text(line: Optional[bytes]) -> str:
+    """A text of the library; damaged UTF-8 does not hide the rest of a message."""
+    return (line or b"").decode("utf-8", "replace")
+
+
 def plain_text(name: str, value: Any) -> bytes:
     """value in UTF-8; a NUL would end it early."""
     if not isinstance(value, str):
@@ -96,23 +103,14 @@ def optional_file_name(name: str, value: Any) -> Optional[bytes]:
     return None if value is None else file_name(name, value)
 
 
-def set_shard(params: Any, shard: Tuple[int, int]) -> None:
-    """shard (i, K) into the structure; whether i is one of K is the library's to say."""
-    index, count = shard
-    params.shard_index = whole_number("shard", index, 2**32 - 1)
-    params.shard_count = whole_number("shard", count, 2**32 - 1)
-
-
 def initialised(kind: Type[AnyStructure]) -> AnyStructure:
-    """A structure with the library's defaults."""
+    """A structure with the library's defaults, zeros where it has none, and its size."""
     structure = kind()
-    getattr(load(), kind.__name__ + "_init")(ctypes.byref(structure))
+    if kind.__name__ + "_init" in s.FUNCTIONS:
+        getattr(load(), kind.__name__ + "_init")(ctypes.byref(structure))
+    elif hasattr(structure, "struct_size"):
+        structure.struct_size = ctypes.sizeof(kind)
     return structure
-
-
-def sized(kind: Type[AnyStructure]) -> AnyStructure:
-    """A zeroed structure that carries its size."""
-    return kind(struct_size=ctypes.sizeof(kind))
 
 
 def fill(structure: ctypes.Structure, values: Mapping[str, Any]) -> None:
@@ -121,19 +119,96 @@ def fill(structure: ctypes.Structure, values: Mapping[str, Any]) -> None:
     for name, value in values.items():
         kind = types[name]
         if kind is ctypes.c_double:
-            setattr(structure, name, real_number(name, value))
+            value = real_number(name, value)
         elif kind in _LARGEST:
-            setattr(structure, name, whole_number(name, value, _LARGEST[kind]))
+            value = whole_number(name, value, _LARGEST[kind])
         elif issubclass(kind, ctypes.Array):
-            setattr(structure, name, short_text(name, value, ctypes.sizeof(kind)))
-        else:
-            setattr(structure, name, value)
+            value = short_text(name, value, ctypes.sizeof(kind))
+        setattr(structure, name, value)
 
 
-def override_texts(overrides: Overrides) -> list[bytes]:
-    """ "key.path=value" texts, of these or of a mapping of key paths to values."""
+def filled(kind: Type[AnyStructure], /, **values: Any) -> AnyStructure:
+    """A structure with the library's defaults but for these values."""
+    structure = initialised(kind)
+    fill(structure, values)
+    return structure
+
+
+def given(**values: Any) -> dict[str, Any]:
+    """Those that are not None; parameters as their structures."""
+    return {
+        name: value.to_structure() if hasattr(value, "to_structure") else value
+        for name, value in values.items()
+        if value is not None
+    }
+
+
+def shard_values(shard: Tuple[int, int]) -> dict[str, int]:
+    """shard (i, K) as a structure takes it; whether i is one of K is the library's to say."""
+    index, count = (whole_number("shard", number, 2**32 - 1) for number in shard)
+    return {"shard_index": index, "shard_count": count}
+
+
+def override_texts(overrides: Overrides) -> Any:
+    """An array of "key.path=value" texts, of these or of a mapping of key paths to values."""
     if isinstance(overrides, str):
         raise TypeError("overrides must be a list of texts or a mapping, not one text")
     if isinstance(overrides, Mapping):
         overrides = [f"{key}={value}" for key, value in overrides.items()]
-    return [file_name("override", text) for text in overrides]
+    texts = [file_name("override", each) for each in overrides]
+    return (ctypes.c_char_p * len(texts))(*texts)
+
+
+_KINDS = {
+    numpy.dtype(numpy.float32): PixelKind.AMPLITUDE,
+    numpy.dtype(numpy.complex64): PixelKind.COMPLEX,
+}
+
+
+def _single_precision(array: Any) -> Any:
+    """The same numbers as float32 or complex64; array itself if it has one of these types."""
+    if array.dtype in _KINDS:
+        return array
+    if array.dtype.kind not in "fc":
+        raise TypeError(
+            f"a patch of {array.dtype} is refused: it must hold linear amplitudes or complex "
+            "pixels; undo the image's transfer function and convert it, "
+            "for instance patch.astype(numpy.float32) / 255"
+        )
+    target = numpy.float32 if array.dtype.kind == "f" else numpy.complex64
+    with numpy.errstate(over="ignore"):
+        converted = array.astype(target)
+    if numpy.any(numpy.isfinite(array) & ~numpy.isfinite(converted)):
+        raise ValueError(f"the patch of {array.dtype} has numbers beyond single precision")
+    return converted
+
+
+def _is_direct(array: Any) -> bool:
+    """Whether the library can read the array where it lies."""
+    rows, columns = array.shape
+    row_step, column_step = array.strides
+    size = array.dtype.itemsize
+    if not array.flags.aligned or (columns > 1 and column_step != size):
+        return False
+    return bool(rows == 1 or (row_step >= columns * size and row_step % 4 == 0))
+
+
+def library_pixels(patch: Any) -> tuple[s.sonject_pixels, Any]:
+    """The structure for patch and the array that its pointer points into, to be kept meanwhile.
+
+    float32 and complex64 arrays with contiguous columns are not copied, whatever their row stride.
+    """
+    if isinstance(patch, numpy.ma.MaskedArray):
+        raise TypeError("a masked patch is refused: its mask would be lost")
+    array = numpy.asarray(patch)
+    if array.ndim != 2 or 0 in array.shape:
+        raise ValueError(f"a patch has rows and columns, not the shape {array.shape}")
+    array = _single_precision(array)
+    if not _is_direct(array):
+        array = numpy.array(array, order="C", copy=True)
+    pixels = initialised(s.sonject_pixels)
+    pixels.kind = _KINDS[array.dtype]
+    pixels.rows, pixels.columns = array.shape
+    pixels.row_stride = array.strides[0] if array.shape[0] > 1 else 0
+    pixels.data = array.ctypes.data
+    return pixels, array

@@ -7,27 +7,28 @@ from typing import Any, Iterable, Optional, Tuple, Union
 
 import numpy
 
-from . import _structures as s
-from ._callbacks import Progress, ProgressBridge, text
-from ._library import load
-from ._pixels import library_pixels
+from . import _interface as s
+from ._classes import ElementLayout
 from ._values import (
     Overrides,
     PathLike,
     choice,
     file_name,
+    filled,
+    given,
     initialised,
+    library_pixels,
+    optional_file_name,
     override_texts,
     plain_text,
     real_number,
-    set_shard,
-    sized,
+    shard_values,
     whole_number,
 )
-from .context import Context, default_context
-from .enumerations import ConvertAxis, LabelFormat, RangeAxis, Samples
+from .context import Context, Progress, ProgressBridge, default_context
+from .enumerations import ConvertAxis, LabelFormat, RangeAxis, Samples, SeriesForm
 from .parameters import Geometry, Recording, Sonar, Synthetic, Transfer
-from .result import Box, ContactMeasures, Measurement, Result, _copied
+from .result import Array, Box, ContactMeasures, Measurement, Result
 from .scene import Scene
 
 
@@ -45,10 +46,7 @@ def inject(patch: Any, scene: Scene, progress: Optional[Progress] = None) -> Res
 
     Raises SonjectError, Cancelled, and TypeError or ValueError for arrays that are no patch.
     """
-    pixels = None
-    array = None  # must live until the call is over: pixels points into it
-    if patch is not None:
-        pixels, array = library_pixels(patch)
+    pixels, array = _optional_pixels(patch)
     context = scene.context
     count = scene.object_count
     bridge = ProgressBridge(progress)
@@ -57,13 +55,21 @@ def inject(patch: Any, scene: Scene, progress: Optional[Progress] = None) -> Res
         "sonject_inject",
         context,
         scene,
-        None if pixels is None else ctypes.byref(pixels),
+        pixels,
         bridge.callback,
         None,
         bridge=bridge,
     )
     del array
     return Result(context, pointer, count)
+
+
+def _optional_pixels(patch: Any) -> tuple[Any, Any]:
+    """The argument for a patch or None, and the array that it points into, to be kept meanwhile."""
+    if patch is None:
+        return None, None
+    pixels, array = library_pixels(patch)
+    return ctypes.byref(pixels), array
 
 
 def _context_of(scene: Optional[Scene], context: Optional[Context]) -> Context:
@@ -99,14 +105,15 @@ def run(
     file as it was written. A result of other inputs is refused unless overwrites is true.
     """
     context = scene.context
-    params = initialised(s.sonject_run_params)
-    params.folder = file_name("folder", folder)
-    params.labels = _label_sum(labels)
-    if shard is not None:
-        set_shard(params, shard)
-    params.exit_after_s = real_number("exit_after_s", exit_after_s)
-    params.checkpoint_s = real_number("checkpoint_s", checkpoint_s)
-    params.overwrites = int(bool(overwrites))
+    params = filled(
+        s.sonject_run_params,
+        folder=file_name("folder", folder),
+        labels=_label_sum(labels),
+        exit_after_s=exit_after_s,
+        checkpoint_s=checkpoint_s,
+        overwrites=bool(overwrites),
+        **({} if shard is None else shard_values(shard)),
+    )
     return context.complete(
         "sonject_run", context, scene, ctypes.byref(params), progress=progress
     )
@@ -127,10 +134,12 @@ def merge(
     False, with nothing done, if folder already held the finished result.
     """
     context = _context_of(scene, context)
-    params = initialised(s.sonject_merge_params)
-    params.folder = file_name("folder", folder)
-    params.allows_user_shapes = int(bool(allows_user_shapes))
-    params.labels = _label_sum(labels)
+    params = filled(
+        s.sonject_merge_params,
+        folder=file_name("folder", folder),
+        allows_user_shapes=bool(allows_user_shapes),
+        labels=_label_sum(labels),
+    )
     return context.complete(
         "sonject_merge", context, scene, ctypes.byref(params), progress=progress
     )
@@ -148,8 +157,7 @@ def trace(
     export_file: the same as HDF5 arrays, for other programs.
     """
     context = scene.context
-    params = initialised(s.sonject_trace_params)
-    params.file = file_name("file", file)
+    params = filled(s.sonject_trace_params, file=file_name("file", file))
     if export_file is not None:
         params.export_file = file_name("export_file", export_file)
     context.work("sonject_trace", context, scene, ctypes.byref(params), progress=progress)
@@ -176,15 +184,16 @@ def form(
     """
     context = _context_of(scene, context)
     texts = override_texts(overrides)
-    array = (ctypes.c_char_p * len(texts))(*texts)
-    params = initialised(s.sonject_form_params)
-    params.file = file_name("file", file)
-    params.folder = file_name("folder", folder)
-    params.overrides = ctypes.cast(array, ctypes.POINTER(ctypes.c_char_p))
-    params.override_count = len(texts)
-    params.allows_user_shapes = int(bool(allows_user_shapes))
-    params.labels = _label_sum(labels)
-    params.overwrites = int(bool(overwrites))
+    params = filled(
+        s.sonject_form_params,
+        file=file_name("file", file),
+        folder=file_name("folder", folder),
+        overrides=ctypes.cast(texts, ctypes.POINTER(ctypes.c_char_p)),
+        override_count=len(texts),
+        allows_user_shapes=bool(allows_user_shapes),
+        labels=_label_sum(labels),
+        overwrites=bool(overwrites),
+    )
     return context.complete(
         "sonject_form", context, scene, ctypes.byref(params), progress=progress
     )
@@ -192,12 +201,7 @@ def form(
 
 def check(scene: Scene) -> str:
     """Checks the scene against its input image and describes the geometry, with a drawing."""
-    description = ctypes.c_char_p()
-    scene.context.call("sonject_check", scene.context, scene, ctypes.byref(description))
-    try:
-        return text(description.value)
-    finally:
-        load().sonject_text_release(ctypes.byref(description))
+    return scene.context.text("sonject_check", scene.context, scene)
 
 
 def quicklook(
@@ -220,26 +224,28 @@ def quicklook(
     what the image's metadata says; transfer: None for plain amplitudes.
     """
     context = default_context() if context is None else context
-    params = initialised(s.sonject_quicklook_params)
-    params.image = file_name("image", image)
-    params.picture = file_name("picture", picture)
-    params.range_axis = choice("range_axis", RangeAxis, range_axis)
+    minimum = maximum = None
     if decibels is not None:
         minimum, maximum = (real_number("decibels", end) for end in decibels)
         if not minimum < maximum:
             raise ValueError(f"decibels must be (minimum, maximum), not {decibels!r}")
-        params.minimum_db, params.maximum_db = minimum, maximum
-    params.channel = Recording(image, channel).number()
-    if array is not None:
-        params.array = plain_text("array", array)
-    if altitude_m is not None:
-        params.altitude_m = real_number("altitude_m", altitude_m)
-    if geometry is not None:
-        params.has_geometry = 1
-        params.geometry = geometry.to_structure()
-    if transfer is not None:
-        params.has_transfer = 1
-        params.transfer = transfer.to_structure()
+    params = filled(
+        s.sonject_quicklook_params,
+        image=file_name("image", image),
+        picture=file_name("picture", picture),
+        range_axis=choice("range_axis", RangeAxis, range_axis),
+        channel=Recording(image, channel).number(),
+        array=None if array is None else plain_text("array", array),
+        has_geometry=geometry is not None,
+        has_transfer=transfer is not None,
+        **given(
+            minimum_db=minimum,
+            maximum_db=maximum,
+            altitude_m=altitude_m,
+            geometry=geometry,
+            transfer=transfer,
+        ),
+    )
     context.call("sonject_quicklook", context, ctypes.byref(params))
 
 
@@ -265,23 +271,20 @@ def convert(
     metadata says.
     """
     context = default_context() if context is None else context
-    params = initialised(s.sonject_convert_params)
-    params.input = file_name("source", source)
-    params.output = file_name("output", output)
-    if into is not None:
-        params.into = file_name("into", into)
-    params.channel = Recording(source, channel).number()
-    if array is not None:
-        params.array = plain_text("array", array)
-    params.magnitude = bool(magnitude)
-    params.samples = choice("samples", Samples, samples)
-    params.scale = real_number("scale", scale)
-    params.range_axis = choice("range_axis", ConvertAxis, range_axis)
-    if geometry is not None:
-        params.has_geometry = 1
-        params.geometry = geometry.to_structure()
-    if altitude_m is not None:
-        params.altitude_m = real_number("altitude_m", altitude_m)
+    params = filled(
+        s.sonject_convert_params,
+        input=file_name("source", source),
+        output=file_name("output", output),
+        into=optional_file_name("into", into),
+        channel=Recording(source, channel).number(),
+        array=None if array is None else plain_text("array", array),
+        magnitude=bool(magnitude),
+        samples=choice("samples", Samples, samples),
+        scale=scale,
+        range_axis=choice("range_axis", ConvertAxis, range_axis),
+        has_geometry=geometry is not None,
+        **given(geometry=geometry, altitude_m=altitude_m),
+    )
     context.call("sonject_convert", context, ctypes.byref(params))
 
 
@@ -294,14 +297,11 @@ def write_seabed(
 ) -> None:
     """Writes a synthetic seabed with its geometry as metadata: .tif (float32) or .png (8 bit)."""
     context = default_context() if context is None else context
-    params = initialised(s.sonject_seabed_file_params)
-    params.image = file_name("image", image)
-    if synthetic is not None:
-        params.synthetic = synthetic.to_structure()
-    if geometry is not None:
-        params.geometry = geometry.to_structure()
-    if sonar is not None:
-        params.sonar = sonar.to_structure()
+    params = filled(
+        s.sonject_seabed_file_params,
+        image=file_name("image", image),
+        **given(synthetic=synthetic, geometry=geometry, sonar=sonar),
+    )
     context.call("sonject_seabed_write", context, ctypes.byref(params))
 
 
@@ -333,7 +333,7 @@ def measure(
         None if mask is None else mask.ctypes.data_as(ctypes.POINTER(ctypes.c_uint8))
         for mask in masks
     ]
-    measurement = sized(s.sonject_measurement)
+    measurement = initialised(s.sonject_measurement)
     context.call(
         "sonject_measure_pixels",
         context,
@@ -342,7 +342,7 @@ def measure(
         ctypes.byref(measurement),
     )
     del array, masks
-    return Measurement(**_copied(Measurement, measurement))
+    return Measurement.from_structure(measurement)
 
 
 def measure_contact(
@@ -360,13 +360,13 @@ def measure_contact(
     """
     context = default_context() if context is None else context
     pixels, array = library_pixels(image)
-    params = initialised(s.sonject_contact_params)
-    params.row_spacing_m = real_number("row_spacing_m", row_spacing_m)
-    params.column_spacing_m = real_number("column_spacing_m", column_spacing_m)
+    params = filled(
+        s.sonject_contact_params, row_spacing_m=row_spacing_m, column_spacing_m=column_spacing_m
+    )
     if box is not None:
         for name in ("first_row", "first_column", "rows", "columns"):
             setattr(params.box, name, whole_number(name, getattr(box, name), 2**31))
-    measures = sized(s.sonject_contact_measures)
+    measures = initialised(s.sonject_contact_measures)
     context.call(
         "sonject_measure_contact",
         context,
@@ -375,8 +375,64 @@ def measure_contact(
         ctypes.byref(measures),
     )
     del array
-    values = _copied(ContactMeasures, measures)
-    for name in ("highlight", "shadow", "box"):
-        values[name] = Box(**_copied(Box, values[name]))
-    values["is_cut"] = bool(values["is_cut"])
-    return ContactMeasures(**values)
+    return ContactMeasures.from_structure(measures)
+
+
+def _find_layout(scene: Scene, rows: int, columns: int) -> ElementLayout:
+    layout = initialised(s.sonject_element_layout)
+    scene.context.call(
+        "sonject_elements_describe", scene.context, scene, rows, columns, ctypes.byref(layout)
+    )
+    return ElementLayout.from_structure(layout)
+
+
+def element_layout(scene: Scene, shape: tuple[int, int] = (0, 0)) -> ElementLayout:
+    """What element_series gives for a patch of this shape, rows x columns.
+
+    (0, 0): for the patch that the scene's input, Uniform or Synthetic, makes.
+    """
+    largest = 2**31
+    rows, columns = (whole_number("shape", size, largest) for size in shape)
+    return _find_layout(scene, rows, columns)
+
+
+def element_series(patch: Any, scene: Scene, progress: Optional[Progress] = None) -> Array:
+    """What each hydrophone of the scene's array hears: pings x hydrophones x samples.
+
+    complex64, or float32 in pass band; over the source's pressure at 1 m, or in Pa where the array
+    has a source_level_db. Heard is what inject draws: targets and, where it resynthesises, the
+    seabed; in composite mode the seabed is the measured patch, which has no element data. patch,
+    progress, and what is raised: as for inject.
+    """
+    pixels, array = _optional_pixels(patch)
+    layout = _find_layout(scene, *((0, 0) if array is None else array.shape))
+    is_complex = layout.elements.form == SeriesForm.BASEBAND
+    series = numpy.empty(layout.shape, numpy.complex64 if is_complex else numpy.float32)
+    scene.context.work(
+        "sonject_element_series",
+        scene.context,
+        scene,
+        pixels,
+        progress=progress,
+        outputs=[series.ctypes.data_as(ctypes.POINTER(ctypes.c_float)), series.nbytes],
+    )
+    return series
+
+
+def run_elements(
+    scene: Scene,
+    folder: PathLike,
+    progress: Optional[Progress] = None,
+    *,
+    overwrites: bool = False,
+) -> None:
+    """Reads the scene's input, and writes series.npy and elements.json into folder.
+
+    Series of other inputs there are refused unless overwrites is true.
+    """
+    params = filled(
+        s.sonject_run_params, folder=file_name("folder", folder), overwrites=bool(overwrites)
+    )
+    scene.context.work(
+        "sonject_elements_run", scene.context, scene, ctypes.byref(params), progress=progress
+    )

@@ -5,45 +5,16 @@ from __future__ import annotations
 import ctypes
 import operator
 import os
-from dataclasses import dataclass
 from typing import Any, Iterator, Optional, Tuple
 
-from . import _structures as s
-from ._callbacks import Progress, ProgressBridge, text
-from ._handle import Handle
+from . import _interface as s
+from ._classes import CampaignImage as CampaignImage
 from ._values import (
-    Overrides,
-    PathLike,
-    file_name,
-    initialised,
-    override_texts,
-    real_number,
-    set_shard,
-    sized,
+    Overrides, PathLike, file_name, filled, given, initialised, override_texts, shard_values,
 )
-from .context import Context, default_context
+from .context import Context, Handle, Progress, ProgressBridge, default_context
 from .result import Result
 from .scene import Scene
-
-
-@dataclass(frozen=True)
-class CampaignImage:
-    """What is drawn for an image.
-
-    first_row, first_column: of the image in its swath; swath: its number in the campaign file;
-    class_name: of the target, "" without one.
-    """
-
-    id: int
-    split: str
-    swath: int
-    first_row: int
-    first_column: int
-    rows: int
-    columns: int
-    seed: int
-    object_count: int
-    class_name: str
 
 
 class Campaign(Handle):
@@ -70,15 +41,14 @@ class Campaign(Handle):
     ) -> None:
         context = default_context() if context is None else context
         texts = override_texts(overrides)
-        array = (ctypes.c_char_p * len(texts))(*texts)
-        params = initialised(s.sonject_campaign_read_params)
-        params.allows_user_shapes = int(bool(allows_user_shapes))
+        consent = bool(allows_user_shapes)
+        params = filled(s.sonject_campaign_read_params, allows_user_shapes=consent)
         pointer = context.make(
             s.sonject_campaign,
             "sonject_campaign_read",
             context,
             file_name("path", path),
-            array,
+            texts,
             len(texts),
             ctypes.byref(params),
         )
@@ -86,7 +56,7 @@ class Campaign(Handle):
         self._source = (
             os.path.abspath(os.fsdecode(path)),
             [os.fsdecode(text) for text in texts],
-            bool(allows_user_shapes),
+            consent,
         )
 
     def __reduce__(self) -> Any:
@@ -106,22 +76,11 @@ class Campaign(Handle):
 
     def describe(self, number: int) -> CampaignImage:
         """What is drawn for an image."""
-        told = sized(s.sonject_campaign_image)
+        told = initialised(s.sonject_campaign_image)
         self._context.call(
             "sonject_campaign_describe", self, self._id(number), ctypes.byref(told)
         )
-        return CampaignImage(
-            id=told.id,
-            split=text(told.split),
-            swath=told.swath,
-            first_row=told.first_row,
-            first_column=told.first_column,
-            rows=told.rows,
-            columns=told.columns,
-            seed=told.seed,
-            object_count=told.object_count,
-            class_name=text(told.class_name),
-        )
+        return CampaignImage.from_structure(told)
 
     def scene(self, number: int) -> Scene:
         """The scene of an image: its input is the swath's file, its patch the image."""
@@ -169,14 +128,15 @@ class Campaign(Handle):
         overwrites: another campaign's images in folder are removed; else they are refused.
         False if there was nothing left to do.
         """
-        params = initialised(s.sonject_campaign_run_params)
-        params.folder = file_name("folder", folder)
-        set_shard(params, shard)
-        if only is not None:
-            params.only_one = 1
-            params.only = self._id(only)
-        params.exit_after_s = real_number("exit_after_s", exit_after_s)
-        params.overwrites = int(bool(overwrites))
+        params = filled(
+            s.sonject_campaign_run_params,
+            folder=file_name("folder", folder),
+            only_one=only is not None,
+            exit_after_s=exit_after_s,
+            overwrites=bool(overwrites),
+            **shard_values(shard),
+            **given(only=None if only is None else self._id(only)),
+        )
         return self._context.complete(
             "sonject_campaign_run", self._context, self, ctypes.byref(params), progress=progress
         )

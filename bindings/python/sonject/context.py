@@ -7,28 +7,94 @@ import contextlib
 import ctypes
 import threading
 import weakref
-from dataclasses import dataclass
-from typing import Any, Callable, Iterator, Optional, Sequence, Type
+from typing import Any, Callable, Iterator, Optional, Sequence, Type, TypeVar
 
-from . import _structures as s
-from ._callbacks import LogBridge, Progress, ProgressBridge, text
-from ._handle import Handle
+from . import _interface as s
+from ._classes import Device as Device
 from ._library import load
-from ._values import initialised, optional_file_name
+from ._values import filled, optional_file_name, text
 from .enumerations import Status
 from .errors import Cancelled, SonjectError
 
 
-@dataclass(frozen=True)
-class Device:
-    """An OpenCL device; vector_width: lanes that the kernels are compiled for."""
+# Finished fraction 0...1 and the stage's name; a true answer asks to cancel.
+Progress = Callable[[float, str], Any]
 
-    name: str
-    platform: str
-    driver: str
-    compute_units: int
-    vector_width: int
-    is_default: bool
+
+class ProgressBridge:
+    """Calls a progress function.
+
+    There is a callback even without a function, so that a pending KeyboardInterrupt finds Python
+    code to be raised in.
+    """
+
+    def __init__(self, progress: Optional[Progress]) -> None:
+        self.error: Optional[BaseException] = None
+        self._progress = progress
+        self.callback = s.sonject_progress_function(self._called)
+
+    def _called(self, _user: Optional[int], fraction: float, stage: Optional[bytes]) -> int:
+        try:
+            if self._progress is None:
+                return 0
+            return int(bool(self._progress(fraction, text(stage))))
+        except BaseException as error:  # goes on to the caller of the library
+            self.error = error
+            return 1
+
+
+class LogBridge:
+    """Calls a log function. Does not refer to the context, which would then live for ever."""
+
+    def __init__(self, log: Callable[[str], Any]) -> None:
+        self.error: Optional[BaseException] = None
+        self._log = log
+        self.callback = s.sonject_log_function(self._called)
+
+    def _called(self, _user: Optional[int], line: Optional[bytes]) -> None:
+        try:
+            self._log(text(line))
+        except BaseException as error:  # goes on to the caller of the library
+            self.error = error
+
+
+Self = TypeVar("Self", bound="Handle")
+
+
+class Handle:
+    """Something that was made with a context and is released with its last reference, or sooner by
+    close() or a with statement."""
+
+    _noun = "handle"
+
+    def __init__(self, context: "Context", pointer: Any) -> None:
+        self._context = context
+        self._pointer = pointer
+        # The finalizer keeps the context alive, which must be released last.
+        self._finalizer = weakref.finalize(self, context.release, pointer)
+        context.adopt(self)
+
+    @property
+    def context(self) -> "Context":
+        """The context that it was made with."""
+        return self._context
+
+    @property
+    def pointer(self) -> Any:
+        """The C handle. Raises ValueError once it is closed."""
+        if not self._finalizer.alive:
+            raise ValueError(f"this sonject {self._noun} was closed")
+        return self._pointer
+
+    def close(self) -> None:
+        """Releases the library's memory now."""
+        self._finalizer()
+
+    def __enter__(self: Self) -> Self:
+        return self
+
+    def __exit__(self, *_: Any) -> None:
+        self.close()
 
 
 class Context:
@@ -57,11 +123,13 @@ class Context:
         self._waiting: collections.deque[Any] = collections.deque()
         self._handles: weakref.WeakSet[Handle] = weakref.WeakSet()
         self._log = None if log is None else LogBridge(log)
-        params = initialised(s.sonject_context_params)
-        params.device_name = optional_file_name("device", device)
-        params.opencl_context = opencl_context
-        params.opencl_device = opencl_device
-        params.decodes_in_process = int(decodes_in_process)
+        params = filled(
+            s.sonject_context_params,
+            device_name=optional_file_name("device", device),
+            opencl_context=opencl_context,
+            opencl_device=opencl_device,
+            decodes_in_process=int(decodes_in_process),
+        )
         if self._log is not None:
             params.log = self._log.callback
         self._pointer = ctypes.POINTER(s.sonject_context)()
@@ -94,17 +162,7 @@ class Context:
         self.call("sonject_devices", self, None, 0, ctypes.byref(count))
         found = (s.sonject_device_info * count.value)()
         self.call("sonject_devices", self, found, len(found), ctypes.byref(count))
-        return [
-            Device(
-                name=text(info.name),
-                platform=text(info.platform),
-                driver=text(info.driver),
-                compute_units=info.compute_units,
-                vector_width=info.vector_width,
-                is_default=bool(info.is_default),
-            )
-            for info in found[: count.value]
-        ]
+        return [Device.from_structure(info) for info in found[: count.value]]
 
     @property
     def pointer(self) -> Any:
@@ -158,6 +216,15 @@ class Context:
         was_finished = ctypes.c_int()
         self.work(name, *arguments, progress=progress, outputs=[ctypes.byref(was_finished)])
         return not was_finished.value
+
+    def text(self, name: str, *arguments: Any) -> str:
+        """Calls the library function name, whose last parameter gets a text."""
+        line = ctypes.c_char_p()
+        self.call(name, *arguments, ctypes.byref(line))
+        try:
+            return text(line.value)
+        finally:
+            self._library.sonject_text_release(ctypes.byref(line))
 
     def make(
         self,

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar, Optional, Sequence, Union
 
-from . import _structures as s
-from ._values import PathLike, choice, fill, initialised
+from . import _interface as s
+from ._classes import Material
+from ._values import PathLike, choice, filled
 from .enumerations import BurialKind, End, LevelKind, PositionKind, Shape
-from .material import Material
 
 
 @dataclass(frozen=True)
@@ -62,9 +62,7 @@ class Cut:
 def _cut_structure(cut: Cut) -> s.sonject_cut:
     if not isinstance(cut, Cut):
         raise TypeError(f"cuts must be Cuts, not {cut!r}")
-    structure = s.sonject_cut()
-    fill(structure, {entry.name: getattr(cut, entry.name) for entry in fields(cut)})
-    return structure
+    return filled(s.sonject_cut, **{entry.name: getattr(cut, entry.name) for entry in fields(cut)})
 
 
 @dataclass(kw_only=True)
@@ -138,8 +136,7 @@ class Object:
         values["shape"] = self._shape
         for name in ("parts", "path", "allows_user_shapes"):
             values.pop(name, None)
-        structure = initialised(s.sonject_object_params)
-        fill(structure, values)
+        structure = filled(s.sonject_object_params, **values)
         structure.cuts[: len(cuts)] = cuts
         return structure
 
@@ -277,10 +274,9 @@ class Part:
         """The C structures of shape and place. Raises TypeError or ValueError as the shape's does."""
         if not isinstance(self.shape, Object) or isinstance(self.shape, Parts):
             raise TypeError(f"shape of a Part must be an Object of one shape, not {self.shape!r}")
-        place = initialised(s.sonject_part_params)
         names = [entry.name for entry in fields(self) if entry.name != "shape"]
-        fill(place, {name: getattr(self, name) for name in names})
-        return self.shape.to_structure(), place
+        place = {name: getattr(self, name) for name in names}
+        return self.shape.to_structure(), filled(s.sonject_part_params, **place)
 
 
 @dataclass(kw_only=True)

@@ -7,25 +7,23 @@ from typing import Any, Iterable, Mapping, Optional, Sequence, Type, Union
 
 import numpy
 
-from . import _structures as s
-from ._handle import Handle
-from ._library import load
+from . import _interface as s
 from ._values import (
     Overrides,
     PathLike,
     file_name,
-    fill,
+    filled,
     initialised,
     override_texts,
     plain_text,
     real_numbers,
     whole_number,
 )
-from .context import Context, default_context
-from ._elements import Elements
+from .context import Context, Handle, default_context
 from .enumerations import PulseAxis
 from .objects import Object, Parts, Target
 from .parameters import (
+    Elements,
     Geometry,
     Injection,
     Medium,
@@ -112,14 +110,13 @@ class Scene(Handle):
         """
         texts = override_texts(overrides)
         context = default_context() if context is None else context
-        params = initialised(s.sonject_scene_read_params)
-        params.allows_user_shapes = int(bool(allows_user_shapes))
+        params = filled(s.sonject_scene_read_params, allows_user_shapes=bool(allows_user_shapes))
         pointer = context.make(
             s.sonject_scene,
             "sonject_scene_read_with",
             context,
             file_name("path", path),
-            (ctypes.c_char_p * len(texts))(*texts),
+            texts,
             len(texts),
             ctypes.byref(params),
         )
@@ -139,19 +136,9 @@ class Scene(Handle):
         """Names of the bands that a scene file, with overrides as for ``read``, leaves to be chosen."""
         texts = override_texts(overrides)
         context = default_context() if context is None else context
-        names = ctypes.c_char_p()
-        context.call(
-            "sonject_scene_bands",
-            context,
-            file_name("path", path),
-            (ctypes.c_char_p * len(texts))(*texts),
-            len(texts),
-            ctypes.byref(names),
-        )
-        try:
-            return (names.value or b"").decode().split()
-        finally:
-            load().sonject_text_release(ctypes.byref(names))
+        return context.text(
+            "sonject_scene_bands", context, file_name("path", path), texts, len(texts)
+        ).split()
 
     def _set(self, name: str, setting: Any, kind: Type[Any]) -> None:
         if not isinstance(setting, kind):
@@ -286,8 +273,8 @@ class Scene(Handle):
         patch's side where that is less. Adds to the features of a scene file and takes the place of
         its heights; None takes heights away.
         """
-        params = initialised(s.sonject_relief_params)
         if heights_m is None:
+            params = initialised(s.sonject_relief_params)
             self._context.call("sonject_scene_set_relief", self, ctypes.byref(params), None)
             return
         given = numpy.asarray(heights_m)
@@ -301,16 +288,14 @@ class Scene(Handle):
             raise ValueError(f"heights_m of the shape {heights.shape} is too large")
         if 0 in heights.shape:
             raise ValueError("heights_m is empty; None takes the relief away")
-        fill(
-            params,
-            {
-                "rows": heights.shape[0],
-                "columns": heights.shape[1],
-                "first_along_track_m": first_along_track_m,
-                "first_ground_range_m": first_ground_range_m,
-                "row_spacing_m": row_spacing_m,
-                "column_spacing_m": column_spacing_m,
-            },
+        params = filled(
+            s.sonject_relief_params,
+            rows=heights.shape[0],
+            columns=heights.shape[1],
+            first_along_track_m=first_along_track_m,
+            first_ground_range_m=first_ground_range_m,
+            row_spacing_m=row_spacing_m,
+            column_spacing_m=column_spacing_m,
         )
         self._context.call(
             "sonject_scene_set_relief",
@@ -378,25 +363,14 @@ class Scene(Handle):
         taken as thin sheets; smooth_angle_rad: facets that meet at less stand for one smooth
         surface to what scatters on them.
         """
-        params = initialised(s.sonject_mesh_params)
-        fill(
-            params,
-            {
-                "allows_open": int(allows_open),
-                "unit_m": unit_m,
-                "smooth_angle_rad": smooth_angle_rad,
-            },
+        params = filled(
+            s.sonject_mesh_params,
+            allows_open=int(allows_open),
+            unit_m=unit_m,
+            smooth_angle_rad=smooth_angle_rad,
         )
         params.axes[:] = [int(axis) for axis in axes]
-        index = ctypes.c_uint32()
-        self._context.call(
-            "sonject_scene_add_mesh",
-            self,
-            file_name("mesh", path),
-            ctypes.byref(params),
-            ctypes.byref(index),
-        )
-        return index.value
+        return self._number("add_mesh", file_name("mesh", path), ctypes.byref(params))
 
     def add_user_shape(
         self,
@@ -419,30 +393,23 @@ class Scene(Handle):
         the half sizes of a box (0: the radius), by which it rests on the seabed; parameters: up to
         16 numbers for the functions; is_open: a surface without inside, which reflects on both sides.
         """
-        params = initialised(s.sonject_user_shape_params)
         count = len(parameters)
         if count > s.USER_PARAMETERS_CAPACITY:
             raise ValueError(f"parameters must be at most {s.USER_PARAMETERS_CAPACITY}, not {count}")
-        params.name = plain_text("name", name)
-        params.code = plain_text("code", code)
-        fill(
-            params,
-            {
-                "is_open": int(bool(is_open)),
-                "bounding_radius_m": bounding_radius_m,
-                "half_length_m": half_length_m,
-                "half_width_m": half_width_m,
-                "half_height_m": half_height_m,
-                "first_line": first_line,
-                "parameter_count": count,
-            },
+        params = filled(
+            s.sonject_user_shape_params,
+            name=plain_text("name", name),
+            code=plain_text("code", code),
+            is_open=bool(is_open),
+            bounding_radius_m=bounding_radius_m,
+            half_length_m=half_length_m,
+            half_width_m=half_width_m,
+            half_height_m=half_height_m,
+            first_line=first_line,
+            parameter_count=count,
         )
         params.parameters[:count] = [float(value) for value in parameters]
-        index = ctypes.c_uint32()
-        self._context.call(
-            "sonject_scene_add_user_shape", self, ctypes.byref(params), ctypes.byref(index)
-        )
-        return index.value
+        return self._number("add_user_shape", ctypes.byref(params))
 
     def add(self, thing: Object) -> int:
         """Adds an object; gives its number, counted from 0.
@@ -451,39 +418,24 @@ class Scene(Handle):
         """
         if not isinstance(thing, Object):
             raise TypeError(f"an Object is wanted, not {thing!r}")
-        index = ctypes.c_uint32()
-        structure = thing.to_structure()
+        structure = ctypes.byref(thing.to_structure())
         if isinstance(thing, Target):
-            params = initialised(s.sonject_scene_read_params)
-            params.allows_user_shapes = int(bool(thing.allows_user_shapes))
-            self._context.call(
-                "sonject_scene_add_target",
-                self,
-                file_name("path", thing.path),
-                ctypes.byref(params),
-                ctypes.byref(structure),
-                ctypes.byref(index),
-            )
-            return index.value
+            consent = bool(thing.allows_user_shapes)
+            params = filled(s.sonject_scene_read_params, allows_user_shapes=consent)
+            path = file_name("path", thing.path)
+            return self._number("add_target", path, ctypes.byref(params), structure)
         parts = [part.to_structures() for part in thing.parts] if isinstance(thing, Parts) else []
-        self._context.call(
-            "sonject_scene_add_object",
-            self,
-            ctypes.byref(structure),
-            ctypes.byref(index),
-        )
-        for shape, place in parts:
-            self._context.call(
-                "sonject_scene_add_part",
-                self,
-                index.value,
-                ctypes.byref(shape),
-                ctypes.byref(place),
-            )
-        return index.value
+        index = self._number("add_object", structure)
+        for part in parts:
+            self._context.call("sonject_scene_add_part", self, index, *map(ctypes.byref, part))
+        return index
+
+    def _number(self, name: str, *arguments: Any) -> int:
+        """What the library function, told a scene and these, writes behind its last argument."""
+        number = ctypes.c_uint32()
+        self._context.call("sonject_scene_" + name, self, *arguments, ctypes.byref(number))
+        return number.value
 
     @property
     def object_count(self) -> int:
-        count = ctypes.c_uint32()
-        self._context.call("sonject_scene_object_count", self, ctypes.byref(count))
-        return count.value
+        return self._number("object_count")

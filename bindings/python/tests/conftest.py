@@ -1,16 +1,16 @@
-"""What the tests of the bindings share. The library is the one that SONJECT_LIBRARY names."""
+"""What the tests of the bindings share. The library is the one that SONJECT_LIBRARY names,
+the package that of the build: PYTHONPATH=build/bindings/python."""
 
 import os
 import pathlib
-import sys
 
 import numpy
 import pytest
 
-PACKAGE_FOLDER = pathlib.Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(PACKAGE_FOLDER))
+import sonject
 
-import sonject  # noqa: E402
+DOCUMENTS = pathlib.Path(__file__).resolve().parents[1]
+PACKAGE = pathlib.Path(sonject.__file__).resolve().parent  # in the folder of the build
 
 ROWS, COLUMNS = 96, 128
 

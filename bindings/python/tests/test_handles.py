@@ -7,7 +7,7 @@ import sys
 import pytest
 
 import sonject
-from conftest import PACKAGE_FOLDER
+from conftest import PACKAGE
 
 
 def test_version_is_the_packages():
@@ -150,7 +150,7 @@ def test_the_log_tells_device_programs_and_noise_floor():
 
 
 def run_python(code, **environment):
-    variables = {**os.environ, "PYTHONPATH": str(PACKAGE_FOLDER), **environment}
+    variables = {**os.environ, "PYTHONPATH": str(PACKAGE.parent), **environment}
     return subprocess.run(
         [sys.executable, "-c", code], env=variables, capture_output=True, text=True
     )

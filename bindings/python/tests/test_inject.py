@@ -12,7 +12,7 @@ import pytest
 import sonject
 from conftest import COLUMNS, ROWS
 from sonject import _library
-from sonject._pixels import library_pixels
+from sonject._values import library_pixels
 
 
 @pytest.fixture(params=["float32", "complex64"])

@@ -6,7 +6,7 @@ import numpy
 import pytest
 
 import sonject
-from sonject import _structures as s
+from sonject import _interface as s
 from sonject._values import initialised
 
 

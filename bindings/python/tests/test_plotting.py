@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 
-from conftest import PACKAGE_FOLDER
+from conftest import PACKAGE
 
 PROGRAM = """
 import matplotlib
@@ -44,7 +44,7 @@ def test_results_are_drawn(tmp_path):
     reader = os.environ.get("SONJECT_READERS")
     if not reader:
         pytest.skip("SONJECT_READERS does not name a Python that has matplotlib")
-    variables = {**os.environ, "PYTHONPATH": str(PACKAGE_FOLDER), "MPLCONFIGDIR": str(tmp_path)}
+    variables = {**os.environ, "PYTHONPATH": str(PACKAGE.parent), "MPLCONFIGDIR": str(tmp_path)}
     answer = subprocess.run([reader, "-c", PROGRAM], cwd=tmp_path, env=variables,
                             capture_output=True, text=True, check=False)
     assert answer.returncode == 0, answer.stderr

@@ -7,12 +7,12 @@ import numpy
 import pytest
 
 import sonject
-from conftest import PACKAGE_FOLDER
+from conftest import DOCUMENTS, PACKAGE
 
-README = (PACKAGE_FOLDER / "README.md").read_text(encoding="utf-8")
+README = (DOCUMENTS / "README.md").read_text(encoding="utf-8")
 SPANS = list(dict.fromkeys(re.findall(r"(?<!`)`([^`\n]+)`(?!`)", README)))
 # Run elsewhere: shells' by tests/cli/test_readme.py, pictures by test_plotting.py.
-ELSEWHERE = ("SONJECT_LIBRARY", "sonject.plotting.draw_result(", "examples/", "multiprocessing")
+ELSEWHERE = ("SONJECT_LIBRARY", "PYTHONPATH", "sonject.plotting.draw_result(", "examples/", "multiprocessing")
 
 
 @pytest.fixture(scope="module")
@@ -50,7 +50,7 @@ def is_expression(span):
 @pytest.mark.parametrize("span", calls())
 def test_what_the_text_calls_can_be_called(names, span, tmp_path, monkeypatch):
     assert is_expression(span)
-    monkeypatch.chdir(PACKAGE_FOLDER.parents[1])
+    monkeypatch.chdir(DOCUMENTS.parents[1])
     scene = sonject.Scene(
         geometry=sonject.Geometry(first_slant_range_m=25.0),
         objects=[sonject.Sphere(diameter_m=0.3)],
@@ -84,7 +84,7 @@ def test_what_the_text_calls_can_be_called(names, span, tmp_path, monkeypatch):
 def test_names_in_the_text_exist(names):
     """Of the package, of its classes, or of its functions' parameters."""
     source = "".join(path.read_text(encoding="utf-8")
-                     for path in (PACKAGE_FOLDER / "sonject").glob("*.py"))
+                     for path in PACKAGE.glob("*.py"))
     words = set(re.findall(r"\w+", source)) | {"float32", "complex64"}
     plain = [span.rstrip("=") for span in SPANS
              if not span.startswith(ELSEWHERE) and span not in calls()]

@@ -1,7 +1,0 @@
-"""How many of each a structure has room for."""
-
-NAME_CAPACITY = 64
-CUTS_CAPACITY = 2
-SWAYS_CAPACITY = 8
-YAWS_CAPACITY = 8
-USER_PARAMETERS_CAPACITY = 16

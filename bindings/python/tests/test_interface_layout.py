@@ -1,0 +1,75 @@
+"""What generate.py makes of the headers: against the C compiler, and where it does not understand."""
+
+import ctypes
+import os
+import shlex
+import subprocess
+import sys
+
+import pytest
+
+from conftest import DOCUMENTS
+from sonject import _interface, _library
+
+HEADERS = DOCUMENTS.parents[1] / "include" / "sonject"
+STRUCTURES = {
+    name: kind
+    for name, kind in vars(_interface).items()
+    if isinstance(kind, type) and issubclass(kind, ctypes.Structure) and hasattr(kind, "_fields_")
+}
+
+
+def layout_program():
+    """A C program that prints the size of each structure and the place of each field."""
+    lines = ["#include <stddef.h>", "#include <stdio.h>", "#include <sonject/sonject.h>"]
+    lines.append("int main(void) {")
+    for name, kind in STRUCTURES.items():
+        lines.append(f'printf("{name} %zu\\n", sizeof({name}));')
+        for field, _ in kind._fields_:
+            lines.append(
+                f'printf("{name}.{field} %zu %zu\\n", offsetof({name}, {field}), '
+                f"sizeof((({name} *)0)->{field}));"
+            )
+    lines.append("return 0; }")
+    return "\n".join(lines)
+
+
+def test_layout_is_the_compilers(tmp_path):
+    (tmp_path / "layout.c").write_text(layout_program())
+    compiler = shlex.split(os.environ.get("CC", "cc"))
+    subprocess.run([*compiler, "-std=c99", f"-I{HEADERS.parent}", "-o", tmp_path / "layout",
+                    tmp_path / "layout.c"], check=True)
+    printed = subprocess.run([tmp_path / "layout"], check=True, capture_output=True, text=True).stdout
+    ours = {}
+    for name, kind in STRUCTURES.items():
+        ours[name] = [ctypes.sizeof(kind)]
+        for field, _ in kind._fields_:
+            place = getattr(kind, field)
+            ours[f"{name}.{field}"] = [place.offset, place.size]
+    rows = (line.split() for line in printed.splitlines())
+    assert ours == {row[0]: [int(number) for number in row[1:]] for row in rows}
+
+
+def test_init_functions_write_the_size_of_ours():
+    for name in filter(lambda name: name + "_init" in _interface.FUNCTIONS, STRUCTURES):
+        structure = STRUCTURES[name]()
+        getattr(_library.load(), name + "_init")(ctypes.byref(structure))
+        assert structure.struct_size == ctypes.sizeof(structure), name
+
+
+@pytest.mark.parametrize("found, put, reason", [
+    ("    double bandwidth_hz;", "    double bandwidth_hz, other_hz;", "not understood: double bandwidth_hz,"),
+    ("} sonject_sonar_kind;", "} other;", "a typedef is not understood"),
+    ("    double altitude_m;", "    double altitude_m[3];", "no field for"),
+    ("SONJECT_API void sonject_sonar_params_init(sonject_sonar_params *sonar);",
+     "SONJECT_API void *(*sonject_odd(void))(void);", "a function is not understood"),
+])
+def test_what_is_not_understood_is_refused(tmp_path, found, put, reason):
+    for header in HEADERS.glob("*.h"):
+        (tmp_path / header.name).write_text(header.read_text())
+    sonar = tmp_path / "sonar.h"
+    assert found in sonar.read_text()
+    sonar.write_text(sonar.read_text().replace(found, put))
+    answer = subprocess.run([sys.executable, DOCUMENTS / "generate.py", tmp_path,
+                             *sorted(tmp_path.glob("*.h"))], capture_output=True, text=True, check=False)
+    assert answer.returncode != 0 and reason in answer.stderr
