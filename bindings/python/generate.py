@@ -44,6 +44,13 @@ CLASSES = {
 # them unset.
 NO_FIELDS = {"struct_size", "reserved", "estimate_noise", "noise_floor_db of Injection", "sway_count",
              "sways", "yaw_count", "yaws", "seam_before"}
+# What those bases have instead.
+OF_BASES = {
+    "Motion": [("sways, yaws", "up to 8 sines each, added together: amplitude (m or rad), wavelength_m "
+                "along-track, phase_rad")],
+    "Injection": [("noise_floor_db", "noise energy over the local mean seabed energy, below 0; None: "
+                   "estimated from the patch")],
+}
 REQUIRED = {"first_slant_range_m of Geometry"}  # beside those of structures without defaults
 COMMENT = r"/\*(?:(?!\*/).)*\*/"
 
@@ -265,7 +272,8 @@ def classes(header):
         yield f"\n\n@dataclass({'frozen' if is_answer else 'kw_only'}=True)"
         yield f"class {kind}({base}):"
         yield from documentation(header, header.titles[structure],
-                                 [(name, comment) for name, _, comment in found])
+                                 OF_BASES.get(kind, []) + [(name, comment)
+                                                           for name, _, comment in found])
         yield f"    _structure = s.{structure}\n"
         has_defaults = structure + "_init" in functions
         for name, kind_of, _ in found:

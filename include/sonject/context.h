@@ -66,6 +66,7 @@ SONJECT_API void sonject_context_release(sonject_context **context);
  * until the next call on the context. */
 SONJECT_API const char *sonject_context_message(const sonject_context *context);
 
+/* An OpenCL device. */
 typedef struct sonject_device_info {
     char name[128];
     char platform[128];

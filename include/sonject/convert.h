@@ -11,6 +11,7 @@
 
 SONJECT_BEGIN_DECLARATIONS
 
+/* Types of samples that a conversion makes. */
 typedef enum sonject_samples {
     SONJECT_SAMPLES_KEPT = 0, /* the input's type */
     SONJECT_SAMPLES_UINT8 = 1,
@@ -18,6 +19,7 @@ typedef enum sonject_samples {
     SONJECT_SAMPLES_FLOAT32 = 3
 } sonject_samples;
 
+/* The range axis that a conversion makes. */
 typedef enum sonject_convert_axis {
     SONJECT_CONVERT_AXIS_KEPT = 0, /* the input's range axis */
     SONJECT_CONVERT_AXIS_SLANT = 1,

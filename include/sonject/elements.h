@@ -30,6 +30,7 @@ typedef enum sonject_series_form {
     SONJECT_SERIES_PASSBAND = 1  /* the real part of it times exp(-i 2 pi f0 t) */
 } sonject_series_form;
 
+/* The pulse g of a series. */
 typedef enum sonject_series_pulse {
     SONJECT_SERIES_COMPRESSED = 0, /* g: the image's own pulse, exp(-t^2 / (2 sigma^2)) */
     SONJECT_SERIES_CHIRP = 1       /* g: as transmitted, from t = 0 on: unit amplitude, from the
@@ -71,6 +72,7 @@ SONJECT_API void sonject_elements_params_init(sonject_elements_params *elements)
 SONJECT_API sonject_status sonject_scene_set_elements(sonject_scene *scene,
                                                       const sonject_elements_params *elements);
 
+/* Where and when a series is taken. */
 typedef struct sonject_element_layout {
     uint32_t struct_size;
     uint32_t reserved;

@@ -8,6 +8,7 @@
 
 SONJECT_BEGIN_DECLARATIONS
 
+/* The side of the track that the image shows. */
 typedef enum sonject_side {
     SONJECT_SIDE_PORT = 0,
     SONJECT_SIDE_STARBOARD = 1
@@ -48,6 +49,7 @@ typedef enum sonject_transfer {
     SONJECT_TRANSFER_SCHLICK = 4    /* amplitude = q / (b - (b - 1) q), b = parameter >= 1 */
 } sonject_transfer;
 
+/* The transfer function of an image file, see sonject_transfer. */
 typedef struct sonject_transfer_params {
     uint32_t struct_size;
     uint32_t kind; /* sonject_transfer */

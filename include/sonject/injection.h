@@ -8,6 +8,7 @@
 
 SONJECT_BEGIN_DECLARATIONS
 
+/* Whether objects are composed into the patch, or the whole patch is traced anew. */
 typedef enum sonject_injection_mode {
     SONJECT_MODE_COMPOSITE = 0, /* measured pixels outside the target's influence keep every bit */
     SONJECT_MODE_RESYNTHESISE = 1 /* the whole patch is traced anew from the reflectivity map */

@@ -32,6 +32,7 @@ typedef struct sonject_measure_params {
 /* Plain amplitude, no masks. */
 SONJECT_API void sonject_measure_params_init(sonject_measure_params *params);
 
+/* What an image says of its seabed, and the seam of an injection. */
 typedef struct sonject_measurement {
     uint32_t struct_size;
     uint32_t reserved;

@@ -11,6 +11,7 @@
 
 SONJECT_BEGIN_DECLARATIONS
 
+/* What a pixel is. */
 typedef enum sonject_pixel_kind {
     SONJECT_PIXELS_AMPLITUDE = 0, /* float, >= 0 */
     SONJECT_PIXELS_COMPLEX = 1 /* pairs of float, real and imaginary part; a path of travel time t
@@ -43,6 +44,7 @@ SONJECT_API sonject_status sonject_inject(sonject_context *context, const sonjec
 /* Releases the result and sets *result to NULL; NULL allowed. */
 SONJECT_API void sonject_result_release(sonject_result **result);
 
+/* The arrays of a result. */
 typedef enum sonject_layer {
     SONJECT_LAYER_IMAGE = 0,  /* the patch with the objects, kind and units of the input */
     SONJECT_LAYER_FIELD = 1,  /* complex; |pixel|^2 is a backscattering cross-section in m^2 */
@@ -85,6 +87,7 @@ typedef struct sonject_box {
     uint64_t columns;
 } sonject_box;
 
+/* Where an object came to lie in the patch, and how it shows. */
 typedef struct sonject_object_truth {
     uint32_t struct_size;
     uint32_t is_visible;       /* 1: some pixel of it dominates, or it casts a shadow */
@@ -141,6 +144,7 @@ typedef struct sonject_object_truth {
 SONJECT_API sonject_status sonject_result_object(const sonject_result *result, uint32_t index,
                                                  sonject_object_truth *truth);
 
+/* Counts, times in seconds, and how the output compares with the input. */
 typedef struct sonject_statistics {
     uint32_t struct_size;
     uint32_t reserved;

@@ -93,6 +93,7 @@ SONJECT_API sonject_status sonject_check(sonject_context *context, const sonject
                                          char **text);
 SONJECT_API void sonject_text_release(char **text);
 
+/* The horizontal axis of a quick look. */
 typedef enum sonject_range_axis {
     SONJECT_AXIS_SLANT = 0, /* as the image is */
     SONJECT_AXIS_GROUND = 1 /* a slant range image is resampled; needs geometry and altitude */

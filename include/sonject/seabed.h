@@ -10,6 +10,7 @@
 
 SONJECT_BEGIN_DECLARATIONS
 
+/* What resynthesise uses as reflectivity. */
 typedef enum sonject_seabed_map {
     SONJECT_MAP_INTENSITY = 0,  /* the measured intensity as it is, speckle and all */
     SONJECT_MAP_DESPECKLED = 1, /* its local mean over a few resolution cells */

@@ -117,8 +117,6 @@ class MaterialBase(Parameters):
 
 @dataclass(kw_only=True)
 class MotionBase(Parameters):
-    """sways, yaws: up to 8 sines of amplitude_m or _rad, wavelength_m (along-track) and phase_rad."""
-
     sways: Sequence[tuple[float, float, float]] = ()
     yaws: Sequence[tuple[float, float, float]] = ()
 
@@ -144,8 +142,6 @@ def _fill_sines(name: str, sines: Sequence[Sequence[float]], room: Any) -> None:
 
 @dataclass(kw_only=True)
 class InjectionBase(Parameters):
-    """noise_floor_db: noise energy over the local mean seabed energy, below 0, None: estimated."""
-
     noise_floor_db: Optional[float] = None
 
     def __post_init__(self) -> None:
