@@ -209,6 +209,32 @@ static sonject_status patch_copy(struct passage *passage, const char *part)
     return status;
 }
 
+/* Whatever went into the copy must come out of it: a file that says contradictory things of itself
+ * may fool the writer, but not the reader as well. */
+static sonject_status check_copy(const struct passage *passage, const char *part)
+{
+    const struct decoded_image *image = passage->image;
+    struct report unheard = {{0}, NULL, passage->report->host};
+    struct decoded_image *copy = NULL;
+    size_t bytes = 0;
+    void *found =
+        region_bytes(&image->layout, passage->region, &bytes) ? allocate_array(bytes, 1) : NULL;
+    if (!found)
+        return report_out_of_memory(passage->report, "the patch");
+    sonject_status status = decoded_image_open(&unheard, part, image->array, &copy);
+    if (status == SONJECT_OK)
+        status = decoded_image_read(&unheard, copy, passage->region, found);
+    if (status == SONJECT_OK && memcmp(found, passage->pixels, bytes) != 0)
+        status = SONJECT_ERROR_INPUT;
+    decoded_image_close(&copy);
+    free(found);
+    return status == SONJECT_OK ? SONJECT_OK
+           : status == SONJECT_ERROR_INPUT
+               ? report_failure(passage->report, status,
+                                "%s: damaged: its pixels cannot be replaced", image->file.path)
+               : report_failure(passage->report, status, "%s", unheard.message);
+}
+
 sonject_status decoded_image_copy_with_patch(struct report *report, struct decoded_image *image,
                                              const char *path, const struct region *region,
                                              const void *pixels, sonject_progress_function progress,
@@ -222,6 +248,8 @@ sonject_status decoded_image_copy_with_patch(struct report *report, struct decod
     sonject_status status = copy_bytes(report, image, part, path);
     if (status == SONJECT_OK)
         status = patch_copy(&passage, part);
+    if (status == SONJECT_OK)
+        status = check_copy(&passage, part);
     if (status == SONJECT_OK)
         status = file_publish(report, part, path);
     else

@@ -105,8 +105,8 @@ static sonject_status open_raster(struct question *question, struct opened *plac
                                 ? raster_module_find(question->report, place->path, &place->module)
                                 : report_out_of_memory(question->report, "a path");
     if (status == SONJECT_OK)
-        status = place->module->open(question->report, question->texts[1], &place->raster,
-                                     &place->layout);
+        status = place->module->open(question->report, question->texts[0], question->texts[1],
+                                     &place->raster, &place->layout);
     question->reply->layout = place->layout;
     if (status != SONJECT_OK) {
         free(place->path);
@@ -121,8 +121,7 @@ static sonject_status open_image(struct question *question)
     struct opened *place = free_place(question);
     if (!place)
         return SONJECT_ERROR_STORAGE;
-    if (question->request->function == DECODER_OPEN_IMAGE && !array &&
-        is_raster(question->texts[1]))
+    if (!array && is_raster(question->texts[1]))
         return open_raster(question, place);
     const sonject_status status =
         hdf5_array_open(question->report, question->texts[0], question->texts[1], array,
@@ -190,13 +189,19 @@ static sonject_status read_samples(struct question *question)
 
 static sonject_status write_samples(struct question *question)
 {
+    const struct opened *file = question->file;
+    if (file->raster)
+        return file->module->change(question->report, file->raster, &question->request->region,
+                                    question->samples);
     return hdf5_array_change(question->report, question->file->image, &question->request->region,
                              question->samples);
 }
 
 static sonject_status finish_copy(struct question *question)
 {
-    const sonject_status status = hdf5_array_finish(question->report, question->file->image);
+    const sonject_status status = question->file->raster
+                                      ? SONJECT_OK
+                                      : hdf5_array_finish(question->report, question->file->image);
     close_file(question->file);
     return status;
 }
@@ -228,8 +233,7 @@ static bool is_possible(struct question *question, const struct answer *answer)
     if (request->handle > 0 && request->handle <= DECODER_FILES_MAX)
         question->file = &question->state->files[request->handle - 1];
     const struct opened *file = question->file;
-    const bool changes = request->function == DECODER_WRITE || request->function == DECODER_FINISH;
-    const bool is_image = file && (file->image || (file->raster && !changes));
+    const bool is_image = file && (file->image || file->raster);
     return (!answer->needs_image || is_image) &&
            (request->function != DECODER_CLOSE || question->file);
 }

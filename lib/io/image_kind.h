@@ -32,7 +32,7 @@ bool image_kind_of_beginning(const unsigned char *bytes, size_t count, enum imag
 /* Told by the extension of a file that is to be written; false for another kind. */
 bool image_kind_of_name(const char *path, enum image_kind *kind);
 
-/* Checks what can be told without decoding: that the file is not cut short, and that its pixels are
+/* Checks but for TIFF what can be told without decoding: that the file is not cut short, and that its pixels are
  * of a kind that sonject reads. Adds to parts what a decoder needs of the file; nothing if it needs
  * all. Errors: INPUT, STORAGE, MEMORY. */
 sonject_status image_kind_check(struct report *report, const char *path, enum image_kind kind,

@@ -10,7 +10,6 @@
 #include "io/jpeg_segments.h"
 #include "io/png_chunks.h"
 #include "io/raster_module.h"
-#include "io/tiff_patch.h"
 
 #define PIXELS_MAX    ((uint64_t)1 << 40)
 #define PNG_SIDE_MAX  1000000 /* of libpng */
@@ -77,12 +76,6 @@ static sonject_status publish(struct report *report, sonject_status status, cons
     return status;
 }
 
-static sonject_status read_for_tiff(void *user, const struct region *region, void *pixels)
-{
-    const struct patched_rows *rows = user;
-    return decoded_image_read(rows->report, rows->source, region, pixels);
-}
-
 /* Pixels that are coded anew, among all else that the source says. */
 static sonject_status join_copy(struct patched_rows *rows, enum image_kind kind, const char *part,
                                 const char *path)
@@ -99,32 +92,6 @@ static sonject_status join_copy(struct patched_rows *rows, enum image_kind kind,
     return status;
 }
 
-/* Whatever went into the copy must come out of it: a file that says contradictory things of itself
- * may fool the writer, but not the reader as well. */
-static sonject_status check_copy(const struct patched_rows *rows, enum image_kind kind,
-                                 const char *part)
-{
-    struct report unheard = {{0}, NULL, rows->report->host};
-    struct decoded_image *copy = NULL;
-    size_t bytes = 0;
-    void *found =
-        region_bytes(&rows->layout, rows->region, &bytes) ? allocate_array(bytes, 1) : NULL;
-    if (!found)
-        return report_out_of_memory(rows->report, "the patch");
-    sonject_status status = decoded_image_open(&unheard, part, NULL, &copy);
-    if (status == SONJECT_OK)
-        status = decoded_image_read(&unheard, copy, rows->region, found);
-    if (status == SONJECT_OK && kind != IMAGE_JPEG && memcmp(found, rows->pixels, bytes) != 0)
-        status = SONJECT_ERROR_INPUT;
-    decoded_image_close(&copy);
-    free(found);
-    return status == SONJECT_OK ? SONJECT_OK
-           : status == SONJECT_ERROR_INPUT
-               ? report_failure(rows->report, status, "%s: damaged: its pixels cannot be replaced",
-                                rows->source->file.path)
-               : report_failure(rows->report, status, "%s", unheard.message);
-}
-
 sonject_status raster_file_copy_with_patch(struct report *report, struct decoded_image *source,
                                            enum image_kind kind, const char *path,
                                            const struct region *region, const void *pixels,
@@ -134,20 +101,17 @@ sonject_status raster_file_copy_with_patch(struct report *report, struct decoded
     if (!region_is_inside(&source->layout, region))
         return report_failure(report, SONJECT_ERROR_INPUT, "%s: the region is not inside the image",
                               source->file.path);
+    if (kind == IMAGE_TIFF)
+        return decoded_image_copy_with_patch(report, source, path, region, pixels, progress, user);
     char *part = file_part_name(path);
     if (!part)
         return report_out_of_memory(report, "a file name");
-    const struct tiff_patch patch = {source->file.path, part,  path,     *region, pixels,
-                                     read_for_tiff,     &rows, progress, user};
-    sonject_status status = kind == IMAGE_TIFF ? tiff_copy_with_patch(report, &patch)
-                            : image_kind_is_patched(kind)
-                                ? join_copy(&rows, kind, part, path)
-                                : encode(&rows, part, path, IMAGE_TIFF, "", false);
-    if (status == SONJECT_OK)
-        status = check_copy(&rows, kind, part);
-    status = publish(report, status, part, path);
+    const sonject_status status = image_kind_is_patched(kind)
+                                      ? join_copy(&rows, kind, part, path)
+                                      : encode(&rows, part, path, IMAGE_TIFF, "", false);
+    const sonject_status published = publish(report, status, part, path);
     free(part);
-    return status;
+    return published;
 }
 
 static sonject_status kind_to_write(struct report *report, const char *path,

@@ -16,6 +16,7 @@
 #include "io/raster_writer.hpp"
 
 struct raster_image {
+    std::string name; /* in messages */
     std::string path;
     enum image_kind kind;
     struct raster_layout layout;
@@ -55,7 +56,7 @@ struct raster_image {
         if (!is_read || !reason.empty())
             throw raster::failure{report_failure(
                 report, SONJECT_ERROR_INPUT, "%s: cut short or damaged at rows %llu...%llu: %s",
-                path.c_str(), (unsigned long long)region.first_row,
+                name.c_str(), (unsigned long long)region.first_row,
                 (unsigned long long)(region.first_row + region.rows - 1), reason.c_str())};
         if (is_swapped)
             swap_parts(static_cast<float *>(pixels), region.rows * region.columns);
@@ -90,7 +91,7 @@ void choose_view(struct raster_image &file)
 
 void open_input(struct report *report, struct raster_image &file)
 {
-    const char *path = file.path.c_str();
+    const char *path = file.name.c_str();
     OIIO::ImageSpec configuration;
     file.input = OIIO::ImageInput::create(format_name(file.kind));
     if (!file.input) {
@@ -144,13 +145,13 @@ void check_openexr(struct report *report, struct raster_image &file)
     }
     if (fault)
         throw failure{
-            report_failure(report, SONJECT_ERROR_INPUT, "%s: %s", file.path.c_str(), fault)};
+            report_failure(report, SONJECT_ERROR_INPUT, "%s: %s", file.name.c_str(), fault)};
 }
 
 void take_layout(struct report *report, struct raster_image &file)
 {
     const OIIO::ImageSpec &spec = file.spec;
-    const char *path = file.path.c_str();
+    const char *path = file.name.c_str();
     if (spec.width <= 0 || spec.height <= 0 || spec.depth > 1 ||
         uint64_t(spec.width) > pixels_max / uint64_t(spec.height))
         throw failure{report_failure(report, SONJECT_ERROR_INPUT,
@@ -253,19 +254,22 @@ void read_region(struct report *report, struct raster_image &file, const struct 
 {
     if (!region_is_inside(&file.layout, &region))
         throw failure{report_failure(report, SONJECT_ERROR_INPUT,
-                                     "%s: the region is not inside the image", file.path.c_str())};
+                                     "%s: the region is not inside the image", file.name.c_str())};
     if (file.spec.tile_width > 0)
         read_by_tiles(report, file, region, static_cast<unsigned char *>(pixels));
     else
         read_by_rows(report, file, region, static_cast<unsigned char *>(pixels));
 }
 
-std::unique_ptr<struct raster_image> open_file(struct report *report, const char *path)
+std::unique_ptr<struct raster_image> open_file(struct report *report, const char *name,
+                                               const char *path)
 {
     std::unique_ptr<struct raster_image> file(new struct raster_image);
+    file->name = name;
     file->path = path;
     require(image_kind_of(report, path, &file->kind));
-    require(image_kind_check(report, path, file->kind, &file->parts));
+    require(file->kind == IMAGE_TIFF ? tiff_check(report, name, path)
+                                     : image_kind_check(report, path, file->kind, &file->parts));
     open_input(report, *file);
     if (file->kind == IMAGE_OPENEXR)
         check_openexr(report, *file);
@@ -275,12 +279,12 @@ std::unique_ptr<struct raster_image> open_file(struct report *report, const char
 
 } // namespace
 
-sonject_status raster_image_open(struct report *report, const char *path,
+sonject_status raster_image_open(struct report *report, const char *name, const char *path,
                                  struct raster_image **image, struct raster_layout *layout)
 {
     *image = nullptr;
-    return guarded(report, path, [&] {
-        *image = open_file(report, path).release();
+    return guarded(report, name, [&] {
+        *image = open_file(report, name, path).release();
         *layout = (*image)->layout;
     });
 }
@@ -318,8 +322,18 @@ char *raster_image_attribute(const struct raster_image *image, const char *name)
 sonject_status raster_image_read(struct report *report, struct raster_image *image,
                                  const struct region *region, void *pixels)
 {
-    return guarded(report, image->path.c_str(),
+    return guarded(report, image->name.c_str(),
                    [&] { read_region(report, *image, *region, pixels); });
+}
+
+sonject_status raster_image_change(struct report *report, const struct raster_image *image,
+                                   const struct region *region, const void *pixels)
+{
+    const char *name = image->name.c_str();
+    if (image->kind != IMAGE_TIFF || !region_is_inside(&image->layout, region))
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: the region is not inside a TIFF",
+                              name);
+    return tiff_change(report, name, image->path.c_str(), region, pixels);
 }
 
 sonject_status raster_image_encode(struct report *report, const struct raster_encoding *encoding)

@@ -13,11 +13,12 @@ extern "C" {
 
 struct raster_image;
 
-/* Opens for reading. Refuses (INPUT, with the file's name and what to do): what OpenImageIO cannot
- * read, more than 2^40 pixels, dimensions of 0, pixel types other than 8 and 16 bit unsigned and 16
- * and 32 bit float, palettes, channel counts other than 1 and 2. layout is set on success. *image
- * is the caller's then, for raster_image_close; on failure NULL. */
-sonject_status raster_image_open(struct report *report, const char *path,
+/* Opens for reading; name: of the file in messages. Refuses (INPUT, with the file's name and what
+ * to do): what OpenImageIO cannot read, more than 2^40 pixels, dimensions of 0, pixel types other
+ * than 8 and 16 bit unsigned and 16 and 32 bit float, palettes, channel counts other than 1 and 2.
+ * layout is set on success. *image is the caller's then, for raster_image_close; on failure NULL.
+ */
+sonject_status raster_image_open(struct report *report, const char *name, const char *path,
                                  struct raster_image **image, struct raster_layout *layout);
 void raster_image_close(struct raster_image **image);
 
@@ -29,6 +30,10 @@ char *raster_image_attribute(const struct raster_image *image, const char *name)
  * or strips of the region in memory. Errors: INPUT (cut short, damaged), MEMORY. */
 sonject_status raster_image_read(struct report *report, struct raster_image *image,
                                  const struct region *region, void *pixels);
+
+/* Replaces a region's pixels in the file itself, which must be a TIFF: tiff_change. */
+sonject_status raster_image_change(struct report *report, const struct raster_image *image,
+                                   const struct region *region, const void *pixels);
 
 /* A file that is to be written. */
 struct raster_encoding {

@@ -16,12 +16,14 @@ struct raster_module {
     uint32_t report_bytes;
     uint32_t encoding_bytes;
     char version[16]; /* of sonject */
-    sonject_status (*open)(struct report *report, const char *path, struct raster_image **image,
-                           struct raster_layout *layout);
+    sonject_status (*open)(struct report *report, const char *name, const char *path,
+                           struct raster_image **image, struct raster_layout *layout);
     void (*close)(struct raster_image **image);
     char *(*attribute)(const struct raster_image *image, const char *name);
     sonject_status (*read)(struct report *report, struct raster_image *image,
                            const struct region *region, void *pixels);
+    sonject_status (*change)(struct report *report, const struct raster_image *image,
+                             const struct region *region, const void *pixels);
     sonject_status (*encode)(struct report *report, const struct raster_encoding *encoding);
 };
 

@@ -16,5 +16,6 @@ const struct raster_module raster_module_openimageio = {
     raster_image_close,
     raster_image_attribute,
     raster_image_read,
+    raster_image_change,
     raster_image_encode,
 };

@@ -1,12 +1,10 @@
-/* An image as it is written: PNG and JPEG by OpenImageIO's encoders, TIFF plainly. */
+/* An image as it is written: PNG and JPEG by OpenImageIO's encoders, TIFF by libtiff. */
 #ifndef SONJECT_IO_RASTER_WRITER_HPP
 #define SONJECT_IO_RASTER_WRITER_HPP
 
+#include <cerrno>
 #include <cstdint>
-#include <cstdlib>
-#include <cstring>
 #include <memory>
-#include <new>
 #include <string>
 
 #include <OpenImageIO/imageio.h>
@@ -18,12 +16,14 @@
 #include "io/raster_failure.hpp"
 #include "io/raster_image.h"
 #include "io/raster_streams.hpp"
-#include "io/tiff_head.h"
+#include "io/tiff_file.h"
 
 namespace raster
 {
 
 constexpr uint64_t strip_bytes = 64u << 20; /* of rows that are in memory at a time */
+constexpr uint64_t tiff_strip_bytes = 1u << 18;
+constexpr uint64_t tiff_bytes_max = UINT32_MAX - (64u << 20); /* with some for its directory */
 constexpr uint64_t pixels_max = uint64_t(1) << 40;
 constexpr int png_filter_none = 8; /* of libpng */
 
@@ -82,12 +82,10 @@ class image_writer
 {
   public:
     image_writer(struct report *where, const struct raster_encoding &encoding)
-        : report(where), final_name(encoding.name), layout(encoding.layout), sink(encoding.path)
+        : report(where), final_name(encoding.name), layout(encoding.layout)
     {
-        if (sink.error_so_far() != 0)
-            fail();
         if (encoding.kind == IMAGE_TIFF)
-            write_head(encoding.description);
+            open_tiff(encoding);
         else
             open_encoder(encoding);
     }
@@ -95,41 +93,63 @@ class image_writer
     image_writer(const image_writer &) = delete;
     image_writer &operator=(const image_writer &) = delete;
 
-    void write_rows(uint64_t first, uint64_t end, const void *pixels)
+    void write_rows(uint64_t first, uint64_t end, void *pixels)
     {
-        const bool is_written = encoder
-                                    ? encoder->write_scanlines(int(first), int(end), 0,
-                                                               encoder->spec().format, pixels) &&
-                                          !encoder->has_error()
-                                    : write(pixels, (end - first) * row_bytes(layout));
-        if (!is_written || sink.error_so_far() != 0)
+        unsigned char *row = static_cast<unsigned char *>(pixels);
+        if (encoder &&
+            (!encoder->write_scanlines(int(first), int(end), 0, encoder->spec().format, pixels) ||
+             encoder->has_error() || sink->error_so_far() != 0))
             fail();
+        for (uint64_t i = first; tiff && i < end; i++, row += row_bytes(layout))
+            if (TIFFWriteScanline(tiff.get(), row, uint32_t(i), 0) < 0)
+                fail();
     }
 
     void finish()
     {
+        if (tiff && !TIFFFlush(tiff.get()))
+            fail();
         const bool is_closed = !encoder || (encoder->close() && !encoder->has_error());
-        if (sink.finish() != 0 || !is_closed)
+        if (!is_closed || (sink && sink->finish() != 0))
             fail();
     }
 
   private:
-    void write_head(const char *description)
+    void open_tiff(const struct raster_encoding &encoding)
     {
-        size_t count = 0;
-        const std::unique_ptr<unsigned char, decltype(&std::free)> head(
-            tiff_make_head(&layout, description, &count), &std::free);
-        if (!head)
-            throw std::bad_alloc();
-        if (!write(head.get(), count))
+        const bool is_large = layout.rows > tiff_bytes_max / row_bytes(layout);
+        tiff.reset(tiff_open(encoding.path, is_large ? "w8" : "w", &fault));
+        if (!tiff)
             fail();
+        TIFF *file = tiff.get();
+        const uint64_t rows = tiff_strip_bytes / row_bytes(layout);
+        const uint16_t unspecified = EXTRASAMPLE_UNSPECIFIED;
+        TIFFSetField(file, TIFFTAG_IMAGEWIDTH, uint32_t(layout.columns));
+        TIFFSetField(file, TIFFTAG_IMAGELENGTH, uint32_t(layout.rows));
+        TIFFSetField(file, TIFFTAG_BITSPERSAMPLE, int(8 * pixel_bytes(layout.type)));
+        TIFFSetField(file, TIFFTAG_COMPRESSION, COMPRESSION_NONE);
+        TIFFSetField(file, TIFFTAG_PHOTOMETRIC,
+                     layout.channels == 3 ? PHOTOMETRIC_RGB : PHOTOMETRIC_MINISBLACK);
+        TIFFSetField(file, TIFFTAG_SAMPLESPERPIXEL, int(layout.channels));
+        TIFFSetField(file, TIFFTAG_ROWSPERSTRIP, uint32_t(rows > 0 ? rows : 1));
+        TIFFSetField(file, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG);
+        TIFFSetField(file, TIFFTAG_SOFTWARE, "sonject");
+        if (layout.channels == 2)
+            TIFFSetField(file, TIFFTAG_EXTRASAMPLES, 1, &unspecified);
+        TIFFSetField(file, TIFFTAG_SAMPLEFORMAT,
+                     layout.type == PIXEL_FLOAT32 ? SAMPLEFORMAT_IEEEFP : SAMPLEFORMAT_UINT);
+        if (*encoding.description)
+            TIFFSetField(file, TIFFTAG_IMAGEDESCRIPTION, encoding.description);
     }
 
     void open_encoder(const struct raster_encoding &encoding)
     {
         OIIO::ImageSpec spec(int(layout.columns), int(layout.rows), int(layout.channels),
                              stored_type(layout.type));
-        OIIO::Filesystem::IOProxy *proxy = &sink;
+        sink = std::make_unique<file_sink>(encoding.path);
+        if (sink->error_so_far() != 0)
+            fail();
+        OIIO::Filesystem::IOProxy *proxy = sink.get();
         spec.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
         if (encoding.kind == IMAGE_JPEG)
             spec.attribute("Compression", jpeg_quality);
@@ -149,27 +169,32 @@ class image_writer
             fail();
     }
 
-    bool write(const void *bytes, uint64_t count)
-    {
-        sink.write(bytes, size_t(count));
-        return sink.error_so_far() == 0;
-    }
-
     [[noreturn]] void fail()
     {
-        const std::string reason = encoder ? encoder->geterror() : OIIO::geterror();
-        const int error_number = sink.finish();
+        const std::string reason = tiff || fault.error ? fault.message
+                                   : encoder           ? encoder->geterror()
+                                                       : OIIO::geterror();
+        const int error_number = sink ? sink->finish() : fault.error;
         if (error_number != 0)
             throw failure{file_failure(report, final_name, "write", error_number)};
         throw failure{report_failure(report, SONJECT_ERROR_STORAGE, "%s: cannot write: %s",
                                      final_name, reason.c_str())};
     }
 
+    struct tiff_close {
+        void operator()(TIFF *file) const
+        {
+            TIFFClose(file);
+        }
+    };
+
     struct report *report;
     const char *final_name;
     const struct raster_layout layout;
-    file_sink sink;
-    std::unique_ptr<OIIO::ImageOutput> encoder; /* none for TIFF */
+    std::unique_ptr<file_sink> sink; /* of the encoder */
+    std::unique_ptr<OIIO::ImageOutput> encoder;
+    struct tiff_fault fault = {};
+    std::unique_ptr<TIFF, tiff_close> tiff;
 };
 
 } // namespace raster

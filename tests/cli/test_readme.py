@@ -72,8 +72,8 @@ ELSEWHERE = {
     "env/bin/pip install .": "tests/abi/test_core.py",
     "env/bin/pip wheel . -w wheels": "tests/abi/test_core.py",
     "env/bin/pip install --no-index --find-links wheels sonject": "tests/abi/test_core.py",
-    "apt install libopenimageio2.4 libhdf5-103-1 libyaml-0-2 libjansson4 libxxhash0 pocl-opencl-icd "
-    "# there, as root, on Debian 12": "packages of Debian, which tools/setup.sh installs to build with",
+    "apt install libopenimageio2.4 libtiff6 libhdf5-103-1 libyaml-0-2 libjansson4 libxxhash0 "
+    "pocl-opencl-icd # there, as root, on Debian 12": "packages of Debian, which tools/setup.sh installs to build with",
     "pip install .": "tests/abi/test_core.py",
     "PYTHONPATH=... SONJECT_LIBRARY=... python3 -m pytest bindings/python/tests": "tests/meson.build",
     "sbatch --dependency=afterany:$array tools/slurm/merge.sh out": "tests/cli/test_job_scripts.py",

@@ -1,4 +1,4 @@
-/* What sonject itself reads of image files: where a TIFF keeps its pixels, the chunks of a PNG, the
+/* What sonject itself reads of image files: the chunks of a PNG, the
  * segments of a JPEG, the heads of BMP, PGM and PFM. Decoding is OpenImageIO's. */
 #include "fuzz.h"
 
@@ -8,7 +8,6 @@
 #include "io/jpeg_segments.h"
 #include "io/plain_head.h"
 #include "io/png_chunks.h"
-#include "io/tiff_structure.h"
 
 static void check_parts(sonject_status (*check)(struct report *report, const char *path,
                                                 struct byte_ranges *parts),
@@ -23,24 +22,6 @@ static void check_parts(sonject_status (*check)(struct report *report, const cha
             parts.list[i].count > file_bytes - parts.list[i].place)
             abort();
     free(parts.list);
-}
-
-static void check_blocks(uint64_t file_bytes)
-{
-    struct report report = {{0}, NULL, NULL};
-    struct tiff_structure structure;
-    const sonject_status status = tiff_structure_read(&report, "fuzz.image", &structure);
-    fuzz_expect(status, &report);
-    if (status != SONJECT_OK)
-        return;
-    for (uint64_t i = 0; i < structure.block_count; i++) {
-        (void)tiff_block_rows(&structure, i);
-        (void)tiff_block_bytes(&structure, i);
-        if (structure.offsets[i] > file_bytes ||
-            structure.counts[i] > file_bytes - structure.offsets[i])
-            abort();
-    }
-    tiff_structure_clear(&structure);
 }
 
 static void check_head(sonject_status (*check)(struct report *report, const char *path))
@@ -58,7 +39,5 @@ int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
         check_parts(jpeg_check, count);
     else if (count > 1 && (bytes[0] == 'B' || bytes[0] == 'P'))
         check_head(bytes[0] == 'B' ? bmp_check : pnm_check);
-    else
-        check_blocks(count);
     return 0;
 }

@@ -13,8 +13,7 @@
 #include "io/byte_order.h"
 #include "io/raster_file.h"
 #include "io/swath_file.h"
-#include "io/tiff_encode.h"
-#include "io/tiff_structure.h"
+#include "unit/tiff_encode.h"
 
 #define ROWS       UINT64_C(65536)
 #define COLUMNS    UINT64_C(49152)
@@ -87,7 +86,6 @@ static void write_head(FILE *file, const struct tiff_structure *structure, uint6
 static void write_swath(const char *path, uint32_t compression)
 {
     const struct tiff_structure structure = {.layout = {ROWS, COLUMNS, 1, PIXEL_UINT16},
-                                             .is_big = true,
                                              .is_tiled = true,
                                              .compression = compression,
                                              .predictor = 1,

@@ -14,7 +14,6 @@
 
 #include "io/raster_file.h"
 #include "io/swath_file.h"
-#include "io/tiff_head.h"
 #include "temporary_folder.h"
 #include "tiff_builder.h"
 
@@ -467,11 +466,29 @@ static void expect_copy_of_build(struct temporary_folder *folder, const struct t
         assert_true(changes > 0 && changes <= patch_region.rows * patch_region.columns *
                                                   pixel_size(&build->layout));
     } else {
-        /* two entries of the directory: type, count and place of each */
-        assert_true(copy_count > count);
-        assert_true(changes > 0 && changes <= 2 * 18);
+        /* two entries of the first directory at most: type, count and place of each; the second
+         * directory and the text lie behind it */
+        const size_t directory = (size_t)number_from_bytes(
+            source + (build->is_big ? 8 : 4), build->is_big ? 8 : 4, build->is_big_endian);
+        assert_true(copy_count >= count && changes > 0 && directory < count);
+        assert_true(count_changes(source + directory, count - directory, copy + directory) <=
+                    2 * 18);
     }
     free(copy);
+    free(source);
+    free(pixels);
+}
+
+static void expect_build_refused(struct temporary_folder *folder, const struct tiff_build *build,
+                                 const char *part)
+{
+    const struct region everything = whole_of(&build->layout);
+    unsigned char *pixels = make_pixels(&build->layout, &everything, 7);
+    size_t count;
+    unsigned char *source = build_tiff(build, pixels, &count);
+    const char *path = temporary_file(folder, "a.tif");
+    write_bytes(path, source, count);
+    expect_no_open(path, part);
     free(source);
     free(pixels);
 }
@@ -499,11 +516,14 @@ static void test_tiff_of_every_build(void **state)
         if ((coding->predictor == 3 && build.layout.type != PIXEL_FLOAT32) ||
             (build.is_separate && build.layout.channels == 1))
             continue;
-        expect_copy_of_build(folder, &build);
+        if (coding->predictor == 3 && build.is_big_endian != machine_is_big_endian())
+            expect_build_refused(folder, &build, "in the other byte order");
+        else
+            expect_copy_of_build(folder, &build);
     }
 }
 
-/* Some writers store equal tiles once: changing one must not change the others. */
+/* Some writers store equal tiles once: changing one would change the others. */
 static void test_blocks_that_are_stored_once(void **state)
 {
     struct temporary_folder *folder = *state;
@@ -521,11 +541,9 @@ static void test_blocks_that_are_stored_once(void **state)
     for (size_t i = 0; i < sizeof pixels; i++) /* all tiles are equal */
         pixels[i] = (unsigned char)((i / 64 % 16) * 16 + i % 32);
     unsigned char *source = build_tiff(&build, pixels, &count);
-    const struct region corner = {20, 40, 3, 3};
     const char *path = temporary_file(folder, "a.tif");
     write_bytes(path, source, count);
-    expect_pixels(path, &build.layout, pixels, NULL, NULL);
-    (void)copy_and_compare(folder, path, "b.tif", &build.layout, &corner, pixels);
+    expect_no_open(path, "in the same place");
     free(source);
 }
 
@@ -547,11 +565,9 @@ static void test_blocks_that_grow(void **state)
     write_bytes(path, source, count);
     expect_pixels(path, &grey8, pixels, NULL, NULL);
     path = copy_and_compare(folder, path, "b.tif", &grey8, &patch_region, pixels);
-    struct tiff_structure structure;
-    expect_ok(tiff_structure_read(&report, path, &structure));
-    assert_true(structure.counts[0] < 16 * COLUMNS); /* untouched: runs */
-    assert_true(structure.counts[1] > 16 * COLUMNS); /* every byte for itself */
-    tiff_structure_clear(&structure);
+    unsigned char *copy = bytes_of_file(path, &count);
+    assert_memory_equal(copy + 8, source + 8, 16 * 2); /* the first block is not touched */
+    free(copy);
     free(source);
 }
 
@@ -597,20 +613,6 @@ static void test_a_file_that_contradicts_itself(void **state)
         SONJECT_ERROR_INPUT);
     expect_message(path, "cannot be replaced");
     assert_int_equal(count_entries(folder->path), 1);
-    free(source);
-    free(pixels);
-}
-
-static void expect_build_refused(struct temporary_folder *folder, const struct tiff_build *build,
-                                 const char *part)
-{
-    const struct region everything = whole_of(&build->layout);
-    unsigned char *pixels = make_pixels(&build->layout, &everything, 7);
-    size_t count;
-    unsigned char *source = build_tiff(build, pixels, &count);
-    const char *path = temporary_file(folder, "a.tif");
-    write_bytes(path, source, count);
-    expect_no_open(path, part);
     free(source);
     free(pixels);
 }
@@ -726,8 +728,11 @@ static void test_absurd_dimensions(void **state)
     unsigned char *tiff = bytes_of_file(path, &count);
     for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
         const bool is_big_endian = tiff[0] == 'M';
-        number_to_bytes(sides[i][0], tiff + 10 + 8, 4, is_big_endian); /* the first two entries */
-        number_to_bytes(sides[i][1], tiff + 22 + 8, 4, is_big_endian);
+        unsigned char *entries = tiff + number_from_bytes(tiff + 4, 4, is_big_endian) + 2;
+        number_to_bytes(4, entries + 2, 2, is_big_endian); /* the first two, of 32 bits */
+        number_to_bytes(4, entries + 12 + 2, 2, is_big_endian);
+        number_to_bytes(sides[i][0], entries + 8, 4, is_big_endian);
+        number_to_bytes(sides[i][1], entries + 12 + 8, 4, is_big_endian);
         write_bytes(path, tiff, count);
         expect_no_open(path, "");
     }
@@ -743,10 +748,18 @@ static void test_more_than_4_gb(void **state)
     const struct region last = {69998, 69990, 2, 10};
     const struct region first = {0, 0, 1, 3};
     const char *path = temporary_file(folder, "a.tif");
-    size_t count;
-    unsigned char *head = tiff_make_head(&layout, "", &count);
+    const struct tiff_build build = {.layout = layout,
+                                     .is_big = true,
+                                     .compression = TIFF_UNCOMPRESSED,
+                                     .predictor = 1,
+                                     .block_rows = layout.rows};
+    const struct tiff_structure strip = {.layout = layout, .block_count = 1};
+    unsigned char head[400] = {'I', 'I', 43, 0, 8, 0, 0, 0, 16};
+    struct tiff_bytes out = {&build, head, 16, 0};
+    const size_t count = sizeof head;
+    tiff_put_directory(&out, &strip, 0, count, layout.rows * layout.columns);
     FILE *file = fopen(path, "wb");
-    assert_true(head && file);
+    assert_non_null(file);
     assert_int_equal(fwrite(head, 1, count, file), count);
     assert_int_equal(fseeko(file, (off_t)(count + layout.rows * layout.columns - 3), SEEK_SET), 0);
     assert_int_equal(fwrite("end", 1, 3, file), 3);
@@ -759,7 +772,6 @@ static void test_more_than_4_gb(void **state)
     assert_int_equal(truncate(path, (off_t)(count + layout.rows * layout.columns - 1)), 0);
     expect_no_open(path, "cut short");
     free(pixels);
-    free(head);
 }
 
 static void test_files_that_are_no_images(void **state)
@@ -1031,7 +1043,7 @@ static int count_calls(void *user, double fraction, const char *stage)
 {
     int *calls = user;
     (void)stage;
-    assert_true(fraction > 0.0 && fraction <= 1.0);
+    assert_true(fraction >= 0.0 && fraction <= 1.0);
     ++*calls;
     return 0;
 }

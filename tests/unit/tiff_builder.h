@@ -7,8 +7,7 @@
 #include <string.h>
 
 #include "io/byte_order.h"
-#include "io/tiff_encode.h"
-#include "io/tiff_structure.h"
+#include "unit/tiff_encode.h"
 
 #define TIFF_BUILD_CAPACITY ((size_t)1 << 20)
 #define TIFF_PRIVATE_TEXT   "what only the maker of this file knows"
@@ -124,8 +123,8 @@ static inline void tiff_put_directory(struct tiff_bytes *out,
     out->entries = 0;
     tiff_put(out, 0, head_bytes);
     tiff_put_entry(out, 254, place_type, 1, kind);
-    tiff_put_entry(out, 256, 3, 1, build->layout.columns);
-    tiff_put_entry(out, 257, 3, 1, build->layout.rows);
+    tiff_put_entry(out, 256, place_type, 1, build->layout.columns);
+    tiff_put_entry(out, 257, place_type, 1, build->layout.rows);
     tiff_put_entry(out, 258, 3, channels, build->bits ? build->bits : bits);
     tiff_put_entry(out, 259, 3, 1, build->compression);
     tiff_put_entry(out, 262, 3, 1, build->photometric ? build->photometric - 1 : 1);
@@ -133,11 +132,18 @@ static inline void tiff_put_directory(struct tiff_bytes *out,
         tiff_put_entry(out, 273, place_type, structure->block_count, offsets);
     tiff_put_entry(out, 277, 3, 1, channels);
     if (!build->is_tiled) {
-        tiff_put_entry(out, 278, 3, 1, build->block_rows);
+        tiff_put_entry(out, 278, place_type, 1, build->block_rows);
         tiff_put_entry(out, 279, place_type, structure->block_count, counts);
     }
     tiff_put_entry(out, 284, 3, 1, build->is_separate ? 2 : 1);
     tiff_put_entry(out, 317, 3, 1, build->predictor);
+    if (build->photometric == 1 + 3) { /* a palette of whatever the file begins with */
+        out->entries++;
+        tiff_put(out, 320, 2);
+        tiff_put(out, 3, 2);
+        tiff_put(out, 768, tiff_wide(out));
+        tiff_put(out, 8, tiff_wide(out));
+    }
     if (build->is_tiled) {
         tiff_put_entry(out, 322, 3, 1, build->block_columns);
         tiff_put_entry(out, 323, 3, 1, build->block_rows);
@@ -155,7 +161,6 @@ static inline struct tiff_structure tiff_structure_of(const struct tiff_build *b
 {
     struct tiff_structure structure = {
         .layout = build->layout,
-        .is_big = build->is_big,
         .is_big_endian = build->is_big_endian,
         .is_tiled = build->is_tiled,
         .is_separate = build->is_separate && build->layout.channels > 1,

@@ -1,4 +1,4 @@
-#include "io/tiff_encode.h"
+#include "unit/tiff_encode.h"
 
 #include <stdbool.h>
 #include <stdlib.h>
@@ -15,7 +15,25 @@ struct coded {
     int bit_count;
 };
 
-void tiff_order_bytes(const struct tiff_structure *structure, void *values, size_t count)
+uint32_t tiff_block_channels(const struct tiff_structure *structure)
+{
+    return structure->is_separate ? 1 : structure->layout.channels;
+}
+
+uint64_t tiff_block_rows(const struct tiff_structure *structure, uint64_t block)
+{
+    const uint64_t down = block / structure->blocks_across % structure->blocks_down;
+    const uint64_t left = structure->layout.rows - down * structure->block_rows;
+    return structure->is_tiled || left > structure->block_rows ? structure->block_rows : left;
+}
+
+uint64_t tiff_block_bytes(const struct tiff_structure *structure, uint64_t block)
+{
+    return tiff_block_rows(structure, block) * structure->block_columns *
+           tiff_block_channels(structure) * pixel_bytes(structure->layout.type);
+}
+
+static void order_bytes(const struct tiff_structure *structure, void *values, size_t count)
 {
     const size_t size = pixel_bytes(structure->layout.type);
     unsigned char *value = values;
@@ -62,7 +80,7 @@ static bool predict(const struct tiff_structure *structure, unsigned char *pixel
         if (structure->predictor == TIFF_PREDICTOR_DIFFERENCE)
             for (uint64_t row = 0; row < rows; row++)
                 subtract_neighbours(pixels + row * values * size, values, size, channels);
-        tiff_order_bytes(structure, pixels, (size_t)rows * values);
+        order_bytes(structure, pixels, (size_t)rows * values);
         return true;
     }
     unsigned char *scratch = allocate_array(values, size);
