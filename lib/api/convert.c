@@ -91,11 +91,7 @@ static sonject_status write_into(struct report *report, const sonject_convert_pa
     swath_file_layout(file, &layout);
     const struct raster_layout *ours = &conversion->layout;
     const struct region whole = {0, 0, layout.rows, layout.columns};
-    if (!swath_file_is_lossless(file))
-        status = report_failure(report, SONJECT_ERROR_INPUT,
-                                "%s: a JPEG would change the samples: choose another format",
-                                params->into);
-    else if (!swath_file_is_patched(file))
+    if (swath_file_new_extension(file))
         status = report_failure(report, SONJECT_ERROR_INPUT,
                                 "%s: files of this kind are not changed in place: write a new .tif "
                                 "instead",

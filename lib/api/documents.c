@@ -292,7 +292,6 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
     }
     json_add(&document, "image", json_text(facts->image_name));
     json_add(&document, "labels", labels_document(facts->label_formats));
-    json_add(&document, "image_is_lossless", json_boolean(facts->swath->is_lossless));
     json_add(&document, "times_s", times_document(facts));
     json_add(&document, "pings", json_count(statistics->pings));
     json_add(&document, "rays", json_count(statistics->rays));

@@ -9,7 +9,7 @@
 #include "base/file_list.h"
 #include "base/json_document.h"
 #include "dataset/labels.h"
-#include "io/png_chunks.h"
+#include "io/png_palette.h"
 #include "io/raster_file.h"
 
 static const struct {

@@ -94,8 +94,8 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
                              &result->statistics.output_clipped));
     free(path);
     if (status == SONJECT_OK && facts->scene->input_kind == SONJECT_INPUT_FILE &&
-        !facts->swath->is_patched)
-        report_news(report, "note: %s is a new TIFF: files of the input's kind are not changed",
+        facts->swath->new_extension)
+        report_news(report, "note: %s is a new file: files of the input's kind are not changed",
                     facts->image_name);
     THEN(status, file_list_add(&facts->files, report, folder, facts->image_name, true));
     THEN(status, write_documents(report, facts, folder, run_start, start));

@@ -45,8 +45,7 @@ static sonject_status describe_file(struct report *report, const struct scene *s
 {
     const struct xtf_file *recording = swath_file_xtf(file);
     swath_file_layout(file, &swath->layout);
-    swath->is_lossless = swath_file_is_lossless(file);
-    swath->is_patched = swath_file_is_patched(file);
+    swath->new_extension = swath_file_new_extension(file);
     swath->is_complex = swath->layout.channels == 2;
     swath->transfer = scene->transfer;
     const double largest = (double)swath_file_largest(file);
@@ -89,7 +88,7 @@ static sonject_status describe_made(const struct scene *scene, struct swath *swa
     swath->layout.channels = swath->is_complex ? 2 : 1;
     swath->layout.type = PIXEL_FLOAT32;
     swath->is_made = true;
-    swath->is_lossless = true;
+    swath->new_extension = ".tif";
     return SONJECT_OK;
 }
 
@@ -336,12 +335,11 @@ void swath_close(struct swath *swath)
 
 char *swath_image_name(const struct scene *scene, const struct swath *swath)
 {
-    const char *extension = ".tif";
-    if (swath->is_patched) {
+    const char *extension = swath->new_extension;
+    if (!extension) {
         const char *dot = strrchr(scene->input_path, '.');
         const char *slash = strrchr(scene->input_path, '/');
-        if (dot && (!slash || dot > slash))
-            extension = dot;
+        extension = dot && (!slash || dot > slash) ? dot : ".tif";
     }
     char *name = allocate_array(strlen("image") + strlen(extension) + 1, 1);
     if (name) {

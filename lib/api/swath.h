@@ -19,12 +19,11 @@ struct swath {
     void *stored;  /* the patch's pixels as the file stores them; NULL if made */
     float *pixels; /* the patch, linear: amplitudes or pairs */
     bool is_complex;
-    bool is_made; /* by sonject */
-    bool is_lossless;
-    bool is_whole;   /* numbers that the file limits: integers, also where the layout has floats */
-    bool is_patched; /* the image is the input's file with other pixels, not a TIFF */
-    struct track track;                /* of a recording */
-    uint64_t clipped;                  /* pixels at full scale */
+    bool is_made;  /* by sonject */
+    bool is_whole; /* numbers that the file limits: integers, also where the layout has floats */
+    const char *new_extension; /* of the image; NULL: it is the input's file with other pixels */
+    struct track track;        /* of a recording */
+    uint64_t clipped;          /* pixels at full scale */
     char identity[HASH_TEXT_CAPACITY]; /* of path, size, time and patch pixels; of parameters if
                                           made */
 };

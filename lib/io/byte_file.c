@@ -3,7 +3,6 @@
 #include "io/byte_file.h"
 
 #include <errno.h>
-#include <stdlib.h>
 #include <sys/stat.h>
 #include <sys/types.h>
 #include <unistd.h>
@@ -45,27 +44,5 @@ bool byte_file_copy(FILE *from, uint64_t place, uint64_t count, FILE *to)
             return false;
         count -= some;
     }
-    return true;
-}
-
-bool byte_ranges_add(struct byte_ranges *ranges, uint64_t place, uint64_t count)
-{
-    struct byte_range *last = ranges->count > 0 ? &ranges->list[ranges->count - 1] : NULL;
-    if (last && last->place + last->count == place) {
-        last->count += count;
-        return true;
-    }
-    if (ranges->count == ranges->capacity) {
-        const size_t capacity = ranges->capacity > 0 ? 2 * ranges->capacity : 16;
-        struct byte_range *larger = capacity < SIZE_MAX / sizeof *larger
-                                        ? realloc(ranges->list, capacity * sizeof *larger)
-                                        : NULL;
-        if (!larger)
-            return false;
-        ranges->list = larger;
-        ranges->capacity = capacity;
-    }
-    ranges->list[ranges->count].place = place;
-    ranges->list[ranges->count++].count = count;
     return true;
 }

@@ -21,7 +21,8 @@ sonject_status decoded_image_open(struct report *report, const char *path, const
                                   struct decoded_image **image);
 void decoded_image_close(struct decoded_image **image);
 
-/* A text that is stored with it; false if there is none of that name or it does not fit. */
+/* A text that is stored with it; false if there is none of that name or it does not fit. name "":
+ * the whole description of an image of OpenImageIO's. */
 bool decoded_image_attribute(struct decoded_image *image, const char *name, char *value,
                              size_t capacity);
 

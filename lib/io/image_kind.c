@@ -7,9 +7,7 @@
 #include <string.h>
 
 #include "base/file.h"
-#include "io/jpeg_segments.h"
-#include "io/plain_head.h"
-#include "io/png_chunks.h"
+#include "io/byte_file.h"
 
 struct beginning {
     enum image_kind kind;
@@ -103,11 +101,6 @@ static sonject_status refuse_kind(struct report *report, const char *path,
                           count == 0 ? "empty" : "of no format that sonject knows", readable);
 }
 
-bool image_kind_is_patched(enum image_kind kind)
-{
-    return kind == IMAGE_TIFF || kind == IMAGE_PNG || kind == IMAGE_JPEG;
-}
-
 bool image_kind_of_beginning(const unsigned char *bytes, size_t count, enum image_kind *kind)
 {
     for (size_t i = 0; i < sizeof beginnings / sizeof *beginnings; i++)
@@ -153,23 +146,4 @@ bool image_kind_of_name(const char *path, enum image_kind *kind)
             return true;
         }
     return false;
-}
-
-sonject_status image_kind_check(struct report *report, const char *path, enum image_kind kind,
-                                struct byte_ranges *parts)
-{
-    switch (kind) {
-    case IMAGE_PNG:
-        return png_check(report, path, parts);
-    case IMAGE_JPEG:
-        return jpeg_check(report, path, parts);
-    case IMAGE_BMP:
-        return bmp_check(report, path);
-    case IMAGE_PNM:
-        return pnm_check(report, path);
-    case IMAGE_OPENEXR:
-    case IMAGE_TIFF:
-        break;
-    }
-    return SONJECT_OK;
 }

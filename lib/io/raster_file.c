@@ -7,13 +7,13 @@
 #include "base/file.h"
 #include "base/growing_text.h"
 #include "base/memory.h"
-#include "io/jpeg_segments.h"
-#include "io/png_chunks.h"
+#include "io/png_palette.h"
 #include "io/raster_module.h"
 
-#define PIXELS_MAX    ((uint64_t)1 << 40)
-#define PNG_SIDE_MAX  1000000 /* of libpng */
-#define JPEG_SIDE_MAX 65500   /* of libjpeg */
+#define PIXELS_MAX      ((uint64_t)1 << 40)
+#define DESCRIPTION_MAX 8192    /* bytes of one that a copy keeps */
+#define PNG_SIDE_MAX    1000000 /* of libpng */
+#define JPEG_SIDE_MAX   65500   /* of libjpeg */
 
 /* Rows of an image that is written: those of source, or zeros, but for the region's pixels. */
 struct patched_rows {
@@ -76,22 +76,6 @@ static sonject_status publish(struct report *report, sonject_status status, cons
     return status;
 }
 
-/* Pixels that are coded anew, among all else that the source says. */
-static sonject_status join_copy(struct patched_rows *rows, enum image_kind kind, const char *part,
-                                const char *path)
-{
-    char *encoded = file_part_name(part);
-    if (!encoded)
-        return report_out_of_memory(rows->report, "a file name");
-    sonject_status status = encode(rows, encoded, path, kind, "", false);
-    if (status == SONJECT_OK)
-        status = (kind == IMAGE_PNG ? png_join : jpeg_join)(rows->report, rows->source->file.path,
-                                                            encoded, part, path);
-    file_discard(encoded);
-    free(encoded);
-    return status;
-}
-
 sonject_status raster_file_copy_with_patch(struct report *report, struct decoded_image *source,
                                            enum image_kind kind, const char *path,
                                            const struct region *region, const void *pixels,
@@ -103,12 +87,15 @@ sonject_status raster_file_copy_with_patch(struct report *report, struct decoded
                               source->file.path);
     if (kind == IMAGE_TIFF)
         return decoded_image_copy_with_patch(report, source, path, region, pixels, progress, user);
+    char description[DESCRIPTION_MAX];
+    if (!decoded_image_attribute(source, "", description, sizeof description))
+        *description = '\0';
     char *part = file_part_name(path);
     if (!part)
         return report_out_of_memory(report, "a file name");
-    const sonject_status status = image_kind_is_patched(kind)
-                                      ? join_copy(&rows, kind, part, path)
-                                      : encode(&rows, part, path, IMAGE_TIFF, "", false);
+    const enum image_kind new_kind =
+        kind == IMAGE_PNG || kind == IMAGE_JPEG ? IMAGE_PNG : IMAGE_TIFF;
+    const sonject_status status = encode(&rows, part, path, new_kind, description, false);
     const sonject_status published = publish(report, status, part, path);
     free(part);
     return published;

@@ -14,10 +14,10 @@ struct raster_attribute {
     const char *value;
 };
 
-/* Writes at path a copy of source, a file of that kind, with region replaced by pixels: TIFF, PNG
- * and JPEG keep format, type, tiling, compression and metadata; of other kinds the copy is a TIFF
- * of the samples. Streams in strips of at most about 64 MB. path is published whole or not at all.
- * progress may be NULL. Errors: INPUT, STORAGE, MEMORY, CANCELLED. */
+/* Writes at path a copy of source, a file of that kind, with region replaced by pixels: a TIFF
+ * keeps all else; of other kinds the copy has the samples and the description, as PNG where the
+ * source is PNG or JPEG, else as TIFF. Streams in strips of at most about 64 MB. path is published
+ * whole or not at all. progress may be NULL. Errors: INPUT, STORAGE, MEMORY, CANCELLED. */
 sonject_status raster_file_copy_with_patch(struct report *report, struct decoded_image *source,
                                            enum image_kind kind, const char *path,
                                            const struct region *region, const void *pixels,

@@ -1,6 +1,6 @@
 #include "io/raster_image.h"
 
-#include <cstdlib>
+#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <string>
@@ -11,6 +11,9 @@
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/strutil.h>
 
+#include "io/byte_file.h"
+#include "io/plain_head.h"
+#include "io/png_palette.h"
 #include "io/raster_failure.hpp"
 #include "io/raster_streams.hpp"
 #include "io/raster_writer.hpp"
@@ -20,25 +23,14 @@ struct raster_image {
     std::string path;
     enum image_kind kind;
     struct raster_layout layout;
-    struct byte_ranges parts = {};
-    std::unique_ptr<OIIO::Filesystem::IOProxy>
-        view;                          /* if the decoder does not see the whole file */
-    std::vector<unsigned char> copied; /* what it sees, where it must lie in memory */
+    std::vector<unsigned char> numbers; /* a PNG that stands for the file; none where empty */
+    std::unique_ptr<OIIO::Filesystem::IOProxy> view; /* of these */
     std::unique_ptr<OIIO::ImageInput> input;
     OIIO::ImageSpec spec;
     std::vector<unsigned char> rows;     /* decoded last, for pieces of one strip */
     uint64_t first_row = 0, end_row = 0; /* what they are; nothing if these are equal */
     bool is_half = false;                /* stored as 16-bit floating point */
     bool is_swapped = false;             /* the imaginary part is stored before the real one */
-
-    raster_image() = default;
-    ~raster_image()
-    {
-        input.reset();
-        std::free(parts.list);
-    }
-    raster_image(const raster_image &) = delete;
-    raster_image &operator=(const raster_image &) = delete;
 
     /* Reads whole rows (from a tiled image: those columns) into pixels. */
     void read(struct report *report, const struct region &region, void *pixels)
@@ -75,18 +67,22 @@ using namespace raster;
 namespace
 {
 
-/* OpenImageIO reads a JPEG from its own file or from memory. */
-void choose_view(struct raster_image &file)
+/* A coloured PNG as the grey one that it was made of. */
+void restore_numbers(struct raster_image &file)
 {
-    std::unique_ptr<file_view> view = std::make_unique<file_view>(file.path, file.parts);
-    if (file.kind == IMAGE_JPEG) {
-        file.copied.resize(view->size());
-        file.copied.resize(view->pread(file.copied.data(), file.copied.size(), 0));
-        file.view =
-            std::make_unique<OIIO::Filesystem::IOMemReader>(file.copied.data(), file.copied.size());
-    } else {
-        file.view = std::move(view);
-    }
+    uint64_t bytes = 0;
+    FILE *source = byte_file_open(file.path.c_str(), &bytes);
+    file.numbers.resize(source ? size_t(bytes) : 0);
+    const bool is_read = source && byte_file_read(source, 0, file.numbers.data(), size_t(bytes));
+    if (source)
+        std::fclose(source);
+    if (!is_read || bytes < PNG_COLOURED_BYTES)
+        file.numbers.assign(PNG_COLOURED_BYTES, 0);
+    const auto start = file.numbers.begin();
+    file.numbers.erase(start + PNG_NUMBERS_PLACE + PNG_HEADER_BYTES, start + PNG_COLOURED_BYTES);
+    file.numbers.erase(start + PNG_HEADER_PLACE, start + PNG_NUMBERS_PLACE);
+    file.view =
+        std::make_unique<OIIO::Filesystem::IOMemReader>(file.numbers.data(), file.numbers.size());
 }
 
 void open_input(struct report *report, struct raster_image &file)
@@ -102,11 +98,9 @@ void open_input(struct report *report, struct raster_image &file)
     file.input->threads(1);
     /* pixels as they are stored, not multiplied by anything */
     configuration.attribute("oiio:UnassociatedAlpha", 1);
-    if (file.parts.count > 0) {
-        choose_view(file);
-        OIIO::Filesystem::IOProxy *proxy = file.view.get();
+    OIIO::Filesystem::IOProxy *proxy = file.view.get();
+    if (proxy)
         configuration.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-    }
     const bool is_open = file.input->open(file.path, file.spec, configuration);
     const std::string reason = file.input->geterror(); /* of warnings too */
     if (!is_open || !reason.empty())
@@ -162,6 +156,11 @@ void take_layout(struct report *report, struct raster_image &file)
                                      "%s: has %d channels; sonject reads 1 (amplitude) or 2 (real, "
                                      "imaginary); convert it to one channel first",
                                      path, spec.nchannels)};
+    if (spec.nchannels == 2 && spec.alpha_channel >= 0)
+        throw failure{report_failure(report, SONJECT_ERROR_INPUT,
+                                     "%s: has 2 channels, grey and transparency; convert it to one "
+                                     "channel first",
+                                     path)};
     file.layout.rows = uint64_t(spec.height);
     file.layout.columns = uint64_t(spec.width);
     file.layout.channels = uint32_t(spec.nchannels);
@@ -261,6 +260,14 @@ void read_region(struct report *report, struct raster_image &file, const struct 
         read_by_rows(report, file, region, static_cast<unsigned char *>(pixels));
 }
 
+/* Of PNG and JPEG the decoder alone tells that they are cut short: at once,
+ * not after hours of work. */
+void decode_to_the_end(struct report *report, struct raster_image &file)
+{
+    file.rows.resize(size_t(row_bytes(file.layout)));
+    file.read(report, {file.layout.rows - 1, 0, 1, file.layout.columns}, file.rows.data());
+}
+
 std::unique_ptr<struct raster_image> open_file(struct report *report, const char *name,
                                                const char *path)
 {
@@ -268,12 +275,23 @@ std::unique_ptr<struct raster_image> open_file(struct report *report, const char
     file->name = name;
     file->path = path;
     require(image_kind_of(report, path, &file->kind));
-    require(file->kind == IMAGE_TIFF ? tiff_check(report, name, path)
-                                     : image_kind_check(report, path, file->kind, &file->parts));
+    bool is_coloured = false;
+    if (file->kind == IMAGE_TIFF)
+        require(tiff_check(report, name, path));
+    if (file->kind == IMAGE_PNG)
+        require(png_check(report, name, path, &is_coloured));
+    if (file->kind == IMAGE_BMP)
+        require(bmp_check(report, path));
+    if (file->kind == IMAGE_PNM)
+        require(pnm_check(report, path));
+    if (is_coloured)
+        restore_numbers(*file);
     open_input(report, *file);
     if (file->kind == IMAGE_OPENEXR)
         check_openexr(report, *file);
     take_layout(report, *file);
+    if (file->kind == IMAGE_PNG || file->kind == IMAGE_JPEG)
+        decode_to_the_end(report, *file);
     return file;
 }
 
@@ -307,6 +325,8 @@ char *raster_image_attribute(const struct raster_image *image, const char *name)
 {
     try {
         const std::string description(image->spec.get_string_attribute(description_name));
+        if (!*name)
+            return strdup(description.c_str());
         const std::string lines = "\n" + description + "\n";
         const std::string start = "\n" + std::string(name) + "=";
         const size_t line = lines.find(start);

@@ -23,7 +23,7 @@ sonject_status raster_image_open(struct report *report, const char *name, const 
 void raster_image_close(struct raster_image **image);
 
 /* A text that is stored with the image, as a line "name=value" of its description: for free(), NULL
- * if there is none of that name. */
+ * if there is none of that name. name "": the whole description. */
 char *raster_image_attribute(const struct raster_image *image, const char *name);
 
 /* Reads a region's stored pixels, row after row, channels interleaved. Holds no more than the tiles

@@ -1,15 +1,12 @@
-/* Files as OpenImageIO's decoders and encoders see them. */
+/* Files as OpenImageIO's encoders see them. */
 #ifndef SONJECT_IO_RASTER_STREAMS_HPP
 #define SONJECT_IO_RASTER_STREAMS_HPP
 
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
-#include <string>
 
 #include <OpenImageIO/filesystem.h>
-
-#include "io/byte_file.h"
 
 namespace raster
 {
@@ -83,77 +80,6 @@ class file_sink final : public OIIO::Filesystem::IOProxy
     int error_number;
     int64_t position = 0;
     int64_t end = 0;
-};
-
-/* Parts of a file as if there were nothing between them. */
-class file_view final : public OIIO::Filesystem::IOProxy
-{
-  public:
-    /* parts must stay where they are */
-    file_view(const std::string &path, const struct byte_ranges &chosen)
-        : IOProxy(path, Read), parts(chosen), file(byte_file_open(path.c_str(), &file_bytes))
-    {
-        for (size_t i = 0; i < parts.count; i++)
-            total += parts.list[i].count;
-    }
-    ~file_view() override
-    {
-        if (file)
-            std::fclose(file);
-    }
-    file_view(const file_view &) = delete;
-    file_view &operator=(const file_view &) = delete;
-
-    const char *proxytype() const override
-    {
-        return "view";
-    }
-    int64_t tell() override
-    {
-        return position;
-    }
-    bool seek(int64_t offset) override
-    {
-        position = offset;
-        return offset >= 0;
-    }
-    size_t read(void *bytes, size_t count) override
-    {
-        const size_t got = pread(bytes, count, position);
-        position += int64_t(got);
-        return got;
-    }
-    size_t pread(void *bytes, size_t count, int64_t offset) override
-    {
-        unsigned char *to = static_cast<unsigned char *>(bytes);
-        size_t got = 0;
-        uint64_t start = uint64_t(offset);
-        for (size_t i = 0; file && i < parts.count && got < count; i++) {
-            const struct byte_range &part = parts.list[i];
-            if (start >= part.count) {
-                start -= part.count;
-                continue;
-            }
-            const uint64_t left = part.count - start;
-            const size_t some = left < count - got ? size_t(left) : count - got;
-            if (!byte_file_read(file, part.place + start, to + got, some))
-                break;
-            got += some;
-            start = 0;
-        }
-        return got;
-    }
-    size_t size() const override
-    {
-        return size_t(total);
-    }
-
-  private:
-    const struct byte_ranges &parts;
-    uint64_t file_bytes = 0;
-    std::FILE *file;
-    uint64_t total = 0;
-    int64_t position = 0;
 };
 
 } // namespace raster

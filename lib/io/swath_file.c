@@ -173,14 +173,11 @@ void swath_file_layout(const struct swath_file *file, struct raster_layout *layo
         *layout = file->kind == SWATH_MAT ? file->mat.layout : file->decoded->layout;
 }
 
-bool swath_file_is_lossless(const struct swath_file *file)
+const char *swath_file_new_extension(const struct swath_file *file)
 {
-    return file->kind != SWATH_IMAGE || file->image != IMAGE_JPEG;
-}
-
-bool swath_file_is_patched(const struct swath_file *file)
-{
-    return file->kind != SWATH_IMAGE || image_kind_is_patched(file->image);
+    if (file->kind != SWATH_IMAGE || file->image == IMAGE_TIFF)
+        return NULL;
+    return file->image == IMAGE_PNG || file->image == IMAGE_JPEG ? ".png" : ".tif";
 }
 
 uint32_t swath_file_largest(const struct swath_file *file)

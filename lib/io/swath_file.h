@@ -29,11 +29,9 @@ void swath_file_close(struct swath_file **file);
 
 void swath_file_layout(const struct swath_file *file, struct raster_layout *layout);
 
-/* False where writing the format changes pixels (JPEG). */
-bool swath_file_is_lossless(const struct swath_file *file);
-
-/* Whether copies keep the file's format and all else that it says; else they are TIFF. */
-bool swath_file_is_patched(const struct swath_file *file);
+/* NULL: copies keep the file's format and all else that it says. Else they are new images, of which
+ * this is the extension (".png" or ".tif"). */
+const char *swath_file_new_extension(const struct swath_file *file);
 
 /* The largest number that the file may hold where that is less than its type's; 0 elsewhere. */
 uint32_t swath_file_largest(const struct swath_file *file);
@@ -60,8 +58,8 @@ sonject_status swath_file_read(struct report *report, struct swath_file *file,
                                const struct region *region, void *pixels);
 
 /* Writes at path a copy of the file with region replaced by pixels, everything else as it was, or
- * a TIFF (swath_file_is_patched). Published whole or not at all. progress may be NULL. Errors:
- * INPUT, STORAGE, MEMORY, CANCELLED.
+ * a new image (swath_file_new_extension). Published whole or not at all. progress may be NULL.
+ * Errors: INPUT, STORAGE, MEMORY, CANCELLED.
  */
 sonject_status swath_file_copy_with_patch(struct report *report, const struct swath_file *file,
                                           const char *path, const struct region *region,

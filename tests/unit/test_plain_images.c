@@ -222,12 +222,12 @@ static void test_a_copy_is_a_tiff_of_all_samples(void **state)
         float fresh[4], samples[SAMPLES];
         kinds[i].make(&draft);
         struct swath_file *file = open_draft(*state, kinds[i].name, NULL, &draft);
-        assert_false(swath_file_is_patched(file));
+        assert_string_equal(swath_file_new_extension(file), ".tif");
         memset(fresh, 0x42, sizeof fresh);
         patch(file, *state, "copy.tif", fresh, &back);
         swath_file_close(&file);
         file = open_draft(*state, "copy.tif", NULL, NULL);
-        assert_true(swath_file_is_patched(file));
+        assert_null(swath_file_new_extension(file));
         expect_layout(file, 1, kinds[i].type);
         read_all(file, samples);
         swath_file_close(&file);

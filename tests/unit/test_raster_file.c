@@ -257,7 +257,6 @@ static void test_attributes(void **state)
         assert_string_equal(value, "intensity");
         assert_false(swath_file_attribute(file, "frequency", value, sizeof value));
         assert_false(swath_file_attribute(file, "sonject:side", value, 0));
-        assert_int_equal(swath_file_is_lossless(file), i < 2);
         swath_file_close(&file);
     }
     free(pixels);
@@ -349,90 +348,35 @@ static const char *copy_and_compare(struct temporary_folder *folder, const char 
     return path;
 }
 
-static void test_png_keeps_what_it_says(void **state)
+/* Neither the coding of a JPEG nor a PNG's chunks are kept, but pixels and description are. */
+static void test_png_and_jpeg_become_a_png_of_their_pixels(void **state)
 {
     struct temporary_folder *folder = *state;
-    /* a chunk of a kind that nobody knows, whose checksum nobody looks at */
-    static const unsigned char chunk[] = {0,   0,   0,   4,   's', 'o', 'N', 'r',
-                                          'a', 'b', 'c', 'd', 1,   2,   3,   4};
     static const struct raster_attribute attribute = {"sonject:side", "port"};
-    const struct raster_layout *layouts[] = {&grey8, &grey16};
-    for (size_t i = 0; i < 2; i++) {
-        const struct region everything = whole_of(layouts[i]);
-        unsigned char *pixels = make_pixels(layouts[i], &everything, 1);
-        const char *path = temporary_file(folder, "a.png");
-        size_t count;
-        expect_ok(raster_file_write(&report, path, layouts[i], NULL, &attribute, 1, pixels));
-        unsigned char *bytes = bytes_of_file(path, &count);
-        unsigned char *longer = calloc(count + sizeof chunk, 1);
-        const size_t head = 8 + 25; /* signature and IHDR */
-        memcpy(longer, bytes, head);
-        memcpy(longer + head, chunk, sizeof chunk);
-        memcpy(longer + head + sizeof chunk, bytes + head, count - head);
-        write_bytes(path, longer, count + sizeof chunk);
-        path = copy_and_compare(folder, path, "b.png", layouts[i], &patch_region, pixels);
-        size_t copy_count;
-        unsigned char *copy = bytes_of_file(path, &copy_count);
-        assert_memory_equal(copy, longer, head + sizeof chunk);
+    static const struct format sources[] = {
+        {"a.png", &grey8}, {"b.png", &grey16}, {"c.jpg", &grey8}};
+    for (size_t i = 0; i < 3; i++) {
+        const struct raster_layout *layout = sources[i].layout;
+        const struct region everything = whole_of(layout);
+        unsigned char *pixels = make_pixels(layout, &everything, 1);
+        const char *path = temporary_file(folder, sources[i].name);
         struct swath_file *file;
         char value[8];
+        expect_ok(raster_file_write(&report, path, layout, NULL, &attribute, 1, pixels));
+        unsigned char *stored = read_file(path, layout, &everything);
+        path = copy_and_compare(folder, path, "copy.png", layout, &patch_region, stored);
+        size_t count;
+        unsigned char *copy = bytes_of_file(path, &count);
+        assert_memory_equal(copy, "\x89PNG", 4);
         expect_ok(swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file));
         assert_true(swath_file_attribute(file, "sonject:side", value, sizeof value));
         assert_string_equal(value, "port");
+        assert_string_equal(swath_file_new_extension(file), ".png");
         swath_file_close(&file);
         free(copy);
-        free(longer);
-        free(bytes);
+        free(stored);
         free(pixels);
     }
-}
-
-static void test_jpeg_keeps_what_it_says_and_nearly_all_pixels(void **state)
-{
-    struct temporary_folder *folder = *state;
-    static const unsigned char segment[] = {0xFF, 0xE7, 0, 9, 's', 'o', 'n', 'a', 'r', '!', 0};
-    const struct region everything = whole_of(&grey8);
-    unsigned char *pixels = make_pixels(&grey8, &everything, 1);
-    unsigned char *patch = make_pixels(&grey8, &patch_region, 2);
-    char source[TEMPORARY_CAPACITY + 300];
-    size_t count;
-    snprintf(source, sizeof source, "%s", temporary_file(folder, "a.jpg"));
-    expect_ok(raster_file_write(&report, source, &grey8, NULL, NULL, 0, pixels));
-    unsigned char *bytes = bytes_of_file(source, &count);
-    unsigned char *longer = calloc(count + sizeof segment, 1);
-    memcpy(longer, bytes, 2);
-    memcpy(longer + 2, segment, sizeof segment);
-    memcpy(longer + 2 + sizeof segment, bytes + 2, count - 2);
-    write_bytes(source, longer, count + sizeof segment);
-    const char *path = temporary_file(folder, "b.jpg");
-    expect_ok(copy_with_patch(source, path, &patch_region, patch, NULL, NULL));
-    size_t copy_count;
-    unsigned char *copy = bytes_of_file(path, &copy_count);
-    assert_memory_equal(copy, longer, 2 + sizeof segment);
-    unsigned char *before = read_file(source, &grey8, &everything);
-    unsigned char *after = read_file(path, &grey8, &everything);
-    for (uint64_t row = 0; row < ROWS; row++)
-        for (uint64_t i = 0; i < COLUMNS; i++) {
-            const bool is_patch = row >= patch_region.first_row &&
-                                  row - patch_region.first_row < patch_region.rows &&
-                                  i >= patch_region.first_column &&
-                                  i - patch_region.first_column < patch_region.columns;
-            const int expected = is_patch
-                                     ? patch[(row - patch_region.first_row) * patch_region.columns +
-                                             i - patch_region.first_column]
-                                     : before[row * COLUMNS + i];
-            /* at quality 98 the frequencies of a block are kept in steps of 1...5 of 2040 */
-            if (abs(after[row * COLUMNS + i] - expected) > 5)
-                fail_msg("row %d, column %d: %d is not about %d", (int)row, (int)i,
-                         after[row * COLUMNS + i], expected);
-        }
-    free(before);
-    free(after);
-    free(copy);
-    free(longer);
-    free(bytes);
-    free(pixels);
-    free(patch);
 }
 
 struct coding {
@@ -675,7 +619,7 @@ static void test_png_that_is_not_for_sonject(void **state)
         unsigned char bits, colours;
         const char *part;
     } cases[] = {{1, 0, "1-bit"}, {4, 0, "4-bit"},       {8, 2, "3 channels"}, {8, 3, "palette"},
-                 {8, 4, "2 ch"},  {16, 6, "4 channels"}, {8, 1, "unknown"},    {8, 255, "unknown"}};
+                 {8, 4, "2 ch"},  {16, 6, "4 channels"}, {8, 1, "IHDR"},       {8, 255, "IHDR"}};
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         bytes[24] = cases[i].bits;
         bytes[25] = cases[i].colours;
@@ -721,7 +665,7 @@ static void test_absurd_dimensions(void **state)
     put_big(png + 20, 1);
     sum_png_header(png);
     write_bytes(path, png, count);
-    expect_no_open(path, "million");
+    expect_no_open(path, "IHDR");
     free(png);
     path = temporary_file(folder, "a.tif");
     expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
@@ -803,42 +747,14 @@ static void test_a_jpeg_that_ends_early(void **state)
     const struct region everything = whole_of(&grey8);
     const char *path = temporary_file(folder, "a.jpg");
     unsigned char *pixels = make_pixels(&grey8, &everything, 1);
-    struct swath_file *file;
     size_t count;
     expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
     unsigned char *bytes = bytes_of_file(path, &count);
     bytes[count / 2] = 0xFF;
     bytes[count / 2 + 1] = 0xD9;
     write_bytes(path, bytes, count);
-    expect_ok(swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file));
-    assert_int_equal(swath_file_read(&report, file, &everything, pixels), SONJECT_ERROR_INPUT);
-    expect_message(path, "cut short or damaged");
-    swath_file_close(&file);
+    expect_no_open(path, "cut short or damaged");
     free(bytes);
-    free(pixels);
-}
-
-/* Which would be read one after the other. */
-static void test_a_jpeg_of_filling(void **state)
-{
-    struct temporary_folder *folder = *state;
-    unsigned char bytes[2 + 5000];
-    memset(bytes, 0xFF, sizeof bytes);
-    bytes[1] = 0xD8;
-    const char *path = temporary_file(folder, "a.jpg");
-    const struct region everything = whole_of(&grey8);
-    unsigned char *pixels = make_pixels(&grey8, &everything, 1);
-    size_t count;
-    expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
-    unsigned char *jpeg = bytes_of_file(path, &count);
-    unsigned char *longer = calloc(sizeof bytes + count, 1);
-    assert_non_null(longer);
-    memcpy(longer, bytes, sizeof bytes);
-    memcpy(longer + sizeof bytes, jpeg + 2, count - 2);
-    write_bytes(path, longer, sizeof bytes + count - 2);
-    expect_no_open(path, "damaged JPEG");
-    free(longer);
-    free(jpeg);
     free(pixels);
 }
 
@@ -971,11 +887,14 @@ static void test_files_that_are_cut_short(void **state)
         }
         stop_listening(silence);
         expect_silence(paths.output);
-        if (damage.refused != tried || damage.refused_at_once != tried)
+        /* all but a PNG's mark of its end, which holds no pixels */
+        const size_t harmless = strcmp(damaged_names[i], "a.png") == 0 ? 12 : 0;
+        if (damage.refused != tried - harmless || damage.refused_at_once != damage.refused ||
+            damage.taken != harmless)
             fail_msg("%s: of %zu, %zu were refused, %zu at once, and %zu taken", damaged_names[i],
                      tried, damage.refused, damage.refused_at_once, damage.taken);
         try_damaged(&damage, bytes, count);
-        assert_int_equal(damage.taken, 1);
+        assert_int_equal(damage.taken, harmless + 1);
         (void)unlink(paths.copy);
         (void)unlink(paths.source);
         (void)unlink(paths.output);
@@ -1124,8 +1043,7 @@ int main(void)
         WITH_FOLDER(test_the_same_pixels_give_the_same_file),
         WITH_FOLDER(test_what_a_format_does_not_hold),
         WITH_FOLDER(test_placed),
-        WITH_FOLDER(test_png_keeps_what_it_says),
-        WITH_FOLDER(test_jpeg_keeps_what_it_says_and_nearly_all_pixels),
+        WITH_FOLDER(test_png_and_jpeg_become_a_png_of_their_pixels),
         WITH_FOLDER(test_tiff_of_every_build),
         WITH_FOLDER(test_blocks_that_are_stored_once),
         WITH_FOLDER(test_blocks_that_grow),
@@ -1137,7 +1055,6 @@ int main(void)
         WITH_FOLDER(test_more_than_4_gb),
         WITH_FOLDER(test_files_that_are_no_images),
         WITH_FOLDER(test_a_jpeg_that_ends_early),
-        WITH_FOLDER(test_a_jpeg_of_filling),
         WITH_FOLDER(test_files_that_are_cut_short),
         WITH_FOLDER(test_files_that_are_damaged),
         WITH_FOLDER(test_cancelling),
