@@ -29,7 +29,7 @@ def is_command(text):
     """A program with arguments; not a folder, a file or a verb's name."""
     if re.fullmatch(r"sonject \w+", text):
         return text == "sonject devices"
-    return bool(PROGRAM.match(text)) or text == ".ci/run"
+    return bool(PROGRAM.match(text)) or text in (".ci/run", ".ci/nightly")
 
 
 def markdown_commands(name):
