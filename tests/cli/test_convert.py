@@ -129,7 +129,7 @@ def test_openexr_comes_in_as_it_is(sonject, tmp_path, swath, kind, compression, 
     assert read.dtype == ("c8" if kind == "c8" else "f4") and numpy.array_equal(read, image)
     assert_refused(sonject("convert", "a.npy", "b.exr", "--into", "a.exr"), 3,
                    "not changed in place: write a new .tif")
-    for part in range(1, 21):
+    for part in (1, 4, 10, 16, 20):
         (tmp_path / "a.exr").write_bytes(source[:len(source) * part // 21])
         assert_refused(sonject("convert", "a.exr", "b.npy"), 3, "a.exr: ")
 

@@ -170,18 +170,18 @@ def alter_unseen(path):
     os.utime(path, ns=(time_ns, time_ns))
 
 
-@pytest.mark.parametrize("name", ["image.tif", "labels.png", "truth.json", "coco.json"])
-def test_what_is_lost_of_a_finished_run_is_made_again(sonject, scene, tmp_path, name):
+def test_what_is_lost_of_a_finished_run_is_made_again(sonject, scene, tmp_path):
     folder = tmp_path / "result"
     assert sonject("run", scene, "-o", "result").returncode == 0
     before = contents(folder)
-    for harm in (lambda path: path.unlink(), truncate, alter, alter_unseen):
+    for name, harm in {"image.tif": pathlib.Path.unlink, "labels.png": truncate, "truth.json": alter,
+                       "coco.json": alter_unseen}.items():
         harm(folder / name)
         answer = sonject("run", scene, "-o", "result", "--verbose")
         assert answer.returncode == 0 and "already" not in answer.stderr
         assert f"{name} is not as it was written" in answer.stderr
         assert contents(folder) == before
-    (folder / name).touch()
+    (folder / "image.tif").touch()
     assert "already" in sonject("run", scene, "-o", "result").stderr
 
 

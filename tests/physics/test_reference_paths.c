@@ -48,7 +48,7 @@ static void seabed_has_lamberts_level(void **state)
     const struct reference_scene scene = {.seabed_lambert = 0.002};
     const struct reference_request request = {.estimator = REFERENCE_CONNECT,
                                               .limit = 3,
-                                              .rays = 16000000,
+                                              .rays = 4000000,
                                               .seed = 1,
                                               .altitude = 10.0,
                                               .first_x = -1.0,
@@ -68,7 +68,7 @@ static void seabed_has_lamberts_level(void **state)
         /* Strata are all in or all out, but for two; what these two miss by has at most the error
            sqrt(2 / 4 / 32) = 1/8 of a ray, unseen if batches happen to be alike. */
         assert_value("seabed", 1, near, value, 0.002 * 3.0 * 10.0 * angles, ERRORS / 8.0 / rays);
-        assert_true(relative_error(value) < 1e-3);
+        assert_true(relative_error(value) < 2e-3);
         assert_true(energy.bins[REFERENCE_ALL_ENDS][0][bin].mean == value.mean);
         assert_true(energy.bins[REFERENCE_ALL_ENDS][1][bin].mean == 0.0); /* it is plane */
     }
@@ -146,7 +146,7 @@ static void assert_square_inside_sphere(enum reference_estimator estimator, uint
 static void connected_square_keeps_albedo(void **state)
 {
     (void)state;
-    assert_square_inside_sphere(REFERENCE_CONNECT, 6000000, 2.5e-4);
+    assert_square_inside_sphere(REFERENCE_CONNECT, 1500000, 5e-4);
 }
 
 static void met_square_keeps_albedo(void **state)
@@ -216,7 +216,7 @@ static void second_order_agrees_with_quadrature(void **state)
     const double half = 1.01 * asin(SMALL_RADIUS / range); /* all of the sphere, and a rim */
     const struct reference_request request = {.estimator = REFERENCE_CONNECT,
                                               .limit = 2,
-                                              .rays = 8000000,
+                                              .rays = 2000000,
                                               .seed = 3,
                                               .altitude = altitude,
                                               .first_x = -1.01 * SMALL_RADIUS,
@@ -237,7 +237,7 @@ static void second_order_agrees_with_quadrature(void **state)
         /* 0.1 %: the rule's steps, doubled, change less; the sphere's radius is 1e-4 of its height
          */
         assert_value("small sphere", 2, near, value, expected[bin], 0.001);
-        assert_true(relative_error(value) < 0.01);
+        assert_true(relative_error(value) < 0.02);
     }
 }
 
@@ -258,7 +258,7 @@ static void reverse_paths_are_equal(void **state)
        deg); the fan holds a little more. */
     const struct reference_request request = {.estimator = REFERENCE_CONNECT,
                                               .limit = 2,
-                                              .rays = 20000000,
+                                              .rays = 5000000,
                                               .seed = 4,
                                               .altitude = altitude,
                                               .first_x = -2.8,
@@ -277,7 +277,7 @@ static void reverse_paths_are_equal(void **state)
                                                    hypot(there.error, back.error)};
         print_message("bin %d, order 2, seabed first over object first: %.4f +- %.4f\n", bin,
                       there.mean / back.mean, difference.error / back.mean);
-        assert_true(relative_error(there) < 0.02 && relative_error(back) < 0.02);
+        assert_true(relative_error(there) < 0.04 && relative_error(back) < 0.04);
         if (fabs(difference.mean) > ERRORS * difference.error + 1e-3 * back.mean)
             fail_msg("bin %d: %g there, %g back", bin, there.mean, back.mean);
         assert_true(fabs(total.mean - there.mean - back.mean) <= 1e-12 * total.mean);

@@ -365,7 +365,7 @@ static void compare_all_paths(uint32_t column_rule, enum convention convention, 
     make_wavy(&bench);
     bench.scene.injection.column_rule = column_rule;
     bench_ready(&bench);
-    find_expected(&bench, convention, 24000000, expected);
+    find_expected(&bench, convention, 6000000, expected);
     const struct energies measured = trace_seeds(&bench, 1);
     for (int order = 0; order < ORDERS; order++)
         expect_energies(what, &measured, order, expected[order], RANGES, systematic);
@@ -399,7 +399,7 @@ static void test_brute_force(void **unused)
     bench.scene.injection.mode = SONJECT_MODE_RESYNTHESISE;
     bench.scene.injection.ray_scale = 8.0;
     bench_ready(&bench);
-    find_expected(&bench, AS_BY_CHANCE, 24000000, expected);
+    find_expected(&bench, AS_BY_CHANCE, 6000000, expected);
     const struct energies measured = trace_seeds(&bench, 1);
     for (int order = 0; order < ORDERS; order++)
         expect_energies("by chance", &measured, order, expected[order], RANGES, 0.01);

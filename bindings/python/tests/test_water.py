@@ -37,15 +37,21 @@ def test_medium_absorbs_what_it_is_told(make_scene):
         make_scene(medium=sonject.Medium(absorption_db_per_m=-1.0))
 
 
-def test_layers_are_lists_or_arrays(make_scene):
+def test_layers_are_lists_or_arrays(make_scene, amplitude_patch):
     scene = make_scene()
-    scene.set_water_layers([0, 12], [1490, 1520])
-    scene.set_water_layers((0.0, 12.0), (1490.0, 1520.0), densities=[1025, 1024])
-    scene.set_water_layers(
-        numpy.arange(0, 40, 10)[::2], numpy.array([1490, 1520], dtype=numpy.float32)
-    )
-    scene.set_water_layers(numpy.zeros(1), numpy.array([1490.0]))
-    scene.set_water_layers([], [])
+
+    def image(*layers):
+        scene.set_water_layers(*layers)
+        return sonject.inject(amplitude_patch, scene).image.tobytes()
+
+    without = image([], [])
+    layered = image([0, 5], [1490, 1520])
+    assert layered != without
+    assert image((0.0, 5.0), (1490.0, 1520.0), [1025, 1024]) != without
+    speeds = numpy.array([1490, 1520], dtype=numpy.float32)
+    assert image(numpy.array([0, 3, 5])[::2], speeds) == layered
+    assert image(numpy.zeros(1), numpy.array([1490.0])) != layered
+    assert image([], []) == without
 
 
 def test_values_reach_the_library_in_order(make_scene):
@@ -84,7 +90,10 @@ def test_what_is_no_row_of_numbers_is_refused(make_scene):
         scene.set_sound_speed_profile([0, 12], numpy.ma.array([1490, 1500], mask=[0, 1]))
 
 
-def test_a_profile_is_taken(make_scene):
+def test_a_profile_is_taken(make_scene, amplitude_patch):
     scene = make_scene()
+    without = sonject.inject(amplitude_patch, scene).image.tobytes()
     scene.set_sound_speed_profile(numpy.linspace(0, 20, 5), [1490, 1490, 1500, 1510, 1510])
+    assert sonject.inject(amplitude_patch, scene).image.tobytes() != without
     scene.set_water_layers([], [])
+    assert sonject.inject(amplitude_patch, scene).image.tobytes() == without
