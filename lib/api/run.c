@@ -95,7 +95,8 @@ static sonject_status write_results(struct report *report, struct run_facts *fac
     free(path);
     if (status == SONJECT_OK && facts->scene->input_kind == SONJECT_INPUT_FILE &&
         facts->swath->new_extension)
-        report_news(report, "note: %s is a new file: files of the input's kind are not changed",
+        report_news(report,
+                    "note: %s is written anew: of the input's metadata it keeps the description",
                     facts->image_name);
     THEN(status, file_list_add(&facts->files, report, folder, facts->image_name, true));
     THEN(status, write_documents(report, facts, folder, run_start, start));

@@ -175,7 +175,7 @@ def test_other_formats_go_out_as_tiff(sonject, tmp_path, sides, kind):
         b"P5 %d %d 255\n" % (COLUMNS, ROWS) + before.tobytes() if kind == "pgm"
         else images.exr_bytes({"Y": before}, 3))
     answer = check_injection(sonject, tmp_path, name, before, ".tif")
-    assert "note: image.tif is a new file" in answer.stderr
+    assert "note: image.tif is written anew" in answer.stderr
     assert done(sonject("run", "scene.yaml", "-o", "again", "--quiet")).stderr == ""
 
 

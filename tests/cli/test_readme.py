@@ -58,6 +58,8 @@ ELSEWHERE = {
     "sh tools/first-run.sh": "tools/test.sh installs and builds likewise; demo.yaml is run here",
     "sh tools/test.sh": "runs this test",
     ".ci/run": "calls tools/test.sh",
+    "python3 tests/frozen/outputs.py BEFORE/tools/sonject AFTER/tools/sonject":
+        "not run: needs two builds",
     ".ci/nightly": "not run: takes hours, before a release",
     "meson setup build && ninja -C build && meson test -C build": "tools/test.sh",
     "meson test -C build --suite unit": "tools/test.sh runs all of them",

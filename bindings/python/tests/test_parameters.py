@@ -229,9 +229,9 @@ def test_user_shapes_are_taken_and_injected(make_scene, complex_patch):
         scene.add(sonject.UserShape(user_shape=1))
     with pytest.raises(sonject.SonjectError, match="bounding_radius must be"):
         scene.add_user_shape(SPHERE, bounding_radius_m=0.0)
-    with pytest.raises(sonject.SonjectError, match="ball.cl:105: this } closes no {"):
+    with pytest.raises(sonject.SonjectError, match="ball.cl:95: #include is not possible"):
         scene.add_user_shape(
-            SPHERE.replace("p;\n", "p; }\n"), bounding_radius_m=1, name="ball.cl", first_line=94
+            "\n#include <x.h>\n" + SPHERE, bounding_radius_m=1, name="ball.cl", first_line=94
         )
     with pytest.raises(ValueError, match="at most 16, not 17"):
         scene.add_user_shape(SPHERE, bounding_radius_m=1, parameters=range(17))
