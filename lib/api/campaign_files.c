@@ -100,8 +100,13 @@ sonject_status image_files_list(const struct image_files *files, struct report *
         if (status == SONJECT_OK)
             json_append(list, entry);
     }
-    return status == SONJECT_OK && !*list ? report_out_of_memory(report, "a list of files")
-                                          : status;
+    if (status == SONJECT_OK && !*list)
+        status = report_out_of_memory(report, "a list of files");
+    if (status != SONJECT_OK) {
+        json_decref(*list);
+        *list = NULL;
+    }
+    return status;
 }
 
 sonject_status image_files_check(const struct image_files *files, struct report *report,

@@ -58,9 +58,12 @@ static const char *second_value(const char *path)
         {".user.code", "float3 shape_normal(); float shape_distance();"},
         {".mesh", "{file: '" SOURCE_ROOT "/tools/targets/rock.obj', unit: cm}"},
     };
-    for (size_t i = 0; i < COUNT(values); i++)
-        if (strcmp(path + strlen(path) - strlen(values[i][0]), values[i][0]) == 0)
+    const size_t length = strlen(path);
+    for (size_t i = 0; i < COUNT(values); i++) {
+        const size_t end = strlen(values[i][0]);
+        if (length >= end && strcmp(path + length - end, values[i][0]) == 0)
             return values[i][1];
+    }
     return NULL;
 }
 
