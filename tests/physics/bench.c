@@ -122,7 +122,7 @@ sonject_object_params *bench_add(struct bench *bench, sonject_shape shape, doubl
     object.material.reflection = 1.0;
     object.material.roughness_m = 0.0;
     object.material.lambert = 0.0;
-    assert_true(bench->scene.object_count < BENCH_OBJECTS);
+    assert_true(bench->scene.object_count < SCENE_OBJECTS_MAX);
     expect_ok(bench, scene_append_object(&bench->scene, &bench->report, &object));
     return &bench->scene.objects[bench->scene.object_count - 1];
 }
@@ -181,11 +181,6 @@ void bench_ready(struct bench *bench)
                          tracer->view.range_ratio * bench->water.straight_speed_mps));
 }
 
-double bench_wavenumber(const struct bench *bench)
-{
-    return 2.0 * PI * bench->scene.sonar.centre_frequency_hz / bench->scene.medium.sound_speed_mps;
-}
-
 static uint32_t native_width(void)
 {
     struct bench bench;
@@ -238,104 +233,6 @@ int bench_run_on_devices(const struct CMUnitTest *tests, size_t count)
     }
     bench_device = NULL;
     return failures;
-}
-
-struct echo_line bench_glint_line(struct bench *bench, uint32_t object)
-{
-    struct glints glints;
-    struct echo_line line;
-    expect_ok(bench, glints_begin(&glints, &bench->tracer, object));
-    line.bins = (size_t)glints.grid.bins.count;
-    line.spacing_m = bench->tracer.view.column_spacing_m / glints.grid.bins_per_pixel;
-    line.first_range_m = bench->tracer.view.first_range_m + glints.grid.bins.first * line.spacing_m;
-    line.real_part = calloc(line.bins, sizeof(double));
-    line.imaginary_part = calloc(line.bins, sizeof(double));
-    const int32_t chunk = glints_chunk(&glints);
-    float *real_part = calloc((size_t)chunk * line.bins, sizeof(float));
-    float *imaginary_part = calloc((size_t)chunk * line.bins, sizeof(float));
-    assert_true(line.real_part && line.imaginary_part && real_part && imaginary_part);
-    for (int32_t done = 0; done < glints.grid.strips.count; done += chunk) {
-        const int32_t left = glints.grid.strips.count - done;
-        const struct span strips = {glints.grid.strips.first + done, left < chunk ? left : chunk};
-        expect_ok(bench, glints_trace(&glints, &bench->tracer, strips, real_part, imaginary_part));
-        for (size_t i = 0; i < (size_t)strips.count * line.bins; i++) {
-            line.real_part[i % line.bins] += real_part[i];
-            line.imaginary_part[i % line.bins] += imaginary_part[i];
-        }
-    }
-    free(real_part);
-    free(imaginary_part);
-    glints_end(&glints);
-    return line;
-}
-
-void echo_line_clear(struct echo_line *line)
-{
-    free(line->real_part);
-    free(line->imaginary_part);
-}
-
-struct complex_value echo_line_at(const struct bench *bench, const struct echo_line *line,
-                                  double range_m)
-{
-    struct complex_value sum = {0.0, 0.0};
-    for (size_t i = 0; i < line->bins; i++) {
-        const double bin_range = line->first_range_m + (double)i * line->spacing_m;
-        const double g = range_response(&bench->tracer.response, range_m - bin_range);
-        sum.real_part += line->real_part[i] * g;
-        sum.imaginary_part += line->imaginary_part[i] * g;
-    }
-    return sum;
-}
-
-double echo_line_peak(const struct bench *bench, const struct echo_line *line, double *range_m)
-{
-    double largest = 0.0;
-    for (size_t i = 0; i < line->bins; i++) {
-        const double range = line->first_range_m + (double)i * line->spacing_m;
-        const struct complex_value value = echo_line_at(bench, line, range);
-        const double amplitude = hypot(value.real_part, value.imaginary_part);
-        if (amplitude > largest) {
-            largest = amplitude;
-            if (range_m)
-                *range_m = range;
-        }
-    }
-    return largest;
-}
-
-double decibels_of_amplitude(double ratio)
-{
-    return 20.0 * log10(ratio);
-}
-
-double decibels_of_energy(double ratio)
-{
-    return 10.0 * log10(ratio);
-}
-
-void bench_echoes(struct bench *bench, const float *map, enum seabed_field field,
-                  struct echoes *echoes)
-{
-    struct echo_request request;
-    memset(&request, 0, sizeof request);
-    request.map = map;
-    request.field = field;
-    expect_ok(bench, echoes_compute(echoes, &bench->tracer, &request));
-}
-
-void bench_trace_chains(struct bench *bench, struct chain_trace *trace)
-{
-    struct tracer *tracer = &bench->tracer;
-    sonject_status status = chain_trace_begin(trace, tracer, NULL);
-    for (uint32_t i = 0; status == SONJECT_OK && i < chain_fan_count(tracer); i++) {
-        struct chain_fan fan;
-        status = chain_fan_init(&fan, tracer, &trace->grid, false, i);
-        if (status == SONJECT_OK)
-            status = chain_trace_strips(trace, tracer, &fan, fan.strips);
-    }
-    if (status != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
 }
 
 void expect_close(const char *what, double measured, double expected, double tolerance)

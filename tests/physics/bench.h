@@ -4,6 +4,7 @@
 
 #include <stdint.h>
 
+#include "estimate.h"
 #include "form/form.h"
 #include "inject/echoes.h"
 #include "inject/patch_level.h"
@@ -12,7 +13,6 @@
 #include "trace/rough.h"
 #include "trace/tracer.h"
 
-#define PI            3.14159265358979323846
 #define BENCH_OBJECTS 8
 
 struct bench {
@@ -59,9 +59,6 @@ void *bench_copy_buffer(struct bench *bench, cl_mem buffer);
 /* Works out view, response and placements from the scene as it now is; before any trace. */
 void bench_ready(struct bench *bench);
 
-/* Wavenumber, 1/m. */
-double bench_wavenumber(const struct bench *bench);
-
 /* The device that bench_open opens: one whose name contains this; NULL: the default one. */
 extern const char *bench_device;
 
@@ -80,42 +77,5 @@ int bench_run_on_devices(const struct CMUnitTest *tests, size_t count);
 /* The names of all devices; the number of them. */
 #define BENCH_DEVICES 16
 size_t bench_devices(char names[BENCH_DEVICES][128]);
-
-/* Coherent part of one object, mirrors and all, with no cross-range response at all: the sum of all
- * its sub-strips, bin by bin, along apparent range. */
-struct echo_line {
-    size_t bins;
-    double first_range_m, spacing_m; /* apparent range of bin 0, and from bin to bin */
-    double *real_part, *imaginary_part;
-};
-
-struct echo_line bench_glint_line(struct bench *bench, uint32_t object);
-void echo_line_clear(struct echo_line *line);
-
-/* The line through the pulse, at an apparent range. */
-struct complex_value {
-    double real_part, imaginary_part;
-};
-
-struct complex_value echo_line_at(const struct bench *bench, const struct echo_line *line,
-                                  double range_m);
-
-/* The largest amplitude on the line after the pulse. Its range, if asked for. */
-double echo_line_peak(const struct bench *bench, const struct echo_line *line, double *range_m);
-
-double decibels_of_amplitude(double ratio);
-double decibels_of_energy(double ratio);
-
-/* echoes_compute with nothing but the request's map and field. */
-void bench_echoes(struct bench *bench, const float *map, enum seabed_field field,
-                  struct echoes *echoes);
-
-/* Traces chains of several interactions from all fans. The trace is to be given to
- * chain_trace_end. */
-void bench_trace_chains(struct bench *bench, struct chain_trace *trace);
-
-/* Prints and compares: |measured - expected| <= tolerance. */
-void expect_close(const char *what, double measured, double expected, double tolerance);
-void expect_below(const char *what, double measured, double limit);
 
 #endif

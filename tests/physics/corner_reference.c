@@ -1,7 +1,5 @@
 #include "corner_reference.h"
 
-#include <math.h>
-
 struct face_point {
     double place[3], normal[3]; /* the normal is on the side that sound meets */
     double scale[2];            /* m per unit of the coordinates */
@@ -12,25 +10,19 @@ static double dot_of(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-struct face face_of_plane(const struct bench *bench, uint32_t part)
+struct face face_of_plane(const struct sea *sea, uint32_t part)
 {
-    const struct placement *placement = &bench->placements[part];
-    const double half[2] = {placement->size.half_length_m, placement->size.half_width_m};
-    const struct face face = {placement, FACE_PLANE, {-half[0], -half[1]}, {half[0], half[1]}};
+    const sonject_object_params *plane = sea_object(sea, part);
+    const double half[2] = {0.5 * plane->length_m, 0.5 * plane->width_m};
+    const struct face face = {part, FACE_PLANE, 0.0, {-half[0], -half[1]}, {half[0], half[1]}};
     return face;
 }
 
-static void from_own_frame(const struct placement *part, const double own[3], double out[3])
-{
-    for (int k = 0; k < 3; k++)
-        out[k] = own[0] * part->axes[0][k] + own[1] * part->axes[1][k] + own[2] * part->axes[2][k];
-}
-
-static struct face_point point_at(const struct bench *bench, const struct face *face,
+static struct face_point point_at(const struct sea *sea, const struct face *face,
                                   const double at[2])
 {
-    const struct placement *part = face->part;
-    const double radius = part->size.radius_m;
+    const double *centre = sea_centre(sea, face->part);
+    const double(*axes)[3] = sea_axes(sea, face->part);
     struct face_point point = {{0}, {0}, {1.0, 1.0}};
     double own[3] = {at[0], at[1], 0.0};
     double normal[3] = {0.0, 0.0, 1.0};
@@ -38,25 +30,25 @@ static struct face_point point_at(const struct bench *bench, const struct face *
         const double direction[3] = {cos(at[0]) * cos(at[1]), cos(at[0]) * sin(at[1]), sin(at[0])};
         for (int k = 0; k < 3; k++) {
             normal[k] = direction[k];
-            own[k] = radius * direction[k];
+            own[k] = face->radius * direction[k];
         }
-        point.scale[0] = radius;
-        point.scale[1] = radius * cos(at[0]);
+        point.scale[0] = face->radius;
+        point.scale[1] = face->radius * cos(at[0]);
     } else if (face->kind == FACE_INSIDE_TUBE) {
-        own[1] = radius * cos(at[1]);
-        own[2] = radius * sin(at[1]);
+        own[1] = face->radius * cos(at[1]);
+        own[2] = face->radius * sin(at[1]);
         normal[1] = -cos(at[1]);
         normal[2] = -sin(at[1]);
-        point.scale[1] = radius;
+        point.scale[1] = face->radius;
     } else {
-        const double to_sonar[3] = {0.0, -part->centre[1],
-                                    bench->tracer.view.altitude_m - part->centre[2]};
-        normal[2] = dot_of(part->axes[2], to_sonar) > 0.0 ? 1.0 : -1.0;
+        const double to_sonar[3] = {0.0, -centre[1], sea->sonar->altitude_m - centre[2]};
+        normal[2] = dot_of(axes[2], to_sonar) > 0.0 ? 1.0 : -1.0;
     }
-    from_own_frame(part, own, point.place);
-    from_own_frame(part, normal, point.normal);
     for (int k = 0; k < 3; k++)
-        point.place[k] += part->centre[k];
+        for (int axis = 0; axis < 3; axis++) {
+            point.place[k] += own[axis] * axes[axis][k] + (axis == 0 ? centre[k] : 0.0);
+            point.normal[k] += normal[axis] * axes[axis][k];
+        }
     return point;
 }
 
@@ -93,9 +85,9 @@ static struct path path_over(const struct corner_way *way, const double one[3],
     return path;
 }
 
-struct corner_way straight_way(const struct bench *bench)
+struct corner_way straight_way(const struct sea *sea)
 {
-    const double height = bench->tracer.view.altitude_m;
+    const double height = sea->sonar->altitude_m;
     const struct corner_way way = {height, height, false};
     return way;
 }
@@ -107,7 +99,7 @@ double corner_range(const struct corner_way *way, const double one[3], const dou
 
 /* What the search for a stationary point needs. */
 struct search {
-    const struct bench *bench;
+    const struct sea *sea;
     const struct corner_way *way;
     const struct face *first;
 };
@@ -117,10 +109,10 @@ struct search {
 static double length_by(const struct search *search, const double at[2], int one_step,
                         int other_step, double step, const double place[3])
 {
-    const struct face_point here = point_at(search->bench, search->first, at);
+    const struct face_point here = point_at(search->sea, search->first, at);
     const double displaced[2] = {at[0] + one_step * step / here.scale[0],
                                  at[1] + other_step * step / here.scale[1]};
-    const struct face_point there = point_at(search->bench, search->first, displaced);
+    const struct face_point there = point_at(search->sea, search->first, displaced);
     return path_over(search->way, there.place, place).length;
 }
 
@@ -165,7 +157,7 @@ static bool ends_on_face(const struct search *search, double at[2], const double
             -(shape.one * shape.gradient[1] - shape.mixed * shape.gradient[0]) / determinant};
         size = hypot(step[0], step[1]);
         const double scale = size > 0.02 ? 0.02 / size : 1.0;
-        const struct face_point here = point_at(search->bench, search->first, at);
+        const struct face_point here = point_at(search->sea, search->first, at);
         for (int k = 0; k < 2; k++)
             at[k] += scale * step[k] / here.scale[k];
     }
@@ -197,9 +189,9 @@ static bool find_stationary(const struct search *search, double at[2], const dou
 static double complex echo_of_point(const struct search *search, const double at[2],
                                     const struct face_point *last, double range)
 {
-    const struct bench *bench = search->bench;
-    const double wavelength = bench->tracer.view.wavelength_m;
-    const struct face_point one = point_at(bench, search->first, at);
+    const struct sea *sea = search->sea;
+    const double wavelength = sea_wavelength(sea);
+    const struct face_point one = point_at(sea, search->first, at);
     const struct path path = path_over(search->way, one.place, last->place);
     const double in_first = -dot_of(one.normal, path.ways[0]);
     const double out_first = dot_of(one.normal, path.ways[1]);
@@ -213,21 +205,20 @@ static double complex echo_of_point(const struct search *search, const double at
     const double half = 0.5 * path.length;
     return -I / 2.0 * turn * (in_first + out_first) /
            (path.legs[0] * path.legs[1] * sqrt(fabs(determinant))) * -I / (2.0 * wavelength) *
-           (in_last + out_last) / path.legs[2] * half * half *
-           range_response(&bench->tracer.response, range - half) *
-           cexp(2.0 * I * bench_wavenumber(bench) * half);
+           (in_last + out_last) / path.legs[2] * half * half * sea_pulse(sea, range - half) *
+           cexp(2.0 * I * sea_wavenumber(sea) * half);
 }
 
-double complex corner_echo(const struct bench *bench, const struct corner_way *way,
+double complex corner_echo(const struct sea *sea, const struct corner_way *way,
                            const struct face *first, const struct face *last, double spacing,
                            double range)
 {
-    const struct search search = {bench, way, first};
+    const struct search search = {sea, way, first};
     double complex sum = 0.0;
     int steps[2];
     const double middle[2] = {0.5 * (last->first[0] + last->last[0]),
                               0.5 * (last->first[1] + last->last[1])};
-    const struct face_point there = point_at(bench, last, middle);
+    const struct face_point there = point_at(sea, last, middle);
     for (int k = 0; k < 2; k++)
         steps[k] = (int)ceil((last->last[k] - last->first[k]) * there.scale[k] / spacing);
     for (int i = 0; i < steps[0]; i++) {
@@ -239,7 +230,7 @@ double complex corner_echo(const struct bench *bench, const struct corner_way *w
             double area = 1.0;
             for (int k = 0; k < 2; k++)
                 on_last[k] = last->first[k] + share[k] * (last->last[k] - last->first[k]);
-            const struct face_point point = point_at(bench, last, on_last);
+            const struct face_point point = point_at(sea, last, on_last);
             for (int k = 0; k < 2; k++)
                 area *= (last->last[k] - last->first[k]) / steps[k] * point.scale[k];
             if (find_stationary(&search, at, point.place))

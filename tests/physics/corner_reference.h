@@ -4,10 +4,7 @@
 #ifndef SONJECT_TESTS_CORNER_REFERENCE_H
 #define SONJECT_TESTS_CORNER_REFERENCE_H
 
-#include <complex.h>
-#include <stdbool.h>
-
-#include "bench.h"
+#include "sea.h"
 
 /* A part by two coordinates of its own. */
 enum face_kind {
@@ -17,13 +14,14 @@ enum face_kind {
 };
 
 struct face {
-    const struct placement *part;
+    uint32_t part;
     enum face_kind kind;
+    double radius;            /* m, but of planes */
     double first[2], last[2]; /* coordinates */
 };
 
-/* All of a part's rectangle. */
-struct face face_of_plane(const struct bench *bench, uint32_t part);
+/* All of the rectangle that an object of one part is. */
+struct face face_of_plane(const struct sea *sea, uint32_t part);
 
 /* Which way sound goes: from one height out, to another home (the sonar's or its images'), and
  * between the faces straight or by way of the seabed, a rigid mirror. */
@@ -33,12 +31,12 @@ struct corner_way {
 };
 
 /* Out from the sonar and home to it, straight between the faces. */
-struct corner_way straight_way(const struct bench *bench);
+struct corner_way straight_way(const struct sea *sea);
 
 /* The echo first -> last at an apparent range through the pulse, all strips together, of sources
  * abreast of the mean of both points; normalised by the square of half the path. spacing: of the
  * last face's points, m. Of the first face's points one at most is stationary for each. */
-double complex corner_echo(const struct bench *bench, const struct corner_way *way,
+double complex corner_echo(const struct sea *sea, const struct corner_way *way,
                            const struct face *first, const struct face *last, double spacing,
                            double range);
 

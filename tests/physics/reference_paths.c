@@ -4,16 +4,211 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
+#define LIFT_M 1e-9 /* far above rounding at some 100 m (1e-14), far below every size */
+
+/* Nearest meeting so far, in the object's own axes. */
+struct meeting {
+    double distance;
+    struct reference_vector normal;
+};
+
+struct reference_vector reference_vector(double x, double y, double z)
+{
+    const struct reference_vector result = {x, y, z};
+    return result;
+}
+
+struct reference_vector reference_sum(struct reference_vector a, double scale,
+                                      struct reference_vector b)
+{
+    return reference_vector(a.x + scale * b.x, a.y + scale * b.y, a.z + scale * b.z);
+}
+
+double reference_dot(struct reference_vector a, struct reference_vector b)
+{
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+struct reference_vector reference_cross(struct reference_vector a, struct reference_vector b)
+{
+    return reference_vector(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
+}
+
+struct reference_vector reference_unit(struct reference_vector a)
+{
+    return reference_sum(reference_vector(0.0, 0.0, 0.0), 1.0 / sqrt(reference_dot(a, a)), a);
+}
+
+struct reference_object *reference_add_object(struct reference_scene *scene,
+                                              enum reference_shape shape, double radius,
+                                              double lambert)
+{
+    struct reference_object *object = &scene->objects[scene->object_count++];
+    memset(object, 0, sizeof *object);
+    object->shape = shape;
+    object->radius = radius;
+    object->lambert = lambert;
+    object->axes[0] = reference_vector(1.0, 0.0, 0.0);
+    object->axes[1] = reference_vector(0.0, 1.0, 0.0);
+    object->axes[2] = reference_vector(0.0, 0.0, 1.0);
+    return object;
+}
+
+void reference_turn(struct reference_object *object, double heading, double pitch)
+{
+    object->axes[0] =
+        reference_vector(cos(pitch) * cos(heading), cos(pitch) * sin(heading), -sin(pitch));
+    object->axes[1] = reference_vector(-sin(heading), cos(heading), 0.0);
+    object->axes[2] = reference_cross(object->axes[0], object->axes[1]);
+}
+
+/* Roots of a t^2 + 2 b t + c = 0, its discriminant b^2 - a c given by whoever knows it without
+   cancellation. */
+static int quadratic_roots(double a, double b, double c, double discriminant, double roots[2])
+{
+    if (discriminant < 0.0 || a == 0.0)
+        return 0;
+    const double q = -(b + copysign(sqrt(discriminant), b));
+    roots[0] = q / a;
+    roots[1] = q != 0.0 ? c / q : roots[0];
+    return 2;
+}
+
+static void keep_nearest(struct meeting *nearest, double distance, struct reference_vector normal)
+{
+    if (distance > 0.0 && distance < nearest->distance) {
+        nearest->distance = distance;
+        nearest->normal = normal;
+    }
+}
+
+/* Sphere about (shift, 0, 0); of a capsule's end (`end` -1 or 1) only what lies beyond it. */
+static void meet_sphere(struct meeting *nearest, struct reference_vector o,
+                        struct reference_vector d, double radius, double shift, int end)
+{
+    const struct reference_vector from = reference_vector(o.x - shift, o.y, o.z);
+    const struct reference_vector moment = reference_cross(from, d);
+    double roots[2];
+    const int count =
+        quadratic_roots(1.0, reference_dot(from, d), reference_dot(from, from) - radius * radius,
+                        radius * radius - reference_dot(moment, moment), roots);
+    for (int i = 0; i < count; i++) {
+        const struct reference_vector outwards = reference_sum(from, roots[i], d);
+        if (end == 0 || outwards.x * end >= 0.0)
+            keep_nearest(nearest, roots[i], reference_unit(outwards));
+    }
+}
+
+/* Round side of a cylinder along own x. */
+static void meet_side(struct meeting *nearest, struct reference_vector o, struct reference_vector d,
+                      double radius, double half_length)
+{
+    const double a = d.y * d.y + d.z * d.z, moment = o.y * d.z - o.z * d.y;
+    double roots[2];
+    const int count =
+        quadratic_roots(a, o.y * d.y + o.z * d.z, o.y * o.y + o.z * o.z - radius * radius,
+                        a * radius * radius - moment * moment, roots);
+    for (int i = 0; i < count; i++) {
+        const struct reference_vector at = reference_sum(o, roots[i], d);
+        if (fabs(at.x) <= half_length)
+            keep_nearest(nearest, roots[i], reference_unit(reference_vector(0.0, at.y, at.z)));
+    }
+}
+
+static void meet_flat_ends(struct meeting *nearest, struct reference_vector o,
+                           struct reference_vector d, double radius, double half_length)
+{
+    for (int end = -1; end <= 1 && d.x != 0.0; end += 2) {
+        const double distance = (end * half_length - o.x) / d.x;
+        const struct reference_vector at = reference_sum(o, distance, d);
+        if (at.y * at.y + at.z * at.z <= radius * radius)
+            keep_nearest(nearest, distance, reference_vector(end, 0.0, 0.0));
+    }
+}
+
+static struct reference_vector in_own_axes(const struct reference_object *object,
+                                           struct reference_vector v)
+{
+    return reference_vector(reference_dot(v, object->axes[0]), reference_dot(v, object->axes[1]),
+                            reference_dot(v, object->axes[2]));
+}
+
+static struct meeting meet_object(const struct reference_object *object,
+                                  struct reference_vector origin, struct reference_vector direction)
+{
+    struct meeting nearest = {INFINITY, {0.0, 0.0, 0.0}};
+    const struct reference_vector o =
+        in_own_axes(object, reference_sum(origin, -1.0, object->centre));
+    const struct reference_vector d = in_own_axes(object, direction);
+    const double half = 0.5 * object->length, radius = object->radius;
+    switch (object->shape) {
+    case REFERENCE_SPHERE:
+        meet_sphere(&nearest, o, d, radius, 0.0, 0);
+        break;
+    case REFERENCE_CAPSULE:
+        meet_side(&nearest, o, d, radius, half - radius);
+        meet_sphere(&nearest, o, d, radius, half - radius, 1);
+        meet_sphere(&nearest, o, d, radius, radius - half, -1);
+        break;
+    case REFERENCE_CYLINDER:
+        meet_side(&nearest, o, d, radius, half);
+        meet_flat_ends(&nearest, o, d, radius, half);
+        break;
+    }
+    return nearest;
+}
+
+static struct reference_vector in_scene_axes(const struct reference_object *object,
+                                             struct reference_vector v)
+{
+    struct reference_vector result = reference_vector(0.0, 0.0, 0.0);
+    result = reference_sum(result, v.x, object->axes[0]);
+    result = reference_sum(result, v.y, object->axes[1]);
+    return reference_sum(result, v.z, object->axes[2]);
+}
+
+bool reference_nearest(const struct reference_scene *scene, struct reference_vector origin,
+                       struct reference_vector direction, struct reference_hit *hit)
+{
+    struct reference_hit nearest = {
+        INFINITY, origin, {0.0, 0.0, 1.0}, scene->seabed_lambert, false};
+    const double to_seabed = -origin.z / direction.z;
+    if (direction.z != 0.0 && to_seabed > 0.0)
+        nearest.distance = to_seabed;
+    for (int i = 0; i < scene->object_count; i++) {
+        const struct reference_object *object = &scene->objects[i];
+        const struct meeting meeting = meet_object(object, origin, direction);
+        if (meeting.distance >= nearest.distance)
+            continue;
+        nearest.distance = meeting.distance;
+        nearest.normal = in_scene_axes(object, meeting.normal);
+        nearest.lambert = object->lambert;
+        nearest.on_object = true;
+    }
+    if (isinf(nearest.distance))
+        return false;
+    if (reference_dot(nearest.normal, direction) > 0.0)
+        nearest.normal = reference_vector(-nearest.normal.x, -nearest.normal.y, -nearest.normal.z);
+    nearest.point =
+        reference_sum(reference_sum(origin, nearest.distance, direction), LIFT_M, nearest.normal);
+    *hit = nearest;
+    return true;
+}
+
+bool reference_blocked(const struct reference_scene *scene, struct reference_vector from,
+                       struct reference_vector to)
+{
+    const struct reference_vector way = reference_sum(to, -1.0, from);
+    const double distance = sqrt(reference_dot(way, way));
+    struct reference_hit hit;
+    return reference_nearest(scene, from, reference_unit(way), &hit) && hit.distance < distance;
+}
+
+/* ---- paths ---- */
 
 /* Energies of one batch; the last bin takes all ranges. */
 struct batch {
     double energy[REFERENCE_ENDS][REFERENCE_ORDERS][REFERENCE_BINS + 1];
-};
-
-/* Sums over batches of value and square. */
-struct tally {
-    struct batch batch, sum, square;
 };
 
 struct path {
@@ -27,21 +222,9 @@ struct path {
 struct tracing {
     const struct reference_scene *scene;
     const struct reference_request *request;
-    struct reference_vector source_across, source_normal; /* the square's other edge */
     uint64_t state;
-    struct tally *tally;
+    struct batch batch, sum, square;
 };
-
-/* A Weyl sequence scrambled by two multiply-and-shift rounds; 53 bits, never 0 or 1. */
-static double next_uniform(struct tracing *tracing)
-{
-    tracing->state += UINT64_C(0x9e3779b97f4a7c15);
-    uint64_t bits = tracing->state;
-    bits = (bits ^ (bits >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
-    bits = (bits ^ (bits >> 27)) * UINT64_C(0x94d049bb133111eb);
-    bits ^= bits >> 31;
-    return ((double)(bits >> 11) + 0.5) / 9007199254740992.0;
-}
 
 static void deposit(struct tracing *tracing, const struct path *path, int order, double last_leg,
                     double energy)
@@ -51,50 +234,20 @@ static void deposit(struct tracing *tracing, const struct path *path, int order,
     if (!request->pressure)
         energy *= range * range * range * range;
     const int ends = (path->first_on_object ? 2 : 0) + (path->last_on_object ? 1 : 0);
-    double *of_ends = tracing->tally->batch.energy[ends][order - 1];
-    double *of_all = tracing->tally->batch.energy[REFERENCE_ALL_ENDS][order - 1];
+    double *of_ends = tracing->batch.energy[ends][order - 1];
     const double bin = floor((range - request->first_range) / request->bin_width);
-    if (bin >= 0.0 && bin < request->bins) {
+    if (bin >= 0.0 && bin < request->bins)
         of_ends[(int)bin] += energy;
-        of_all[(int)bin] += energy;
-    }
     of_ends[REFERENCE_BINS] += energy;
-    of_all[REFERENCE_BINS] += energy;
 }
 
-/* The last leg as the paper does it: the path's ray happens to meet the source before the next
-   surface. Its points share the energy 1 / A each; per solid angle that is r^2 / (A cos). */
-static void meet_source(struct tracing *tracing, const struct path *path, int order,
-                        double distance)
+static void connect_sonar(struct tracing *tracing, const struct path *path,
+                          const struct reference_hit *hit, int order)
 {
-    const double side = tracing->request->source_side;
-    const double cosine = reference_dot(path->direction, tracing->source_normal);
-    const struct reference_vector way = reference_sum(path->sonar, -1.0, path->origin);
-    const double last_leg = reference_dot(way, tracing->source_normal) / cosine;
-    if (!(last_leg > 0.0 && last_leg < distance))
-        return;
-    const struct reference_vector on_source =
-        reference_sum(reference_sum(path->origin, last_leg, path->direction), -1.0, path->sonar);
-    if (fabs(on_source.x) > 0.5 * side ||
-        fabs(reference_dot(on_source, tracing->source_across)) > 0.5 * side)
-        return;
-    deposit(tracing, path, order, last_leg, path->weight / (side * side * fabs(cosine)));
-}
-
-static void connect_source(struct tracing *tracing, const struct path *path,
-                           const struct reference_hit *hit, int order)
-{
-    const double side = tracing->request->source_side;
-    struct reference_vector source = path->sonar;
-    if (side > 0.0) {
-        source.x += side * (next_uniform(tracing) - 0.5);
-        source =
-            reference_sum(source, side * (next_uniform(tracing) - 0.5), tracing->source_across);
-    }
-    const struct reference_vector way = reference_sum(source, -1.0, hit->point);
+    const struct reference_vector way = reference_sum(path->sonar, -1.0, hit->point);
     const double square = reference_dot(way, way), last_leg = sqrt(square);
     const double cosine = reference_dot(way, hit->normal) / last_leg;
-    if (cosine > 0.0 && !reference_blocked(tracing->scene, hit->point, source))
+    if (cosine > 0.0 && !reference_blocked(tracing->scene, hit->point, path->sonar))
         deposit(tracing, path, order, last_leg, path->weight * hit->lambert * cosine / square);
 }
 
@@ -103,8 +256,8 @@ static void connect_source(struct tracing *tracing, const struct path *path,
 static struct reference_vector cosine_direction(struct tracing *tracing,
                                                 struct reference_vector normal)
 {
-    const double z = 2.0 * next_uniform(tracing) - 1.0;
-    const double azimuth = 2.0 * PI * next_uniform(tracing), level = sqrt(1.0 - z * z);
+    const double z = 2.0 * next_uniform(&tracing->state) - 1.0;
+    const double azimuth = 2.0 * PI * next_uniform(&tracing->state), level = sqrt(1.0 - z * z);
     const struct reference_vector ball =
         reference_vector(level * cos(azimuth), level * sin(azimuth), z);
     return reference_unit(reference_sum(normal, 1.0, ball));
@@ -112,14 +265,9 @@ static struct reference_vector cosine_direction(struct tracing *tracing,
 
 static void trace_path(struct tracing *tracing, struct path *path)
 {
-    const struct reference_request *request = tracing->request;
-    const bool brute_force = request->estimator == REFERENCE_BRUTE_FORCE;
-    for (int order = 1; order <= request->limit + (brute_force ? 1 : 0); order++) {
+    for (int order = 1; order <= tracing->request->limit; order++) {
         struct reference_hit hit;
-        const bool met = reference_nearest(tracing->scene, path->origin, path->direction, &hit);
-        if (brute_force && order > 1)
-            meet_source(tracing, path, order - 1, met ? hit.distance : INFINITY);
-        if (!met)
+        if (!reference_nearest(tracing->scene, path->origin, path->direction, &hit))
             break;
         path->length += hit.distance;
         path->last_on_object = hit.on_object;
@@ -127,8 +275,7 @@ static void trace_path(struct tracing *tracing, struct path *path)
             path->first_on_object = hit.on_object;
             path->weight /= hit.distance;
         }
-        if (!brute_force)
-            connect_source(tracing, path, &hit, order);
+        connect_sonar(tracing, path, &hit, order);
         path->weight *= hit.lambert * PI; /* f cos / pdf */
         path->origin = hit.point;
         path->direction = cosine_direction(tracing, hit.normal);
@@ -143,9 +290,9 @@ static void trace_batch(struct tracing *tracing)
     const double width = request->last_x - request->first_x;
     const double step = (request->last_elevation - request->first_elevation) / (double)rays;
     for (uint64_t i = 0; i < rays; i++) {
-        const double x = request->first_x + width * next_uniform(tracing);
+        const double x = request->first_x + width * next_uniform(&tracing->state);
         const double elevation =
-            request->first_elevation + step * ((double)i + next_uniform(tracing));
+            request->first_elevation + step * ((double)i + next_uniform(&tracing->state));
         struct path path;
         memset(&path, 0, sizeof path);
         path.sonar = reference_vector(x, 0.0, request->altitude);
@@ -156,75 +303,35 @@ static void trace_batch(struct tracing *tracing)
     }
 }
 
-static void add_batch(struct tally *tally)
+static struct estimate value_of(const struct tracing *tracing, int ends, int order, int bin)
 {
-    const double *value = &tally->batch.energy[0][0][0];
-    double *sum = &tally->sum.energy[0][0][0], *square = &tally->square.energy[0][0][0];
-    for (size_t i = 0; i < sizeof tally->batch.energy / sizeof(double); i++) {
-        sum[i] += value[i];
-        square[i] += value[i] * value[i];
-    }
+    return estimate_of_sums(tracing->sum.energy[ends][order][bin],
+                            tracing->square.energy[ends][order][bin], REFERENCE_BATCHES);
 }
 
-static struct reference_value value_of(const struct tally *tally, int ends, int order, int bin)
+void reference_trace(const struct reference_scene *scene, const struct reference_request *request,
+                     struct reference_energy *energy)
 {
-    const double batches = REFERENCE_BATCHES;
-    struct reference_value value;
-    value.mean = tally->sum.energy[ends][order][bin] / batches;
-    const double variance =
-        tally->square.energy[ends][order][bin] / batches - value.mean * value.mean;
-    value.error = sqrt(fmax(0.0, variance) / (batches - 1.0));
-    return value;
-}
-
-static void read_tally(const struct tally *tally, struct reference_energy *energy)
-{
-    for (int ends = 0; ends < REFERENCE_ENDS; ends++)
-        for (int order = 0; order < REFERENCE_ORDERS; order++) {
-            for (int bin = 0; bin < REFERENCE_BINS; bin++)
-                energy->bins[ends][order][bin] = value_of(tally, ends, order, bin);
-            energy->all_ranges[ends][order] = value_of(tally, ends, order, REFERENCE_BINS);
-        }
-}
-
-static bool is_sound(const struct reference_scene *scene, const struct reference_request *request)
-{
-    const bool has_square = request->source_side > 0.0;
-    const struct reference_vector central = request->central;
-    return scene->object_count >= 0 && scene->object_count <= REFERENCE_OBJECTS &&
-           request->limit >= 1 && request->limit <= REFERENCE_ORDERS && request->bins >= 1 &&
-           request->bins <= REFERENCE_BINS && request->bin_width > 0.0 &&
-           request->rays >= REFERENCE_BATCHES && request->last_x > request->first_x &&
-           request->last_elevation > request->first_elevation && request->source_side >= 0.0 &&
-           (has_square || request->estimator == REFERENCE_CONNECT) &&
-           (!has_square || central.y * central.y + central.z * central.z > 0.0);
-}
-
-int reference_trace(const struct reference_scene *scene, const struct reference_request *request,
-                    struct reference_energy *energy)
-{
-    if (!is_sound(scene, request))
-        return -1;
-    struct tracing tracing;
+    static struct tracing tracing;
     memset(&tracing, 0, sizeof tracing);
     tracing.scene = scene;
     tracing.request = request;
-    if (request->source_side > 0.0) {
-        const struct reference_vector along = reference_vector(1.0, 0.0, 0.0);
-        tracing.source_across = reference_unit(reference_cross(along, request->central));
-        tracing.source_normal = reference_cross(along, tracing.source_across);
-    }
-    tracing.tally = calloc(1, sizeof *tracing.tally);
-    if (!tracing.tally)
-        return -1;
     /* Scrambled, or seeds that differ by the sequence's step would give shifted copies. */
     tracing.state = (request->seed ^ (request->seed >> 29)) * UINT64_C(0xd6e8feb86659fd93) + 1;
+    const double *value = &tracing.batch.energy[0][0][0];
+    double *sum = &tracing.sum.energy[0][0][0], *square = &tracing.square.energy[0][0][0];
     for (int batch = 0; batch < REFERENCE_BATCHES; batch++) {
-        memset(&tracing.tally->batch, 0, sizeof tracing.tally->batch);
+        memset(&tracing.batch, 0, sizeof tracing.batch);
         trace_batch(&tracing);
-        add_batch(tracing.tally);
+        for (size_t i = 0; i < sizeof tracing.batch / sizeof(double); i++) {
+            sum[i] += value[i];
+            square[i] += value[i] * value[i];
+        }
     }
-    read_tally(tracing.tally, energy);
-    free(tracing.tally);
-    return 0;
+    for (int ends = 0; ends < REFERENCE_ENDS; ends++)
+        for (int order = 0; order < REFERENCE_ORDERS; order++) {
+            for (int bin = 0; bin < REFERENCE_BINS; bin++)
+                energy->bins[ends][order][bin] = value_of(&tracing, ends, order, bin);
+            energy->all_ranges[ends][order] = value_of(&tracing, ends, order, REFERENCE_BINS);
+        }
 }

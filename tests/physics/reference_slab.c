@@ -5,11 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#define PI 3.14159265358979323846
-
-struct point {
-    double x, y, z;
-};
+#include "reference_paths.h"
 
 struct tally {
     double first[SLAB_PATHS][SLAB_BINS], both[SLAB_PATHS][SLAB_BINS];
@@ -23,61 +19,37 @@ struct run {
 };
 
 struct ray {
-    struct point origin, way;
+    struct reference_vector origin, way;
     double sonar_x, length, weight;
     double first_leg;
     int path, hits;
     bool has_spread; /* the wavefront met something that is no mirror */
 };
 
-static double next_uniform(struct run *run)
+static struct reference_vector centre_of(const struct slab_scene *scene)
 {
-    run->state += UINT64_C(0x9e3779b97f4a7c15);
-    uint64_t bits = run->state;
-    bits = (bits ^ (bits >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
-    bits = (bits ^ (bits >> 27)) * UINT64_C(0x94d049bb133111eb);
-    bits ^= bits >> 31;
-    return ((double)(bits >> 11) + 0.5) / 9007199254740992.0;
-}
-
-static struct point sum(struct point a, double scale, struct point b)
-{
-    const struct point result = {a.x + scale * b.x, a.y + scale * b.y, a.z + scale * b.z};
-    return result;
-}
-
-static double dot(struct point a, struct point b)
-{
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-static struct point unit(struct point a)
-{
-    const struct point none = {0.0, 0.0, 0.0};
-    return sum(none, 1.0 / sqrt(dot(a, a)), a);
-}
-
-static struct point centre_of(const struct slab_scene *scene)
-{
-    const struct point centre = {0.0, scene->centre_y, scene->centre_z};
+    const struct reference_vector centre = {0.0, scene->centre_y, scene->centre_z};
     return centre;
 }
 
-static double to_sphere(const struct slab_scene *scene, struct point origin, struct point way)
+static double to_sphere(const struct slab_scene *scene, struct reference_vector origin,
+                        struct reference_vector way)
 {
-    const struct point to = sum(centre_of(scene), -1.0, origin);
-    const double along = dot(to, way);
-    const double root = scene->radius * scene->radius - (dot(to, to) - along * along);
-    return root > 0.0 && along > 0.0 && dot(to, to) > scene->radius * scene->radius
+    const struct reference_vector to = reference_sum(centre_of(scene), -1.0, origin);
+    const double along = reference_dot(to, way);
+    const double root = scene->radius * scene->radius - (reference_dot(to, to) - along * along);
+    return root > 0.0 && along > 0.0 && reference_dot(to, to) > scene->radius * scene->radius
                ? along - sqrt(root)
                : INFINITY;
 }
 
-static bool is_open(const struct slab_scene *scene, struct point from, struct point to)
+static bool is_open(const struct slab_scene *scene, struct reference_vector from,
+                    struct reference_vector to)
 {
-    const struct point way = sum(to, -1.0, from);
-    const double distance = sqrt(dot(way, way));
-    return to_sphere(scene, sum(from, 1e-9, unit(way)), unit(way)) > distance;
+    const struct reference_vector way = reference_sum(to, -1.0, from);
+    const double distance = sqrt(reference_dot(way, way));
+    return to_sphere(scene, reference_sum(from, 1e-9, reference_unit(way)), reference_unit(way)) >
+           distance;
 }
 
 /* 1 - exp(-P^2), what roughness takes. */
@@ -123,17 +95,18 @@ static void deposit(struct run *run, const struct ray *ray, int path, double las
         run->batch->both[path][(int)bin] += energy * pow(range, 4.0);
 }
 
-static struct point source_point(struct run *run, const struct ray *ray)
+static struct reference_vector source_point(struct run *run, const struct ray *ray)
 {
     const struct slab_scene *scene = run->scene;
-    const double along = scene->source_side * (next_uniform(run) - 0.5);
-    const double up = scene->source_side * (next_uniform(run) - 0.5);
-    const struct point source = {column_of(run, ray) + along, up * sin(scene->source_grazing),
-                                 scene->altitude + up * cos(scene->source_grazing)};
+    const double along = scene->source_side * (next_uniform(&run->state) - 0.5);
+    const double up = scene->source_side * (next_uniform(&run->state) - 0.5);
+    const struct reference_vector source = {column_of(run, ray) + along,
+                                            up * sin(scene->source_grazing),
+                                            scene->altitude + up * cos(scene->source_grazing)};
     return source;
 }
 
-static bool is_looked_at(const struct slab_request *request, struct point seabed)
+static bool is_looked_at(const struct slab_request *request, struct reference_vector seabed)
 {
     return seabed.y >= request->near_ground && seabed.y <= request->far_ground &&
            fabs(seabed.x) <= request->reach_x;
@@ -149,27 +122,27 @@ static bool is_found_from_seabed(const struct slab_request *request, const struc
 }
 
 /* The hit is seen by the source: straight, and (but for the surface itself) in the mirror. */
-static void connect(struct run *run, const struct ray *ray, struct point normal, int hit,
+static void connect(struct run *run, const struct ray *ray, struct reference_vector normal, int hit,
                     double cosine_in)
 {
     const struct slab_scene *scene = run->scene;
     for (int by_mirror = 0; by_mirror < 2; by_mirror++) {
         if (by_mirror && (hit == SLAB_SURFACE || scene->reflection == 0.0))
             continue;
-        const struct point source = source_point(run, ray);
-        struct point goal = source;
+        const struct reference_vector source = source_point(run, ray);
+        struct reference_vector goal = source;
         if (by_mirror)
             goal.z = 2.0 * scene->depth - goal.z;
-        const struct point to = sum(goal, -1.0, ray->origin);
-        const double square = dot(to, to);
-        const double cosine = dot(to, normal) / sqrt(square);
+        const struct reference_vector to = reference_sum(goal, -1.0, ray->origin);
+        const double square = reference_dot(to, to);
+        const double cosine = reference_dot(to, normal) / sqrt(square);
         if (cosine <= 0.0)
             continue;
         double energy = ray->weight * lambert_of(scene, hit, cosine_in, cosine) * cosine / square;
         bool is_seen;
         if (by_mirror) {
             const double share = (scene->depth - ray->origin.z) / to.z;
-            const struct point bounce = sum(ray->origin, share, to);
+            const struct reference_vector bounce = reference_sum(ray->origin, share, to);
             energy *= mirrored(scene, to.z / sqrt(square));
             is_seen = is_open(scene, ray->origin, bounce) && is_open(scene, bounce, source);
         } else {
@@ -177,43 +150,46 @@ static void connect(struct run *run, const struct ray *ray, struct point normal,
         }
         if (!is_found_from_seabed(run->request, ray))
             continue;
-        const struct point facing = {0.0, cos(scene->source_grazing), -sin(scene->source_grazing)};
-        struct point home = sum(ray->origin, -1.0, goal);
+        const struct reference_vector facing = {0.0, cos(scene->source_grazing),
+                                                -sin(scene->source_grazing)};
+        struct reference_vector home = reference_sum(ray->origin, -1.0, goal);
         home.z = by_mirror ? -home.z : home.z;
-        if (is_seen && (scene->source_side == 0.0 || dot(home, facing) > 0.0))
+        if (is_seen && (scene->source_side == 0.0 || reference_dot(home, facing) > 0.0))
             deposit(run, ray, by_mirror ? 5 * ray->path + SLAB_MIRROR : ray->path, sqrt(square),
                     energy);
     }
 }
 
-static struct point about(struct point axis, double cosine, double turn)
+static struct reference_vector about(struct reference_vector axis, double cosine, double turn)
 {
-    const struct point x = {1.0, 0.0, 0.0}, y = {0.0, 1.0, 0.0};
-    const struct point other = fabs(axis.x) < 0.7 ? x : y;
-    const struct point first = unit(sum(other, -dot(other, axis), axis));
-    const struct point second = {axis.y * first.z - axis.z * first.y,
-                                 axis.z * first.x - axis.x * first.z,
-                                 axis.x * first.y - axis.y * first.x};
+    const struct reference_vector x = {1.0, 0.0, 0.0}, y = {0.0, 1.0, 0.0};
+    const struct reference_vector other = fabs(axis.x) < 0.7 ? x : y;
+    const struct reference_vector first =
+        reference_unit(reference_sum(other, -reference_dot(other, axis), axis));
+    const struct reference_vector second = reference_cross(axis, first);
     const double sine = sqrt(fmax(0.0, 1.0 - cosine * cosine));
-    const struct point none = {0.0, 0.0, 0.0};
-    return sum(sum(sum(none, cosine, axis), sine * cos(turn), first), sine * sin(turn), second);
+    const struct reference_vector none = {0.0, 0.0, 0.0};
+    return reference_sum(reference_sum(reference_sum(none, cosine, axis), sine * cos(turn), first),
+                         sine * sin(turn), second);
 }
 
 /* Half by Lambert's law, half into the cone of the sphere, and off the sphere all by Lambert's law:
  * f cos / density. */
-static void scatter(struct run *run, struct ray *ray, struct point normal, int hit,
+static void scatter(struct run *run, struct ray *ray, struct reference_vector normal, int hit,
                     double cosine_in)
 {
     const struct slab_scene *scene = run->scene;
-    const struct point to = sum(centre_of(scene), -1.0, ray->origin);
-    const double opening = 1.0 - sqrt(fmax(0.0, 1.0 - scene->radius * scene->radius / dot(to, to)));
+    const struct reference_vector to = reference_sum(centre_of(scene), -1.0, ray->origin);
+    const double opening =
+        1.0 - sqrt(fmax(0.0, 1.0 - scene->radius * scene->radius / reference_dot(to, to)));
     const double cone_share = hit == SLAB_TARGET ? 0.0 : 0.5;
-    const double turn = 2.0 * PI * next_uniform(run);
-    const double u = next_uniform(run);
-    ray->way = next_uniform(run) < cone_share ? about(unit(to), 1.0 - u * opening, turn)
-                                              : about(normal, sqrt(u), turn);
-    const double cosine = dot(normal, ray->way);
-    const bool is_in_cone = dot(unit(to), ray->way) >= 1.0 - opening;
+    const double turn = 2.0 * PI * next_uniform(&run->state);
+    const double u = next_uniform(&run->state);
+    ray->way = next_uniform(&run->state) < cone_share
+                   ? about(reference_unit(to), 1.0 - u * opening, turn)
+                   : about(normal, sqrt(u), turn);
+    const double cosine = reference_dot(normal, ray->way);
+    const bool is_in_cone = reference_dot(reference_unit(to), ray->way) >= 1.0 - opening;
     const double density = (1.0 - cone_share) * fmax(0.0, cosine) / PI +
                            (is_in_cone ? cone_share / (2.0 * PI * opening) : 0.0);
     ray->weight = cosine > 0.0
@@ -223,7 +199,8 @@ static void scatter(struct run *run, struct ray *ray, struct point normal, int h
 
 /* The nearest surface; 0 if there is none before the last range. The sea surface is one of its two
  * parts, by lot. */
-static int next_hit(struct run *run, struct ray *ray, struct point *normal, double *cosine)
+static int next_hit(struct run *run, struct ray *ray, struct reference_vector *normal,
+                    double *cosine)
 {
     const struct slab_scene *scene = run->scene;
     const double on_sphere = to_sphere(scene, ray->origin, ray->way);
@@ -234,13 +211,13 @@ static int next_hit(struct run *run, struct ray *ray, struct point *normal, doub
     ray->length += distance;
     if (!(distance > 0.0) || 0.5 * ray->length > limit)
         return 0;
-    ray->origin = sum(ray->origin, distance, ray->way);
+    ray->origin = reference_sum(ray->origin, distance, ray->way);
     if (on_sphere < on_plane) {
-        *normal = unit(sum(ray->origin, -1.0, centre_of(scene)));
-        *cosine = -dot(*normal, ray->way);
+        *normal = reference_unit(reference_sum(ray->origin, -1.0, centre_of(scene)));
+        *cosine = -reference_dot(*normal, ray->way);
         return SLAB_TARGET;
     }
-    const struct point up = {0.0, 0.0, ray->way.z > 0.0 ? -1.0 : 1.0};
+    const struct reference_vector up = {0.0, 0.0, ray->way.z > 0.0 ? -1.0 : 1.0};
     *normal = up;
     *cosine = fabs(ray->way.z);
     ray->origin.z = height;
@@ -249,7 +226,7 @@ static int next_hit(struct run *run, struct ray *ray, struct point *normal, doub
     if (scene->reflection == 0.0)
         return SLAB_SURFACE;
     ray->weight *= 2.0;
-    return next_uniform(run) < 0.5 ? SLAB_MIRROR : SLAB_SURFACE;
+    return next_uniform(&run->state) < 0.5 ? SLAB_MIRROR : SLAB_SURFACE;
 }
 
 /* aim: SLAB_TARGET and SLAB_MIRROR hit the sphere at once or after the mirror, and SLAB_SEABED all
@@ -268,7 +245,7 @@ static bool is_aimed(const struct ray *ray, int aim)
 static void follow(struct run *run, struct ray *ray, int aim)
 {
     while (ray->hits < SLAB_ORDERS && ray->weight > 0.0) {
-        struct point normal;
+        struct reference_vector normal;
         double cosine;
         const int hit = next_hit(run, ray, &normal, &cosine);
         ray->path = 5 * ray->path + hit;
@@ -297,10 +274,10 @@ static void trace_fan(struct run *run, int aim, double half_width, double first,
 {
     for (uint64_t i = 0; i < rays; i++) {
         const double elevation =
-            first + (last - first) * ((double)i + next_uniform(run)) / (double)rays;
+            first + (last - first) * ((double)i + next_uniform(&run->state)) / (double)rays;
         struct ray ray;
         memset(&ray, 0, sizeof ray);
-        ray.sonar_x = half_width * (2.0 * next_uniform(run) - 1.0);
+        ray.sonar_x = half_width * (2.0 * next_uniform(&run->state) - 1.0);
         ray.origin.x = ray.sonar_x;
         ray.origin.z = run->scene->altitude;
         ray.way.y = cos(elevation);
@@ -342,24 +319,19 @@ void slab_trace(const struct slab_scene *scene, const struct slab_request *reque
     run.batch = malloc(sizeof *run.batch);
     if (!run.batch)
         abort();
+    struct estimate *kept[] = {&energy->in_first[0][0], &energy->in_both[0][0]};
+    const double *traced[] = {&run.batch->first[0][0], &run.batch->both[0][0]};
     for (int batch = 0; batch < SLAB_BATCHES; batch++) {
         memset(run.batch, 0, sizeof *run.batch);
         trace_batch(&run);
-        for (int path = 0; path < SLAB_PATHS; path++)
-            for (int bin = 0; bin < SLAB_BINS; bin++) {
-                energy->in_first[path][bin].mean += run.batch->first[path][bin];
-                energy->in_first[path][bin].error += pow(run.batch->first[path][bin], 2.0);
-                energy->in_both[path][bin].mean += run.batch->both[path][bin];
-                energy->in_both[path][bin].error += pow(run.batch->both[path][bin], 2.0);
+        for (int k = 0; k < 2; k++)
+            for (int i = 0; i < SLAB_PATHS * SLAB_BINS; i++) { /* sums, for now */
+                kept[k][i].mean += traced[k][i];
+                kept[k][i].error += traced[k][i] * traced[k][i];
             }
     }
-    struct slab_value *values[] = {&energy->in_first[0][0], &energy->in_both[0][0]};
     for (int k = 0; k < 2; k++)
-        for (int i = 0; i < SLAB_PATHS * SLAB_BINS; i++) {
-            struct slab_value *value = &values[k][i];
-            value->mean /= SLAB_BATCHES;
-            const double variance = value->error / SLAB_BATCHES - value->mean * value->mean;
-            value->error = sqrt(fmax(0.0, variance) / (SLAB_BATCHES - 1));
-        }
+        for (int i = 0; i < SLAB_PATHS * SLAB_BINS; i++)
+            kept[k][i] = estimate_of_sums(kept[k][i].mean, kept[k][i].error, SLAB_BATCHES);
     free(run.batch);
 }

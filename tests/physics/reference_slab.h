@@ -7,6 +7,8 @@
 
 #include <stdint.h>
 
+#include "estimate.h"
+
 #define SLAB_ORDERS  3
 #define SLAB_BINS    16
 #define SLAB_BATCHES 32
@@ -45,15 +47,10 @@ struct slab_request {
     uint64_t rays, seed;
 };
 
-struct slab_value {
-    double mean, error;
-};
-
 /* Energies in m^2 over the whole track by number of the path and range. */
 struct slab_energy {
-    struct slab_value in_first[SLAB_PATHS][SLAB_BINS]; /* column of the first hit */
-    struct slab_value in_both[SLAB_PATHS]
-                             [SLAB_BINS]; /* where that of the last is on the track too */
+    struct estimate in_first[SLAB_PATHS][SLAB_BINS]; /* column of the first hit */
+    struct estimate in_both[SLAB_PATHS][SLAB_BINS]; /* where that of the last is on the track too */
 };
 
 void slab_trace(const struct slab_scene *scene, const struct slab_request *request,

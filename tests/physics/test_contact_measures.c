@@ -1,19 +1,6 @@
 /* The ruler for contacts recovers the geometry of injected ones: in random poses, on a seabed of
  * speckle, through the public interface. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <sonject/sonject.h>
-
-#include "bench.h"
+#include "sea.h"
 
 #define ROWS     112
 #define COLUMNS  224
@@ -93,7 +80,7 @@ static void make_prism(struct pose *pose, int sides, int axis, double length, co
     pose->edge_count = 0;
     for (int end = 0; end < 2; end++)
         for (int i = 0; i < sides; i++) {
-            const double angle = first_angle + 6.283185307179586 * i / sides;
+            const double angle = first_angle + 2.0 * PI * i / sides;
             double *corner = pose->corners[end * sides + i];
             corner[axis] = (end - 0.5) * length;
             corner[across[0]] = radii[end] * cos(angle);
@@ -110,8 +97,7 @@ static void make_box(struct pose *pose)
     const sonject_object_params *object = &pose->object;
     const double half_diagonal = 0.5 * sqrt(2.0) * object->width_m;
     const double radii[2] = {half_diagonal, half_diagonal};
-    make_prism(pose, 4, 0, object->length_m, radii, 0.7853981633974483,
-               object->height_m / object->width_m);
+    make_prism(pose, 4, 0, object->length_m, radii, 0.25 * PI, object->height_m / object->width_m);
 }
 
 static void draw_place(struct pose *pose)
@@ -437,7 +423,7 @@ static struct tally measure_poses(const char *what, void (*draw_pose)(struct pos
     memset(&tally, 0, sizeof tally);
     memset(disagreements, 0, sizeof disagreements);
     sonject_context_params_init(&params);
-    params.device_name = bench_device;
+    params.device_name = claim_device();
     assert_int_equal(sonject_context_create(&params, &context), SONJECT_OK);
     random_state = SEED;
     for (int i = 0; i < poses; i++) {
@@ -466,9 +452,8 @@ static struct tally measure_poses(const char *what, void (*draw_pose)(struct pos
  * no shadow misses it and 1 highlight: more than 2 in 100 would be once in 500 such tests. The
  * errors that are told are what they say: with those seeds their rms is 1.04 to 1.16 for shadows
  * and 0.90 to 1.15 for highlights, and of 80 poses it is known to 1/sqrt(160) = 8 %. */
-static void test_random_poses(void **unused)
+static void random_slabs_are_measured(void)
 {
-    (void)unused;
     const struct tally tally = measure_poses("slabs", draw_slab, POSES);
     print_message("%d highlights (mean error %.2f pixels, %.2f standard errors rms)\n",
                   tally.good_highlights, tally.highlight_bias, tally.pulls[1]);
@@ -488,9 +473,8 @@ static void test_random_poses(void **unused)
 
 /* The lit top of a thick target is no part of its shadow. That of a smooth one is as dark as the
  * shadow but for some dB, which tell it apart where they are enough. */
-static void test_solids(void **unused)
+static void solids_are_measured(void)
 {
-    (void)unused;
     const struct tally boxes = measure_poses("boxes", draw_box, SOLIDS);
     const struct tally cones = measure_poses("truncated cones", draw_truncated_cone, SOLIDS);
     const struct tally smooth = measure_poses("smooth boxes", draw_smooth_box, SOLIDS);
@@ -499,11 +483,4 @@ static void test_solids(void **unused)
     assert_true(smooth.told_shadows > smooth.good_shadows + SOLIDS / 2);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_random_poses),
-        cmocka_unit_test(test_solids),
-    };
-    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
-}
+CLAIMS(CLAIM(random_slabs_are_measured), CLAIM(solids_are_measured))

@@ -1,20 +1,8 @@
 /* Images of a synthetic aperture whose sonar left its track, and those of a measured cross-range
  * response. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <complex.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "bench.h"
-#include "scene/cross_range.h"
 #include "scene/motion_response.h"
+#include "sea.h"
 
 #define ROWS       161
 #define COLUMNS    41
@@ -24,58 +12,57 @@
 #define MIDDLE     80
 #define LEVEL_DB   0.2
 
-static void open_aperture(struct bench *bench)
+/* A ball far smaller than any resolution over the middle row, seen with lobes at -43 dB, or (where
+ * these would move an echo at -20 dB by 0.13 resolutions) at -70 dB. */
+static struct sea *open_aperture(bool has_low_lobes)
 {
-    bench_open(bench, ROWS, COLUMNS, RANGE);
-    bench->scene.geometry.row_spacing_m = SPACING;
-    bench->scene.sonar.along_track_resolution_m = RESOLUTION;
-    bench->scene.sonar.response_window = SONJECT_WINDOW_HAMMING; /* lobes at -43 dB */
-    bench_move(bench, RANGE);
-    sonject_object_params *object = bench_add(bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.008);
-    object->burial_m = -0.1;
-    object->position_kind = SONJECT_POSITION_METRES;
-    object->position_along = MIDDLE * SPACING;
-    object->position_range = RANGE;
-    bench->scene.injection.ray_scale = 4.0;
-    bench_ready(bench);
+    struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
+    sea->geometry->row_spacing_m = SPACING;
+    sea->sonar->along_track_resolution_m = RESOLUTION;
+    sea->sonar->response_window = has_low_lobes ? SONJECT_WINDOW_TAYLOR : SONJECT_WINDOW_HAMMING;
+    if (has_low_lobes) {
+        sea->sonar->taylor_sidelobe_db = 70.0;
+        sea->sonar->taylor_terms = 10;
+    }
+    place_in_metres(sea_add_sphere(sea, 0.004, 0.1), MIDDLE * SPACING, RANGE);
+    sea->injection->ray_scale = 4.0;
+    sea_ready(sea);
+    return sea;
 }
 
-/* The along-track cut through the ball over its value on the straight track. */
-static void cut_of(struct bench *bench, double complex *cut)
+static const struct point_response *response_of(const struct sea *sea)
 {
-    static double complex straight;
-    struct echoes echoes;
-    bench_ready(bench);
-    bench_echoes(bench, NULL, SEABED_FIELD_NONE, &echoes);
-    size_t brightest = 0;
-    for (size_t column = 0; column < COLUMNS; column++) {
-        double here = 0.0;
-        double best = 0.0;
-        for (size_t row = 0; row < ROWS; row++) {
-            here += pow(echoes.target_real[row * COLUMNS + column], 2.0) +
-                    pow(echoes.target_imaginary[row * COLUMNS + column], 2.0);
-            best += pow(echoes.target_real[row * COLUMNS + brightest], 2.0) +
-                    pow(echoes.target_imaginary[row * COLUMNS + brightest], 2.0);
-        }
-        if (here > best)
-            brightest = column;
-    }
-    for (size_t row = 0; row < ROWS; row++) {
-        const size_t i = row * COLUMNS + brightest;
-        cut[row] = echoes.target_real[i] + I * (double)echoes.target_imaginary[i];
-    }
-    if (aperture_motion_is_still(&bench->scene.motion) && bench->scene.cross_range_table.count == 0)
-        straight = cut[MIDDLE];
+    return &sea->bench->tracer.response;
+}
+
+/* The along-track cut through the ball, in the column that is brightest, over a value. */
+static const double complex *cut_through(struct sea *sea, double complex straight)
+{
+    double complex *cut = claim_memory(ROWS, sizeof *cut);
+    double most = 0.0;
     assert_true(cabs(straight) > 0.0);
-    for (size_t row = 0; row < ROWS; row++)
-        cut[row] /= straight;
-    echoes_clear(&echoes);
+    sea_ready(sea);
+    const struct image *image = sea_image(sea);
+    for (size_t column = 0; column < COLUMNS; column++) {
+        double energy = 0.0;
+        for (size_t row = 0; row < ROWS; row++)
+            energy += pow(cabs(image->target[row * COLUMNS + column]), 2.0);
+        for (size_t row = 0; row < ROWS && energy > most; row++)
+            cut[row] = image->target[row * COLUMNS + column] / straight;
+        most = fmax(most, energy);
+    }
+    return cut;
 }
 
-static double cosine_of_grazing(const struct bench *bench)
+/* Its middle on the straight track. */
+static double complex middle_of(struct sea *sea)
 {
-    const struct patch_view *view = &bench->tracer.view;
-    return cos(view_grazing(view, view_apparent_range(view, 0.5 * (COLUMNS - 1))));
+    return cut_through(sea, 1.0)[MIDDLE];
+}
+
+static double cosine_of_grazing(const struct sea *sea)
+{
+    return cos(sea_grazing(sea, sea_range(sea, 0.5 * (COLUMNS - 1))));
 }
 
 /* Height and place of the highest point of a parabola through the largest of some rows. */
@@ -93,93 +80,77 @@ static double peak_between(const double complex *cut, size_t first, size_t last,
     return b - 0.25 * (a - c) * shift;
 }
 
-/* exp(i beta sin) is the sum of Bessel functions J_m(beta) of its harmonics; each moves W by
- * wavelength range / (2 wavelength of the sway). */
-static void test_paired_echoes(void **unused)
+/* Where lobe m of the cut lies, and its level. */
+static void expect_lobe(const double complex *cut, double m, double spacing, double level)
 {
-    struct bench bench;
-    double complex cut[ROWS];
-    (void)unused;
-    open_aperture(&bench);
-    /* lobes at -43 dB would move an echo at -20 dB by 0.13 resolutions, at -70 dB by 0.006 */
-    bench.scene.sonar.response_window = SONJECT_WINDOW_TAYLOR;
-    bench.scene.sonar.taylor_sidelobe_db = 70.0;
-    bench.scene.sonar.taylor_terms = 10;
-    cut_of(&bench, cut);
-    const double beta = 0.2; /* J0 0.99002497, J1 0.09950083 */
-    const double away = 1.5;
-    const double amplitude = beta / (2.0 * bench_wavenumber(&bench) * cosine_of_grazing(&bench));
-    print_message("amplitude of the sway: %.3g m\n", amplitude);
-    bench.scene.motion.params.sway_count = 1;
-    bench.scene.motion.params.sways[0].amplitude_m = amplitude;
-    bench.scene.motion.params.sways[0].wavelength_m = away;
-    bench.scene.motion.params.sways[0].phase_rad = 0.7;
-    cut_of(&bench, cut);
-    const double shift =
-        bench.tracer.view.wavelength_m * bench.tracer.response.motion_range_m / (2.0 * away);
+    const double expected = MIDDLE + m * spacing / SPACING;
     double row;
-    const double main_peak = peak_between(cut, MIDDLE - 4, MIDDLE + 4, &row);
-    expect_close("main lobe over J0, dB", decibels_of_amplitude(main_peak / 0.99002497), 0.0,
-                 LEVEL_DB);
-    for (int side = -1; side <= 1; side += 2) {
-        const double expected = MIDDLE + side * shift / SPACING;
-        const double peak =
-            peak_between(cut, (size_t)(expected - 3.0), (size_t)(expected + 3.0), &row);
-        /* the tangent of an aspect is up to 0.3 % above the sine */
-        expect_close("place of the echo, resolutions", (row - expected) * SPACING / RESOLUTION, 0.0,
-                     0.02);
-        expect_close("level of the echo over J1, dB", decibels_of_amplitude(peak / 0.09950083), 0.0,
-                     LEVEL_DB);
-    }
-    bench_close(&bench);
+    const double peak = peak_between(cut, (size_t)(expected - 3.0), (size_t)(expected + 3.0), &row);
+    /* the tangent of an aspect is up to 0.3 % above the sine */
+    expect_close("place of the lobe, resolutions", (row - expected) * SPACING / RESOLUTION, 0.0,
+                 0.02);
+    expect_close("level of the lobe, dB", decibels_of_amplitude(peak / level), 0.0, LEVEL_DB);
 }
 
-static double sine_ratio(double x)
+/* exp(i beta sin) is the sum of Bessel functions J_m(beta) of its harmonics; each moves W by
+ * wavelength range / (2 wavelength of the sway). */
+static void a_sway_makes_paired_echoes(void)
 {
-    return x == 0.0 ? 1.0 : sin(PI * x) / (PI * x);
+    const double beta = 0.2, away = 1.5; /* J0 0.99002497, J1 0.09950083 */
+    struct sea *sea = open_aperture(true);
+    const double complex straight = middle_of(sea);
+    sea->motion->sway_count = 1;
+    sea->motion->sways[0].amplitude_m = beta / (2.0 * sea_wavenumber(sea) * cosine_of_grazing(sea));
+    sea->motion->sways[0].wavelength_m = away;
+    sea->motion->sways[0].phase_rad = 0.7;
+    const double complex *cut = cut_through(sea, straight);
+    const double spacing = sea_wavelength(sea) * response_of(sea)->motion_range_m / (2.0 * away);
+    for (int m = -1; m <= 1; m++)
+        expect_lobe(cut, m, spacing, m == 0 ? 0.99002497 : 0.09950083);
 }
 
 /* A constant yaw makes the sway a sawtooth, as long as the pings' advance A: phases of period A,
  * whose harmonics are c_m = sinc(m + 2 yaw A cos(grazing) / wavelength). Each moves W by
  * -m wavelength range / 2A, the lobes of a grating of this spacing; of the two beside the main one,
  * that on the side where the array looks is the higher. */
-static void test_lobes_of_a_constant_yaw(void **unused)
+static void a_constant_yaw_makes_lobes(void)
 {
-    struct bench bench;
-    double complex cut[ROWS];
-    (void)unused;
-    open_aperture(&bench);
-    bench.scene.sonar.response_window = SONJECT_WINDOW_TAYLOR; /* see test_paired_echoes */
-    bench.scene.sonar.taylor_sidelobe_db = 70.0;
-    bench.scene.sonar.taylor_terms = 10;
-    cut_of(&bench, cut);
     const double advance = 1.2; /* beams of elements leave 0.05 dB less of the lobes */
     const double steps = 0.3;   /* of a phase of 2 pi, within a ping */
-    const double wavelength = bench.tracer.view.wavelength_m;
-    bench.scene.motion.params.yaw_advance_m = advance;
-    bench.scene.motion.params.yaw_bias_rad =
-        steps * wavelength / (2.0 * advance * cosine_of_grazing(&bench));
-    print_message("yaw: %.3g rad\n", bench.scene.motion.params.yaw_bias_rad);
-    cut_of(&bench, cut);
-    const double spacing = wavelength * bench.tracer.response.motion_range_m / (2.0 * advance);
-    for (int m = -1; m <= 1; m++) {
-        const double expected = MIDDLE - m * spacing / SPACING;
-        double row;
-        const double peak =
-            peak_between(cut, (size_t)(expected - 3.0), (size_t)(expected + 3.0), &row);
-        /* the tangent of an aspect is up to 0.3 % above the sine */
-        expect_close("place of the lobe, resolutions", (row - expected) * SPACING / RESOLUTION, 0.0,
-                     0.02);
-        expect_close("level of the lobe over sinc, dB",
-                     decibels_of_amplitude(peak / fabs(sine_ratio(m + steps))), 0.0, LEVEL_DB);
-    }
-    bench_close(&bench);
+    struct sea *sea = open_aperture(true);
+    const double complex straight = middle_of(sea);
+    sea->motion->yaw_advance_m = advance;
+    sea->motion->yaw_bias_rad =
+        steps * sea_wavelength(sea) / (2.0 * advance * cosine_of_grazing(sea));
+    const double complex *cut = cut_through(sea, straight);
+    const double spacing = sea_wavelength(sea) * response_of(sea)->motion_range_m / (2.0 * advance);
+    for (int m = -1; m <= 1; m++)
+        expect_lobe(cut, -m, spacing, fabs(sinc(m + steps)));
+}
+
+/* The response that motion gives a row of the image, over places so far apart along the track. */
+static const double complex *row_of_response(struct sea *sea, double spacing, double row, int reach,
+                                             bool is_all_around)
+{
+    const size_t count = 2 * (size_t)reach + 1;
+    double *parts = claim_memory(2 * count, sizeof *parts);
+    double complex *values = claim_memory(count, sizeof *values);
+    struct motion_response motion;
+    assert_int_equal(motion_response_begin(&motion, &sea->bench->report, response_of(sea),
+                                           &sea->bench->tracer.view, spacing, 0.0, reach),
+                     SONJECT_OK);
+    (is_all_around ? motion_response_row_all_around : motion_response_row)(&motion, row, parts,
+                                                                           parts + count);
+    motion_response_end(&motion);
+    for (size_t i = 0; i < count; i++)
+        values[i] = parts[i] + I * parts[count + i];
+    return values;
 }
 
 /* The same lobes as they leave the beam of elements of 2 delta, whose zero is where lobe A/delta
  * lies; delta is such that each lobe lies at a zero of all others. The beam leaves the mean over
  * |v| < 1/2 of sinc(v + t)^2 / sinc(v)^2, t = m delta/A: for whole t that of v^2 / (v + t)^2. */
-static void test_lobes_beyond_the_beam(void **unused)
+static void lobes_leave_the_elements_beam(void)
 {
     enum {
         PINGS_ADVANCE = 8, /* resolutions */
@@ -188,7 +159,6 @@ static void test_lobes_beyond_the_beam(void **unused)
         LAST = 8,
         REACH = LAST * APART * STRIPS
     };
-    static double real_part[2 * REACH + 1], imaginary_part[2 * REACH + 1];
     static const struct {
         int lobe;
         double left;
@@ -197,66 +167,57 @@ static void test_lobes_beyond_the_beam(void **unused)
         {-1, 0.9732098}, /* by the midpoint rule, as is the next but one */
         {0, 1.0},        {4, 0.6380988}, {8, 0.1361087},
     };
-    struct bench bench;
-    struct motion_response motion;
-    (void)unused;
-    open_aperture(&bench);
-    const double wavelength = bench.tracer.view.wavelength_m;
-    const double range = 0.5 * (view_apparent_range(&bench.tracer.view, 0.0) +
-                                view_apparent_range(&bench.tracer.view, COLUMNS - 1.0));
-    const double resolution = sqrt(wavelength * range / (2.0 * PINGS_ADVANCE * APART));
     const double steps = 0.3;
-    bench.scene.sonar.along_track_resolution_m = resolution;
-    bench.scene.sonar.response_window = SONJECT_WINDOW_RECTANGULAR;
-    bench.scene.motion.params.yaw_advance_m = PINGS_ADVANCE * resolution;
-    bench.scene.motion.params.yaw_bias_rad =
-        steps * wavelength / (2.0 * PINGS_ADVANCE * resolution * cosine_of_grazing(&bench));
-    bench_ready(&bench);
-    assert_int_equal(motion_response_begin(&motion, &bench.report, &bench.tracer.response,
-                                           &bench.tracer.view, resolution / STRIPS, 0.0, REACH),
-                     SONJECT_OK);
-    motion_response_row(&motion, MIDDLE, real_part, imaginary_part);
-    motion_response_end(&motion);
-    for (size_t i = 0; i < sizeof lobes / sizeof *lobes; i++) {
-        const int at = REACH - lobes[i].lobe * APART * STRIPS;
-        const double expected = fabs(sine_ratio(lobes[i].lobe + steps)) * lobes[i].left;
+    struct sea *sea = open_aperture(false);
+    const double wavelength = sea_wavelength(sea);
+    const double range = 0.5 * (sea_range(sea, 0.0) + sea_range(sea, COLUMNS - 1.0));
+    const double resolution = sqrt(wavelength * range / (2.0 * PINGS_ADVANCE * APART));
+    sea->sonar->along_track_resolution_m = resolution;
+    sea->sonar->response_window = SONJECT_WINDOW_RECTANGULAR;
+    sea->motion->yaw_advance_m = PINGS_ADVANCE * resolution;
+    sea->motion->yaw_bias_rad =
+        steps * wavelength / (2.0 * PINGS_ADVANCE * resolution * cosine_of_grazing(sea));
+    sea_ready(sea);
+    const double complex *row = row_of_response(sea, resolution / STRIPS, MIDDLE, REACH, false);
+    for (size_t i = 0; i < COUNT(lobes); i++) {
+        const double expected = fabs(sinc(lobes[i].lobe + steps)) * lobes[i].left;
         print_message("lobe %d: ", lobes[i].lobe);
-        expect_close("level over what the elements leave, dB",
-                     decibels_of_amplitude(hypot(real_part[at], imaginary_part[at]) / expected),
-                     0.0, LEVEL_DB);
+        expect_close(
+            "level over what the elements leave, dB",
+            decibels_of_amplitude(cabs(row[REACH - lobes[i].lobe * APART * STRIPS]) / expected),
+            0.0, LEVEL_DB);
     }
-    bench_close(&bench);
 }
 
 /* What elements of two resolutions hear of a point, over what they hear of the pixel `distance`
  * from it: the mean over aspects under Hamming's weights. */
-static double heard_share(const struct bench *bench, double distance)
+static double heard_share(const struct sea *sea, double distance)
 {
     enum {
         STEPS = 200
     };
-    const double aside = 2.0 * RESOLUTION / bench->tracer.view.wavelength_m *
-                         sin(atan(distance / bench->tracer.response.motion_range_m));
+    const double aside = 2.0 * RESOLUTION / sea_wavelength(sea) *
+                         sin(atan(distance / response_of(sea)->motion_range_m));
     double sum = 0.0;
     for (int i = 0; i < STEPS; i++) {
         const double v = (i + 0.5) / STEPS - 0.5;
-        sum += (0.54 + 0.46 * cos(2.0 * PI * v)) / 0.54 / STEPS *
-               pow(sine_ratio(v + aside) / sine_ratio(v), 2.0);
+        sum +=
+            (0.54 + 0.46 * cos(2.0 * PI * v)) / 0.54 / STEPS * pow(sinc(v + aside) / sinc(v), 2.0);
     }
     return sum;
 }
 
 /* W of a row by its definition, over the straight one's peak: the mean over aspects. */
-static double complex moved_response(const struct bench *bench, double row, double distance,
+static double complex moved_response(const struct sea *sea, double row, double distance,
                                      double (*sway)(double))
 {
     enum {
         STEPS = 20000
     };
-    const double k = bench_wavenumber(bench);
+    const double k = sea_wavenumber(sea);
     const double steepest = PI / k / (2.0 * RESOLUTION); /* wavelength / 4 resolution */
-    const double range = bench->tracer.response.motion_range_m;
-    const double heard = heard_share(bench, distance);
+    const double range = response_of(sea)->motion_range_m;
+    const double heard = heard_share(sea, distance);
     double complex sum = 0.0;
     double total = 0.0;
     for (int i = 0; i < STEPS; i++) {
@@ -265,7 +226,7 @@ static double complex moved_response(const struct bench *bench, double row, doub
         const double weight = 0.54 + 0.46 * cos(2.0 * PI * v);
         const double place = row * SPACING + range * tan(asin(sine));
         const double error =
-            -2.0 * k * cosine_of_grazing(bench) * sqrt(1.0 - sine * sine) * sway(place);
+            -2.0 * k * cosine_of_grazing(sea) * sqrt(1.0 - sine * sine) * sway(place);
         sum +=
             weight * (1.0 + heard * (cexp(I * error) - 1.0)) * cexp(I * 2.0 * k * sine * distance);
         total += weight;
@@ -278,41 +239,16 @@ static double parabola(double x)
     return 0.6e-3 * (x - 1.3) * (x - 1.3);
 }
 
-static void give_sway(struct bench *bench, double (*sway)(double))
+static void give_sway(struct sea *sea, double (*sway)(double))
 {
-    enum {
-        COUNT = 2001
-    };
-    static double x[COUNT], y[COUNT];
-    for (int i = 0; i < COUNT; i++) {
+    double x[2001], y[2001];
+    for (int i = 0; i < 2001; i++) {
         x[i] = -8.0 + 0.01 * i;
         y[i] = sway(x[i]);
     }
-    assert_int_equal(motion_table_set(&bench->scene.motion.sway_table, &bench->report, x, y, COUNT),
-                     SONJECT_OK);
-}
-
-static void test_quadratic_error(void **unused)
-{
-    struct bench bench;
-    double complex cut[ROWS];
-    (void)unused;
-    open_aperture(&bench);
-    cut_of(&bench, cut);
-    give_sway(&bench, parabola);
-    cut_of(&bench, cut);
-    double worst = 0.0;
-    double brightest = 0.0;
-    for (int row = 0; row < ROWS; row++) {
-        const double complex expected =
-            moved_response(&bench, row, (row - MIDDLE) * SPACING, parabola);
-        worst = fmax(worst, cabs(cut[row] - expected));
-        brightest = fmax(brightest, cabs(cut[row]));
-    }
-    print_message("largest amplitude %.3f of the straight track's\n", brightest);
-    assert_true(brightest < 0.7);
-    expect_below("cut less the transform", worst, 0.01); /* two strips of 3 mm hold the ball */
-    bench_close(&bench);
+    assert_int_equal(
+        motion_table_set(&sea->bench->scene.motion.sway_table, &sea->bench->report, x, y, COUNT(x)),
+        SONJECT_OK);
 }
 
 #define ADVANCE 0.4
@@ -329,46 +265,49 @@ static double sway_of_a_yaw(double x)
     return yaw_of_ping(ping) * (x - ping);
 }
 
-static void give_yaw(struct bench *bench)
+static void give_yaw(struct sea *sea)
 {
-    sonject_motion_params *motion = &bench->scene.motion.params;
-    motion->yaw_advance_m = ADVANCE;
-    motion->yaw_bias_rad = -2e-3;
-    motion->yaw_count = 1;
-    motion->yaws[0].amplitude_rad = 8e-3;
-    motion->yaws[0].wavelength_m = 1.7;
-    motion->yaws[0].phase_rad = 0.4;
+    sea->motion->yaw_advance_m = ADVANCE;
+    sea->motion->yaw_bias_rad = -2e-3;
+    sea->motion->yaw_count = 1;
+    sea->motion->yaws[0].amplitude_rad = 8e-3;
+    sea->motion->yaws[0].wavelength_m = 1.7;
+    sea->motion->yaws[0].phase_rad = 0.4;
 }
 
-static void test_changing_yaw(void **unused)
+/* The cut is the mean over aspects with the sway's phase, within what two strips of 3 mm that hold
+ * the ball make of it; it is not what it was. */
+static void expect_moved(struct sea *sea, double complex straight, double (*sway)(double),
+                         double highest)
 {
-    struct bench bench;
-    double complex cut[ROWS];
-    (void)unused;
-    open_aperture(&bench);
-    cut_of(&bench, cut);
-    give_yaw(&bench);
-    cut_of(&bench, cut);
-    double worst = 0.0;
-    double faintest = 1.0;
+    const double complex *cut = cut_through(sea, straight);
+    double worst = 0.0, brightest = 0.0;
     for (int row = 0; row < ROWS; row++) {
-        const double complex expected =
-            moved_response(&bench, row, (row - MIDDLE) * SPACING, sway_of_a_yaw);
-        worst = fmax(worst, cabs(cut[row] - expected));
-        faintest = fmin(faintest, row == MIDDLE ? cabs(cut[row]) : 1.0);
+        const double away = (row - MIDDLE) * SPACING;
+        worst = fmax(worst, cabs(cut[row] - moved_response(sea, row, away, sway)));
+        brightest = fmax(brightest, cabs(cut[row]));
     }
-    print_message("peak %.3f of the straight track's\n", faintest);
-    assert_true(faintest < 0.95);
-    expect_below("cut less the transform", worst, 0.01); /* two strips of 3 mm hold the ball */
-    bench_close(&bench);
+    assert_true(brightest < highest);
+    expect_below("cut less the transform", worst, 0.01);
+}
+
+static void sway_and_yaw_turn_each_aspects_phase(void)
+{
+    struct sea *sea = open_aperture(false);
+    const double complex straight = middle_of(sea);
+    give_sway(sea, parabola);
+    expect_moved(sea, straight, parabola, 0.7);
+    sea = open_aperture(false);
+    give_yaw(sea);
+    expect_moved(sea, straight, sway_of_a_yaw, 0.95);
 }
 
 /* From the transmitter in the array's middle to a point of the seabed, at x along the track, and
  * back to the hydrophone at e on the array. */
-static double way_of(const struct bench *bench, double ping, double e, double yaw, double x)
+static double way_of(const struct sea *sea, double ping, double e, double yaw, double x)
 {
-    const double range = bench->tracer.response.motion_range_m;
-    const double height = bench->tracer.view.altitude_m;
+    const double range = response_of(sea)->motion_range_m;
+    const double height = sea->sonar->altitude_m;
     const double across = sqrt(range * range - height * height) - e * sin(yaw);
     const double along = x - (ping + e * cos(yaw));
     return sqrt(range * range + (x - ping) * (x - ping)) +
@@ -377,13 +316,13 @@ static double way_of(const struct bench *bench, double ping, double e, double ya
 
 /* Amplitude of a point, `distance` before the pixel, from all hydrophones of all pings of the
  * aperture, focused as if the array had kept its heading. Each hears alike all around. */
-static double heard_amplitude(const struct bench *bench, double pixel, double distance)
+static double heard_amplitude(const struct sea *sea, double pixel, double distance)
 {
     enum {
         HYDROPHONES = 200
     };
-    const double k = bench_wavenumber(bench);
-    const double range = bench->tracer.response.motion_range_m;
+    const double k = sea_wavenumber(sea);
+    const double range = response_of(sea)->motion_range_m;
     const double steepest = PI / k / (2.0 * RESOLUTION);
     double complex sum = 0.0;
     double total = 0.0;
@@ -397,8 +336,8 @@ static double heard_amplitude(const struct bench *bench, double pixel, double di
             /* even in the sine */
             const double weight =
                 (0.54 + 0.46 * cos(PI * sine / steepest)) * pow(1.0 - sine * sine, 1.5);
-            const double way = way_of(bench, ping, e, yaw_of_ping(ping), pixel - distance) -
-                               way_of(bench, ping, e, 0.0, pixel);
+            const double way = way_of(sea, ping, e, yaw_of_ping(ping), pixel - distance) -
+                               way_of(sea, ping, e, 0.0, pixel);
             sum += weight * cexp(I * k * way);
             total += weight;
         }
@@ -407,39 +346,24 @@ static double heard_amplitude(const struct bench *bench, double pixel, double di
 
 /* The response that yaw gives a row is what hydrophones at their true places would make of it, but
  * for their beam. */
-static void test_yaw_of_hydrophones(void **unused)
+static void yaw_is_what_hydrophones_hear(void)
 {
-    enum {
-        REACH = 100
-    };
-    static double real_part[2 * REACH + 1], imaginary_part[2 * REACH + 1];
-    struct bench bench;
-    struct motion_response motion;
-    (void)unused;
-    open_aperture(&bench);
-    give_yaw(&bench);
-    bench_ready(&bench);
-    assert_int_equal(motion_response_begin(&motion, &bench.report, &bench.tracer.response,
-                                           &bench.tracer.view, SPACING, 0.0, REACH),
-                     SONJECT_OK);
-    double worst = 0.0;
-    double straight = 0.0;
+    const int reach = 100;
+    struct sea *sea = open_aperture(false);
+    give_yaw(sea);
+    sea_ready(sea);
+    double worst = 0.0, straight = 0.0;
     for (int row = 7; row < ROWS; row += 50) {
-        motion_response_row_all_around(&motion, row, real_part, imaginary_part);
-        for (int j = -REACH; j <= REACH; j += 3) {
-            const double heard = heard_amplitude(&bench, row * SPACING, j * SPACING);
-            const double model = hypot(real_part[j + REACH], imaginary_part[j + REACH]);
-            worst = fmax(worst, fabs(heard - model));
-            straight = fmax(
-                straight, fabs(heard - along_track_response(&bench.tracer.response, j * SPACING)));
+        const double complex *response = row_of_response(sea, SPACING, row, reach, true);
+        for (int j = -reach; j <= reach; j += 3) {
+            const double heard = heard_amplitude(sea, row * SPACING, j * SPACING);
+            worst = fmax(worst, fabs(heard - cabs(response[j + reach])));
+            straight = fmax(straight, fabs(heard - sea_window(sea, j * SPACING)));
         }
     }
-    motion_response_end(&motion);
-    print_message("a straight track's differs by %.3f\n", straight);
-    assert_true(straight > 0.1);
+    assert_true(straight > 0.1); /* a straight track's would not do */
     /* hydrophones 4 mm apart; at x beside the pixel ranges are curved: k x^2 aspect^2 / r */
     expect_below("response less what hydrophones hear", worst, 0.004);
-    bench_close(&bench);
 }
 
 static double wander(double x)
@@ -447,141 +371,104 @@ static double wander(double x)
     return 1e-3 * sin(1.7 * x) + 4e-4 * cos(5.1 * x + 0.3);
 }
 
-static double energy_of(const double *real_part, const double *imaginary_part, int reach)
-{
-    double energy = 0.0;
-    for (int i = 0; i < 2 * reach + 1; i++)
-        energy += SPACING * (real_part[i] * real_part[i] + imaginary_part[i] * imaginary_part[i]);
-    return energy;
-}
-
-/* Neither the energy of a row's response nor the seabed's level changes, but for what the elements'
- * beam leaves out; starboard is port, reversed. */
-static void test_energy_stays(void **unused)
-{
-    struct bench bench;
-    struct motion_response motion;
-    struct echoes echoes;
-    enum {
-        REACH = 3000
-    };
-    static double real_part[2 * REACH + 1], imaginary_part[2 * REACH + 1];
-    (void)unused;
-    open_aperture(&bench);
-    give_sway(&bench, wander);
-    bench.scene.motion.params.random_rms_m = 1e-3;
-    bench_ready(&bench);
-    print_message("energy reaches %.3g m farther\n", bench.tracer.response.motion_spread_m[1]);
-    const double straight = along_track_energy_width(&bench.tracer.response);
-    assert_int_equal(motion_response_begin(&motion, &bench.report, &bench.tracer.response,
-                                           &bench.tracer.view, SPACING, 0.0, REACH),
-                     SONJECT_OK);
-    double heard = 0.0;
-    for (int row = 0; row < ROWS; row += 40) {
-        motion_response_row_all_around(&motion, row, real_part, imaginary_part);
-        expect_close("energy of a row's response",
-                     energy_of(real_part, imaginary_part, REACH) / straight, 1.0, 1e-3);
-        motion_response_row(&motion, row, real_part, imaginary_part);
-        heard += energy_of(real_part, imaginary_part, REACH) / straight / 5.0;
-    }
-    assert_true(heard < 0.9995);
-    expect_close("share that elements hear", bench.tracer.response.motion_energy_share, heard,
-                 2e-4);
-    motion_response_end(&motion);
-    bench_echoes(&bench, NULL, SEABED_FIELD_SPECKLE, &echoes);
-    double ratio = 0.0;
-    for (size_t i = 0; i < ROWS * COLUMNS; i++)
-        ratio += echoes.seabed_energy[i] /
-                 seabed_cell_energy(&bench.tracer.view, &bench.tracer.response,
-                                    bench.scene.seabed.lambert,
-                                    view_apparent_range(&bench.tracer.view, (double)(i % COLUMNS)));
-    /* taps and margins leave out 0.6 % */
-    expect_close("mean energy of the seabed, dB", decibels_of_energy(ratio / (ROWS * COLUMNS)), 0.0,
-                 0.04);
-    echoes_clear(&echoes);
-    bench_close(&bench);
-}
-
 static double wander_of_starboard(double x)
 {
     return wander(160 * SPACING - x);
 }
 
-static void test_starboard(void **unused)
+/* Taps and margins leave out 0.6 % of the energy. */
+static void expect_level_of_seabed(struct sea *sea)
 {
-    double complex cuts[2][ROWS];
-    (void)unused;
-    for (int side = 0; side < 2; side++) {
-        struct bench bench;
-        open_aperture(&bench);
-        bench.scene.geometry.side = side ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
-        cut_of(&bench, cuts[side]);
-        give_sway(&bench, side ? wander_of_starboard : wander);
-        /* the bow is at the other end; pings lie at the same places */
-        bench.scene.motion.params.yaw_advance_m = 0.25;
-        bench.scene.motion.params.yaw_bias_rad = side ? -0.02 : 0.02;
-        cut_of(&bench, cuts[side]);
-        bench_close(&bench);
+    const struct image *image = sea_image_of(sea, NULL, true);
+    expect_close("mean energy of the seabed, dB",
+                 decibels_of_energy(level_over(sea, image, 0, false).mean), 0.0, 0.04);
+}
+
+/* Neither the energy of a row's response nor the seabed's level changes, but for what the elements'
+ * beam leaves out. */
+static void motion_keeps_energy(void)
+{
+    const int reach = 3000;
+    struct sea *sea = open_aperture(false);
+    give_sway(sea, wander);
+    sea->motion->random_rms_m = 1e-3;
+    sea_ready(sea);
+    double heard = 0.0;
+    for (int i = 0; i < 2 * ((ROWS + 39) / 40); i++) {
+        const double complex *row = row_of_response(sea, SPACING, i / 2 * 40, reach, i % 2);
+        double energy = 0.0;
+        for (int k = 0; k < 2 * reach + 1; k++)
+            energy += SPACING * pow(cabs(row[k]), 2.0) / sea_window_energy(sea);
+        if (i % 2)
+            expect_close("energy of a row's response", energy, 1.0, 1e-3);
+        else
+            heard += energy / 5.0;
     }
+    assert_true(heard < 0.9995);
+    expect_close("share that elements hear", response_of(sea)->motion_energy_share, heard, 2e-4);
+    expect_level_of_seabed(sea);
+}
+
+/* Starboard is port, reversed: the bow is at the other end; pings lie at the same places. */
+static void starboard_is_port_reversed(void)
+{
+    const double complex *cuts[2];
     double worst = 0.0;
+    for (int side = 0; side < 2; side++) {
+        struct sea *sea = open_aperture(false);
+        sea->geometry->side = side ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
+        const double complex straight = middle_of(sea);
+        give_sway(sea, side ? wander_of_starboard : wander);
+        sea->motion->yaw_advance_m = 0.25;
+        sea->motion->yaw_bias_rad = side ? -0.02 : 0.02;
+        cuts[side] = cut_through(sea, straight);
+    }
     for (int row = 0; row < ROWS; row++)
         worst = fmax(worst, cabs(cuts[0][row] - cuts[1][row]));
     expect_below("port less starboard", worst, 1e-3);
 }
 
-static sonject_status try_motion(struct bench *bench)
+static void expect_refused(struct sea *sea, const char *words)
 {
-    struct point_response response;
-    const sonject_status status = point_response_of_scene(&response, &bench->report, &bench->scene,
-                                                          &bench->tracer.view, 1500.0);
-    print_message("%s\n", status == SONJECT_OK ? "taken" : bench->report.message);
-    return status;
+    assert_int_equal(sea_check_response(sea), words ? SONJECT_ERROR_INPUT : SONJECT_OK);
+    if (words && !strstr(sea_message(sea), words))
+        fail_msg("'%s' does not say '%s'", sea_message(sea), words);
 }
 
 /* Sway that turns sound by more than the aspects, so that no response is long enough; yaw whose
  * pings are unknown, or too many; motion that is too fast to be followed. */
-static void test_motion_that_is_refused(void **unused)
+static void motion_that_is_refused(void)
 {
-    static const double x[] = {0.0, 1.0};
-    static const double yaw[] = {1e-3, 2e-3};
-    struct bench bench;
-    (void)unused;
-    open_aperture(&bench);
-    sonject_motion_params *motion = &bench.scene.motion.params;
-    motion->random_rms_m = 1e-3;
-    assert_int_equal(try_motion(&bench), SONJECT_OK);
-    motion->random_rms_m = 10.0;
-    assert_int_equal(try_motion(&bench), SONJECT_ERROR_INPUT);
-    assert_non_null(strstr(bench.report.message, "lessen it"));
-    motion->random_rms_m = 0.0;
-    assert_int_equal(motion_table_set(&bench.scene.motion.yaw_table, &bench.report, x, yaw, 2),
-                     SONJECT_OK);
-    assert_int_equal(try_motion(&bench), SONJECT_ERROR_INPUT);
-    assert_non_null(strstr(bench.report.message, "without the advance"));
-    motion->yaw_advance_m = 0.5;
-    assert_int_equal(try_motion(&bench), SONJECT_OK);
-    motion->yaw_advance_m = 1e-4;
-    assert_int_equal(try_motion(&bench), SONJECT_ERROR_INPUT);
-    assert_non_null(strstr(bench.report.message, "aspects"));
-    motion->yaw_advance_m = 0.5;
-    bench.tracer.view.rows = 1000000000;
-    assert_int_equal(try_motion(&bench), SONJECT_ERROR_INPUT);
-    assert_non_null(strstr(bench.report.message, "pings"));
-    motion->random_rms_m = 1e-3;
-    assert_int_equal(try_motion(&bench), SONJECT_ERROR_INPUT);
-    assert_non_null(strstr(bench.report.message, "steps of the sway"));
-    bench_close(&bench);
+    static const double x[] = {0.0, 1.0}, yaw[] = {1e-3, 2e-3};
+    struct sea *sea = open_aperture(false);
+    sea->motion->random_rms_m = 1e-3;
+    expect_refused(sea, NULL);
+    sea->motion->random_rms_m = 10.0;
+    expect_refused(sea, "lessen it");
+    sea->motion->random_rms_m = 0.0;
+    assert_int_equal(
+        motion_table_set(&sea->bench->scene.motion.yaw_table, &sea->bench->report, x, yaw, 2),
+        SONJECT_OK);
+    expect_refused(sea, "without the advance");
+    sea->motion->yaw_advance_m = 0.5;
+    expect_refused(sea, NULL);
+    sea->motion->yaw_advance_m = 1e-4;
+    expect_refused(sea, "aspects");
+    sea->motion->yaw_advance_m = 0.5;
+    sea->bench->tracer.view.rows = 1000000000;
+    expect_refused(sea, "pings");
+    sea->motion->random_rms_m = 1e-3;
+    expect_refused(sea, "steps of the sway");
 }
 
 /* The random sway's autocorrelation, by an average over seeds. */
-static void test_random_sway(void **unused)
+static void a_random_sways_autocorrelation(void)
 {
     enum {
         SEEDS = 4000
     };
     double sums[3] = {0.0, 0.0, 0.0};
     struct aperture_motion motion;
-    (void)unused;
     memset(&motion, 0, sizeof motion);
     sonject_motion_params_init(&motion.params);
     motion.params.random_rms_m = 2.0;
@@ -608,62 +495,31 @@ static double complex measured(double x)
     return exp(-0.5 * (y - 0.2) * (y - 0.2)) * cexp(I * (1.0 + 0.8 * y + 0.3 * y * y));
 }
 
-static void test_measured_response(void **unused)
+static void a_measured_response_is_the_images(void)
 {
     enum {
         SIDE = 60
     };
-    struct bench bench;
-    struct echoes echoes;
-    double complex cut[ROWS];
-    double x[2 * SIDE + 1], real_part[2 * SIDE + 1], imaginary_part[2 * SIDE + 1];
-    (void)unused;
+    double x[2 * SIDE + 1], real_part[2 * SIDE + 1], imaginary_part[2 * SIDE + 1], worst = 0.0;
+    struct sea *sea = open_aperture(false);
+    const double complex straight = middle_of(sea), peak = measured(0.2 * RESOLUTION);
     for (int i = -SIDE; i <= SIDE; i++) {
         x[i + SIDE] = i * RESOLUTION / 10.0;
         real_part[i + SIDE] = 5.0 * creal(measured(x[i + SIDE]));
         imaginary_part[i + SIDE] = 5.0 * cimag(measured(x[i + SIDE]));
     }
-    open_aperture(&bench);
-    cut_of(&bench, cut);
-    assert_int_equal(response_table_set(&bench.scene.cross_range_table, &bench.report, x, real_part,
-                                        imaginary_part, 2 * SIDE + 1, false),
-                     SONJECT_OK);
-    cut_of(&bench, cut);
-    double worst = 0.0;
-    const double complex peak = measured(0.2 * RESOLUTION);
+    sea_set_window(sea, x, real_part, imaginary_part, COUNT(x));
+    const double complex *cut = cut_through(sea, straight);
     for (int row = 0; row < ROWS; row++)
         worst = fmax(worst, cabs(cut[row] - measured((row - MIDDLE) * SPACING) / peak));
     expect_below("cut less the table", worst, 0.02); /* strips of 3 mm, a cubic of ten samples */
-    expect_close("energy width, resolutions",
-                 cross_range_energy_width(&bench.tracer.response, RANGE) / RESOLUTION, sqrt(PI),
-                 1e-3);
-    bench_echoes(&bench, NULL, SEABED_FIELD_SPECKLE, &echoes);
-    double ratio = 0.0;
-    for (size_t i = 0; i < ROWS * COLUMNS; i++)
-        ratio += echoes.seabed_energy[i] /
-                 seabed_cell_energy(&bench.tracer.view, &bench.tracer.response,
-                                    bench.scene.seabed.lambert,
-                                    view_apparent_range(&bench.tracer.view, (double)(i % COLUMNS)));
-    expect_close("mean energy of the seabed, dB", decibels_of_energy(ratio / (ROWS * COLUMNS)), 0.0,
-                 0.04);
-    echoes_clear(&echoes);
-    bench_close(&bench);
+    expect_close("energy width, resolutions", sea_cross_range_energy(sea, RANGE) / RESOLUTION,
+                 sqrt(PI), 1e-3);
+    expect_level_of_seabed(sea);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_paired_echoes),
-        cmocka_unit_test(test_quadratic_error),
-        cmocka_unit_test(test_lobes_of_a_constant_yaw),
-        cmocka_unit_test(test_lobes_beyond_the_beam),
-        cmocka_unit_test(test_changing_yaw),
-        cmocka_unit_test(test_yaw_of_hydrophones),
-        cmocka_unit_test(test_energy_stays),
-        cmocka_unit_test(test_starboard),
-        cmocka_unit_test(test_motion_that_is_refused),
-        cmocka_unit_test(test_random_sway),
-        cmocka_unit_test(test_measured_response),
-    };
-    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
-}
+CLAIMS(CLAIM(a_sway_makes_paired_echoes), CLAIM(a_constant_yaw_makes_lobes),
+       CLAIM(lobes_leave_the_elements_beam), CLAIM(sway_and_yaw_turn_each_aspects_phase),
+       CLAIM(yaw_is_what_hydrophones_hear), CLAIM(motion_keeps_energy),
+       CLAIM(starboard_is_port_reversed), CLAIM(motion_that_is_refused),
+       CLAIM(a_random_sways_autocorrelation), CLAIM(a_measured_response_is_the_images))

@@ -1,309 +1,390 @@
-/* What a point looks like: resolution, side lobes, energy, and where it lies between pixels. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
+/* What a point looks like, along the track (W, of the aspects' window) and in range (G, of the
+ * pulse): resolution, side lobes, energy, and where it lies between pixels; and that images,
+ * seabeds and noise have it. */
+#include "sea.h"
 
-#include <cmocka.h>
+#define RANGE      50.0
+#define CELL       0.025 /* c / 2B at 1500 m/s and 30 kHz */
+#define RESOLUTION 0.04
+#define QUADRATURE 4000
 
-#include <complex.h>
-#include <math.h>
-#include <stdlib.h>
-
-#include "bench.h"
-
-#define RANGE 50.0
-
-static const struct {
-    sonject_response_window window;
+/* Windows of W, and pulses of G, which is a Gaussian, the transform of a chirp's window, or a
+ * table. A half-power width of 0 is not known in closed form. */
+static const struct shape {
+    uint32_t window; /* sonject_response_window or sonject_pulse_window */
     double sidelobe_db;
     uint32_t terms;
-} windows[] = {
-    {SONJECT_WINDOW_RECTANGULAR, 0.0, 0}, {SONJECT_WINDOW_HAMMING, 0.0, 0},
-    {SONJECT_WINDOW_TAYLOR, 25.0, 4},     {SONJECT_WINDOW_TAYLOR, 35.0, 5},
-    {SONJECT_WINDOW_TAYLOR, 45.0, 8},
+    double width, lobe_db, tolerance_db; /* theory: sinc, sinc / (1 - z^2), tables of windows */
+} windows[] =
+    {
+        {SONJECT_WINDOW_RECTANGULAR, 0.0, 0, 0.8859, -13.26, 0.02},
+        {SONJECT_WINDOW_HAMMING, 0.0, 0, 1.3030, -42.7, 0.3},
+        {SONJECT_WINDOW_TAYLOR, 25.0, 4, 0.0, -25.0, 0.5}, /* a little under the design's level */
+        {SONJECT_WINDOW_TAYLOR, 35.0, 5, 0.0, -35.0, 0.5},
+        {SONJECT_WINDOW_TAYLOR, 45.0, 8, 0.0, -45.0, 0.5},
+},
+  pulses[] = {
+      {SONJECT_PULSE_RECTANGULAR, 0.0, 0, 0.8859, -13.26, 0.02},
+      {SONJECT_PULSE_HANN, 0.0, 0, 1.4406, -31.47, 0.02},
+      {SONJECT_PULSE_TAYLOR, 35.0, 5, 0.0, -35.0, 0.5},
+      {UINT32_MAX, 0.0, 0, 0.0, 0.0, 0.0},
 };
-#define WINDOWS (sizeof windows / sizeof *windows)
+#define TABLE 3 /* of pulses */
 
-static void choose_window(sonject_sonar_params *sonar, size_t i)
+static void choose_window(struct sea *sea, const struct shape *shape)
 {
-    sonar->response_window = windows[i].window;
-    if (windows[i].window == SONJECT_WINDOW_TAYLOR) {
-        sonar->taylor_sidelobe_db = windows[i].sidelobe_db;
-        sonar->taylor_terms = windows[i].terms;
+    sea->sonar->response_window = shape->window;
+    if (shape->window == SONJECT_WINDOW_TAYLOR) {
+        sea->sonar->taylor_sidelobe_db = shape->sidelobe_db;
+        sea->sonar->taylor_terms = shape->terms;
     }
+    sea->sonar->along_track_resolution_m = RESOLUTION;
 }
 
-static struct point_response response_of(size_t i)
+/* Width of the ideal equal-lobe pattern, stretched, where |W|^2 is one half, in resolutions. */
+static double taylor_width(const struct shape *shape)
 {
-    sonject_sonar_params sonar;
-    struct point_response response;
-    sonject_sonar_params_init(&sonar);
-    choose_window(&sonar, i);
-    sonar.along_track_resolution_m = 0.04;
-    point_response_init(&response, &sonar, 1500.0, 0.025);
-    return response;
+    const double r = pow(10.0, shape->sidelobe_db / 20.0), a = acosh(r) / PI, n = shape->terms;
+    return 2.0 / PI * sqrt(pow(acosh(r), 2.0) - pow(acosh(r / sqrt(2.0)), 2.0)) * n /
+           sqrt(a * a + (n - 0.5) * (n - 0.5));
 }
 
-/* Fourier transform of the aspect weighting: the definition of W, by quadrature. Weight over the
- * aspects, u from -1/2 to 1/2: 1, or Hamming's 0.54 + 0.46 cos(2 pi u), both over their mean. */
-static double transform(size_t i, double x)
+/* The transform of a weighting over its mean, at z resolutions or cells: 1 and a cosine. The
+ * table's has Hann's weights and phases of second and third order, as an uncompensated transducer
+ * leaves. */
+static double complex transform(double cosine, bool is_table, double z)
 {
-    const int steps = 4000;
-    double sum = 0.0;
-    double total = 0.0;
-    for (int k = 0; k < steps; k++) {
-        const double u = (k + 0.5) / steps - 0.5;
-        const double weight =
-            windows[i].window == SONJECT_WINDOW_HAMMING ? 0.54 + 0.46 * cos(2.0 * PI * u) : 1.0;
-        sum += weight * cos(2.0 * PI * u * x);
-        total += weight;
+    double complex sum = 0.0;
+    for (int k = 0; k < QUADRATURE; k++) {
+        const double v = (k + 0.5) / QUADRATURE - 0.5;
+        const double phase = is_table ? 6.0 * v * v + 10.0 * v * v * v : 0.0;
+        sum += (1.0 + cosine * cos(2.0 * PI * v)) * cexp(I * (phase + 2.0 * PI * v * z));
     }
-    return sum / total;
+    return sum / QUADRATURE;
 }
 
-/* Taylor's pattern by its zeros: those of an ideal pattern of equal lobes, stretched to meet the
- * sinc's from number `terms` on. */
-static double taylor_pattern(double sidelobe_db, int terms, double z)
+static double complex expected_window(const struct shape *shape, double z)
 {
-    const double a = acosh(pow(10.0, sidelobe_db / 20.0)) / PI;
-    const double stretch = terms / sqrt(a * a + (terms - 0.5) * (terms - 0.5));
-    double pattern = z == 0.0 ? 1.0 : sin(PI * z) / (PI * z);
-    for (int n = 1; n < terms; n++) {
-        const double zero = stretch * sqrt(a * a + (n - 0.5) * (n - 0.5));
-        pattern *= (1.0 - z * z / (zero * zero)) / (1.0 - z * z / ((double)n * n));
+    return shape->sidelobe_db > 0.0
+               ? taylor_pattern(shape->sidelobe_db, (int)shape->terms, z)
+               : transform(shape->window == SONJECT_WINDOW_HAMMING ? 0.46 / 0.54 : 0.0, false, z);
+}
+
+static double complex expected_pulse(const struct shape *shape, double z)
+{
+    return shape->sidelobe_db > 0.0
+               ? taylor_pattern(shape->sidelobe_db, (int)shape->terms, z)
+               : transform(shape->window == SONJECT_PULSE_RECTANGULAR ? 0.0 : 1.0,
+                           shape == &pulses[TABLE], z);
+}
+
+static void choose_pulse(struct sea *sea, const struct shape *shape)
+{
+    enum {
+        SIDE = 160 /* eight samples a cell, 20 cells to each side */
+    };
+    double positions[2 * SIDE + 1], real_part[2 * SIDE + 1], imaginary_part[2 * SIDE + 1];
+    sea->pulse->kind = SONJECT_PULSE_CHIRP;
+    sea->pulse->window = shape->window;
+    sea->pulse->taylor_sidelobe_db = shape->sidelobe_db;
+    sea->pulse->taylor_terms = shape->terms;
+    if (shape != &pulses[TABLE])
+        return;
+    sea->pulse->window = SONJECT_PULSE_RECTANGULAR;
+    for (int i = -SIDE; i <= SIDE; i++) { /* the seconds of half the sound speed */
+        const double complex g = 3.0 * cexp(I * 2.0) * expected_pulse(shape, i / 8.0);
+        positions[i + SIDE] = i / 8.0 * CELL / 750.0;
+        real_part[i + SIDE] = creal(g);
+        imaginary_part[i + SIDE] = cimag(g);
     }
-    return pattern;
+    sea_set_pulse(sea, positions, real_part, imaginary_part, COUNT(positions), true);
 }
 
-static void test_cross_range_response(void **unused)
+/* The sample of largest magnitude, by which a table is divided. */
+static double complex peak_of(const struct shape *shape)
 {
-    (void)unused;
-    for (size_t i = 0; i < WINDOWS; i++) {
-        const struct point_response response = response_of(i);
-        assert_true(fabs(along_track_response(&response, 0.0) - 1.0) < 1e-12);
-        for (double z = -12.037; z < 12.0; z += 0.173) {
-            const double expected =
-                windows[i].window == SONJECT_WINDOW_TAYLOR
-                    ? taylor_pattern(windows[i].sidelobe_db, (int)windows[i].terms, z)
-                    : transform(i, z);
-            if (fabs(along_track_response(&response, 0.04 * z) - expected) > 1e-6)
-                fail_msg("window %zu at %.3f resolutions: %.8f, not %.8f", i, z,
-                         along_track_response(&response, 0.04 * z), expected);
-        }
+    double complex peak = expected_pulse(shape, 0.0);
+    for (int i = -160; shape == &pulses[TABLE] && i <= 160; i++) {
+        const double complex g = expected_pulse(shape, i / 8.0);
+        peak = cabs(g) > cabs(peak) ? g : peak;
     }
+    return peak;
 }
 
-/* Full width where |W|^2 is half of its peak, in resolutions. */
-static double half_power_width(const struct point_response *response)
+/* Full width where the square of W or G is half of its peak, and its largest value beyond its first
+ * minimum, dB. */
+static double half_power_width(const struct sea *sea,
+                               double (*response)(const struct sea *, double), double unit)
 {
-    double low = 0.0;
-    double high = 2.0 * response->resolution_m;
+    double low = 0.0, high = 2.0 * unit;
     for (int i = 0; i < 60; i++) {
         const double middle = 0.5 * (low + high);
-        if (along_track_response(response, middle) > sqrt(0.5))
-            low = middle;
-        else
-            high = middle;
+        *(response(sea, middle) > sqrt(0.5) ? &low : &high) = middle;
     }
-    return 2.0 * low / response->resolution_m;
+    return 2.0 * low / unit;
 }
 
-/* The largest |W| beyond the first zero, dB. */
-static double highest_lobe(const struct point_response *response)
+static double highest_lobe_db(const struct sea *sea, double (*response)(const struct sea *, double),
+                              double unit)
 {
-    double x = 0.0;
-    const double step = 1e-3 * response->resolution_m;
-    while (along_track_response(response, x) > 0.0)
+    const double step = 1e-3 * unit;
+    double x = 0.0, highest = 0.0;
+    while (fabs(response(sea, x + step)) < fabs(response(sea, x)))
         x += step;
-    double highest = 0.0;
-    for (; x < 40.0 * response->resolution_m; x += step)
-        highest = fmax(highest, fabs(along_track_response(response, x)));
+    for (; x < 40.0 * unit; x += step)
+        highest = fmax(highest, fabs(response(sea, x)));
     return decibels_of_amplitude(highest);
 }
 
-static void test_widths_and_lobes(void **unused)
+static void windows_are_transforms_of_their_aspects(void)
 {
-    (void)unused;
-    for (size_t i = 0; i < WINDOWS; i++) {
-        const struct point_response response = response_of(i);
-        double width = 0.8859; /* 2 x where sinc x = 1/sqrt(2) */
-        double lobe = -13.26;
-        double tolerance = 0.02;
-        if (windows[i].window == SONJECT_WINDOW_HAMMING) {
-            width = 1.3030; /* as tables of windows give it: 1.30 bins, lobes at -43 dB */
-            lobe = -42.7;
-            tolerance = 0.3;
-        } else if (windows[i].window == SONJECT_WINDOW_TAYLOR) {
-            /* width of the ideal equal-lobe pattern, stretched; lobes a little under the level */
-            const double r = pow(10.0, windows[i].sidelobe_db / 20.0);
-            const double a = acosh(r) / PI;
-            const double n = windows[i].terms;
-            width = 2.0 / PI * sqrt(pow(acosh(r), 2.0) - pow(acosh(r / sqrt(2.0)), 2.0)) * n /
-                    sqrt(a * a + (n - 0.5) * (n - 0.5));
-            lobe = -windows[i].sidelobe_db;
-            tolerance = 0.5;
-        }
+    for (size_t i = 0; i < COUNT(windows); i++) {
+        struct sea *sea = sea_open(4, 4, RANGE);
+        choose_window(sea, &windows[i]);
+        sea_ready(sea);
+        double worst = 0.0;
+        for (double z = -12.037; z < 12.0; z += 0.173)
+            worst = fmax(worst,
+                         cabs(sea_window(sea, RESOLUTION * z) - expected_window(&windows[i], z)));
         print_message("window %zu\n", i);
-        expect_close("half-power width, resolutions", half_power_width(&response), width,
-                     0.01 * width);
-        expect_close("highest side lobe, dB", highest_lobe(&response), lobe, tolerance);
+        expect_close("W at its middle", sea_window(sea, 0.0), 1.0, 1e-12);
+        expect_below("W less the transform", worst, 1e-6);
+        const double width = windows[i].width > 0.0 ? windows[i].width : taylor_width(&windows[i]);
+        expect_close("half-power width, resolutions", half_power_width(sea, sea_window, RESOLUTION),
+                     width, 0.01 * width);
+        expect_close("highest side lobe, dB", highest_lobe_db(sea, sea_window, RESOLUTION),
+                     windows[i].lobe_db, windows[i].tolerance_db);
         /* energy by quadrature out to 400 resolutions; a tail 2/(2 pi^2 x) of the rest is left */
-        double energy = 0.0;
-        double inside = 0.0;
-        const double step = 0.02 * response.resolution_m;
-        const double reach = along_track_energy_reach(&response, 0.01);
-        for (double x = 0.5 * step; x < 400.0 * response.resolution_m; x += step) {
-            const double w = along_track_response(&response, x);
-            energy += 2.0 * w * w * step;
-            if (x < reach)
-                inside += 2.0 * w * w * step;
+        double energy = 0.0, inside = 0.0;
+        const double step = 0.02 * RESOLUTION, reach = sea_window_reach(sea, 0.01);
+        for (double x = 0.5 * step; x < 400.0 * RESOLUTION; x += step) {
+            const double square = 2.0 * pow(sea_window(sea, x), 2.0) * step;
+            energy += square;
+            inside += x < reach ? square : 0.0;
         }
-        expect_close("energy width over resolution",
-                     along_track_energy_width(&response) / response.resolution_m,
-                     energy / response.resolution_m, 1e-3);
+        expect_close("energy width over resolution", sea_window_energy(sea) / RESOLUTION,
+                     energy / RESOLUTION, 1e-3);
         expect_close("energy inside the reach of 99 %", inside / energy, 0.99, 6e-3);
     }
 }
 
-static void test_range_response(void **unused)
+/* The Gaussian's half power is at half of c/2B. */
+static void pulses_are_transforms_of_their_spectra(void)
 {
-    (void)unused;
-    const struct point_response response = response_of(0);
-    /* half power at half of c/2B = 2.5 cm */
-    expect_close("|G|^2 at c/4B", pow(range_response(&response, 0.0125), 2.0), 0.5, 1e-9);
-    double energy = 0.0;
-    for (double r = -0.2; r < 0.2; r += 1e-5)
-        energy += pow(range_response(&response, r), 2.0) * 1e-5;
-    expect_close("energy width, m", range_energy_width(&response), energy, 1e-6);
-    expect_close("energy width over c/2B", range_energy_width(&response) / 0.025, 1.0645, 1e-4);
+    struct sea *sea = sea_open(4, 4, RANGE);
+    sea_ready(sea);
+    expect_close("Gaussian |G|^2 at c/4B", pow(sea_pulse(sea, 0.5 * CELL), 2.0), 0.5, 1e-9);
+    expect_close("its energy width over c/2B", sea_pulse_energy(sea) / CELL,
+                 sqrt(PI / (4.0 * log(2.0))), 1e-9);
+    for (size_t i = 0; i < COUNT(pulses); i++) {
+        const double complex peak = peak_of(&pulses[i]);
+        double worst = 0.0, energy = 0.0;
+        sea = sea_open(4, 4, RANGE);
+        choose_pulse(sea, &pulses[i]);
+        sea_ready(sea);
+        for (int k = -1600; k <= 1600; k++) {
+            const double z = (k + 0.37) / 80.0;
+            worst = fmax(worst, cabs(sea_pulse_complex(sea, z * CELL) -
+                                     expected_pulse(&pulses[i], z) / peak));
+        }
+        for (int k = -160000; k < 160000; k++)
+            energy +=
+                pow(cabs(sea_pulse_complex(sea, (k + 0.5) * CELL / 800.0)), 2.0) * CELL / 800.0;
+        print_message("pulse %zu\n", i);
+        /* quadrature errs by 1e-6; a cubic between eight samples a cell by a thousandth */
+        expect_below("G less the transform", worst, i == TABLE ? 2e-3 : 1e-5);
+        /* a sinc has 1 / (pi^2 200) of its energy beyond 200 cells */
+        expect_close("energy over the sum's", sea_pulse_energy(sea) / energy, 1.0, 6e-4);
+        if (i == TABLE) /* Parseval: Hann's spectrum has 1.5 times its mean's square */
+            expect_close("energy of the table", sea_pulse_energy(sea) / CELL,
+                         1.5 / pow(cabs(peak), 2.0), 2e-3);
+        else
+            expect_close("highest side lobe, dB", highest_lobe_db(sea, sea_pulse, CELL),
+                         pulses[i].lobe_db, pulses[i].tolerance_db);
+        if (pulses[i].width > 0.0)
+            expect_close("half-power width, cells", half_power_width(sea, sea_pulse, CELL),
+                         pulses[i].width, 1e-4);
+    }
 }
 
-/* Cuts through the image of a ball far smaller than any resolution. */
 #define ROWS    161
 #define COLUMNS 121
 
-static void open_fine(struct bench *bench, size_t window)
+/* Puts a ball far smaller than any resolution, of half a wavelength at least, on the middle of the
+ * middle pixel. */
+static void hang_ball(struct sea *sea, double radius)
 {
-    bench_open(bench, ROWS, COLUMNS, RANGE);
-    bench->scene.geometry.row_spacing_m = 0.005;
-    bench->scene.geometry.column_spacing_m = 0.002;
-    bench->scene.sonar.along_track_resolution_m = 0.04;
-    choose_window(&bench->scene.sonar, window);
-    bench_move(bench, RANGE);
-    bench->scene.sonar.centre_frequency_hz = 800e3; /* a ball is half a wavelength large at least */
-    bench_add(bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.001)->burial_m = -0.1;
-    bench_ready(bench);
-    /* puts the ball on the middle of the middle pixel */
-    const double range = placement_range(&bench->placements[0], &bench->tracer.view);
-    bench_move(bench, range);
-    bench->scene.objects[0].position_kind = SONJECT_POSITION_METRES;
-    bench->scene.objects[0].position_along = 80 * 0.005;
-    bench->scene.objects[0].position_range = RANGE;
-    bench_ready(bench);
+    sea_add_sphere(sea, radius, 0.1);
+    sea_ready(sea);
+    sea_move(sea, sea_slant_range(sea, 0));
+    place_in_metres(sea_object(sea, 0), (double)(sea->rows / 2) * sea->geometry->row_spacing_m,
+                    RANGE);
+    sea_ready(sea);
 }
 
-static double amplitude_at(const struct echoes *echoes, size_t row, size_t column)
+static void the_image_of_a_point_is_w_times_g(void)
 {
-    const size_t i = row * echoes->columns + column;
-    return hypot(echoes->target_real[i], echoes->target_imaginary[i]);
-}
-
-static void test_image_of_a_point(void **unused)
-{
-    (void)unused;
-    for (size_t i = 0; i < WINDOWS; i++) {
-        struct bench bench;
-        struct echoes echoes;
-        open_fine(&bench, i);
-        bench_echoes(&bench, NULL, SEABED_FIELD_NONE, &echoes);
-        const double peak = amplitude_at(&echoes, 80, 60);
+    for (size_t i = 0; i < COUNT(windows); i++) {
+        struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
+        sea->geometry->row_spacing_m = 0.005;
+        sea->geometry->column_spacing_m = 0.002;
+        sea->sonar->centre_frequency_hz = 800e3;
+        choose_window(sea, &windows[i]);
+        sea_move(sea, RANGE);
+        hang_ball(sea, 0.0005);
+        const double complex *pixels = sea_image(sea)->target;
+        const double peak = cabs(pixels[80 * COLUMNS + 60]);
+        double along = 0.0, in_range = 0.0;
         assert_true(peak > 0.0);
-        double worst_row = 0.0;
-        double worst_column = 0.0;
         /* sub-strips of 2.5 mm hold the ball in two of them: W's mean over 2.5 mm of 40 */
         for (size_t row = 0; row < ROWS; row++) {
             const double x = ((double)row - 80.0) * 0.005;
-            const double w = 0.5 * (along_track_response(&bench.tracer.response, x - 0.00125) +
-                                    along_track_response(&bench.tracer.response, x + 0.00125));
-            worst_row = fmax(worst_row, fabs(amplitude_at(&echoes, row, 60) / peak - fabs(w)));
+            const double w = 0.5 * (sea_window(sea, x - 0.00125) + sea_window(sea, x + 0.00125));
+            along = fmax(along, fabs(cabs(pixels[row * COLUMNS + 60]) / peak - fabs(w)));
         }
         for (size_t column = 0; column < COLUMNS; column++)
-            worst_column =
-                fmax(worst_column,
-                     fabs(amplitude_at(&echoes, 80, column) / peak -
-                          range_response(&bench.tracer.response, ((double)column - 60.0) * 0.002)));
+            in_range = fmax(in_range, fabs(cabs(pixels[80 * COLUMNS + column]) / peak -
+                                           sea_pulse(sea, ((double)column - 60.0) * 0.002)));
         print_message("window %zu\n", i);
-        expect_below("along-track cut less W", worst_row, 0.02);
-        expect_below("range cut less G", worst_column, 0.02);
-        echoes_clear(&echoes);
-        bench_close(&bench);
+        expect_below("along-track cut less W", along, 0.02);
+        expect_below("range cut less G", in_range, 0.02);
     }
 }
 
-/* Centroid of the energy about the brightest pixel. */
-static void centroid(const struct echoes *echoes, double *row, double *column)
+static void the_image_of_a_point_has_the_pulses_phase(void)
 {
-    double sum = 0.0;
-    *row = 0.0;
-    *column = 0.0;
-    for (size_t i = 0; i < echoes->rows * echoes->columns; i++) {
-        const double energy =
-            pow(echoes->target_real[i], 2.0) + pow(echoes->target_imaginary[i], 2.0);
-        sum += energy;
-        *row += energy * (double)(i / echoes->columns);
-        *column += energy * (double)(i % echoes->columns);
-    }
-    *row /= sum;
-    *column /= sum;
-}
-
-/* A ball moved by a part of a pixel is seen moved by that part. */
-static void test_between_pixels(void **unused)
-{
-    (void)unused;
-    double first_row = 0.0;
-    double first_column = 0.0;
-    double first_range = 0.0;
-    for (int step = 0; step <= 8; step++) {
-        struct bench bench;
-        struct echoes echoes;
-        double row, column;
-        bench_open(&bench, 101, 101, RANGE);
-        choose_window(&bench.scene.sonar, 3); /* low side lobes: the patch cuts nothing off */
-        /* a centroid needs |W|^2 and G^2 sampled finely enough: twice an image's usual pixels */
-        bench.scene.sonar.along_track_resolution_m = 0.05;
-        bench.scene.sonar.bandwidth_hz = 15e3;
-        bench.scene.injection.ray_scale = 16.0;
-        sonject_object_params *object = bench_add(&bench, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 0.05);
-        object->burial_m = -0.1;
-        object->position_kind = SONJECT_POSITION_METRES;
-        object->position_along = (50.0 + step / 8.0) * 0.025;
-        object->position_range = RANGE + step / 8.0 * 0.025;
-        bench_ready(&bench);
-        bench_echoes(&bench, NULL, SEABED_FIELD_NONE, &echoes);
-        centroid(&echoes, &row, &column);
-        const double range = placement_range(&bench.placements[0], &bench.tracer.view);
-        if (step == 0) {
-            first_row = row;
-            first_column = column;
-            first_range = range;
+    for (size_t i = 0; i < COUNT(pulses); i++) {
+        struct sea *sea = sea_open(21, COLUMNS, RANGE);
+        sea->geometry->column_spacing_m = 0.003;
+        sea->sonar->centre_frequency_hz = 400e3;
+        sea->injection->ray_scale = 16.0;
+        choose_pulse(sea, &pulses[i]);
+        sea_move(sea, RANGE);
+        hang_ball(sea, 0.001);
+        const double complex *pixels = sea_image(sea)->target + 10 * COLUMNS;
+        double complex scale = 0.0, g[COLUMNS];
+        double norm = 0.0, worst = 0.0;
+        for (int column = 0; column < COLUMNS; column++) {
+            g[column] = sea_pulse_complex(sea, (column - 60.0) * 0.003 + 0.001);
+            scale += conj(g[column]) * pixels[column]; /* the echo's own, by least squares */
+            norm += pow(cabs(g[column]), 2.0);
         }
-        expect_close("moved rows", row - first_row, step / 8.0, 0.02);
-        expect_close("moved columns", column - first_column, (range - first_range) / 0.025, 0.02);
-        if (step == 0)
-            expect_close("row", row, 50.0, 0.02);
-        echoes_clear(&echoes);
-        bench_close(&bench);
+        for (int column = 0; column < COLUMNS; column++)
+            worst = fmax(worst, cabs(pixels[column] / (scale / norm) - g[column]));
+        print_message("pulse %zu\n", i);
+        assert_true(cabs(scale) > 0.0);
+        /* the glint is a radius before the ball's middle; bins err by 5e-4, its depth by more */
+        expect_below("range cut less G", worst, 0.02);
     }
 }
 
-int main(void)
+/* A ball moved by a part of a pixel is seen moved by that part: the centroid of its energy. */
+static void a_point_between_pixels(void)
 {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_cross_range_response), cmocka_unit_test(test_widths_and_lobes),
-        cmocka_unit_test(test_range_response),       cmocka_unit_test(test_image_of_a_point),
-        cmocka_unit_test(test_between_pixels),
-    };
-    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
+    double first[3] = {0.0, 0.0, 0.0}; /* row, column, range */
+    for (int step = 0; step <= 8; step++) {
+        struct sea *sea = sea_open(101, 101, RANGE);
+        choose_window(sea, &windows[3]); /* low side lobes: the patch cuts nothing off */
+        /* a centroid needs |W|^2 and G^2 sampled finely enough: twice an image's usual pixels */
+        sea->sonar->along_track_resolution_m = 0.05;
+        sea->sonar->bandwidth_hz = 15e3;
+        sea->injection->ray_scale = 16.0;
+        place_in_metres(sea_add_sphere(sea, 0.025, 0.1), (50.0 + step / 8.0) * 0.025,
+                        RANGE + step / 8.0 * 0.025);
+        sea_ready(sea);
+        const struct image *image = sea_image(sea);
+        double sum = 0.0, here[3] = {0.0, 0.0, sea_slant_range(sea, 0)};
+        for (size_t i = 0; i < image->pixels; i++) {
+            const double energy = pow(cabs(image->target[i]), 2.0);
+            sum += energy;
+            here[0] += energy * (double)(i / image->columns);
+            here[1] += energy * (double)(i % image->columns);
+        }
+        for (int k = 0; k < 3; k++) {
+            here[k] /= k < 2 ? sum : 1.0;
+            first[k] = step == 0 ? here[k] : first[k];
+        }
+        expect_close("row", here[0], 50.0 + step / 8.0, 0.02);
+        expect_close("moved columns", here[1] - first[1], (here[2] - first[2]) / 0.025, 0.02);
+    }
 }
+
+/* G's autocorrelation at a lag, over its energy. */
+static double complex autocorrelation(const struct sea *sea, double lag)
+{
+    const double step = CELL / 40.0;
+    double complex sum = 0.0;
+    double energy = 0.0;
+    for (int i = -8000; i < 8000; i++) {
+        const double complex g = sea_pulse_complex(sea, i * step);
+        sum += conj(g) * sea_pulse_complex(sea, i * step + lag);
+        energy += pow(cabs(g), 2.0);
+    }
+    return sum / energy;
+}
+
+/* Pixels of 0.4 cell are independent every 1.5 cells at best: 4 standard errors. */
+static void expect_pulse_in(const struct sea *sea, const double complex *field, size_t edge)
+{
+    for (size_t lag = 1; lag <= 4; lag++) {
+        const double error =
+            4.0 * sqrt(1.5 / 0.4 / ((double)(sea->rows * (sea->columns - 2 * edge))));
+        const double complex measured = correlation_of(sea, field, 0, lag, edge);
+        const double complex expected = autocorrelation(sea, (double)lag * 0.01);
+        expect_close("correlation, real part", creal(measured), creal(expected), error);
+        expect_close("imaginary part", cimag(measured), cimag(expected), error);
+    }
+}
+
+static void seabed_and_noise_have_the_pulse(void)
+{
+    for (size_t i = 0; i < COUNT(pulses); i++) {
+        const size_t edge = 60;
+        struct sea *sea = sea_open(240, 360, RANGE);
+        sea->geometry->column_spacing_m = 0.01;
+        choose_pulse(sea, &pulses[i]);
+        sea_move(sea, RANGE);
+        sea_ready(sea);
+        const struct image *image = sea_image_of(sea, NULL, true);
+        const double count = 240.0 * (360.0 - 2.0 * (double)edge);
+        print_message("pulse %zu\n", i);
+        /* jittered rays, and 0.6 % beyond taps and margins: 0.03 dB */
+        expect_close("mean energy of the seabed, dB",
+                     decibels_of_energy(level_over(sea, image, edge, false).mean), 0.0, 0.04);
+        /* 4 standard errors of exponential intensities, one every 1.5 cells of 2.5 pixels */
+        expect_close("speckle over it", level_over(sea, image, edge, true).mean, 1.0,
+                     4.0 * sqrt(3.75 / count));
+        expect_pulse_in(sea, unit_field(sea, image->seabed, image->seabed_energy), edge);
+        const double complex *noise = sea_noise(sea, NOISE_OF_IMAGE);
+        const double pixels = 240.0 * 360.0;
+        expect_close("noise", creal(correlation_of(sea, noise, 0, 0, 0)), 1.0,
+                     4.0 * sqrt(3.75 / pixels) + 6e-3);
+        expect_pulse_in(sea, noise, edge);
+    }
+}
+
+/* The same image whether the Gaussian is known or measured. */
+static void a_table_of_the_gaussian_is_the_gaussian(void)
+{
+    const struct image *images[2];
+    double positions[81], values[81], peak;
+    for (int i = 0; i < 81; i++) {
+        positions[i] = (i - 40) * CELL / 8.0;
+        values[i] = 7.0 * exp(-2.0 * log(2.0) * pow((i - 40) / 8.0, 2.0));
+    }
+    for (int with_table = 0; with_table < 2; with_table++) {
+        struct sea *sea = sea_open(41, 81, RANGE);
+        sea_add_sphere(sea, 0.15, 0.0)->material.lambert = 0.01;
+        if (with_table)
+            sea_set_pulse(sea, positions, values, NULL, 81, false);
+        sea_ready(sea);
+        images[with_table] = sea_image(sea);
+    }
+    const double worst = image_difference(images[0], images[1], &peak);
+    expect_below("difference over the peak", worst / peak, 2e-3); /* of the cubic */
+}
+
+CLAIMS(CLAIM(windows_are_transforms_of_their_aspects),
+       CLAIM(pulses_are_transforms_of_their_spectra), CLAIM(the_image_of_a_point_is_w_times_g),
+       CLAIM(the_image_of_a_point_has_the_pulses_phase), CLAIM(a_point_between_pixels),
+       CLAIM(seabed_and_noise_have_the_pulse), CLAIM(a_table_of_the_gaussian_is_the_gaussian))

@@ -1,14 +1,6 @@
 /* What is formed from a file of sums is, bit for bit, what is formed as they are traced. */
 #define _POSIX_C_SOURCE 200809L
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <stdlib.h>
-#include <string.h>
+#include "sea.h"
 
 #include "../unit/temporary_folder.h"
 #include "bench.h"
@@ -109,7 +101,7 @@ static void compare(struct bench *bench, struct temporary_folder *folder)
     bench_close(bench);
 }
 
-static void test_relief_and_mirrors(void **state)
+static void relief_and_mirrors_are_formed_from_a_file(void **state)
 {
     struct bench bench;
     open_bench(&bench);
@@ -120,7 +112,7 @@ static void test_relief_and_mirrors(void **state)
     compare(&bench, *state);
 }
 
-static void test_brute_force(void **state)
+static void brute_force_is_formed_from_a_file(void **state)
 {
     struct bench bench;
     open_bench(&bench);
@@ -133,9 +125,9 @@ static void test_brute_force(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_relief_and_mirrors, make_temporary_folder,
-                                        remove_temporary_folder),
-        cmocka_unit_test_setup_teardown(test_brute_force, make_temporary_folder,
+        cmocka_unit_test_setup_teardown(relief_and_mirrors_are_formed_from_a_file,
+                                        make_temporary_folder, remove_temporary_folder),
+        cmocka_unit_test_setup_teardown(brute_force_is_formed_from_a_file, make_temporary_folder,
                                         remove_temporary_folder),
     };
     return bench_run_on_devices(tests, sizeof tests / sizeof *tests);

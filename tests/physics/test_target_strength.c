@@ -1,17 +1,6 @@
 /* An object's target strength is its own: its echo's peak, wherever pixels lie and however far
  * apart they are. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <complex.h>
-#include <math.h>
-
-#include "bench.h"
-#include "inject/target_level.h"
+#include "sea.h"
 
 #define RANGE       50.0
 #define RESOLUTION  0.025
@@ -20,40 +9,31 @@
 #define ROUGH_DB    0.2     /* its energies are known by strips of a resolution */
 #define GIBBS       1.08949 /* 1/2 + Si(pi)/pi: sinc passing over the end of a line */
 
-/* Pixels, m: along the track and in range. */
+/* Pixels, m: along the track and in range; and where a centre lies between them. */
 static const double spacings[][2] = {{0.025, 0.025}, {0.01, 0.0125}, {0.1, 0.075}};
-/* Where a centre lies between pixels. */
 static const double offsets[][2] = {{0.0, 0.0}, {0.5, 0.27}, {0.21, 0.5}, {0.77, 0.83}};
+#define PLACES (COUNT(spacings) * COUNT(offsets))
 
-#define SPACINGS (sizeof spacings / sizeof *spacings)
-#define OFFSETS  (sizeof offsets / sizeof *offsets)
-
-static sonject_object_params *hang(struct bench *bench, size_t spacing, size_t offset,
-                                   sonject_shape shape, double length_m, double diameter_m)
+static struct sea *hang(size_t place, sonject_shape shape, double length_m, double diameter_m)
 {
-    const double along = spacings[spacing][0];
-    const double range = spacings[spacing][1];
-    bench_open(bench, (size_t)(4.0 / along), (size_t)(4.0 / range), RANGE);
-    bench->scene.sonar.along_track_resolution_m = RESOLUTION;
-    bench->scene.geometry.row_spacing_m = along;
-    bench->scene.geometry.column_spacing_m = range;
-    bench_move(bench, RANGE);
-    sonject_object_params *object = bench_add(bench, shape, length_m, 0.0, diameter_m);
+    const double *spacing = spacings[place % COUNT(spacings)];
+    const double *offset = offsets[place / COUNT(spacings)];
+    struct sea *sea = sea_open((size_t)(4.0 / spacing[0]), (size_t)(4.0 / spacing[1]), RANGE);
+    sea->sonar->along_track_resolution_m = RESOLUTION;
+    sea->geometry->row_spacing_m = spacing[0];
+    sea->geometry->column_spacing_m = spacing[1];
+    sea_move(sea, RANGE);
+    sonject_object_params *object = sea_add(sea, shape, length_m, 0.0, diameter_m);
     object->burial_m = -1.0;
-    object->position_kind = SONJECT_POSITION_PIXELS;
-    object->position_along = floor(2.0 / along) + offsets[offset][0];
-    object->position_range = floor(2.0 / range) + offsets[offset][1];
-    return object;
+    place_in_pixels(object, floor(2.0 / spacing[0]) + offset[0],
+                    floor(2.0 / spacing[1]) + offset[1]);
+    return sea;
 }
 
-static double peak_db(struct bench *bench)
+static double peak_db(struct sea *sea)
 {
-    struct echoes echoes;
-    bench_ready(bench);
-    bench_echoes(bench, NULL, SEABED_FIELD_NONE, &echoes);
-    const double peak = decibels_of_energy(echoes.objects[0].peak_energy);
-    echoes_clear(&echoes);
-    return peak;
+    sea_ready(sea);
+    return decibels_of_energy(sea_image(sea)->objects[0].peak_energy);
 }
 
 /* 1/lambda times the integral of sinc(x/delta) exp(2ikd) G(offset - d) over the disc, d the depth
@@ -70,7 +50,7 @@ static double sphere_db(double a)
             for (double w = 0.5 * step; x * x + w * w < a * a; w += step) {
                 const double depth = a - sqrt(a * a - x * x - w * w);
                 const double behind = (i * 0.125 * RESOLUTION - depth) / deviation;
-                sum += 4.0 * step * step * sin(PI * x / RESOLUTION) / (PI * x / RESOLUTION) *
+                sum += 4.0 * step * step * sinc(x / RESOLUTION) *
                        cexp(4.0 * PI * I * depth / WAVELENGTH - 0.5 * behind * behind);
             }
         largest = fmax(largest, cabs(sum) / WAVELENGTH);
@@ -78,86 +58,50 @@ static double sphere_db(double a)
     return decibels_of_amplitude(largest / sqrt(1.0 + a / RANGE));
 }
 
-static void test_spheres_wherever_pixels_lie(void **unused)
+/* The level that is asked for is the target's, too, not that of a pixel. */
+static void spheres_wherever_pixels_lie(void)
 {
-    (void)unused;
     static const double radii[] = {0.15, 0.3};
     const double expected[] = {sphere_db(radii[0]), sphere_db(radii[1])};
-    for (size_t i = 0; i < 2 * SPACINGS * OFFSETS; i++) {
-        struct bench bench;
-        hang(&bench, i / 2 % SPACINGS, i / 2 / SPACINGS, SONJECT_SHAPE_SPHERE, 0.0,
-             2.0 * radii[i % 2]);
-        expect_close("sphere's target strength, dB", peak_db(&bench), expected[i % 2], CLOSED_FORM);
-        bench_close(&bench);
+    for (size_t i = 0; i < 2 * PLACES; i++) {
+        struct sea *sea = hang(i / 2, SONJECT_SHAPE_SPHERE, 0.0, 2.0 * radii[i % 2]);
+        expect_close("sphere's target strength, dB", peak_db(sea), expected[i % 2], CLOSED_FORM);
+        if (i % 2)
+            continue;
+        sea_object(sea, 0)->level_kind = SONJECT_LEVEL_TARGET_STRENGTH;
+        sea_object(sea, 0)->level_db = -10.0;
+        float *pixels = claim_memory(sea->pixels, sizeof *pixels);
+        for (size_t k = 0; k < sea->pixels; k++)
+            pixels[k] = 1.0f;
+        const sonject_object_truth *truth = sea_inject(sea, pixels, false)->objects;
+        expect_close("gain, dB", truth->level_gain_db, -10.0 - expected[0], CLOSED_FORM);
+        expect_close("level, dB", truth->target_strength_db, -10.0, 1e-9);
     }
 }
 
 /* Broadside: sqrt(a / 2 lambda) delta where W passes over the line, Gibbs' overshoot at its end. */
-static void test_cylinder_peaks_at_its_ends(void **unused)
+static void a_cylinder_peaks_at_its_ends(void)
 {
-    (void)unused;
-    for (size_t i = 0; i < SPACINGS * OFFSETS; i++) {
-        struct bench bench;
-        const double a = 0.15;
-        hang(&bench, i % SPACINGS, i / SPACINGS, SONJECT_SHAPE_CYLINDER, 1.5, 2.0 * a);
-        expect_close("cylinder's target strength, dB", peak_db(&bench),
-                     decibels_of_amplitude(GIBBS * RESOLUTION * sqrt(0.5 * a / WAVELENGTH)),
-                     CLOSED_FORM);
-        bench_close(&bench);
-    }
+    for (size_t i = 0; i < PLACES; i++)
+        expect_close(
+            "cylinder's target strength, dB", peak_db(hang(i, SONJECT_SHAPE_CYLINDER, 1.5, 0.3)),
+            decibels_of_amplitude(GIBBS * RESOLUTION * sqrt(0.5 * 0.15 / WAVELENGTH)), CLOSED_FORM);
 }
 
 /* Lambert's sphere: the expected energy, speckle averaged out. No closed form is held here, but
  * that pixels do not matter. */
-static void test_rough_sphere_wherever_pixels_lie(void **unused)
+static void a_rough_sphere_wherever_pixels_lie(void)
 {
-    (void)unused;
-    double lowest = INFINITY;
-    double highest = -INFINITY;
-    for (size_t i = 0; i < OFFSETS; i++) {
-        struct bench bench;
-        sonject_object_params *object = hang(&bench, 0, i, SONJECT_SHAPE_SPHERE, 0.0, 0.6);
-        object->material.reflection = 0.0;
-        object->material.lambert = 0.1;
-        const double peak = peak_db(&bench);
+    double lowest = INFINITY, highest = -INFINITY;
+    for (size_t i = 0; i < PLACES; i += COUNT(spacings)) {
+        struct sea *sea = hang(i, SONJECT_SHAPE_SPHERE, 0.0, 0.6);
+        make_rough(sea_object(sea, 0), 0.1);
+        const double peak = peak_db(sea);
         lowest = fmin(lowest, peak);
         highest = fmax(highest, peak);
-        bench_close(&bench);
     }
     expect_below("rough sphere's target strengths are apart, dB", highest - lowest, ROUGH_DB);
 }
 
-/* The level that is asked for is the target's, not that of a pixel. */
-static void test_level_is_the_targets(void **unused)
-{
-    (void)unused;
-    const double physical = sphere_db(0.15);
-    for (size_t i = 0; i < SPACINGS * OFFSETS; i++) {
-        struct bench bench;
-        struct echoes echoes;
-        sonject_object_truth truth;
-        struct injection_result result = {.objects = &truth};
-        sonject_object_params *object =
-            hang(&bench, i % SPACINGS, i / SPACINGS, SONJECT_SHAPE_SPHERE, 0.0, 0.3);
-        object->level_kind = SONJECT_LEVEL_TARGET_STRENGTH;
-        object->level_db = -10.0;
-        bench_ready(&bench);
-        bench_echoes(&bench, NULL, SEABED_FIELD_NONE, &echoes);
-        assert_int_equal(set_target_levels(&bench.tracer, &echoes, &result), SONJECT_OK);
-        expect_close("gain, dB", truth.level_gain_db, -10.0 - physical, CLOSED_FORM);
-        expect_close("level, dB", decibels_of_energy(echoes.objects[0].peak_energy), -10.0, 1e-9);
-        echoes_clear(&echoes);
-        bench_close(&bench);
-    }
-}
-
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_spheres_wherever_pixels_lie),
-        cmocka_unit_test(test_cylinder_peaks_at_its_ends),
-        cmocka_unit_test(test_rough_sphere_wherever_pixels_lie),
-        cmocka_unit_test(test_level_is_the_targets),
-    };
-    return bench_run_on_devices(tests, sizeof tests / sizeof tests[0]);
-}
+CLAIMS(CLAIM(spheres_wherever_pixels_lie), CLAIM(a_cylinder_peaks_at_its_ends),
+       CLAIM(a_rough_sphere_wherever_pixels_lie))

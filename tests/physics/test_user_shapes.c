@@ -1,47 +1,25 @@
 /* Shapes that users write: against the built-in sphere by physical optics, energies and chains; a
  * dome against double precision; several codes beside a mesh; compilers' errors in the user's
  * lines; and what the check of a shape catches. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <float.h>
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "bench.h"
+#include "sea.h"
 #include "user/shape_check.h"
 #include "user/shape_probe.h"
 #include "user/user_program.h"
 #include "user_codes.h"
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-#define ROWS         121
-#define COLUMNS      121
-#define RANGE        50.0
-#define RADIUS       0.25
-#define DOME_A       0.4
-#define DOME_H       0.25
+#define ROWS    121
+#define COLUMNS 121
+#define RANGE   50.0
+#define RADIUS  0.25
+#define DOME_A  0.4
+#define DOME_H  0.25
 
-static uint32_t add_code(struct user_shapes *shapes, struct report *report, const char *name,
-                         const char *code, double radius, double first, double second)
+static struct user_shapes *shapes_of(struct sea *sea)
 {
-    sonject_user_shape_params params;
-    sonject_user_shape_params_init(&params);
-    params.name = name;
-    params.code = code;
-    params.bounding_radius_m = radius;
-    params.parameter_count = 2;
-    params.parameters[0] = first;
-    params.parameters[1] = second;
-    if (check_user_shape(&params, report, NULL) != SONJECT_OK ||
-        user_shapes_append(shapes, report, &params) != SONJECT_OK)
-        fail_msg("%s", report->message);
-    return shapes->count - 1;
+    return &sea->bench->scene.user_shapes;
 }
 
 enum sound_shape {
@@ -50,239 +28,118 @@ enum sound_shape {
     PAIR_SHAPE
 };
 
-/* All of them wherever one is: programs, which take long to compile, are then the same. */
-static void add_sound_shapes(struct bench *bench)
+/* A shape by code, or the library's own. All codes stand wherever one does: programs, which take
+ * long to compile, are then the same. */
+static sonject_object_params *add_shape(struct sea *sea, enum sound_shape shape, bool is_user)
 {
-    struct user_shapes *shapes = &bench->scene.user_shapes;
-    struct report *report = &bench->report;
-    add_code(shapes, report, "sphere.cl", SPHERE_CODE, RADIUS, RADIUS, 0.0);
-    add_code(shapes, report, "disc.cl", DISC_CODE, RADIUS, RADIUS, 0.0);
-    add_code(shapes, report, "pair.cl", PAIR_CODE, 0.6, 0.25, 0.3);
-    shapes->shapes[DISC_SHAPE].is_open = true;
-    shapes->shapes[DISC_SHAPE].half_height_m = 1e-9;
-    shapes->shapes[PAIR_SHAPE].half_height_m = 0.25;
-    shapes->shapes[PAIR_SHAPE].half_width_m = 0.25;
-}
-
-/* A sphere of RADIUS, by code or the library's own. */
-static sonject_object_params *add_sphere(struct bench *bench, bool is_user)
-{
-    sonject_object_params *object =
-        bench_add(bench, is_user ? SONJECT_SHAPE_USER : SONJECT_SHAPE_SPHERE, 0.0, 0.0,
-                  is_user ? 0.0 : 2.0 * RADIUS);
-    if (is_user)
-        add_sound_shapes(bench);
-    object->user_shape = SPHERE_SHAPE;
-    return object;
-}
-
-static void make_rough(sonject_object_params *object)
-{
-    object->material.reflection = 0.0;
-    object->material.lambert = 0.1;
-}
-
-/* Energies, lost seabed and hits of each object's tile. */
-static void trace_tiles(struct bench *bench, double sums[][TILE_PLANES])
-{
-    struct rough_trace trace;
-    if (rough_trace_begin(&trace, &bench->tracer, NULL) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
-    float *seabed = calloc(line_grid_cells(&trace.grid), sizeof *seabed);
-    float *tiles = calloc(trace.tile_elements, sizeof *tiles);
-    assert_true(seabed && tiles);
-    if (rough_trace_strips(&trace, &bench->tracer, trace.grid.strips, seabed) != SONJECT_OK ||
-        rough_trace_tiles(&trace, &bench->tracer, tiles) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
-    const float *next = tiles;
-    for (uint32_t object = 0; object < bench->tracer.part_count; object++)
-        for (int plane = 0; plane < TILE_PLANES; plane++) {
-            sums[object][plane] = 0.0;
-            for (size_t i = 0; i < line_grid_cells(&trace.tiles[object].grid); i++)
-                sums[object][plane] += (double)*next++;
-        }
-    free(seabed);
-    free(tiles);
-    rough_trace_end(&trace);
-}
-
-/* A level disc 10 cm above the seabed, seen from above: its normal has to turn. */
-static sonject_object_params *add_disc(struct bench *bench, bool is_user)
-{
-    sonject_object_params *object =
-        bench_add(bench, is_user ? SONJECT_SHAPE_USER : SONJECT_SHAPE_DISC, 0.0, 0.0,
-                  is_user ? 0.0 : 2.0 * RADIUS);
-    object->burial_m = -0.1;
+    static const sonject_shape own[] = {SONJECT_SHAPE_SPHERE, SONJECT_SHAPE_DISC,
+                                        SONJECT_SHAPE_PARTS};
+    sonject_object_params *object = sea_add(sea, is_user ? SONJECT_SHAPE_USER : own[shape], 0.0,
+                                            0.0, is_user ? 0.0 : 2.0 * RADIUS);
+    object->user_shape = shape;
     if (!is_user)
         return object;
-    add_sound_shapes(bench);
-    object->user_shape = DISC_SHAPE;
+    sea_add_code(sea, "sphere.cl", SPHERE_CODE, RADIUS, RADIUS, 0.0);
+    sea_add_code(sea, "disc.cl", DISC_CODE, RADIUS, RADIUS, 0.0);
+    sea_add_code(sea, "pair.cl", PAIR_CODE, 0.6, 0.25, 0.3);
+    struct user_shape *shapes = shapes_of(sea)->shapes;
+    shapes[DISC_SHAPE].is_open = true;
+    shapes[DISC_SHAPE].half_height_m = 1e-9;
+    shapes[PAIR_SHAPE].half_height_m = shapes[PAIR_SHAPE].half_width_m = 0.25;
     return object;
+}
+
+static void expect_same_sums(const struct tile_sums *one, const struct tile_sums *other,
+                             double tolerance)
+{
+    assert_true(other->energy > 0.0 && other->lost > 0.0 && other->footprint > 0.0);
+    expect_close("echoes", one->energy / other->energy, 1.0, tolerance);
+    expect_close("shadow", one->lost / other->lost, 1.0, tolerance);
+    expect_close("hits", one->footprint / other->footprint, 1.0, tolerance);
 }
 
 /* The same rays, the same formula: what is left are roundings and rays along the outline, of which
- * a disc at 11 deg of grazing has more. */
-static void compare_rough(sonject_object_params *(*add)(struct bench *bench, bool is_user),
-                          double tolerance)
+ * a disc at 11 deg of grazing has more: level, 10 cm above the seabed, seen from above, so that its
+ * normal has to turn. */
+static void rough_shapes_are_lit_like_the_librarys(void)
 {
-    double sums[2][TILE_PLANES];
-    for (int is_user = 0; is_user < 2; is_user++) {
-        struct bench bench;
-        bench_open(&bench, ROWS, COLUMNS, RANGE);
-        make_rough(add(&bench, is_user));
-        bench_ready(&bench);
-        trace_tiles(&bench, &sums[is_user]);
-        bench_close(&bench);
+    for (enum sound_shape shape = SPHERE_SHAPE; shape <= DISC_SHAPE; shape++) {
+        struct tile_sums sums[2];
+        for (int is_user = 0; is_user < 2; is_user++) {
+            struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
+            sonject_object_params *object = add_shape(sea, shape, is_user);
+            make_rough(object, 0.1);
+            object->burial_m = shape == DISC_SHAPE ? -0.1 : 0.0;
+            sea_ready(sea);
+            sea_rough(sea, &sums[is_user], NULL);
+        }
+        expect_same_sums(&sums[1], &sums[0], shape == DISC_SHAPE ? 1e-3 : 1e-4);
     }
-    assert_true(sums[0][TILE_FOOTPRINT] > 1000.0);
-    for (int plane = 0; plane < TILE_PLANES; plane++) {
-        assert_true(sums[0][plane] > 0.0);
-        expect_close("tile", sums[1][plane] / sums[0][plane], 1.0, tolerance);
-    }
-}
-
-static void test_rough_sphere(void **state)
-{
-    (void)state;
-    compare_rough(add_sphere, 1e-4);
-}
-
-static void test_rough_disc(void **state)
-{
-    (void)state;
-    compare_rough(add_disc, 1e-3);
 }
 
 /* Phases differ by roundings of ranges, 4 eps of 0.25 m at 0.84 rad/mm: 1e-4 rad, -80 dB. */
-static void test_glint_of_a_sphere(void **state)
+static void a_sphere_by_code_glints_like_the_sphere(void)
 {
-    struct echo_line lines[2];
-    double difference = 0.0;
-    double energy = 0.0;
-    (void)state;
+    struct line lines[2];
     for (int is_user = 0; is_user < 2; is_user++) {
-        struct bench bench;
-        bench_open(&bench, ROWS, COLUMNS, RANGE);
-        add_sphere(&bench, is_user)->burial_m = -1.0;
-        bench_ready(&bench);
-        lines[is_user] = bench_glint_line(&bench, 0);
-        bench_close(&bench);
+        struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
+        add_shape(sea, SPHERE_SHAPE, is_user)->burial_m = -1.0;
+        sea_ready(sea);
+        lines[is_user] = sea_line(sea, 0);
     }
-    const long shift =
-        lround((lines[1].first_range_m - lines[0].first_range_m) / lines[0].spacing_m);
-    for (size_t bin = 0; bin < lines[0].bins; bin++) {
-        const long other = (long)bin - shift;
-        if (other < 0 || other >= (long)lines[1].bins)
-            continue;
-        difference += pow(lines[1].real_part[other] - lines[0].real_part[bin], 2.0) +
-                      pow(lines[1].imaginary_part[other] - lines[0].imaginary_part[bin], 2.0);
-        energy += pow(lines[0].real_part[bin], 2.0) + pow(lines[0].imaginary_part[bin], 2.0);
-    }
+    const double energy = line_energy(&lines[0]);
     assert_true(energy > 0.0);
-    expect_below("difference of glints, dB", 10.0 * log10(difference / energy + 1e-30), -80.0);
-    echo_line_clear(&lines[0]);
-    echo_line_clear(&lines[1]);
+    line_add(&lines[1], &lines[0], -1.0);
+    expect_below("difference of glints, dB",
+                 decibels_of_energy(line_energy(&lines[1]) / energy + 1e-30), -80.0);
 }
+
+static const struct ranges all_ranges = {0, 0.0, 0.0};
 
 /* Chains between sphere and seabed. The library leaves a convex shape out where rays leave it; code
  * is asked, 20 um off its surface: some grazing ways may be decided otherwise. */
-static void test_chains_of_a_sphere(void **state)
+static void a_sphere_by_code_has_the_spheres_chains(void)
 {
-    double sums[2][2];
-    (void)state;
+    struct energies energies[2];
     for (int is_user = 0; is_user < 2; is_user++) {
-        struct bench bench;
-        struct chain_trace trace;
-        bench_open(&bench, ROWS, COLUMNS, RANGE);
-        bench.scene.injection.interactions = 3;
-        bench.scene.injection.order_energies = 1;
-        bench.scene.injection.ray_scale = 0.25;
-        make_rough(add_sphere(&bench, is_user));
-        bench_ready(&bench);
-        bench_trace_chains(&bench, &trace);
-        const size_t cells = line_grid_cells(&trace.grid);
-        float *energy = calloc(cells, sizeof *energy);
-        assert_non_null(energy);
-        for (uint32_t plane = 0; plane < 2; plane++) {
-            if (chain_trace_read(&trace, &bench.tracer, plane, energy) != SONJECT_OK)
-                fail_msg("%s", bench.report.message);
-            sums[is_user][plane] = 0.0;
-            for (size_t i = 0; i < cells; i++)
-                sums[is_user][plane] += (double)energy[i];
-        }
-        free(energy);
-        chain_trace_end(&trace);
-        bench_close(&bench);
+        struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
+        sea->injection->interactions = 3;
+        sea->injection->order_energies = 1;
+        sea->injection->ray_scale = 0.25;
+        make_rough(add_shape(sea, SPHERE_SHAPE, is_user), 0.1);
+        sea_ready(sea);
+        energies[is_user] = sea_chains(sea, &all_ranges, 1, 1);
     }
-    for (int plane = 0; plane < 2; plane++) {
-        assert_true(sums[0][plane] > 0.0);
-        expect_close("chains", sums[1][plane] / sums[0][plane], 1.0, 1e-3);
+    for (int order = 1; order < 3; order++) {
+        assert_true(energies[0].sum[order][0] > 0.0);
+        expect_close("chains", energies[1].sum[order][0] / energies[0].sum[order][0], 1.0, 1e-3);
     }
 }
 
 /* Two spheres light each other. As one shape of code they must find each other as parts do; the
- * seabed scatters nothing. Energies of 4 seeds each. */
-static void test_a_shape_meets_itself(void **state)
+ * seabed scatters nothing. */
+static void a_shape_by_code_meets_itself(void)
 {
-    double means[2], errors[2];
-    (void)state;
+    struct estimate energy[2];
     for (int is_user = 0; is_user < 2; is_user++) {
-        double sums[4];
-        for (uint64_t seed = 0; seed < 4; seed++) {
-            struct bench bench;
-            struct chain_trace trace;
-            bench_open(&bench, ROWS, COLUMNS, RANGE);
-            bench.scene.injection.interactions = 2;
-            bench.scene.injection.seed = 10 + seed;
-            bench.scene.seabed.lambert = 1e-12;
-            sonject_object_params *object = bench_add(
-                &bench, is_user ? SONJECT_SHAPE_USER : SONJECT_SHAPE_PARTS, 0.0, 0.0, 0.0);
-            make_rough(object);
-            object->burial_m = -0.5;
-            object->user_shape = PAIR_SHAPE;
-            if (is_user)
-                add_sound_shapes(&bench);
-            for (int i = 0; !is_user && i < 2; i++) {
-                struct scene_part part;
-                memset(&part, 0, sizeof part);
-                part.shape = *object;
-                part.shape.shape = SONJECT_SHAPE_SPHERE;
-                part.shape.diameter_m = 0.5;
-                part.centre[0] = i == 0 ? -0.3 : 0.3;
-                for (int k = 0; k < 3; k++)
-                    part.axes[k][k] = 1.0;
-                assert_int_equal(scene_append_part(&bench.scene, &bench.report, &part), SONJECT_OK);
-            }
-            bench_ready(&bench);
-            bench_trace_chains(&bench, &trace);
-            const size_t cells = line_grid_cells(&trace.grid);
-            float *energy = calloc(cells, sizeof *energy);
-            assert_non_null(energy);
-            if (chain_trace_read(&trace, &bench.tracer, 0, energy) != SONJECT_OK)
-                fail_msg("%s", bench.report.message);
-            sums[seed] = 0.0;
-            for (size_t i = 0; i < cells; i++)
-                sums[seed] += (double)energy[i];
-            free(energy);
-            chain_trace_end(&trace);
-            bench_close(&bench);
+        struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
+        sea->injection->interactions = 2;
+        sea->seabed->lambert = 1e-12;
+        sonject_object_params *object = add_shape(sea, PAIR_SHAPE, is_user);
+        make_rough(object, 0.1);
+        object->burial_m = -0.5;
+        for (int i = 0; !is_user && i < 2; i++) {
+            static const double level[3] = {0.0, 0.0, 0.0};
+            const double centre[3] = {i == 0 ? -0.3 : 0.3, 0.0, 0.0};
+            sea_add_part(sea, SONJECT_SHAPE_SPHERE, centre, level)->diameter_m = 0.5;
         }
-        means[is_user] = (sums[0] + sums[1] + sums[2] + sums[3]) / 4.0;
-        errors[is_user] = 0.0;
-        for (int i = 0; i < 4; i++) /* variance of the mean */
-            errors[is_user] += pow(sums[i] - means[is_user], 2.0) / 12.0;
+        sea_ready(sea);
+        const struct energies energies = sea_chains(sea, &all_ranges, 10, 4);
+        energy[is_user] = energy_of(&energies, 1, 0);
     }
-    assert_true(means[0] > 0.0);
-    const double error = sqrt(errors[0] + errors[1]) / means[0];
-    print_message("standard error %.3g\n", error);
-    assert_true(error < 0.02);
-    expect_close("echoes between the spheres", means[1] / means[0], 1.0, 4.0 * error);
-}
-
-static double uniform(uint64_t *random)
-{
-    *random = *random * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-    return (double)(*random >> 11) * 0x1p-53;
+    const struct estimate ratio = ratio_of(energy[1], energy[0]);
+    assert_true(ratio.error < 0.02);
+    expect_estimate("echoes between the spheres", ratio, 1.0, 0.0);
 }
 
 static double dot(const double a[3], const double b[3])
@@ -324,7 +181,7 @@ static double march_dome(const double p[3], const double d[3], double nearest, d
 
 /* From outside and from inside, at all angles. A distance is good to some roundings of the size
  * over the cosine of incidence. */
-static void test_dome_against_double(void **state)
+static void a_dome_against_double_precision(void)
 {
     enum {
         RAYS = 2000
@@ -332,24 +189,22 @@ static void test_dome_against_double(void **state)
     static struct probe_ray rays[RAYS];
     static struct probe_hit hits[RAYS];
     const double radius = hypot(DOME_A, DOME_H);
-    struct bench bench;
+    struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
+    struct report *report = &sea->bench->report;
     struct shape_probe probe;
     uint64_t random = 7;
     size_t met = 0, wrong = 0;
-    (void)state;
-    bench_open(&bench, ROWS, COLUMNS, RANGE);
-    add_code(&bench.scene.user_shapes, &bench.report, "dome.cl", DOME_CODE, radius, DOME_A, DOME_H);
-    if (shape_probe_begin(&probe, &bench.report, bench.tracer.device, &bench.scene.user_shapes,
-                          0) != SONJECT_OK)
-        fail_msg("%s", bench.report.message);
+    sea_add_code(sea, "dome.cl", DOME_CODE, radius, DOME_A, DOME_H);
+    assert_int_equal(
+        shape_probe_begin(&probe, report, sea->bench->tracer.device, shapes_of(sea), 0),
+        SONJECT_OK);
     for (size_t i = 0; i < RAYS; i++) {
         double d[3], p[3];
-        double length = 0.0;
         for (int k = 0; k < 3; k++) {
-            d[k] = 2.0 * uniform(&random) - 1.0;
-            p[k] = (2.0 * uniform(&random) - 1.0) * radius;
+            d[k] = 2.0 * next_uniform(&random) - 1.0;
+            p[k] = (2.0 * next_uniform(&random) - 1.0) * radius;
         }
-        length = sqrt(dot(d, d));
+        const double length = sqrt(dot(d, d));
         for (int k = 0; k < 3; k++)
             d[k] /= length;
         const double middle = -dot(p, d);
@@ -357,10 +212,9 @@ static void test_dome_against_double(void **state)
             rays[i].point[k] = (float)(p[k] + middle * d[k]);
             rays[i].direction[k] = (float)d[k];
         }
-        rays[i].nearest = (float)((2.0 * uniform(&random) - 1.0) * radius);
+        rays[i].nearest = (float)((2.0 * next_uniform(&random) - 1.0) * radius);
     }
-    if (shape_probe_ask(&probe, rays, hits, RAYS) != SONJECT_OK)
-        fail_msg("%s", bench.report.message);
+    assert_int_equal(shape_probe_ask(&probe, rays, hits, RAYS), SONJECT_OK);
     for (size_t i = 0; i < RAYS; i++) {
         double p[3], d[3], at[3], normal[3], slope[3];
         for (int k = 0; k < 3; k++) {
@@ -396,81 +250,68 @@ static void test_dome_against_double(void **state)
         if (!(agreement > cos(1e-3)))
             fail_msg("ray %zu: its normal is off by %g rad", i, acos(agreement));
     }
-    print_message("%zu hits compared, %zu of %d missed by one\n", met, wrong, (int)RAYS);
     assert_true(met > RAYS / 5);
     assert_true(wrong < RAYS / 200);
     shape_probe_end(&probe);
-    bench_close(&bench);
 }
 
 /* Dome, sphere twice (one code, two sizes), dome of other sizes and a mesh, along the track: each
  * tile is what it is where the library's own spheres stand. */
-static void test_several_codes_and_a_mesh(void **state)
+static void several_codes_beside_a_mesh(void)
 {
     static const double radii[2] = {RADIUS, 0.15};
-    double sums[2][5][TILE_PLANES];
-    (void)state;
+    struct tile_sums sums[2][5];
     for (int is_user = 0; is_user < 2; is_user++) {
-        struct bench bench;
-        bench_open(&bench, 321, COLUMNS, RANGE);
-        struct user_shapes *shapes = &bench.scene.user_shapes;
-        bench_add_tetrahedron(&bench);
+        struct sea *sea = sea_open(321, COLUMNS, RANGE);
+        struct user_shapes *shapes = shapes_of(sea);
+        sea_add_tetrahedron(sea);
         for (int i = 0; i < 5; i++) {
-            const bool is_dome = i == 0 || i == 3;
-            const bool is_sphere = i == 1 || i == 2;
-            sonject_object_params *object =
-                bench_add(&bench,
-                          i == 4               ? SONJECT_SHAPE_MESH
-                          : is_dome || is_user ? SONJECT_SHAPE_USER
-                                               : SONJECT_SHAPE_SPHERE,
-                          0.0, 0.0, is_sphere ? 2.0 * radii[i - 1] : 0.0);
-            object->position_kind = SONJECT_POSITION_PIXELS;
-            object->position_along = 40.0 + 60.0 * i;
-            object->position_range = 50.0;
-            make_rough(object);
+            const bool is_dome = i == 0 || i == 3, is_sphere = i == 1 || i == 2;
+            sonject_object_params *object = sea_add(sea,
+                                                    i == 4               ? SONJECT_SHAPE_MESH
+                                                    : is_dome || is_user ? SONJECT_SHAPE_USER
+                                                                         : SONJECT_SHAPE_SPHERE,
+                                                    0.0, 0.0, is_sphere ? 2.0 * radii[i - 1] : 0.0);
+            place_in_pixels(object, 40.0 + 60.0 * i, 50.0);
+            make_rough(object, 0.1);
             /* both codes wherever the spheres are from: the program is then the same */
             object->user_shape = shapes->count;
             if (is_dome) {
-                add_code(shapes, &bench.report, "dome.cl", DOME_CODE, 0.6, i == 0 ? DOME_A : 0.3,
-                         i == 0 ? DOME_H : 0.1);
-                shapes->shapes[object->user_shape].half_height_m = i == 0 ? DOME_H : 0.1;
+                const double a = i == 0 ? DOME_A : 0.3, h = i == 0 ? DOME_H : 0.1;
+                sea_add_code(sea, "dome.cl", DOME_CODE, 0.6, a, h);
+                shapes->shapes[shapes->count - 1].half_height_m = h;
             } else if (is_sphere) {
-                add_code(shapes, &bench.report, "sphere.cl", SPHERE_CODE, radii[i - 1],
-                         radii[i - 1], 0.0);
+                sea_add_code(sea, "sphere.cl", SPHERE_CODE, radii[i - 1], radii[i - 1], 0.0);
             }
         }
         assert_int_equal(shapes->snippet_count, 2);
-        bench_ready(&bench);
-        trace_tiles(&bench, sums[is_user]);
-        bench_close(&bench);
+        sea_ready(sea);
+        sea_rough(sea, sums[is_user], NULL);
     }
     for (int i = 0; i < 5; i++)
-        for (int plane = 0; plane < TILE_PLANES; plane++) {
-            assert_true(sums[0][i][plane] > 0.0);
-            expect_close("tile", sums[1][i][plane] / sums[0][i][plane], 1.0, 1e-3);
-        }
+        expect_same_sums(&sums[1][i], &sums[0][i], 1e-3);
     /* other parameters, another size */
-    assert_true(sums[1][3][TILE_FOOTPRINT] < 0.6 * sums[1][0][TILE_FOOTPRINT]);
-    assert_true(sums[1][2][TILE_FOOTPRINT] < 0.6 * sums[1][1][TILE_FOOTPRINT]);
+    assert_true(sums[1][3].footprint < 0.6 * sums[1][0].footprint);
+    assert_true(sums[1][2].footprint < 0.6 * sums[1][1].footprint);
 }
 
 /* The message that a program with a code, behind a sound one, gives on a device. */
-static sonject_status compile(struct bench *bench, const char *code, enum device_program program,
+static sonject_status compile(struct sea *sea, const char *code, enum device_program program,
                               const char *kernel_name)
 {
     cl_kernel kernel;
-    struct user_shapes *shapes = &bench->scene.user_shapes;
-    user_shapes_clear(shapes);
-    add_code(shapes, &bench->report, "sound.cl", SPHERE_CODE, 1.0, 1.0, 0.0);
-    add_code(shapes, &bench->report, "my shape.cl", code, 1.0, 1.0, 0.0);
-    const sonject_status status = scene_kernel_create(
-        &bench->report, bench->tracer.device, &bench->scene, 0, program, kernel_name, &kernel);
+    user_shapes_clear(shapes_of(sea));
+    sea_add_code(sea, "sound.cl", SPHERE_CODE, 1.0, 1.0, 0.0);
+    sea_add_code(sea, "my shape.cl", code, 1.0, 1.0, 0.0);
+    const sonject_status status =
+        scene_kernel_create(&sea->bench->report, sea->bench->tracer.device, &sea->bench->scene, 0,
+                            program, kernel_name, &kernel);
     if (status == SONJECT_OK)
         clReleaseKernel(kernel);
     return status;
 }
 
-static void test_errors_are_in_the_users_lines(void **state)
+static void errors_are_in_the_users_lines(void)
 {
     /* what stands in the message after the name of the code */
     static const struct {
@@ -500,70 +341,69 @@ static void test_errors_are_in_the_users_lines(void **state)
         {"float shape_distance(float3 p, float3 d, float t, const float *a);\n" SPHERE_NORMAL,
          "shape_distance"},
     };
-    struct bench bench;
-    (void)state;
-    bench_open(&bench, ROWS, COLUMNS, RANGE);
+    struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
+    const char *message = sea_message(sea);
     for (size_t i = 0; i < COUNT(cases); i++) {
         struct user_snippet snippet;
-        if (snippet_make(&bench.report, "my shape.cl", 1, cases[i].code, &snippet) == SONJECT_OK) {
+        if (snippet_make(&sea->bench->report, "my shape.cl", 1, cases[i].code, &snippet) ==
+            SONJECT_OK) {
             snippet_clear(&snippet);
             assert_int_equal(
-                compile(&bench, cases[i].code, PROGRAM_PROBE_USER_SHAPE, "probe_user_shape"),
+                compile(sea, cases[i].code, PROGRAM_PROBE_USER_SHAPE, "probe_user_shape"),
                 SONJECT_ERROR_INPUT);
         }
-        print_message("%s\n", bench.report.message);
-        if (!strstr(bench.report.message, cases[i].place))
-            fail_msg("case %zu: '%s' is not in the message", i, cases[i].place);
-        assert_null(strstr(bench.report.message, "user_1_"));
-        assert_non_null(strstr(bench.report.message, "my shape.cl"));
-        assert_null(strchr(bench.report.message, '\n'));
+        if (!strstr(message, cases[i].place))
+            fail_msg("case %zu: '%s' is not in '%s'", i, cases[i].place, message);
+        assert_null(strstr(message, "user_1_"));
+        assert_non_null(strstr(message, "my shape.cl"));
+        assert_null(strchr(message, '\n'));
     }
     /* the programs that trace say the same */
-    assert_int_equal(compile(&bench, cases[0].code, PROGRAM_TRACE_ROUGH, "trace_rough"),
+    assert_int_equal(compile(sea, cases[0].code, PROGRAM_TRACE_ROUGH, "trace_rough"),
                      SONJECT_ERROR_INPUT);
-    assert_non_null(strstr(bench.report.message, cases[0].place));
-    assert_int_equal(compile(&bench, DOME_CODE, PROGRAM_PROBE_USER_SHAPE, "probe_user_shape"),
+    assert_non_null(strstr(message, cases[0].place));
+    assert_int_equal(compile(sea, DOME_CODE, PROGRAM_PROBE_USER_SHAPE, "probe_user_shape"),
                      SONJECT_OK);
-    bench_close(&bench);
 }
 
 /* A normal that is none must not be drawn. */
-static void test_a_missing_normal_fails_the_run(void **state)
+static void a_missing_normal_fails_the_run(void)
 {
-    struct bench bench;
-    struct rough_trace trace;
-    (void)state;
-    bench_open(&bench, ROWS, COLUMNS, RANGE);
-    sonject_object_params *object = bench_add(&bench, SONJECT_SHAPE_USER, 0.0, 0.0, 0.0);
-    make_rough(object);
-    object->user_shape = add_code(
-        &bench.scene.user_shapes, &bench.report, "my.cl",
-        SPHERE_DISTANCE "float3 shape_normal(float3 p, const float *a) { return 0.0f * p; }\n",
-        RADIUS, RADIUS, 0.0);
-    bench_ready(&bench);
-    if (rough_trace_begin(&trace, &bench.tracer, NULL) != SONJECT_OK)
-        fail_msg("%s", bench.report.message);
-    float *seabed = calloc(line_grid_cells(&trace.grid), sizeof *seabed);
-    assert_non_null(seabed);
-    assert_int_equal(rough_trace_strips(&trace, &bench.tracer, trace.grid.strips, seabed),
+    static struct rough_trace trace;
+    struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
+    struct tracer *tracer = &sea->bench->tracer;
+    make_rough(sea_add(sea, SONJECT_SHAPE_USER, 0.0, 0.0, 0.0), 0.1);
+    sea_add_code(sea, "my.cl",
+                 SPHERE_DISTANCE
+                 "float3 shape_normal(float3 p, const float *a) { return 0.0f * p; }\n",
+                 RADIUS, RADIUS, 0.0);
+    sea_ready(sea);
+    assert_int_equal(rough_trace_begin(&trace, tracer, NULL), SONJECT_OK);
+    float *seabed = claim_memory(line_grid_cells(&trace.grid), sizeof *seabed);
+    assert_int_equal(rough_trace_strips(&trace, tracer, trace.grid.strips, seabed),
                      SONJECT_ERROR_DEVICE);
-    assert_non_null(strstr(bench.report.message, "not a number"));
-    free(seabed);
+    assert_non_null(strstr(sea_message(sea), "not a number"));
     rough_trace_end(&trace);
-    bench_close(&bench);
 }
 
-static sonject_status try_code(struct bench *bench, const char *code, double radius, bool is_open,
-                               struct shape_check *check)
+/* ---- the check of a shape ---- */
+
+static sonject_status check(struct sea *sea, struct shape_check *result)
 {
-    struct user_shapes *shapes = &bench->scene.user_shapes;
-    user_shapes_clear(shapes);
-    add_code(shapes, &bench->report, "my.cl", code, radius, RADIUS, DOME_H);
-    shapes->shapes[0].is_open = is_open;
-    return shape_check_run(&bench->report, bench->tracer.device, shapes, 0, check);
+    return shape_check_run(&sea->bench->report, sea->bench->tracer.device, shapes_of(sea), 0,
+                           result);
 }
 
-static void test_sound_shapes_pass_the_check(void **state)
+static sonject_status check_code(struct sea *sea, const char *code, double radius, bool is_open,
+                                 struct shape_check *result)
+{
+    user_shapes_clear(shapes_of(sea));
+    sea_add_code(sea, "my.cl", code, radius, RADIUS, DOME_H);
+    shapes_of(sea)->shapes[0].is_open = is_open;
+    return check(sea, result);
+}
+
+static void sound_shapes_pass_the_check(void)
 {
     static const struct {
         const char *code;
@@ -574,26 +414,19 @@ static void test_sound_shapes_pass_the_check(void **state)
         {DOME_CODE, 0.36, false},     {DISC_CODE, RADIUS, true},
         {PAIR_CODE, 0.6, false},
     };
-    struct bench bench;
-    (void)state;
-    bench_open(&bench, ROWS, COLUMNS, RANGE);
+    struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
     for (size_t i = 0; i < COUNT(cases); i++) {
-        struct shape_check check;
-        if (try_code(&bench, cases[i].code, cases[i].radius, cases[i].is_open, &check) !=
+        struct shape_check result;
+        if (check_code(sea, cases[i].code, cases[i].radius, cases[i].is_open, &result) !=
             SONJECT_OK)
-            fail_msg("case %zu: %s", i, bench.report.message);
-        print_message("%zu hits, %zu normals off by %.3g deg in the median, %.3g deg at most, %zu "
-                      "of %zu meet again\n",
-                      check.hits, check.compared, check.median_deg, check.largest_deg, check.acne,
-                      check.restarts);
+            fail_msg("case %zu: %s", i, sea_message(sea));
         /* a sphere of the bounding radius fills 1 / 1.3^2 of the disc of rays: 2424 of 4096, +-31
          */
         if (i == 0)
-            expect_close("hits", (double)check.hits, 4096.0 / 1.69, 4.0 * 31.4);
-        assert_true(check.compared > check.hits / 3);
-        expect_below("median, deg", check.median_deg, 0.1);
+            expect_close("hits", (double)result.hits, 4096.0 / 1.69, 4.0 * 31.4);
+        assert_true(result.compared > result.hits / 3);
+        expect_below("median, deg", result.median_deg, 0.1);
     }
-    bench_close(&bench);
 }
 
 #define SPHERE_WITH(result)                                                                        \
@@ -608,99 +441,74 @@ static void test_sound_shapes_pass_the_check(void **state)
     "    return dot(p, p) > a[0] * a[0] ? INFINITY : " result ";\n"                                \
     "}\n"
 
-static void test_the_check_catches_small_boxes(void **state)
+static void the_check_catches_small_boxes(void)
 {
-    struct bench bench;
-    struct shape_check check;
-    struct user_shapes *shapes = &bench.scene.user_shapes;
-    (void)state;
-    bench_open(&bench, ROWS, COLUMNS, RANGE);
-    add_code(shapes, &bench.report, "dome.cl", DOME_CODE, 0.5, DOME_A, DOME_H);
-    struct user_shape *shape = &shapes->shapes[0];
+    struct shape_check result;
+    struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
+    sea_add_code(sea, "dome.cl", DOME_CODE, 0.5, DOME_A, DOME_H);
+    struct user_shape *shape = &shapes_of(sea)->shapes[0];
     double *const sizes[3] = {&shape->half_length_m, &shape->half_width_m, &shape->half_height_m};
     const double true_sizes[3] = {DOME_A, DOME_A, DOME_H};
     const char *const keys[3] = {"half_length", "half_width", "half_height"};
     for (int k = 0; k < 3; k++)
         *sizes[k] = true_sizes[k];
-    assert_int_equal(shape_check_run(&bench.report, bench.tracer.device, shapes, 0, &check),
-                     SONJECT_OK);
+    assert_int_equal(check(sea, &result), SONJECT_OK);
     for (int k = 0; k < 3; k++) {
         *sizes[k] = 0.97 * true_sizes[k];
-        assert_int_equal(shape_check_run(&bench.report, bench.tracer.device, shapes, 0, &check),
-                         SONJECT_ERROR_INPUT);
-        assert_non_null(strstr(bench.report.message, keys[k]));
+        assert_int_equal(check(sea, &result), SONJECT_ERROR_INPUT);
+        assert_non_null(strstr(sea_message(sea), keys[k]));
         *sizes[k] = true_sizes[k];
     }
-    bench_close(&bench);
 }
 
-static void test_the_check_catches(void **state)
+static void the_check_catches_wrong_codes(void)
 {
     static const struct {
         const char *code;
         double radius;
-        bool is_open;
         const char *words;
     } cases[] = {
         {SPHERE_DISTANCE "float3 shape_normal(float3 p, const float *a) "
                          "{ return p + (float3)(0.0f, 0.0f, 0.03f); }\n",
-         RADIUS, false, "shape_normal is not the normal"},
+         RADIUS, "shape_normal is not the normal"},
         /* only one pole in ten is wrong */
         {SPHERE_DISTANCE "float3 shape_normal(float3 p, const float *a) "
                          "{ return p + (float3)(0.0f, p.z > 0.2f ? 0.05f : 0.0f, 0.0f); }\n",
-         RADIUS, false, "shape_normal is not the normal"},
+         RADIUS, "shape_normal is not the normal"},
         {SPHERE_DISTANCE "float3 shape_normal(float3 p, const float *a) { return -p; }\n", RADIUS,
-         false, "point away from the ray"},
+         "point away from the ray"},
         {SPHERE_DISTANCE "float3 shape_normal(float3 p, const float *a) { return 0.0f * p; }\n",
-         RADIUS, false, "a normal of length 0"},
+         RADIUS, "a normal of length 0"},
         {SPHERE_DISTANCE "float3 shape_normal(float3 p, const float *a) { return p / 0.0f; }\n",
-         RADIUS, false, "shape_normal gives what is not a finite number"},
-        {SPHERE_CODE, 0.99 * RADIUS, false, "beyond the bounding_radius of 0.2475 m"},
-        {SPHERE_CODE, 0.5 * RADIUS, false, "beyond the bounding_radius"},
-        {SPHERE_WITH("NAN") SPHERE_NORMAL, RADIUS, false,
-         "shape_distance gives what is not a number"},
-        {SPHERE_WITH("INFINITY") SPHERE_NORMAL, RADIUS, false, "none of 4096 rays"},
-        {SPHERE_WITH("-2.0f") SPHERE_NORMAL, RADIUS, false,
-         "where the nearest that is asked for is"},
-        {SPHERE_WITH("-s") SPHERE_NORMAL, RADIUS, false, "is not beyond `nearest`"},
-        {SPHERE_WITH("-s > nearest ? -s : INFINITY") SPHERE_NORMAL, RADIUS, false,
+         RADIUS, "shape_normal gives what is not a finite number"},
+        {SPHERE_CODE, 0.99 * RADIUS, "beyond the bounding_radius of 0.2475 m"},
+        {SPHERE_CODE, 0.5 * RADIUS, "beyond the bounding_radius"},
+        {SPHERE_WITH("NAN") SPHERE_NORMAL, RADIUS, "shape_distance gives what is not a number"},
+        {SPHERE_WITH("INFINITY") SPHERE_NORMAL, RADIUS, "none of 4096 rays"},
+        {SPHERE_WITH("-2.0f") SPHERE_NORMAL, RADIUS, "where the nearest that is asked for is"},
+        {SPHERE_WITH("-s") SPHERE_NORMAL, RADIUS, "is not beyond `nearest`"},
+        {SPHERE_WITH("-s > nearest ? -s : INFINITY") SPHERE_NORMAL, RADIUS,
          "do not next meet its inner side"},
         {SPHERE_WITH("nearest < -0.24999999f ? -s : met(p, d, nearest + 0.01f, a)") SPHERE_NORMAL,
-         RADIUS, false, "not found again by the same ray"},
+         RADIUS, "not found again by the same ray"},
         /* surfaces 0.1 mm too far along each ray: echoes go on from within */
-        {SPHERE_WITH("met(p, d, nearest - 1e-4f, a) + 1e-4f") SPHERE_NORMAL, RADIUS, false,
+        {SPHERE_WITH("met(p, d, nearest - 1e-4f, a) + 1e-4f") SPHERE_NORMAL, RADIUS,
          "meet it again at once"},
     };
-    struct bench bench;
-    (void)state;
-    bench_open(&bench, ROWS, COLUMNS, RANGE);
+    struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
     for (size_t i = 0; i < COUNT(cases); i++) {
-        struct shape_check check;
-        if (try_code(&bench, cases[i].code, cases[i].radius, cases[i].is_open, &check) !=
-            SONJECT_ERROR_INPUT)
-            fail_msg("case %zu is not caught: %s", i, bench.report.message);
-        print_message("%s\n", bench.report.message);
-        if (!strstr(bench.report.message, cases[i].words))
-            fail_msg("case %zu: '%s' is not in the message", i, cases[i].words);
+        struct shape_check result;
+        if (check_code(sea, cases[i].code, cases[i].radius, false, &result) != SONJECT_ERROR_INPUT)
+            fail_msg("case %zu is not caught: %s", i, sea_message(sea));
+        if (!strstr(sea_message(sea), cases[i].words))
+            fail_msg("case %zu: '%s' is not in '%s'", i, cases[i].words, sea_message(sea));
     }
-    bench_close(&bench);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rough_sphere),
-        cmocka_unit_test(test_rough_disc),
-        cmocka_unit_test(test_glint_of_a_sphere),
-        cmocka_unit_test(test_chains_of_a_sphere),
-        cmocka_unit_test(test_a_shape_meets_itself),
-        cmocka_unit_test(test_dome_against_double),
-        cmocka_unit_test(test_several_codes_and_a_mesh),
-        cmocka_unit_test(test_errors_are_in_the_users_lines),
-        cmocka_unit_test(test_a_missing_normal_fails_the_run),
-        cmocka_unit_test(test_sound_shapes_pass_the_check),
-        cmocka_unit_test(test_the_check_catches),
-        cmocka_unit_test(test_the_check_catches_small_boxes),
-    };
-    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
-}
+CLAIMS(CLAIM(rough_shapes_are_lit_like_the_librarys),
+       CLAIM(a_sphere_by_code_glints_like_the_sphere),
+       CLAIM(a_sphere_by_code_has_the_spheres_chains), CLAIM(a_shape_by_code_meets_itself),
+       CLAIM(a_dome_against_double_precision), CLAIM(several_codes_beside_a_mesh),
+       CLAIM(errors_are_in_the_users_lines), CLAIM(a_missing_normal_fails_the_run),
+       CLAIM(sound_shapes_pass_the_check), CLAIM(the_check_catches_wrong_codes),
+       CLAIM(the_check_catches_small_boxes))

@@ -1,0 +1,587 @@
+/* Paths of several interactions: against references that share nothing with the kernels but the
+ * physics, against closed forms, and ways of finding the same paths against one another. */
+#include "reference_paths.h"
+#include "reference_slab.h"
+#include "sea.h"
+
+#define ORDERS   3
+#define SEEDS    24
+#define RANGE_M  0.5
+#define MIDDLE_M 50.0
+#define FAR_M    400.0
+#define NEAR_M   20.0
+
+/* Twelve ranges about the middle of a patch. */
+static struct ranges ranges_about(double middle)
+{
+    const struct ranges ranges = {CHAIN_RANGES, middle - 0.5 * CHAIN_RANGES * RANGE_M, RANGE_M};
+    return ranges;
+}
+
+/* One object. Surfaces are so bright that the third order is heard. 24 seeds of few rays know their
+ * standard errors better. */
+static struct sea *open_with(sonject_shape shape, double length_m, double diameter_m)
+{
+    struct sea *sea = sea_open(240, 240, MIDDLE_M);
+    sonject_object_params *object = sea_add(sea, shape, length_m, 0.0, diameter_m);
+    object->heading_rad = 35.0 * PI / 180.0;
+    make_rough(object, 0.2);
+    sea->seabed->lambert = 0.2;
+    sea->injection->interactions = ORDERS;
+    sea->injection->order_energies = 1;
+    sea->injection->column_rule = SONJECT_COLUMNS_PAPER;
+    sea->injection->ray_scale = 0.25;
+    return sea;
+}
+
+/* Figure 7's geometry; over relief: ripples with shadows of their own, and scour about the target.
+ */
+static struct sea *open_capsule(bool has_relief)
+{
+    struct sea *sea = open_with(SONJECT_SHAPE_CAPSULE, 2.3, 0.3);
+    sea_object(sea, 0)->burial_m = 0.1;
+    if (has_relief) {
+        sea_add_ripples(sea, 0.6, 0.06, 1.2, 0.5);
+        sea_add_scour(sea, 0.5, 0.1);
+    }
+    return sea;
+}
+
+/* An object that is all within one sphere, which seabed under its overhang is within too: from
+ * there no cone leads to a target. Near by and in a wide patch, for brute force's sake. */
+static struct sea *open_overhang(sonject_shape shape, double diameter_m)
+{
+    struct sea *sea = open_with(shape, 0.0, diameter_m);
+    sea->geometry->row_spacing_m = 0.1;
+    sea->geometry->column_spacing_m = 0.06;
+    sea_move(sea, NEAR_M);
+    return sea;
+}
+
+static struct energies trace_seeds(struct sea *sea, double middle, uint64_t first_seed)
+{
+    const struct ranges ranges = ranges_about(middle);
+    sea_ready(sea);
+    return sea_chains(sea, &ranges, first_seed, SEEDS);
+}
+
+/* |a / b - ratio| within four standard errors, where there is energy that is known to 20 %; far
+ * beyond the target, where there is less than 1 % of the most, what lies outside the patch counts.
+ */
+static void expect_ratio(const char *what, const struct energies *a, const struct energies *b,
+                         int first_order, int last_order, double ratio, double systematic)
+{
+    for (int order = first_order; order <= last_order; order++) {
+        int compared = 0;
+        double most = 0.0;
+        for (int range = 0; range < CHAIN_RANGES; range++)
+            most = fmax(most, energy_of(b, order, range).mean);
+        for (int range = 0; range < CHAIN_RANGES; range++) {
+            const struct estimate one = energy_of(a, order, range);
+            const struct estimate other = energy_of(b, order, range);
+            const double error = hypot(one.error / ratio, other.error);
+            if (!(error < 0.2 * other.mean) || other.mean < 0.01 * most)
+                continue;
+            const struct estimate measured = {one.mean / ratio / other.mean, error / other.mean};
+            print_message("%s, order %d, range %d: ", what, order + 1, range);
+            expect_estimate("energy over the other's", measured, 1.0, systematic);
+            compared++;
+        }
+        assert_true(compared >= 3);
+    }
+}
+
+/* The paper's brute force, with so many times the rays, and connections to random points of the
+ * same rectangle. */
+static void compare_estimators(const char *what, struct sea *sea, double middle,
+                               double counted_rays)
+{
+    sea->sonar->transducer_side_m = 8.0;
+    const struct energies connected = trace_seeds(sea, middle, 100);
+    sea->injection->estimator = SONJECT_ESTIMATOR_BRUTE_FORCE;
+    sea->injection->mode = SONJECT_MODE_RESYNTHESISE;
+    sea->injection->ray_scale = counted_rays;
+    const struct energies counted = trace_seeds(sea, middle, 900);
+    expect_ratio(what, &counted, &connected, 1, ORDERS - 1, 1.0, 0.0);
+}
+
+/* Over relief: visibility, normals, and directions towards the target. */
+static void brute_force_finds_what_connections_find(void)
+{
+    compare_estimators("brute force", open_capsule(false), MIDDLE_M, 3.0);
+    compare_estimators("over relief", open_capsule(true), MIDDLE_M, 3.0);
+    struct sea *sea = open_overhang(SONJECT_SHAPE_TORUS, 1.2);
+    sea_object(sea, 0)->height_m = 0.4;
+    compare_estimators("under a torus", sea, NEAR_M, 2.0);
+    sea = open_overhang(SONJECT_SHAPE_MESH, 0.0);
+    sea_object(sea, 0)->pitch_rad = PI; /* on its tip */
+    sea_add_tetrahedron(sea);
+    compare_estimators("under a mesh", sea, NEAR_M, 2.0);
+}
+
+/* What mirrors alone send into the source's rectangle is a glint, and none of the energies. */
+static void brute_force_leaves_glints_out(void)
+{
+    const struct ranges ranges = ranges_about(MIDDLE_M);
+    struct sea *sea = open_capsule(false);
+    sonject_object_params *capsule = sea_object(sea, 0);
+    capsule->heading_rad = 0.0;
+    set_mirror(&capsule->material, 1.0);
+    sea->seabed->lambert = 0.0;
+    sea->sonar->transducer_side_m = 8.0;
+    sea->injection->estimator = SONJECT_ESTIMATOR_BRUTE_FORCE;
+    sea->injection->mode = SONJECT_MODE_RESYNTHESISE;
+    sea_ready(sea);
+    const struct energies counted = sea_chains(sea, &ranges, 900, 2);
+    for (int i = 0; i < CHAIN_ORDERS * CHAIN_RANGES; i++)
+        assert_true((&counted.sum[0][0])[i] == 0.0);
+}
+
+/* In focused columns paths between seabed and target are looked for from the seabed alone and stand
+ * for both ways. A source of a millimetre beside the receiver has both found on their own, each
+ * from where its first hit lies; at this range that changes the angles by less than a degree and
+ * the energies by less than 3 %. Rays are few: errors are then as large as what is systematic. */
+static void one_way_stands_for_both(void)
+{
+    for (int has_relief = 0; has_relief < 2; has_relief++) {
+        struct sea *sea = open_capsule(has_relief);
+        sea->sonar->altitude_m = 80.0;
+        sea_move(sea, FAR_M);
+        sea->injection->column_rule = SONJECT_COLUMNS_FOCUSED;
+        const struct energies reciprocal = trace_seeds(sea, FAR_M, 100);
+        sea->sonar->transducer_side_m = 1e-3;
+        const struct energies plain = trace_seeds(sea, FAR_M, 900);
+        expect_ratio("one way for both", &reciprocal, &plain, 1, ORDERS - 1, 1.0, 0.03);
+    }
+}
+
+/* In focused columns a path and its reverse are one echo of twice the amplitude: together twice the
+ * energy. Angles differ as above. */
+static void focused_columns_hold_twice_the_energy(void)
+{
+    struct sea *sea = open_capsule(false);
+    sea_object(sea, 0)->length_m = 0.6;
+    sea->sonar->altitude_m = 80.0;
+    sea_move(sea, FAR_M);
+    const struct energies paper = trace_seeds(sea, FAR_M, 100);
+    sea->injection->column_rule = SONJECT_COLUMNS_FOCUSED;
+    const struct energies focused = trace_seeds(sea, FAR_M, 900);
+    expect_ratio("focused against paper columns", &focused, &paper, 1, 1, 2.0, 0.03);
+}
+
+/* ---- against the reference ---- */
+
+/* The reference's scene and request for the same sea: first hits on the strips of the grid, seabed
+ * from well before the patch to its end. */
+static void lay_reference(struct sea *sea, enum reference_shape shape,
+                          struct reference_scene *scene, struct reference_request *request)
+{
+    const sonject_object_params *params = sea_object(sea, 0);
+    const double *centre = sea_centre(sea, 0);
+    memset(scene, 0, sizeof *scene);
+    memset(request, 0, sizeof *request);
+    scene->seabed_lambert = sea->seabed->lambert;
+    struct reference_object *object =
+        reference_add_object(scene, shape, 0.5 * params->diameter_m, params->material.lambert);
+    object->length = params->length_m;
+    object->centre = reference_vector(centre[0], centre[1], centre[2]);
+    for (int axis = 0; axis < 3; axis++) {
+        const double *own = sea_axes(sea, 0)[axis];
+        object->axes[axis] = reference_vector(own[0], own[1], own[2]);
+    }
+    request->limit = ORDERS;
+    request->rays = 6000000;
+    request->seed = 7;
+    request->altitude = sea->sonar->altitude_m;
+    sea_grid(sea, &request->first_x, &request->last_x);
+    request->first_elevation = asin(sea->sonar->altitude_m / 52.9);
+    request->last_elevation = asin(sea->sonar->altitude_m / 34.0);
+    const struct ranges ranges = ranges_about(MIDDLE_M);
+    request->bins = ranges.count;
+    request->first_range = ranges.first_m;
+    request->bin_width = ranges.width_m;
+}
+
+/* What the reference's order comes to where seabed and target scatter this much more: sound goes to
+ * and fro between them. */
+static struct estimate scaled_reference(const struct reference_energy *reference, int order,
+                                        int range, double seabed, double target)
+{
+    const int meetings = order + 1;
+    struct estimate sum = {0.0, 0.0};
+    for (int ends = 0; ends < REFERENCE_ENDS; ends++) {
+        const int on_seabed = (meetings + (ends == REFERENCE_SEABED_SEABED)) / 2;
+        const double factor = pow(seabed, on_seabed) * pow(target, meetings - on_seabed);
+        sum.mean += factor * reference->bins[ends][order][range].mean;
+        sum.error = hypot(sum.error, factor * reference->bins[ends][order][range].error);
+    }
+    return sum;
+}
+
+/* Of Figure 7's capsule, however weak the surfaces are; and of a drum on its side, all within one
+ * sphere, which seabed under its overhang is within too. A bin of 3 mm, shared at either end of a
+ * range, is systematic. */
+static void orders_have_the_references_energy(void)
+{
+    static struct reference_energy reference;
+    static const double seabed_and_target_db[][2] = {{-7.0, -7.0},   {-10.0, -10.0},
+                                                     {-36.0, -36.0}, {-60.0, -60.0},
+                                                     {-10.0, -60.0}, {-60.0, -10.0}};
+    for (int is_drum = 0; is_drum < 2; is_drum++) {
+        struct reference_scene scene;
+        struct reference_request request;
+        struct sea *sea =
+            is_drum ? open_with(SONJECT_SHAPE_CYLINDER, 0.6, 0.6) : open_capsule(false);
+        sea_ready(sea);
+        lay_reference(sea, is_drum ? REFERENCE_CYLINDER : REFERENCE_CAPSULE, &scene, &request);
+        reference_trace(&scene, &request, &reference);
+        for (size_t i = 0; i < (is_drum ? 1 : COUNT(seabed_and_target_db)); i++) {
+            const double seabed = pow(10.0, 0.1 * seabed_and_target_db[i][0]);
+            const double target = pow(10.0, 0.1 * seabed_and_target_db[i][1]);
+            sea->seabed->lambert = seabed;
+            sea_object(sea, 0)->material.lambert = target;
+            const struct energies traced = trace_seeds(sea, MIDDLE_M, 100);
+            for (int order = 1; order < ORDERS; order++)
+                for (int range = CHAIN_RANGES / 2 - 2; range < CHAIN_RANGES / 2 + 2; range++) {
+                    const struct estimate expected =
+                        scaled_reference(&reference, order, range, seabed / scene.seabed_lambert,
+                                         target / scene.objects[0].lambert);
+                    struct estimate measured = energy_of(&traced, order, range);
+                    measured.error = hypot(measured.error, expected.error);
+                    print_message("%g dB, %g dB, order %d, range %d: ", seabed_and_target_db[i][0],
+                                  seabed_and_target_db[i][1], order + 1, range);
+                    assert_true(measured.error < 0.1 * expected.mean || expected.mean == 0.0);
+                    expect_estimate("energy, m2", measured, expected.mean, 0.01 * expected.mean);
+                }
+        }
+    }
+}
+
+/* An object seen by way of the seabed's mirror belongs to the pairs of sources. Chains, which could
+ * find it too, must not count it again: over a mirror without a rough part they have nothing else
+ * to find. */
+static void a_mirrored_object_is_left_to_image_pairs(void)
+{
+    const struct ranges ranges = ranges_about(MIDDLE_M);
+    struct sea *sea = open_capsule(false);
+    sea->injection->interactions = 2;
+    sea->injection->column_rule = SONJECT_COLUMNS_FOCUSED;
+    sea->seabed->forward.reflection = 0.9;
+    sea->seabed->forward.lambert = 0.0;
+    sea_ready(sea);
+    const struct energies energies = sea_chains(sea, &ranges, 1, 1);
+    assert_true(sea_queries(sea) > 1000); /* ways to the source were asked for */
+    for (int range = 0; range < CHAIN_RANGES; range++)
+        assert_true(energies.sum[1][range] == 0.0);
+}
+
+/* The narrowest cones are 2500 times as bright as Lambert's law; tallies must hold them: a sphere
+ * echoes a quarter of its radius' square at once, and other paths add to that. A tilted plate
+ * mirrors past the sonar. */
+static void the_narrowest_cone_is_in_scale(void)
+{
+    static const double slopes[] = {0.01, 0.03};
+    for (size_t i = 0; i < COUNT(slopes); i++) {
+        double energies[SEEDS];
+        struct sea *sea = sea_open(120, 160, MIDDLE_M);
+        sea_add_sphere(sea, 0.25, 0.0);
+        sea_add(sea, SONJECT_SHAPE_PLANE, 1.0, 0.6, 0.0)->roll_rad = 68.0 * PI / 180.0;
+        for (uint32_t k = 0; k < 2; k++) {
+            make_rough(sea_object(sea, k), 0.0);
+            sea_object(sea, k)->material.glossy_albedo = 1.0;
+            sea_object(sea, k)->material.glossy_slope = slopes[i];
+        }
+        sea->injection->interactions = 8;
+        sea->injection->order_energies = i == 0;
+        sea_ready(sea);
+        for (uint64_t seed = 0; seed < SEEDS; seed++) {
+            sea->injection->seed = seed;
+            energies[seed] = sum_of(sea_image(sea)->target_energy, sea->pixels);
+        }
+        const struct estimate energy = estimate_of(energies, SEEDS);
+        print_message("slope %g: %.4g +- %.2g m2\n", slopes[i], energy.mean, energy.error);
+        assert_true(energy.error < 0.1 * energy.mean);
+        assert_true(energy.mean >= 0.25 * 0.25 * 0.25 - 4.0 * energy.error);
+    }
+}
+
+/* Compares one order's energies by range. */
+static void expect_energies(const char *what, const struct energies *measured, int order,
+                            const struct estimate *expected, int count, double systematic,
+                            double resolved)
+{
+    for (int range = 0; range < count; range++) {
+        struct estimate energy = energy_of(measured, order, range);
+        energy.error = hypot(energy.error, expected[range].error);
+        print_message("%s, range %d: ", what, range);
+        assert_true(energy.error < resolved * expected[range].mean);
+        expect_estimate("energy, m2", energy, expected[range].mean,
+                        systematic * expected[range].mean);
+    }
+}
+
+/* ---- a glint that lights the seabed: double integral over the sphere ---- */
+
+struct lit {
+    double radius, height, lambert; /* sphere, its centre's height, the seabed's */
+    struct ranges ranges;           /* beyond the sphere's centre */
+    int steps;                      /* of the integral, each way */
+};
+static const struct lit lit = {0.5, 1.5, 0.02, {3, 0.25, 0.25}, 3000};
+
+static double distance_to_sphere(const double start[3], const double direction[3],
+                                 const double centre[3])
+{
+    double along = 0.0;
+    double square = 0.0;
+    for (int k = 0; k < 3; k++) {
+        along += (centre[k] - start[k]) * direction[k];
+        square += (centre[k] - start[k]) * (centre[k] - start[k]);
+    }
+    const double left = lit.radius * lit.radius - (square - along * along);
+    return left > 0.0 && along > 0.0 ? along - sqrt(left) : INFINITY;
+}
+
+/* One bundle of rays: wavefront dx by r dphi at the sphere; its energy over the square of the range
+ * goes by the mirror to the seabed, which sends mu cos(angle) / r^2 of it to the sonar: abreast of
+ * the sphere's hit, or (focused columns) of the middle between both hits. */
+static void add_bundle(const struct sea *sea, const double centre[3], double x, double elevation,
+                       double width, struct estimate *energies)
+{
+    const double altitude = sea->sonar->altitude_m;
+    const double sonar[3] = {x, 0.0, altitude};
+    double direction[3] = {0.0, cos(elevation), sin(elevation)};
+    double hit[3], normal[3], point[3], back[3];
+    const double first = distance_to_sphere(sonar, direction, centre);
+    if (!isfinite(first))
+        return;
+    double cosine = 0.0;
+    for (int k = 0; k < 3; k++) {
+        hit[k] = sonar[k] + first * direction[k];
+        normal[k] = (hit[k] - centre[k]) / lit.radius;
+        cosine -= normal[k] * direction[k];
+    }
+    for (int k = 0; k < 3; k++)
+        direction[k] += 2.0 * cosine * normal[k];
+    if (direction[2] >= 0.0)
+        return;
+    const double between = hit[2] / -direction[2];
+    double square = 0.0;
+    for (int k = 0; k < 3; k++)
+        point[k] = hit[k] + between * direction[k];
+    const bool is_focused = sea->injection->column_rule == SONJECT_COLUMNS_FOCUSED;
+    const double aside = is_focused ? 0.5 * (point[0] - x) : 0.0;
+    for (int k = 0; k < 3; k++) {
+        back[k] = sonar[k] + (k == 0 ? aside : 0.0) - point[k];
+        square += back[k] * back[k];
+    }
+    const double last = sqrt(square);
+    for (int k = 0; k < 3; k++)
+        back[k] /= last;
+    if (isfinite(distance_to_sphere(point, back, centre)))
+        return;
+    const double half_path = 0.5 * (hypot(first, aside) + between + last);
+    const int range =
+        (int)floor((half_path - hypot(centre[1], altitude - centre[2]) - lit.ranges.first_m) /
+                   lit.ranges.width_m);
+    if (range >= 0 && range < lit.ranges.count)
+        energies[range].mean +=
+            width / first * 0.8 * 0.8 * lit.lambert * back[2] / square * pow(half_path, 4.0);
+}
+
+/* Sonar, smooth sphere, Lambert seabed, sonar, and the reverse. In paper columns the path is in its
+ * first hit's column, the reverse in the seabed's; focused, both are one echo: twice the amplitude.
+ * 1 %: bins at the edges of a range, and seabed beyond the ends of the track. */
+static void a_glint_lights_the_seabed(void)
+{
+    for (int is_focused = 0; is_focused < 2; is_focused++) {
+        struct estimate expected[3] = {{0.0, 0.0}, {0.0, 0.0}, {0.0, 0.0}};
+        struct sea *sea = sea_open(480, 200, 50.0);
+        sonject_object_params *sphere = sea_add_sphere(sea, lit.radius, lit.height - lit.radius);
+        sphere->material.reflection = 0.8;
+        sea->seabed->lambert = lit.lambert;
+        sea->injection->interactions = 2;
+        sea->injection->column_rule = is_focused ? SONJECT_COLUMNS_FOCUSED : SONJECT_COLUMNS_PAPER;
+        sea_ready(sea);
+        const double *centre = sea_centre(sea, 0), drop = sea->sonar->altitude_m - centre[2];
+        const double middle = -atan2(drop, centre[1]);
+        const double half_angle = 1.02 * lit.radius / hypot(drop, centre[1]);
+        const double width = 2.0 * lit.radius / lit.steps * 2.0 * half_angle / lit.steps;
+        for (int i = 0; i < lit.steps; i++)
+            for (int j = 0; j < lit.steps; j++)
+                add_bundle(sea, centre, centre[0] + lit.radius * ((2 * i + 1.0) / lit.steps - 1.0),
+                           middle + half_angle * ((2 * j + 1.0) / lit.steps - 1.0), width,
+                           expected);
+        struct ranges ranges = lit.ranges;
+        ranges.first_m += sea_slant_range(sea, 0);
+        for (int range = 0; range < ranges.count; range++)
+            expected[range].mean *= is_focused ? 4.0 : 2.0;
+        const struct energies measured = sea_chains(sea, &ranges, 1, 16);
+        expect_energies(is_focused ? "focused columns" : "paper columns", &measured, 1, expected,
+                        ranges.count, 0.01, 1.0);
+    }
+}
+
+/* ---- a Lambert sphere well over the seabed ---- */
+
+#define OVER_M      52.0 /* of the patch's middle, and of the first range */
+#define HEIGHT_M    1.5
+#define RADIUS_M    0.4
+#define RINGS       300 /* of seabed, ever wider */
+#define SECTORS     400
+#define PARALLEL    12 /* pieces of the sphere */
+#define MERIDIAN    24
+#define REFERENCE_M 200.0 /* the reference's depth: its seabed, black, is out of hearing */
+
+static const struct ranges behind = {2, OVER_M, 0.5};
+
+static struct sea *open_over_seabed(uint32_t interactions)
+{
+    struct sea *sea = sea_open(300, 400, OVER_M);
+    sea->geometry->row_spacing_m = 0.1;
+    make_rough(sea_add_sphere(sea, RADIUS_M, HEIGHT_M - RADIUS_M), 0.3);
+    sea->seabed->lambert = 0.1;
+    sea->injection->interactions = interactions;
+    sea->injection->order_energies = 1;
+    sea->injection->column_rule = SONJECT_COLUMNS_FOCUSED;
+    return sea;
+}
+
+static bool passes_sphere(struct reference_vector from, struct reference_vector to,
+                          struct reference_vector centre)
+{
+    const struct reference_vector way = reference_sum(to, -1.0, from);
+    const struct reference_vector middle = reference_sum(centre, -1.0, from);
+    const double along = reference_dot(way, middle) / reference_dot(way, way);
+    const double square_miss =
+        reference_dot(middle, middle) - along * along * reference_dot(way, way);
+    return along < 0.0 || along > 1.0 || square_miss > RADIUS_M * RADIUS_M;
+}
+
+/* Sonar, seabed at `bottom`, a piece of the sphere, sonar: first abreast of the seabed, then of the
+ * middle between both. Together with the reverse it is in the image four times. */
+static void add_pieces(const struct sea *sea, struct reference_vector centre,
+                       struct reference_vector bottom, double area, struct estimate *expected)
+{
+    const double altitude = sea->sonar->altitude_m;
+    const double first = hypot(bottom.y, altitude);
+    const double lit_by = sea->seabed->lambert * area * altitude / pow(first, 3.0);
+    const struct reference_vector abreast = {bottom.x, 0.0, altitude};
+    if (!passes_sphere(abreast, bottom, centre))
+        return;
+    for (int i = 0; i < PARALLEL; i++)
+        for (int k = 0; k < MERIDIAN; k++) {
+            const double cosine = 2.0 * (i + 0.5) / PARALLEL - 1.0;
+            const double sine = sqrt(1.0 - cosine * cosine);
+            const double turn = 2.0 * PI * (k + 0.5) / MERIDIAN;
+            const struct reference_vector normal = {sine * cos(turn), sine * sin(turn), cosine};
+            const struct reference_vector hit = reference_sum(centre, RADIUS_M, normal);
+            const struct reference_vector sonar = {0.5 * (bottom.x + hit.x), 0.0, altitude};
+            const struct reference_vector between = reference_sum(bottom, -1.0, hit);
+            const struct reference_vector home = reference_sum(sonar, -1.0, hit);
+            const double way = sqrt(reference_dot(between, between)),
+                         last = sqrt(reference_dot(home, home));
+            if (reference_dot(between, normal) <= 0.0 || reference_dot(home, normal) <= 0.0)
+                continue;
+            const double half_path = 0.5 * (hypot(first, sonar.x - bottom.x) + way + last);
+            const int range = (int)floor((half_path - behind.first_m) / behind.width_m);
+            if (range < 0 || range >= behind.count)
+                continue;
+            const double piece = 4.0 * PI * RADIUS_M * RADIUS_M / (PARALLEL * MERIDIAN);
+            expected[range].mean +=
+                4.0 * lit_by * hit.z / pow(way, 4.0) * reference_dot(between, normal) * piece *
+                0.3 * reference_dot(home, normal) / pow(last, 3.0) * pow(half_path, 4.0);
+        }
+}
+
+/* Seabed far in front of the sphere: integral over all seabed, up to below the sonar, and over the
+ * sphere. 1.5 %: of the detours up to the sphere's height, in the first two ranges, 0.5 % may be
+ * left out; bins at the edges of a range. */
+static void far_seabed_is_heard(void)
+{
+    struct estimate expected[2] = {{0.0, 0.0}, {0.0, 0.0}};
+    struct sea *sea = open_over_seabed(2);
+    sea_ready(sea);
+    const double *placed = sea_centre(sea, 0);
+    const struct reference_vector centre = {0.0, placed[1], placed[2]};
+    const double growth = log(placed[1] / 0.02) / RINGS;
+    for (int ring = 0; ring < RINGS; ring++)
+        for (int sector = 0; sector < SECTORS; sector++) {
+            const double from_centre = 0.02 * exp(growth * (ring + 0.5));
+            const double turn = 2.0 * PI * (sector + 0.5) / SECTORS;
+            const struct reference_vector bottom = {from_centre * sin(turn),
+                                                    placed[1] - from_centre * cos(turn), 0.0};
+            if (bottom.y > 0.0)
+                add_pieces(sea, centre, bottom,
+                           from_centre * from_centre * growth * 2.0 * PI / SECTORS, expected);
+        }
+    const struct energies measured = sea_chains(sea, &behind, 1, 8);
+    expect_energies("far seabed", &measured, 1, expected, behind.count, 0.015, 0.02);
+}
+
+/* How often a path of three interactions is in the image. */
+static double ways_of(int first, int middle, int last)
+{
+    const int targets = (first == SLAB_TARGET) + (middle == SLAB_TARGET) + (last == SLAB_TARGET);
+    if (targets == 0 || first < SLAB_TARGET || middle < SLAB_TARGET || last < SLAB_TARGET ||
+        last == SLAB_MIRROR)
+        return 0.0; /* what ends on the mirror is a reverse */
+    if (first == last)
+        return 2.0;
+    return first == SLAB_TARGET ? 0.0 : 4.0;
+}
+
+/* The seabed's mirror first, above all sonar, seabed's mirror, sphere, seabed, sonar: as a sphere
+ * under the reference's sea surface, upside down. The mirror's point is 7.7 m in front of the
+ * sphere, whose sound spreads 8 m more than it would from there. */
+static void sound_spreads_from_the_mirrored_sonar(void)
+{
+    static struct slab_energy energy;
+    struct estimate expected[2] = {{0.0, 0.0}, {0.0, 0.0}};
+    struct sea *sea = open_over_seabed(3);
+    double first_x, last_x;
+    sea->seabed->forward.reflection = 0.9;
+    sea_ready(sea);
+    sea_grid(sea, &first_x, &last_x);
+    /* the mirror has what the rough part leaves of it */
+    const struct slab_scene scene = {
+        .depth = REFERENCE_M,
+        .altitude = REFERENCE_M - sea->sonar->altitude_m,
+        .surface_lambert = sea->seabed->lambert,
+        .reflection = sqrt(1.0 - PI * sea->seabed->lambert) * 0.9,
+        .rough_is_apart = 1,
+        .centre_y = sea_centre(sea, 0)[1],
+        .centre_z = REFERENCE_M - sea_centre(sea, 0)[2],
+        .radius = RADIUS_M,
+        .target_lambert = 0.3,
+    };
+    const struct slab_request request = {
+        .half_track = 0.5 * (last_x - first_x),
+        .far_ground = INFINITY,
+        .reach_x = INFINITY,
+        .first_range = behind.first_m,
+        .bin_width = behind.width_m,
+        .bins = behind.count,
+        .is_focused = 1,
+        .rays = 24000000,
+        .seed = 7,
+    };
+    slab_trace(&scene, &request, &energy);
+    for (int path = 0; path < SLAB_PATHS; path++) {
+        const double ways = ways_of(path / 25, path / 5 % 5, path % 5);
+        for (int range = 0; range < behind.count; range++) {
+            const struct estimate value = energy.in_first[path][range];
+            expected[range].mean += ways * value.mean;
+            expected[range].error = hypot(expected[range].error, ways * value.error);
+        }
+    }
+    const struct energies measured = sea_chains(sea, &behind, 1, 8);
+    expect_energies("mirror first", &measured, 2, expected, behind.count, 0.01, 0.02);
+}
+
+CLAIMS(CLAIM(orders_have_the_references_energy), CLAIM(brute_force_finds_what_connections_find),
+       CLAIM(brute_force_leaves_glints_out), CLAIM(one_way_stands_for_both),
+       CLAIM(focused_columns_hold_twice_the_energy),
+       CLAIM(a_mirrored_object_is_left_to_image_pairs), CLAIM(the_narrowest_cone_is_in_scale),
+       CLAIM(a_glint_lights_the_seabed), CLAIM(far_seabed_is_heard),
+       CLAIM(sound_spreads_from_the_mirrored_sonar))
