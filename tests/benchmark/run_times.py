@@ -1,0 +1,75 @@
+"""Times with warm program caches, one line each. Figure 6 of the paper, from process start to files,
+beside the time that the process needs to do nothing (list the devices); the injection alone, by the
+C interface through the Python bindings, for a 512 x 512 patch; and, where HDF5 is, forming an image
+anew at two thirds of the bandwidth, beside a whole run at that bandwidth: figure 7 with three
+interactions, and the same with so many rays that tracing is nearly all of a run."""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy
+import sonject
+
+SCENES = pathlib.Path(os.environ["SONJECT_SOURCE"]) / "tools" / "scenes"
+COMMAND = os.environ["SONJECT_COMMAND"]
+
+
+def best_time(action, repeats=5):
+    times = []
+    for number in range(repeats):
+        start = time.perf_counter()
+        action(number)
+        times.append(time.perf_counter() - start)
+    return min(times)
+
+
+def time_figure6(folder, swath):
+    def run(number):
+        subprocess.run([COMMAND, "run", SCENES / "figure6.yaml", "--quiet", "--set",
+                        f"input.path={swath}", "-o", folder / f"figure6 {number}"], check=True)
+
+    run("first")
+    whole = best_time(run)
+    nothing = best_time(lambda _: subprocess.run([COMMAND, "devices"], check=True,
+                                                 stdout=subprocess.DEVNULL))
+    print(f"figure 6, process start to files: {whole:.3f} s (a process that does nothing: "
+          f"{nothing:.3f} s)")
+
+
+def time_injection():
+    patch = numpy.random.default_rng(1).rayleigh(size=(512, 512)).astype(numpy.float32)
+    scene = sonject.Scene(
+        sonar=sonject.Sonar(centre_frequency_hz=100e3, bandwidth_hz=30e3, altitude_m=10.0),
+        geometry=sonject.Geometry(row_spacing_m=0.025, column_spacing_m=0.025,
+                                  first_slant_range_m=43.6),
+        objects=[sonject.Capsule(length_m=2.3, diameter_m=0.3, heading_rad=0.6, burial_m=0.1)])
+    sonject.inject(patch, scene)
+    taken = best_time(lambda _: sonject.inject(patch, scene))
+    print(f"injection of a capsule into 512 x 512 pixels: {taken:.3f} s")
+
+
+def time_stages(folder, swath, rays):
+    chosen = {"input.path": swath, "injection.interactions": 3, "injection.rays": rays}
+    narrower = {"sonar.bandwidth": "20 kHz"}
+    impulses = folder / f"{rays}.h5"
+    sonject.trace(sonject.Scene.read(SCENES / "figure7.yaml", chosen), impulses)
+    whole = best_time(lambda number: sonject.run(
+        sonject.Scene.read(SCENES / "figure7.yaml", {**chosen, **narrower}),
+        folder / f"{rays} run {number}"), 2 if rays > 1 else 5)
+    again = best_time(lambda number: sonject.form(impulses, folder / f"{rays} {number}", narrower))
+    print(f"figure 7, three interactions, {rays} times the rays: a run {whole:.3f} s, its image formed "
+          f"anew {again:.3f} s ({again / whole:.3f}), from {impulses.stat().st_size / 1e6:.1f} MB")
+
+
+with tempfile.TemporaryDirectory() as name:
+    folder = pathlib.Path(name)
+    swath = folder / "swath.png"
+    subprocess.run([COMMAND, "seabed", "-o", swath, "--rows", "472", "--columns", "512",
+                    "--first-range", "43.6125"], check=True)
+    time_figure6(folder, swath)
+    time_injection()
+    for rays in (1, 64) if "stages" in sys.argv else ():
+        time_stages(folder, swath, rays)
