@@ -4,8 +4,8 @@
 
 #include "api/campaign_handle.h"
 #include "base/memory.h"
-#include "io/scene_file.h"
-#include "io/yaml_flow.h"
+#include "schema/scene_file.h"
+#include "schema/yaml_flow.h"
 
 /* What the scene reader says of "--set KEY: what" is the campaign file's where that drew the key.
  */

@@ -10,8 +10,8 @@
 #include "base/folder.h"
 #include "base/growing_text.h"
 #include "base/memory.h"
-#include "io/scene_bands.h"
-#include "io/scene_file.h"
+#include "schema/scene_bands.h"
+#include "schema/scene_file.h"
 #include "trace/sums_folder.h"
 
 #define CHOICE "band=" /* the override that chooses a band */

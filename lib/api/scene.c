@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "io/scene_file.h"
+#include "schema/scene_file.h"
 
 sonject_status sonject_scene_create(sonject_context *context, sonject_scene **scene)
 {

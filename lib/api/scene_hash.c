@@ -9,7 +9,7 @@
 #include "base/json_document.h"
 #include "cl/sources.h"
 #include "inject/impulse_file.h"
-#include "io/scene_schema.h"
+#include "schema/scene_schema.h"
 
 /* Members one by one: the padding of a structure is not part of its value. */
 #define ADD(hash, member) hash_add(hash, &(member), sizeof(member))

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "io/scene_target.h"
+#include "schema/scene_target.h"
 #include "scene/check_cuts.h"
 #include "scene/pose.h"
 

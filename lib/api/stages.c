@@ -11,7 +11,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "inject/impulse_export.h"
-#include "io/scene_file.h"
+#include "schema/scene_file.h"
 
 void sonject_trace_params_init(sonject_trace_params *params)
 {

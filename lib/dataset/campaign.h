@@ -4,7 +4,7 @@
 
 #include "dataset/distribution.h"
 #include "image/raster.h"
-#include "io/yaml_tree.h"
+#include "schema/yaml_tree.h"
 
 #define CAMPAIGN_IMAGES_MAX  10000000 /* ids have eight digits */
 #define CAMPAIGN_SWATHS_MAX  10000

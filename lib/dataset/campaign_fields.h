@@ -3,7 +3,7 @@
 #define SONJECT_DATASET_CAMPAIGN_FIELDS_H
 
 #include "dataset/campaign.h"
-#include "io/scene_fields.h"
+#include "schema/scene_fields.h"
 
 /* The special readers of the tables; structure: the campaign. Draws of "objects[].heading" and the
  * like go to campaign->object_draws. */

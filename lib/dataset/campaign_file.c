@@ -6,8 +6,8 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "dataset/campaign_fields.h"
-#include "io/scene_file.h"
-#include "io/yaml_flow.h"
+#include "schema/scene_file.h"
+#include "schema/yaml_flow.h"
 
 #define STRUCTURE struct campaign
 

@@ -7,8 +7,8 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "dataset/campaign_fields.h"
-#include "io/scene_key.h"
-#include "io/yaml_flow.h"
+#include "schema/scene_key.h"
+#include "schema/yaml_flow.h"
 
 #define OBJECT_PREFIX "objects[]."
 

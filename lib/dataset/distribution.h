@@ -7,7 +7,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "io/scene_schema.h"
+#include "schema/scene_schema.h"
 
 /* A deviate of (0, 1), the middle of one of 2^53 equal parts; streams are independent. */
 double uniform_number(uint64_t seed, uint32_t stream, uint64_t index);

@@ -7,8 +7,8 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "dataset/distribution.h"
-#include "io/scene_fields.h"
-#include "io/yaml_flow.h"
+#include "schema/scene_fields.h"
+#include "schema/yaml_flow.h"
 
 #define STEPS_MAX 1000000
 

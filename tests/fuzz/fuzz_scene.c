@@ -3,7 +3,7 @@
 
 #include <stdlib.h>
 
-#include "io/scene_file.h"
+#include "schema/scene_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {

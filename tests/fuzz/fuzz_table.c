@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "io/number_table.h"
+#include "schema/number_table.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "io/scene_file.h"
+#include "schema/scene_file.h"
 
 static const char scene_text[] =
     "sonject: 1\ninput: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, "

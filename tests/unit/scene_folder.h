@@ -8,7 +8,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "io/scene_file.h"
+#include "schema/scene_file.h"
 #include "new_file.h"
 
 #define SCENE_FOLDER_CAPACITY 1024

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/profile_table.h"
+#include "schema/profile_table.h"
 #include "temporary_folder.h"
 
 #define COUNT(array) (sizeof(array) / sizeof(array)[0])

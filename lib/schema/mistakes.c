@@ -1,0 +1,144 @@
+#include "schema/mistakes.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "schema/yaml_tree.h"
+
+#define MISTAKES_MAX 1000 /* kept; no file needs to be told more about */
+
+struct mistake {
+    size_t order[5]; /* overrides behind the file; a line and a column of it; of a file it names */
+    char *file;      /* owned, with the two below */
+    const char *path;
+    const char *line; /* NULL: a mark */
+};
+
+static bool is_same(const struct mistake *mistake, const struct tree *tree, const char *path)
+{
+    return strcmp(mistake->path, path) == 0 && strcmp(mistake->file, tree->file) == 0;
+}
+
+static bool is_kept(const struct mistakes *mistakes, const struct tree *tree, const char *path)
+{
+    for (size_t i = 0; i < mistakes->count; i++)
+        if (is_same(&mistakes->list[i], tree, path))
+            return true;
+    return false;
+}
+
+static bool make_room(struct mistakes *mistakes)
+{
+    if (mistakes->count < mistakes->capacity)
+        return true;
+    const size_t capacity = 2 * mistakes->capacity + 8;
+    struct mistake *list = realloc(mistakes->list, capacity * sizeof *list);
+    if (!list)
+        return false;
+    mistakes->list = list;
+    mistakes->capacity = capacity;
+    return true;
+}
+
+static void find_order(size_t order[5], const struct tree *tree, const struct tree_place *place)
+{
+    const bool is_named = tree->named_at.override || tree->named_at.line > 0;
+    const struct tree_place *outer = is_named ? &tree->named_at : place;
+    size_t number = 0; /* of an override */
+    while (number < tree->override_count && tree->override_paths[number] != outer->override)
+        number++;
+    order[0] = outer->override != NULL;
+    order[1] = outer->override ? number : outer->line;
+    order[2] = outer->override ? 0 : outer->column;
+    order[3] = outer == place ? 0 : place->line;
+    order[4] = outer == place ? 0 : place->column;
+}
+
+static bool is_behind(const size_t a[5], const size_t b[5])
+{
+    int i = 0;
+    while (i < 4 && a[i] == b[i])
+        i++;
+    return a[i] > b[i];
+}
+
+void mistakes_add(struct mistakes *mistakes, const struct tree *tree,
+                  const struct tree_place *place, const char *path, const char *line)
+{
+    struct mistake added = {.line = NULL};
+    if (is_kept(mistakes, tree, path))
+        return;
+    const size_t file_bytes = strlen(tree->file) + 1;
+    const size_t path_bytes = strlen(path) + 1;
+    const bool has_room = mistakes->count < MISTAKES_MAX && make_room(mistakes);
+    if (has_room)
+        added.file = malloc(file_bytes + path_bytes + (line ? strlen(line) + 1 : 0));
+    if (!added.file) {
+        mistakes->uncounted += line != NULL;
+        return;
+    }
+    memcpy(added.file, tree->file, file_bytes);
+    added.path = memcpy(added.file + file_bytes, path, path_bytes);
+    if (line)
+        added.line = strcpy(added.file + file_bytes + path_bytes, line);
+    find_order(added.order, tree, place);
+    size_t at = mistakes->count++;
+    for (; at > 0 && is_behind(mistakes->list[at - 1].order, added.order); at--)
+        mistakes->list[at] = mistakes->list[at - 1];
+    mistakes->list[at] = added;
+}
+
+/* Whether a path is of a section or list in which the other one's key is. */
+static bool holds(const char *outer, const char *inner)
+{
+    const size_t length = strlen(outer);
+    return strncmp(inner, outer, length) == 0 && (length == 0 || strchr(".[", inner[length]));
+}
+
+bool mistakes_concern(const struct mistakes *mistakes, const struct tree *tree, const char *path)
+{
+    for (size_t i = 0; mistakes && i < mistakes->count; i++) {
+        const struct mistake *mistake = &mistakes->list[i];
+        if (strcmp(mistake->file, tree->file) == 0 &&
+            (holds(mistake->path, path) || holds(path, mistake->path)))
+            return true;
+    }
+    return false;
+}
+
+/* Joins lines to a message that has room left for the number of those that do not fit. */
+static void join(const struct mistakes *mistakes, struct report *report)
+{
+    const size_t room = sizeof report->message - 40;
+    size_t length = 0;
+    size_t told = 0;
+    size_t untold = mistakes->uncounted;
+    for (size_t i = 0; i < mistakes->count; i++) {
+        const char *line = mistakes->list[i].line;
+        if (line && told < MISTAKES_TOLD && length + strlen(line) + 1 < room) {
+            length += (size_t)sprintf(report->message + length, "%s%s", told ? "\n" : "", line);
+            told++;
+        } else {
+            untold += line != NULL;
+        }
+    }
+    if (untold > 0)
+        sprintf(report->message + length, "%sand %zu more", told ? "\n" : "", untold);
+}
+
+sonject_status mistakes_tell(struct mistakes *mistakes, struct report *report,
+                             sonject_status status)
+{
+    const bool is_ended = status != SONJECT_OK && status != SONJECT_ERROR_INPUT;
+    if (mistakes->count + mistakes->uncounted > 0) {
+        if (!is_ended || !report->message[0])
+            join(mistakes, report);
+        status = is_ended ? status : SONJECT_ERROR_INPUT;
+    }
+    for (size_t i = 0; i < mistakes->count; i++)
+        free(mistakes->list[i].file);
+    free(mistakes->list);
+    memset(mistakes, 0, sizeof *mistakes);
+    return status;
+}

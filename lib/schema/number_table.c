@@ -1,0 +1,242 @@
+#include "schema/number_table.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/text.h"
+
+#define COLUMNS_MAX 64
+
+/* A file on its way into a table. */
+struct table_reader {
+    struct report *report;
+    struct number_table *table;
+    char separator;
+    size_t column_count;             /* 0: the names are still to come */
+    size_t place[TABLE_COLUMNS_MAX]; /* of each known column; COLUMNS_MAX: not there */
+};
+
+static bool is_blank(char c)
+{
+    return c == ' ' || c == '\t' || c == '\r';
+}
+
+static sonject_status refuse_line(const struct table_reader *reader, const char *column,
+                                  const char *what)
+{
+    return report_failure(reader->report, SONJECT_ERROR_INPUT, "%s:%zu: %s%s%s",
+                          reader->table->file, reader->table->last_line, column,
+                          *column ? ": " : "", what);
+}
+
+static char *trim(char *text)
+{
+    size_t length = strlen(text);
+    while (length > 0 && is_blank(text[length - 1]))
+        text[--length] = '\0';
+    while (is_blank(*text))
+        text++;
+    return text;
+}
+
+/* Cuts a trimmed line into fields, whose number may exceed COLUMNS_MAX. */
+static size_t split(char *line, char separator, char *fields[COLUMNS_MAX])
+{
+    size_t count = 0;
+    for (char *end = line; end; count++) {
+        char *start = line;
+        end = separator == ' ' ? strpbrk(line, " \t") : strchr(line, separator);
+        if (end) {
+            *end = '\0';
+            line = end + 1;
+            while (separator == ' ' && is_blank(*line))
+                line++;
+        }
+        if (count < COLUMNS_MAX)
+            fields[count] = trim(start);
+    }
+    return count;
+}
+
+/* "height_m or depth_m, and sound_speed_mps" */
+static void list_names(const struct table_format *format, char *text, size_t capacity)
+{
+    size_t length =
+        (size_t)snprintf(text, capacity, "%s%s%s", format->names[0], format->names[1] ? " or " : "",
+                         format->names[1] ? format->names[1] : "");
+    for (size_t i = 2; i < 2 + format->required && length < capacity; i++)
+        length += (size_t)snprintf(text + length, capacity - length, ", and %s", format->names[i]);
+}
+
+static sonject_status check_names(const struct table_reader *reader)
+{
+    const struct table_format *format = reader->table->format;
+    char names[120], what[240];
+    const bool has_first = reader->place[0] != COLUMNS_MAX;
+    const bool has_second = reader->place[1] != COLUMNS_MAX;
+    bool is_complete = has_first || has_second;
+    if (has_first && has_second) {
+        snprintf(what, sizeof what, "both %s and %s are there; rename one", format->names[0],
+                 format->names[1]);
+        return refuse_line(reader, "", what);
+    }
+    for (size_t i = 2; i < 2 + format->required; i++)
+        is_complete = is_complete && reader->place[i] != COLUMNS_MAX;
+    if (is_complete)
+        return SONJECT_OK;
+    list_names(format, names, sizeof names);
+    snprintf(what, sizeof what, "this line must name the columns, among them %s", names);
+    return refuse_line(reader, "", what);
+}
+
+static sonject_status make_columns(struct table_reader *reader)
+{
+    struct number_table *table = reader->table;
+    for (int i = 0; i < TABLE_COLUMNS_MAX; i++) {
+        if (reader->place[i] == COLUMNS_MAX)
+            continue;
+        table->values[i] = allocate_array(table->format->samples_max, sizeof *table->values[i]);
+        if (!table->values[i])
+            return report_out_of_memory(reader->report, "a table");
+    }
+    return SONJECT_OK;
+}
+
+static sonject_status take_names(struct table_reader *reader, char *line)
+{
+    const struct table_format *format = reader->table->format;
+    char *fields[COLUMNS_MAX];
+    reader->separator = strchr(line, ';') ? ';' : strchr(line, ',') ? ',' : ' ';
+    reader->column_count = split(line, reader->separator, fields);
+    if (reader->column_count > COLUMNS_MAX)
+        return refuse_line(reader, "", "more than 64 columns; remove those that are not needed");
+    for (int i = 0; i < TABLE_COLUMNS_MAX; i++) {
+        reader->place[i] = COLUMNS_MAX;
+        for (size_t j = 0; format->names[i] && j < reader->column_count; j++) {
+            if (strcmp(fields[j], format->names[i]) != 0)
+                continue;
+            if (reader->place[i] != COLUMNS_MAX)
+                return refuse_line(reader, format->names[i],
+                                   "two columns of this name; rename one");
+            reader->place[i] = j;
+        }
+    }
+    const sonject_status status = check_names(reader);
+    return status == SONJECT_OK ? make_columns(reader) : status;
+}
+
+static sonject_status take_number(struct table_reader *reader, int column,
+                                  char *const fields[COLUMNS_MAX], double *number)
+{
+    char excerpt[40], what[100];
+    const char *text = fields[reader->place[column]];
+    const char *rest;
+    if (text_to_number(text, number, &rest) && *rest == '\0')
+        return SONJECT_OK;
+    snprintf(what, sizeof what, "'%s' is not a number",
+             text_excerpt(excerpt, sizeof excerpt, text));
+    return refuse_line(reader, reader->table->format->names[column], what);
+}
+
+static sonject_status take_sample(struct table_reader *reader, char *line)
+{
+    struct number_table *table = reader->table;
+    char *fields[COLUMNS_MAX];
+    char what[100];
+    const size_t count = split(line, reader->separator, fields);
+    if (count != reader->column_count) {
+        snprintf(what, sizeof what, "has %zu column%s, but %zu have names", count,
+                 count == 1 ? "" : "s", reader->column_count);
+        return refuse_line(reader, "", what);
+    }
+    if (table->count == table->format->samples_max) {
+        snprintf(what, sizeof what, "more than %zu samples; thin them out",
+                 table->format->samples_max);
+        return refuse_line(reader, "", what);
+    }
+    sonject_status status = SONJECT_OK;
+    for (int i = 0; status == SONJECT_OK && i < TABLE_COLUMNS_MAX; i++)
+        if (table->values[i])
+            status = take_number(reader, i, fields, &table->values[i][table->count]);
+    table->lines[table->count++] = table->last_line;
+    return status;
+}
+
+/* line: ended by 0, length bytes before that. */
+static sonject_status take_line(struct table_reader *reader, char *line, size_t length)
+{
+    static const char not_text[] = "not UTF-8 text; is this a table?";
+    reader->table->last_line++;
+    if (strlen(line) != length)
+        return refuse_line(reader, "", not_text);
+    line[strcspn(line, "#")] = '\0';
+    line = trim(line);
+    if (!*line)
+        return SONJECT_OK;
+    for (char *c = line; *c; c++)
+        if (*c == '\t')
+            *c = ' ';
+    if (!text_is_printable(line))
+        return refuse_line(reader, "", not_text);
+    return reader->column_count == 0 ? take_names(reader, line) : take_sample(reader, line);
+}
+
+static sonject_status take_text(struct table_reader *reader, char *text, size_t bytes)
+{
+    sonject_status status = SONJECT_OK;
+    char *const end = text + bytes;
+    if (bytes >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0)
+        text += 3;
+    while (status == SONJECT_OK && text < end) {
+        char *line_end = memchr(text, '\n', (size_t)(end - text));
+        if (!line_end)
+            line_end = end;
+        *line_end = '\0';
+        status = take_line(reader, text, (size_t)(line_end - text));
+        text = line_end + 1;
+    }
+    return status;
+}
+
+sonject_status number_table_read(struct report *report, const char *path,
+                                 const struct table_format *format, struct number_table *table)
+{
+    struct table_reader reader = {report, table, ' ', 0, {0}};
+    char *text = NULL;
+    size_t bytes;
+    memset(table, 0, sizeof *table);
+    table->format = format;
+    text_excerpt(table->file, sizeof table->file, path);
+    table->lines = allocate_array(format->samples_max, sizeof *table->lines);
+    sonject_status status = table->lines ? SONJECT_OK : report_out_of_memory(report, "a table");
+    if (status == SONJECT_OK)
+        status = file_read_whole(report, path, format->bytes_max, &text, &bytes);
+    if (status == SONJECT_OK)
+        status = take_text(&reader, text, bytes);
+    if (status == SONJECT_OK && reader.column_count == 0)
+        status =
+            report_failure(report, SONJECT_ERROR_INPUT, "%s: there is nothing in it", table->file);
+    free(text);
+    if (status != SONJECT_OK)
+        number_table_clear(table);
+    return status;
+}
+
+sonject_status number_table_refuse(const struct number_table *table, struct report *report,
+                                   size_t sample, size_t column, const char *what)
+{
+    return report_failure(report, SONJECT_ERROR_INPUT, "%s:%zu: %s: %s", table->file,
+                          sample < table->count ? table->lines[sample] : table->last_line,
+                          table->format->names[column], what);
+}
+
+void number_table_clear(struct number_table *table)
+{
+    for (int i = 0; i < TABLE_COLUMNS_MAX; i++)
+        free(table->values[i]);
+    free(table->lines);
+    memset(table, 0, sizeof *table);
+}

@@ -1,0 +1,44 @@
+/* Tables of numbers as text, such as CSV files. */
+#ifndef SONJECT_SCHEMA_NUMBER_TABLE_H
+#define SONJECT_SCHEMA_NUMBER_TABLE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/report.h"
+
+#define TABLE_COLUMNS_MAX 4
+
+/* The columns that a table is read for, by name: one of the first two (the second may be NULL),
+ * `required` of those after them, from the third on, and the others if they are there. */
+struct table_format {
+    const char *names[TABLE_COLUMNS_MAX]; /* NULL where there are fewer */
+    size_t required;
+    size_t samples_max, bytes_max;
+};
+
+/* Samples in the order in which they were written. */
+struct number_table {
+    const struct table_format *format; /* borrowed */
+    double *values[TABLE_COLUMNS_MAX]; /* owned; NULL: the file has no such column */
+    size_t *lines;                     /* of the samples; owned */
+    size_t count;
+    size_t last_line;
+    char file[400]; /* for messages */
+};
+
+/* Reads a file: a line of column names, then one line a sample. Columns are separated by
+ * semicolons, or else commas, or else white space, as the first line has them; what follows a # is
+ * a comment; other columns are passed over. format: borrowed. table: gets what is read; on success
+ * the caller's for number_table_clear. Message: "file:line: column: what". Errors: STORAGE, INPUT,
+ * MEMORY. */
+sonject_status number_table_read(struct report *report, const char *path,
+                                 const struct table_format *format, struct number_table *table);
+
+/* The message about a sample's value; sample: count for the table as a whole. Returns INPUT. */
+sonject_status number_table_refuse(const struct number_table *table, struct report *report,
+                                   size_t sample, size_t column, const char *what);
+
+void number_table_clear(struct number_table *table);
+
+#endif

@@ -1,0 +1,104 @@
+#include "schema/scene_file.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/text.h"
+#include "schema/scene_bands.h"
+
+static sonject_status apply_overrides(struct tree *tree, const struct scene_text *source)
+{
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; !reading_ends(status) && i < source->override_count; i++) {
+        const sonject_status of_one = tree_override(tree, source->overrides[i]);
+        status = of_one == SONJECT_OK ? status : of_one;
+    }
+    return status;
+}
+
+static sonject_status fill_scene(struct tree *tree, const struct scene_text *source,
+                                 struct scene *scene)
+{
+    struct reader reader = {.report = tree->report,
+                            .tree = tree,
+                            .scene = scene,
+                            .allows_user_shapes = source->allows_user_shapes,
+                            .moved_folder = source->moved_folder,
+                            .moved_overrides = source->moved_overrides};
+    sonject_status status = apply_overrides(tree, source);
+    if (reading_ends(status))
+        return status;
+    if (tree_is_null(&tree->root))
+        return refuse_value(&reader, &tree->root,
+                            "there is nothing in it; start with 'sonject: 1'");
+    status = choose_band(&reader, tree);
+    return status == SONJECT_OK ? read_section(&reader, &scene_section, &tree->root, scene)
+                                : status;
+}
+
+sonject_status scene_file_load(struct report *report, const char *path, char **text, size_t *bytes)
+{
+    char excerpt[400];
+    if (!file_exists(path))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: there is no such scene file; check its name",
+                              text_excerpt(excerpt, sizeof excerpt, path));
+    return file_read_whole(report, path, TREE_BYTES_MAX, text, bytes);
+}
+
+sonject_status scene_text_read(struct report *report, const struct scene_text *source,
+                               struct scene *scene)
+{
+    struct tree tree;
+    struct mistakes mistakes = {NULL, 0, 0, 0};
+    tree_init(&tree, report, source->path);
+    tree.mistakes = &mistakes;
+    report->message[0] = 0;
+    sonject_status status = tree_parse(&tree, source->text, source->bytes);
+    if (status == SONJECT_OK)
+        status = fill_scene(&tree, source, scene);
+    status = mistakes_tell(&mistakes, report, status);
+    tree_clear(&tree);
+    if (status != SONJECT_OK)
+        scene_clear(scene);
+    return status;
+}
+
+sonject_status scene_file_read(struct report *report, const char *path,
+                               const char *const *overrides, size_t count, struct scene *scene)
+{
+    return scene_file_read_with(report, path, overrides, count, false, scene);
+}
+
+sonject_status scene_file_read_with(struct report *report, const char *path,
+                                    const char *const *overrides, size_t count,
+                                    bool allows_user_shapes, struct scene *scene)
+{
+    char *text;
+    size_t bytes;
+    sonject_status status = scene_file_load(report, path, &text, &bytes);
+    if (status != SONJECT_OK)
+        return status;
+    const struct scene_text source = {path,  text, bytes, overrides,
+                                      count, NULL, 0,     allows_user_shapes};
+    status = scene_text_read(report, &source, scene);
+    free(text);
+    return status;
+}
+
+sonject_status scene_text_bands(struct report *report, const struct scene_text *source,
+                                char **names)
+{
+    struct tree tree;
+    tree_init(&tree, report, source->path);
+    struct reader reader = {.report = report, .tree = &tree};
+    *names = NULL;
+    sonject_status status = tree_parse(&tree, source->text, source->bytes);
+    if (status == SONJECT_OK)
+        status = apply_overrides(&tree, source);
+    if (status == SONJECT_OK)
+        status = list_bands(&reader, names);
+    tree_clear(&tree);
+    return status;
+}

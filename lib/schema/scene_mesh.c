@@ -1,0 +1,155 @@
+/* Meshes of scene files: the file, and how its numbers are meant. */
+#include <math.h>
+#include <stdlib.h>
+
+#include "schema/scene_shape.h"
+
+#define PI 3.14159265358979323846
+
+/* Lengths of targets. */
+#define LEAST_M 0.01
+#define MOST_M  100.0
+
+/* What is said about a mesh. */
+struct mesh_text {
+    char *path;        /* owned; NULL: not given */
+    double unit_m;     /* m a unit of the file; 0: not given */
+    uint32_t nose, up; /* enum file_axis: which axis of the file that one of the object is */
+    bool allows_open;
+    double smooth_angle_rad;
+};
+
+enum file_axis {
+    AXIS_X,
+    AXIS_Y,
+    AXIS_Z,
+    AXIS_X_REVERSED,
+    AXIS_Y_REVERSED,
+    AXIS_Z_REVERSED
+};
+
+static sonject_status read_unit(struct reader *reader, const struct tree_node *node,
+                                void *structure)
+{
+    return read_length_unit(reader, node, &((struct mesh_text *)structure)->unit_m);
+}
+
+/* 1, 2, 3, negative where reversed, as struct mesh_options has it. */
+static int signed_axis(uint32_t axis)
+{
+    return axis < AXIS_X_REVERSED ? (int)axis + 1 : -(int)(axis - AXIS_X_REVERSED) - 1;
+}
+
+/* Nose and up tell the third axis, own y = up x nose. False where both lie along one line. */
+static bool turn_file_axes(const struct mesh_text *mesh, int axes[3])
+{
+    const int nose = signed_axis(mesh->nose);
+    const int up = signed_axis(mesh->up);
+    const int from = abs(up);
+    const int to = abs(nose);
+    if (from == to)
+        return false;
+    const bool is_cyclic = to == from % 3 + 1;
+    const bool is_reversed = is_cyclic == ((nose < 0) != (up < 0));
+    axes[0] = nose;
+    axes[1] = is_reversed ? -(6 - from - to) : 6 - from - to;
+    axes[2] = up;
+    return true;
+}
+
+static sonject_status finish_mesh(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    const struct mesh_text *mesh = structure;
+    int axes[3];
+    if (!(mesh->smooth_angle_rad >= 0.0 && mesh->smooth_angle_rad <= PI))
+        refuse_key(reader, node, "smooth", "must be 0 to 180 deg, not %g deg",
+                   mesh->smooth_angle_rad * 180.0 / PI);
+    if (!turn_file_axes(mesh, axes))
+        return refuse_value(reader, node,
+                            "nose and up are the same axis of the file; give both, such as "
+                            "nose: x, up: y");
+    return SONJECT_OK;
+}
+
+#define STRUCTURE struct mesh_text
+#define AXIS_WORDS                                                                                 \
+    {                                                                                              \
+        [AXIS_X] = "x", [AXIS_Y] = "y", [AXIS_Z] = "z", [AXIS_X_REVERSED] = "-x",                  \
+        [AXIS_Y_REVERSED] = "-y", [AXIS_Z_REVERSED] = "-z"                                         \
+    }
+static const struct field mesh_fields[] = {
+    {"file", "of triangles: STL, OBJ or PLY", .kind = FIELD_FILE,
+     .offset = offsetof(STRUCTURE, path), REQUIRED},
+    {"unit", "of the file's numbers, by default m", .kind = FIELD_SPECIAL, .unit = "m, km, cm, mm",
+     .read = read_unit},
+    {"nose", "axis of the file that is the object's nose, by default x",
+     WORD(STRUCTURE, nose) = AXIS_WORDS},
+    {"up", "axis of the file that is up when level, by default z",
+     WORD(STRUCTURE, up) = AXIS_WORDS},
+    {"open", "a mesh that is not watertight is taken as thin sheets; by default it is refused",
+     .kind = FIELD_BOOL, .offset = offsetof(STRUCTURE, allows_open)},
+    {"smooth",
+     "facets that meet at less stand for one smooth surface to what scatters; by default none do",
+     QUANTITY(STRUCTURE, smooth_angle_rad, QUANTITY_ANGLE)},
+};
+const struct section mesh_section = {mesh_fields, COUNT(mesh_fields), finish_mesh};
+#undef STRUCTURE
+
+/* A file in mm whose unit nobody gave makes a target that no sonar sees. */
+static sonject_status doubt_size(struct reader *reader, const struct tree_node *node,
+                                 uint32_t number)
+{
+    const struct mesh *mesh = &reader->scene->meshes[number];
+    double longest = 0.0;
+    for (int axis = 0; axis < 3; axis++)
+        longest = fmax(longest, (double)mesh->upper_m[axis] - (double)mesh->lower_m[axis]);
+    if (longest >= LEAST_M && longest <= MOST_M)
+        return SONJECT_OK;
+    return refuse_value(reader, node,
+                        "the mesh is %.3g m long if its numbers are metres, and sonars are for "
+                        "targets of 1 cm to 100 m: give its unit, such as unit: mm, or unit: m if "
+                        "that is right",
+                        longest);
+}
+
+/* Into the scene; the message about a mesh that cannot be read gets its place in the scene file. */
+static sonject_status load(struct reader *reader, const struct tree_node *node,
+                           const struct mesh_text *mesh, uint32_t *number)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct mesh_options options;
+    mesh_options_init(&options);
+    options.unit_m = mesh->unit_m > 0.0 ? mesh->unit_m : 1.0;
+    options.smooth_angle_rad = mesh->smooth_angle_rad;
+    turn_file_axes(mesh, options.axes);
+    const sonject_status status =
+        scene_share_mesh(reader->scene, &report, mesh->path, &options, mesh->allows_open, number);
+    if (status == SONJECT_OK)
+        return mesh->unit_m > 0.0 ? status : doubt_size(reader, node, *number);
+    if (status == SONJECT_ERROR_MEMORY)
+        return report_out_of_memory(reader->report, mesh->path);
+    /* What is wrong in a file is one mistake, however many objects show it. */
+    if (!mistakes_concern(reader->tree->mistakes, reader->tree, mesh->path))
+        refuse_value(reader, node, "%s", report.message);
+    mistakes_add(reader->tree->mistakes, reader->tree, &node->place, mesh->path, NULL);
+    return status;
+}
+
+sonject_status read_mesh(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    sonject_object_params *shape = structure;
+    struct mesh_text mesh = {.path = NULL, .nose = AXIS_X, .up = AXIS_Z};
+    const struct tree_entry *file = tree_find(node, "file");
+    const size_t before = reader->path.length;
+    sonject_status status = node->kind == TREE_TEXT
+                                ? read_existing_path(reader, node, &mesh.path)
+                                : read_section(reader, &mesh_section, node, &mesh);
+    if (file)
+        key_path_add(&reader->path, "file");
+    if (status == SONJECT_OK)
+        status = load(reader, file ? &file->value : node, &mesh, &shape->mesh);
+    key_path_shorten(&reader->path, before);
+    free(mesh.path);
+    return status;
+}

@@ -1,0 +1,155 @@
+#include "schema/yaml_tree.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "base/text.h"
+
+void tree_init(struct tree *tree, struct report *report, const char *file)
+{
+    memset(tree, 0, sizeof *tree);
+    tree->report = report;
+    tree->file = file;
+}
+
+void tree_clear(struct tree *tree)
+{
+    tree_node_clear(&tree->root);
+    for (size_t i = 0; i < tree->override_count; i++)
+        free(tree->override_paths[i]);
+    free(tree->override_paths);
+    tree_init(tree, tree->report, tree->file);
+}
+
+/* Trees are at most TREE_DEPTH_MAX deep, and so is this. */
+void tree_node_clear(struct tree_node *node)
+{
+    for (size_t i = 0; i < node->count; i++) {
+        free(node->entries[i].key);
+        tree_node_clear(&node->entries[i].value);
+    }
+    free(node->entries);
+    free(node->text);
+    const struct tree_place place = node->place;
+    memset(node, 0, sizeof *node);
+    node->place = place;
+}
+
+static sonject_status make_room(struct tree *tree, struct tree_node *node)
+{
+    if (node->count < node->capacity)
+        return SONJECT_OK;
+    const size_t capacity = node->capacity == 0 ? 4 : 2 * node->capacity;
+    struct tree_entry *entries = realloc(node->entries, capacity * sizeof *entries);
+    if (!entries)
+        return report_out_of_memory(tree->report, "the scene file");
+    node->entries = entries;
+    node->capacity = capacity;
+    return SONJECT_OK;
+}
+
+sonject_status tree_append(struct tree *tree, struct tree_node *node, const struct key_path *path,
+                           const char *key, struct tree_place place, struct tree_entry **entry)
+{
+    if (key && node->count >= TREE_KEYS_MAX)
+        return tree_failure(tree, place, path->text, "has more than %d keys; remove some",
+                            TREE_KEYS_MAX);
+    if (tree->node_count >= TREE_NODES_MAX)
+        return tree_failure(tree, place, path->text,
+                            "is one value too many: a file may have %d; split it", TREE_NODES_MAX);
+    const sonject_status status = make_room(tree, node);
+    if (status != SONJECT_OK)
+        return status;
+    char *own_key = key ? copy_text(key) : NULL;
+    if (key && !own_key)
+        return report_out_of_memory(tree->report, "the scene file");
+    tree->node_count++;
+    *entry = &node->entries[node->count++];
+    memset(*entry, 0, sizeof **entry);
+    (*entry)->key = own_key;
+    (*entry)->place = place;
+    (*entry)->value.place = place;
+    return SONJECT_OK;
+}
+
+const struct tree_entry *tree_find(const struct tree_node *node, const char *key)
+{
+    if (node->kind == TREE_SECTION)
+        for (size_t i = 0; i < node->count; i++)
+            if (strcmp(node->entries[i].key, key) == 0)
+                return &node->entries[i];
+    return NULL;
+}
+
+bool tree_is_null(const struct tree_node *node)
+{
+    if (node->kind != TREE_TEXT || node->is_quoted)
+        return false;
+    return !node->text || strcmp(node->text, "") == 0 || strcmp(node->text, "~") == 0 ||
+           strcmp(node->text, "null") == 0;
+}
+
+/* The key is left out where the override's own path says it already. */
+sonject_status tree_failure(const struct tree *tree, struct tree_place place, const char *path,
+                            const char *format, ...)
+{
+    char where[320];
+    char name[240];
+    char what[REPORT_LINE], line[2 * REPORT_LINE];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(what, sizeof what, format, arguments);
+    va_end(arguments);
+    if (place.override)
+        snprintf(where, sizeof where, "--set %s", text_excerpt(name, sizeof name, place.override));
+    else
+        snprintf(where, sizeof where, "%s:%zu:%zu", text_excerpt(name, sizeof name, tree->file),
+                 place.line, place.column);
+    const bool is_told = *path == 0 || (place.override && strcmp(path, place.override) == 0);
+    snprintf(line, sizeof line, "%s%s%s: %s", where, is_told ? "" : ": ", is_told ? "" : path,
+             what);
+    text_make_printable(line);
+    if (!tree->mistakes)
+        return report_failure(tree->report, SONJECT_ERROR_INPUT, "%s", line);
+    mistakes_add(tree->mistakes, tree, &place, path, line);
+    return SONJECT_ERROR_INPUT;
+}
+
+static size_t add_text(struct key_path *path, const char *text)
+{
+    const size_t before = path->length;
+    text_excerpt(path->text + before, sizeof path->text - before, text);
+    path->length += strlen(path->text + before);
+    return before;
+}
+
+/* Long keys are cut, so that at least the first few of a path fit. */
+size_t key_path_add(struct key_path *path, const char *key)
+{
+    char part[64];
+    const size_t before = path->length;
+    part[0] = '.';
+    text_excerpt(part + 1, sizeof part - 1, key);
+    if (before + sizeof part <= sizeof path->text)
+        add_text(path, before == 0 ? part + 1 : part);
+    return before;
+}
+
+size_t key_path_add_index(struct key_path *path, size_t index)
+{
+    char part[32];
+    const size_t before = path->length;
+    snprintf(part, sizeof part, "[%zu]", index);
+    if (before + sizeof part <= sizeof path->text)
+        add_text(path, part);
+    return before;
+}
+
+void key_path_shorten(struct key_path *path, size_t length)
+{
+    path->length = length;
+    path->text[length] = 0;
+}

@@ -1,0 +1,103 @@
+/* YAML as a tree of sections, lists and texts that know their place in the file. Made for files
+ * that a person writes, read as if an enemy had: no aliases, no tags, no repeated keys, limits on
+ * everything. */
+#ifndef SONJECT_SCHEMA_YAML_TREE_H
+#define SONJECT_SCHEMA_YAML_TREE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "base/report.h"
+#include "schema/mistakes.h"
+
+#define TREE_BYTES_MAX (1024 * 1024)
+#define TREE_DEPTH_MAX 32
+#define TREE_NODES_MAX 100000
+#define TREE_KEYS_MAX  256 /* in one section */
+
+enum tree_kind {
+    TREE_TEXT,
+    TREE_LIST,
+    TREE_SECTION
+};
+
+/* Where something was written: a line and a column from 1, of the file or of an override's value.
+ */
+struct tree_place {
+    const char *override; /* key path of the override, kept by the tree; NULL: the file */
+    size_t line, column;
+};
+
+struct tree_node {
+    enum tree_kind kind;
+    bool is_quoted; /* a text in quotes or in a block */
+    bool is_block;  /* a block that keeps its lines: they follow the place's */
+    struct tree_place place;
+    char *text;                 /* of a TREE_TEXT; NULL: no value at all */
+    struct tree_entry *entries; /* of the other two */
+    size_t count;
+    size_t capacity;
+};
+
+struct tree_entry {
+    char *key;               /* NULL in a list */
+    struct tree_place place; /* of the key */
+    struct tree_node value;
+};
+
+struct tree {
+    struct report *report;
+    struct mistakes *mistakes;  /* that are collected, the caller's; NULL: the report gets them */
+    const char *file;           /* name for messages, the caller's */
+    struct tree_place named_at; /* of the key that names the file; all 0: none does */
+    struct tree_node root;
+    size_t node_count;
+    char **override_paths;
+    size_t override_count;
+};
+
+/* The path of a key, such as "objects[0].heading", as it is built on the way down. */
+struct key_path {
+    char text[256];
+    size_t length;
+};
+
+/* An empty tree, whose mistakes are not collected. report and file must outlive it. */
+void tree_init(struct tree *tree, struct report *report, const char *file);
+void tree_clear(struct tree *tree);
+
+/* Builds the tree of the text of a file. Errors: INPUT, MEMORY. */
+sonject_status tree_parse(struct tree *tree, const char *text, size_t bytes);
+
+/* Replaces or adds what an override "key.path=value" says. A value that starts with one of {["' is
+ * YAML, any other one is taken as it stands. Errors: INPUT, MEMORY. */
+sonject_status tree_override(struct tree *tree, const char *override);
+
+/* Parses text into an empty node that lies at path. For tree_override. */
+sonject_status tree_parse_value(struct tree *tree, const char *override, const char *text,
+                                int depth, struct tree_node *node);
+
+/* Adds an entry without a value to a section (key is copied) or to a list (key NULL).
+ * Errors: INPUT (too many), MEMORY. */
+sonject_status tree_append(struct tree *tree, struct tree_node *node, const struct key_path *path,
+                           const char *key, struct tree_place place, struct tree_entry **entry);
+
+/* The entry of a key of a section; NULL if there is none, or node is no section. */
+const struct tree_entry *tree_find(const struct tree_node *node, const char *key);
+
+/* True for no value: nothing at all, ~ or null. */
+bool tree_is_null(const struct tree_node *node);
+
+void tree_node_clear(struct tree_node *node);
+
+/* The message "file:line:column: path: ..." or "--set path: ...", to the tree's mistakes or, where
+ * they are not collected, to its report. Returns INPUT. */
+sonject_status tree_failure(const struct tree *tree, struct tree_place place, const char *path,
+                            const char *format, ...) REPORT_FORMAT(4);
+
+/* Each returns the length to go back to with key_path_shorten. */
+size_t key_path_add(struct key_path *path, const char *key);
+size_t key_path_add_index(struct key_path *path, size_t index);
+void key_path_shorten(struct key_path *path, size_t length);
+
+#endif
