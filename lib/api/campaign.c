@@ -5,7 +5,7 @@
 #include "api/campaign_handle.h"
 #include "base/memory.h"
 #include "schema/scene_file.h"
-#include "schema/yaml_flow.h"
+#include "schema/yaml_tree.h"
 
 /* What the scene reader says of "--set KEY: what" is the campaign file's where that drew the key.
  */

@@ -11,7 +11,7 @@
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "base/text.h"
-#include "schema/yaml_flow.h"
+#include "schema/yaml_tree.h"
 
 #define TRIALS_MAX 20000 /* scenes, about as many milliseconds at the most */
 

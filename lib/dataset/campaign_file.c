@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "dataset/campaign_fields.h"
 #include "schema/scene_file.h"
-#include "schema/yaml_flow.h"
+#include "schema/yaml_tree.h"
 
 #define STRUCTURE struct campaign
 

@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "dataset/campaign_fields.h"
 #include "schema/scene_key.h"
-#include "schema/yaml_flow.h"
+#include "schema/yaml_tree.h"
 
 #define OBJECT_PREFIX "objects[]."
 

@@ -8,7 +8,7 @@
 #include "base/text.h"
 #include "dataset/distribution.h"
 #include "schema/scene_fields.h"
-#include "schema/yaml_flow.h"
+#include "schema/yaml_tree.h"
 
 #define STEPS_MAX 1000000
 

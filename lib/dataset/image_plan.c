@@ -11,7 +11,7 @@
 #include "dataset/campaign_fields.h"
 #include "dataset/distribution.h"
 #include "dataset/image_plan.h"
-#include "schema/yaml_flow.h"
+#include "schema/yaml_tree.h"
 
 /* Streams of random numbers beyond those of distributions. */
 enum {

@@ -7,6 +7,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "base/growing_text.h"
 #include "base/report.h"
 #include "schema/mistakes.h"
 
@@ -99,5 +100,11 @@ sonject_status tree_failure(const struct tree *tree, struct tree_place place, co
 size_t key_path_add(struct key_path *path, const char *key);
 size_t key_path_add_index(struct key_path *path, size_t index);
 void key_path_shorten(struct key_path *path, size_t length);
+
+/* Adds the node in YAML's flow style, on one line, so that reading it gives the same tree. */
+void tree_write_flow(const struct tree_node *node, struct growing_text *text);
+
+/* The node as the value of an override. *text is for free(). Errors: MEMORY. */
+sonject_status tree_override_text(struct report *report, const struct tree_node *node, char **text);
 
 #endif
