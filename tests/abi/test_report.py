@@ -29,19 +29,19 @@ def make_report(tmp_path, *results):
 
 
 def test_the_figure_nearest_to_its_limit_is_shown(tmp_path):
-    answer = make_report(tmp_path, ("seabed_level", "OK"))
+    answer = make_report(tmp_path, ("seabed", "OK"))
     assert answer.returncode == 0, answer.stderr
     lines = answer.stdout.splitlines()
     assert "1 programs compared 5 figures with what is expected of them; all are within their " \
            "tolerances." in lines
-    assert "## seabed_level" in lines and any("mean level of a Lambert" in line for line in lines)
+    assert "## seabed" in lines and any("A plain Lambert seabed" in line for line in lines)
     assert "| level | 3 | 1.015 | 1 | ± 0.02 | 75 % |" in lines
     assert "| scatter | 1 | 0.5 | below 2 |  | 25 % |" in lines
     assert "| exact | 1 | 0 | 0 | ± 0 | 0 % |" in lines
 
 
 def test_failures_are_told(tmp_path):
-    answer = make_report(tmp_path, ("glints", "FAIL"), ("speckle", "OK"))
+    answer = make_report(tmp_path, ("glints", "FAIL"), ("mirrors", "OK"))
     assert answer.returncode == 1
     assert "failed: glints." in answer.stdout and "## glints: failed" in answer.stdout
     assert make_report(tmp_path).returncode != 0
