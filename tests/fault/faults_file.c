@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#define MARK_ERROR 0x20 /* _IO_ERR_SEEN of glibc, whose call this is */
+
 int __real_open64(const char *path, int flags, ...);
 ssize_t __real_write(int descriptor, const void *bytes, size_t count);
 int __real_close(int descriptor);
@@ -94,9 +96,13 @@ FILE *__wrap_fopen64(const char *path, const char *mode)
     return __real_fopen64(path, mode);
 }
 
+/* The stream remembers its failure, as a real one does, for those who ask only at the end. */
 size_t __wrap_fwrite(const void *bytes, size_t size, size_t count, FILE *file)
 {
-    return fails(ENOSPC) ? 0 : __real_fwrite(bytes, size, count, file);
+    if (!fails(ENOSPC))
+        return __real_fwrite(bytes, size, count, file);
+    file->_flags |= MARK_ERROR;
+    return 0;
 }
 
 int __wrap_fclose(FILE *file)
