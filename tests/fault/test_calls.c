@@ -4,15 +4,8 @@
  *
  * SONJECT_FAULT_POINTS: how many n are tried of each piece of work (0: all). KIND: the calls. */
 #define _POSIX_C_SOURCE 200809L
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
-
-#include <stdlib.h>
-#include <string.h>
+#include "claims.h"
 
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl.h>
@@ -23,8 +16,6 @@
 #ifndef POINTS
 #define POINTS 24
 #endif
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* What an OpenCL call may say; a device that is lost stays so. */
 static const int opencl_errors[] = {CL_OUT_OF_RESOURCES, CL_DEVICE_NOT_AVAILABLE,

@@ -2,17 +2,10 @@
  * contexts hold. This process makes no call of the library, so that each of its children is the
  * first to use the driver. */
 #define _POSIX_C_SOURCE 200809L
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
+#include "claims.h"
 
 #include <pthread.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -109,7 +102,6 @@ static int inject_together(void)
 
 static void test_threads_may_be_the_first_to_use_a_device(void **state)
 {
-    (void)state;
     for (int run = 0; run < RUNS; run++)
         assert_int_equal(exit_of(inject_together), 0);
 }
@@ -168,7 +160,6 @@ static int fork_after_listing(void)
 
 static void test_a_child_of_a_process_that_used_opencl_is_refused(void **state)
 {
-    (void)state;
     assert_int_equal(exit_of(fork_after_injecting), 0);
     assert_int_equal(exit_of(fork_after_listing), 0);
 }
@@ -191,7 +182,6 @@ static int fork_before_injecting(void)
 
 static void test_parent_and_child_may_both_inject_where_none_did_before(void **state)
 {
-    (void)state;
     assert_int_equal(exit_of(fork_before_injecting), 0);
 }
 
@@ -229,7 +219,6 @@ static int hold_contexts(void)
 
 static void test_a_hundred_contexts_hold_less_than_two(void **state)
 {
-    (void)state;
     if (pages() == 0)
         skip();
     assert_int_equal(exit_of(hold_contexts), 0);

@@ -2,20 +2,13 @@
  * the OpenCL driver does when it is first used is done before, on the host's own context, which the
  * library then works in. */
 #define _GNU_SOURCE
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
+#include "claims.h"
 
 #include <fcntl.h>
 #include <fenv.h>
 #include <locale.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
 

@@ -1,17 +1,10 @@
 /* A disk that cannot be read is no damaged file: whichever of a reader's calls fails, the status is
  * STORAGE, and the message has the name of the file (or of the copy) and the system's words. */
 #define _POSIX_C_SOURCE 200809L
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
+#include "claims.h"
 
 #include <errno.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/stat.h>
 
 #include "io/raster_formats.h"
@@ -73,8 +66,7 @@ static void expect_told(const char *path, const char *copy)
     long count = 0;
     due = 0;
     calls = 0;
-    if (use(&report, path, copy) != SONJECT_OK)
-        fail_msg("%s", report.message);
+    EXPECT_OK(&report, use(&report, path, copy));
     count = calls;
     assert_true(count > 0);
     for (long n = 1; n <= count; n++) {
@@ -104,7 +96,7 @@ static void test_written_formats(void **state)
                    {"a.h5", PIXEL_FLOAT32}};
     static float pixels[SIDE * SIDE];
     expect_told(SOURCE_ROOT "/tests/unit/heights.mat", temporary_file(*state, "copy.mat"));
-    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++) {
+    for (size_t i = 0; i < COUNT(formats); i++) {
         struct report report = {{0}, NULL, NULL};
         char path[TEMPORARY_CAPACITY + 300], copy[TEMPORARY_CAPACITY + 300];
         const struct raster_layout layout = {SIDE, SIDE, 1, formats[i].type};
@@ -112,9 +104,9 @@ static void test_written_formats(void **state)
         snprintf(copy, sizeof copy, "%s", temporary_file(*state, "copy"));
         (void)strcat(copy, formats[i].name + 1);
         const bool is_lossy = strstr(path, ".jpg");
-        if ((is_lossy ? raster_file_write(&report, path, &layout, NULL, NULL, 0, pixels)
-                      : raster_format_write(&report, path, &layout, NULL, 0, pixels)) != SONJECT_OK)
-            fail_msg("%s", report.message);
+        EXPECT_OK(&report,
+                  (is_lossy ? raster_file_write(&report, path, &layout, NULL, NULL, 0, pixels)
+                            : raster_format_write(&report, path, &layout, NULL, 0, pixels)));
         expect_told(path, copy);
     }
 }

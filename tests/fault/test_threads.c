@@ -1,17 +1,9 @@
 /* Two threads, each with a context of its own and as many runs as the first: the same images. */
 #define _POSIX_C_SOURCE 200809L
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
+#include "claims.h"
 
 #include <pthread.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include <sonject/sonject.h>
 
@@ -115,7 +107,6 @@ static void test_two_threads_give_what_one_gives(void **state)
 {
     struct worker *workers = calloc(3, sizeof *workers);
     pthread_t threads[2];
-    (void)state;
     assert_non_null(workers);
     (void)work(&workers[2]);
     if (!workers[2].is_right)

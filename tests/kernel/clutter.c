@@ -1,16 +1,7 @@
 #include "kernel/clutter.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "cl/launch.h"
+#include "claims.h"
 #include "random.h"
 
 /* Draws in turn. */
@@ -31,9 +22,8 @@ static void add_tetrahedron(struct bench *bench)
     bench->scene.meshes = calloc(1, sizeof *bench->scene.meshes);
     assert_non_null(bench->scene.meshes);
     bench->scene.mesh_count = 1;
-    if (mesh_from_arrays(&bench->report, "tetrahedron", positions, 4, corners, 4, &options,
-                         &bench->scene.meshes[0]) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, mesh_from_arrays(&bench->report, "tetrahedron", positions, 4, corners,
+                                               4, &options, &bench->scene.meshes[0]));
 }
 
 static void shape_object(sonject_object_params *object, uint32_t number, double size,
@@ -44,7 +34,7 @@ static void shape_object(sonject_object_params *object, uint32_t number, double 
         SONJECT_SHAPE_DISC,      SONJECT_SHAPE_BOX,      SONJECT_SHAPE_WEDGE,   SONJECT_SHAPE_CONE,
         SONJECT_SHAPE_ELLIPSOID, SONJECT_SHAPE_TORUS,    SONJECT_SHAPE_MESH,    SONJECT_SHAPE_BOX};
     sonject_object_params_init(object);
-    object->shape = shapes[number % (sizeof shapes / sizeof *shapes)];
+    object->shape = shapes[number % (COUNT(shapes))];
     object->length_m = size * (0.5 + draw(counter));
     object->width_m = 0.6 * object->length_m;
     object->height_m = 0.3 * object->length_m;
@@ -87,8 +77,7 @@ void clutter_strew(struct bench *bench, uint32_t count, double size)
             object = *other;
             object.position_along += other->width_m / 0.025;
         }
-        if (scene_append_object(&bench->scene, &bench->report, &object) != SONJECT_OK)
-            fail_msg("%s", bench->report.message);
+        EXPECT_OK(&bench->report, scene_append_object(&bench->scene, &bench->report, &object));
     }
 }
 
@@ -99,7 +88,7 @@ void *clutter_read(struct bench *bench, cl_mem buffer)
                      CL_SUCCESS);
     void *copy = malloc(bytes);
     assert_non_null(copy);
-    if (buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, copy) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report,
+              buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, copy));
     return copy;
 }

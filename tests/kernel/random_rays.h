@@ -11,14 +11,14 @@ struct point {
     double x, y, z;
 };
 
-static uint64_t state = 88172645463325252u;
+static uint64_t generator = 88172645463325252u;
 
 static inline double uniform(double low, double high)
 {
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return low + (high - low) * ((double)(state >> 11) + 0.5) / 9007199254740992.0;
+    generator ^= generator << 13;
+    generator ^= generator >> 7;
+    generator ^= generator << 17;
+    return low + (high - low) * ((double)(generator >> 11) + 0.5) / 9007199254740992.0;
 }
 
 static inline struct point add(struct point a, struct point b, double t)

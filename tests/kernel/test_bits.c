@@ -1,16 +1,6 @@
 /* The same bits everywhere: what a device tallies and forms, at every width, chunking, core count
  * and time, is what the same kernel functions give as plain C, one lane at a time. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "image_formation.h"
 #include "trace_rough_mirrored.h"
 #include "trace_smooth_mirrored.h"
@@ -220,8 +210,7 @@ static void begin_rough(struct rough_trace *trace, struct bench *bench, const fl
     const sonject_status status = bench->scene.sonar.kind == SONJECT_SONAR_REAL
                                       ? rough_trace_begin_beam(trace, tracer, &tracer->response)
                                       : rough_trace_begin(trace, tracer, map);
-    if (status != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, status);
 }
 
 static struct tallies trace_rough_on_device(struct bench *bench, const float *map, int32_t chunk)
@@ -242,11 +231,11 @@ static struct tallies trace_rough_on_device(struct bench *bench, const float *ma
     for (int32_t done = 0; done < count; done += chunk) {
         const int32_t left = count - done;
         const struct span strips = {trace.grid.strips.first + done, left < chunk ? left : chunk};
-        if (rough_trace_strips(&trace, &bench->tracer, strips, energy) != SONJECT_OK ||
-            buffer_read(&bench->report, bench->tracer.device, trace.on_device.tallies, 0,
-                        (size_t)strips.count * bins * sizeof(int64_t),
-                        tallies.line + (size_t)done * bins) != SONJECT_OK)
-            fail_msg("%s", bench->report.message);
+        EXPECT_OK(&bench->report, rough_trace_strips(&trace, &bench->tracer, strips, energy));
+        EXPECT_OK(&bench->report,
+                  buffer_read(&bench->report, bench->tracer.device, trace.on_device.tallies, 0,
+                              (size_t)strips.count * bins * sizeof(int64_t),
+                              tallies.line + (size_t)done * bins));
         for (size_t i = 0; i < (size_t)strips.count * bins; i++)
             assert_true(energy[i] == (float)((double)tallies.line[(size_t)done * bins + i] *
                                              trace.energy_of_quantum));
@@ -297,8 +286,7 @@ static void begin_smooth(struct smooth_trace *trace, struct bench *bench, uint32
     const sonject_status status =
         pair ? smooth_trace_begin_mirrored(trace, &bench->tracer, object, pair)
              : smooth_trace_begin(trace, &bench->tracer, object);
-    if (status != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, status);
 }
 
 static struct tallies trace_smooth_on_device(struct bench *bench, uint32_t object,
@@ -320,11 +308,11 @@ static struct tallies trace_smooth_on_device(struct bench *bench, uint32_t objec
     for (int32_t done = 0; done < count; done += chunk) {
         const int32_t left = count - done;
         const struct span strips = {trace.grid.strips.first + done, left < chunk ? left : chunk};
-        if (smooth_trace_strips(&trace, &bench->tracer, strips, a, b) != SONJECT_OK ||
-            buffer_read(&bench->report, bench->tracer.device, trace.on_device.tallies, 0,
-                        2 * (size_t)strips.count * bins * sizeof(int64_t),
-                        tallies.line + 2 * (size_t)done * bins) != SONJECT_OK)
-            fail_msg("%s", bench->report.message);
+        EXPECT_OK(&bench->report, smooth_trace_strips(&trace, &bench->tracer, strips, a, b));
+        EXPECT_OK(&bench->report,
+                  buffer_read(&bench->report, bench->tracer.device, trace.on_device.tallies, 0,
+                              2 * (size_t)strips.count * bins * sizeof(int64_t),
+                              tallies.line + 2 * (size_t)done * bins));
     }
     tallies.counts = bench->tracer.counts;
     free(a);
@@ -383,8 +371,7 @@ static void on_all_kinds(body *run)
     params.device_name = bench_device;
     struct device *first = bench.tracer.device;
     for (size_t w = 0; w < width_count; w++) {
-        if (device_open(&bench.report, &params, &devices[w]) != SONJECT_OK)
-            fail_msg("%s", bench.report.message);
+        EXPECT_OK(&bench.report, device_open(&bench.report, &params, &devices[w]));
         devices[w]->width = widths[w];
     }
     for (int kind = 0; kind < SCENE_KINDS; kind++) {
@@ -457,9 +444,8 @@ static void compare_rough(struct bench *bench, enum scene_kind kind)
     free(map);
 }
 
-static void test_rough_tallies(void **unused)
+static void test_rough_tallies(void **state)
 {
-    (void)unused;
     on_all_kinds(compare_rough);
 }
 
@@ -493,9 +479,8 @@ static void compare_smooth(struct bench *bench, enum scene_kind kind)
         assert_true(compare_pair(bench, object, NULL));
 }
 
-static void test_smooth_tallies(void **unused)
+static void test_smooth_tallies(void **state)
 {
-    (void)unused;
     on_all_kinds(compare_smooth);
 }
 
@@ -535,7 +520,7 @@ static void compare_mirrored(struct bench *bench, enum scene_kind kind)
     assert_int_equal(sources_list(&bench->scene, &bench->water, 2, sources), 5);
     size_t alive = 0;
     for (uint32_t object = 0; object < bench->scene.object_count; object++)
-        for (size_t i = 0; i < sizeof numbers / sizeof *numbers; i++) {
+        for (size_t i = 0; i < COUNT(numbers); i++) {
             const struct source_pair pair = {&sources[numbers[i][0]], &sources[numbers[i][1]],
                                              (uint32_t)i};
             alive += compare_pair(bench, object, &pair);
@@ -544,9 +529,8 @@ static void compare_mirrored(struct bench *bench, enum scene_kind kind)
     assert_true(alive >= 15);
 }
 
-static void test_mirrored_tallies(void **unused)
+static void test_mirrored_tallies(void **state)
 {
-    (void)unused;
     on_all_kinds(compare_mirrored);
 }
 
@@ -554,9 +538,8 @@ static void test_mirrored_tallies(void **unused)
 static int64_t *mirrored_tiles(struct bench *bench, size_t *elements)
 {
     struct rough_trace trace;
-    if (rough_trace_begin(&trace, &bench->tracer, NULL) != SONJECT_OK ||
-        rough_trace_mirrored(&trace, &bench->tracer) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, rough_trace_begin(&trace, &bench->tracer, NULL));
+    EXPECT_OK(&bench->report, rough_trace_mirrored(&trace, &bench->tracer));
     *elements = trace.tile_elements;
     int64_t *tiles = calloc(*elements, sizeof *tiles);
     assert_non_null(tiles);
@@ -595,9 +578,8 @@ static void compare_rough_mirrored(struct bench *bench, enum scene_kind kind)
     free(first);
 }
 
-static void test_rough_mirrored_tallies(void **unused)
+static void test_rough_mirrored_tallies(void **state)
 {
-    (void)unused;
     on_all_kinds(compare_rough_mirrored);
 }
 
@@ -818,20 +800,18 @@ static struct planes form_on_device(struct bench *bench, struct form_lines *line
             is_speckle ? form_lines_add_speckle(lines, first, some, bins->part[0] + at,
                                                 0xfedcba9876543210u, STREAM_SEABED_SPECKLE)
                        : form_lines_add(lines, first, some, bins->part[0] + at, bins->part[1] + at);
-        if (status != SONJECT_OK)
-            fail_msg("%s", bench->report.message);
+        EXPECT_OK(&bench->report, status);
     }
-    if (form_lines_finish(lines, pixels.part[0], pixels.part[1]) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, form_lines_finish(lines, pixels.part[0], pixels.part[1]));
     return pixels;
 }
 
 static void begin_lines(struct form_lines *lines, struct bench *bench, enum form_kind kind,
                         const struct line_grid *grid)
 {
-    if (form_lines_begin(lines, &bench->report, bench->tracer.device, &bench->tracer.view,
-                         &bench->tracer.response, kind, grid) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report,
+              form_lines_begin(lines, &bench->report, bench->tracer.device, &bench->tracer.view,
+                               &bench->tracer.response, kind, grid));
 }
 
 /* The amplitudes that speckle gives to energies. */
@@ -927,22 +907,19 @@ static void compare_varied_formation(struct bench *bench, enum scene_kind kind)
     bench->scene.sonar.kind = SONJECT_SONAR_SYNTHETIC;
 }
 
-static void test_varied_image_formation(void **unused)
+static void test_varied_image_formation(void **state)
 {
-    (void)unused;
     on_all_kinds(compare_varied_formation);
 }
 
-static void test_image_formation(void **unused)
+static void test_image_formation(void **state)
 {
-    (void)unused;
     on_all_kinds(compare_formation);
 }
 
 /* One core of a device instead of all. */
-static void test_one_core(void **unused)
+static void test_one_core(void **state)
 {
-    (void)unused;
     struct bench bench;
     bench_open(&bench, ROWS, COLUMNS, 18.0);
     const cl_device_partition_property one_core[] = {CL_DEVICE_PARTITION_BY_COUNTS, 1,
@@ -969,8 +946,7 @@ static void test_one_core(void **unused)
     params.opencl_context = context;
     params.opencl_device = core;
     struct device *all_cores = bench.tracer.device;
-    if (device_open(&bench.report, &params, &bench.tracer.device) != SONJECT_OK)
-        fail_msg("%s", bench.report.message);
+    EXPECT_OK(&bench.report, device_open(&bench.report, &params, &bench.tracer.device));
     assert_int_equal(bench.tracer.device->compute_units, 1);
     struct tallies measured = trace_rough_on_device(&bench, map, 1 << 20);
     expect_same("one core", &measured, &expected);
@@ -991,5 +967,5 @@ int main(void)
         cmocka_unit_test(test_image_formation),  cmocka_unit_test(test_varied_image_formation),
         cmocka_unit_test(test_one_core),
     };
-    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
+    return bench_run_on_devices(tests, COUNT(tests));
 }

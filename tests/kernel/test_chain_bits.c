@@ -1,17 +1,7 @@
 /* The same bits everywhere for chains of several interactions: what a device tallies, at any width,
  * chunking and core count, is what the same kernel functions give as plain C, one lane at a time.
  */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "trace_chains.h"
 
 #include "cl/launch.h"
@@ -139,8 +129,7 @@ static int64_t *trace_on_device(struct bench *bench, const float *map, int32_t c
     if (status == SONJECT_OK)
         status = buffer_read(&bench->report, tracer->device, trace.tallies, 0,
                              *count * sizeof *tallies, tallies);
-    if (status != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, status);
     chain_trace_end(&trace);
     *counts = tracer->counts;
     return tallies;
@@ -151,16 +140,15 @@ static void *copy_buffer(struct bench *bench, cl_mem buffer, size_t bytes)
 {
     void *copy = malloc(bytes);
     assert_non_null(copy);
-    if (buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, copy) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report,
+              buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, copy));
     return copy;
 }
 
 static int64_t *trace_as_c(struct bench *bench, const float *map, struct trace_counts *counts)
 {
     struct chain_trace trace;
-    if (chain_trace_begin(&trace, &bench->tracer, map) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, chain_trace_begin(&trace, &bench->tracer, map));
     struct chain_record *chains = copy_buffer(bench, trace.chains, sizeof *chains);
     struct object_record *objects = bench_copy_buffer(bench, trace.objects);
     struct sphere_record *spheres =
@@ -170,8 +158,8 @@ static int64_t *trace_as_c(struct bench *bench, const float *map, struct trace_c
     memset(counts, 0, sizeof *counts);
     for (uint32_t i = 0; i < chain_fan_count(&bench->tracer); i++) {
         struct chain_fan fan;
-        if (chain_fan_init(&fan, &bench->tracer, &trace.grid, trace.has_map, i) != SONJECT_OK)
-            fail_msg("%s", bench->report.message);
+        EXPECT_OK(&bench->report,
+                  chain_fan_init(&fan, &bench->tracer, &trace.grid, trace.has_map, i));
         fan.record.quanta = ldexpf(1.0f, trace.exponents[0]);
         fan.record.table = trace.table;
         fan.record.first_strip = fan.strips.first;
@@ -201,7 +189,7 @@ static void compare(const struct variant *variant)
     struct trace_counts expected_counts, counts;
     int64_t *expected = trace_as_c(&bench, map, &expected_counts);
     static const int32_t chunks[] = {1 << 20, 1 << 20, 13};
-    for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
+    for (size_t i = 0; i < COUNT(chunks); i++) {
         size_t count;
         int64_t *measured = trace_on_device(&bench, map, chunks[i], &count, &counts);
         size_t filled = 0;
@@ -222,10 +210,9 @@ static void compare(const struct variant *variant)
     bench_close(&bench);
 }
 
-static void test_chains(void **unused)
+static void test_chains(void **state)
 {
-    (void)unused;
-    for (size_t v = 0; v < sizeof variants / sizeof *variants; v++)
+    for (size_t v = 0; v < COUNT(variants); v++)
         compare(&variants[v]);
 }
 
@@ -234,5 +221,5 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_chains),
     };
-    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
+    return bench_run_on_devices(tests, COUNT(tests));
 }

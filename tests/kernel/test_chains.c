@@ -1,18 +1,7 @@
 /* Chains of several interactions, on the kernel's own source: closed forms of their energies. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
-#include <cmocka.h>
-
+#include "claims.h"
 #include "kernels/trace_chains.h"
 
-#define PI           3.14159265358979323846
 #define ORDERS       6
 #define BINS         40000
 #define BINS_A_METRE 1000.0f
@@ -78,7 +67,6 @@ static void raw_energies(const struct fan_record *fan, const int64_t *tallies,
  * centre by so little that cosines differ by 1e-5. */
 static void test_closed_sphere(void **state)
 {
-    (void)state;
     const float lambert = 0.25f;
     const double albedo = PI * (double)lambert;
     struct fan_record fan;
@@ -149,7 +137,6 @@ static double energy_sent_on(const struct chain_record *chains, const struct cha
  * led to the target or not: no more than came. 4 standard errors and 0.2 % of the quadrature. */
 static void test_sea_surface_keeps_energy(void **state)
 {
-    (void)state;
     static const float cosines[] = {1.0f, 0.6f, 0.2f, 0.05f};
     for (int variant = 0; variant < 3 * 4 * 2; variant++) {
         struct chain_record chains;
@@ -312,7 +299,6 @@ static void expect_sky(const struct targets *targets, const struct chain_record 
 
 static void test_directions_are_weighed_as_they_are_drawn(void **state)
 {
-    (void)state;
     for (uint32_t variant = 0; variant < 4 * 3 * 2 * 2; variant++) {
         const int inside = (int)variant % 4;
         const int count = (int)variant / 4 % 3 + 1;
@@ -335,7 +321,6 @@ static void test_directions_are_weighed_as_they_are_drawn(void **state)
  * rounded by 1e-7 of the distance, which must not take it out of the cone that it was drawn in. */
 static void test_far_and_small_targets_get_their_share(void **state)
 {
-    (void)state;
     static const float radii[] = {0.15f, 0.05f, 0.02f, 0.005f};
     static const float distances[] = {0.7f, 5.0f, 30.0f};
     for (int i = 0; i < 4 * 3; i++) {

@@ -1,15 +1,6 @@
 /* The same bits everywhere for echoes of several smooth faces: what a device tallies, at any width
  * and chunking, is what the same kernel functions give as plain C, one lane at a time. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "trace_corners.h"
 
 #include "cl/launch.h"
@@ -87,8 +78,8 @@ static void make_scene(struct bench *bench, const struct variant *variant)
 /* Reads a record that a device was given, so that both work from the same one. */
 static void read_record(struct bench *bench, cl_mem buffer, void *record, size_t bytes)
 {
-    if (buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, record) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report,
+              buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, record));
 }
 
 static uint64_t add_on_device(struct bench *bench, const struct corners *corners,
@@ -101,8 +92,7 @@ static uint64_t add_on_device(struct bench *bench, const struct corners *corners
     for (int32_t done = 0; done < all.count; done += chunk) {
         const int32_t left = all.count - done;
         const struct span strips = {all.first + done, left < chunk ? left : chunk};
-        if (corner_launch_strips(launch, &bench->tracer, strips, sums) != SONJECT_OK)
-            fail_msg("%s", bench->report.message);
+        EXPECT_OK(&bench->report, corner_launch_strips(launch, &bench->tracer, strips, sums));
     }
     return bench->tracer.counts.impulses;
 }
@@ -151,13 +141,13 @@ static uint64_t compare_pair(struct bench *bench, const struct corners *corners,
     struct corner_launch launch;
     struct line_grid grid;
     struct corner_sums expected, measured;
-    if (corner_launch_begin(&launch, &grid, corners, &bench->tracer, part, pair) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report,
+              corner_launch_begin(&launch, &grid, corners, &bench->tracer, part, pair));
     if (grid.bins.count == 0)
         return 0;
     assert_true(corner_sums_init(&expected, &grid));
     const uint64_t impulses = add_as_c(bench, corners, &launch, &expected);
-    for (size_t i = 0; i < sizeof chunks / sizeof *chunks; i++) {
+    for (size_t i = 0; i < COUNT(chunks); i++) {
         assert_true(corner_sums_init(&measured, &grid));
         assert_int_equal(add_on_device(bench, corners, &launch, chunks[i], &measured), impulses);
         expect_same(&measured, &expected);
@@ -190,9 +180,8 @@ static void compare_variant(struct bench *bench, const struct variant *variant)
 }
 
 /* At the ends of the row of widths: programs take long to compile (see test_bits.c). */
-static void test_corner_tallies(void **unused)
+static void test_corner_tallies(void **state)
 {
-    (void)unused;
     uint32_t widths[2];
     const size_t count = bench_end_widths(widths);
     for (size_t w = 0; w < count; w++) {
@@ -200,7 +189,7 @@ static void test_corner_tallies(void **unused)
         bench_open(&bench, ROWS, COLUMNS, 18.0);
         bench_set_width(&bench, widths[w]);
         print_message("width %u\n", (unsigned)widths[w]);
-        for (size_t i = 0; i < sizeof variants / sizeof *variants; i++) {
+        for (size_t i = 0; i < COUNT(variants); i++) {
             scene_clear(&bench.scene);
             bench_set_layers(&bench, NULL, 0);
             bench_move(&bench, 18.0);
@@ -215,5 +204,5 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_corner_tallies),
     };
-    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
+    return bench_run_on_devices(tests, COUNT(tests));
 }

@@ -1,17 +1,7 @@
 /* Meshes that planes cut, against every triangle in double precision: where rays meet what is left,
  * and how it faces there, for rays from 50 m and 500 m, that start anywhere, through edges and
  * corners, and nearly along the planes. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "mesh_samples.h"
 #include "physics/bench.h"
 #include "random_rays.h"
@@ -50,10 +40,9 @@ static void cut_solid_begin(struct cut_solid *solid, const struct mesh_sample *s
     scene->meshes = calloc(1, sizeof *scene->meshes);
     assert_non_null(scene->meshes);
     scene->mesh_count = 1;
-    if (mesh_from_arrays(&solid->bench.report, "sample", sample->positions, sample->vertices,
-                         sample->corners, sample->triangles, &options,
-                         &scene->meshes[0]) != SONJECT_OK)
-        fail_msg("%s", solid->bench.report.message);
+    EXPECT_OK(&solid->bench.report,
+              mesh_from_arrays(&solid->bench.report, "sample", sample->positions, sample->vertices,
+                               sample->corners, sample->triangles, &options, &scene->meshes[0]));
     solid->mesh = &scene->meshes[0];
     solid->is_sheet = !solid->mesh->topology.is_closed;
     sonject_object_params *object = bench_add(&solid->bench, SONJECT_SHAPE_MESH, 0.0, 0.0, 0.0);
@@ -359,9 +348,8 @@ static void compare_sample(const char *name, struct mesh_sample *sample)
     sample_clear(sample);
 }
 
-static void test_solids(void **unused)
+static void test_solids(void **state)
 {
-    (void)unused;
     struct mesh_sample sample;
     sample_box(&sample);
     compare_sample("box", &sample);
@@ -396,9 +384,8 @@ static void sample_two_boxes(struct mesh_sample *sample, double size, double alo
 }
 
 /* The face of a cut spans all of them, but for the cavity. */
-static void test_pieces(void **unused)
+static void test_pieces(void **state)
 {
-    (void)unused;
     struct mesh_sample sample;
     sample_two_boxes(&sample, 0.7, 0.9, false);
     compare_sample("boxes that overlap", &sample);
@@ -406,9 +393,8 @@ static void test_pieces(void **unused)
     compare_sample("box with a cavity", &sample);
 }
 
-static void test_sheets(void **unused)
+static void test_sheets(void **state)
 {
-    (void)unused;
     struct mesh_sample sample;
     sample_ring(&sample, 24, 10);
     sample.triangles -= 40; /* open */
@@ -416,9 +402,8 @@ static void test_sheets(void **unused)
 }
 
 /* 16 lanes of native C give the bits of one, rays being together or apart. */
-static void test_sixteen_lanes(void **unused)
+static void test_sixteen_lanes(void **state)
 {
-    (void)unused;
     struct mesh_sample sample;
     struct cut_solid solid;
     sample_ring(&sample, 48, 20);
@@ -459,9 +444,8 @@ static void test_sixteen_lanes(void **unused)
 }
 
 /* No way that leaves the face of a cut outwards meets it again from where echoes go on. */
-static void test_no_self_hit(void **unused)
+static void test_no_self_hit(void **state)
 {
-    (void)unused;
     struct mesh_sample sample;
     struct cut_solid solid;
     int tried = 0;
@@ -496,5 +480,5 @@ int main(void)
         cmocka_unit_test(test_sheets),      cmocka_unit_test(test_sixteen_lanes),
         cmocka_unit_test(test_no_self_hit),
     };
-    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
+    return bench_run_on_devices(tests, COUNT(tests));
 }

@@ -1,26 +1,16 @@
 /* kernels/elementary.h against double precision, over the whole range that each function states. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdio.h>
-
+#include "claims.h"
 #include "elementary.h"
 
-#define PI     3.14159265358979323846
 #define POINTS 1000000
 
 /* A generator of its own, so that the one under test in random.h plays no part. */
-static uint64_t state = 0x9e3779b97f4a7c15u;
+static uint64_t generator = 0x9e3779b97f4a7c15u;
 
 static uint32_t random_word(void)
 {
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    return (uint32_t)(state >> 32);
+    generator = generator * 6364136223846793005u + 1442695040888963407u;
+    return (uint32_t)(generator >> 32);
 }
 
 static double random_fraction(void)
@@ -35,12 +25,11 @@ static float random_over_octaves(double low, double high)
     return (float)(random_word() & 1 ? -value : value);
 }
 
-static void test_nearest_integer(void **unused)
+static void test_nearest_integer(void **state)
 {
-    (void)unused;
     static const float edges[] = {0.0f, 0.25f,       0.49999997f, 0.50000006f,
                                   1.0f, 4194303.25f, 4194302.75f, 1048575.9f};
-    for (size_t i = 0; i < sizeof edges / sizeof *edges; i++) {
+    for (size_t i = 0; i < COUNT(edges); i++) {
         assert_true(nearest_integer(edges[i]) == nearbyintf(edges[i]));
         assert_true(nearest_integer(-edges[i]) == nearbyintf(-edges[i]));
     }
@@ -67,9 +56,8 @@ static void compare_sine(float cycles, struct worst *worst)
         worst->sine_relative = fmax(worst->sine_relative, error / fabs(sin(2.0 * PI * turn)));
 }
 
-static void test_sine_and_cosine(void **unused)
+static void test_sine_and_cosine(void **state)
 {
-    (void)unused;
     struct worst worst = {0.0, 0.0, 0.0};
     for (int eighth = -64; eighth <= 64; eighth++) {
         const float edge = (float)eighth * 0.125f;
@@ -93,9 +81,8 @@ static void test_sine_and_cosine(void **unused)
     assert_true(sine == 0.0f && cosine == 1.0f);
 }
 
-static void test_sinc(void **unused)
+static void test_sinc(void **state)
 {
-    (void)unused;
     double worst = 0.0;
     assert_true(sinc_of_cycles(0.0f) == 1.0f);
     for (int i = 0; i < POINTS; i++) {
@@ -114,9 +101,8 @@ static void compare_exponential(float value, double *worst)
     *worst = fmax(*worst, fabs(exponential_of_negative(value) - expected) / expected);
 }
 
-static void test_exponential(void **unused)
+static void test_exponential(void **state)
 {
-    (void)unused;
     double worst = 0.0;
     assert_true(exponential_of_negative(0.0f) == 1.0f);
     assert_true(exponential_of_negative(-80.00001f) == 0.0f);
@@ -144,9 +130,8 @@ static void compare_logarithm(float value, double *worst)
     *worst = fmax(*worst, fabs(natural_logarithm(value) - expected) / allowed);
 }
 
-static void test_logarithm(void **unused)
+static void test_logarithm(void **state)
 {
-    (void)unused;
     double worst = 0.0;
     assert_true(natural_logarithm(1.0f) == 0.0f);
     compare_logarithm(1.17549435e-38f, &worst);
@@ -167,9 +152,8 @@ static void test_logarithm(void **unused)
     assert_true(worst < 1.0);
 }
 
-static void test_cube_root(void **unused)
+static void test_cube_root(void **state)
 {
-    (void)unused;
     double worst = 0.0;
     for (int i = 0; i < POINTS; i++) {
         const float value = fabsf(random_over_octaves(-100.0, 99.0)); /* to 6e29 */
@@ -179,9 +163,8 @@ static void test_cube_root(void **unused)
     assert_true(worst < 3e-7);
 }
 
-static void test_smaller_larger_magnitude(void **unused)
+static void test_smaller_larger_magnitude(void **state)
 {
-    (void)unused;
     for (int i = 0; i < 1000; i++) {
         const float a = random_over_octaves(-60.0, 60.0);
         const float b = random_over_octaves(-60.0, 60.0);

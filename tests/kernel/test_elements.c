@@ -1,16 +1,6 @@
 /* Element level: the same bits at every width and number of work-items, and series that are what
  * the formula of kernels/MATH.md gives in double precision. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "element_series.h"
 
 #include "cl/launch.h"
@@ -102,8 +92,7 @@ static void compute_as_c(struct workload *work, struct lines *lines)
 
 static void expect_ok(struct bench *bench, sonject_status status)
 {
-    if (status != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, status);
 }
 
 static cl_mem buffer_of(struct bench *bench, size_t bytes, const void *contents)
@@ -168,7 +157,7 @@ static void compute_on_device(struct bench *bench, struct workload *work, int32_
     read_and_release(bench, &out_imaginary, sizeof lines->out_imaginary, lines->out_imaginary);
     cl_mem *const rest[] = {&grid,      &pairs,     &starts,     &bins,
                             &real_part, &imaginary, &pulse_real, &pulse_imaginary};
-    for (size_t i = 0; i < sizeof rest / sizeof *rest; i++)
+    for (size_t i = 0; i < COUNT(rest); i++)
         buffer_release(rest[i]);
 }
 
@@ -183,9 +172,8 @@ static int count_heard(const struct lines *lines)
 }
 
 /* CPUs from four lanes on: see test_bits.c. */
-static void test_same_bits(void **unused)
+static void test_same_bits(void **state)
 {
-    (void)unused;
     static const int32_t segments[] = {1, 2, 7, 500};
     static struct workload work;
     static struct lines expected, measured;
@@ -198,7 +186,7 @@ static void test_same_bits(void **unused)
         struct bench bench;
         bench_open(&bench, 8, 8, 18.0);
         bench_set_width(&bench, widths[w]);
-        for (size_t i = 0; i < sizeof segments / sizeof *segments; i++) {
+        for (size_t i = 0; i < COUNT(segments); i++) {
             if (bench.tracer.device->is_cpu && widths[w] < 4)
                 continue;
             compute_on_device(&bench, &work, segments[i], &measured);
@@ -237,9 +225,8 @@ static void hear_exactly(const sonject_element_layout *layout,
 }
 
 /* 100 kHz and 100 m, aspects to 25 deg, at the end of a long track. */
-static void test_delays_and_phases(void **unused)
+static void test_delays_and_phases(void **state)
 {
-    (void)unused;
     const float one = 0.03f;
     const float none = 0.0f;
     struct bench bench;
@@ -306,5 +293,5 @@ int main(void)
         cmocka_unit_test(test_same_bits),
         cmocka_unit_test(test_delays_and_phases),
     };
-    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
+    return bench_run_on_devices(tests, COUNT(tests));
 }

@@ -1,16 +1,6 @@
 /* Many objects: what the hierarchy finds is what a loop over all objects finds, to the bit, for
  * rays that run together and apart, from near and far, as plain C, as vectors and on devices. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "trace_chains.h"
 #include "trace_rough.h"
 #include "trace_smooth.h"
@@ -159,12 +149,11 @@ static void compare_searches(const struct searched *searched, enum ray_kind kind
     compare_answers("sixteen lanes in a loop", &found, &expected);
 }
 
-static void test_tree_is_the_loop(void **unused)
+static void test_tree_is_the_loop(void **state)
 {
-    (void)unused;
     static const uint32_t counts[] = {17, 41, 250};
     static float input[SEARCH_INPUTS * RAYS];
-    for (size_t c = 0; c < sizeof counts / sizeof *counts; c++) {
+    for (size_t c = 0; c < COUNT(counts); c++) {
         struct searched searched;
         searched_begin(&searched, counts[c]);
         for (int kind = 0; kind < RAY_KINDS; kind++) {
@@ -180,9 +169,8 @@ static void test_tree_is_the_loop(void **unused)
 
 /* Every hit lies inside the box that the tree has for the object: the margin is never used up, for
  * rays that graze it as for others. */
-static void test_hits_are_in_their_spheres(void **unused)
+static void test_hits_are_in_their_spheres(void **state)
 {
-    (void)unused;
     struct searched searched;
     searched_begin(&searched, 250);
     for (uint32_t i = 0; i < 40 * RAYS; i++) {
@@ -222,15 +210,14 @@ static void expect_same(const char *what, const int64_t *measured, const int64_t
 static void compare_rough(struct bench *bench)
 {
     static struct rough_trace trace;
-    if (rough_trace_begin(&trace, &bench->tracer, NULL) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, rough_trace_begin(&trace, &bench->tracer, NULL));
     const size_t cells = line_grid_cells(&trace.grid);
     float *energy = calloc(cells, sizeof *energy);
     int64_t *lines = calloc(cells, sizeof *lines);
     int64_t *tiles = calloc(trace.tile_elements, sizeof *tiles);
     assert_true(energy && lines && tiles);
-    if (rough_trace_strips(&trace, &bench->tracer, trace.grid.strips, energy) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report,
+              rough_trace_strips(&trace, &bench->tracer, trace.grid.strips, energy));
     struct object_record *objects = clutter_read(bench, trace.on_device.objects);
     int64_t *from_device = clutter_read(bench, trace.on_device.tallies);
     int64_t *device_tiles = clutter_read(bench, trace.tile_buffer);
@@ -255,8 +242,7 @@ static void compare_smooth(struct bench *bench, uint32_t number)
 {
     struct smooth_trace trace;
     struct tracer *tracer = &bench->tracer;
-    if (smooth_trace_begin(&trace, tracer, number) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, smooth_trace_begin(&trace, tracer, number));
     const struct span strips = {trace.grid.strips.first, smooth_trace_chunk(&trace)};
     const size_t cells = (size_t)strips.count * (size_t)trace.grid.bins.count;
     float *field = calloc(2 * cells, sizeof *field);
@@ -295,8 +281,7 @@ static void compare_chains(struct bench *bench)
 {
     struct chain_trace trace;
     struct tracer *tracer = &bench->tracer;
-    if (chain_trace_begin(&trace, tracer, NULL) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, chain_trace_begin(&trace, tracer, NULL));
     const size_t cells = trace.planes * line_grid_cells(&trace.grid);
     struct chain_record *chains = clutter_read(bench, trace.chains);
     struct object_record *objects = clutter_read(bench, trace.objects);
@@ -308,12 +293,10 @@ static void compare_chains(struct bench *bench)
     /* the seabed's fan and some objects' */
     for (uint32_t i = 0; i < chain_fan_count(tracer); i += 41) {
         struct chain_fan fan;
-        if (chain_fan_init(&fan, tracer, &trace.grid, false, i) != SONJECT_OK)
-            fail_msg("%s", bench->report.message);
+        EXPECT_OK(&bench->report, chain_fan_init(&fan, tracer, &trace.grid, false, i));
         const struct span strips = {fan.strips.first + fan.strips.count / 3,
                                     fan.strips.count < 24 ? fan.strips.count / 3 : 8};
-        if (chain_trace_strips(&trace, tracer, &fan, strips) != SONJECT_OK)
-            fail_msg("%s", bench->report.message);
+        EXPECT_OK(&bench->report, chain_trace_strips(&trace, tracer, &fan, strips));
         fan.record.segments = 1;
         for (int strip = 0; strip < strips.count; strip++)
             assert_int_equal(trace_chains_strip(&fan.record, NULL, chains, objects, spheres, NULL,
@@ -332,9 +315,8 @@ static void compare_chains(struct bench *bench)
 }
 
 /* At the ends of the row of widths: programs take long to compile (see test_bits.c). */
-static void test_devices(void **unused)
+static void test_devices(void **state)
 {
-    (void)unused;
     uint32_t widths[2];
     const size_t count = bench_end_widths(widths);
     for (size_t w = 0; w < count; w++) {
@@ -363,5 +345,5 @@ int main(void)
         cmocka_unit_test(test_hits_are_in_their_spheres),
         cmocka_unit_test(test_devices),
     };
-    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
+    return bench_run_on_devices(tests, COUNT(tests));
 }

@@ -1,17 +1,6 @@
 /* Where rays meet meshes, against a reference in double precision that tries every triangle; that
  * nothing leaks through a closed mesh; that bits do not depend on width, company or device. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "kernel/mesh_native.h"
 #include "kernel/mesh_probe.h"
 #include "kernel/mesh_samples.h"
@@ -96,9 +85,8 @@ static void prepare(const struct mesh_sample *sample, double smooth_angle, struc
     struct mesh_options options;
     mesh_options_init(&options);
     options.smooth_angle_rad = smooth_angle;
-    if (mesh_from_arrays(&report, "sample", sample->positions, sample->vertices, sample->corners,
-                         sample->triangles, &options, mesh) != SONJECT_OK)
-        fail_msg("%s", report.message);
+    EXPECT_OK(&report, mesh_from_arrays(&report, "sample", sample->positions, sample->vertices,
+                                        sample->corners, sample->triangles, &options, mesh));
 }
 
 /* Random chords through the mesh's sphere; one in four passes close by its middle, one in four runs
@@ -246,7 +234,6 @@ static void compare_with_reference(const struct mesh *mesh, struct flight *fligh
 
 static void test_closed_meshes(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     struct mesh mesh;
     struct flight flight = make_flight(RAYS);
@@ -269,7 +256,6 @@ static void test_closed_meshes(void **state)
 
 static void test_strewn_triangles(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     struct mesh mesh;
     struct flight flight = make_flight(RAYS);
@@ -327,7 +313,6 @@ static void cross_surface(const struct mesh *mesh, const double inside[3], struc
 
 static void test_no_leaks(void **state)
 {
-    (void)state;
     static const double middles[][3] = {
         {0.0, 0.0, 0.0}, {0.01, -0.02, 0.003}, {0.3, 0.1, -0.2}, {0.0, 0.0, 0.2999}};
     struct mesh_sample sample;
@@ -361,7 +346,6 @@ static void test_no_leaks(void **state)
  * between the sphere and the largest one inside. */
 static void test_sphere(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     struct mesh mesh;
     struct flight flight = make_flight(RAYS);
@@ -428,7 +412,6 @@ static void test_sphere(void **state)
 /* A smooth normal never shows the ray a side that it did not meet. */
 static void test_terminator(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     struct mesh mesh;
     struct flight flight = make_flight(RAYS);
@@ -509,7 +492,6 @@ static uint32_t lay_shadow_rays(const struct flight *flight, enum probe_output s
 /* A sphere of facets lets sound past wherever the smooth surface does, if it starts lifted. */
 static void test_shadows_of_facets(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     struct mesh mesh;
     struct flight flight = make_flight(RAYS);
@@ -554,7 +536,6 @@ static void lay_mixed(const struct mesh *mesh, const struct flight *flight)
 /* Rays with a reach: what lies beyond is not met, at it is. */
 static void test_reach(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     struct mesh mesh;
     struct flight flight = make_flight(RAYS);
@@ -621,7 +602,6 @@ static void compare_device(const char *name, unsigned width, const struct mesh *
 
 static void test_bits(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     struct mesh mesh;
     char names[BENCH_DEVICES][128];
@@ -688,7 +668,6 @@ static void expect_same_in_any_company(const struct mesh *mesh, struct flight *f
 /* What a ray finds does not depend on the rays beside it. */
 static void test_company(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     struct mesh mesh;
     struct flight flight = make_flight(RAYS);

@@ -1,14 +1,5 @@
 /* kernels/random.h and the deviates of image_formation.h. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-
+#include "claims.h"
 #include "image_formation.h"
 #include "layout.h"
 
@@ -16,15 +7,14 @@
 
 /* From the known-answer file of the authors' own Random123 distribution, threefry2x32 of 20 rounds.
  */
-static void test_known_answers(void **unused)
+static void test_known_answers(void **state)
 {
-    (void)unused;
     static const uint32_t vectors[][6] = {
         {0x00000000, 0x00000000, 0x00000000, 0x00000000, 0x6b200159, 0x99ba4efe},
         {0xffffffff, 0xffffffff, 0xffffffff, 0xffffffff, 0x1cb996fc, 0xbb002be7},
         {0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344, 0xc4923a9c, 0x483df7a0},
     };
-    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) {
+    for (size_t i = 0; i < COUNT(vectors); i++) {
         uint32_t a = vectors[i][0];
         uint32_t b = vectors[i][1];
         threefry(vectors[i][2], vectors[i][3], &a, &b);
@@ -38,9 +28,8 @@ static void test_known_answers(void **unused)
     }
 }
 
-static void test_uniforms_stay_inside(void **unused)
+static void test_uniforms_stay_inside(void **state)
 {
-    (void)unused;
     assert_true(uniform_from(0u) > 0.0f);
     assert_true(uniform_from(0xffffffffu) < 1.0f);
     /* each of the 2^23 parts has its own exact middle */
@@ -64,9 +53,8 @@ static double chi_square(const uint32_t *counts, int classes, double draws)
 }
 
 /* 4 standard errors everywhere: what a fair generator passes 15,786 times of 15,787. */
-static void test_uniformity(void **unused)
+static void test_uniformity(void **state)
 {
-    (void)unused;
     for (uint32_t draw = 0; draw < 3; draw++) {
         static uint32_t singles[1024], pairs[1024], neighbours[1024];
         for (int i = 0; i < 1024; i++)
@@ -120,9 +108,8 @@ static double correlation_between(struct source a, struct source b)
 }
 
 /* Streams that the program uses side by side must not share anything. */
-static void test_streams_are_independent(void **unused)
+static void test_streams_are_independent(void **state)
 {
-    (void)unused;
     const struct source one = {1, 0, STREAM_SEABED_SPECKLE, 5, 0};
     const struct source others[] = {
         {2, 0, STREAM_SEABED_SPECKLE, 5, 0},
@@ -138,7 +125,7 @@ static void test_streams_are_independent(void **unused)
         {0, 1, STREAM_SEABED_SPECKLE, 5, 0},
         {5, 0, STREAM_SEABED_SPECKLE, 1, 0},
     };
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+    for (size_t i = 0; i < COUNT(others); i++) {
         const double sigmas = correlation_between(one, others[i]);
         print_message("pair %u: %.2f sigma\n", (unsigned)i, sigmas);
         assert_true(fabs(sigmas) < 4.0);
@@ -148,9 +135,8 @@ static void test_streams_are_independent(void **unused)
 
 /* The third deviate fills its cells evenly (chi-square of 64 cells: 63 +- 11.2, four of those), and
  * goes with neither of the others, whose spare bits it is made of. */
-static void test_third_uniform(void **unused)
+static void test_third_uniform(void **state)
 {
-    (void)unused;
     const struct random_key key = random_key_of(3, 0, STREAM_CHAIN_RAYS, 7);
     enum {
         COUNT = 200000,
@@ -188,9 +174,8 @@ static int compare_doubles(const void *a, const void *b)
 
 /* Unit mean square, circular, exponential intensity (Kolmogorov-Smirnov at the 6e-5 level that 4
  * standard errors mean: 2.27 / sqrt(n)). */
-static void test_complex_normal(void **unused)
+static void test_complex_normal(void **state)
 {
-    (void)unused;
     const struct random_key key = random_key_of(3, 0, STREAM_SEABED_SPECKLE, 17);
     double *intensity = malloc(DRAWS * sizeof *intensity);
     assert_non_null(intensity);

@@ -1,21 +1,10 @@
 /* Rays against a height field: 10^5 of them against an independent solver in double precision, from
  * 50 m and 500 m, down to 2 degrees; the plane's own bits where all is level. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "random_rays.h"
 #include "seabed.h"
 #include "trace/relief_words.h"
 
-#define PI         3.14159265358979323846
 #define RAYS       100000
 #define HIGHEST    0.7 /* m: nothing here is higher */
 #define WORDS_HEAD 16  /* in front of the relief: where objects would be */
@@ -237,9 +226,8 @@ static void fan_ray_from(double range, struct vector3 *point, struct vector3 *di
     direction->z = (float)d[2];
 }
 
-static void test_primary_rays(void **unused)
+static void test_primary_rays(void **state)
 {
-    (void)unused;
     static const double ranges[] = {50.0, 500.0};
     struct sea sea;
     sea_init(&sea, varied, 0.025, 6.5);
@@ -265,9 +253,8 @@ static void test_primary_rays(void **unused)
 }
 
 /* From points of the surface all around: what leaves it must not meet it again at once. */
-static void test_rays_from_the_surface(void **unused)
+static void test_rays_from_the_surface(void **state)
 {
-    (void)unused;
     struct sea sea;
     struct errors errors = {0.0, 0.0, 0, 0, 0};
     sea_init(&sea, varied, 0.025, 6.5);
@@ -306,9 +293,8 @@ static void test_rays_from_the_surface(void **unused)
 }
 
 /* Rays along the grid's own lines and through its points find the surface. */
-static void test_rays_on_grid_lines(void **unused)
+static void test_rays_on_grid_lines(void **state)
 {
-    (void)unused;
     struct sea sea;
     sea_init(&sea, varied, 0.03125, 6.5);
     for (int ray = 0; ray < RAYS / 10; ray++) {
@@ -343,9 +329,8 @@ static void test_rays_on_grid_lines(void **unused)
 }
 
 /* All heights 0: the plane's distances, normals and bits. */
-static void test_level_relief(void **unused)
+static void test_level_relief(void **state)
 {
-    (void)unused;
     struct sea sea;
     sea_init(&sea, level, 0.025, 6.5);
     for (int ray = 0; ray < RAYS; ray++) {
@@ -377,9 +362,8 @@ static bool is_level_at(const struct sea *sea, struct vector3 place)
 }
 
 /* So where a mound ends, whatever is next to it. */
-static void test_level_ground_among_relief(void **unused)
+static void test_level_ground_among_relief(void **state)
 {
-    (void)unused;
     struct sea sea;
     size_t met = 0;
     sea_init(&sea, one_mound, 0.025, 6.5);
@@ -407,9 +391,8 @@ static double ripples_alone(double x, double y)
 }
 
 /* Normals are those of the smooth surface, not of the cells: 24 points a wavelength. */
-static void test_normals(void **unused)
+static void test_normals(void **state)
 {
-    (void)unused;
     struct sea sea;
     double worst = 0.0;
     sea_init(&sea, ripples_alone, 0.4 / 24.0, 6.4);

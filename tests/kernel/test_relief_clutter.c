@@ -1,17 +1,8 @@
 /* A mesh, a user's shape and a sphere over relief and under a sea surface, alone and among so many
  * parts that launches know only some of them: the same bits at every width, and what is alone is
  * what it is among others that are out of its way. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <stdlib.h>
-#include <string.h>
-
 #include "cl/launch.h"
+#include "claims.h"
 #include "physics/bench.h"
 #include "physics/user_codes.h"
 #include "trace/rough_mirrored.h"
@@ -29,8 +20,8 @@ static void make_user_shape(struct bench *bench)
     params.bounding_radius_m = 0.2;
     params.parameter_count = 1;
     params.parameters[0] = 0.2;
-    if (user_shapes_append(&bench->scene.user_shapes, &bench->report, &params) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report,
+              user_shapes_append(&bench->scene.user_shapes, &bench->report, &params));
 }
 
 static void add(struct bench *bench, sonject_shape shape, double diameter, double row,
@@ -46,8 +37,7 @@ static void add(struct bench *bench, sonject_shape shape, double diameter, doubl
     object.material.lambert = 0.1;
     object.material.reflection = 0.8;
     object.material.roughness_m = 1e-3;
-    if (scene_append_object(&bench->scene, &bench->report, &object) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, scene_append_object(&bench->scene, &bench->report, &object));
 }
 
 /* The others stand along the track, 1.5 m and more beside the sphere: in no plane of its rays. */
@@ -88,23 +78,21 @@ static int64_t *read_tallies(struct bench *bench, cl_mem buffer, size_t count)
 {
     int64_t *tallies = malloc(count * sizeof *tallies);
     assert_non_null(tallies);
-    if (buffer_read(&bench->report, bench->tracer.device, buffer, 0, count * sizeof *tallies,
-                    tallies) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, buffer_read(&bench->report, bench->tracer.device, buffer, 0,
+                                          count * sizeof *tallies, tallies));
     return tallies;
 }
 
 static void trace_glint(struct bench *bench, struct tallies *tallies)
 {
     struct smooth_trace trace;
-    if (smooth_trace_begin(&trace, &bench->tracer, 0) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, smooth_trace_begin(&trace, &bench->tracer, 0));
     const struct span strips = {trace.grid.strips.first, smooth_trace_chunk(&trace)};
     const size_t cells = (size_t)strips.count * (size_t)trace.grid.bins.count;
     float *field = calloc(2 * cells, sizeof *field);
     assert_non_null(field);
-    if (smooth_trace_strips(&trace, &bench->tracer, strips, field, field + cells) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report,
+              smooth_trace_strips(&trace, &bench->tracer, strips, field, field + cells));
     tallies->glint_elements = 2 * cells;
     tallies->glint = read_tallies(bench, trace.on_device.tallies, 2 * cells);
     free(field);
@@ -119,13 +107,11 @@ static struct tallies trace_scene(uint32_t width, bool is_crowded)
     bench_open(&bench, ROWS, COLUMNS, 18.0);
     bench_set_width(&bench, width);
     make_scene(&bench, is_crowded);
-    if (rough_trace_begin(&trace, &bench.tracer, NULL) != SONJECT_OK)
-        fail_msg("%s", bench.report.message);
+    EXPECT_OK(&bench.report, rough_trace_begin(&trace, &bench.tracer, NULL));
     float *energy = calloc(line_grid_cells(&trace.grid), sizeof *energy);
     assert_non_null(energy);
-    if (rough_trace_strips(&trace, &bench.tracer, trace.grid.strips, energy) != SONJECT_OK ||
-        rough_trace_mirrored(&trace, &bench.tracer) != SONJECT_OK)
-        fail_msg("%s", bench.report.message);
+    EXPECT_OK(&bench.report, rough_trace_strips(&trace, &bench.tracer, trace.grid.strips, energy));
+    EXPECT_OK(&bench.report, rough_trace_mirrored(&trace, &bench.tracer));
     free(energy);
     assert_int_equal(trace.tiles[0].offset, 0);
     tallies.tile_elements = trace.tile_elements;
@@ -162,9 +148,8 @@ static void expect_same(const char *what, const int64_t *measured, const int64_t
     assert_true(filled > count / 100);
 }
 
-static void test_widths_and_company(void **unused)
+static void test_widths_and_company(void **state)
 {
-    (void)unused;
     uint32_t widths[BENCH_WIDTHS];
     const size_t count = bench_widths(widths);
     struct tallies wide = trace_scene(widths[count - 1], true);
@@ -185,5 +170,5 @@ static void test_widths_and_company(void **unused)
 int main(void)
 {
     const struct CMUnitTest tests[] = {cmocka_unit_test(test_widths_and_company)};
-    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
+    return bench_run_on_devices(tests, COUNT(tests));
 }

@@ -1,16 +1,6 @@
 /* Every analytic shape against a fine mesh of itself, which is made here from its outline, both
  * whole and cut: where rays meet both, and how their surfaces face. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "physics/bench.h"
 #include "random_rays.h"
 
@@ -224,10 +214,11 @@ static void add_mesh_of(struct bench *bench, const sonject_object_params *shape)
     assert_non_null(bench->scene.meshes);
     bench->scene.mesh_count = 1;
     mesh_options_init(&options);
-    if (mesh_from_arrays(&bench->report, "shape", soup.positions, soup.vertices, soup.corners,
-                         soup.triangles, &options, &bench->scene.meshes[0]) != SONJECT_OK ||
-        mesh_require_closed(&bench->report, "shape", &bench->scene.meshes[0]) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report,
+              mesh_from_arrays(&bench->report, "shape", soup.positions, soup.vertices, soup.corners,
+                               soup.triangles, &options, &bench->scene.meshes[0]));
+    EXPECT_OK(&bench->report,
+              mesh_require_closed(&bench->report, "shape", &bench->scene.meshes[0]));
     free(soup.positions);
     free(soup.corners);
 }
@@ -241,22 +232,19 @@ static struct object_record *records_of(struct bench *bench, const sonject_objec
     mesh.shape = SONJECT_SHAPE_MESH;
     bench_open(bench, 128, 128, 50.0);
     add_mesh_of(bench, shape);
-    if (scene_append_object(&bench->scene, &bench->report, shape) != SONJECT_OK ||
-        scene_append_object(&bench->scene, &bench->report, &mesh) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, scene_append_object(&bench->scene, &bench->report, shape));
+    EXPECT_OK(&bench->report, scene_append_object(&bench->scene, &bench->report, &mesh));
     bench_ready(bench);
     /* their lowest points, on which they rest, differ by the facets' sagitta */
     bench->placements[1].centre[2] = bench->placements[0].centre[2];
-    if (rough_trace_begin(&trace, &bench->tracer, NULL) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, rough_trace_begin(&trace, &bench->tracer, NULL));
     assert_int_equal(
         clGetMemObjectInfo(trace.on_device.objects, CL_MEM_SIZE, sizeof bytes, &bytes, NULL),
         CL_SUCCESS);
     struct object_record *records = malloc(bytes);
     assert_non_null(records);
-    if (buffer_read(&bench->report, bench->tracer.device, trace.on_device.objects, 0, bytes,
-                    records) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
+    EXPECT_OK(&bench->report, buffer_read(&bench->report, bench->tracer.device,
+                                          trace.on_device.objects, 0, bytes, records));
     rough_trace_end(&trace);
     return records;
 }
@@ -300,9 +288,8 @@ static void expect_same_shape(const char *name, const sonject_object_params *sha
     bench_close(&bench);
 }
 
-static void test_round_shapes(void **unused)
+static void test_round_shapes(void **state)
 {
-    (void)unused;
     sonject_object_params shape = object_of(SONJECT_SHAPE_SPHERE);
     shape.diameter_m = 0.6;
     expect_same_shape("sphere", &shape);
@@ -317,9 +304,8 @@ static void test_round_shapes(void **unused)
     expect_same_shape("torus", &shape);
 }
 
-static void test_cylinders(void **unused)
+static void test_cylinders(void **state)
 {
-    (void)unused;
     sonject_object_params shape = object_of(SONJECT_SHAPE_CAPSULE);
     shape.length_m = 2.3;
     shape.diameter_m = 0.3;
@@ -334,9 +320,8 @@ static void test_cylinders(void **unused)
     expect_same_shape("cylinder, two different ends", &shape);
 }
 
-static void test_cones(void **unused)
+static void test_cones(void **state)
 {
-    (void)unused;
     sonject_object_params shape = object_of(SONJECT_SHAPE_CONE);
     shape.diameter_m = 0.8;
     shape.height_m = 0.5;
@@ -348,9 +333,8 @@ static void test_cones(void **unused)
     expect_same_shape("truncated cone upside down", &shape);
 }
 
-static void test_prisms(void **unused)
+static void test_prisms(void **state)
 {
-    (void)unused;
     sonject_object_params shape = object_of(SONJECT_SHAPE_BOX);
     shape.length_m = 1.2;
     shape.width_m = 0.7;
@@ -372,9 +356,8 @@ static void expect_same_cut_shape(const char *name, sonject_object_params shape)
     expect_same_shape(name, &shape);
 }
 
-static void test_cut_shapes(void **unused)
+static void test_cut_shapes(void **state)
 {
-    (void)unused;
     sonject_object_params shape = object_of(SONJECT_SHAPE_SPHERE);
     shape.diameter_m = 0.6;
     expect_same_cut_shape("cut sphere", shape);
@@ -396,5 +379,5 @@ int main(void)
         cmocka_unit_test(test_cones),        cmocka_unit_test(test_prisms),
         cmocka_unit_test(test_cut_shapes),
     };
-    return bench_run_on_devices(tests, sizeof tests / sizeof *tests);
+    return bench_run_on_devices(tests, COUNT(tests));
 }

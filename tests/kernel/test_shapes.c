@@ -1,20 +1,10 @@
 /* Where rays meet shapes, against a reference in double precision that tries every piece of every
  * surface. Rays come from sonars at 50 m and 500 m, many of them grazing. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <string.h>
-
+#include "claims.h"
 #include "fan.h"
 #include "intersection.h"
 #include "random_rays.h"
 
-#define PI   3.14159265358979323846
 #define RAYS 100000
 
 /* An object as both sides know it: the record, read back into double. */
@@ -226,9 +216,8 @@ static void compare(const struct object_record *object, const struct ray *ray, d
     }
 }
 
-static void test_each_shape(void **unused)
+static void test_each_shape(void **state)
 {
-    (void)unused;
     static const double ranges[] = {50.0, 500.0};
     for (int shape = SHAPE_PLANE; shape <= SHAPE_CAPSULE; shape++)
         for (size_t r = 0; r < 2; r++) {
@@ -257,9 +246,8 @@ static void test_each_shape(void **unused)
 
 /* From a start as far off the surface as the tracer's (2e-5 m) no way outwards meets a convex shape
  * again. */
-static void test_no_self_hit(void **unused)
+static void test_no_self_hit(void **state)
 {
-    (void)unused;
     static const double offsets[] = {2.0, 20.0, 100.0};
     for (size_t o = 0; o < 3; o++)
         for (int shape = SHAPE_PLANE; shape <= SHAPE_CAPSULE; shape++) {
@@ -294,9 +282,8 @@ static void test_no_self_hit(void **unused)
         }
 }
 
-static void test_nearest_of_several(void **unused)
+static void test_nearest_of_several(void **state)
 {
-    (void)unused;
     struct object_record objects[7];
     int seen[7] = {0};
     memset(objects, 0, sizeof objects);
@@ -346,9 +333,8 @@ static void test_nearest_of_several(void **unused)
 }
 
 /* Rays along an axis, or so close to it that rounding decides, still meet the ends. */
-static void test_along_the_axis(void **unused)
+static void test_along_the_axis(void **state)
 {
-    (void)unused;
     int hits = 0;
     for (int i = 0; i < RAYS; i++) {
         struct object_record object =
@@ -375,9 +361,8 @@ static void test_along_the_axis(void **unused)
 }
 
 /* The first surface beyond `minimum`, also from inside a shape: its way out. */
-static void test_minimum(void **unused)
+static void test_minimum(void **state)
 {
-    (void)unused;
     for (int i = 0; i < RAYS; i++) {
         const struct point centre = {uniform(-1.0, 1.0), uniform(-1.0, 1.0), uniform(-1.0, 1.0)};
         const struct object_record object = random_object(SHAPE_SPHERE + i % 3, centre);
@@ -398,9 +383,8 @@ static void test_minimum(void **unused)
 
 /* What the fan's geometry promises, in double: a ray of elevation e through the neighbourhood of
  * the origin, at 500 m as at 5 m. */
-static void test_fan(void **unused)
+static void test_fan(void **state)
 {
-    (void)unused;
     static const double ranges[] = {5.0, 50.0, 500.0};
     for (size_t r = 0; r < 3; r++)
         for (int i = 0; i < 10000; i++) {
@@ -435,9 +419,8 @@ static void test_fan(void **unused)
 }
 
 /* Buried parts are not met: the seabed comes first. */
-static void test_burial(void **unused)
+static void test_burial(void **state)
 {
-    (void)unused;
     struct fan_record fan;
     memset(&fan, 0, sizeof fan);
     fan.reference_range = 50.0f;

@@ -1,20 +1,10 @@
 /* Where rays meet the shapes with more than one size, whole and cut, against polynomials solved in
  * double precision. Rays come from sonars at 50 m and 500 m, many of them grazing. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <string.h>
-
+#include "claims.h"
 #include "reference_solids.h"
 #include "sixteen_lanes.h"
 #include "trace/object_shape.h"
 
-#define PI   3.14159265358979323846
 #define RAYS 40000
 
 /* Positions carry single precision's 6e-8 of a few metres, some of which add up. Whoever passes an
@@ -203,9 +193,8 @@ static void compare(const struct solid *solid, enum solid_kind kind, const struc
     }
 }
 
-static void test_against_the_reference(void **unused)
+static void test_against_the_reference(void **state)
 {
-    (void)unused;
     static const double ranges[] = {50.0, 500.0};
     for (int kind = 0; kind < SOLID_KINDS; kind++)
         for (uint32_t cuts = 0; cuts <= SONJECT_CUTS_CAPACITY; cuts++) {
@@ -232,9 +221,8 @@ static void test_against_the_reference(void **unused)
 
 /* From a start as far off the surface as the tracer's (2e-5 m) no way outwards meets a convex solid
  * again, whole or cut. */
-static void test_no_self_hit(void **unused)
+static void test_no_self_hit(void **state)
 {
-    (void)unused;
     static const double reaches[] = {2.0, 100.0};
     for (int kind = 0; kind < SOLID_KINDS; kind++) {
         if (kind == TORUS || kind == TUBE)
@@ -266,9 +254,8 @@ static void test_no_self_hit(void **unused)
 }
 
 /* From inside, the way out; through a ring's hole, its other side. */
-static void test_beyond_the_first(void **unused)
+static void test_beyond_the_first(void **state)
 {
-    (void)unused;
     for (int kind = 0; kind < SOLID_KINDS; kind++) {
         int compared = 0;
         struct solid solid;
@@ -296,9 +283,8 @@ static void test_beyond_the_first(void **unused)
 }
 
 /* 16 lanes of native C give the bits of one. */
-static void test_sixteen_lanes(void **unused)
+static void test_sixteen_lanes(void **state)
 {
-    (void)unused;
     for (int kind = 0; kind < SOLID_KINDS; kind++)
         for (int i = 0; i < 3000; i++) {
             const struct solid solid = random_solid((enum solid_kind)kind, (uint32_t)(i % 3), 2.0);
@@ -330,9 +316,8 @@ static void test_sixteen_lanes(void **unused)
 }
 
 /* Rays along and across the axes, or so close that rounding decides. */
-static void test_along_the_axes(void **unused)
+static void test_along_the_axes(void **state)
 {
-    (void)unused;
     for (int kind = 0; kind < SOLID_KINDS; kind++) {
         struct worst worst = {0.0, 0.0, 0, 0, 0};
         for (int i = 0; i < RAYS / 4; i++) {

@@ -1,20 +1,11 @@
 /* kernels/surface.h, lobes.h and fluid.h against double precision: directions against their
  * density, energies by quadrature over the hemisphere, reflection by complex arithmetic. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "claims.h"
 
 #include <complex.h>
-#include <math.h>
-#include <stdio.h>
 
 #include "kernels/surface.h"
 
-#define PI               3.14159265358979323846
-#define COUNT(array)     (sizeof(array) / sizeof(array)[0])
 #define SAMPLES          200000
 #define POLAR_CELLS      48  /* from the normal to the horizon */
 #define TURN_CELLS       192 /* round the normal */
@@ -40,13 +31,13 @@ static double weight_of(int i)
 }
 
 /* A generator of its own, so that the one in random.h plays no part. */
-static uint64_t state = 0x9e3779b97f4a7c15u;
+static uint64_t generator = 0x9e3779b97f4a7c15u;
 
 /* In 0...1 without the ends, exact in single precision. */
 static double random_fraction(void)
 {
-    state = state * 6364136223846793005u + 1442695040888963407u;
-    return ((double)(state >> 41) + 0.5) / 8388608.0;
+    generator = generator * 6364136223846793005u + 1442695040888963407u;
+    return ((double)(generator >> 41) + 0.5) / 8388608.0;
 }
 
 static float random_deviate(void)
@@ -226,9 +217,8 @@ static struct vector3 random_direction(double least_cosine)
     return direction_at(acos(cosine), 2.0 * PI * random_fraction());
 }
 
-static void test_formulas(void **unused)
+static void test_formulas(void **state)
 {
-    (void)unused;
     for (int kind = 0; kind < KINDS; kind++) {
         const struct surface_record surface = rough_kind(kind);
         double worst_scattering = 0.0, worst_density = 0.0;
@@ -359,9 +349,8 @@ static void expect_directions_as_density(const struct surface_record *surface, i
                 4.0 * sqrt(share * (1.0 - share) / SAMPLES) + 1e-5);
 }
 
-static void test_directions(void **unused)
+static void test_directions(void **state)
 {
-    (void)unused;
     static const double angles[] = {0.0, 45.0, 80.0};
     for (int kind = 0; kind < KINDS; kind++) {
         const struct surface_record surface = rough_kind(kind);
@@ -400,9 +389,8 @@ static double albedo(const struct surface_record *surface, double angle)
 
 static const double furnace_angles[] = {0.0, 10.0, 30.0, 45.0, 60.0, 75.0, 85.0, 89.0, 89.9};
 
-static void test_rough_furnace(void **unused)
+static void test_rough_furnace(void **state)
 {
-    (void)unused;
     for (int kind = 0; kind < KINDS; kind++) {
         const struct surface_record surface = rough_kind(kind);
         print_message("kind %d, albedo:", kind);
@@ -421,9 +409,8 @@ static void test_rough_furnace(void **unused)
     }
 }
 
-static void test_furnace_over_smooth_part(void **unused)
+static void test_furnace_over_smooth_part(void **state)
 {
-    (void)unused;
     for (int smooth = 0; smooth < SMOOTH_KINDS; smooth++) {
         double most = 0.0, most_of_all = 0.0;
         for (int kind = 0; kind < KINDS; kind++) {
@@ -446,9 +433,8 @@ static void test_furnace_over_smooth_part(void **unused)
     }
 }
 
-static void test_reciprocity(void **unused)
+static void test_reciprocity(void **state)
 {
-    (void)unused;
     double worst = 0.0;
     for (int smooth = -1; smooth < SMOOTH_KINDS; smooth++)
         for (int kind = 0; kind < KINDS; kind++) {
@@ -500,9 +486,8 @@ static void expect_mean_weight(const struct surface_record *surface, double angl
     assert_true(off < 4.0); /* standard errors, and the error of the quadrature */
 }
 
-static void test_weights(void **unused)
+static void test_weights(void **state)
 {
-    (void)unused;
     static const double angles[] = {0.0, 45.0, 80.0, 89.0};
     for (int kind = 0; kind < KINDS; kind++) {
         double worst = 0.0;
@@ -545,9 +530,8 @@ static double reflection_off(const struct surface_record *surface, float cosine)
            reflection_error(surface, (double)cosine);
 }
 
-static void test_fluid_reflection(void **unused)
+static void test_fluid_reflection(void **state)
 {
-    (void)unused;
     static const struct {
         double density, speed, loss;
     } fluids[] = {{2.231, 1.2503, 0.0},     {2.231, 1.2503, 0.01638}, {1.149, 0.9873, 0.0},
@@ -581,9 +565,8 @@ static double modulus_at_grazing(const struct surface_record *surface, double gr
     return hypot((double)first, (double)second);
 }
 
-static void test_critical_angle(void **unused)
+static void test_critical_angle(void **state)
 {
-    (void)unused;
     const struct surface_record sand = fluid(2.231, 1.2503, 0.0);
     const double critical = acos(1.0 / 1.2503); /* grazing: cos = 1 / speed ratio */
     assert_true(fabs(critical - degrees(36.88)) < degrees(0.01));
@@ -606,9 +589,8 @@ static void test_critical_angle(void **unused)
     assert_true(modulus_at_grazing(&lossy, 0.9 * critical, &real_part) < 0.97);
 }
 
-static void test_intromission_angle(void **unused)
+static void test_intromission_angle(void **state)
 {
-    (void)unused;
     const double m = 1.149, index = 1.0 / 0.9873;
     /* m cos = s where sin^2 = (m^2 - n^2) / (m^2 - 1) */
     const double square_sine = (m * m - index * index) / (m * m - 1.0);
@@ -624,9 +606,8 @@ static void test_intromission_angle(void **unused)
     assert_true(real_part > 1e-3);
 }
 
-static void test_grazing_limit(void **unused)
+static void test_grazing_limit(void **state)
 {
-    (void)unused;
     static const double speeds[] = {0.9873, 1.2503, 4.0};
     for (size_t i = 0; i < COUNT(speeds); i++)
         for (int lossy = 0; lossy < 2; lossy++) {
@@ -639,9 +620,8 @@ static void test_grazing_limit(void **unused)
         }
 }
 
-static void test_mirror_part(void **unused)
+static void test_mirror_part(void **state)
 {
-    (void)unused;
     const struct surface_record none = rough_kind(0);
     for (int smooth = 0; smooth < SMOOTH_KINDS; smooth++) {
         const struct surface_record surface = over_smooth(smooth, &none);
@@ -673,15 +653,14 @@ static void test_mirror_part(void **unused)
 }
 
 /* A sediment's rough part is its own, at every angle, and the mirror gives way to it. */
-static void test_rough_part_apart(void **unused)
+static void test_rough_part_apart(void **state)
 {
-    (void)unused;
     const struct surface_record rough_part = rough(0.05, 1.0, 0.0, 0.1);
     for (int smooth = 0; smooth < SMOOTH_KINDS; smooth++) {
         struct surface_record surface = over_smooth(smooth, &rough_part);
         surface.rough_is_apart = 1;
         surface.lambert = 0.05f;
-        for (size_t i = 0; i < sizeof furnace_angles / sizeof *furnace_angles; i++) {
+        for (size_t i = 0; i < COUNT(furnace_angles); i++) {
             const double angle = furnace_angles[i] * PI / 180.0;
             const double cosine = (double)(float)cos(angle);
             double scattered;

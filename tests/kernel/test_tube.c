@@ -1,11 +1,5 @@
 /* How a thin tube of rays turns the phase where it closes to a line: by -pi/2 at each. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
+#include "claims.h"
 #include "tube.h"
 
 /* A tube along z whose sides close at the given distances, m; negative: they open. Both sides may
@@ -21,7 +15,7 @@ static struct tube closing_at(float along, float across, int is_skew)
     return tube;
 }
 
-static void test_each_line_turns_the_phase(void **unused)
+static void test_each_line_turns_the_phase(void **state)
 {
     static const struct {
         float along, across, distance;
@@ -35,8 +29,7 @@ static void test_each_line_turns_the_phase(void **unused)
     };
     static const float turned[3][2] = {{0.8f, 0.6f}, {0.6f, -0.8f}, {-0.8f, -0.6f}};
     const struct vector3 direction = {0.0f, 0.0f, 1.0f};
-    (void)unused;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    for (size_t i = 0; i < COUNT(cases); i++)
         for (int is_skew = 0; is_skew < 2; is_skew++) {
             const struct tube tube = closing_at(cases[i].along, cases[i].across, is_skew);
             float real_part = 0.8f;

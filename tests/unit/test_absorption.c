@@ -1,16 +1,7 @@
 /* The absorption of sea water. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
+#include "claims.h"
 
 #include <sonject/medium.h>
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 struct water {
     double temperature, salinity, depth, ph;
@@ -35,7 +26,6 @@ static void expect_near(double frequency, struct water water, double expected, d
 static void test_well_known_values(void **state)
 {
     const struct water sea = {10.0, 35.0, 0.0, 8.0};
-    (void)state;
     expect_near(10e3, sea, 1.0e-3, 0.05);
     expect_near(100e3, sea, 34e-3, 0.02);
     expect_near(400e3, sea, 100e-3, 0.05);
@@ -68,7 +58,6 @@ static void test_within_ten_percent_of_the_simplified_formula(void **state)
         {10, 35, 1000, 8}, {10, 35, 2000, 8}, {10, 35, 3500, 8}, {10, 35, 5000, 8},
         {10, 35, 0, 7.7},  {10, 35, 0, 8.3},
     };
-    (void)state;
     for (size_t i = 0; i < COUNT(waters); i++)
         for (size_t j = 0; j < COUNT(frequencies); j++)
             expect_near(frequencies[j], waters[i], simplified(frequencies[j], waters[i]), 0.1);
@@ -102,7 +91,6 @@ static void test_the_papers_formula(void **state)
     static const double salinities[] = {0.0, 8.0, 35.0, 40.0};
     static const double depths[] = {0.0, 20.0, 1500.0, 5000.0};
     static const double acidities[] = {7.0, 7.7, 8.0, 9.0};
-    (void)state;
     for (size_t i = 0; i < COUNT(frequencies); i++)
         for (size_t t = 0; t < COUNT(temperatures); t++)
             for (size_t s = 0; s < COUNT(salinities); s++)
@@ -118,7 +106,6 @@ static void test_the_papers_formula(void **state)
 static void test_no_step_at_20_degrees(void **state)
 {
     const struct water cold = {20.0, 0.0, 0.0, 8.0}, warm = {nextafter(20.0, 30.0), 0.0, 0.0, 8.0};
-    (void)state;
     for (size_t i = 0; i < COUNT(frequencies); i++)
         expect_near(frequencies[i], cold, absorption(frequencies[i], warm), 1e-3);
 }
@@ -127,7 +114,6 @@ static void test_nan_outside(void **state)
 {
     static const double least[5] = {200.0, -2.0, 0.0, 0.0, 7.0};
     static const double most[5] = {1e6, 30.0, 40.0, 5000.0, 9.0};
-    (void)state;
     for (int i = 0; i < 5; i++) {
         double v[5] = {100e3, 10.0, 35.0, 20.0, 8.0};
         const double wrong[] = {nextafter(least[i], -1e9), nextafter(most[i], 1e9), NAN, HUGE_VAL,

@@ -1,16 +1,8 @@
 /* What campaigns are drawn from: distributions against their closed forms, permutations, shares,
  * and places for images. */
-#include <math.h>
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-#include <string.h>
-
-#include <cmocka.h>
-
 #include "base/memory.h"
 #include "base/text.h"
+#include "claims.h"
 #include "dataset/campaign.h"
 #include "dataset/distribution.h"
 
@@ -49,7 +41,6 @@ static void check_moments(const char *text, double mean, double variance, double
 
 static void test_moments_are_those_of_the_distributions(void **state)
 {
-    (void)state;
     check_moments("{uniform: [-2 cm, 4 cm]}", 1.0, 3.0, 1.8);
     /* mean (b - a) / ln(b / a), mean square (b^2 - a^2) / (2 ln(b / a)) */
     const double log_mean = 9.0 / log(10.0);
@@ -67,7 +58,6 @@ static void test_weights_are_frequencies(void **state)
     struct distribution distribution;
     char text[DISTRIBUTION_TEXT_CAPACITY];
     int counts[3] = {0, 0, 0};
-    (void)state;
     read_text_of("{choice: [a, b, {c: d}], weights: [1, 0, 3]}", &distribution);
     for (uint64_t i = 0; i < DRAWS; i++) {
         const char *value = distribution_value(&distribution, uniform_number(1, 1, i), text);
@@ -85,7 +75,6 @@ static void test_ends_are_reached_and_not_left(void **state)
     char text[DISTRIBUTION_TEXT_CAPACITY];
     double value;
     const char *rest;
-    (void)state;
     read_text_of("{uniform: [0.3333333333333333 m, 0.6666666666666666 m]}", &distribution);
     for (int end = 0; end < 2; end++) {
         assert_true(text_to_number(distribution_value(&distribution, end, text), &value, &rest));
@@ -102,7 +91,6 @@ static void test_ends_are_reached_and_not_left(void **state)
 
 static void test_permutations_hit_all_once(void **state)
 {
-    (void)state;
     for (uint64_t count = 1; count < 300; count += 1 + count / 7) {
         uint8_t hits[300] = {0};
         uint64_t fixed = 0;
@@ -121,7 +109,6 @@ static void test_strata_hold_one_each(void **state)
 {
     uint8_t hits[1000] = {0};
     double products = 0.0;
-    (void)state;
     for (uint64_t i = 0; i < 1000; i++) {
         const double u = stratified_number(3, 1, i, 1000);
         const double v = stratified_number(3, 2, i, 1000);
@@ -136,7 +123,6 @@ static void test_shares_are_whole_and_add_up(void **state)
 {
     const double weights[] = {1.0, 0.0, 2.0, 0.5, 0.1};
     uint64_t shares[5];
-    (void)state;
     for (uint64_t total = 0; total < 200; total++) {
         uint64_t sum = 0;
         share_out(total, weights, 5, shares);
@@ -157,7 +143,6 @@ static void test_places_are_all_that_boxes_leave(void **state)
     const struct region avoid[] = {{0, 8, 6, 3}, {4, 0, 3, 6}, {5, 5, 2, 5}, {11, 0, 99, 99}};
     int hits[14][18] = {{0}};
     uint64_t places = 0;
-    (void)state;
     assert_int_equal(chip_room_init(&room, &report, &chips, avoid, 4), SONJECT_OK);
     for (uint64_t row = 0; row < 14; row++)
         for (uint64_t column = 0; column < 18; column++) {
@@ -205,7 +190,6 @@ static void test_images_keep_from_edges_contacts_and_ranges(void **state)
     struct swath_plan swath;
     struct campaign campaign;
     uint64_t places = 0;
-    (void)state;
     memset(&swath, 0, sizeof swath);
     memset(&campaign, 0, sizeof campaign);
     sonject_geometry_params geometry;

@@ -1,15 +1,5 @@
 /* Edges in speckle against what drew them, and contacts that are looked for in an image. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "image/contact_edges.h"
 #include "image/contact_ruler.h"
 #include "image/contact_search.h"
@@ -72,9 +62,8 @@ static void expect_pulls(const char *what, const struct pulls *pulls)
 }
 
 /* From a highlight of levels that come and go to a shadow, all through a point response. */
-static void test_ends_in_speckle(void **unused)
+static void test_ends_in_speckle(void **state)
 {
-    (void)unused;
     const double deviation = 0.42;
     double means[PIXELS];
     const double skirt[PIXELS] = {0.0};
@@ -95,9 +84,8 @@ static void test_ends_in_speckle(void **unused)
 }
 
 /* From a shadow to the seabed, through penumbras of several widths. */
-static void test_steps_in_speckle(void **unused)
+static void test_steps_in_speckle(void **state)
 {
-    (void)unused;
     double means[PIXELS];
     const double skirt[PIXELS] = {0.0};
     const double widths[2] = {0.42, 2.5};
@@ -121,9 +109,8 @@ static void test_steps_in_speckle(void **unused)
 
 /* Twice the level in the first third: told where 6 samples a pixel tell it, but not where one level
  * is all there is: e^10 times as likely is one in some 200 (see contact_ruler.h). */
-static void test_changes_in_shadows(void **unused)
+static void test_changes_in_shadows(void **state)
 {
-    (void)unused;
     double means[PIXELS];
     const double skirt[PIXELS] = {0.0};
     const struct profile profile = {means, skirt, PIXELS, 6.0, 0.42};
@@ -146,9 +133,8 @@ static void test_changes_in_shadows(void **unused)
 }
 
 /* All dark, all lit, nothing but zeros, and a single pixel. */
-static void test_profiles_without_an_edge(void **unused)
+static void test_profiles_without_an_edge(void **state)
 {
-    (void)unused;
     double means[PIXELS] = {0.0};
     const double skirt[PIXELS] = {0.0};
     const struct end_levels levels = {4.0, 1.0};
@@ -204,9 +190,8 @@ static size_t find(const float *intensity, double contrast, size_t most,
  * fainter than what is asked for. Half of the image is 20 dB brighter: contrasts are against what
  * is around.
  */
-static void test_contacts_are_found(void **unused)
+static void test_contacts_are_found(void **state)
 {
-    (void)unused;
     static float intensity[ROWS * COLUMNS];
     struct contact_place places[10];
     size_t left;
@@ -236,9 +221,8 @@ static void test_contacts_are_found(void **unused)
 }
 
 /* A side lobe 30 dB under its contact, in its columns, is none; elsewhere it is one. */
-static void test_side_lobes_are_no_contacts(void **unused)
+static void test_side_lobes_are_no_contacts(void **state)
 {
-    (void)unused;
     static float intensity[ROWS * COLUMNS];
     struct contact_place places[4];
     size_t left;
@@ -252,9 +236,8 @@ static void test_side_lobes_are_no_contacts(void **unused)
 }
 
 /* Plain speckle has no contacts of 12 dB: a mean of 9 is over 16 once in e-50; nor has the dark. */
-static void test_nothing_is_found_in_speckle(void **unused)
+static void test_nothing_is_found_in_speckle(void **state)
 {
-    (void)unused;
     static float intensity[ROWS * COLUMNS];
     struct contact_place places[1];
     size_t left;
@@ -267,9 +250,8 @@ static void test_nothing_is_found_in_speckle(void **unused)
 
 /* A contact with little but black around it, as at the end of a recording, has no seabed that it
  * could be measured against; the others are found all the same. */
-static void test_contacts_amid_black_are_passed_over(void **unused)
+static void test_contacts_amid_black_are_passed_over(void **state)
 {
-    (void)unused;
     static float intensity[ROWS * COLUMNS];
     struct contact_place places[3];
     size_t left;
@@ -286,9 +268,8 @@ static void test_contacts_amid_black_are_passed_over(void **unused)
 }
 
 /* A few dark pixels behind a highlight are speckle, and no shadow. */
-static void test_dark_speckle_is_no_shadow(void **unused)
+static void test_dark_speckle_is_no_shadow(void **state)
 {
-    (void)unused;
     static float intensity[ROWS * COLUMNS];
     struct contact_image image;
     const struct window_box box = {50, 80, 40, 120};
@@ -308,9 +289,8 @@ static void test_dark_speckle_is_no_shadow(void **unused)
 }
 
 /* Images of any size, bright pixels at any place of them, boxes of any size. */
-static void test_small_images(void **unused)
+static void test_small_images(void **state)
 {
-    (void)unused;
     random_state = 5;
     for (size_t rows = 1; rows < 40; rows += rows < 8 ? 1 : 7)
         for (size_t columns = 1; columns < 40; columns += columns < 8 ? 1 : 7)

@@ -1,30 +1,18 @@
 /* Meshes and users' shapes that planes cut: how far they reach, how deep they lie, and when nothing
  * of them is left. Against the shapes that they are meshes of. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <string.h>
-
+#include "claims.h"
 #include "first_key.h"
 #include "kernel/mesh_samples.h"
 #include "scene/check_cuts.h"
 #include "scene/placement.h"
-
-#define PI 3.14159265358979323846
 
 static void make_mesh(struct mesh *mesh, struct mesh_sample *sample)
 {
     struct report report = {{0}, NULL, NULL};
     struct mesh_options options;
     mesh_options_init(&options);
-    if (mesh_from_arrays(&report, "sample", sample->positions, sample->vertices, sample->corners,
-                         sample->triangles, &options, mesh) != SONJECT_OK)
-        fail_msg("%s", report.message);
+    EXPECT_OK(&report, mesh_from_arrays(&report, "sample", sample->positions, sample->vertices,
+                                        sample->corners, sample->triangles, &options, mesh));
     sample_clear(sample);
 }
 
@@ -77,9 +65,8 @@ static void compare_extents(const struct mesh *mesh, sonject_object_params *obje
     assert_true(left > 150 && left < 300);
 }
 
-static void test_extents(void **unused)
+static void test_extents(void **state)
 {
-    (void)unused;
     struct mesh mesh;
     struct mesh_sample sample;
     sonject_object_params object;
@@ -103,9 +90,8 @@ static void test_extents(void **unused)
 }
 
 /* Of a user's shape the lesser of a box and a sphere is known. */
-static void test_extents_of_user_shapes(void **unused)
+static void test_extents_of_user_shapes(void **state)
 {
-    (void)unused;
     static const double upward[3] = {0.0, 0.0, 1.0}, nose[3] = {1.0, 0.0, 0.0};
     const struct user_shape shape = {
         .bounding_radius_m = 1.0, .half_length_m = 1.0, .half_width_m = 1.0, .half_height_m = 0.8};
@@ -139,17 +125,15 @@ static double place(const struct patch_view *view, struct mesh *mesh,
     scene.object_count = 1;
     scene.meshes = mesh;
     scene.mesh_count = 1;
-    if (placements_init(&placements, &report, &scene, view, 0.0, 0.0) != SONJECT_OK)
-        fail_msg("%s", report.message);
+    EXPECT_OK(&report, placements_init(&placements, &report, &scene, view, 0.0, 0.0));
     const double height = placements.parts[0].centre[2];
     placements_clear(&placements);
     return height;
 }
 
 /* A cut mesh of a box lies as deep as the cut box. */
-static void test_burial(void **unused)
+static void test_burial(void **state)
 {
-    (void)unused;
     static struct water_layer layer = {0.0, 1500.0, 1.0};
     static const struct water water = {&layer, 1, 1500.0};
     struct report report = {{0}, NULL, NULL};
@@ -190,9 +174,8 @@ static void test_burial(void **unused)
     scene_clear(&scene);
 }
 
-static void test_cuts_must_leave_something(void **unused)
+static void test_cuts_must_leave_something(void **state)
 {
-    (void)unused;
     struct report report = {{0}, NULL, NULL};
     struct first_key first = FIRST_KEY;
     struct scene scene;

@@ -1,11 +1,7 @@
 /* Files that appear whole or not at all. */
 #define _POSIX_C_SOURCE 200809L
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
+#include "claims.h"
 
 #include <fcntl.h>
 #include <signal.h>
@@ -26,7 +22,6 @@ static void expect_text(char *text, const char *expected)
 
 static void test_joining(void **state)
 {
-    (void)state;
     expect_text(path_join("folder", "name"), "folder/name");
     expect_text(path_join("folder/", "name"), "folder/name");
     expect_text(path_join("/", "name"), "/name");
@@ -36,7 +31,6 @@ static void test_joining(void **state)
 
 static void test_folder_part(void **state)
 {
-    (void)state;
     expect_text(path_folder("a/b/c"), "a/b");
     expect_text(path_folder("name"), "");
     expect_text(path_folder("/name"), "/");
@@ -57,7 +51,6 @@ static void expect_part(const char *path, const char *extension)
 
 static void test_part_names_keep_the_extension(void **state)
 {
-    (void)state;
     expect_part("/a/image.tif", ".tif");
     expect_part("image.tar.gz", ".gz");
     expect_part("/a.b/image", "");
@@ -66,7 +59,6 @@ static void test_part_names_keep_the_extension(void **state)
 
 static void test_part_names_differ(void **state)
 {
-    (void)state;
     char *names[64];
     for (int i = 0; i < 64; i++) {
         names[i] = file_part_name("image.tif");
@@ -229,11 +221,11 @@ static void test_only_parts_of_dead_processes_are_tidied_away(void **state)
     elsewhere[strlen(path) + 1] = elsewhere[strlen(path) + 1] == '0' ? '1' : '0';
     char *kept[] = {file_part_name(path), path, elsewhere};
     write_bytes(orphan, "", 0);
-    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++)
+    for (size_t i = 0; i < COUNT(kept); i++)
         write_bytes(kept[i], "", 0);
     folder_tidy(folder->path);
     assert_false(file_exists(orphan));
-    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++)
+    for (size_t i = 0; i < COUNT(kept); i++)
         assert_true(file_exists(kept[i]));
     free(kept[0]);
     free(elsewhere);
@@ -300,7 +292,7 @@ static void test_a_list_of_files_reaches_nothing_outside_of_its_folder(void **st
     snprintf(around, sizeof around, "..%s/kept", strrchr(folder->path, '/'));
     snprintf(absolute, sizeof absolute, "%s/kept", folder->path);
     const char *names[] = {around, absolute}; /* both lead to the file */
-    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+    for (size_t i = 0; i < COUNT(names); i++) {
         const char *path = temporary_file(folder, "kept");
         const char *changed = NULL;
         json_t *list = json_array();

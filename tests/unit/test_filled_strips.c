@@ -1,11 +1,5 @@
 /* What is left out of image formation: nothing but zeros, and most of those. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
+#include "claims.h"
 #include "form/filled_strips.h"
 
 #define BINS     301 /* several whole searches and a rest */
@@ -15,7 +9,6 @@
 /* Every first and last bin of one part, with the other part empty, the same, or one bin. */
 static void test_bins_of_a_line(void **state)
 {
-    (void)state;
     static float line[BINS], other[BINS];
     for (int32_t first = 0; first < BINS; first += 7)
         for (int32_t last = first; last < BINS; last += 11) {
@@ -41,7 +34,6 @@ static void test_bins_of_a_line(void **state)
  * them. */
 static void test_runs_of_strips(void **state)
 {
-    (void)state;
     static struct filled_span filled[STRIPS];
     uint32_t number = 1;
     int32_t found = 0, wanted = 0;

@@ -1,16 +1,8 @@
 /* What tracing leaves: lines come back bit for bit, and none are formed that are not the scene's.
  */
 #define _POSIX_C_SOURCE 200809L
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "claims.h"
 
 #include <sonject/version.h>
 
@@ -350,7 +342,7 @@ static void what_is_not_of_the_scene_is_refused(void **state)
     struct set_up set;
     struct taken taken;
     set_up_init(&set);
-    for (size_t i = 0; i < sizeof changes / sizeof *changes; i++) {
+    for (size_t i = 0; i < COUNT(changes); i++) {
         const char *path = temporary_file(folder, "traced.sums");
         struct draft draft = draft_of(&set);
         changes[i].change(&draft);
@@ -383,7 +375,7 @@ static void words_that_are_no_lines_are_refused(void **state)
     struct taken taken;
     set_up_init(&set);
     const struct draft draft = draft_of(&set);
-    const size_t count = sizeof records / sizeof *records;
+    const size_t count = COUNT(records);
     for (size_t i = 0; i < count + 2; i++) {
         const char *path = temporary_file(folder, "traced.sums");
         struct sums_writer writer;

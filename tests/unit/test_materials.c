@@ -1,19 +1,10 @@
 /* Materials by name. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <string.h>
+#include "claims.h"
 
 #include <sonject/material.h>
 
 #include "first_key.h"
 #include "scene/scene.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* Those that sonject/material.h promises. */
 static const char *const promised[] = {"steel",     "concrete", "rubber",      "wood",
@@ -41,7 +32,6 @@ static void expect_same(const sonject_material_params *a, const sonject_material
 
 static void test_blanks_in_names(void **state)
 {
-    (void)state;
     static const char *const spellings[][3] = {
         {"coarse sand", "coarse_sand", "coarse-sand"},
         {"medium sand", "medium_sand", "medium-sand"},
@@ -58,7 +48,6 @@ static void test_blanks_in_names(void **state)
 
 static void test_unknown_names(void **state)
 {
-    (void)state;
     static const char *const unknown[] = {"",
                                           " ",
                                           "Steel",
@@ -91,7 +80,6 @@ static void test_unknown_names(void **state)
 
 static void test_list_of_names(void **state)
 {
-    (void)state;
     for (uint32_t i = 0; i < COUNT(promised); i++) {
         const char *name = sonject_material_name(i);
         assert_non_null(name);
@@ -110,7 +98,6 @@ static void test_list_of_names(void **state)
 
 static void test_values_are_allowed(void **state)
 {
-    (void)state;
     for (size_t i = 0; i < COUNT(promised); i++) {
         struct report report = {{0}, NULL, NULL};
         struct first_key first = FIRST_KEY;
@@ -130,7 +117,6 @@ static void test_values_are_allowed(void **state)
 /* What tells the materials apart. */
 static void test_order_of_values(void **state)
 {
-    (void)state;
     const sonject_material_params steel = take("steel");
     sonject_material_params initial;
     sonject_material_params_init(&initial);

@@ -1,14 +1,7 @@
 /* Reading meshes: files written here, whole and damaged. */
 #define _POSIX_C_SOURCE 200809L
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
-
-#include <math.h>
-
+#include "claims.h"
 #include "kernel/mesh_samples.h"
 #include "mesh/mesh.h"
 #include "mesh/mesh_reader.h"
@@ -38,8 +31,7 @@ static void test_formats(void **state)
     for (int format = 0; format < FORMATS; format++) {
         struct draft draft = write_format((enum format)format, &sample);
         struct mesh mesh;
-        if (load(*state, draft_names[format], draft.bytes, draft.count, &mesh) != SONJECT_OK)
-            fail_msg("%s", report.message);
+        EXPECT_OK(&report, load(*state, draft_names[format], draft.bytes, draft.count, &mesh));
         assert_int_equal(mesh.triangle_count, 512);
         assert_int_equal(mesh.vertex_count, 258); /* closed: 2 + triangles / 2 */
         assert_true(mesh.topology.is_closed);
@@ -77,7 +69,6 @@ static sonject_status read_part(enum format format, const char *bytes, size_t co
  * its last line) read. */
 static void test_cut_short(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     sample_box(&sample);
     for (int format = 0; format < FORMATS; format++) {
@@ -106,7 +97,6 @@ static void test_cut_short(void **state)
 /* Whatever bytes are wrong: an answer, and no harm (run under sanitizers). */
 static void test_mutations(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     sample_box(&sample);
     for (int format = 0; format < FORMATS; format++) {
@@ -205,7 +195,7 @@ static void test_bad_content(void **state)
          "0 0 0\n3 0 0 1\n",
          "vertex number 1, but numbers run from 0 to 0"},
     };
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
+    for (size_t i = 0; i < COUNT(cases); i++)
         expect_refusal(*state, cases[i].name, cases[i].text, strlen(cases[i].text),
                        cases[i].message);
     struct mesh mesh;
@@ -233,7 +223,6 @@ static void test_not_a_number(void **state)
 
 static void test_units_and_axes(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     struct mesh_options options;
     struct mesh mesh;

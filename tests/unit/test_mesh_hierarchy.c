@@ -1,16 +1,6 @@
 /* The hierarchy of meshes: every triangle in one slot, boxes that hold what is below them, and a
  * bounded depth whatever the mesh. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "kernel/mesh_samples.h"
 #include "mesh/hierarchy.h"
 
@@ -160,7 +150,6 @@ static void check_sample(const char *what, struct mesh_sample *sample)
 
 static void test_samples(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     sample_box(&sample);
     check_sample("box", &sample);
@@ -181,7 +170,6 @@ static void test_samples(void **state)
 /* All triangles about one middle: nothing to choose by. */
 static void test_same_middle(void **state)
 {
-    (void)state;
     static float vertices[9 * MANY];
     static uint32_t corners[3 * MANY];
     for (uint32_t i = 0; i < 3 * MANY; i++)
@@ -201,7 +189,6 @@ static void test_same_middle(void **state)
  * splits off a few: unbounded, that would take as many levels as there are sizes. */
 static void test_ever_smaller(void **state)
 {
-    (void)state;
     static float vertices[9 * MANY];
     static uint32_t corners[3 * MANY];
     for (uint32_t i = 0; i < 3 * MANY; i++)
@@ -218,7 +205,6 @@ static void test_ever_smaller(void **state)
 /* The same triangles give the same hierarchy. */
 static void test_repeats(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     struct mesh_hierarchy first, second;
     sample_ring(&sample, 60, 40);

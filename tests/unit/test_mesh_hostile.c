@@ -2,15 +2,8 @@
  * names it, takes memory in proportion to its size, and leaves nothing behind (run under
  * sanitizers and valgrind). */
 #define _POSIX_C_SOURCE 200809L
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
-
-#include <math.h>
-
+#include "claims.h"
 #include "mesh/mesh.h"
 #include "mesh_drafts.h"
 #include "temporary_folder.h"
@@ -199,7 +192,7 @@ static size_t change_number(struct dice *dice, char *text, size_t bytes)
         at--;
     while (end < bytes && is_of_number(text[end]))
         end++;
-    const char *with = numbers[throw(dice, sizeof numbers / sizeof *numbers)];
+    const char *with = numbers[throw(dice, COUNT(numbers))];
     return replace(text, bytes, at, end - at, with, strlen(with));
 }
 
@@ -217,7 +210,7 @@ static size_t change_word(struct dice *dice, char *text, size_t bytes)
     /* the number of triangles of binary STL stands there */
     const size_t at = throw(dice, 8) == 0 && bytes > 84 ? 80 : throw(dice, bytes);
     const size_t length = smaller_of(throw(dice, 2) ? 4 : 8, bytes - at);
-    memcpy(text + at, words[throw(dice, sizeof words / sizeof *words)], length);
+    memcpy(text + at, words[throw(dice, COUNT(words))], length);
     return bytes;
 }
 
@@ -300,7 +293,7 @@ static void test_promises(void **state)
     static const char *const counts[] = {
         "4294967295", "9223372036854775807", "18446744073709551615", "68719476736", "-5", "1e9"};
     static const char *const formats[] = {"ascii", "binary_little_endian", "binary_big_endian"};
-    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+    for (size_t i = 0; i < COUNT(counts); i++)
         for (size_t format = 0; format < 3; format++)
             for (int of_faces = 0; of_faces < 2; of_faces++) {
                 struct draft draft = {NULL, 0, 0};

@@ -1,15 +1,5 @@
 /* Whether meshes close, which side is outside, and smooth normals. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "kernel/mesh_samples.h"
 #include "mesh/mesh.h"
 #include "mesh/normals.h"
@@ -22,9 +12,8 @@ static struct mesh prepare(const struct mesh_sample *sample)
     struct mesh_options options;
     mesh_options_init(&options);
     report.message[0] = '\0';
-    if (mesh_from_arrays(&report, "sample", sample->positions, sample->vertices, sample->corners,
-                         sample->triangles, &options, &mesh) != SONJECT_OK)
-        fail_msg("%s", report.message);
+    EXPECT_OK(&report, mesh_from_arrays(&report, "sample", sample->positions, sample->vertices,
+                                        sample->corners, sample->triangles, &options, &mesh));
     return mesh;
 }
 
@@ -47,7 +36,6 @@ static void expect_box(const struct mesh *mesh, size_t turned)
 
 static void test_orientation(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     sample_box(&sample);
     struct mesh mesh = prepare(&sample);
@@ -89,7 +77,6 @@ static struct mesh prepare_loose_box(double off_m, bool is_reversed)
  */
 static void test_narrow_seams_close_in_any_order(void **state)
 {
-    (void)state;
     for (int is_reversed = 0; is_reversed < 2; is_reversed++) {
         struct mesh mesh = prepare_loose_box(1e-6, is_reversed);
         assert_true(mesh.topology.is_closed);
@@ -105,7 +92,6 @@ static void test_narrow_seams_close_in_any_order(void **state)
 /* Two sides of a closed mesh that are closer than a seam's may be. */
 static void test_thin_walls_stay(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     sample_box(&sample);
     for (size_t i = 0; i < 8; i++)
@@ -121,7 +107,6 @@ static void test_thin_walls_stay(void **state)
 /* A small box inside a large one, oriented inward, is a cavity. */
 static void test_cavity(void **state)
 {
-    (void)state;
     struct mesh_sample outer, inner;
     double positions[48];
     uint32_t corners[72];
@@ -150,7 +135,6 @@ static void test_cavity(void **state)
 
 static void test_open(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     sample_box(&sample);
     sample.triangles = 11;
@@ -168,7 +152,6 @@ static void test_open(void **state)
 /* A fin on an edge of the box: three triangles there. */
 static void test_crowded(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     double positions[27] = {0.0};
     uint32_t corners[39];
@@ -190,7 +173,6 @@ static void test_crowded(void **state)
 /* A band with half a turn cannot be oriented. */
 static void test_twisted(void **state)
 {
-    (void)state;
     enum {
         STEPS = 12
     };
@@ -223,7 +205,6 @@ static void test_twisted(void **state)
  * line stays, for its neighbours' sake. */
 static void test_degenerate(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     double positions[33];
     uint32_t corners[48];
@@ -253,7 +234,6 @@ static void test_degenerate(void **state)
 /* One vertex of 200,000 triangles: no work grows with the square of that. */
 static void test_crowded_vertex(void **state)
 {
-    (void)state;
     enum {
         RIM = 100000
     };
@@ -287,7 +267,6 @@ static void test_crowded_vertex(void **state)
  * that angle, and mixed above it. */
 static void test_normals(void **state)
 {
-    (void)state;
     struct mesh_sample sample;
     float *normals;
     sample_sphere(&sample, 5);

@@ -1,16 +1,6 @@
 /* Pictures: size, grey levels, colours, ticks and text. The drawn panels are found by their frames,
  * so that margins may change. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "image/font.h"
 #include "image/plot.h"
 #include "image/plot_ticks.h"
@@ -104,7 +94,6 @@ static float *filled(size_t count, float value)
 /* 20 dB apart on a scale of 40 dB: half of the greys. Row 0 at the top, column 0 at the left. */
 static void test_grey_levels(void **state)
 {
-    (void)state;
     const struct plot_frame frame = frame_of(40, 50);
     float *amplitude = filled(40 * 50, 1.0f);
     for (size_t i = 0; i < 10 * 50; i++)
@@ -130,7 +119,6 @@ static void test_grey_levels(void **state)
  * scale, each to the 0.01 dB of the count and the 0.04 dB between pixels. */
 static void test_scale_from_percentiles(void **state)
 {
-    (void)state;
     struct plot_frame frame = frame_of(100, 100);
     frame.minimum_db = frame.maximum_db = 0.0;
     float *amplitude = filled(100 * 100, 0.0f);
@@ -152,7 +140,6 @@ static void test_scale_from_percentiles(void **state)
  * -3.01 dB, the grey 255 * 26.99 / 40. */
 static void test_large_images_average_energy(void **state)
 {
-    (void)state;
     const struct plot_frame frame = frame_of(3200, 3202);
     float *amplitude = filled((size_t)3200 * 3202, 1.0f);
     for (size_t i = 0; i < (size_t)3200 * 3202; i += 2)
@@ -172,7 +159,6 @@ static void test_large_images_average_energy(void **state)
 /* Rows four times as far apart as columns are drawn four times as high. */
 static void test_distances_are_in_proportion(void **state)
 {
-    (void)state;
     struct plot_frame frame = frame_of(100, 400);
     frame.row_spacing_m = 0.1;
     float *amplitude = filled(100 * 400, 1.0f);
@@ -185,7 +171,6 @@ static void test_distances_are_in_proportion(void **state)
 
 static void test_difference_colours(void **state)
 {
-    (void)state;
     const struct plot_frame frame = frame_of(4, 4);
     float *amplitude = filled(16, 1.0f);
     float *difference = filled(16, 0.0f);
@@ -218,7 +203,6 @@ static void test_difference_colours(void **state)
  * for. Along the upper edge: a frame for each panel, then one for each colour bar. */
 static void test_panels_side_by_side(void **state)
 {
-    (void)state;
     const struct plot_frame frame = frame_of(400, 480);
     float *amplitude = filled(400 * 480, 1.0f);
     const struct plot_panel panels[] = {
@@ -246,7 +230,6 @@ static void test_panels_side_by_side(void **state)
  * drawn at 161. Along-track grows downwards: 3 m is row 120, drawn at 241. */
 static void test_ticks_are_where_they_belong(void **state)
 {
-    (void)state;
     const struct plot_frame frame = frame_of(400, 480);
     float *amplitude = filled(400 * 480, 1.0f);
     struct picture picture = draw_one(&frame, amplitude);
@@ -277,7 +260,6 @@ static void expect_ticks(double low, double high, double most, int count, const 
 
 static void test_tick_numbers(void **state)
 {
-    (void)state;
     expect_ticks(0.0, 10.0, 10.0, 11, "0", "10");
     expect_ticks(0.0, 10.0, 9.0, 6, "0", "10");
     expect_ticks(44.0, 56.0, 6.0, 7, "44", "56");
@@ -311,7 +293,6 @@ static void expect_no_picture(const struct plot_frame *frame, const float *ampli
 
 static void test_nothing_to_draw(void **state)
 {
-    (void)state;
     struct plot_frame frame = frame_of(30, 20);
     frame.minimum_db = frame.maximum_db = 0.0;
     float *amplitude = filled(600, 0.0f);
@@ -329,7 +310,6 @@ static void test_nothing_to_draw(void **state)
 
 static void test_pixels_that_are_no_levels(void **state)
 {
-    (void)state;
     const struct plot_frame frame = frame_of(2, 2);
     const float amplitude[] = {0.0f, NAN, INFINITY, 1.0f};
     struct picture picture = draw_one(&frame, amplitude);
@@ -342,11 +322,10 @@ static void test_pixels_that_are_no_levels(void **state)
 
 static void test_extreme_shapes(void **state)
 {
-    (void)state;
     static const uint64_t sides[][2] = {{1, 1},     {1, 2},      {1, 10000}, {10000, 1},
                                         {3, 30000}, {1201, 799}, {801, 1}};
     float *amplitude = filled(90000 + 1000000, 0.5f);
-    for (size_t i = 0; i < sizeof sides / sizeof *sides; i++) {
+    for (size_t i = 0; i < COUNT(sides); i++) {
         struct plot_frame frame = frame_of(sides[i][0], sides[i][1]);
         frame.maximum_db = frame.minimum_db; /* one level only: the middle of the scale */
         struct picture picture = draw_one(&frame, amplitude);
@@ -360,7 +339,6 @@ static void test_extreme_shapes(void **state)
 
 static void test_extreme_axes_and_titles(void **state)
 {
-    (void)state;
     static const double values[] = {0.0,    NAN,   INFINITY, -INFINITY, 1e300,
                                     1e-300, -1e-3, 1e15,     5e-324};
     const float amplitude[] = {0.1f, 0.2f, 0.3f, 0.4f, 0.5f, 0.6f};
@@ -369,7 +347,7 @@ static void test_extreme_axes_and_titles(void **state)
     title[sizeof title - 1] = '\0';
     const struct plot_panel panels[] = {
         {title, amplitude, false}, {NULL, amplitude, true}, {"\xc3\xa9\x01\x7f", amplitude, false}};
-    for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+    for (size_t i = 0; i < COUNT(values); i++) {
         for (int member = 0; member < 5; member++) {
             struct plot_frame frame = frame_of(2, 3);
             double *const members[] = {&frame.first_along_track_m, &frame.row_spacing_m,
@@ -396,7 +374,6 @@ static struct canvas blank_canvas(uint32_t height, uint32_t width)
  * the same text turned. */
 static void test_font(void **state)
 {
-    (void)state;
     const struct colour black = {0, 0, 0};
     struct canvas drawn['~' + 1];
     for (char c = ' '; c <= '~'; c++) {
@@ -430,7 +407,6 @@ static void test_font(void **state)
 /* Text that runs out of the picture is cut, on every side. */
 static void test_text_is_cut_off(void **state)
 {
-    (void)state;
     const struct colour black = {0, 0, 0};
     struct canvas canvas = blank_canvas(7, 9);
     for (int64_t x = -40; x < 20; x += 3) {

@@ -1,19 +1,8 @@
 /* Layers of water and sound-speed profiles, as the C interface takes them. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "api/handles.h"
+#include "claims.h"
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-#define STEP         (1.0 / 20000.0) /* of the sound speed between layers, at most */
+#define STEP (1.0 / 20000.0) /* of the sound speed between layers, at most */
 
 static int make_scene(void **state)
 {
@@ -194,9 +183,8 @@ static double speed_at(const struct profile *profile, double height)
 static void expect_layers(void **state, const struct profile *profile, size_t count)
 {
     sonject_scene *scene = scene_of(state);
-    if (sonject_scene_set_sound_speed_profile(scene, profile->heights, profile->speeds,
-                                              profile->count) != SONJECT_OK)
-        fail_msg("%s", scene->report->message);
+    EXPECT_OK(scene->report, sonject_scene_set_sound_speed_profile(
+                                 scene, profile->heights, profile->speeds, profile->count));
     const struct water_layer *layers = scene->scene.water_layers;
     assert_int_equal(scene->scene.water_layer_count, count);
     assert_true(layers[0].bottom_m == 0.0);

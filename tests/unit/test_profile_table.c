@@ -1,22 +1,9 @@
 /* Tables of sound speeds: every way to write them, and files that are none. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "schema/profile_table.h"
 #include "temporary_folder.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 static sonject_status read_bytes(void **state, const void *bytes, size_t count,
                                  struct report *report, struct profile_table *table)

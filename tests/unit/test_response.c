@@ -2,21 +2,12 @@
  * line. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <string.h>
+#include "claims.h"
 
 #include <sonject/sonject.h>
 
 #include "scene_folder.h"
 
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 #define BASE                                                                                       \
     "sonject: 1\n"                                                                                 \
     "input:\n"                                                                                     \
@@ -149,7 +140,6 @@ static void test_interpolation(void **state)
     double x[9], real_part[9], imaginary_part[9];
     struct report report = {{0}, NULL, NULL};
     struct response_table table;
-    (void)state;
     memset(&table, 0, sizeof table);
     for (int i = 0; i < 9; i++) {
         x[i] = 0.3 * (i - 4) + 0.02 * (i - 4) * (i - 4) - 0.1; /* uneven */
@@ -188,7 +178,6 @@ static void test_normalisation(void **state)
     const double imaginary_part[] = {0.0, -4.0, 2.5, 0.0};
     struct report report = {{0}, NULL, NULL};
     struct response_table table;
-    (void)state;
     memset(&table, 0, sizeof table);
     assert_int_equal(response_table_set(&table, &report, x, real_part, imaginary_part, 4, false),
                      SONJECT_OK);
@@ -214,7 +203,6 @@ static void test_public_functions(void **state)
     sonject_scene *scene = NULL;
     sonject_pulse_params pulse;
     sonject_motion_params motion;
-    (void)state;
     assert_int_equal(sonject_context_create(NULL, &context), SONJECT_OK);
     assert_int_equal(sonject_scene_create(context, &scene), SONJECT_OK);
     sonject_pulse_params_init(&pulse);

@@ -1,14 +1,5 @@
 /* The seam: chance where there is none, told where there is one. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "claims.h"
 
 #include <sonject/image.h>
 
@@ -17,7 +8,7 @@
 
 #define ROWS    400
 #define COLUMNS 400
-#define COUNT   ((size_t)ROWS * COLUMNS)
+#define PIXELS  ((size_t)ROWS * COLUMNS)
 
 static struct report report;
 
@@ -26,7 +17,7 @@ static float *seabed(double row_width, uint64_t seed)
 {
     sonject_synthetic_params synthetic;
     sonject_geometry_params geometry;
-    float *pixels = calloc(COUNT, sizeof *pixels);
+    float *pixels = calloc(PIXELS, sizeof *pixels);
     assert_non_null(pixels);
     sonject_synthetic_params_init(&synthetic);
     sonject_geometry_params_init(&geometry);
@@ -46,7 +37,7 @@ static float *seabed(double row_width, uint64_t seed)
 /* A target of 60 x 30 pixels, and a band of 36 around it. */
 static void draw_masks(uint8_t *influence, uint8_t *labels)
 {
-    for (size_t i = 0; i < COUNT; i++) {
+    for (size_t i = 0; i < PIXELS; i++) {
         const size_t row = i / COLUMNS;
         const size_t column = i % COLUMNS;
         labels[i] = row >= 170 && row < 230 && column >= 185 && column < 215;
@@ -66,14 +57,14 @@ static struct seam seam_with(enum flaw flaw, uint64_t seed)
     struct seam seam;
     float *pixels = seabed(1.6, seed);
     float *other = seabed(1.35, seed + 100); /* sinc^2(1 / 1.35) is 0.7 sinc^2(1 / 1.6) */
-    uint8_t *influence = calloc(COUNT, 1);
-    uint8_t *labels = calloc(COUNT, 1);
+    uint8_t *influence = calloc(PIXELS, 1);
+    uint8_t *labels = calloc(PIXELS, 1);
     double mean = 0.0;
     assert_true(influence && labels);
     draw_masks(influence, labels);
-    for (size_t i = 0; i < COUNT; i++)
-        mean += (double)pixels[i] / (double)COUNT;
-    for (size_t i = 0; i < COUNT; i++) {
+    for (size_t i = 0; i < PIXELS; i++)
+        mean += (double)pixels[i] / (double)PIXELS;
+    for (size_t i = 0; i < PIXELS; i++) {
         if (labels[i])
             pixels[i] = 0.0f; /* what is not to be looked at */
         else if (influence[i] && flaw == FLAW_CONTRAST)
@@ -104,7 +95,6 @@ static void test_no_seam(void **state)
     double sum = 0.0;
     double squares = 0.0;
     double errors = 0.0;
-    (void)state;
     for (uint64_t seed = 1; seed <= SEEDS; seed++) {
         const struct seam seam = seam_with(NO_FLAW, seed);
         assert_true(seam.patches >= 40 && seam.background >= seam.patches);
@@ -119,7 +109,6 @@ static void test_no_seam(void **state)
 
 static void test_seams_are_seen(void **state)
 {
-    (void)state;
     for (uint64_t seed = 1; seed <= 3; seed++) {
         assert_true(seam_with(FLAW_CONTRAST, seed).auc > 0.7);
         assert_true(seam_with(FLAW_CORRELATION, seed).auc > 0.7);
@@ -132,13 +121,12 @@ static void test_too_little(void **state)
 {
     struct seam seam;
     float *pixels = seabed(1.6, 1);
-    uint8_t *influence = calloc(COUNT, 1);
-    (void)state;
+    uint8_t *influence = calloc(PIXELS, 1);
     assert_non_null(influence);
     assert_int_equal(measure_seam(&report, pixels, influence, NULL, ROWS, COLUMNS, &seam),
                      SONJECT_OK);
     assert_true(isnan(seam.auc) && isnan(seam.error) && seam.patches == 0);
-    memset(influence, 1, COUNT);
+    memset(influence, 1, PIXELS);
     assert_int_equal(measure_seam(&report, pixels, influence, NULL, ROWS, COLUMNS, &seam),
                      SONJECT_OK);
     assert_true(isnan(seam.auc) && seam.patches == 0);

@@ -1,29 +1,18 @@
 /* How far shapes reach, whole and cut, against clouds of points that lie in them, and how they rest
  * on the seabed. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdbool.h>
-#include <string.h>
-
+#include "claims.h"
 #include "scene/placement.h"
 
-#define PI     3.14159265358979323846
 #define POINTS 150000
 
-static uint64_t state = 88172645463325252u;
+static uint64_t generator = 88172645463325252u;
 
 static double uniform(double low, double high)
 {
-    state ^= state << 13;
-    state ^= state >> 7;
-    state ^= state << 17;
-    return low + (high - low) * ((double)(state >> 11) + 0.5) / 9007199254740992.0;
+    generator ^= generator << 13;
+    generator ^= generator >> 7;
+    generator ^= generator << 17;
+    return low + (high - low) * ((double)(generator >> 11) + 0.5) / 9007199254740992.0;
 }
 
 static double dot(const double a[3], const double b[3])
@@ -160,9 +149,8 @@ static void random_point(const struct shape_size *size, uint32_t shape, double p
 }
 
 /* No point reaches further, and some reach nearly as far: corners are rarely drawn. */
-static void test_clouds_of_points(void **unused)
+static void test_clouds_of_points(void **state)
 {
-    (void)unused;
     for (uint32_t i = 0; i < 3 * (SONJECT_SHAPE_TORUS + 1); i++)
         for (uint32_t cuts = 0; cuts <= SONJECT_CUTS_CAPACITY; cuts++) {
             const uint32_t shape = i / 3;
@@ -215,9 +203,8 @@ static void expect_extent(const sonject_object_params *object, double x, double 
 }
 
 /* Half a sphere, a quarter of one, a box without a corner, a ring without its upper half. */
-static void test_closed_forms(void **unused)
+static void test_closed_forms(void **state)
 {
-    (void)unused;
     const double s = sqrt(0.5);
     sonject_object_params object;
     sonject_object_params_init(&object);
@@ -264,9 +251,8 @@ static void test_closed_forms(void **unused)
 }
 
 /* A cylinder with round ends lies within the sphere through its tips. */
-static void test_bounding_radius(void **unused)
+static void test_bounding_radius(void **state)
 {
-    (void)unused;
     struct shape_size size;
     sonject_object_params object;
     sonject_object_params_init(&object);
@@ -332,9 +318,8 @@ static sonject_status place(struct placement *placement, double *burial_m, struc
 }
 
 /* Whatever the shape, pose and side of the sonar: its lowest point is as deep as asked for. */
-static void test_objects_rest_on_the_seabed(void **unused)
+static void test_objects_rest_on_the_seabed(void **state)
 {
-    (void)unused;
     for (int side = 0; side < 2; side++)
         for (uint32_t i = 0; i < 3 * (SONJECT_SHAPE_TORUS + 1); i++) {
             struct report report = {{0}, NULL, NULL};
@@ -344,8 +329,7 @@ static void test_objects_rest_on_the_seabed(void **unused)
             double highest, burial;
             sonject_object_params object = random_object(i / 3, i % 3);
             make_view(&view, &scene, side ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT);
-            if (place(&placement, &burial, &report, &view, &object) != SONJECT_OK)
-                fail_msg("%s", report.message);
+            EXPECT_OK(&report, place(&placement, &burial, &report, &view, &object));
             const double slack = 0.15 * placement.bounding_radius_m;
             const double lowest = lowest_point(&placement, &object, &highest);
             assert_true(lowest > -1e-9 && lowest < slack);
@@ -365,9 +349,8 @@ static void test_objects_rest_on_the_seabed(void **unused)
         }
 }
 
-static void test_nothing_stands_prouder_than_it_is_high(void **unused)
+static void test_nothing_stands_prouder_than_it_is_high(void **state)
 {
-    (void)unused;
     struct report report = {{0}, NULL, NULL};
     struct patch_view view;
     struct scene scene;

@@ -1,14 +1,5 @@
 /* Contrast, looks, texture and correlation of fields that are known, and saturation. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
+#include "claims.h"
 
 #include <sonject/image.h>
 
@@ -17,9 +8,8 @@
 
 #define ROWS    512
 #define COLUMNS 512
-#define COUNT   ((size_t)ROWS * COLUMNS)
+#define PIXELS  ((size_t)ROWS * COLUMNS)
 #define BLOCKS  256.0
-#define PI      3.14159265358979323846
 
 static struct report report;
 
@@ -36,7 +26,7 @@ static void add_seabed(double shape, double row_width, double column_width, uint
 {
     sonject_synthetic_params synthetic;
     sonject_geometry_params geometry;
-    float *pixels = calloc(COUNT, sizeof *pixels);
+    float *pixels = calloc(PIXELS, sizeof *pixels);
     assert_non_null(pixels);
     sonject_synthetic_params_init(&synthetic);
     sonject_geometry_params_init(&geometry);
@@ -50,7 +40,7 @@ static void add_seabed(double shape, double row_width, double column_width, uint
     assert_int_equal(synthesise_seabed(&report, &synthetic, &geometry, row_width * 0.025,
                                        column_width * 0.025, pixels),
                      SONJECT_OK);
-    for (size_t i = 0; i < COUNT; i++)
+    for (size_t i = 0; i < PIXELS; i++)
         intensity[i] += pixels[i] * pixels[i];
     free(pixels);
 }
@@ -71,8 +61,7 @@ static struct speckle_statistics measure(const float *intensity, const uint8_t *
 static void test_looks(void **state)
 {
     static const double expected_amplitude[] = {0.52272, 0.0, 0.0, 0.25289};
-    float *intensity = calloc(COUNT, sizeof *intensity);
-    (void)state;
+    float *intensity = calloc(PIXELS, sizeof *intensity);
     assert_non_null(intensity);
     for (int look = 1; look <= 4; look++) {
         add_seabed(INFINITY, 1.5, 1.0, (uint64_t)look, intensity);
@@ -97,9 +86,8 @@ static void test_correlation(void **state)
 {
     static const double row_widths[] = {1.0, 1.5, 2.5};
     static const double column_widths[] = {1.0, 2.0, 1.5};
-    (void)state;
     for (int i = 0; i < 3; i++) {
-        float *intensity = calloc(COUNT, sizeof *intensity);
+        float *intensity = calloc(PIXELS, sizeof *intensity);
         assert_non_null(intensity);
         add_seabed(INFINITY, row_widths[i], column_widths[i], 7, intensity);
         const struct speckle_statistics told = measure(intensity, NULL);
@@ -122,15 +110,14 @@ static void test_correlation(void **state)
  * tails are skewed: their median lies up to 15 % below the mean. */
 static void test_texture(void **state)
 {
-    float *intensity = calloc(COUNT, sizeof *intensity);
-    (void)state;
+    float *intensity = calloc(PIXELS, sizeof *intensity);
     assert_non_null(intensity);
     add_seabed(4.0, 1.5, 1.0, 3, intensity);
     const struct speckle_statistics told = measure(intensity, NULL);
     expect_near("squared contrast", told.intensity_contrast * told.intensity_contrast, 1.5, 0.225);
     assert_true(told.shape > 2.5 && told.shape < 8.0);
     expect_near("looks", told.looks, 1.0, 1e-9);
-    memset(intensity, 0, COUNT * sizeof *intensity);
+    memset(intensity, 0, PIXELS * sizeof *intensity);
     add_seabed(INFINITY, 1.5, 1.0, 3, intensity);
     assert_true(measure(intensity, NULL).shape > 20.0);
     free(intensity);
@@ -140,13 +127,12 @@ static void test_texture(void **state)
  * level counts for more than the error. */
 static void test_what_does_not_count(void **state)
 {
-    float *intensity = calloc(COUNT, sizeof *intensity);
-    uint8_t *excluded = calloc(COUNT, 1);
-    (void)state;
+    float *intensity = calloc(PIXELS, sizeof *intensity);
+    uint8_t *excluded = calloc(PIXELS, 1);
     assert_true(intensity && excluded);
     add_seabed(INFINITY, 1.5, 1.0, 5, intensity);
     const struct speckle_statistics plain = measure(intensity, NULL);
-    for (size_t i = 0; i < COUNT; i++) {
+    for (size_t i = 0; i < PIXELS; i++) {
         const size_t row = i / COLUMNS;
         const size_t column = i % COLUMNS;
         intensity[i] *= 1.0f + (float)column / COLUMNS;
@@ -161,9 +147,9 @@ static void test_what_does_not_count(void **state)
     expect_near("contrast", told.intensity_contrast, plain.intensity_contrast, 0.04);
     expect_near("row correlation", told.along_track.correlation[1],
                 plain.along_track.correlation[1], 0.03);
-    memset(excluded, 1, COUNT);
+    memset(excluded, 1, PIXELS);
     assert_int_equal(measure(intensity, excluded).blocks, 0);
-    for (size_t i = 0; i < COUNT; i++)
+    for (size_t i = 0; i < PIXELS; i++)
         intensity[i] = 3.0f;
     assert_int_equal(measure(intensity, NULL).blocks, 0);
     free(intensity);
@@ -173,7 +159,6 @@ static void test_what_does_not_count(void **state)
 static void test_saturation(void **state)
 {
     float values[1000];
-    (void)state;
     for (int i = 0; i < 1000; i++)
         values[i] = (float)((i * 37) % 1000);
     assert_true(isinf(find_saturation(values, 1000)));

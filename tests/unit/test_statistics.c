@@ -1,15 +1,5 @@
 /* Statistics of image patches. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "image/statistics.h"
 
 static struct report report;
@@ -44,11 +34,10 @@ static float speckle(uint64_t *state)
 
 static void test_a_point_spreads_with_the_deviation_asked_for(void **state)
 {
-    (void)state;
     const double deviations[][2] = {{0.0, 0.0}, {0.3, 0.7}, {1.0, 1.5}, {2.5, 0.0}, {4.0, 11.3}};
     const size_t rows = 101;
     const size_t columns = 141;
-    for (size_t test = 0; test < sizeof deviations / sizeof *deviations; test++) {
+    for (size_t test = 0; test < COUNT(deviations); test++) {
         float *point = make_map(rows, columns, 0.0f);
         float *mean = make_map(rows, columns, -1.0f);
         point[50 * columns + 70] = 1.0f;
@@ -84,11 +73,10 @@ static void test_a_point_spreads_with_the_deviation_asked_for(void **state)
 
 static void test_a_constant_stays_so_up_to_the_edges(void **state)
 {
-    (void)state;
     const double deviations[] = {0.4, 1.0, 3.0, 50.0, 1e9, INFINITY};
     const size_t sizes[][2] = {{1, 1}, {1, 9}, {9, 1}, {2, 3}, {40, 37}};
-    for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
-        for (size_t j = 0; j < sizeof deviations / sizeof *deviations; j++) {
+    for (size_t i = 0; i < COUNT(sizes); i++)
+        for (size_t j = 0; j < COUNT(deviations); j++) {
             const size_t rows = sizes[i][0];
             const size_t columns = sizes[i][1];
             float *map = make_map(rows, columns, 0.3f);
@@ -105,7 +93,6 @@ static void test_a_constant_stays_so_up_to_the_edges(void **state)
 
 static void test_a_wide_mean_is_the_mean_of_all(void **state)
 {
-    (void)state;
     const size_t rows = 13;
     const size_t columns = 29;
     float *map = make_map(rows, columns, 0.0f);
@@ -153,7 +140,6 @@ static void smooth_slowly(double *line, size_t count, double deviation)
 
 static void test_edges(void **state)
 {
-    (void)state;
     const double deviations[] = {0.2, 0.9, 2.0, 7.7, 30.0};
     enum {
         COUNT = 61
@@ -163,7 +149,7 @@ static void test_edges(void **state)
     float along[COUNT];
     float across[COUNT];
     double expected[COUNT];
-    for (size_t test = 0; test < sizeof deviations / sizeof *deviations; test++) {
+    for (size_t test = 0; test < COUNT(deviations); test++) {
         for (size_t i = 0; i < COUNT; i++)
             expected[i] = (double)(values[i] = speckle(&random));
         smooth_slowly(expected, COUNT, deviations[test]);
@@ -181,7 +167,6 @@ static void test_edges(void **state)
 /* An echo far above everything must not leave rounding errors where it is out of reach. */
 static void test_a_bright_echo_leaves_no_trace(void **state)
 {
-    (void)state;
     const size_t columns = 300;
     float *map = make_map(1, columns, 1e-6f);
     float *mean = make_map(1, columns, 0.0f);
@@ -195,7 +180,6 @@ static void test_a_bright_echo_leaves_no_trace(void **state)
 
 static void test_mean_and_deviation(void **state)
 {
-    (void)state;
     const float values[] = {2.0f, 4.0f, 4.0f, 4.0f, 5.0f, 5.0f, 7.0f, 9.0f};
     float *many = make_map(1000, 1000, 16777217.0f);
     double mean;
@@ -232,7 +216,6 @@ static double floor_of(double shadow, size_t hole, size_t blank_columns)
 
 static void test_noise_floor(void **state)
 {
-    (void)state;
     /* 49 looks a block have a deviation of 1/7 or 0.6 dB; the least of the nine blocks in a hole of
      * 30 pixels lies about 1.5 deviations low, 1 dB; four deviations about that */
     expect_near(floor_of(pow(10.0, -2.5), 30, 0), -26.0, 2.5);
@@ -244,7 +227,6 @@ static void test_noise_floor(void **state)
 
 static void test_noise_floor_of_a_small_patch(void **state)
 {
-    (void)state;
     const float intensity[] = {0.004f, 0.006f};
     const float level[] = {1.0f, 1.0f};
     double ratio;
@@ -261,7 +243,6 @@ static double distance_of(const float *a, const float *b, size_t count)
 
 static void test_histogram_distance(void **state)
 {
-    (void)state;
     const float a[] = {1.0f, 2.0f, 3.0f, 4.0f};
     const float shuffled[] = {40.0f, 20.0f, 10.0f, 30.0f};
     const float equal[] = {5.0f, 5.0f, 5.0f, 5.0f};
@@ -281,7 +262,6 @@ static void test_histogram_distance(void **state)
  * are furthest apart near x = 0.43, by 0.2156. */
 static void test_histogram_distance_of_known_distributions(void **state)
 {
-    (void)state;
     const size_t count = 100000;
     float *rayleigh = make_map(1, count, 0.0f);
     float *exponential = make_map(1, count, 0.0f);
@@ -302,7 +282,6 @@ static void test_histogram_distance_of_known_distributions(void **state)
 
 static void test_correlation(void **state)
 {
-    (void)state;
     const float a[] = {1.0f, 2.0f, 3.0f, 4.0f};
     const float up[] = {30.0f, 50.0f, 70.0f, 90.0f};
     const float down[] = {4.0f, 3.0f, 2.0f, 1.0f};

@@ -1,14 +1,9 @@
 /* Files of tallies: what is written is read again, whatever is damaged is refused, chains of
  * checkpoints cover a shard once, and sums that do not go together are not added up. */
 #define _POSIX_C_SOURCE 200809L
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include "base/file.h"
+#include "claims.h"
 #include "temporary_folder.h"
 #include "trace/checkpoint.h"
 #include "trace/sums_block.h"
@@ -280,7 +275,7 @@ static void test_runs_stay_within_their_sums(void **state)
     static const uint64_t blocks[][5] = {{4, 2, 2, 8, 9},          {4, 3, 2, 8, 9},
                                          {4, 5, 0, 8, 9},          {4, 0, 3, 8, 9},
                                          {4, UINT64_MAX, 2, 8, 9}, {4, 1, UINT64_MAX, 8, 9}};
-    for (size_t i = 0; i < sizeof blocks / sizeof *blocks; i++) {
+    for (size_t i = 0; i < COUNT(blocks); i++) {
         int64_t found[4] = {0, 0, 0, 0};
         struct collected all = {found, 0};
         struct sums_file file;
@@ -329,7 +324,7 @@ static void test_chains_cover_a_shard_once(void **state)
         {{{0, 0, true}}, 1, 0, 1, true}, /* a shard without strips */
     };
     struct temporary_folder *folder = *state;
-    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+    for (size_t i = 0; i < COUNT(cases); i++) {
         struct sums_folder all;
         struct sums_chain chain;
         char path[TEMPORARY_CAPACITY + 300];

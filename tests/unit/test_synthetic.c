@@ -1,21 +1,10 @@
 /* Synthetic seabeds against the statistics that they promise. Tolerances are five standard errors:
  * with N independent cells an average of the intensity has the relative standard error 1 / sqrt(N),
  * a correlation 1 / sqrt(N). Seeds are fixed, so that a pass stays a pass. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "image/speckle_texture.h"
 #include "image/synthetic.h"
 
-#define PI      3.14159265358979323846
 #define SPACING 0.025
 
 static sonject_synthetic_params plain(uint32_t rows, uint32_t columns)
@@ -81,7 +70,6 @@ static void expect_near(const char *what, double value, double expected, double 
  * the track: 1.5 pixels a cell, 107,000 cells, 5 / sqrt(N) = 0.015. */
 static void test_rayleigh(void **state)
 {
-    (void)state;
     const sonject_synthetic_params synthetic = plain(400, 400);
     float *pixels = make(&synthetic, 1.0, 1.0);
     const double mean = moment(pixels, count_of(&synthetic), 1);
@@ -101,7 +89,6 @@ static void test_rayleigh(void **state)
  */
 static void test_texture_distribution(void **state)
 {
-    (void)state;
     struct speckle_texture exponential, squared_normal;
     speckle_texture_init(&exponential, 1.0);
     speckle_texture_init(&squared_normal, 0.5);
@@ -121,9 +108,8 @@ static void test_texture_distribution(void **state)
 /* Mean and variance of the texture by quadrature over the normal deviate. */
 static void test_texture_moments(void **state)
 {
-    (void)state;
     static const double shapes[] = {0.1, 0.5, 1.5, 4.0, 10.0, 100.0, 1e4, 9e5};
-    for (size_t i = 0; i < sizeof shapes / sizeof *shapes; i++) {
+    for (size_t i = 0; i < COUNT(shapes); i++) {
         struct speckle_texture texture;
         speckle_texture_init(&texture, shapes[i]);
         double mean = 0.0;
@@ -147,7 +133,6 @@ static void test_texture_moments(void **state)
  * <I^4>/<I^2>^2 = 25, so <I^2> has the standard error 5 / sqrt(N) = 0.8 %; five of them 4 %. */
 static void test_k_distribution(void **state)
 {
-    (void)state;
     sonject_synthetic_params synthetic = plain(800, 800);
     synthetic.speckle_shape = 1.5;
     synthetic.texture_length_m = 2.0 * SPACING;
@@ -188,7 +173,6 @@ static void correlate(const float *pixels, const sonject_synthetic_params *synth
  * 5 / sqrt(N) = 0.015. */
 static void test_correlation_is_the_point_response(void **state)
 {
-    (void)state;
     static const double resolutions[][2] = {{1.0, 1.0}, {2.3, 1.6}, {1.4, 0.7}};
     sonject_synthetic_params synthetic = plain(800, 800);
     synthetic.complex_pixels = 1;
@@ -211,7 +195,6 @@ static void test_correlation_is_the_point_response(void **state)
 
 static void test_seed_decides(void **state)
 {
-    (void)state;
     sonject_synthetic_params synthetic = plain(90, 110);
     synthetic.speckle_shape = 4.0;
     synthetic.ripple_contrast = 0.6;
@@ -248,7 +231,6 @@ static uint32_t hash_of(const float *pixels, size_t count)
  * model: nothing else in this file depends on it. */
 static void test_same_bits_everywhere(void **state)
 {
-    (void)state;
     sonject_synthetic_params synthetic = plain(64, 80);
     synthetic.speckle_shape = 3.0;
     synthetic.ripple_contrast = 0.7;
@@ -262,7 +244,6 @@ static void test_same_bits_everywhere(void **state)
 
 static void test_amplitude_is_that_of_complex_pixels(void **state)
 {
-    (void)state;
     sonject_synthetic_params synthetic = plain(40, 50);
     synthetic.speckle_shape = 2.0;
     synthetic.ripple_contrast = 0.8;
@@ -289,7 +270,6 @@ static int ascending(const void *a, const void *b)
  * medians are hardly moved by them. */
 static void test_patch_step(void **state)
 {
-    (void)state;
     sonject_synthetic_params synthetic = plain(800, 800);
     synthetic.patch_contrast_db = 6.0;
     synthetic.patch_length_m = 5.0;
@@ -342,7 +322,6 @@ static double intensity_correlation(const float *pixels, const sonject_synthetic
  * 4,000 cells, whose products scatter by about 3 / sqrt(N) = 0.05 in 1/shape. */
 static void test_texture_length(void **state)
 {
-    (void)state;
     sonject_synthetic_params synthetic = plain(800, 800);
     synthetic.speckle_shape = 1.5;
     synthetic.texture_length_m = 10.0 * SPACING;
@@ -366,7 +345,6 @@ static void test_texture_length(void **state)
  * uncorrelated places, each with an intensity deviation of about 1. */
 static void test_ripples(void **state)
 {
-    (void)state;
     sonject_synthetic_params synthetic = plain(800, 800);
     synthetic.ripple_contrast = 0.8;
     float *pixels = make(&synthetic, 1.0, 1.0);
@@ -386,7 +364,6 @@ static void test_ripples(void **state)
 /* Heading h and h + 180 degrees are the same crests. */
 static void test_opposite_heading(void **state)
 {
-    (void)state;
     sonject_synthetic_params synthetic = plain(60, 60);
     synthetic.ripple_contrast = 0.8;
     synthetic.ripple_heading_rad = 0.7;
@@ -414,7 +391,6 @@ static void expect_usable(const sonject_synthetic_params *synthetic, double alon
 
 static void test_extremes(void **state)
 {
-    (void)state;
     sonject_synthetic_params synthetic = plain(1, 1);
     synthetic.speckle_shape = 4.0;
     synthetic.ripple_contrast = 1.0;

@@ -1,17 +1,7 @@
 /* Numbers from text: correctly rounded, and the same under a locale with a decimal comma. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "claims.h"
 
 #include <locale.h>
-#include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include "base/text.h"
 
@@ -29,7 +19,6 @@ static void expect_number(const char *text, double expected, const char *expecte
 /* Expected values are written as hexadecimal bits, so that no decimal conversion checks itself. */
 static void test_numbers(void **state)
 {
-    (void)state;
     expect_number("0", 0.0, "");
     expect_number("-0.0", -0.0, "");
     expect_number("2.5", 0x1.4p1, "");
@@ -52,7 +41,6 @@ static void test_numbers(void **state)
 
 static void test_infinity_is_written_as_in_yaml(void **state)
 {
-    (void)state;
     expect_number("inf", HUGE_VAL, "");
     expect_number(".inf", HUGE_VAL, "");
     expect_number("-.INF", -HUGE_VAL, "");
@@ -65,7 +53,6 @@ static void test_what_is_no_number(void **state)
 {
     static const char *const texts[] = {"",   "-",  ".",     "-.",   "e5", "nan", ".nan",
                                         " 1", "m5", "--1.0", "+-.5", ".i", "i",   ".e1"};
-    (void)state;
     for (size_t i = 0; i < sizeof texts / sizeof texts[0]; i++) {
         double number = 7.0;
         const char *rest = NULL;
@@ -79,7 +66,6 @@ static void test_what_is_no_number(void **state)
 static void test_halfway_cases(void **state)
 {
     char text[3000];
-    (void)state;
     expect_number("9007199254740993", 0x1p53, "");
     expect_number("9007199254740995", 0x1.0000000000002p53, "");
     expect_number("9007199254740993.0000000000000000000001", 0x1.0000000000001p53, "");
@@ -99,7 +85,6 @@ static void test_a_tie_of_750_digits(void **state)
 {
     char digits[1100];
     char text[1200];
-    (void)state;
     memset(digits, '0', sizeof digits);
     digits[1075] = 0;
     digits[1074] = '1';
@@ -120,7 +105,6 @@ static void test_a_tie_of_750_digits(void **state)
 static void test_long_texts(void **state)
 {
     char text[3000];
-    (void)state;
     snprintf(text, sizeof text, "0.%01200d1e1201", 0);
     expect_number(text, 1.0, "");
     snprintf(text, sizeof text, "1%01200de-1199", 0);
@@ -133,7 +117,6 @@ static void test_a_shift_rounds_once(void **state)
 {
     double number;
     const char *rest;
-    (void)state;
     assert_true(text_to_shifted_number("6.7 cm", -2, &number, &rest));
     assert_true(number == 0x1.126e978d4fdf4p-4); /* 0.067; 6.7 * 0.01 is one bit more */
     assert_true(text_to_shifted_number("0.4e0", -3, &number, &rest));
@@ -164,7 +147,6 @@ static void expect_round_trips(int count)
 
 static void test_round_trips(void **state)
 {
-    (void)state;
     expect_round_trips(20000);
 }
 
@@ -172,7 +154,6 @@ static void test_a_decimal_comma_changes_nothing(void **state)
 {
     static const char *const names[] = {"de_DE.UTF-8", "de_DE.utf8",  "de_DE",      "fr_FR.UTF-8",
                                         "fr_FR.utf8",  "nb_NO.UTF-8", "nl_NL.UTF-8"};
-    (void)state;
     const char *found = NULL;
     for (size_t i = 0; i < sizeof names / sizeof names[0] && !found; i++)
         found = setlocale(LC_ALL, names[i]);
@@ -201,7 +182,6 @@ static void test_counts(void **state)
                                       "18446744073709551616",
                                       "99999999999999999999"};
     uint64_t count = 7;
-    (void)state;
     for (size_t i = 0; i < sizeof bad / sizeof bad[0]; i++)
         assert_false(text_to_count(bad[i], &count));
     assert_true(count == 7);
@@ -248,7 +228,6 @@ static void test_printable(void **state)
                                       "\xF4\x90\x80\x80",
                                       "\xF5\x80\x80\x80",
                                       "\xFF"};
-    (void)state;
     for (size_t i = 0; i < sizeof good / sizeof good[0]; i++)
         if (!text_is_printable(good[i]))
             fail_msg("good text %zu was refused", i);
@@ -261,7 +240,6 @@ static void test_what_goes_to_a_terminal_is_made_printable(void **state)
 {
     char text[] = "a\nb \x1B[31m \xC2\x9B"
                   "31m \xE2\x80\xAEgnp.x \xFF \xC3\xA5 \xE2\x82";
-    (void)state;
     text_make_printable(text);
     assert_string_equal(text, "a b  [31m ?31m ?gnp.x ? \xC3\xA5 ??");
     assert_true(text_is_printable(text));
@@ -270,7 +248,6 @@ static void test_what_goes_to_a_terminal_is_made_printable(void **state)
 static void test_excerpts(void **state)
 {
     char excerpt[8];
-    (void)state;
     assert_string_equal(text_excerpt(excerpt, sizeof excerpt, "seven 7"), "seven 7");
     assert_string_equal(text_excerpt(excerpt, sizeof excerpt, "eight  8"), "eigh...");
     /* A euro sign of three bytes does not fit after three letters, and is not cut in two. */

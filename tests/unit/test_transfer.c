@@ -1,14 +1,7 @@
 /* Transfer functions: stored numbers to amplitudes and back. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
+#include "claims.h"
 
 #include <float.h>
-#include <math.h>
-#include <stdlib.h>
 
 #include "image/transfer.h"
 
@@ -40,7 +33,6 @@ static void expect_amplitude(const sonject_transfer_params *transfer, uint8_t st
 
 static void test_definitions(void **state)
 {
-    (void)state;
     const sonject_transfer_params amplitude = make(SONJECT_TRANSFER_AMPLITUDE, 0.0, 0.0);
     const sonject_transfer_params intensity = make(SONJECT_TRANSFER_INTENSITY, 0.0, 0.0);
     const sonject_transfer_params decibel = make(SONJECT_TRANSFER_DECIBEL, 0.5, -100.0);
@@ -61,7 +53,6 @@ static void test_definitions(void **state)
 
 static void test_float_decibels(void **state)
 {
-    (void)state;
     const sonject_transfer_params decibel = make(SONJECT_TRANSFER_DECIBEL, 1.0, 0.0);
     const float stored = -40.0f;
     const float amplitude = amplitude_of(&decibel, PIXEL_FLOAT32, &stored);
@@ -126,14 +117,13 @@ static void expect_round_trip(const sonject_transfer_params *transfer, enum pixe
 
 static void test_every_value_comes_back(void **state)
 {
-    (void)state;
     const sonject_transfer_params kinds[] = {
         make(SONJECT_TRANSFER_AMPLITUDE, 0.0, 0.0),   make(SONJECT_TRANSFER_INTENSITY, 0.0, 0.0),
         make(SONJECT_TRANSFER_DECIBEL, 0.378, -90.0), make(SONJECT_TRANSFER_DECIBEL, 0.001, -60.0),
         make(SONJECT_TRANSFER_GAMMA, 0.5, 0.0),       make(SONJECT_TRANSFER_GAMMA, 2.2, 0.0),
         make(SONJECT_TRANSFER_GAMMA, 1.0, 0.0),       make(SONJECT_TRANSFER_SCHLICK, 1.0, 0.0),
         make(SONJECT_TRANSFER_SCHLICK, 3.0, 0.0),     make(SONJECT_TRANSFER_SCHLICK, 1000.0, 0.0)};
-    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+    for (size_t i = 0; i < COUNT(kinds); i++) {
         /* 0.378 dB a step over 65535 steps is more than a float holds */
         const bool fits_16_bit = kinds[i].parameter != 0.378;
         expect_round_trip(&kinds[i], PIXEL_UINT8, true);
@@ -147,13 +137,12 @@ static void test_every_value_comes_back(void **state)
 
 static void test_plain_floats_keep_every_bit(void **state)
 {
-    (void)state;
     const sonject_transfer_params plain = make(SONJECT_TRANSFER_AMPLITUDE, 0.0, 0.0);
     const float stored[] = {0.0f,     -0.0f,   1.0f,        -1.0f,  1.0f / 3.0f, FLT_MAX,
                             -FLT_MAX, FLT_MIN, FLT_MIN / 3, 1e-45f, 123456.789f};
-    const size_t count = sizeof stored / sizeof *stored;
-    float amplitude[sizeof stored / sizeof *stored];
-    float back[sizeof stored / sizeof *stored];
+    const size_t count = COUNT(stored);
+    float amplitude[COUNT(stored)];
+    float back[COUNT(stored)];
     size_t bad;
     uint64_t clipped = 0;
     assert_int_equal(
@@ -180,7 +169,6 @@ static void expect_refused(sonject_transfer kind, float value)
 
 static void test_values_without_an_amplitude(void **state)
 {
-    (void)state;
     for (int kind = SONJECT_TRANSFER_AMPLITUDE; kind <= SONJECT_TRANSFER_SCHLICK; kind++) {
         expect_refused((sonject_transfer)kind, NAN);
         expect_refused((sonject_transfer)kind, INFINITY);
@@ -196,7 +184,6 @@ static void test_values_without_an_amplitude(void **state)
 
 static void test_full_scale_is_counted(void **state)
 {
-    (void)state;
     const sonject_transfer_params plain = make(SONJECT_TRANSFER_AMPLITUDE, 0.0, 0.0);
     const uint8_t stored[] = {255, 254, 0, 255};
     const uint16_t wide[] = {65535, 65534, 255};
@@ -212,7 +199,6 @@ static void test_full_scale_is_counted(void **state)
 /* Twelve bits in sixteen. */
 static void test_the_recorders_full_scale(void **state)
 {
-    (void)state;
     sonject_transfer_params plain = make(SONJECT_TRANSFER_AMPLITUDE, 0.0, 0.0);
     plain.full_scale = 4095.0;
     const uint16_t stored[] = {4095, 4094, 8190};
@@ -236,7 +222,6 @@ static void test_the_recorders_full_scale(void **state)
 
 static void test_rounding_and_limits(void **state)
 {
-    (void)state;
     const sonject_transfer_params plain = make(SONJECT_TRANSFER_AMPLITUDE, 0.0, 0.0);
     const sonject_transfer_params decibel = make(SONJECT_TRANSFER_DECIBEL, 0.5, -100.0);
     const float amplitude[] = {0.0f, 0.0019f, 0.0020f, 1.0f, 1.0019f, 1.0020f, 1e30f};

@@ -1,17 +1,6 @@
 /* Quantities with units. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <string.h>
-
 #include "base/units.h"
-
-#define PI 3.14159265358979323846
+#include "claims.h"
 
 static double value_of(enum quantity quantity, const char *text)
 {
@@ -43,7 +32,6 @@ static void expect_problem(enum quantity quantity, const char *text, const char 
 /* All units but degrees and decibels are powers of ten, so these are exact comparisons. */
 static void test_every_unit(void **state)
 {
-    (void)state;
     expect(QUANTITY_NUMBER, "0.25", 0.25);
     expect(QUANTITY_LENGTH, "12.5", 12.5);
     expect(QUANTITY_LENGTH, "12.5 m", 12.5);
@@ -77,7 +65,6 @@ static void test_every_unit(void **state)
 
 static void test_angles_are_radians(void **state)
 {
-    (void)state;
     expect(QUANTITY_ANGLE, "180", PI);
     expect(QUANTITY_ANGLE, "90 deg", 0.5 * PI);
     expect(QUANTITY_ANGLE, "-45 deg", -0.25 * PI);
@@ -87,7 +74,6 @@ static void test_angles_are_radians(void **state)
 /* 1e-15 relative: pow is not bound to round correctly. */
 static void test_levels_are_energy_ratios(void **state)
 {
-    (void)state;
     expect(QUANTITY_LEVEL, "0 dB", 1.0);
     assert_true(fabs(value_of(QUANTITY_LEVEL, "-27 dB") / 0.001995262314968879602 - 1.0) < 1e-15);
     assert_true(fabs(value_of(QUANTITY_LEVEL, "-10 dB") / 0.1 - 1.0) < 1e-15);
@@ -96,7 +82,6 @@ static void test_levels_are_energy_ratios(void **state)
 
 static void test_blanks_do_not_matter(void **state)
 {
-    (void)state;
     expect(QUANTITY_LENGTH, " 2.5  cm ", 0.025);
     expect(QUANTITY_LENGTH, "2.5\tcm", 0.025);
     expect(QUANTITY_LENGTH, "2.5 ", 2.5);
@@ -104,7 +89,6 @@ static void test_blanks_do_not_matter(void **state)
 
 static void test_infinity_only_where_written(void **state)
 {
-    (void)state;
     expect(QUANTITY_NUMBER, "inf", HUGE_VAL);
     expect(QUANTITY_NUMBER, "-.inf", -HUGE_VAL);
     expect_problem(QUANTITY_NUMBER, "1e999", "too large");
@@ -114,7 +98,6 @@ static void test_infinity_only_where_written(void **state)
 
 static void test_problems(void **state)
 {
-    (void)state;
     expect_problem(QUANTITY_LENGTH, "3 kg", "unit 'kg' is not one of m, km, cm, mm");
     expect_problem(QUANTITY_LENGTH, "3 M", "unit 'M'");
     expect_problem(QUANTITY_LENGTH, "3 m 4 cm", "unit 'm 4 cm'");
@@ -136,7 +119,6 @@ static void test_problems(void **state)
 static void test_a_long_unit_is_cut_in_the_message(void **state)
 {
     char text[5000];
-    (void)state;
     memset(text, 'k', sizeof text);
     text[0] = '1';
     text[sizeof text - 1] = 0;

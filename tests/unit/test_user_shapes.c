@@ -2,23 +2,11 @@
  * scene files that hold code, and that they need consent. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "api/scene_hash.h"
 #include "base/text.h"
+#include "claims.h"
 #include "scene_folder.h"
 #include "user/build_log.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 #define DISTANCE "float shape_distance(float3 p, float3 d, float t, const float *a) { return t; }\n"
 #define NORMAL   "float3 shape_normal(float3 p, const float *a) { return p; }\n"
@@ -46,7 +34,6 @@ static void expect_code_taken(const char *code)
 /* Each reaches beyond the snippet, or hides something that does. */
 static void test_hostile_code_is_refused_with_its_line(void **state)
 {
-    (void)state;
     expect_code_refused(GOOD "#undef FUNCTION\n",
                         "my.cl:3: #undef is not possible here; known are #define, #if, #ifdef, "
                         "#ifndef, #elif, #else, #endif and #error");
@@ -86,7 +73,6 @@ static void test_hostile_code_is_refused_with_its_line(void **state)
 
 static void test_sound_code_is_taken(void **state)
 {
-    (void)state;
     expect_code_taken(GOOD);
     expect_code_taken("#define LONG(x) \\\n  ((x) * {\\\n)\n#if defined(LONG) && 1\n" GOOD
                       "#else\n#error none\n#endif");
@@ -101,7 +87,6 @@ static void test_size_and_names_are_limited(void **state)
     struct user_snippet snippet;
     char name[SNIPPET_NAME_MAX + 2];
     char *code = calloc(SNIPPET_BYTES_MAX + 2, 1);
-    (void)state;
     assert_non_null(code);
     memset(code, ' ', SNIPPET_BYTES_MAX + 1);
     memcpy(code, GOOD, strlen(GOOD));
@@ -127,8 +112,7 @@ static void append(struct user_shapes *shapes, const char *name, const char *cod
     params.name = name;
     params.code = code;
     params.bounding_radius_m = 1.0;
-    if (user_shapes_append(shapes, &report, &params) != SONJECT_OK)
-        fail_msg("%s", report.message);
+    EXPECT_OK(&report, user_shapes_append(shapes, &report, &params));
 }
 
 static void count_line(void *count, const char *line)
@@ -157,7 +141,6 @@ static void expect_explained(const char *log, long line, const char *message)
 
 static void test_build_logs_become_lines(void **state)
 {
-    (void)state;
     expect_explained(
         "warning: /tmp/x.cl:2:1: unused\nerror: /tmp/x.cl:%ld:10: use of undeclared 'y'\n"
         "error: /tmp/x.cl:13:1: more\n",
@@ -177,7 +160,6 @@ static void test_build_logs_become_lines(void **state)
 static void test_equal_codes_are_one(void **state)
 {
     struct user_shapes shapes;
-    (void)state;
     memset(&shapes, 0, sizeof shapes);
     append(&shapes, "a.cl", GOOD);
     append(&shapes, "b.cl", GOOD);
@@ -317,8 +299,7 @@ static void test_shapes_count_as_inputs(void **state)
     assert_int_equal(read_with_consent(folder, BASE "  - shape: user\n" CODE), SONJECT_OK);
     assert_int_equal(scene_hash(&folder->report, &folder->scene, "", one), SONJECT_OK);
     for (size_t i = 0; i < COUNT(others); i++) {
-        if (read_with_consent(folder, others[i]) != SONJECT_OK)
-            fail_msg("%s", folder->report.message);
+        EXPECT_OK(&folder->report, read_with_consent(folder, others[i]));
         assert_int_equal(scene_hash(&folder->report, &folder->scene, "", other), SONJECT_OK);
         assert_string_not_equal(one, other);
     }

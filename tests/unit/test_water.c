@@ -1,22 +1,10 @@
 /* Sound through level layers against Snell's law summed up in long double, against Fermat's
  * principle, the arcs of a linear profile and the power that a ray tube carries. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "medium/profile.h"
 #include "medium/water.h"
 #include "physics/reference_layers.h"
 
-#define PI          3.14159265358979323846
-#define COUNT(list) (sizeof(list) / sizeof(list)[0])
 #define BOUNCES_MAX 3
 
 static struct report report;
@@ -35,8 +23,7 @@ static void expect_relative(const char *what, double measured, double expected, 
 static void lay(struct water *water, const struct water_layer *layers, size_t count,
                 double highest_m)
 {
-    if (water_init(water, &report, layers, count, 1500.0, highest_m) != SONJECT_OK)
-        fail_msg("%s", report.message);
+    EXPECT_OK(&report, water_init(water, &report, layers, count, 1500.0, highest_m));
 }
 
 static struct water_way way_of(const struct water *water, const struct reference_way *folded)
@@ -147,9 +134,8 @@ static void compare_ray(const struct water *water, const struct reference_way *f
     }
 }
 
-static void test_snell(void **unused)
+static void test_snell(void **state)
 {
-    (void)unused;
     largest_error = 0.0;
     on_every_way(compare_ray);
     print_message("largest relative error of range and time: %.2g\n", largest_error);
@@ -193,9 +179,8 @@ static void compare_two_points(const struct water *water, const struct reference
     }
 }
 
-static void test_two_points(void **unused)
+static void test_two_points(void **state)
 {
-    (void)unused;
     largest_error = 0.0;
     on_every_way(compare_two_points);
     print_message("largest relative error of the time between two points: %.2g\n", largest_error);
@@ -203,9 +188,8 @@ static void test_two_points(void **unused)
 
 /* Fermat: of all ways over a plane between two waters sound takes the quickest. Nothing of Snell's
  * law is in here. */
-static void test_fermat(void **unused)
+static void test_fermat(void **state)
 {
-    (void)unused;
     static const double ranges[] = {1.0, 10.0, 35.0, 120.0, 1000.0};
     struct water water;
     lay(&water, two_layers, 2, 2.0);
@@ -264,9 +248,8 @@ static double arc_time(double bottom_speed, double growth, double range, double 
 
 /* The ray of p = cos/c goes round the height where sound would stand still, in an arc of radius
  * 1/(p g) = c0/(g cos). */
-static void test_linear_profile(void **unused)
+static void test_linear_profile(void **state)
 {
-    (void)unused;
     static const size_t counts[] = {200, 2000};
     static const double growths[] = {2.0, -2.0, 0.1}; /* m/s per m */
     static const double ranges[] = {10.0, 40.0, 120.0};
@@ -308,9 +291,8 @@ static void test_linear_profile(void **unused)
 }
 
 /* As scene files write it, and with targets that reach through many of its layers. */
-static void test_profile_with_targets(void **unused)
+static void test_profile_with_targets(void **state)
 {
-    (void)unused;
     static const double heights[] = {0.0, 25.0};
     static const double speeds[] = {1480.0, 1530.0};
     struct water_layer *layers = NULL;
@@ -331,9 +313,8 @@ static void test_profile_with_targets(void **unused)
 
 /* ---- equal layers ---- */
 
-static void test_split_layer(void **unused)
+static void test_split_layer(void **state)
 {
-    (void)unused;
     struct water_layer split[21];
     size_t count = 0;
     for (size_t i = 0; i < COUNT(two_layers); i++)
@@ -359,9 +340,8 @@ static void test_split_layer(void **unused)
 }
 
 /* Layers of one speed are isovelocity water, also where the layers above the sonar differ. */
-static void test_straight_water(void **unused)
+static void test_straight_water(void **state)
 {
-    (void)unused;
     static const struct water_layer equal[] = {
         {0.0, 1490.0, 1.0}, {3.0, 1490.0, 1.0}, {9.0, 1490.0, 1.0}};
     static const struct water_layer above[] = {{0.0, 1490.0, 1.0}, {30.0, 1520.0, 1.2}};
@@ -437,16 +417,14 @@ static void compare_tube(const struct water *water, const struct reference_way *
     }
 }
 
-static void test_ray_tube(void **unused)
+static void test_ray_tube(void **state)
 {
-    (void)unused;
     on_every_way(compare_tube);
 }
 
 /* As the layers' contrast goes, so does what they do. */
-static void test_small_contrast(void **unused)
+static void test_small_contrast(void **state)
 {
-    (void)unused;
     static const struct water_layer layers[] = {{0.0, 1500.0, 1.0}, {8.0, 1500.0 + 1.5e-6, 1.0}};
     struct water water;
     lay(&water, layers, 2, 2.0);
@@ -473,9 +451,8 @@ static double plane_passes(const struct water_layer *one, const struct water_lay
     return 1.0 - pow((z1 - z2) / (z1 + z2), 2.0);
 }
 
-static void test_transmission(void **unused)
+static void test_transmission(void **state)
 {
-    (void)unused;
     static const struct water_layer light[] = {{0.0, 1490.0, 1030.0},
                                                {6.0, 1510.0, 1030.0}, /* all passes this plane */
                                                {9.0, 1510.0, 400.0},  /* density alone */
@@ -515,9 +492,8 @@ static void test_transmission(void **unused)
 }
 
 /* Straight rays, but not all of their sound. */
-static void test_density_alone(void **unused)
+static void test_density_alone(void **state)
 {
-    (void)unused;
     static const struct water_layer layers[] = {{0.0, 1500.0, 3.0}, {8.0, 1500.0, 1.0}};
     struct water water;
     lay(&water, layers, 2, 2.0);
@@ -540,9 +516,8 @@ static bool is_infinite(const struct water_ray *ray)
            isinf(ray->wavefront_m) && isinf(ray->spreading);
 }
 
-static void test_total_reflection(void **unused)
+static void test_total_reflection(void **state)
 {
-    (void)unused;
     static const struct water_layer layers[] = {
         {0.0, 1490.0, 1.0}, {10.0, 1540.0, 1.0}, {15.0, 1490.0, 1.0}};
     struct water water;
@@ -585,9 +560,8 @@ static void test_total_reflection(void **unused)
 
 /* ---- the seabed by travel time ---- */
 
-static void test_ground_range(void **unused)
+static void test_ground_range(void **state)
 {
-    (void)unused;
     for (size_t w = 0; w < COUNT(waters); w++)
         for (uint32_t bounces = 0; bounces <= 2; bounces++) {
             struct water water;
@@ -636,9 +610,8 @@ static void compare_slope(const struct water *water, const struct reference_way 
     }
 }
 
-static void test_slope_of_time(void **unused)
+static void test_slope_of_time(void **state)
 {
-    (void)unused;
     on_every_way(compare_slope);
 }
 
@@ -651,9 +624,8 @@ static double time_up(const struct water_layer *layers, size_t count, double hei
     return (double)reference_sum(&up, 0.0, 0.0L).time;
 }
 
-static void test_joined_layers(void **unused)
+static void test_joined_layers(void **state)
 {
-    (void)unused;
     static const struct water_layer layers[] = {{0.0, 1490.0, 1.0},
                                                 {0.4, 1491.0, 1.0},
                                                 {0.9, 1492.0, 1.0},
@@ -697,9 +669,8 @@ static void expect_refused(const struct water_layer *layers, size_t count)
 }
 
 /* Up to 1 m both halves count alike: each is half the difference away from what joins them. */
-static void test_refused_layers(void **unused)
+static void test_refused_layers(void **state)
 {
-    (void)unused;
     struct water_layer layers[] = {{0.0, 1500.0, 1.0}, {0.5, 1500.0, 1.0}, {2.0, 1530.0, 1.2}};
     struct water water;
     layers[1].speed_mps = 1500.0 * (1.0 + 1.0 / 260.0);

@@ -1,0 +1,27 @@
+/* CMocka with the headers that it wants before it, and what most tests in C have in common. */
+#ifndef SONJECT_TESTS_CLAIMS_H
+#define SONJECT_TESTS_CLAIMS_H
+
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#define COUNT(list) (sizeof(list) / sizeof(list)[0])
+#define PI          3.14159265358979323846
+
+/* The call must succeed; otherwise the test fails with the message of its report. */
+#define EXPECT_OK(report, call)                                                                    \
+    do {                                                                                           \
+        if ((call) != SONJECT_OK)                                                                  \
+            fail_msg("%s", (report)->message);                                                     \
+    } while (0)
+
+#endif
