@@ -126,10 +126,8 @@ sonject_status sonject_campaign_read(sonject_context *context, const char *path,
     sonject_campaign_read_params_init(&taken);
     sonject_status status = SONJECT_OK;
     if (params)
-        status = params_take(&context->report, &taken, sizeof taken, params, sizeof taken,
-                             "campaign read parameters");
-    if (status != SONJECT_OK)
-        return status;
+        CHECK(params_take(&context->report, &taken, sizeof taken, params, sizeof taken,
+                          "campaign read parameters"));
     if (!path || (count > 0 && !overrides))
         return null_argument(&context->report, "path and overrides");
     for (size_t i = 0; i < count; i++)

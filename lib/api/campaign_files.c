@@ -119,11 +119,8 @@ sonject_status image_files_check(const struct image_files *files, struct report 
         const json_t *entry = json_array_get(list, i);
         const char *name = json_string_value(json_object_get(entry, "name"));
         bool holds = false;
-        sonject_status status = SONJECT_OK;
         if (name && strcmp(name, path + files->folder_length) == 0)
-            status = file_entry_holds(report, entry, path, true, &holds);
-        if (status != SONJECT_OK)
-            return status;
+            CHECK(file_entry_holds(report, entry, path, true, &holds));
         if (!holds)
             *changed = path;
     }

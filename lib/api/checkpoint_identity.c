@@ -23,8 +23,7 @@ static sonject_status take_device(struct report *report, const struct checkpoint
     if (job->request->scene->user_shapes.count == 0)
         return SONJECT_OK;
     struct hash *hash = hash_begin();
-    if (!hash)
-        return report_out_of_memory(report, "a hash");
+    CHECK_MEMORY(report, hash, "a hash");
     hash_add_text(hash, job->device->name);
     hash_add_text(hash, job->device->platform);
     hash_add_text(hash, job->device->driver);

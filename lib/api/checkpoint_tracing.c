@@ -93,9 +93,7 @@ sonject_status trace_rest(struct tracing *tracing, uint64_t next, bool is_comple
     input.checkpoint = &tracing->checkpoint;
     while (status == SONJECT_OK && !is_complete) {
         struct trace_counts counts;
-        status = begin_checkpoint(tracing, next);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(begin_checkpoint(tracing, next));
         status = injection_trace(tracing->report, job->device, job->request->scene, &input, &nobody,
                                  tell, tracing, &counts);
         status = end_checkpoint(tracing, status, &next, &is_complete);
@@ -118,10 +116,8 @@ sonject_status trace_and_form(struct tracing *tracing, struct injection_result *
 {
     uint64_t next;
     bool is_complete;
-    sonject_status status = begin_checkpoint(tracing, 0);
-    if (status != SONJECT_OK)
-        return status;
-    status = form_traced(tracing, result);
+    CHECK(begin_checkpoint(tracing, 0));
+    sonject_status status = form_traced(tracing, result);
     *is_formed = status == SONJECT_OK;
     if (*is_formed) {
         checkpoint_clear(&tracing->checkpoint);

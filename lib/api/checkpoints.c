@@ -38,8 +38,7 @@ static sonject_status refuse_incomplete(struct tracing *tracing, struct growing_
                                         uint32_t count, uint64_t shards)
 {
     char *names = growing_text_end(text);
-    if (!names)
-        return report_out_of_memory(tracing->report, "shards");
+    CHECK_MEMORY(tracing->report, names, "shards");
     char more[32] = "";
     if (count > NAMES_MOST)
         snprintf(more, sizeof more, " and %u more", (unsigned)(count - NAMES_MOST));
@@ -66,8 +65,7 @@ static sonject_status collect(struct tracing *tracing, const struct sums_folder 
     memset(&missing, 0, sizeof missing);
     all->count = 0;
     all->files = allocate_array(folder->count, sizeof *all->files);
-    if (!all->files)
-        return report_out_of_memory(tracing->report, "shards");
+    CHECK_MEMORY(tracing->report, all->files, "shards");
     for (uint64_t shard = 1; status == SONJECT_OK && shard <= shards; shard++) {
         struct sums_chain chain;
         status = sums_chain_find(&chain, tracing->report, folder, shard);
@@ -109,14 +107,11 @@ static sonject_status run_shard(struct tracing *tracing, struct injection_result
     struct sums_folder folder;
     struct sums_chain chain = {NULL, 0, 0, false};
     const bool is_whole = tracing->job->request->shards == 0;
-    sonject_status status = check_shards(tracing);
-    if (status != SONJECT_OK)
-        return status;
-    status = sums_folder_read(&folder, tracing->report, tracing->folder, tracing->head.shard, true);
-    if (status == SONJECT_OK)
-        status = check_folder(tracing, &folder);
-    if (status == SONJECT_OK)
-        status = sums_chain_find(&chain, tracing->report, &folder, tracing->head.shard);
+    CHECK(check_shards(tracing));
+    sonject_status status =
+        sums_folder_read(&folder, tracing->report, tracing->folder, tracing->head.shard, true);
+    THEN(status, check_folder(tracing, &folder));
+    THEN(status, sums_chain_find(&chain, tracing->report, &folder, tracing->head.shard));
     if (status == SONJECT_OK && chain.count > 0)
         report_news(tracing->report, "goes on with what is in %s", tracing->folder);
     if (status == SONJECT_OK && is_whole && chain.count == 0)
@@ -128,8 +123,7 @@ static sonject_status run_shard(struct tracing *tracing, struct injection_result
     if (status != SONJECT_OK || !is_whole || *is_formed)
         return status;
     status = sums_folder_read(&folder, tracing->report, tracing->folder, 1, false);
-    if (status == SONJECT_OK)
-        status = add_up(tracing, &folder, result);
+    THEN(status, add_up(tracing, &folder, result));
     *is_formed = status == SONJECT_OK;
     sums_folder_clear(&folder);
     return status;
@@ -144,10 +138,8 @@ static sonject_status merge(struct tracing *tracing, struct injection_result *re
         status =
             report_failure(tracing->report, SONJECT_ERROR_INPUT,
                            "%s: holds no shards: run them with --shard I/K first", tracing->folder);
-    if (status == SONJECT_OK)
-        status = check_merged(tracing, &folder);
-    if (status == SONJECT_OK)
-        status = add_up(tracing, &folder, result);
+    THEN(status, check_merged(tracing, &folder));
+    THEN(status, add_up(tracing, &folder, result));
     *is_formed = status == SONJECT_OK;
     sums_folder_clear(&folder);
     return status;
@@ -164,11 +156,9 @@ sonject_status inject_by_checkpoints(const struct checkpoint_job *job,
     *is_formed = false;
     sonject_status status = tracing.folder ? take_sums_head(&tracing)
                                            : report_out_of_memory(tracing.report, "a file name");
-    if (status == SONJECT_OK)
-        status = kept_scene_join(&tracing.source, tracing.report, job->request->source);
-    if (status == SONJECT_OK)
-        status = job->request->merges ? merge(&tracing, result, is_formed)
-                                      : run_shard(&tracing, result, is_formed);
+    THEN(status, kept_scene_join(&tracing.source, tracing.report, job->request->source));
+    THEN(status, job->request->merges ? merge(&tracing, result, is_formed)
+                                      : run_shard(&tracing, result, is_formed));
     free(tracing.folder);
     free((void *)tracing.source.texts);
     return status;

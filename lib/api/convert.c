@@ -58,10 +58,9 @@ static sonject_status read_input(struct report *report, const sonject_convert_pa
 {
     struct swath_file *file = NULL;
     size_t bytes = 0;
-    sonject_status status = swath_file_open_beside(report, params->input, params->into,
-                                                   params->channel, params->array, &file);
-    if (status != SONJECT_OK)
-        return status;
+    sonject_status status;
+    CHECK(swath_file_open_beside(report, params->input, params->into, params->channel,
+                                 params->array, &file));
     struct raster_layout *layout = &conversion->layout;
     swath_file_layout(file, layout);
     const struct region whole = {0, 0, layout->rows, layout->columns};
@@ -84,10 +83,9 @@ static sonject_status write_into(struct report *report, const sonject_convert_pa
 {
     struct swath_file *file = NULL;
     struct raster_layout layout;
-    sonject_status status = swath_file_open_beside(report, params->into, params->input,
-                                                   params->channel, params->array, &file);
-    if (status != SONJECT_OK)
-        return status;
+    sonject_status status;
+    CHECK(swath_file_open_beside(report, params->into, params->input, params->channel,
+                                 params->array, &file));
     swath_file_layout(file, &layout);
     const struct raster_layout *ours = &conversion->layout;
     const struct region whole = {0, 0, layout.rows, layout.columns};
@@ -132,15 +130,13 @@ static sonject_status write_new(struct report *report, const sonject_convert_par
 static sonject_status convert(struct report *report, const sonject_convert_params *params,
                               struct conversion *conversion)
 {
-    sonject_status status = read_input(report, params, conversion);
-    if (status == SONJECT_OK && params->magnitude)
-        status = conversion_to_magnitude(report, conversion, params->input);
-    if (status == SONJECT_OK && params->range_axis != SONJECT_CONVERT_AXIS_KEPT)
-        status = conversion_resample(report, conversion, params);
-    if (status == SONJECT_OK && params->samples != SONJECT_SAMPLES_KEPT)
-        status = conversion_to_type(report, conversion, params);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(read_input(report, params, conversion));
+    if (params->magnitude)
+        CHECK(conversion_to_magnitude(report, conversion, params->input));
+    if (params->range_axis != SONJECT_CONVERT_AXIS_KEPT)
+        CHECK(conversion_resample(report, conversion, params));
+    if (params->samples != SONJECT_SAMPLES_KEPT)
+        CHECK(conversion_to_type(report, conversion, params));
     return params->into ? write_into(report, params, conversion)
                         : write_new(report, params, conversion);
 }

@@ -108,16 +108,14 @@ static sonject_status read_stored(struct report *report, const struct measured_i
     struct swath_file *file = NULL;
     size_t bytes = 0;
     *stored = NULL;
-    sonject_status status = swath_file_open_beside(report, image->path, image->other,
-                                                   image->channel, image->array, &file);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(swath_file_open_beside(report, image->path, image->other, image->channel, image->array,
+                                 &file));
     swath_file_layout(file, layout);
     const struct region whole = {0, 0, layout->rows, layout->columns};
     if (layout->rows * layout->columns <= (uint64_t)1 << 31 && region_bytes(layout, &whole, &bytes))
         *stored = allocate_array(bytes, 1);
-    status = *stored ? swath_file_read(report, file, &whole, *stored)
-                     : report_out_of_memory(report, image->path);
+    sonject_status status = *stored ? swath_file_read(report, file, &whole, *stored)
+                                    : report_out_of_memory(report, image->path);
     swath_file_close(&file);
     return status;
 }
@@ -241,12 +239,10 @@ sonject_status sonject_measure(sonject_context *context, const sonject_measure_p
     struct measured measured;
     memset(&measured, 0, sizeof measured);
     sonject_measure_params_init(&taken);
-    sonject_status status =
-        params_take(report, &taken, sizeof taken, params, sizeof taken, "measure parameters");
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "measure parameters"));
     if (!taken.image || !measurement)
         return null_argument(report, "image and measurement");
+    sonject_status status = SONJECT_OK;
     if (taken.has_transfer)
         status = check_transfer(&taken.transfer, report, NULL);
     else

@@ -31,8 +31,7 @@ static sonject_status read_kept_scene(struct report *report, const struct sums_f
     sonject_status status = kept_scene_find(&kept, report, file);
     if (status == SONJECT_OK && strcmp(file->head.identity.version, sonject_version()) != 0)
         status = refuse_foreign_sums(report, file->path, "another version of sonject");
-    if (status == SONJECT_OK)
-        status = read_traced_scene(report, &kept, &params, scene);
+    THEN(status, read_traced_scene(report, &kept, &params, scene));
     free(kept.overrides);
     return status;
 }
@@ -48,8 +47,7 @@ static sonject_status merge_kept(struct sonject_context *context, const struct r
     struct scene scene;
     scene_init(&scene);
     char *work = checkpoints_folder(request->folder);
-    if (!work)
-        return report_out_of_memory(report, "a file name");
+    CHECK_MEMORY(report, work, "a file name");
     sonject_status status = sums_folder_read(&folder, report, work, 0, false);
     const bool is_merged =
         status == SONJECT_OK && folder.count == 0 && folder_has_result(request->folder);

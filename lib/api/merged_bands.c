@@ -35,8 +35,7 @@ static sonject_status list_kept(struct report *report, const struct kept_scene *
     if (!kept->text)
         return SONJECT_OK;
     const char **others = allocate_array(kept->override_count, sizeof *others);
-    if (!others)
-        return report_out_of_memory(report, "the names of bands");
+    CHECK_MEMORY(report, others, "the names of bands");
     for (size_t i = 0; i < kept->override_count; i++)
         if (strncmp(kept->overrides[i], CHOICE, strlen(CHOICE)) == 0)
             is_chosen = strcmp(kept->overrides[i] + strlen(CHOICE), band) == 0;
@@ -66,8 +65,7 @@ static sonject_status find_in_shards(struct report *report, const char *folder, 
     if (status == SONJECT_OK && is_there) {
         struct kept_scene kept;
         status = kept_scene_find(&kept, report, &file);
-        if (status == SONJECT_OK)
-            status = list_kept(report, &kept, band, names);
+        THEN(status, list_kept(report, &kept, band, names));
         free(kept.overrides);
         sums_file_close(&file);
     }
@@ -83,9 +81,7 @@ static sonject_status find_in_result(struct report *report, const char *folder, 
     size_t i;
     const json_t *name;
     json_t *document;
-    const sonject_status status = earlier_document(report, folder, RUN_DOCUMENT, &document);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(earlier_document(report, folder, RUN_DOCUMENT, &document));
     const char *own = json_string_value(json_object_get(document, "band"));
     const bool is_of_band = own && strcmp(own, band) == 0;
     if (is_of_band) {
@@ -106,8 +102,7 @@ sonject_status find_bands(struct report *report, const char *folder, char **name
     uint64_t shards;
     *names = NULL;
     sonject_status status = count_shards(report, folder, &shards);
-    if (status == SONJECT_OK)
-        status = folder_names_read(&below, report, folder, "");
+    THEN(status, folder_names_read(&below, report, folder, ""));
     if (status != SONJECT_OK)
         return status;
     const bool is_run = shards > 0 || folder_has_result(folder);

@@ -21,16 +21,12 @@ sonject_status sonject_scene_set_pulse(sonject_scene *scene, const sonject_pulse
     if (!scene)
         return SONJECT_ERROR_ARGUMENT;
     sonject_pulse_params taken = scene->scene.pulse;
-    sonject_status status =
-        params_take(scene->report, &taken, sizeof taken, pulse, sizeof taken, "pulse");
-    THEN(status, check_pulse(&taken, scene->report, NULL));
-    if (status == SONJECT_OK && taken.kind == SONJECT_PULSE_TABLE &&
-        scene->scene.pulse_table.count == 0)
-        status = report_failure(scene->report, SONJECT_ERROR_INPUT,
-                                "kind of the pulse is a table, but the scene has none: set it "
-                                "first");
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(params_take(scene->report, &taken, sizeof taken, pulse, sizeof taken, "pulse"));
+    CHECK(check_pulse(&taken, scene->report, NULL));
+    if (taken.kind == SONJECT_PULSE_TABLE && scene->scene.pulse_table.count == 0)
+        return report_failure(scene->report, SONJECT_ERROR_INPUT,
+                              "kind of the pulse is a table, but the scene has none: set it "
+                              "first");
     scene->scene.pulse = taken;
     if (taken.kind != SONJECT_PULSE_TABLE)
         response_table_clear(&scene->scene.pulse_table);

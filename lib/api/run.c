@@ -168,12 +168,9 @@ static sonject_status check_earlier(struct sonject_context *context,
 {
     struct report *report = &context->report;
     struct device *device = NULL;
-    sonject_status status =
-        scene_inputs(report, request->scene, swath->identity, hash, &facts->inputs);
-    if (status == SONJECT_OK && request->scene->user_shapes.count > 0)
-        status = context_device(context, &device);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(scene_inputs(report, request->scene, swath->identity, hash, &facts->inputs));
+    if (request->scene->user_shapes.count > 0)
+        CHECK(context_device(context, &device));
     json_add(&facts->inputs, "image", json_text(facts->image_name));
     if (device)
         json_add(&facts->inputs, "device", device_document(device));

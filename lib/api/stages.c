@@ -39,8 +39,7 @@ static sonject_status describe(struct report *report, const struct sonject_scene
     strncpy(facts->image_hash, swath->identity, sizeof facts->image_hash - 1);
     impulse_facts_note_sonar(facts, &scene->scene.sonar);
     sonject_status status = kept_scene_join(source, report, &scene->source);
-    if (status == SONJECT_OK)
-        status = traced_scene_hash(report, &scene->scene, swath->identity, hash);
+    THEN(status, traced_scene_hash(report, &scene->scene, swath->identity, hash));
     if (status == SONJECT_OK)
         memcpy(head->identity.scene, hash, sizeof hash);
     return status;
@@ -79,20 +78,16 @@ static sonject_status trace_swath(struct sonject_context *context,
     const struct impulse_sink sink = {write_lines, &files};
     memset(&writer, 0, sizeof writer);
     sonject_status status = describe(report, scene, swath, &head, &source, &facts);
-    if (status == SONJECT_OK)
-        status = sums_writer_begin_file(&writer, report, params->file, &head, source);
+    THEN(status, sums_writer_begin_file(&writer, report, params->file, &head, source));
     if (status == SONJECT_OK && export_file)
         status = impulse_export_begin(report, export_file, &files.export);
-    if (status == SONJECT_OK)
-        status = context_device(context, &device);
-    if (status == SONJECT_OK)
-        status = injection_trace(report, device, &scene->scene, &input, &sink, progress, user,
-                                 &facts.counts);
+    THEN(status, context_device(context, &device));
+    THEN(status, injection_trace(report, device, &scene->scene, &input, &sink, progress, user,
+                                 &facts.counts));
     if (status == SONJECT_OK && files.export)
         status = impulse_export_publish(files.export, &scene->scene, &input, &facts,
                                         head.identity.scene, image_path);
-    if (status == SONJECT_OK)
-        status = impulse_file_publish(&writer, &facts, image_path);
+    THEN(status, impulse_file_publish(&writer, &facts, image_path));
     impulse_export_release(&files.export);
     sums_writer_clear(&writer);
     free((void *)source.texts);
@@ -111,17 +106,12 @@ sonject_status sonject_trace(sonject_context *context, const sonject_scene *scen
     sonject_trace_params taken;
     struct swath swath;
     sonject_trace_params_init(&taken);
-    sonject_status status =
-        params_take(&context->report, &taken, sizeof taken, params,
-                    offsetof(sonject_trace_params, export_file), "trace parameters");
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(params_take(&context->report, &taken, sizeof taken, params,
+                      offsetof(sonject_trace_params, export_file), "trace parameters"));
     if (!taken.file || !taken.file[0])
         return null_argument(&context->report, "file");
-    status = swath_open(&context->report, &scene->scene, &swath);
-    if (status != SONJECT_OK)
-        return status;
-    status = trace_swath(context, scene, &swath, &taken, progress, user);
+    CHECK(swath_open(&context->report, &scene->scene, &swath));
+    sonject_status status = trace_swath(context, scene, &swath, &taken, progress, user);
     swath_close(&swath);
     return status;
 }
@@ -260,8 +250,7 @@ static sonject_status form_file(struct sonject_context *context, const sonject_s
     request.user = user;
     scene_init(&read);
     sonject_status status = check_version(report, params->file, &sums->head.identity);
-    if (status == SONJECT_OK)
-        status = kept_scene_find(&kept, report, sums);
+    THEN(status, kept_scene_find(&kept, report, sums));
     if (status == SONJECT_OK && !scene)
         status = read_traced_scene(report, &kept, params, &read);
     request.scene = scene ? &scene->scene : &read;

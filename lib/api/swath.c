@@ -211,9 +211,8 @@ static sonject_status make_patch(struct report *report, const struct scene *scen
                                  struct swath *swath)
 {
     struct injection_input whole;
-    sonject_status status = make_input(report, scene, &whole);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(make_input(report, scene, &whole));
+    sonject_status status = SONJECT_OK;
     const size_t parts = swath->is_complex ? 2 : 1;
     const size_t row_floats = (size_t)swath->patch.columns * parts;
     swath->pixels = allocate_array((size_t)swath->patch.rows, row_floats * sizeof(float));
