@@ -1,10 +1,6 @@
 #include "mesh_samples.h"
 
-#include <math.h>
-#include <stdlib.h>
-#include <string.h>
-
-#define PI 3.14159265358979323846
+#include "claims.h"
 
 static uint64_t state = 88172645463325252u;
 

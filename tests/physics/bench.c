@@ -1,18 +1,7 @@
 #include "bench.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "cl/launch.h"
+#include "claims.h"
 
 static void expect_ok(struct bench *bench, sonject_status status)
 {

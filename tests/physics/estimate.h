@@ -2,10 +2,7 @@
 #ifndef SONJECT_TESTS_ESTIMATE_H
 #define SONJECT_TESTS_ESTIMATE_H
 
-#include <stddef.h>
-#include <stdint.h>
-
-#define PI 3.14159265358979323846
+#include "claims.h"
 
 /* A mean and its standard error. */
 struct estimate {

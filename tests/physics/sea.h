@@ -1,27 +1,15 @@
 /* A small sea for physical claims: one patch, some objects, one device. What the library computes
- * of it is given out as plain numbers, and its inside is named in sea.c alone; all that is given
+ * of it is given out as plain numbers, and its inside is named in sea*.c alone; all that is given
  * out lives until the claim ends. Calls that fail end the claim. */
 #ifndef SONJECT_TESTS_SEA_H
 #define SONJECT_TESTS_SEA_H
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <complex.h>
-#include <math.h>
-#include <stdbool.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include <sonject/sonject.h>
 
+#include "claims.h"
 #include "estimate.h"
-
-#define COUNT(array) (sizeof(array) / sizeof *(array))
 
 struct bench;
 struct water_layer;

@@ -1,15 +1,6 @@
 #include "mesh_drafts.h"
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
+#include "claims.h"
 
 void put(struct draft *draft, const void *bytes, size_t count)
 {

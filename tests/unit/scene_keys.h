@@ -1,17 +1,10 @@
 /* Every key of scene files: a value for it, where that must arrive, and what its section needs
- * then. To be included after cmocka.h, by files that begin with #define _POSIX_C_SOURCE 200809L. */
+ * then. To be included by files that begin with #define _POSIX_C_SOURCE 200809L. */
 #ifndef SCENE_KEYS_H
 #define SCENE_KEYS_H
 
-#include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <string.h>
-
+#include "claims.h"
 #include "scene_folder.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-#define PI           3.14159265358979323846
 
 static const char small[] = "sonject: 1\n"
                             "input:\n"

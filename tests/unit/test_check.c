@@ -1,19 +1,9 @@
 /* Ranges of a scene's values, and the defaults. */
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
-
-#include <math.h>
-#include <string.h>
-
+#include "claims.h"
 #include "first_key.h"
 #include "scene/scene.h"
 #include "scene/surface_material.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* One of each structure, all good. */
 struct all {
@@ -121,7 +111,6 @@ static void expect_taken(const struct all *all, const char *name, double value)
         fail_msg("%s of %g was refused: %s", name, value, report.message);
 }
 
-#define PI   3.14159265358979323846
 #define NONE NAN /* no such limit */
 
 /* A number, the smallest and largest that are taken, and what lies just beyond. */

@@ -1,19 +1,10 @@
 /* Files of HDF5 read and changed by a child process: whatever they are, the host goes on, and
  * neither a process nor a file is left. SONJECT_MUTATIONS: how many damaged ones are tried. */
 #define _GNU_SOURCE
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -21,6 +12,7 @@
 
 #include <hdf5.h>
 
+#include "claims.h"
 #include "io/decoder.h"
 #include "io/swath_file.h"
 #include "temporary_folder.h"

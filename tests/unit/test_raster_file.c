@@ -2,16 +2,11 @@
  */
 #define _POSIX_C_SOURCE   200809L
 #define _FILE_OFFSET_BITS 64
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
 
 #include <signal.h>
 #include <sys/resource.h>
 
+#include "claims.h"
 #include "io/raster_file.h"
 #include "io/swath_file.h"
 #include "temporary_folder.h"

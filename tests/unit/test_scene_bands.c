@@ -1,13 +1,7 @@
 /* Bands: several sonars in one scene file. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
+#include "claims.h"
 #include "scene_folder.h"
 
 #define HEAD                                                                                       \

@@ -1,20 +1,8 @@
 /* Scene files that are wrong: each message tells the place, the key, what is wrong, what to do. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "scene_folder.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 #define START "sonject: 1\n"
 #define INPUT                                                                                      \

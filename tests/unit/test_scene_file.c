@@ -1,20 +1,9 @@
 /* Scene files that are good: every key, every way to write it, overrides, examples. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
 #include <locale.h>
-#include <math.h>
-#include <stdbool.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
+#include "claims.h"
 #include "scene_keys.h"
 
 static void expect_arrived(const struct key_case *key, const void *structure)

@@ -2,23 +2,10 @@
  * what is said about files that are no heights. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "api/scene_hash.h"
+#include "claims.h"
 #include "io/raster_file.h"
 #include "scene_folder.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* Five lines. */
 #define BASE                                                                                       \

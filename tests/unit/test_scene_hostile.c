@@ -1,17 +1,7 @@
 /* Scene files made to break the reader: bombs, nesting, sizes, cut and mutated files. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "scene_folder.h"
 
 #ifndef MUTATIONS
@@ -19,8 +9,6 @@
     10000 /* of each example; a slow checker may compile with fewer, and the variable              \
              SONJECT_MUTATIONS asks for as many as it says */
 #endif
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 static const char *const examples[] = {"demo",    "elements", "figure4", "figure5",
                                        "figure6", "figure7",  "layers",  "relief",

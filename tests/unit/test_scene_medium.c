@@ -1,21 +1,8 @@
 /* The water of scene files: layers, profiles, absorption. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "scene_folder.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 /* Three lines; the medium stands before what it needs. */
 #define BASE                                                                                       \

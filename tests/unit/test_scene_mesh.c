@@ -1,20 +1,12 @@
 /* Meshes in scene files: how their numbers are meant, that one is kept however many shapes show it,
  * and what is said about those that cannot be read. */
 #define _POSIX_C_SOURCE 200809L
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
 
-#include <cmocka.h>
-
-#include <math.h>
 #include <sys/stat.h>
 
 #include "api/scene_hash.h"
+#include "claims.h"
 #include "scene_folder.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 #define SCENE                                                                                      \
     "sonject: 1\ninput: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, "              \

@@ -2,21 +2,8 @@
  * is refused. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
+#include "claims.h"
 #include "scene_folder.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
 
 #define BASE                                                                                       \
     "sonject: 1\n"                                                                                 \

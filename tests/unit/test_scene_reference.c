@@ -3,15 +3,7 @@
  * reader says of numbers that are too large or too small. Run with a file's name it writes it. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <stdlib.h>
-
+#include "claims.h"
 #include "scene_keys.h"
 
 #define REFERENCE SOURCE_ROOT "/tools/scenes/KEYS.md"

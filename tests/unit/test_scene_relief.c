@@ -1,25 +1,10 @@
 /* The seabed's relief in scene files: what is taken, what is refused, and what comes of it. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include "api/scene_hash.h"
+#include "claims.h"
 #include "scene/placement.h"
 #include "scene_folder.h"
-
-#define COUNT(array) (sizeof(array) / sizeof(array)[0])
-
-#define PI 3.14159265358979323846
 
 /* Five lines; a feature's keys begin in column 7. */
 #define BASE(side)                                                                                 \

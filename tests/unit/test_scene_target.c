@@ -2,21 +2,11 @@
  * scene that stays as it was where the file is refused. */
 #define _POSIX_C_SOURCE 200809L
 
-#include <setjmp.h>
-#include <stdarg.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include <cmocka.h>
-
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
-
 #include <sonject/sonject.h>
 
 #include "api/handles.h"
 #include "api/scene_hash.h"
+#include "claims.h"
 #include "scene_folder.h"
 
 #define TARGETS SOURCE_ROOT "/tools/targets/"

@@ -1,0 +1,209 @@
+/* What rays bring, before the image is formed. */
+#include "sea.h"
+
+#include "bench.h"
+
+struct line sea_line(struct sea *sea, uint32_t object)
+{
+    struct tracer *tracer = &sea->bench->tracer;
+    struct glints glints;
+    struct line line;
+    EXPECT_OK(&sea->bench->report, glints_begin(&glints, tracer, object));
+    line.bins = (size_t)glints.grid.bins.count;
+    line.spacing_m = tracer->view.column_spacing_m / glints.grid.bins_per_pixel;
+    line.first_range_m = tracer->view.first_range_m + glints.grid.bins.first * line.spacing_m;
+    line.values = claim_memory(line.bins, sizeof *line.values);
+    const int32_t chunk = glints_chunk(&glints);
+    float *real_part = calloc((size_t)chunk * line.bins, sizeof *real_part);
+    float *imaginary_part = calloc((size_t)chunk * line.bins, sizeof *imaginary_part);
+    assert_true(real_part && imaginary_part);
+    for (int32_t done = 0; done < glints.grid.strips.count; done += chunk) {
+        const int32_t left = glints.grid.strips.count - done;
+        const struct span strips = {glints.grid.strips.first + done, left < chunk ? left : chunk};
+        EXPECT_OK(&sea->bench->report,
+                  glints_trace(&glints, tracer, strips, real_part, imaginary_part));
+        for (size_t i = 0; i < (size_t)strips.count * line.bins; i++)
+            line.values[i % line.bins] += real_part[i] + I * (double)imaginary_part[i];
+    }
+    free(real_part);
+    free(imaginary_part);
+    glints_end(&glints);
+    return line;
+}
+
+double complex line_at(const struct sea *sea, const struct line *line, double range_m)
+{
+    double complex sum = 0.0;
+    for (size_t i = 0; i < line->bins; i++)
+        sum += line->values[i] *
+               sea_pulse(sea, range_m - (line->first_range_m + (double)i * line->spacing_m));
+    return sum;
+}
+
+double line_peak(const struct sea *sea, const struct line *line, double *range_m)
+{
+    double largest = 0.0;
+    for (size_t i = 0; i < line->bins; i++) {
+        const double range = line->first_range_m + (double)i * line->spacing_m;
+        const double amplitude = cabs(line_at(sea, line, range));
+        if (amplitude > largest && range_m)
+            *range_m = range;
+        largest = fmax(largest, amplitude);
+    }
+    return largest;
+}
+
+double line_energy(const struct line *line)
+{
+    double energy = 0.0;
+    for (size_t i = 0; i < line->bins; i++)
+        energy += pow(cabs(line->values[i]), 2.0);
+    return energy;
+}
+
+void line_add(struct line *sum, const struct line *line, double factor)
+{
+    const long shift = lround((sum->first_range_m - line->first_range_m) / line->spacing_m);
+    for (size_t bin = 0; bin < sum->bins; bin++) {
+        const long other = (long)bin + shift;
+        if (other >= 0 && other < (long)line->bins)
+            sum->values[bin] += factor * line->values[other];
+    }
+}
+
+double sea_peak(struct sea *sea, double *range_m)
+{
+    const struct line line = sea_line(sea, 0);
+    return line_peak(sea, &line, range_m);
+}
+
+/* ---- energies before the image is formed ---- */
+
+static struct strips strips_of(const struct line_grid *grid, const float *energy)
+{
+    const struct strips strips = {grid->strips.count,
+                                  grid->bins.count,
+                                  grid->strips.first,
+                                  grid->bins.first,
+                                  (int)grid->strips_per_row,
+                                  (int)grid->bins_per_pixel,
+                                  energy};
+    return strips;
+}
+
+struct strips sea_rough(struct sea *sea, struct tile_sums *sums, struct strips *tiles)
+{
+    static struct rough_trace trace;
+    struct tracer *tracer = &sea->bench->tracer;
+    EXPECT_OK(&sea->bench->report, rough_trace_begin(&trace, tracer, NULL));
+    float *energy = claim_memory(line_grid_cells(&trace.grid), sizeof *energy);
+    float *planes = claim_memory(trace.tile_elements + 1, sizeof *planes);
+    EXPECT_OK(&sea->bench->report, rough_trace_strips(&trace, tracer, trace.grid.strips, energy));
+    if (tracer->part_count > 0)
+        EXPECT_OK(&sea->bench->report, rough_trace_tiles(&trace, tracer, planes));
+    for (uint32_t part = 0; part < tracer->part_count; part++) {
+        const float *first = planes + trace.tiles[part].offset;
+        const size_t plane = line_grid_cells(&trace.tiles[part].grid);
+        if (sums) {
+            sums[part].energy = sum_of(first + TILE_ENERGY * plane, plane);
+            sums[part].lost = sum_of(first + TILE_LOST * plane, plane);
+            sums[part].footprint = sum_of(first + TILE_FOOTPRINT * plane, plane);
+        }
+        if (tiles)
+            tiles[part] = strips_of(&trace.tiles[part].grid, first + TILE_ENERGY * plane);
+    }
+    const struct strips strips = strips_of(&trace.grid, energy);
+    rough_trace_end(&trace);
+    return strips;
+}
+
+struct strips sea_rough_of_beam(struct sea *sea)
+{
+    static struct rough_trace trace;
+    struct tracer *tracer = &sea->bench->tracer;
+    EXPECT_OK(&sea->bench->report, rough_trace_begin_beam(&trace, tracer, &tracer->response));
+    float *energy = claim_memory(line_grid_cells(&trace.grid), sizeof *energy);
+    EXPECT_OK(&sea->bench->report, rough_trace_strips(&trace, tracer, trace.grid.strips, energy));
+    const struct strips strips = strips_of(&trace.grid, energy);
+    rough_trace_end(&trace);
+    return strips;
+}
+
+struct strips sea_grid(const struct sea *sea, double *first_x, double *last_x)
+{
+    struct line_grid grid;
+    line_grid_for_patch(&grid, &sea->bench->tracer.view, &sea->bench->tracer.response);
+    const double strips = grid.strips_per_row;
+    *first_x = sea_x(sea, grid.strips.first / strips - 0.5);
+    *last_x = sea_x(sea, (grid.strips.first + grid.strips.count) / strips - 0.5);
+    return strips_of(&grid, NULL);
+}
+
+static void add_chains(struct sea *sea, const struct ranges *ranges,
+                       void (*change)(struct bench *, struct chain_trace *),
+                       struct energies *energies)
+{
+    struct tracer *tracer = &sea->bench->tracer;
+    struct chain_trace trace;
+    EXPECT_OK(&sea->bench->report, chain_trace_begin(&trace, tracer, NULL));
+    if (change)
+        change(sea->bench, &trace);
+    for (uint32_t i = 0; i < chain_fan_count(tracer); i++) {
+        struct chain_fan fan;
+        EXPECT_OK(&sea->bench->report, chain_fan_init(&fan, tracer, &trace.grid, false, i));
+        EXPECT_OK(&sea->bench->report, chain_trace_strips(&trace, tracer, &fan, fan.strips));
+    }
+    const size_t cells = line_grid_cells(&trace.grid);
+    float *plane = malloc(cells * sizeof *plane);
+    assert_non_null(plane);
+    for (uint32_t p = 0; p < trace.planes; p++) {
+        const uint32_t order = trace.first_order - 1 + p;
+        double values[CHAIN_RANGES] = {0.0};
+        EXPECT_OK(&sea->bench->report, chain_trace_read(&trace, tracer, p, plane));
+        for (size_t i = 0; i < cells; i++) {
+            const int32_t bin =
+                trace.grid.bins.first + (int32_t)(i % (size_t)trace.grid.bins.count);
+            const double range = sea_range(sea, (double)bin / trace.grid.bins_per_pixel);
+            const int at =
+                ranges->count > 0 ? (int)floor((range - ranges->first_m) / ranges->width_m) : 0;
+            if (at >= 0 && at < (ranges->count > 0 ? ranges->count : 1))
+                values[at] += (double)plane[i];
+        }
+        for (int range = 0; order < CHAIN_ORDERS && range < CHAIN_RANGES; range++) {
+            energies->sum[order][range] += values[range];
+            energies->square[order][range] += values[range] * values[range];
+        }
+    }
+    free(plane);
+    chain_trace_end(&trace);
+}
+
+struct energies sea_changed_chains(struct sea *sea, const struct ranges *ranges,
+                                   uint64_t first_seed, int seeds,
+                                   void (*change)(struct bench *bench, struct chain_trace *trace))
+{
+    struct energies energies;
+    memset(&energies, 0, sizeof energies);
+    for (; energies.seeds < seeds; energies.seeds++) {
+        sea->injection->seed = first_seed + (uint64_t)energies.seeds;
+        add_chains(sea, ranges, change, &energies);
+    }
+    return energies;
+}
+
+struct energies sea_chains(struct sea *sea, const struct ranges *ranges, uint64_t first_seed,
+                           int seeds)
+{
+    return sea_changed_chains(sea, ranges, first_seed, seeds, NULL);
+}
+
+uint64_t sea_queries(const struct sea *sea)
+{
+    return sea->bench->tracer.counts.queries - sea->bench->tracer.counts.rays;
+}
+
+struct estimate energy_of(const struct energies *energies, int order, int range)
+{
+    return estimate_of_sums(energies->sum[order][range], energies->square[order][range],
+                            energies->seeds);
+}
