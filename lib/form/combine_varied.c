@@ -101,9 +101,8 @@ static sonject_status run_rows(struct form_lines *lines, cl_kernel kernel, const
     cl_mem imaginary_taps = NULL;
     sonject_status status =
         buffer_create(lines->report, lines->device, bytes, taps->real_part, &real_taps);
-    if (status == SONJECT_OK)
-        status = buffer_create(lines->report, lines->device, bytes, taps->imaginary_part,
-                               &imaginary_taps);
+    THEN(status,
+         buffer_create(lines->report, lines->device, bytes, taps->imaginary_part, &imaginary_taps));
     if (status == SONJECT_OK) {
         const bool by_row = lines->response.motion != NULL;
         const size_t left = lines->rows - first_row;
@@ -172,9 +171,8 @@ sonject_status combine_varied(struct form_lines *lines, cl_mem real_out, cl_mem 
     struct taps taps = {0, 0, 0, NULL, NULL, NULL, NULL};
     cl_kernel kernel = NULL;
     sonject_status status = taps_init(&taps, lines);
-    if (status == SONJECT_OK)
-        status = kernel_create(lines->report, lines->device, PROGRAM_IMAGE_FORMATION, 0,
-                               "combine_varied", &kernel);
+    THEN(status, kernel_create(lines->report, lines->device, PROGRAM_IMAGE_FORMATION, 0,
+                               "combine_varied", &kernel));
     if (status == SONJECT_OK && lines->response.motion) {
         status = run_moved(lines, kernel, &taps, real_out, imaginary_out);
     } else if (status == SONJECT_OK) {

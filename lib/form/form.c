@@ -59,8 +59,7 @@ static sonject_status make_pulse(struct form_lines *lines, const struct patch_vi
         taps[tap] = (float)(is_energy ? energy : g.real_part);
         imaginary_taps[tap] = (float)g.imaginary_part;
     }
-    if (status == SONJECT_OK)
-        status = send_taps(lines, taps, count, &lines->pulse);
+    THEN(status, send_taps(lines, taps, count, &lines->pulse));
     if (status == SONJECT_OK && !is_real)
         status = send_taps(lines, imaginary_taps, count, &lines->imaginary_pulse);
     free(taps);
@@ -112,20 +111,16 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
         allocate_array((size_t)grid->strips.count, sizeof *lines->filled_columns);
     sonject_status status = lines->filled_columns ? make_pulse(lines, view, taps_each_side)
                                                   : report_out_of_memory(report, "image formation");
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, bytes, NULL, &lines->real_lines);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, bytes, NULL, &lines->imaginary_lines);
+    THEN(status, buffer_create(report, device, bytes, NULL, &lines->real_lines));
+    THEN(status, buffer_create(report, device, bytes, NULL, &lines->imaginary_lines));
     if (status == SONJECT_OK)
         status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0,
                                lines->imaginary_pulse ? "compress_range_complex" : "compress_range",
                                &lines->compress);
-    if (status == SONJECT_OK)
-        status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "combine_aspects",
-                               &lines->combine);
-    if (status == SONJECT_OK)
-        status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "draw_speckle",
-                               &lines->speckle);
+    THEN(status, kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "combine_aspects",
+                               &lines->combine));
+    THEN(status, kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "draw_speckle",
+                               &lines->speckle));
     if (status != SONJECT_OK)
         form_lines_end(lines);
     return status;
@@ -228,8 +223,7 @@ static sonject_status compress_filled(struct form_lines *lines, int32_t strip, i
             note_filled(lines, strip + i, filled[i]);
     sonject_status status = buffer_create(lines->report, lines->device,
                                           (size_t)count * sizeof *filled, filled, &buffer);
-    if (status == SONJECT_OK)
-        status = compress(lines, strip, count, real_bins, imaginary_bins, buffer);
+    THEN(status, compress(lines, strip, count, real_bins, imaginary_bins, buffer));
     buffer_release(&buffer);
     return status;
 }
@@ -243,11 +237,9 @@ static sonject_status add_run(struct form_lines *lines, int32_t strip, int32_t c
     cl_mem imaginary_bins = NULL;
     sonject_status status =
         buffer_create(lines->report, lines->device, bytes, real_part, &real_bins);
-    if (status == SONJECT_OK)
-        status =
-            buffer_create(lines->report, lines->device, bytes, imaginary_part, &imaginary_bins);
-    if (status == SONJECT_OK)
-        status = compress_filled(lines, strip, count, real_bins, imaginary_bins, filled);
+    THEN(status,
+         buffer_create(lines->report, lines->device, bytes, imaginary_part, &imaginary_bins));
+    THEN(status, compress_filled(lines, strip, count, real_bins, imaginary_bins, filled));
     buffer_release(&real_bins);
     buffer_release(&imaginary_bins);
     return status;
@@ -260,8 +252,7 @@ sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t c
     if (lines->columns == 0 || count == 0)
         return SONJECT_OK;
     struct filled_span *filled = allocate_array((size_t)count, sizeof *filled);
-    if (!filled)
-        return report_out_of_memory(lines->report, "image formation");
+    CHECK_MEMORY(lines->report, filled, "image formation");
     for (size_t i = 0; i < (size_t)count; i++)
         filled[i] = filled_span_of(real_part + i * bins,
                                    imaginary_part ? imaginary_part + i * bins : NULL, bins);
@@ -281,8 +272,7 @@ static sonject_status compress_all(struct form_lines *lines, int32_t strip, int3
                                    cl_mem real_bins, cl_mem imaginary_bins)
 {
     struct filled_span *filled = allocate_array((size_t)count, sizeof *filled);
-    if (!filled)
-        return report_out_of_memory(lines->report, "image formation");
+    CHECK_MEMORY(lines->report, filled, "image formation");
     for (int32_t i = 0; i < count; i++)
         filled[i].end = lines->grid.bins.count;
     const sonject_status status =
@@ -301,10 +291,8 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
     cl_mem real_bins = NULL;
     cl_mem imaginary_bins = NULL;
     sonject_status status = buffer_create(lines->report, lines->device, bytes, energy, &energies);
-    if (status == SONJECT_OK)
-        status = buffer_create(lines->report, lines->device, bytes, NULL, &real_bins);
-    if (status == SONJECT_OK)
-        status = buffer_create(lines->report, lines->device, bytes, NULL, &imaginary_bins);
+    THEN(status, buffer_create(lines->report, lines->device, bytes, NULL, &real_bins));
+    THEN(status, buffer_create(lines->report, lines->device, bytes, NULL, &imaginary_bins));
     if (status == SONJECT_OK) {
         const cl_int bins = lines->grid.bins.count;
         const cl_int first_bin = lines->grid.bins.first;
@@ -321,8 +309,7 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
         status = kernel_run(lines->report, lines->device, lines->speckle, arguments,
                             sizeof arguments / sizeof *arguments, 2, global);
     }
-    if (status == SONJECT_OK)
-        status = compress_all(lines, strip, count, real_bins, imaginary_bins);
+    THEN(status, compress_all(lines, strip, count, real_bins, imaginary_bins));
     buffer_release(&energies);
     buffer_release(&real_bins);
     buffer_release(&imaginary_bins);
@@ -400,23 +387,17 @@ sonject_status form_lines_finish(struct form_lines *lines, float *real_part, flo
     float *padded = allocate_array(plane, sizeof *padded);
     sonject_status status =
         taps && padded ? SONJECT_OK : report_out_of_memory(lines->report, "image formation");
-    if (status == SONJECT_OK)
-        status =
-            buffer_create(lines->report, lines->device, count * sizeof *taps, taps, &tap_buffer);
-    if (status == SONJECT_OK)
-        status =
-            buffer_create(lines->report, lines->device, plane * sizeof(float), NULL, &real_out);
-    if (status == SONJECT_OK)
-        status = buffer_create(lines->report, lines->device, plane * sizeof(float), NULL,
-                               &imaginary_out);
-    if (status == SONJECT_OK)
-        status = buffer_create(lines->report, lines->device,
+    THEN(status,
+         buffer_create(lines->report, lines->device, count * sizeof *taps, taps, &tap_buffer));
+    THEN(status,
+         buffer_create(lines->report, lines->device, plane * sizeof(float), NULL, &real_out));
+    THEN(status,
+         buffer_create(lines->report, lines->device, plane * sizeof(float), NULL, &imaginary_out));
+    THEN(status, buffer_create(lines->report, lines->device,
                                (size_t)lines->grid.strips.count * sizeof *lines->filled_columns,
-                               lines->filled_columns, &lines->filled);
-    if (status == SONJECT_OK)
-        status = combine(lines, tap_buffer, real_out, imaginary_out);
-    if (status == SONJECT_OK)
-        status = read_plane(lines, real_out, padded, real_part);
+                               lines->filled_columns, &lines->filled));
+    THEN(status, combine(lines, tap_buffer, real_out, imaginary_out));
+    THEN(status, read_plane(lines, real_out, padded, real_part));
     if (status == SONJECT_OK && lines->planes == 2 && imaginary_part)
         status = read_plane(lines, imaginary_out, padded, imaginary_part);
     buffer_release(&tap_buffer);

@@ -29,8 +29,7 @@ static sonject_status take_seabed(struct beam_former *former, struct echoes *ech
     const size_t pixels = echoes->rows * echoes->columns;
     if (!former->seabed)
         former->seabed = allocate_array(pixels, sizeof(float));
-    if (!former->seabed)
-        return report_out_of_memory(tracer->report, "the beam's shadows");
+    CHECK_MEMORY(tracer->report, former->seabed, "the beam's shadows");
     const sonject_status status =
         form_energies_as_they_come(&former->lines, tracer, response, lines, former->seabed);
     if (status != SONJECT_OK || !impulse_lines_end(lines))
@@ -68,17 +67,14 @@ static sonject_status take_hidden(struct beam_former *former, struct echoes *ech
 {
     if (line_grid_cells(&lines->grid) == 0)
         return SONJECT_OK;
-    sonject_status status = form_lines_begin(&former->lines, tracer->report, tracer->device,
-                                             &tracer->view, response, FORM_ENERGY, &lines->grid);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(form_lines_begin(&former->lines, tracer->report, tracer->device, &tracer->view, response,
+                           FORM_ENERGY, &lines->grid));
     const size_t columns = former->lines.columns;
     float *hidden = allocate_array(echoes->rows * columns, sizeof *hidden);
-    status = hidden ? form_lines_add(&former->lines, lines->strips.first, lines->strips.count,
-                                     lines->plane[0], NULL)
-                    : report_out_of_memory(tracer->report, "the beam's shadows");
-    if (status == SONJECT_OK)
-        status = form_lines_finish(&former->lines, hidden, NULL);
+    sonject_status status = hidden ? form_lines_add(&former->lines, lines->strips.first,
+                                                    lines->strips.count, lines->plane[0], NULL)
+                                   : report_out_of_memory(tracer->report, "the beam's shadows");
+    THEN(status, form_lines_finish(&former->lines, hidden, NULL));
     if (status == SONJECT_OK)
         add_lost(former->seabed, echoes, &echoes->objects[lines->number], hidden,
                  former->lines.first_column, columns);

@@ -29,14 +29,12 @@ static sonject_status draw_speckle(const struct line_grid *grid, struct tracer *
                                    const float *energy, float *real_part, float *imaginary_part)
 {
     struct form_lines lines;
-    sonject_status status = form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view,
-                                             &tracer->response, FORM_SPECKLE, grid);
-    if (status != SONJECT_OK)
-        return status;
-    status = form_lines_add_speckle(&lines, grid->strips.first, grid->strips.count, energy,
-                                    tracer->scene->injection.seed, STREAM_CHAIN_SPECKLE);
-    if (status == SONJECT_OK)
-        status = form_lines_finish(&lines, real_part, imaginary_part);
+    CHECK(form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view, &tracer->response,
+                           FORM_SPECKLE, grid));
+    sonject_status status =
+        form_lines_add_speckle(&lines, grid->strips.first, grid->strips.count, energy,
+                               tracer->scene->injection.seed, STREAM_CHAIN_SPECKLE);
+    THEN(status, form_lines_finish(&lines, real_part, imaginary_part));
     form_lines_end(&lines);
     return status;
 }
@@ -63,8 +61,7 @@ sonject_status chain_echoes_take(struct chain_former *former, struct echoes *ech
         former->grid = lines->grid;
         former->sum = allocate_array(cells, sizeof(float));
     }
-    if (!former->sum)
-        return report_out_of_memory(tracer->report, "multiple interactions");
+    CHECK_MEMORY(tracer->report, former->sum, "multiple interactions");
     if (kept)
         status = form_energies(&former->grid, tracer, lines->plane[0], kept);
     add_plane(former->sum, lines->plane[0], cells);
@@ -118,11 +115,9 @@ sonject_status chain_echoes_finish(struct chain_former *former, struct echoes *e
     sonject_status status = image.energy && image.real_part && image.imaginary_part
                                 ? SONJECT_OK
                                 : report_out_of_memory(tracer->report, "multiple interactions");
-    if (status == SONJECT_OK)
-        status = form_energies(&former->grid, tracer, former->sum, image.energy);
-    if (status == SONJECT_OK)
-        status =
-            draw_speckle(&former->grid, tracer, former->sum, image.real_part, image.imaginary_part);
+    THEN(status, form_energies(&former->grid, tracer, former->sum, image.energy));
+    THEN(status,
+         draw_speckle(&former->grid, tracer, former->sum, image.real_part, image.imaginary_part));
     if (status == SONJECT_OK)
         add_to_image(&image, echoes, is_brute_force(tracer));
     free(image.energy);

@@ -73,8 +73,7 @@ static sonject_status draw(struct form_lines *lines, const struct tracer *tracer
 {
     const struct line_grid *grid = &lines->grid;
     float *energies = allocate_array((size_t)CHUNK * (size_t)grid->bins.count, sizeof *energies);
-    if (!energies)
-        return report_out_of_memory(tracer->report, "noise");
+    CHECK_MEMORY(tracer->report, energies, "noise");
     fill_energies(grid, tracer, energies);
     sonject_status status = SONJECT_OK;
     for (int32_t done = 0; status == SONJECT_OK && done < grid->strips.count; done += CHUNK) {
@@ -96,16 +95,14 @@ sonject_status coloured_noise(struct tracer *tracer, uint32_t stream, const stru
         return SONJECT_OK;
     line_grid_for_patch(&grid, &tracer->view, &tracer->response);
     cut_grid(&grid, tracer, window);
-    sonject_status status = form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view,
-                                             &tracer->response, FORM_SPECKLE, &grid);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view, &tracer->response,
+                           FORM_SPECKLE, &grid));
     const size_t formed = lines.rows * lines.columns;
     float *a = allocate_array(formed, sizeof *a);
     float *b = allocate_array(formed, sizeof *b);
-    status = a && b ? draw(&lines, tracer, stream) : report_out_of_memory(tracer->report, "noise");
-    if (status == SONJECT_OK)
-        status = form_lines_finish(&lines, a, b);
+    sonject_status status =
+        a && b ? draw(&lines, tracer, stream) : report_out_of_memory(tracer->report, "noise");
+    THEN(status, form_lines_finish(&lines, a, b));
     if (status == SONJECT_OK) {
         copy_window(&lines, window, a, tracer->view.columns, real_part);
         copy_window(&lines, window, b, tracer->view.columns, imaginary_part);

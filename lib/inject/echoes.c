@@ -133,8 +133,7 @@ static sonject_status finish(struct forming *forming)
     const double start = clock_seconds();
     sonject_status status =
         object_echoes_finish(&forming->object, forming->echoes, forming->tracer);
-    if (status == SONJECT_OK)
-        status = chain_echoes_finish(&forming->chains, forming->echoes, forming->tracer);
+    THEN(status, chain_echoes_finish(&forming->chains, forming->echoes, forming->tracer));
     forming->echoes->form_s += clock_seconds() - start;
     return status;
 }
@@ -151,10 +150,8 @@ sonject_status echoes_form(struct echoes *echoes, struct tracer *tracer,
     forming.tracer = tracer;
     forming.request = request;
     sonject_status status = allocate_planes(echoes, tracer, request);
-    if (status == SONJECT_OK)
-        status = source->deliver(source->giver, tracer, request, &sink);
-    if (status == SONJECT_OK)
-        status = finish(&forming);
+    THEN(status, source->deliver(source->giver, tracer, request, &sink));
+    THEN(status, finish(&forming));
     seabed_former_clear(&forming.seabed);
     object_former_clear(&forming.object);
     beam_former_clear(&forming.beam);

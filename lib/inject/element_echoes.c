@@ -60,8 +60,7 @@ static sonject_status take_chains(struct element_taker *taker, const struct impu
         taker->chains = allocate_array(cells, sizeof *taker->chains);
         taker->chains_grid = lines->grid;
     }
-    if (!taker->chains)
-        return report_out_of_memory(taker->tracer->report, "multiple interactions");
+    CHECK_MEMORY(taker->tracer->report, taker->chains, "multiple interactions");
     for (size_t i = 0; i < cells; i++)
         taker->chains[i] += lines->plane[0][i];
     return SONJECT_OK;
@@ -165,17 +164,13 @@ static sonject_status trace_and_hear(struct injection_setup *setup, bool is_comp
     struct trace_progress tracing = {progress, user};
     struct patch_request patch;
     struct element_taker taker;
-    sonject_status status =
-        patch_request_init(&patch, tracer, setup->pixels, is_complex, tell_tracing, &tracing);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(patch_request_init(&patch, tracer, setup->pixels, is_complex, tell_tracing, &tracing));
     memset(&taker, 0, sizeof taker);
     taker.tracer = tracer;
     taker.request = &patch.request;
     impulse_list_init(&taker.impulses, tracer->report, tracer->device);
-    status = gather(&taker);
-    if (status == SONJECT_OK)
-        status = hear(&taker, progress, user, layout, series);
+    sonject_status status = gather(&taker);
+    THEN(status, hear(&taker, progress, user, layout, series));
     impulse_list_clear(&taker.impulses);
     patch_request_clear(&patch);
     return status;
@@ -186,12 +181,9 @@ sonject_status element_echoes_describe(struct report *report, const struct scene
                                        sonject_element_layout *layout)
 {
     struct injection_setup setup;
-    sonject_status status = check_scene(report, scene);
-    if (status != SONJECT_OK)
-        return status;
-    status = injection_setup_lay(&setup, report, NULL, scene, input);
-    if (status == SONJECT_OK)
-        status = element_plan(layout, report, scene, &setup.tracer.view, &setup.tracer.response);
+    CHECK(check_scene(report, scene));
+    sonject_status status = injection_setup_lay(&setup, report, NULL, scene, input);
+    THEN(status, element_plan(layout, report, scene, &setup.tracer.view, &setup.tracer.response));
     injection_setup_clear(&setup);
     return status;
 }
@@ -203,12 +195,9 @@ sonject_status element_echoes_compute(struct report *report, struct device *devi
                                       const sonject_element_layout *layout, float *series)
 {
     struct injection_setup setup;
-    sonject_status status = check_scene(report, scene);
-    if (status != SONJECT_OK)
-        return status;
-    status = injection_setup_init(&setup, report, device, scene, input);
-    if (status == SONJECT_OK)
-        status = trace_and_hear(&setup, input->is_complex, progress, user, layout, series);
+    CHECK(check_scene(report, scene));
+    sonject_status status = injection_setup_init(&setup, report, device, scene, input);
+    THEN(status, trace_and_hear(&setup, input->is_complex, progress, user, layout, series));
     injection_setup_clear(&setup);
     return status;
 }

@@ -72,10 +72,8 @@ static sonject_status read_next(struct delivery *delivery)
     delivery->words = NULL;
     if (delivery->next + 1 >= delivery->file->sums.end.records)
         return SONJECT_OK;
-    const sonject_status status = sums_file_record(&delivery->file->sums, delivery->tracer->report,
-                                                   delivery->next++, &delivery->words, &count);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(sums_file_record(&delivery->file->sums, delivery->tracer->report, delivery->next++,
+                           &delivery->words, &count));
     return parse(&delivery->lines, delivery->words, count) ? SONJECT_OK : refuse(delivery);
 }
 
@@ -140,11 +138,9 @@ static sonject_status deliver_set(struct delivery *delivery, enum impulse_kind k
              lines->planes != planes || lines->strips.first != strip ||
              !grids_are_equal(&lines->grid, &grid)))
             status = refuse(delivery);
-        if (status == SONJECT_OK)
-            status = delivery->sink->take(delivery->sink->taker, lines);
+        THEN(status, delivery->sink->take(delivery->sink->taker, lines));
         strip += lines->strips.count;
-        if (status == SONJECT_OK)
-            status = read_next(delivery);
+        THEN(status, read_next(delivery));
     } while (status == SONJECT_OK && strip < grid.strips.first + grid.strips.count);
     return status;
 }
@@ -158,10 +154,9 @@ static sonject_status deliver_objects(struct delivery *delivery)
         status = deliver_set(delivery, IMPULSES_OBJECT, i, 3, true);
         for (uint32_t k = 0; status == SONJECT_OK && k < object->part_count; k++)
             status = deliver_set(delivery, IMPULSES_GLINT, object->first_part + k, 2, false);
-        if (status == SONJECT_OK)
-            status = echo_request_tell(delivery->request, delivery->tracer->report,
+        THEN(status, echo_request_tell(delivery->request, delivery->tracer->report,
                                        ROUGH_SHARE + (1.0 - ROUGH_SHARE) * (i + 1) / count,
-                                       "forming the objects");
+                                       "forming the objects"));
     }
     return status;
 }
@@ -196,20 +191,15 @@ static sonject_status deliver(void *giver, struct tracer *tracer,
     impulse_facts_take_sonar(&delivery.file->facts, &traced);
     sonject_status status =
         check_sonar(&traced, tracer->report, NULL) == SONJECT_OK ? SONJECT_OK : refuse(&delivery);
-    if (status == SONJECT_OK)
-        status = read_next(&delivery);
-    if (status == SONJECT_OK)
-        status = deliver_set(&delivery, IMPULSES_SEABED, 0, planes, true);
-    if (status == SONJECT_OK)
-        status = echo_request_tell(request, tracer->report, ROUGH_SHARE, "forming the seabed");
-    if (status == SONJECT_OK)
-        status = deliver_objects(&delivery);
+    THEN(status, read_next(&delivery));
+    THEN(status, deliver_set(&delivery, IMPULSES_SEABED, 0, planes, true));
+    THEN(status, echo_request_tell(request, tracer->report, ROUGH_SHARE, "forming the seabed"));
+    THEN(status, deliver_objects(&delivery));
     if (status == SONJECT_OK && has_beam_shadows(tracer))
         status = deliver_beam(&delivery);
     if (status == SONJECT_OK && tracer->relief)
         status = deliver_set(&delivery, IMPULSES_LEVEL, 0, 1, true);
-    if (status == SONJECT_OK)
-        status = deliver_chains(&delivery);
+    THEN(status, deliver_chains(&delivery));
     if (status == SONJECT_OK && delivery.words)
         status = refuse(&delivery);
     free(delivery.words);

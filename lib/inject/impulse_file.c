@@ -38,8 +38,7 @@ sonject_status impulse_lines_write(void *taker, const struct impulse_lines *line
         lines->strips.first,  lines->strips.count, lines->planes};
     const size_t count = LINES_HEAD_WORDS + (lines->planes * cells + 1) / 2;
     int64_t *words = allocate_array(count, sizeof *words);
-    if (!words)
-        return report_out_of_memory(writer->report, "impulses");
+    CHECK_MEMORY(writer->report, words, "impulses");
     memcpy(words, head, sizeof head);
     float *floats = (float *)(void *)(words + LINES_HEAD_WORDS);
     for (uint32_t i = 0; cells > 0 && i < lines->planes; i++)
@@ -55,8 +54,7 @@ sonject_status impulse_file_publish(struct sums_writer *writer, const struct imp
     struct sums_end end;
     const size_t count = sizeof *facts / sizeof(int64_t) + strlen(image_path) / sizeof(int64_t) + 1;
     int64_t *words = allocate_array(count, sizeof *words);
-    if (!words)
-        return report_out_of_memory(writer->report, "impulses");
+    CHECK_MEMORY(writer->report, words, "impulses");
     memcpy(words, facts, sizeof *facts);
     memcpy((char *)words + sizeof *facts, image_path, strlen(image_path));
     sonject_status status = sums_writer_sums(writer, words, count);
@@ -79,10 +77,7 @@ static sonject_status read_facts(struct impulse_file *file)
                               "%s: a shard's sums, not what sonject trace leaves: sonject merge "
                               "forms it",
                               sums->path);
-    const sonject_status status =
-        sums_file_record(sums, file->report, sums->end.records - 1, &words, &count);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(sums_file_record(sums, file->report, sums->end.records - 1, &words, &count));
     file->last = words;
     file->image_path = (const char *)words + sizeof file->facts;
     if (count * sizeof *words > sizeof file->facts)
@@ -103,8 +98,7 @@ sonject_status impulse_file_open(struct report *report, const char *path, struct
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: there is no such file of sums; check its name", path);
     sonject_status status = sums_file_open(&file->sums, report, path);
-    if (status == SONJECT_OK)
-        status = read_facts(file);
+    THEN(status, read_facts(file));
     if (status != SONJECT_OK)
         impulse_file_close(file);
     return status;

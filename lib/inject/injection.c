@@ -22,11 +22,9 @@ sonject_status injection_check(struct report *report, const struct scene *scene,
                                struct placements *placements)
 {
     sonject_status status = scene_lay_water(scene, report, water);
-    if (status == SONJECT_OK)
-        status =
-            patch_view_init(view, report, scene, water, first_row, first_column, rows, columns);
-    if (status == SONJECT_OK)
-        status = placements_init(placements, report, scene, view, first_row, first_column);
+    THEN(status,
+         patch_view_init(view, report, scene, water, first_row, first_column, rows, columns));
+    THEN(status, placements_init(placements, report, scene, view, first_row, first_column));
     return status;
 }
 
@@ -188,8 +186,7 @@ static sonject_status form_and_compose(struct injection_setup *setup,
     struct image_match match;
     struct echoes echoes;
     sonject_status status = match_image(tracer, pixels, input, &match);
-    if (status == SONJECT_OK)
-        status = patch_request_init(&patch, tracer, pixels, is_complex, progress, user);
+    THEN(status, patch_request_init(&patch, tracer, pixels, is_complex, progress, user));
     if (status != SONJECT_OK)
         return status;
     patch.request.wants_coherent = match.looks > 1.0;
@@ -197,8 +194,7 @@ static sonject_status form_and_compose(struct injection_setup *setup,
     if (status == SONJECT_OK) {
         const double start = clock_seconds();
         status = set_target_levels(tracer, &echoes, result);
-        if (status == SONJECT_OK)
-            status = compose(tracer, &match, &patch.level, &echoes, pixels, is_complex, result);
+        THEN(status, compose(tracer, &match, &patch.level, &echoes, pixels, is_complex, result));
         if (status == SONJECT_OK && resynthesises)
             status = compare_seabed(tracer->report, &echoes, &patch.level, result);
         if (status == SONJECT_OK) {
@@ -222,10 +218,8 @@ sonject_status injection_form(struct report *report, struct device *device,
     struct injection_setup setup;
     memset(result, 0, sizeof *result);
     sonject_status status = injection_setup_init(&setup, report, device, scene, input);
-    if (status == SONJECT_OK)
-        status = result_init(result, report, scene, input);
-    if (status == SONJECT_OK)
-        status = form_and_compose(&setup, input, source, progress, user, result);
+    THEN(status, result_init(result, report, scene, input));
+    THEN(status, form_and_compose(&setup, input, source, progress, user, result));
     if (status == SONJECT_OK && setup.tracer.view.is_mirrored)
         unmirror(result, setup.scratch);
     injection_setup_clear(&setup);
@@ -254,9 +248,8 @@ sonject_status injection_trace(struct report *report, struct device *device,
     sonject_status status = injection_setup_init(&setup, report, device, scene, input);
     if (status == SONJECT_OK) /* the grid follows the response */
         status = match_image(&setup.tracer, setup.pixels, input, &match);
-    if (status == SONJECT_OK)
-        status = patch_request_init(&patch, &setup.tracer, setup.pixels, input->is_complex,
-                                    progress, user);
+    THEN(status, patch_request_init(&patch, &setup.tracer, setup.pixels, input->is_complex,
+                                    progress, user));
     if (status == SONJECT_OK) {
         status = trace_impulses(&setup.tracer, &patch.request, sink);
         *counts = setup.tracer.counts;

@@ -45,10 +45,8 @@ sonject_status patch_request_init(struct patch_request *patch, struct tracer *tr
     const bool resynthesises = scene->injection.mode == SONJECT_MODE_RESYNTHESISE;
     const bool is_coherent = resynthesises && scene->seabed.map == SONJECT_MAP_COHERENT;
     memset(patch, 0, sizeof *patch);
-    const sonject_status status = patch_level_init(
-        &patch->level, tracer->report, scene, &tracer->view, &tracer->response, pixels, is_complex);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(patch_level_init(&patch->level, tracer->report, scene, &tracer->view, &tracer->response,
+                           pixels, is_complex));
     patch->real_part = is_coherent ? coherent_plane(&patch->level, pixels, count, 0) : NULL;
     patch->imaginary_part = is_coherent ? coherent_plane(&patch->level, pixels, count, 1) : NULL;
     patch->request.map = patch->level.map;
@@ -133,9 +131,8 @@ sonject_status injection_setup_lay(struct injection_setup *setup, struct report 
     tracer->scene = scene;
     tracer->checkpoint = input->checkpoint;
     sonject_status status = check_combination(report, scene, input->is_complex);
-    if (status == SONJECT_OK)
-        status = injection_check(report, scene, input->first_row, input->first_column, input->rows,
-                                 input->columns, &setup->water, &tracer->view, &setup->placements);
+    THEN(status, injection_check(report, scene, input->first_row, input->first_column, input->rows,
+                                 input->columns, &setup->water, &tracer->view, &setup->placements));
     tracer->placements = setup->placements.parts;
     tracer->part_count = setup->placements.part_count;
     tracer->objects = setup->placements.objects;
@@ -149,8 +146,7 @@ sonject_status injection_setup_lay(struct injection_setup *setup, struct report 
         return status;
     status = point_response_of_scene(&tracer->response, report, scene, &tracer->view,
                                      tracer->view.range_ratio * setup->water.straight_speed_mps);
-    if (status == SONJECT_OK)
-        status = cross_range_check(&tracer->response, report, scene, &tracer->view);
+    THEN(status, cross_range_check(&tracer->response, report, scene, &tracer->view));
     return status == SONJECT_OK ? check_coherent_map(tracer) : status;
 }
 
@@ -158,6 +154,6 @@ sonject_status injection_setup_init(struct injection_setup *setup, struct report
                                     struct device *device, const struct scene *scene,
                                     const struct injection_input *input)
 {
-    const sonject_status status = injection_setup_lay(setup, report, device, scene, input);
-    return status == SONJECT_OK ? copy_pixels(setup, report, input) : status;
+    CHECK(injection_setup_lay(setup, report, device, scene, input));
+    return copy_pixels(setup, report, input);
 }

@@ -18,8 +18,7 @@ static sonject_status make_synthetic(struct report *report, const struct scene *
     input->is_complex = synthetic->complex_pixels != 0;
     float *pixels = allocate_array((size_t)synthetic->rows * synthetic->columns,
                                    (input->is_complex ? 2 : 1) * sizeof *pixels);
-    if (!pixels)
-        return report_out_of_memory(report, "the synthetic seabed");
+    CHECK_MEMORY(report, pixels, "the synthetic seabed");
     const sonject_status status =
         synthesise_seabed(report, synthetic, &scene->geometry, response.resolution_m,
                           reference / (2.0 * scene->sonar.bandwidth_hz), pixels);
@@ -44,8 +43,7 @@ sonject_status make_input(struct report *report, const struct scene *scene,
     input->columns = scene->uniform_columns;
     const size_t count = input->rows * input->columns;
     float *pixels = allocate_array(count, sizeof *pixels);
-    if (!pixels)
-        return report_out_of_memory(report, "the uniform seabed");
+    CHECK_MEMORY(report, pixels, "the uniform seabed");
     for (size_t i = 0; i < count; i++)
         pixels[i] = 1.0f;
     input->pixels = pixels;

@@ -45,8 +45,7 @@ sonject_status level_seabed_take(struct seabed_former *former, struct echoes *ec
 {
     if (!echoes->level_energy)
         echoes->level_energy = allocate_array(echoes->rows * echoes->columns, sizeof(float));
-    if (!echoes->level_energy)
-        return report_out_of_memory(tracer->report, "the level seabed");
+    CHECK_MEMORY(tracer->report, echoes->level_energy, "the level seabed");
     const sonject_status status = form_energies_as_they_come(
         &former->energies, tracer, &tracer->response, lines, echoes->level_energy);
     if (status == SONJECT_OK && impulse_lines_end(lines) && request->map && is_composite(request))

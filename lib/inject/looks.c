@@ -145,8 +145,7 @@ static sonject_status add_looks(const struct look_work *work, double looks)
     }
     for (uint32_t look = 0; status == SONJECT_OK && look < count; look++) {
         status = draw_phase(work, look);
-        if (status == SONJECT_OK)
-            status = draw(work, stream_of(look, STREAM_NOISE, 1), NOISE_REAL);
+        THEN(status, draw(work, stream_of(look, STREAM_NOISE, 1), NOISE_REAL));
         if (status == SONJECT_OK && look > 0)
             status = draw(work, stream_of(look, 0, 2), TARGET_REAL);
         if (status == SONJECT_OK)

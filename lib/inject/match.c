@@ -128,8 +128,7 @@ static sonject_status measure_around(const struct tracer *tracer, const float *p
     struct span_of_pixels rows, columns;
     find_region(tracer, &rows, &columns);
     float *intensity = allocate_array(rows.count, columns.count * sizeof *intensity);
-    if (!intensity)
-        return report_out_of_memory(tracer->report, "the seabed's statistics");
+    CHECK_MEMORY(tracer->report, intensity, "the seabed's statistics");
     for (size_t row = 0; row < rows.count; row++)
         for (size_t column = 0; column < columns.count; column++) {
             const size_t i = (rows.first + row) * tracer->view.columns + columns.first + column;

@@ -37,11 +37,9 @@ static sonject_status form_rough_peak(struct peak_lattice *lattice, struct trace
                                       const struct impulse_lines *tile)
 {
     sonject_status status = peak_lattice_lay(lattice, tracer, &tile->grid, &tile->grid);
-    if (status == SONJECT_OK)
-        status = peak_lattice_begin(lattice, tracer, FORM_ENERGY, &tile->grid);
-    if (status == SONJECT_OK)
-        status = form_lines_add(&lattice->lines, tile->strips.first - lattice->grid.strips.first,
-                                tile->strips.count, tile->plane[TILE_ENERGY], NULL);
+    THEN(status, peak_lattice_begin(lattice, tracer, FORM_ENERGY, &tile->grid));
+    THEN(status, form_lines_add(&lattice->lines, tile->strips.first - lattice->grid.strips.first,
+                                tile->strips.count, tile->plane[TILE_ENERGY], NULL));
     return status == SONJECT_OK ? peak_lattice_finish(lattice) : status;
 }
 
@@ -62,11 +60,9 @@ static sonject_status form_rough(struct echoes *echoes, struct tracer *tracer,
     echo->covered = allocate_array(pixels, 1);
     if (!echo->energy || !echo->lost || !echo->covered)
         status = report_out_of_memory(tracer->report, "an object's echo");
-    if (status == SONJECT_OK)
-        status = form_lines_add(&lines, tile->strips.first, tile->strips.count,
-                                tile->plane[TILE_ENERGY], tile->plane[TILE_LOST]);
-    if (status == SONJECT_OK)
-        status = form_lines_finish(&lines, echo->energy, echo->lost);
+    THEN(status, form_lines_add(&lines, tile->strips.first, tile->strips.count,
+                                tile->plane[TILE_ENERGY], tile->plane[TILE_LOST]));
+    THEN(status, form_lines_finish(&lines, echo->energy, echo->lost));
     form_lines_end(&lines);
     if (status != SONJECT_OK)
         return status;
@@ -115,8 +111,7 @@ static sonject_status begin_object(struct object_former *former, struct echoes *
         return report_out_of_memory(tracer->report, "an object's glints");
     if (draws_rough(tracer, tile)) {
         former->rough_energy = allocate_array(cells, sizeof(float));
-        if (!former->rough_energy)
-            return report_out_of_memory(tracer->report, "an object's echo");
+        CHECK_MEMORY(tracer->report, former->rough_energy, "an object's echo");
         memcpy(former->rough_energy, tile->plane[TILE_ENERGY], cells * sizeof(float));
     }
     return SONJECT_OK;
@@ -179,9 +174,8 @@ static sonject_status take_glint_peak(struct object_former *former, struct trace
         status = peak_lattice_lay(lattice, tracer, &former->grid, &lines->grid);
     if (status == SONJECT_OK && impulse_lines_begin(lines))
         status = peak_lattice_begin(lattice, tracer, FORM_SPECKLE, &lines->grid);
-    if (status == SONJECT_OK)
-        status = form_lines_add(&lattice->lines, lines->strips.first - lattice->grid.strips.first,
-                                lines->strips.count, lines->plane[0], lines->plane[1]);
+    THEN(status, form_lines_add(&lattice->lines, lines->strips.first - lattice->grid.strips.first,
+                                lines->strips.count, lines->plane[0], lines->plane[1]));
     return status == SONJECT_OK && impulse_lines_end(lines) ? peak_lattice_finish(lattice) : status;
 }
 
@@ -192,9 +186,8 @@ static sonject_status take_glint(struct object_former *former, struct echoes *ec
     if (status == SONJECT_OK && impulse_lines_begin(lines))
         status = form_lines_begin(&former->lines, tracer->report, tracer->device, &tracer->view,
                                   &tracer->response, FORM_GLINT, &lines->grid);
-    if (status == SONJECT_OK)
-        status = form_lines_add(&former->lines, lines->strips.first, lines->strips.count,
-                                lines->plane[0], lines->plane[1]);
+    THEN(status, form_lines_add(&former->lines, lines->strips.first, lines->strips.count,
+                                lines->plane[0], lines->plane[1]));
     if (status == SONJECT_OK && impulse_lines_end(lines)) {
         status = finish_field(echoes, &former->lines, former);
         form_lines_end(&former->lines);
@@ -207,15 +200,12 @@ static sonject_status draw_rough(struct object_former *former, struct echoes *ec
                                  struct tracer *tracer)
 {
     struct form_lines lines;
-    sonject_status status = form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view,
-                                             &tracer->response, FORM_SPECKLE, &former->grid);
-    if (status != SONJECT_OK)
-        return status;
-    status = form_lines_add_speckle(&lines, former->grid.strips.first, former->grid.strips.count,
-                                    former->rough_energy, tracer->scene->injection.seed,
-                                    STREAM_OBJECT_SPECKLE + former->number);
-    if (status == SONJECT_OK)
-        status = finish_field(echoes, &lines, NULL);
+    CHECK(form_lines_begin(&lines, tracer->report, tracer->device, &tracer->view, &tracer->response,
+                           FORM_SPECKLE, &former->grid));
+    sonject_status status = form_lines_add_speckle(
+        &lines, former->grid.strips.first, former->grid.strips.count, former->rough_energy,
+        tracer->scene->injection.seed, STREAM_OBJECT_SPECKLE + former->number);
+    THEN(status, finish_field(echoes, &lines, NULL));
     form_lines_end(&lines);
     return status;
 }
@@ -244,8 +234,8 @@ sonject_status object_echoes_take(struct object_former *former, struct echoes *e
 {
     if (lines->kind == IMPULSES_GLINT)
         return take_glint(former, echoes, tracer, lines);
-    const sonject_status status = object_echoes_finish(former, echoes, tracer);
-    return status == SONJECT_OK ? begin_object(former, echoes, tracer, lines) : status;
+    CHECK(object_echoes_finish(former, echoes, tracer));
+    return begin_object(former, echoes, tracer, lines);
 }
 
 void object_former_clear(struct object_former *former)

@@ -79,12 +79,11 @@ static sonject_status level_beside_water(struct patch_level *level, struct repor
         seabed[i] = i % view->columns < level->water_columns ? 0.0f : 1.0f;
     const double rows = scene->seabed.level_radius_m / view->row_spacing_m;
     const double columns = scene->seabed.level_radius_m / view->column_spacing_m;
-    if (status == SONJECT_OK)
-        status = local_mean(report, seabed, view->rows, view->columns, rows, columns, share);
+    THEN(status, local_mean(report, seabed, view->rows, view->columns, rows, columns, share));
     for (size_t i = 0; status == SONJECT_OK && i < count; i++)
         seabed[i] *= level->intensity[i];
-    if (status == SONJECT_OK)
-        status = local_mean(report, seabed, view->rows, view->columns, rows, columns, level->level);
+    THEN(status,
+         local_mean(report, seabed, view->rows, view->columns, rows, columns, level->level));
     for (size_t i = count; status == SONJECT_OK && i-- > 0;) {
         const bool has_neighbour = (i + 1) % view->columns != 0;
         level->level[i] = share[i] > WATER_SHARE ? level->level[i] / share[i]
@@ -131,8 +130,7 @@ sonject_status patch_level_init(struct patch_level *level, struct report *report
     sonject_status status = level->intensity && level->level && level->map && level->cell_energy
                                 ? SONJECT_OK
                                 : report_out_of_memory(report, "the patch");
-    if (status == SONJECT_OK)
-        status = take_intensity(level, report, view, pixels, is_complex, &mean);
+    THEN(status, take_intensity(level, report, view, pixels, is_complex, &mean));
     if (status == SONJECT_OK && level->water_columns > 0)
         status = level_beside_water(level, report, scene, view);
     else if (status == SONJECT_OK)

@@ -98,9 +98,9 @@ sonject_status reimaging_check_patch(const struct line_grid *grid, const struct 
                                      const char *file)
 {
     sonject_status status = reimaging_check_beam(grid, tracer, file);
-    if (status == SONJECT_OK)
-        status = check_bins(
-            grid, tracer, line_grid_shortest_deviation(grid, tracer->view.column_spacing_m), file);
+    THEN(status,
+         check_bins(grid, tracer, line_grid_shortest_deviation(grid, tracer->view.column_spacing_m),
+                    file));
     return status == SONJECT_OK ? check_strips(grid, tracer, file) : status;
 }
 

@@ -14,9 +14,8 @@ sonject_status form_energies_as_they_come(struct form_lines *energies, struct tr
     if (impulse_lines_begin(lines))
         status = form_lines_begin(energies, tracer->report, tracer->device, &tracer->view, response,
                                   FORM_ENERGY, &lines->grid);
-    if (status == SONJECT_OK)
-        status = form_lines_add(energies, lines->strips.first, lines->strips.count, lines->plane[0],
-                                NULL);
+    THEN(status,
+         form_lines_add(energies, lines->strips.first, lines->strips.count, lines->plane[0], NULL));
     if (status != SONJECT_OK || !impulse_lines_end(lines))
         return status;
     status = form_lines_finish(energies, formed, NULL);

@@ -102,8 +102,7 @@ sonject_status set_target_levels(const struct tracer *tracer, struct echoes *ech
     double *gains = allocate_array(echoes->object_count, sizeof *gains);
     double mean = 0.0;
     bool is_scaled = false;
-    if (!gains)
-        return report_out_of_memory(tracer->report, "the objects' levels");
+    CHECK_MEMORY(tracer->report, gains, "the objects' levels");
     for (uint32_t i = 0; i < echoes->object_count; i++) {
         const struct object_echo *echo = &echoes->objects[i];
         const double over_seabed = peak_over_seabed(tracer, echo);

@@ -82,10 +82,7 @@ static void subtract_lost(const struct rough_trace *trace, uint32_t objects, con
 static sonject_status find_in_view(struct tracing *tracing, struct span strips)
 {
     const struct rough_trace *trace = &tracing->rough;
-    const sonject_status status =
-        rough_trace_tiles(&tracing->rough, tracing->tracer, tracing->tiles);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(rough_trace_tiles(&tracing->rough, tracing->tracer, tracing->tiles));
     memcpy(tracing->second, tracing->chunk,
            (size_t)strips.count * (size_t)trace->grid.bins.count * sizeof(float));
     subtract_lost(trace, tracing->tracer->scene->object_count, tracing->tiles, strips,
@@ -107,17 +104,14 @@ static sonject_status trace_seabed(struct tracing *tracing)
         if (status == SONJECT_OK)
             status = hand_out(tracing, IMPULSES_SEABED, 0, &trace->grid, strips,
                               wants_field(tracing) ? 2 : 1, planes);
-        if (status == SONJECT_OK)
-            status = echo_request_tell(
-                tracing->request, tracing->tracer->report,
-                ROUGH_SHARE * (strips.first + strips.count - trace->grid.strips.first) /
-                    trace->grid.strips.count,
-                "tracing the seabed");
+        THEN(status, echo_request_tell(
+                         tracing->request, tracing->tracer->report,
+                         ROUGH_SHARE * (strips.first + strips.count - trace->grid.strips.first) /
+                             trace->grid.strips.count,
+                         "tracing the seabed"));
     }
-    if (status == SONJECT_OK)
-        status = rough_trace_mirrored(trace, tracing->tracer);
-    if (status == SONJECT_OK)
-        status = rough_trace_tiles(trace, tracing->tracer, tracing->tiles);
+    THEN(status, rough_trace_mirrored(trace, tracing->tracer));
+    THEN(status, rough_trace_tiles(trace, tracing->tracer, tracing->tiles));
     return status;
 }
 
@@ -155,8 +149,7 @@ static sonject_status trace_glint_strips(const struct tracing *tracing, struct g
                                 : report_out_of_memory(tracing->tracer->report, "glints");
     while (status == SONJECT_OK && (strips = next_glint_strips(glints, strips)).count > 0) {
         status = glints_trace(glints, tracing->tracer, strips, real_part, imaginary_part);
-        if (status == SONJECT_OK)
-            status = hand_out(tracing, IMPULSES_GLINT, part, &glints->grid, strips, 2, planes);
+        THEN(status, hand_out(tracing, IMPULSES_GLINT, part, &glints->grid, strips, 2, planes));
     }
     free(real_part);
     free(imaginary_part);
@@ -184,10 +177,9 @@ static sonject_status trace_objects(const struct tracing *tracing)
         status = hand_out_tile(tracing, i);
         for (uint32_t k = 0; status == SONJECT_OK && k < object->part_count; k++)
             status = trace_glints(tracing, object->first_part + k);
-        if (status == SONJECT_OK)
-            status = echo_request_tell(tracing->request, tracing->tracer->report,
+        THEN(status, echo_request_tell(tracing->request, tracing->tracer->report,
                                        ROUGH_SHARE + OBJECT_SHARE * (i + 1) / count,
-                                       "tracing the objects");
+                                       "tracing the objects"));
     }
     return status;
 }
@@ -204,11 +196,9 @@ static sonject_status trace_level_seabed(struct tracing *tracing)
     while (status == SONJECT_OK &&
            (strips = next_strips(&trace->grid, strips, rough_trace_chunk(trace))).count > 0) {
         status = rough_trace_strips(trace, tracing->tracer, strips, tracing->chunk);
-        if (status == SONJECT_OK)
-            status = hand_out(tracing, IMPULSES_LEVEL, 0, &trace->grid, strips, 1, planes);
-        if (status == SONJECT_OK)
-            status = echo_request_tell(tracing->request, tracing->tracer->report,
-                                       ROUGH_SHARE + OBJECT_SHARE, "tracing the level seabed");
+        THEN(status, hand_out(tracing, IMPULSES_LEVEL, 0, &trace->grid, strips, 1, planes));
+        THEN(status, echo_request_tell(tracing->request, tracing->tracer->report,
+                                       ROUGH_SHARE + OBJECT_SHARE, "tracing the level seabed"));
     }
     tracing->tracer->counts.pings = pings; /* the same ones */
     return status;
@@ -237,11 +227,9 @@ static sonject_status trace_pings(struct tracing *beam)
     while (status == SONJECT_OK &&
            (strips = next_strips(&trace->grid, strips, rough_trace_chunk(trace))).count > 0) {
         status = rough_trace_strips(trace, beam->tracer, strips, beam->chunk);
-        if (status == SONJECT_OK)
-            status = hand_out(beam, IMPULSES_BEAM, 0, &trace->grid, strips, 1, planes);
-        if (status == SONJECT_OK)
-            status = echo_request_tell(beam->request, beam->tracer->report,
-                                       ROUGH_SHARE + OBJECT_SHARE, "tracing the beam");
+        THEN(status, hand_out(beam, IMPULSES_BEAM, 0, &trace->grid, strips, 1, planes));
+        THEN(status, echo_request_tell(beam->request, beam->tracer->report,
+                                       ROUGH_SHARE + OBJECT_SHARE, "tracing the beam"));
     }
     beam->tracer->counts.pings = pings; /* the same ones */
     return status;
@@ -269,16 +257,11 @@ static sonject_status trace_beam(struct tracer *tracer, const struct echo_reques
     beam.request = request;
     beam.sink = sink;
     response_of_pings(&response, tracer);
-    sonject_status status = rough_trace_begin_beam(&beam.rough, tracer, &response);
-    if (status != SONJECT_OK)
-        return status;
-    status = allocate_chunks(&beam);
-    if (status == SONJECT_OK)
-        status = trace_pings(&beam);
-    if (status == SONJECT_OK)
-        status = rough_trace_tiles(&beam.rough, tracer, beam.tiles);
-    if (status == SONJECT_OK)
-        status = hand_out_hidden(&beam);
+    CHECK(rough_trace_begin_beam(&beam.rough, tracer, &response));
+    sonject_status status = allocate_chunks(&beam);
+    THEN(status, trace_pings(&beam));
+    THEN(status, rough_trace_tiles(&beam.rough, tracer, beam.tiles));
+    THEN(status, hand_out_hidden(&beam));
     rough_trace_end(&beam.rough);
     free(beam.tiles);
     free(beam.chunk);
@@ -302,10 +285,9 @@ static sonject_status trace_fan(const struct tracing *tracing, struct chain_trac
         const double done =
             (number + (double)(strips.first - fan.strips.first) / fan.strips.count) /
             chain_fan_count(tracer);
-        if (status == SONJECT_OK)
-            status = echo_request_tell(tracing->request, tracer->report,
+        THEN(status, echo_request_tell(tracing->request, tracer->report,
                                        ROUGH_SHARE + OBJECT_SHARE + CHAINS_SHARE * done,
-                                       "tracing several interactions");
+                                       "tracing several interactions"));
     }
     return status;
 }
@@ -319,9 +301,8 @@ static sonject_status hand_out_chains(const struct tracing *tracing, struct chai
                : report_out_of_memory(tracing->tracer->report, "multiple interactions");
     for (uint32_t plane = 0; status == SONJECT_OK && plane < trace->planes; plane++) {
         status = chain_trace_read(trace, tracing->tracer, plane, energy);
-        if (status == SONJECT_OK)
-            status = hand_out(tracing, IMPULSES_CHAINS, trace->first_order + plane, &trace->grid,
-                              trace->grid.strips, 1, planes);
+        THEN(status, hand_out(tracing, IMPULSES_CHAINS, trace->first_order + plane, &trace->grid,
+                              trace->grid.strips, 1, planes));
     }
     free(energy);
     return status;
@@ -335,8 +316,7 @@ static sonject_status trace_chains(const struct tracing *tracing)
         return status;
     for (uint32_t i = 0; status == SONJECT_OK && i < chain_fan_count(tracing->tracer); i++)
         status = trace_fan(tracing, &trace, i);
-    if (status == SONJECT_OK)
-        status = hand_out_chains(tracing, &trace);
+    THEN(status, hand_out_chains(tracing, &trace));
     chain_trace_end(&trace);
     return status;
 }
@@ -349,14 +329,10 @@ sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *
     tracing.tracer = tracer;
     tracing.request = request;
     tracing.sink = sink;
-    sonject_status status = rough_trace_begin(&tracing.rough, tracer, seabed_map(tracer, request));
-    if (status != SONJECT_OK)
-        return status;
-    status = allocate_chunks(&tracing);
-    if (status == SONJECT_OK)
-        status = trace_seabed(&tracing);
-    if (status == SONJECT_OK)
-        status = trace_objects(&tracing);
+    CHECK(rough_trace_begin(&tracing.rough, tracer, seabed_map(tracer, request)));
+    sonject_status status = allocate_chunks(&tracing);
+    THEN(status, trace_seabed(&tracing));
+    THEN(status, trace_objects(&tracing));
     if (status == SONJECT_OK && has_beam_shadows(tracer))
         status = trace_beam(tracer, request, sink);
     if (status == SONJECT_OK && tracer->relief)
@@ -365,8 +341,7 @@ sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *
     free(tracing.tiles);
     free(tracing.chunk);
     free(tracing.second);
-    if (status == SONJECT_OK)
-        status = trace_chains(&tracing);
+    THEN(status, trace_chains(&tracing));
     if (status == SONJECT_OK && tracer->checkpoint)
         status = checkpoint_finish(tracer->checkpoint, &tracer->counts);
     return status;

@@ -238,8 +238,7 @@ static sonject_status measure_object(const struct tracer *tracer, const struct p
     struct contact_image image;
     struct contact_sizes sizes;
     float *expected = allocate_array(wide.rows, wide.columns * sizeof *expected);
-    if (!expected)
-        return report_out_of_memory(tracer->report, "an object's measures");
+    CHECK_MEMORY(tracer->report, expected, "an object's measures");
     for (size_t i = 0; i < wide.rows * wide.columns; i++)
         expected[i] = (float)expected_over_seabed(level, echoes, &echoes->objects[number],
                                                   wide.first_row + i / wide.columns,
@@ -252,8 +251,7 @@ static sonject_status measure_object(const struct tracer *tracer, const struct p
     sonject_status status =
         contact_image_create(&image, tracer->report, expected, wide.rows, wide.columns);
     image.speckle = *speckle;
-    if (status == SONJECT_OK)
-        status = measure_contact_sizes(&image, tracer->report, &place, &sizes);
+    THEN(status, measure_contact_sizes(&image, tracer->report, &place, &sizes));
     if (status == SONJECT_OK) {
         const struct patch_view *view = &tracer->view;
         truth->highlight_contrast_db = decibels(sizes.highlight_intensity / sizes.seabed);

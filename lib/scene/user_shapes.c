@@ -47,8 +47,7 @@ static sonject_status find_snippet(struct user_shapes *shapes, struct report *re
                               USER_SNIPPETS_MAX);
     struct user_snippet *snippets =
         realloc(shapes->snippets, (shapes->snippet_count + 1) * sizeof *snippets);
-    if (!snippets)
-        return report_out_of_memory(report, "a shape's code");
+    CHECK_MEMORY(report, snippets, "a shape's code");
     shapes->snippets = snippets;
     const sonject_status status =
         snippet_make(report, shape->name, shape->first_line, shape->code, &snippets[*number]);
@@ -70,12 +69,9 @@ sonject_status user_shapes_append(struct user_shapes *shapes, struct report *rep
                               "user shapes must be at most %d in a scene; split it",
                               USER_SHAPES_MAX);
     struct user_shape *grown = realloc(shapes->shapes, (shapes->count + 1) * sizeof *grown);
-    if (!grown)
-        return report_out_of_memory(report, "a user's shape");
+    CHECK_MEMORY(report, grown, "a user's shape");
     shapes->shapes = grown;
-    const sonject_status status = find_snippet(shapes, report, shape, &snippet);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(find_snippet(shapes, report, shape, &snippet));
     struct user_shape *made = &shapes->shapes[shapes->count++];
     memset(made, 0, sizeof *made);
     made->snippet = snippet;

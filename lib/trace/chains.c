@@ -106,9 +106,7 @@ static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tr
                                     const float *map)
 {
     struct fan_record fan;
-    const sonject_status status = patch_fan_init(&fan, tracer, &trace->grid, trace->has_map, 0.5);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(patch_fan_init(&fan, tracer, &trace->grid, trace->has_map, 0.5));
     const double range = fan.reference_range;
     const double area = (double)fan.source_side * fan.source_side;
     struct most_sent most = most_sent_by_surfaces(trace, tracer, map);
@@ -145,11 +143,9 @@ static sonject_status make_buffers(struct chain_trace *trace, struct tracer *tra
         chain_record_init(&chains, trace, tracer, &spheres);
         status = buffer_create(report, device, sizeof chains, &chains, &trace->chains);
     }
-    if (status == SONJECT_OK)
-        status = object_buffer_create(tracer, records, (struct part_list){NULL, tracer->part_count},
-                                      &trace->objects);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, spheres.bytes, spheres.records, &trace->spheres);
+    THEN(status, object_buffer_create(tracer, records, (struct part_list){NULL, tracer->part_count},
+                                      &trace->objects));
+    THEN(status, buffer_create(report, device, spheres.bytes, spheres.records, &trace->spheres));
     if (status == SONJECT_OK)
         status = buffer_create(report, device,
                                map ? tracer->view.rows * tracer->view.columns * sizeof *map : 0,
@@ -172,8 +168,7 @@ static sonject_status make_tallies(struct chain_trace *trace, struct tracer *tra
                               (unsigned)tracer->scene->injection.interactions);
     sonject_status status =
         buffer_create(tracer->report, tracer->device, bytes, NULL, &trace->tallies);
-    if (status == SONJECT_OK)
-        status = buffer_clear(tracer->report, tracer->device, trace->tallies, bytes);
+    THEN(status, buffer_clear(tracer->report, tracer->device, trace->tallies, bytes));
     return status;
 }
 
@@ -191,15 +186,11 @@ sonject_status chain_trace_begin(struct chain_trace *trace, struct tracer *trace
     trace->has_map = map != NULL;
     trace->has_sea_surface = sea_surface_is_in_chains(tracer, &trace->grid);
     sonject_status status = choose_quanta(trace, tracer, map);
-    if (status == SONJECT_OK)
-        status = patch_rays_init(&trace->rays, &trace->table, tracer, &trace->grid);
-    if (status == SONJECT_OK)
-        status = make_buffers(trace, tracer, map);
-    if (status == SONJECT_OK)
-        status = make_tallies(trace, tracer);
-    if (status == SONJECT_OK)
-        status = trace_kernel_create(tracer, tracer_variant(tracer), PROGRAM_TRACE_CHAINS,
-                                     "trace_chains", &trace->kernel);
+    THEN(status, patch_rays_init(&trace->rays, &trace->table, tracer, &trace->grid));
+    THEN(status, make_buffers(trace, tracer, map));
+    THEN(status, make_tallies(trace, tracer));
+    THEN(status, trace_kernel_create(tracer, tracer_variant(tracer), PROGRAM_TRACE_CHAINS,
+                                     "trace_chains", &trace->kernel));
     if (status != SONJECT_OK)
         chain_trace_end(trace);
     return status;
@@ -238,12 +229,10 @@ sonject_status chain_trace_read(struct chain_trace *trace, struct tracer *tracer
     const int64_t *tallies;
     const double energy_of_quantum =
         ldexp(view_energy_scale(&tracer->view), -trace->exponents[trace->first_order - 1 + plane]);
-    sonject_status status = buffer_map(tracer->report, tracer->device, trace->tallies,
-                                       trace->planes * cells * sizeof(int64_t), &mapped);
-    if (status != SONJECT_OK)
-        return status;
-    status = checkpoint_sums(tracer->checkpoint, (const int64_t *)mapped + plane * cells, cells,
-                             &tallies);
+    CHECK(buffer_map(tracer->report, tracer->device, trace->tallies,
+                     trace->planes * cells * sizeof(int64_t), &mapped));
+    sonject_status status = checkpoint_sums(
+        tracer->checkpoint, (const int64_t *)mapped + plane * cells, cells, &tallies);
     for (size_t i = 0; status == SONJECT_OK && i < cells; i++)
         energy[i] = (float)((double)tallies[i] * energy_of_quantum);
     buffer_unmap(tracer->device, trace->tallies, mapped);

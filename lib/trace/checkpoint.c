@@ -23,8 +23,7 @@ sonject_status checkpoint_begin(struct checkpoint *checkpoint, struct report *re
                                 struct sums_source source, uint64_t first)
 {
     sonject_status status = begin(checkpoint, report);
-    if (status == SONJECT_OK)
-        status = sums_writer_begin(&checkpoint->writer, report, folder, head, source);
+    THEN(status, sums_writer_begin(&checkpoint->writer, report, folder, head, source));
     if (status != SONJECT_OK) {
         checkpoint_clear(checkpoint);
         return status;
@@ -133,8 +132,7 @@ sonject_status checkpoint_sums(struct checkpoint *checkpoint, const int64_t *tra
         return sums_writer_sums(&checkpoint->writer, traced, count);
     free(checkpoint->sums);
     checkpoint->sums = allocate_array(count, sizeof *checkpoint->sums);
-    if (!checkpoint->sums)
-        return report_out_of_memory(checkpoint->report, "tallies");
+    CHECK_MEMORY(checkpoint->report, checkpoint->sums, "tallies");
     struct sums all = {checkpoint->sums};
     *sums = checkpoint->sums;
     return checkpoint_add_up(checkpoint, count, add_run, &all);

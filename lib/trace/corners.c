@@ -66,24 +66,19 @@ static sonject_status begin_on_device(struct corner_launch *launch, struct trace
     struct report *report = tracer->report;
     struct device *device = tracer->device;
     struct object_record *records = allocate_array(tracer->part_count, sizeof *records);
-    if (!records)
-        return report_out_of_memory(report, "objects");
+    CHECK_MEMORY(report, records, "objects");
     object_records_init(records, tracer, origin);
     sonject_status status =
         trace_device_init(&launch->on_device, tracer, PROGRAM_TRACE_CORNERS, "trace_corners",
                           records, (struct part_list){NULL, tracer->part_count}, 1, 1);
     free(records);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, sizeof launch->sources, &launch->sources,
-                               &launch->source_buffer);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, sizeof launch->record, &launch->record,
-                               &launch->record_buffer);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, sizeof(uint32_t), NULL, &launch->listed);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, launch->capacity * sizeof(struct corner_echo_record),
-                               NULL, &launch->echoes);
+    THEN(status, buffer_create(report, device, sizeof launch->sources, &launch->sources,
+                               &launch->source_buffer));
+    THEN(status, buffer_create(report, device, sizeof launch->record, &launch->record,
+                               &launch->record_buffer));
+    THEN(status, buffer_create(report, device, sizeof(uint32_t), NULL, &launch->listed));
+    THEN(status, buffer_create(report, device, launch->capacity * sizeof(struct corner_echo_record),
+                               NULL, &launch->echoes));
     return status;
 }
 
@@ -115,8 +110,7 @@ sonject_status corner_launch_begin(struct corner_launch *launch, struct line_gri
                   corner_rays_finer(tracer, part));
     choose_quanta(&launch->fan);
     choose_chunk(launch, corners);
-    if (status == SONJECT_OK)
-        status = begin_on_device(launch, tracer, tracer->placements[part].centre);
+    THEN(status, begin_on_device(launch, tracer, tracer->placements[part].centre));
     if (status != SONJECT_OK)
         corner_launch_end(launch);
     return status;
@@ -144,17 +138,13 @@ sonject_status corner_launch_strips(struct corner_launch *launch, struct tracer 
     launch->fan.first_strip = strips.first;
     launch->fan.strips = strips.count;
     sonject_status status = buffer_clear(report, device, launch->listed, sizeof listed);
-    if (status == SONJECT_OK)
-        status =
-            trace_launch(tracer, launch->on_device.kernel, &launch->fan, &launch->rays, buffers, 5);
-    if (status == SONJECT_OK)
-        status = buffer_read(report, device, launch->listed, 0, sizeof listed, &listed);
+    THEN(status,
+         trace_launch(tracer, launch->on_device.kernel, &launch->fan, &launch->rays, buffers, 5));
+    THEN(status, buffer_read(report, device, launch->listed, 0, sizeof listed, &listed));
     if (status != SONJECT_OK || listed == 0)
         return status;
-    status = buffer_map(report, device, launch->echoes, listed * sizeof(struct corner_echo_record),
-                        &mapped);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(buffer_map(report, device, launch->echoes, listed * sizeof(struct corner_echo_record),
+                     &mapped));
     if (!corner_sums_add(sums, mapped, listed))
         status = report_out_of_memory(report, "echoes of corners");
     buffer_unmap(device, launch->echoes, mapped);
@@ -203,8 +193,7 @@ sonject_status corners_begin(struct corners *corners, struct tracer *tracer, uin
     if (!corners_may_echo(tracer, part))
         return SONJECT_OK;
     corners->traces = allocate_array(CORNER_PAIRS_MAX, sizeof *corners->traces);
-    if (!corners->traces)
-        return report_out_of_memory(tracer->report, "echoes of corners");
+    CHECK_MEMORY(tracer->report, corners->traces, "echoes of corners");
     corners_lay(corners, tracer, part);
     const sonject_status status = trace_pairs(corners, tracer, part);
     if (status != SONJECT_OK) {

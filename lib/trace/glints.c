@@ -12,9 +12,7 @@ static sonject_status begin_mirrored(struct glints *glints, struct tracer *trace
     source_pairs_begin(&pairs, tracer, object);
     while (source_pairs_next(&pairs, &pair)) {
         struct smooth_trace *trace = &glints->traces[glints->count];
-        const sonject_status status = smooth_trace_begin_mirrored(trace, tracer, object, &pair);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(smooth_trace_begin_mirrored(trace, tracer, object, &pair));
         glints->grid.bins = span_join(glints->grid.bins, trace->grid.bins);
         glints->count += trace->grid.bins.count > 0;
     }
@@ -34,8 +32,7 @@ sonject_status glints_begin(struct glints *glints, struct tracer *tracer, uint32
     memset(glints, 0, sizeof *glints);
     glints->traces =
         allocate_array(1 + (size_t)SOURCES_MAX * (SOURCES_MAX + 1) / 2, sizeof *glints->traces);
-    if (!glints->traces)
-        return report_out_of_memory(tracer->report, "glints");
+    CHECK_MEMORY(tracer->report, glints->traces, "glints");
     sonject_status status = smooth_trace_begin(&glints->traces[0], tracer, object);
     if (status == SONJECT_OK) {
         glints->count = 1;
@@ -43,8 +40,7 @@ sonject_status glints_begin(struct glints *glints, struct tracer *tracer, uint32
         if (glints->grid.strips.count > 0)
             status = begin_mirrored(glints, tracer, object);
     }
-    if (status == SONJECT_OK)
-        status = begin_corners(glints, tracer, object);
+    THEN(status, begin_corners(glints, tracer, object));
     if (status == SONJECT_OK) {
         const size_t chunk = (size_t)glints_chunk(glints) * (size_t)glints->grid.bins.count;
         glints->real_part = allocate_array(chunk, sizeof(float));
@@ -105,10 +101,8 @@ sonject_status glints_trace(struct glints *glints, struct tracer *tracer, struct
         const struct span some = span_overlap(strips, glints->traces[i].grid.strips);
         if (some.count == 0)
             continue;
-        const sonject_status status = smooth_trace_strips(
-            &glints->traces[i], tracer, some, glints->real_part, glints->imaginary_part);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(smooth_trace_strips(&glints->traces[i], tracer, some, glints->real_part,
+                                  glints->imaginary_part));
         add_bins(glints, &glints->traces[i], some.count, (size_t)(some.first - strips.first),
                  real_part, imaginary_part);
     }

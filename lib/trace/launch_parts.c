@@ -81,8 +81,7 @@ sonject_status launch_parts_init(struct launch_parts *parts, const struct tracer
     const struct corridor corridor = corridor_to(tracer, target, grid, is_straight);
     memset(parts, 0, sizeof *parts);
     parts->numbers = allocate_array(tracer->part_count, sizeof *parts->numbers);
-    if (!parts->numbers)
-        return report_out_of_memory(tracer->report, "objects");
+    CHECK_MEMORY(tracer->report, parts->numbers, "objects");
     for (uint32_t i = 0; i < tracer->part_count; i++) {
         if (i == target)
             parts->target = parts->count;

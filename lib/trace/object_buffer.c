@@ -105,8 +105,7 @@ static sonject_status build_tree(const struct tracer *tracer, const struct objec
     if (parts->count <= OBJECTS_IN_LOOP)
         return SONJECT_OK;
     struct object_reach *reaches = allocate_array(parts->count, sizeof *reaches);
-    if (!reaches)
-        return report_out_of_memory(tracer->report, "the hierarchy of objects");
+    CHECK_MEMORY(tracer->report, reaches, "the hierarchy of objects");
     for (uint32_t i = 0; i < parts->count; i++)
         reaches[i] = reach_of(placement_of(tracer, parts, i));
     const sonject_status status =
@@ -160,8 +159,7 @@ static sonject_status write_buffer(struct tracer *tracer, struct object_record *
                               "the meshes and the relief are too large for the device: use fewer "
                               "triangles or a smaller patch");
     uint32_t *words = allocate_array(count, sizeof *words);
-    if (!words)
-        return report_out_of_memory(tracer->report, "the objects");
+    CHECK_MEMORY(tracer->report, words, "the objects");
     for (uint32_t i = 0; i < parts->count; i++) {
         const struct mesh *mesh = placement_of(tracer, parts, i)->size.mesh;
         if (mesh)
@@ -190,8 +188,7 @@ sonject_status object_buffer_create(struct tracer *tracer, struct object_record 
 {
     struct object_tree tree;
     sonject_status status = build_tree(tracer, records, &parts, &tree);
-    if (status == SONJECT_OK)
-        status = write_buffer(tracer, records, &parts, &tree, buffer);
+    THEN(status, write_buffer(tracer, records, &parts, &tree, buffer));
     object_tree_clear(&tree);
     return status;
 }

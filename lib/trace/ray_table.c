@@ -130,8 +130,7 @@ sonject_status ray_table_add(struct ray_table *table, struct report *report,
          count *= 4) {
         const size_t total = table->count + (size_t)count;
         struct ray_piece_record *pieces = realloc(table->pieces, total * sizeof *pieces);
-        if (!pieces)
-            return report_out_of_memory(report, "the rays through the layers");
+        CHECK_MEMORY(report, pieces, "the rays through the layers");
         table->pieces = pieces;
         record->pieces = count;
         record->radians_per_piece = (float)((elevations.highest - elevations.lowest) / count);

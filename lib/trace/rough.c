@@ -187,11 +187,9 @@ static sonject_status make_buffers(struct rough_trace *trace, struct tracer *tra
         trace_device_init(&trace->on_device, tracer, PROGRAM_TRACE_ROUGH, "trace_rough", records,
                           (struct part_list){NULL, tracer->part_count},
                           (size_t)trace->grid.strips.count, (size_t)trace->grid.bins.count);
-    if (status == SONJECT_OK)
-        status = buffer_create(tracer->report, tracer->device, map_bytes, map, &trace->map);
-    if (status == SONJECT_OK)
-        status = buffer_create(tracer->report, tracer->device,
-                               trace->tile_elements * sizeof(int64_t), NULL, &trace->tile_buffer);
+    THEN(status, buffer_create(tracer->report, tracer->device, map_bytes, map, &trace->map));
+    THEN(status, buffer_create(tracer->report, tracer->device,
+                               trace->tile_elements * sizeof(int64_t), NULL, &trace->tile_buffer));
     return status;
 }
 
@@ -204,8 +202,7 @@ static sonject_status lay_fan(struct rough_trace *trace, struct tracer *tracer, 
         patch_fan_init(&trace->fan, tracer, &trace->grid, has_map, rays_per_bin);
     if (status == SONJECT_OK && is_beam)
         status = beam_record_init(&trace->fan, tracer, &trace->grid);
-    if (status == SONJECT_OK)
-        status = patch_rays_init(&trace->rays, &trace->fan.table, tracer, &trace->grid);
+    THEN(status, patch_rays_init(&trace->rays, &trace->fan.table, tracer, &trace->grid));
     trace->fan.stream = STREAM_ROUGH_RAYS;
     aspects_record_init(&trace->fan, tracer, &trace->grid);
     trace->fan.seabed_lambert = (float)tracer->scene->seabed.lambert;
@@ -221,15 +218,13 @@ static sonject_status begin(struct rough_trace *trace, struct tracer *tracer, co
     double origin[3];
     patch_fan_origin(origin, view);
     struct object_record *records = allocate_array(tracer->part_count, sizeof *records);
-    if (!records)
-        return report_out_of_memory(tracer->report, "objects");
+    CHECK_MEMORY(tracer->report, records, "objects");
     object_records_init(records, tracer, origin);
     sonject_status status = lay_fan(trace, tracer, map != NULL, is_beam);
     trace->relief_halo = aspects_relief_halo(tracer, &trace->grid);
     trace->object_halo = object_halo(trace, tracer);
     rough_trace_aim(trace, trace->grid.strips);
-    if (status == SONJECT_OK)
-        status = lay_tiles(trace, tracer, records);
+    THEN(status, lay_tiles(trace, tracer, records));
     if (status == SONJECT_OK) {
         choose_quanta(trace, tracer, map);
         status = make_buffers(trace, tracer, records, map);
@@ -277,11 +272,8 @@ static sonject_status read_tallies(struct tracer *tracer, cl_mem buffer, size_t 
 {
     const void *mapped;
     const int64_t *tallies;
-    sonject_status status =
-        buffer_map(tracer->report, tracer->device, buffer, count * sizeof(int64_t), &mapped);
-    if (status != SONJECT_OK)
-        return status;
-    status = checkpoint_sums(tracer->checkpoint, mapped, count, &tallies);
+    CHECK(buffer_map(tracer->report, tracer->device, buffer, count * sizeof(int64_t), &mapped));
+    sonject_status status = checkpoint_sums(tracer->checkpoint, mapped, count, &tallies);
     for (size_t i = 0; status == SONJECT_OK && i < count; i++)
         values[i] = (float)((double)tallies[i] * unit);
     buffer_unmap(tracer->device, buffer, mapped);
@@ -318,12 +310,10 @@ sonject_status rough_trace_strips(struct rough_trace *trace, struct tracer *trac
     rough_trace_aim(trace, strips);
     sonject_status status = buffer_clear(tracer->report, tracer->device, trace->on_device.tallies,
                                          count * sizeof(int64_t));
-    if (status == SONJECT_OK)
-        status =
-            trace_launch(tracer, trace->on_device.kernel, &trace->fan, &trace->rays, buffers, 4);
-    if (status == SONJECT_OK)
-        status =
-            read_tallies(tracer, trace->on_device.tallies, count, trace->energy_of_quantum, seabed);
+    THEN(status,
+         trace_launch(tracer, trace->on_device.kernel, &trace->fan, &trace->rays, buffers, 4));
+    THEN(status,
+         read_tallies(tracer, trace->on_device.tallies, count, trace->energy_of_quantum, seabed));
     if (status == SONJECT_OK)
         tracer->counts.pings += (uint64_t)strips.count;
     return status;
@@ -331,10 +321,8 @@ sonject_status rough_trace_strips(struct rough_trace *trace, struct tracer *trac
 
 sonject_status rough_trace_tiles(struct rough_trace *trace, struct tracer *tracer, float *tiles)
 {
-    const sonject_status status = read_tallies(tracer, trace->tile_buffer, trace->tile_elements,
-                                               trace->energy_of_quantum, tiles);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(read_tallies(tracer, trace->tile_buffer, trace->tile_elements, trace->energy_of_quantum,
+                       tiles));
     for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
         const struct rough_tile *tile = &trace->tiles[i];
         const size_t plane = line_grid_cells(&tile->grid);

@@ -51,11 +51,9 @@ static sonject_status trace_pair(struct rough_trace *trace, struct tracer *trace
     fan.quanta = trace->fan.quanta;
     fan.first_strip = tile->grid.strips.first;
     fan.strips = tile->grid.strips.count;
-    if (status == SONJECT_OK)
-        status = buffer_create(tracer->report, tracer->device, sizeof record, &record, &sources);
+    THEN(status, buffer_create(tracer->report, tracer->device, sizeof record, &record, &sources));
     const cl_mem buffers[] = {on_device->objects, trace->tile_buffer, sources};
-    if (status == SONJECT_OK)
-        status = trace_launch(tracer, on_device->kernel, &fan, &rays, buffers, 3);
+    THEN(status, trace_launch(tracer, on_device->kernel, &fan, &rays, buffers, 3));
     ray_table_clear(&rays);
     buffer_release(&sources);
     return status;
@@ -85,16 +83,14 @@ static sonject_status trace_part(struct rough_trace *trace, struct tracer *trace
     memset(&on_device, 0, sizeof on_device);
     sonject_status status =
         launch_parts_init(&parts, tracer, part, &trace->tiles[object].grid, false);
-    if (status == SONJECT_OK)
-        status = launch_records_create(&records, tracer, &parts, tracer->placements[part].centre);
+    THEN(status, launch_records_create(&records, tracer, &parts, tracer->placements[part].centre));
     if (status == SONJECT_OK) {
         rough_tile_describe(trace, object, &records[parts.target]);
         status = trace_device_init(&on_device, tracer, PROGRAM_TRACE_ROUGH_MIRRORED,
                                    "trace_rough_mirrored", records,
                                    (struct part_list){parts.numbers, parts.count}, 1, 1);
     }
-    if (status == SONJECT_OK)
-        status = trace_pairs(trace, tracer, &on_device, &parts);
+    THEN(status, trace_pairs(trace, tracer, &on_device, &parts));
     trace_device_clear(&on_device);
     free(records);
     launch_parts_clear(&parts);

@@ -80,8 +80,8 @@ static sonject_status begin_on_device(struct smooth_trace *trace, struct tracer 
     struct launch_parts parts;
     struct object_record *records = NULL;
     sonject_status status = launch_parts_init(&parts, tracer, number, &trace->grid, is_straight);
-    if (status == SONJECT_OK)
-        status = launch_records_create(&records, tracer, &parts, tracer->placements[number].centre);
+    THEN(status,
+         launch_records_create(&records, tracer, &parts, tracer->placements[number].centre));
     if (status == SONJECT_OK) {
         trace->fan.objects = (int32_t)parts.count;
         trace->fan.relief_words = object_buffer_relief_words(tracer, parts.count);
@@ -116,8 +116,7 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
     choose_quanta(trace, tracer);
     sonject_status status =
         object_rays_add(&trace->rays, tracer, number, &sonar.way, &trace->fan.table);
-    if (status == SONJECT_OK)
-        status = begin_on_device(trace, tracer, number, true, trace->grid.strips.count);
+    THEN(status, begin_on_device(trace, tracer, number, true, trace->grid.strips.count));
     if (status != SONJECT_OK)
         smooth_trace_end(trace);
     return status;
@@ -139,11 +138,9 @@ sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tr
     choose_quanta(trace, tracer);
     const int32_t strips =
         trace->grid.strips.count < MIRRORED_STRIPS ? trace->grid.strips.count : MIRRORED_STRIPS;
-    if (status == SONJECT_OK)
-        status = begin_on_device(trace, tracer, number, false, strips);
-    if (status == SONJECT_OK)
-        status = buffer_create(tracer->report, tracer->device, sizeof sources, &sources,
-                               &trace->sources);
+    THEN(status, begin_on_device(trace, tracer, number, false, strips));
+    THEN(status,
+         buffer_create(tracer->report, tracer->device, sizeof sources, &sources, &trace->sources));
     if (status != SONJECT_OK)
         smooth_trace_end(trace);
     return status;
@@ -174,9 +171,8 @@ sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tr
     if (status == SONJECT_OK)
         status = trace_launch(tracer, trace->on_device.kernel, &trace->fan, &trace->rays, buffers,
                               trace->sources ? 3 : 2);
-    if (status == SONJECT_OK)
-        status = buffer_map(tracer->report, tracer->device, trace->on_device.tallies,
-                            2 * count * sizeof(int64_t), &mapped);
+    THEN(status, buffer_map(tracer->report, tracer->device, trace->on_device.tallies,
+                            2 * count * sizeof(int64_t), &mapped));
     if (status != SONJECT_OK)
         return status;
     const int64_t *tallies;

@@ -230,9 +230,8 @@ sonject_status source_pair_aim(struct fan_record *fan, struct source_pair_record
                              grid->bins.first);
     sonject_status status =
         object_rays_add(rays, tracer, object, &pair->outgoing->way, &record->outgoing.table);
-    if (status == SONJECT_OK)
-        status =
-            object_rays_add(rays, tracer, object, &pair->returning->way, &record->returning.table);
+    THEN(status,
+         object_rays_add(rays, tracer, object, &pair->returning->way, &record->returning.table));
     fan->table = record->outgoing.table;
     return status;
 }

@@ -51,17 +51,13 @@ static sonject_status read_block(struct report *report, const char *path, FILE *
     *content = NULL;
     if (left < sizeof *head)
         return refuse(report, path);
-    sonject_status status = read_bytes(report, path, file, head, sizeof *head);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(read_bytes(report, path, file, head, sizeof *head));
     if (head->bytes > left - sizeof *head || head->bytes > SIZE_MAX / 2)
         return refuse(report, path);
     *content = malloc((size_t)head->bytes + 1);
     if (!*content)
         return report_out_of_memory(report, path);
-    status = read_bytes(report, path, file, *content, (size_t)head->bytes);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(read_bytes(report, path, file, *content, (size_t)head->bytes));
     found = *head;
     if (!block_digest(&found, *content))
         return report_out_of_memory(report, "a hash");

@@ -33,8 +33,7 @@ static unsigned char *make_room(struct sums_writer *writer, size_t count)
 static sonject_status add(struct sums_writer *writer, const void *bytes, size_t count)
 {
     unsigned char *room = make_room(writer, count);
-    if (!room)
-        return report_out_of_memory(writer->report, "tallies");
+    CHECK_MEMORY(writer->report, room, "tallies");
     if (count > 0)
         memcpy(room, bytes, count);
     return SONJECT_OK;
@@ -67,8 +66,7 @@ static sonject_status spill(struct sums_writer *writer)
     if (!writer->file) {
         sonject_status status = folder_make(writer->report, writer->folder);
         char *name = name_in(writer, "");
-        if (status == SONJECT_OK)
-            status = open_part(writer, name);
+        THEN(status, open_part(writer, name));
         free(name);
         if (status != SONJECT_OK)
             return status;
@@ -105,14 +103,10 @@ static sonject_status begin(struct sums_writer *writer, const struct sums_head *
 {
     writer->head = *head;
     sonject_status status = add(writer, SUMS_MAGIC, SUMS_MAGIC_BYTES);
-    if (status == SONJECT_OK)
-        status = begin_block(writer);
-    if (status == SONJECT_OK)
-        status = add(writer, head, sizeof *head);
-    if (status == SONJECT_OK)
-        status = add(writer, source.texts, source.bytes);
-    if (status == SONJECT_OK)
-        status = end_block(writer, BLOCK_HEAD);
+    THEN(status, begin_block(writer));
+    THEN(status, add(writer, head, sizeof *head));
+    THEN(status, add(writer, source.texts, source.bytes));
+    THEN(status, end_block(writer, BLOCK_HEAD));
     if (status != SONJECT_OK)
         sums_writer_clear(writer);
     return status;
@@ -136,8 +130,8 @@ sonject_status sums_writer_begin_file(struct sums_writer *writer, struct report 
     memset(writer, 0, sizeof *writer);
     writer->report = report;
     writer->path = path;
-    const sonject_status status = open_part(writer, path);
-    return status == SONJECT_OK ? begin(writer, head, source) : status;
+    CHECK(open_part(writer, path));
+    return begin(writer, head, source);
 }
 
 void sums_writer_clear(struct sums_writer *writer)
@@ -154,16 +148,16 @@ void sums_writer_clear(struct sums_writer *writer)
 
 sonject_status sums_writer_begin_sums(struct sums_writer *writer, uint64_t count)
 {
-    const sonject_status status = begin_block(writer);
-    return status == SONJECT_OK ? add(writer, &count, sizeof count) : status;
+    CHECK(begin_block(writer));
+    return add(writer, &count, sizeof count);
 }
 
 sonject_status sums_writer_run(struct sums_writer *writer, uint64_t first, const int64_t *values,
                                size_t count)
 {
     const uint64_t head[2] = {first, count};
-    const sonject_status status = add(writer, head, sizeof head);
-    return status == SONJECT_OK ? add(writer, values, count * sizeof *values) : status;
+    CHECK(add(writer, head, sizeof head));
+    return add(writer, values, count * sizeof *values);
 }
 
 sonject_status sums_writer_end_sums(struct sums_writer *writer)
@@ -197,14 +191,10 @@ sonject_status sums_writer_publish(struct sums_writer *writer, struct sums_end *
     snprintf(rest, sizeof rest, "-%" PRIu64 "-%" PRIu64, end->first, end->last);
     char *path = writer->path ? copy_text(writer->path) : name_in(writer, rest);
     sonject_status status = path ? SONJECT_OK : report_out_of_memory(writer->report, "a file name");
-    if (status == SONJECT_OK)
-        status = begin_block(writer);
-    if (status == SONJECT_OK)
-        status = add(writer, end, sizeof *end);
-    if (status == SONJECT_OK)
-        status = end_block(writer, BLOCK_END);
-    if (status == SONJECT_OK)
-        status = spill(writer);
+    THEN(status, begin_block(writer));
+    THEN(status, add(writer, end, sizeof *end));
+    THEN(status, end_block(writer, BLOCK_END));
+    THEN(status, spill(writer));
     if (status == SONJECT_OK) {
         FILE *file = writer->file;
         writer->file = NULL;

@@ -210,13 +210,10 @@ static sonject_status launch_turns(struct tracer *tracer, cl_kernel kernel, stru
     struct outcome_record *outcomes = allocate_array(items, sizeof *outcomes);
     sonject_status status = outcomes ? SONJECT_OK : report_out_of_memory(report, "trace counts");
     fan->first_turn = turns.first;
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, sizeof *fan, fan, &fan_buffer);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, rays->count * sizeof *rays->pieces, rays->pieces,
-                               &piece_buffer);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, items * sizeof *outcomes, NULL, &outcome_buffer);
+    THEN(status, buffer_create(report, device, sizeof *fan, fan, &fan_buffer));
+    THEN(status, buffer_create(report, device, rays->count * sizeof *rays->pieces, rays->pieces,
+                               &piece_buffer));
+    THEN(status, buffer_create(report, device, items * sizeof *outcomes, NULL, &outcome_buffer));
     if (status == SONJECT_OK) {
         struct kernel_argument arguments[8];
         arguments[0] = (struct kernel_argument){sizeof fan_buffer, &fan_buffer};
@@ -227,10 +224,9 @@ static sonject_status launch_turns(struct tracer *tracer, cl_kernel kernel, stru
             (struct kernel_argument){sizeof outcome_buffer, &outcome_buffer};
         status = kernel_run(report, device, kernel, arguments, buffer_count + 3, 1, &items);
     }
-    if (status == SONJECT_OK)
-        status = buffer_read(report, device, outcome_buffer, 0, items * sizeof *outcomes, outcomes);
-    if (status == SONJECT_OK)
-        status = add_outcomes(tracer, outcomes, items);
+    THEN(status,
+         buffer_read(report, device, outcome_buffer, 0, items * sizeof *outcomes, outcomes));
+    THEN(status, add_outcomes(tracer, outcomes, items));
     buffer_release(&fan_buffer);
     buffer_release(&piece_buffer);
     buffer_release(&outcome_buffer);
@@ -287,11 +283,9 @@ sonject_status trace_device_init(struct trace_device *device, struct tracer *tra
     const uint32_t variant = tracer_variant(tracer) | (has_aspects ? PROGRAM_WITH_ASPECTS : 0u);
     sonject_status status =
         trace_kernel_create(tracer, variant, program, kernel_name, &device->kernel);
-    if (status == SONJECT_OK)
-        status = object_buffer_create(tracer, records, parts, &device->objects);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, tracer->device, device->tally_strips * line_bytes, NULL,
-                               &device->tallies);
+    THEN(status, object_buffer_create(tracer, records, parts, &device->objects));
+    THEN(status, buffer_create(report, tracer->device, device->tally_strips * line_bytes, NULL,
+                               &device->tallies));
     if (status != SONJECT_OK)
         trace_device_clear(device);
     return status;

@@ -37,9 +37,7 @@ static sonject_status check_nearest(struct trial *trial)
                       fmax(met->distance - AGAIN * trial->radius, -trial->radius));
         probe_ray_set(&trial->rays[2 * i + 1], met->offset, met->direction, met->distance + OFF_M);
     }
-    const sonject_status status = trial_ask(trial, 2 * trial->count);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(trial_ask(trial, 2 * trial->count));
     for (size_t i = 0; i < trial->count; i++) {
         const struct meeting *met = &trial->meetings[i];
         const struct probe_hit *again = &trial->hits[2 * i];
@@ -90,9 +88,7 @@ static sonject_status check_restarts(struct trial *trial, struct shape_check *ch
                       fmax(met->distance, -trial->radius));
         check->restarts++;
     }
-    const sonject_status status = trial_ask(trial, check->restarts);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(trial_ask(trial, check->restarts));
     for (size_t i = 0; i < check->restarts; i++) {
         const struct probe_ray *ray = &trial->rays[i];
         const struct probe_hit *hit = &trial->hits[i];
@@ -114,14 +110,10 @@ static sonject_status check_restarts(struct trial *trial, struct shape_check *ch
 static sonject_status try_shape(struct trial *trial, struct shape_check *check)
 {
     sonject_status status = trial_shoot(trial);
-    if (status == SONJECT_OK)
-        status = check_sides(trial);
-    if (status == SONJECT_OK)
-        status = trial_compare_normals(trial, check);
-    if (status == SONJECT_OK)
-        status = check_nearest(trial);
-    if (status == SONJECT_OK)
-        status = check_restarts(trial, check);
+    THEN(status, check_sides(trial));
+    THEN(status, trial_compare_normals(trial, check));
+    THEN(status, check_nearest(trial));
+    THEN(status, check_restarts(trial, check));
     check->hits = trial->count;
     return status;
 }
@@ -141,15 +133,13 @@ sonject_status shape_check_run(struct report *report, struct device *device,
     trial.half_sizes[0] = shape->half_length_m;
     trial.half_sizes[1] = shape->half_width_m;
     trial.half_sizes[2] = shape->half_height_m;
-    sonject_status status = shape_probe_begin(&trial.probe, report, device, shapes, number);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(shape_probe_begin(&trial.probe, report, device, shapes, number));
     trial.meetings = allocate_array(SHAPE_CHECK_RAYS, sizeof *trial.meetings);
     trial.rays = allocate_array(TRIAL_NEIGHBOURS * SHAPE_CHECK_RAYS, sizeof *trial.rays);
     trial.hits = allocate_array(TRIAL_NEIGHBOURS * SHAPE_CHECK_RAYS, sizeof *trial.hits);
-    status = trial.meetings && trial.rays && trial.hits
-                 ? try_shape(&trial, check)
-                 : report_out_of_memory(report, "the check of a shape");
+    sonject_status status = trial.meetings && trial.rays && trial.hits
+                                ? try_shape(&trial, check)
+                                : report_out_of_memory(report, "the check of a shape");
     free(trial.meetings);
     free(trial.rays);
     free(trial.hits);

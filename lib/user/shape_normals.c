@@ -93,8 +93,7 @@ static sonject_status judge_angles(const struct trial *trial, double *angles,
 sonject_status trial_compare_normals(struct trial *trial, struct shape_check *check)
 {
     double *angles = allocate_array(trial->count, sizeof *angles);
-    if (!angles)
-        return report_out_of_memory(trial->report, "the check of a shape");
+    CHECK_MEMORY(trial->report, angles, "the check of a shape");
     for (size_t i = 0; i < trial->count; i++)
         set_neighbours(trial, &trial->meetings[i], &trial->rays[TRIAL_NEIGHBOURS * i]);
     sonject_status status = trial_ask(trial, TRIAL_NEIGHBOURS * trial->count);
@@ -107,8 +106,7 @@ sonject_status trial_compare_normals(struct trial *trial, struct shape_check *ch
             angle_between(wide, narrow) < AGREE_RAD)
             angles[check->compared++] = angle_between(met->normal, narrow) * 180.0 / PI;
     }
-    if (status == SONJECT_OK)
-        status = judge_angles(trial, angles, check);
+    THEN(status, judge_angles(trial, angles, check));
     free(angles);
     return status;
 }

@@ -16,8 +16,7 @@ sonject_status shape_probe_begin(struct shape_probe *probe, struct report *repor
     sonject_status status =
         user_kernel_create(report, device, shapes, false, PROGRAM_PROBE_USER_SHAPE,
                            "probe_user_shape", &probe->kernel);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, sizeof record, &record, &probe->shape);
+    THEN(status, buffer_create(report, device, sizeof record, &record, &probe->shape));
     if (status != SONJECT_OK)
         shape_probe_end(probe);
     return status;
@@ -41,16 +40,14 @@ sonject_status shape_probe_ask(struct shape_probe *probe, const struct probe_ray
     if (count == 0)
         return SONJECT_OK;
     sonject_status status = buffer_create(report, device, count * sizeof *rays, rays, &ray_buffer);
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device, count * sizeof *hits, NULL, &hit_buffer);
+    THEN(status, buffer_create(report, device, count * sizeof *hits, NULL, &hit_buffer));
     if (status == SONJECT_OK) {
         const struct kernel_argument arguments[] = {{sizeof probe->shape, &probe->shape},
                                                     {sizeof ray_buffer, &ray_buffer},
                                                     {sizeof hit_buffer, &hit_buffer}};
         status = kernel_run(report, device, probe->kernel, arguments, 3, 1, &count);
     }
-    if (status == SONJECT_OK)
-        status = buffer_read(report, device, hit_buffer, 0, count * sizeof *hits, hits);
+    THEN(status, buffer_read(report, device, hit_buffer, 0, count * sizeof *hits, hits));
     buffer_release(&ray_buffer);
     buffer_release(&hit_buffer);
     return status;
