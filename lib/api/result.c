@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "inject/input_patch.h"
+#include "inject/injection_setup.h"
 
 sonject_status take_pixels(struct report *report, const sonject_pixels *pixels,
                            struct injection_input *input, float **packed)

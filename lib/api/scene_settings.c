@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "io/recording.h"
 #include "io/xtf_file.h"
-#include "medium/profile.h"
+#include "medium/water.h"
 
 /* Takes a structure into a local copy, checks it, and only then changes the scene. */
 #define SET_CHECKED(scene_handle, type, member, params, checker, name)                             \

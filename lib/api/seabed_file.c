@@ -7,7 +7,7 @@
 #include <sonject/run.h>
 
 #include "base/memory.h"
-#include "inject/input_patch.h"
+#include "inject/injection_setup.h"
 #include "io/geometry_notes.h"
 #include "io/raster_file.h"
 

@@ -6,7 +6,7 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "image/transfer.h"
-#include "inject/input_patch.h"
+#include "inject/injection_setup.h"
 #include "io/geometry_notes.h"
 #include "io/raster_file.h"
 #include "io/swath_file.h"

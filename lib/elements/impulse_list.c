@@ -1,10 +1,86 @@
 #include "elements/impulse_list.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "elements/speckle.h"
+#include "cl/launch.h"
+#include "cl/program.h"
+
+#define MICROPASCAL 1e-6
+
+static void scale_piece(struct impulse_piece *piece, const struct patch_view *view, double pressure,
+                        double absorption_db_per_m)
+{
+    const double bin_width = view->column_spacing_m / piece->grid.bins_per_pixel;
+    const double reference = view_apparent_range(view, 0.0);
+    for (size_t i = 0; i < piece->count; i++) {
+        const double apparent = reference + piece->bins[i] * bin_width;
+        const double way = 2.0 * apparent / view->range_ratio;
+        const double factor = pressure * pow(10.0, -absorption_db_per_m * way / 20.0);
+        piece->real_part[i] = (float)(piece->real_part[i] * factor);
+        piece->imaginary_part[i] = (float)(piece->imaginary_part[i] * factor);
+    }
+}
+
+void impulse_list_set_source_level(struct impulse_list *list, const struct patch_view *view,
+                                   double source_level_db, double absorption_db_per_m)
+{
+    const double pressure = sqrt(2.0) * MICROPASCAL * pow(10.0, source_level_db / 20.0);
+    for (size_t i = 0; i < list->count; i++)
+        scale_piece(&list->pieces[i], view, pressure, absorption_db_per_m);
+}
+
+/* Buffers and the kernel of a drawing. */
+struct drawing {
+    cl_mem energy, real_part, imaginary_part;
+    cl_kernel kernel;
+};
+
+static sonject_status drawing_run(struct drawing *drawing, struct report *report,
+                                  struct device *device, struct span bins, struct span strips,
+                                  uint64_t seed, uint32_t stream)
+{
+    const cl_int bin_count = bins.count;
+    const cl_int first_bin = bins.first;
+    const cl_int first_strip = strips.first;
+    const cl_uint seed_low = (cl_uint)(seed & 0xffffffffu);
+    const cl_uint seed_high = (cl_uint)(seed >> 32);
+    const cl_uint stream_number = stream;
+    const struct kernel_argument arguments[] = {
+        ARGUMENT(drawing->energy), ARGUMENT(bin_count),          ARGUMENT(first_bin),
+        ARGUMENT(first_strip),     ARGUMENT(seed_low),           ARGUMENT(seed_high),
+        ARGUMENT(stream_number),   ARGUMENT(drawing->real_part), ARGUMENT(drawing->imaginary_part)};
+    const size_t global[2] = {((size_t)bins.count + device->width - 1) / device->width,
+                              (size_t)strips.count};
+    return kernel_run(report, device, drawing->kernel, arguments,
+                      sizeof arguments / sizeof *arguments, 2, global);
+}
+
+/* sqrt(energy) times complex normal deviates that depend on seed, stream, strip and bin alone, for
+ * strips.count x bins.count cells of one grid, in two planes. Errors: DEVICE, MEMORY. */
+static sonject_status speckle_draw(struct report *report, struct device *device, struct span bins,
+                                   struct span strips, const float *energy, uint64_t seed,
+                                   uint32_t stream, float *real_part, float *imaginary_part)
+{
+    const size_t bytes = (size_t)strips.count * (size_t)bins.count * sizeof(float);
+    struct drawing drawing = {NULL, NULL, NULL, NULL};
+    sonject_status status =
+        kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "draw_speckle", &drawing.kernel);
+    THEN(status, buffer_create(report, device, bytes, energy, &drawing.energy));
+    THEN(status, buffer_create(report, device, bytes, NULL, &drawing.real_part));
+    THEN(status, buffer_create(report, device, bytes, NULL, &drawing.imaginary_part));
+    THEN(status, drawing_run(&drawing, report, device, bins, strips, seed, stream));
+    THEN(status, buffer_read(report, device, drawing.real_part, 0, bytes, real_part));
+    THEN(status, buffer_read(report, device, drawing.imaginary_part, 0, bytes, imaginary_part));
+    if (drawing.kernel)
+        clReleaseKernel(drawing.kernel);
+    buffer_release(&drawing.energy);
+    buffer_release(&drawing.real_part);
+    buffer_release(&drawing.imaginary_part);
+    return status;
+}
 
 void impulse_list_init(struct impulse_list *list, struct report *report, struct device *device)
 {

@@ -1,10 +1,12 @@
-/* Impulses that are heard: traced lines without their empty cells, kept until all are there. */
+/* Impulses that are heard: traced lines without their empty cells, kept until all are there; and
+ * what leads from ratios of pressures to pressures: a source level, and what the water absorbs. */
 #ifndef SONJECT_ELEMENTS_IMPULSE_LIST_H
 #define SONJECT_ELEMENTS_IMPULSE_LIST_H
 
 #include "base/report.h"
 #include "cl/device.h"
 #include "scene/line_grid.h"
+#include "scene/patch_view.h"
 
 /* Some strips of a grid. All owned. */
 struct impulse_piece {
@@ -37,5 +39,11 @@ sonject_status impulse_list_add(struct impulse_list *list, const struct line_gri
 sonject_status impulse_list_add_speckle(struct impulse_list *list, const struct line_grid *grid,
                                         struct span strips, const float *energy, uint64_t seed,
                                         uint32_t stream);
+
+/* Scales impulses to the pressure, in Pa m, that a source of this level makes of them: sqrt(2)
+ * times its rms pressure at 1 m, 10^(level / 20) uPa, less absorption on the way there and back at
+ * the impulse's own range. */
+void impulse_list_set_source_level(struct impulse_list *list, const struct patch_view *view,
+                                   double source_level_db, double absorption_db_per_m);
 
 #endif

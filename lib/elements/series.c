@@ -7,14 +7,176 @@
 #include "base/memory.h"
 #include "cl/launch.h"
 #include "cl/program.h"
-#include "elements/series_records.h"
 
-#define PI            3.14159265358979323846
-#define WIDTH_MAX     16
-#define LINES_BYTES   67108864.0 /* that pairs are worked on at a time in */
-#define PAIRS_MAX     65536.0
-#define WORK_ITEMS    65536 /* that a GPU wants */
-#define SHARE_SAMPLES 64    /* of a line, for a work-item at least */
+#define PI                    3.14159265358979323846
+#define SAMPLES_PER_DEVIATION 16.0      /* sharing between two fine samples then errs by 5e-4 */
+#define FINE_SAMPLES_MAX      4194304.0 /* 2^22: delays are single precision */
+#define STRIPS_AWAY_MAX       1e9
+#define ANY_SLOPE_SQUARE      1e16
+#define WIDTH_MAX             16
+#define LINES_BYTES           67108864.0 /* that pairs are worked on at a time in */
+#define PAIRS_MAX             65536.0
+#define WORK_ITEMS            65536 /* that a GPU wants */
+#define SHARE_SAMPLES         64    /* of a line, for a work-item at least */
+
+/* On success to be given to fine_pulse_clear. Errors: MEMORY, INPUT (too many fine samples). */
+static void fine_pulse_clear(struct fine_pulse *pulse)
+{
+    free(pulse->real_part);
+    free(pulse->imaginary_part);
+    memset(pulse, 0, sizeof *pulse);
+}
+
+/* The image's pulse. */
+static void fill_compressed(struct fine_pulse *pulse, uint32_t lead, double metres_per_sample,
+                            const struct point_response *response)
+{
+    for (uint32_t tap = 0; tap < pulse->taps; tap++) {
+        const double distance = ((double)lead - (double)tap) * metres_per_sample;
+        const struct complex_number value = range_response_complex(response, distance);
+        pulse->real_part[tap] = (float)value.real_part;
+        pulse->imaginary_part[tap] = (float)value.imaginary_part;
+    }
+}
+
+/* Upwards through the band in true frequency, which falls in an envelope of exp(-i 2 pi f0 t). The
+ * ends count half, as in an integral. */
+static void fill_chirp(struct fine_pulse *pulse, const sonject_element_layout *layout,
+                       double fine_rate)
+{
+    const double duration = layout->elements.chirp_duration_s;
+    const double rate = layout->bandwidth_hz / duration;
+    for (uint32_t tap = 0; tap < pulse->taps; tap++) {
+        const double time = (pulse->taps - 1 - tap) / fine_rate;
+        const double from_middle = time - 0.5 * duration;
+        const double phase = -PI * rate * from_middle * from_middle;
+        /* the share of the sample's interval that lies within the chirp */
+        const double early = fmin(time * fine_rate + 0.5, 1.0);
+        const double late = fmin(fmax((duration - time) * fine_rate + 0.5, 0.0), 1.0);
+        const double share = fmin(early, late);
+        pulse->real_part[tap] = (float)(share * cos(phase));
+        pulse->imaginary_part[tap] = (float)(share * sin(phase));
+    }
+}
+
+static sonject_status fine_pulse_init(struct fine_pulse *pulse, struct report *report,
+                                      const sonject_element_layout *layout,
+                                      const struct point_response *response)
+{
+    const sonject_elements_params *elements = &layout->elements;
+    const bool is_chirp = elements->pulse == SONJECT_SERIES_CHIRP;
+    const double deviation_s = 2.0 * response->range_deviation_m / layout->sound_speed_mps;
+    memset(pulse, 0, sizeof *pulse);
+    pulse->fine = (uint32_t)fmax(
+        1.0, ceil(SAMPLES_PER_DEVIATION / (deviation_s * elements->sampling_rate_hz) - 1e-9));
+    const double fine_rate = elements->sampling_rate_hz * pulse->fine;
+    const double metres = 0.5 * layout->sound_speed_mps / fine_rate;
+    const double lead =
+        ceil(is_chirp ? elements->chirp_duration_s * fine_rate : response->pulse_tail_m / metres);
+    const double taps = is_chirp ? lead + 1.0 : 2.0 * lead + 1.0;
+    const double samples = ((double)layout->samples - 1.0) * pulse->fine + taps;
+    if (samples > FINE_SAMPLES_MAX)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "elements: a ping's window of %.3g s at %.4g Hz needs %.3g fine "
+                              "samples, more than 2^22: narrow first_time and last_time, or lower "
+                              "the sampling rate",
+                              (double)layout->samples / elements->sampling_rate_hz,
+                              elements->sampling_rate_hz, samples);
+    pulse->taps = (uint32_t)taps;
+    pulse->first_time_s = elements->first_time_s - lead / fine_rate;
+    pulse->real_part = allocate_array(pulse->taps, sizeof(float));
+    pulse->imaginary_part = allocate_array(pulse->taps, sizeof(float));
+    if (!pulse->real_part || !pulse->imaginary_part) {
+        fine_pulse_clear(pulse);
+        return report_out_of_memory(report, "the pulse");
+    }
+    if (is_chirp)
+        fill_chirp(pulse, layout, fine_rate);
+    else
+        fill_compressed(pulse, (uint32_t)lead, metres, response);
+    return SONJECT_OK;
+}
+
+/* Fine samples that the series is made of. */
+static uint32_t fine_pulse_samples(const struct fine_pulse *pulse,
+                                   const sonject_element_layout *layout)
+{
+    return (uint32_t)(layout->samples - 1) * pulse->fine + pulse->taps;
+}
+
+typedef char impulse_grid_record_is_packed[sizeof(struct impulse_grid_record) == 14 * 4 ? 1 : -1];
+typedef char element_pair_record_is_packed[sizeof(struct element_pair_record) == 4 * 4 ? 1 : -1];
+
+/* Square of the tangent of the aspect limit; more than any where there is none. */
+static double largest_slope_squared(const sonject_elements_params *elements)
+{
+    const double slope = tan(elements->aspect_limit_rad);
+    return elements->aspect_limit_rad > 0.0 ? fmin(slope * slope, ANY_SLOPE_SQUARE)
+                                            : ANY_SLOPE_SQUARE;
+}
+
+/* A piece's strips and bins, and how its echoes become fine samples; segments: work-items that
+ * share a line. */
+static struct impulse_grid_record impulse_grid_record_of(const sonject_element_layout *layout,
+                                                         const struct patch_view *view,
+                                                         const struct impulse_piece *piece,
+                                                         const struct fine_pulse *pulse,
+                                                         int32_t segments)
+{
+    const sonject_elements_params *elements = &layout->elements;
+    const double c = layout->sound_speed_mps;
+    const double wavelength = c / layout->centre_frequency_hz;
+    const double bin_width = view->column_spacing_m / piece->grid.bins_per_pixel;
+    const double reference = view_apparent_range(view, 0.0);
+    const double fine_rate = elements->sampling_rate_hz * pulse->fine;
+    struct impulse_grid_record record;
+    memset(&record, 0, sizeof record);
+    record.strip_width = (float)(view->row_spacing_m / piece->grid.strips_per_row);
+    record.bin_width = (float)bin_width;
+    record.reference_range = (float)reference;
+    record.first_strip = piece->grid.strips.first;
+    record.strips = piece->grid.strips.count;
+    record.largest_range = (float)(reference + piece->last_bin * bin_width);
+    record.cycles_per_metre = (float)(1.0 / wavelength);
+    record.samples_per_metre = (float)(fine_rate / c);
+    record.first_sample = (float)((2.0 * reference / c - pulse->first_time_s) * fine_rate);
+    record.transmitter_cycles = (float)(0.5 * elements->transmitter_length_m / wavelength);
+    record.hydrophone_cycles = (float)(0.5 * elements->hydrophone_length_m / wavelength);
+    record.largest_slope_squared = (float)largest_slope_squared(elements);
+    record.samples = (int32_t)fine_pulse_samples(pulse, layout);
+    record.segments = segments;
+    return record;
+}
+
+/* Position on the numbering of a piece's strips: whole strips, and the rest. */
+static void find_strip(const struct patch_view *view, const struct impulse_piece *piece,
+                       double along_track_m, int32_t *strip, float *fraction)
+{
+    const double per_row = piece->grid.strips_per_row;
+    const double x = view->is_mirrored ? -along_track_m : along_track_m;
+    const double position = (view_row_of_x(view, x) + 0.5) * per_row - 0.5;
+    const double limited = fmax(-STRIPS_AWAY_MAX, fmin(position, STRIPS_AWAY_MAX));
+    *strip = (int32_t)floor(limited);
+    *fraction = (float)(limited - floor(limited));
+}
+
+/* Pairs first...first + count - 1 of transmitter and hydrophone, hydrophones of a ping one after
+ * the other, on the numbering of a piece's strips. */
+static void element_pair_records_fill(struct element_pair_record *records,
+                                      const sonject_elements_params *elements,
+                                      const struct patch_view *view,
+                                      const struct impulse_piece *piece, size_t first, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t ping = (uint32_t)((first + i) / elements->hydrophones);
+        const uint32_t hydrophone = (uint32_t)((first + i) % elements->hydrophones);
+        struct element_pair_record *record = &records[i];
+        find_strip(view, piece, element_transmitter_m(elements, ping), &record->transmitter_strip,
+                   &record->transmitter_fraction);
+        find_strip(view, piece, element_hydrophone_m(elements, ping, hydrophone),
+                   &record->hydrophone_strip, &record->hydrophone_fraction);
+    }
+}
 
 /* Device memory for some pairs of transmitter and hydrophone at a time. */
 struct series_work {

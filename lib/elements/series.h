@@ -1,11 +1,22 @@
-/* Time series of the hydrophones from impulses (kernels/MATH.md, "Element level"). */
+/* Time series of the hydrophones from impulses (kernels/MATH.md, "Element level"), and the pulse of
+ * a series, on samples so fine that echoes may be shared between two of them. */
 #ifndef SONJECT_ELEMENTS_SERIES_H
 #define SONJECT_ELEMENTS_SERIES_H
 
 #include <sonject/context.h>
 
+#include "base/report.h"
 #include "elements/impulse_list.h"
+#include "kernels/element_series_records.h"
 #include "scene/element_plan.h"
+
+struct fine_pulse {
+    uint32_t fine; /* samples for each of the series */
+    uint32_t taps;
+    double first_time_s;               /* of fine sample 0 */
+    float *real_part, *imaginary_part; /* owned, taps each: sample n of the series is the sum over
+                                          taps of fine sample n * fine + tap times tap */
+};
 
 struct series_request {
     const sonject_element_layout *layout;

@@ -14,6 +14,17 @@
 #include "scene/patch_view.h"
 #include "scene/point_response.h"
 
+/* What of lines is worth forming: glints of clutter lie in few places of large grids, and zeros add
+ * nothing. */
+bool filled_span_is_empty(struct filled_span span);
+
+/* The bins of a line with anything but zeros in one of its parts. imaginary_part may be NULL. */
+struct filled_span filled_span_of(const float *real_part, const float *imaginary_part, size_t bins);
+
+/* The next run of strips after another, which at first is {0, 0}: it begins and ends with filled
+ * strips, and holds gaps that cost less to form than to leave out. count 0 after the last. */
+struct span next_filled_strips(const struct filled_span *filled, int32_t count, struct span before);
+
 /* What is formed: complex amplitudes, by G and W; or energies, by |G|^2 and |W|^2: one plane of
  * them, or two side by side. Glints are kept over the whole patch (of a beam, to
  * -60 dB), since their side lobes stand out of the seabed that far; speckle and energies where 99.9

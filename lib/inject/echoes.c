@@ -5,9 +5,7 @@
 
 #include "base/clock.h"
 #include "base/memory.h"
-#include "inject/beam_shadows.h"
 #include "inject/chain_echoes.h"
-#include "inject/level_seabed.h"
 #include "inject/object_echoes.h"
 #include "inject/seabed_echoes.h"
 #include "inject/traced_impulses.h"

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "elements/impulse_list.h"
 #include "elements/series.h"
-#include "elements/source_level.h"
 #include "inject/coherent_seabed.h"
 #include "inject/injection_setup.h"
 #include "inject/traced_impulses.h"

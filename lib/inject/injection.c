@@ -12,7 +12,6 @@
 #include "inject/injection_setup.h"
 #include "inject/match.h"
 #include "inject/patch_level.h"
-#include "inject/target_level.h"
 #include "inject/traced_impulses.h"
 #include "inject/truth.h"
 

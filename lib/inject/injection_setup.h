@@ -1,11 +1,16 @@
-/* What tracing and forming of a patch begin with: the scene laid out on it, and what is asked of
- * its seabed. */
+/* What tracing and forming of a patch begin with: the scene laid out on it, what is asked of its
+ * seabed, and the pixels of patches that need no file: uniform and synthetic seabeds. */
 #ifndef SONJECT_INJECT_INJECTION_SETUP_H
 #define SONJECT_INJECT_INJECTION_SETUP_H
 
 #include "inject/echoes.h"
 #include "inject/injection.h"
 #include "inject/patch_level.h"
+
+/* Makes the pixels of the scene's uniform or synthetic input (its whole swath) and describes them
+ * in *input. input->pixels is to be given to free(). Errors: MEMORY. */
+sonject_status make_input(struct report *report, const struct scene *scene,
+                          struct injection_input *input);
 
 /* Reverses the order of rows in place; scratch holds one row. */
 void flip_rows(void *plane, size_t rows, size_t row_bytes, char *scratch);

@@ -34,7 +34,7 @@ double along_track_speckle_correlation(const struct point_response *response, do
     return (sum / total) * (sum / total);
 }
 
-double range_speckle_correlation(const struct point_response *response, double distance_m)
+static double range_speckle_correlation(const struct point_response *response, double distance_m)
 {
     const double x = distance_m / response->range_deviation_m;
     return exp(-0.5 * x * x);

@@ -1,8 +1,11 @@
-/* The measured patch as reflectivity: its level, its map, and its scale to cross-sections. */
+/* The measured patch as reflectivity: its level, its map, and its scale to cross-sections; and
+ * echoes scaled to the level that their objects were given. */
 #ifndef SONJECT_INJECT_PATCH_LEVEL_H
 #define SONJECT_INJECT_PATCH_LEVEL_H
 
 #include "base/report.h"
+#include "inject/echoes.h"
+#include "inject/injection.h"
 #include "scene/patch_view.h"
 #include "scene/point_response.h"
 #include "scene/scene.h"
@@ -31,5 +34,12 @@ void patch_level_clear(struct patch_level *level);
  * the grazing angle times the area that the point response covers. */
 double seabed_cell_energy(const struct patch_view *view, const struct point_response *response,
                           double mu, double apparent_range_m);
+
+/* Finds for each object the factor that gives its echo's peak the level it asks for,
+ * and scales fields and energies by it: at each pixel by the mean of the objects' factors, weighted
+ * with their energies there, which is exact where one object is heard. Tells level_kind,
+ * level_gain_db, over_seabed_db and seabed_strength_db in result->objects. Errors: MEMORY. */
+sonject_status set_target_levels(const struct tracer *tracer, struct echoes *echoes,
+                                 struct injection_result *result);
 
 #endif

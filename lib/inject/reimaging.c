@@ -3,7 +3,7 @@
 #include <math.h>
 
 #include "scene/cross_range.h"
-#include "trace/smooth.h"
+#include "trace/glints.h"
 
 #define EDGE_LOSS         0.02   /* of an edge pixel's energy */
 #define EDGE_DEVIATIONS   1.4522 /* erfc(x) / 2 = EDGE_LOSS, G^2 being exp(-(r / sigma)^2) */

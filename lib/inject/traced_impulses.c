@@ -5,12 +5,11 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "inject/beam_shadows.h"
-#include "inject/level_seabed.h"
+#include "inject/seabed_echoes.h"
 #include "trace/chains.h"
 #include "trace/checkpoint.h"
 #include "trace/glints.h"
-#include "trace/rough_mirrored.h"
+#include "trace/rough.h"
 
 #define STRIPS_A_LAUNCH 64 /* between two looks at whether the caller cancels */
 

@@ -1,12 +1,241 @@
+/* Francois and Garrison's formula (J. Acoust. Soc. Am. 72, 1982: part I, page 896, pure water and
+ * magnesium sulphate; part II, page 1879, boric acid and the total). Frequencies in kHz and
+ * absorption in dB/km, as the papers have them. */
 #include "medium/water.h"
 
 #include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "base/ranges.h"
 
-#define JOINED_DIFFERENCE 0.002 /* of layers that targets reach into, relative */
+#define DENSITY_MIN         1e-6 /* so that ratios neither overflow nor vanish */
+#define DENSITY_MAX         1e6
+#define STEPS_PER_SPEED     20000.0
+#define KELVIN_AT_0_CELSIUS 273.0 /* the papers' own, without the 0.15 */
+#define JOINED_DIFFERENCE   0.002 /* of layers that targets reach into, relative */
+
+/* Checks one value after the other and remembers where it was. */
+struct walk {
+    struct check check;
+    struct profile_place place;
+    char name[64]; /* of the value that is checked */
+};
+
+/* "heights[3]", or "layers[3].bottom" where `of` is not NULL. */
+static const char *name_value(struct walk *walk, const char *of, size_t index, const char *key)
+{
+    if (walk->check.status == SONJECT_OK) {
+        if (of)
+            snprintf(walk->name, sizeof walk->name, "%s[%zu].%s", of, index, key);
+        else
+            snprintf(walk->name, sizeof walk->name, "%s[%zu]", key, index);
+        walk->place.index = index;
+        walk->place.key = key;
+    }
+    return walk->name;
+}
+
+static sonject_status end_walk(const struct walk *walk, struct profile_place *place)
+{
+    if (walk->check.status != SONJECT_OK && place)
+        *place = walk->place;
+    return walk->check.status;
+}
+
+static void check_rise(struct walk *walk, double below, double height)
+{
+    if (!(height >= below + WATER_HEIGHT_STEP_MIN_M))
+        check_failure(&walk->check, walk->name,
+                      "must lie over the one before it, %g m, by at least %g m, not at %g m", below,
+                      WATER_HEIGHT_STEP_MIN_M, height);
+}
+
+sonject_status check_water_layers(const struct water_layer *layers, size_t count,
+                                  struct report *report, struct profile_place *place)
+{
+    struct walk walk = {{report, NULL, SONJECT_OK}, {0, NULL}, ""};
+    if (count > WATER_LAYERS_MAX) {
+        name_value(&walk, "layers", WATER_LAYERS_MAX, "bottom");
+        check_failure(&walk.check, walk.name, "is one too many; at most %d layers are possible",
+                      WATER_LAYERS_MAX);
+    }
+    for (size_t i = 0; i < count && walk.check.status == SONJECT_OK; i++) {
+        check_coordinate(&walk.check, name_value(&walk, "layers", i, "bottom"), layers[i].bottom_m);
+        if (i > 0)
+            check_rise(&walk, layers[i - 1].bottom_m, layers[i].bottom_m);
+        else if (layers[0].bottom_m != 0.0)
+            check_failure(&walk.check, walk.name,
+                          "must be 0 m: the first layer lies on the seabed; not %g m",
+                          layers[0].bottom_m);
+        check_within(&walk.check, name_value(&walk, "layers", i, "sound_speed"),
+                     layers[i].speed_mps, WATER_SPEED_MIN_MPS, WATER_SPEED_MAX_MPS, " m/s");
+        check_within(&walk.check, name_value(&walk, "layers", i, "density"), layers[i].density,
+                     DENSITY_MIN, DENSITY_MAX, "");
+    }
+    return end_walk(&walk, place);
+}
+
+sonject_status check_sound_speed_profile(const double *heights_m, const double *speeds_mps,
+                                         size_t count, struct report *report,
+                                         struct profile_place *place)
+{
+    struct walk walk = {{report, NULL, SONJECT_OK}, {0, NULL}, ""};
+    if (count < 2) {
+        name_value(&walk, NULL, count, "heights");
+        check_failure(&walk.check, walk.name, "is missing; a profile needs at least two samples");
+    }
+    for (size_t i = 0; i < count && walk.check.status == SONJECT_OK; i++) {
+        check_coordinate(&walk.check, name_value(&walk, NULL, i, "heights"), heights_m[i]);
+        if (i > 0)
+            check_rise(&walk, heights_m[i - 1], heights_m[i]);
+        if (i + 1 == count && !(heights_m[i] > 0.0))
+            check_failure(&walk.check, walk.name,
+                          "must lie over the seabed: the whole profile is below it (%g m)",
+                          heights_m[i]);
+        check_within(&walk.check, name_value(&walk, NULL, i, "sound_speeds"), speeds_mps[i],
+                     WATER_SPEED_MIN_MPS, WATER_SPEED_MAX_MPS, " m/s");
+    }
+    return end_walk(&walk, place);
+}
+
+struct stack {
+    struct water_layer *layers; /* room for WATER_LAYERS_MAX */
+    size_t count;
+    bool is_full; /* and another was wanted */
+};
+
+static void add_layer(struct stack *stack, double bottom_m, double speed_mps)
+{
+    if (stack->count > 0 && stack->layers[stack->count - 1].speed_mps == speed_mps)
+        return;
+    if (stack->count == WATER_LAYERS_MAX) {
+        stack->is_full = true;
+        return;
+    }
+    const struct water_layer layer = {bottom_m, speed_mps, 1.0};
+    stack->layers[stack->count++] = layer;
+}
+
+/* A linear piece, low >= 0. */
+static void add_piece(struct stack *stack, double low, double low_speed, double high,
+                      double high_speed)
+{
+    const double step_limit = fmin(low_speed, high_speed) / STEPS_PER_SPEED;
+    const double pieces = fmax(1.0, ceil(fabs(high_speed - low_speed) / step_limit));
+    for (double i = 0.0; i < pieces && !stack->is_full; i++)
+        add_layer(stack, low + i / pieces * (high - low),
+                  low_speed + (i + 0.5) / pieces * (high_speed - low_speed));
+}
+
+static void add_profile(struct stack *stack, const double *heights_m, const double *speeds_mps,
+                        size_t count)
+{
+    if (heights_m[0] > 0.0)
+        add_layer(stack, 0.0, speeds_mps[0]);
+    for (size_t i = 0; i + 1 < count && !stack->is_full; i++) {
+        double low = heights_m[i];
+        double low_speed = speeds_mps[i];
+        const double high = heights_m[i + 1];
+        if (high <= 0.0)
+            continue;
+        if (low < 0.0) {
+            low_speed += (speeds_mps[i + 1] - low_speed) * (low / (low - high));
+            low = 0.0;
+        }
+        add_piece(stack, low, low_speed, high, speeds_mps[i + 1]);
+    }
+    add_layer(stack, heights_m[count - 1], speeds_mps[count - 1]);
+}
+
+sonject_status layers_of_profile(const double *heights_m, const double *speeds_mps, size_t count,
+                                 struct report *report, struct water_layer **layers,
+                                 size_t *layer_count)
+{
+    struct stack stack = {allocate_array(WATER_LAYERS_MAX, sizeof **layers), 0, false};
+    CHECK_MEMORY(report, stack.layers, "the layers of a profile");
+    add_profile(&stack, heights_m, speeds_mps, count);
+    if (stack.is_full) {
+        free(stack.layers);
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "profile needs more than %d layers; take fewer samples, or layers",
+                              WATER_LAYERS_MAX);
+    }
+    *layers = stack.layers;
+    *layer_count = stack.count;
+    return SONJECT_OK;
+}
+
+sonject_status check_sea_water(const struct sea_water *water, struct report *report,
+                               struct check_listener *listener)
+{
+    struct check check = {report, listener, SONJECT_OK};
+    check_within(&check, "temperature", water->temperature_celsius, -2.0, 30.0, " C");
+    check_within(&check, "salinity", water->salinity_permille, 0.0, 40.0, " per mille");
+    check_within(&check, "depth", water->depth_m, 0.0, 5000.0, " m");
+    check_within(&check, "ph", water->ph, 7.0, 9.0, "");
+    return check.status;
+}
+
+/* Of a substance that needs time to follow the pressure, for unit strength. */
+static double relaxation(double frequency, double relaxation_frequency)
+{
+    const double square = frequency * frequency;
+    return relaxation_frequency * square / (relaxation_frequency * relaxation_frequency + square);
+}
+
+static double sound_speed(const struct sea_water *water)
+{
+    return 1412.0 + 3.21 * water->temperature_celsius + 1.19 * water->salinity_permille +
+           0.0167 * water->depth_m;
+}
+
+static double boric_acid(const struct sea_water *water, double frequency)
+{
+    const double kelvin = KELVIN_AT_0_CELSIUS + water->temperature_celsius;
+    const double strength = 8.86 / sound_speed(water) * pow(10.0, 0.78 * water->ph - 5.0);
+    const double relaxation_frequency =
+        2.8 * sqrt(water->salinity_permille / 35.0) * pow(10.0, 4.0 - 1245.0 / kelvin);
+    return strength * relaxation(frequency, relaxation_frequency);
+}
+
+static double magnesium_sulphate(const struct sea_water *water, double frequency)
+{
+    const double kelvin = KELVIN_AT_0_CELSIUS + water->temperature_celsius;
+    const double strength = 21.44 * water->salinity_permille / sound_speed(water) *
+                            (1.0 + 0.025 * water->temperature_celsius);
+    const double pressure = 1.0 + water->depth_m * (-1.37e-4 + water->depth_m * 6.2e-9);
+    const double relaxation_frequency = 8.17 * pow(10.0, 8.0 - 1990.0 / kelvin) /
+                                        (1.0 + 0.0018 * (water->salinity_permille - 35.0));
+    return strength * pressure * relaxation(frequency, relaxation_frequency);
+}
+
+static double pure_water(const struct sea_water *water, double frequency)
+{
+    const double t = water->temperature_celsius;
+    const double strength = t <= 20.0 ? 4.937e-4 + t * (-2.59e-5 + t * (9.11e-7 - t * 1.50e-8))
+                                      : 3.964e-4 + t * (-1.146e-5 + t * (1.45e-7 - t * 6.5e-10));
+    const double pressure = 1.0 + water->depth_m * (-3.83e-5 + water->depth_m * 4.9e-10);
+    return strength * pressure * frequency * frequency;
+}
+
+double sonject_absorption(double frequency_hz, double temperature_celsius, double salinity_permille,
+                          double depth_m, double ph)
+{
+    const struct sea_water water = {temperature_celsius, salinity_permille, depth_m, ph};
+    struct report report = {{0}, NULL, NULL};
+    const double frequency = frequency_hz / 1e3;
+    if (!(frequency_hz >= ABSORPTION_FREQUENCY_MIN_HZ &&
+          frequency_hz <= ABSORPTION_FREQUENCY_MAX_HZ) ||
+        check_sea_water(&water, &report, NULL) != SONJECT_OK)
+        return NAN;
+    return (boric_acid(&water, frequency) + magnesium_sulphate(&water, frequency) +
+            pure_water(&water, frequency)) /
+           1e3;
+}
 
 static bool are_alike(const struct water_layer *one, const struct water_layer *other)
 {

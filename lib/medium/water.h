@@ -1,14 +1,75 @@
-/* Water in level layers, and how sound crosses them. Sound that the tracer follows stays in the
- * straight water: the lowest layer, which reaches from the seabed over all targets and has one
- * sound speed. A way leads from the sonar, or from its image in level mirrors, to there. Pure
+/* Water in level layers, what it absorbs, and how sound crosses it. Sound that the tracer follows
+ * stays in the straight water: the lowest layer, which reaches from the seabed over all targets and
+ * has one sound speed. A way leads from the sonar, or from its image in level mirrors, to there. Pure
  * functions; x along-track plays no part, since layers are level. */
 #ifndef SONJECT_MEDIUM_WATER_H
 #define SONJECT_MEDIUM_WATER_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
-#include "medium/water_layer.h"
+#include <sonject/medium.h>
+
+#include "base/ranges.h"
+#include "base/report.h"
+
+#define WATER_LAYERS_MAX 4096
+
+/* Layers are listed from the seabed upwards, the first at 0; each ends where the next begins, the
+ * last has no upper edge. */
+struct water_layer {
+    double bottom_m; /* height of its lower edge over the mean seabed */
+    double speed_mps;
+    double density; /* in the unit of all the others */
+};
+
+/* Heights closer than this are taken as the same. */
+#define WATER_HEIGHT_STEP_MIN_M 1e-6
+#define WATER_SPEED_MIN_MPS     100.0
+#define WATER_SPEED_MAX_MPS     10000.0
+
+/* Where a check failed. */
+struct profile_place {
+    size_t index;    /* of the layer or sample */
+    const char *key; /* of its value, static: "bottom", "sound_speed", "density"; "heights",
+                        "sound_speeds" */
+};
+
+/* Layers as sonject_scene_set_water_layers wants them, at least one. The message starts with the
+ * value's name and a blank ("layers[2].bottom must be ..."); place may be NULL. Errors: INPUT. */
+sonject_status check_water_layers(const struct water_layer *layers, size_t count,
+                                  struct report *report, struct profile_place *place);
+
+/* A profile as sonject_scene_set_sound_speed_profile wants it; the message starts with "heights[3]
+ * ..." or "sound_speeds[3] ...". Errors: INPUT. */
+sonject_status check_sound_speed_profile(const double *heights_m, const double *speeds_mps,
+                                         size_t count, struct report *report,
+                                         struct profile_place *place);
+
+/* Layers of a profile that the check has let pass. Each linear piece above the seabed gives equally
+ * high layers with the piece's sound speed at their middle, as many as keep the steps from one to
+ * the next below 1/20000 of the speed; below the first sample and above the last one the speed is
+ * theirs. Equal neighbours are one layer. On success *layers is the caller's for free(). Errors:
+ * INPUT (more than WATER_LAYERS_MAX), MEMORY. */
+sonject_status layers_of_profile(const double *heights_m, const double *speeds_mps, size_t count,
+                                 struct report *report, struct water_layer **layers,
+                                 size_t *layer_count);
+
+#define ABSORPTION_FREQUENCY_MIN_HZ 200.0
+#define ABSORPTION_FREQUENCY_MAX_HZ 1e6
+
+struct sea_water {
+    double temperature_celsius; /* -2...30 */
+    double salinity_permille;   /* 0...40 */
+    double depth_m;             /* below the sea surface, 0...5000 */
+    double ph;                  /* 7...9 */
+};
+
+/* Ranges in which the formula of sonject_absorption holds, in the manner of the checks in
+ * scene/scene.h: keys are "temperature", "salinity", "depth" and "ph". Errors: INPUT. */
+sonject_status check_sea_water(const struct sea_water *water, struct report *report,
+                               struct check_listener *listener);
 
 struct water {
     struct water_layer *layers; /* owned; neighbours differ; the first is the straight water */

@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 #include "mesh/mesh_reader.h"
-#include "mesh/normals.h"
+#include "mesh/topology.h"
 
 /* Sizes that single precision holds with room for squares and products. */
 #define RADIUS_LEAST_M 1e-6

@@ -1,4 +1,5 @@
-/* How the triangles of a mesh hang together: whether they close, and which side is outside. */
+/* How the triangles of a mesh hang together: whether they close, which side is outside, and the
+ * normals of the smooth surface that they stand for. */
 #ifndef SONJECT_MESH_TOPOLOGY_H
 #define SONJECT_MESH_TOPOLOGY_H
 
@@ -7,6 +8,15 @@
 #include <stdint.h>
 
 #include "base/report.h"
+
+/* One unit normal a corner (3 * triangles, 3 numbers each; to be given to free()): the mean of the
+ * facets around the corner's vertex that lie within `angle` rad of the corner's own facet, weighted
+ * by the angles that they span there. Larger angles between facets are edges. A corner of a facet
+ * without area, or at a vertex of more than 256 facets, has its facet's normal (0 0 0 for a facet
+ * without area). Errors: MEMORY. */
+sonject_status mesh_smooth_normals(struct report *report, const float *vertices,
+                                   size_t vertex_count, const uint32_t *corners,
+                                   size_t triangle_count, double angle, float **normals);
 
 struct mesh_topology {
     size_t open_edges;    /* of one triangle */
@@ -27,12 +37,5 @@ struct mesh_topology {
 sonject_status mesh_topology_find(struct report *report, const float *vertices, size_t vertex_count,
                                   uint32_t *corners, size_t triangle_count,
                                   struct mesh_topology *topology);
-
-/* Corners (3 * triangle + 0...2) sorted by the vertex that they are at: those of vertex v are
- * list[starts[v]] to list[starts[v + 1] - 1], in ascending order. Both to be given to free().
- * Errors: MEMORY. */
-sonject_status mesh_corners_by_vertex(struct report *report, const uint32_t *vertex_of_corner,
-                                      size_t corner_count, size_t vertex_count, uint32_t **starts,
-                                      uint32_t **list);
 
 #endif

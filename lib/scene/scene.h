@@ -10,7 +10,7 @@
 #include <sonject/scene.h>
 
 #include "base/ranges.h"
-#include "medium/water_layer.h"
+#include "medium/water.h"
 #include "mesh/mesh_store.h"
 #include "scene/aperture_motion.h"
 #include "scene/relief_features.h"

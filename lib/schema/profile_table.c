@@ -6,8 +6,8 @@
 #include <string.h>
 
 #include "base/ranges.h"
+#include "medium/water.h"
 #include "schema/number_table.h"
-#include "medium/profile.h"
 
 enum {
     HEIGHT,

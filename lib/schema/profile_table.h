@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 #include "base/report.h"
-#include "medium/water_layer.h"
+#include "medium/water.h"
 
 #define PROFILE_SAMPLES_MAX WATER_LAYERS_MAX /* more of them give more layers */
 #define PROFILE_BYTES_MAX   (1024 * 1024)

@@ -3,10 +3,9 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "medium/water.h"
 #include "schema/profile_table.h"
 #include "schema/scene_fields.h"
-#include "medium/absorption.h"
-#include "medium/profile.h"
 
 /* What the section says, until it is the scene's. */
 struct medium_text {

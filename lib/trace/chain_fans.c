@@ -2,12 +2,88 @@
 
 #include <math.h>
 
-#include "trace/chain_reach.h"
-#include "trace/object_rays.h"
-#include "trace/patch_fan.h"
-#include "trace/sea_surface.h"
+#include "scene/surface_material.h"
+#include "trace/fan.h"
+#include "trace/image_sources.h"
 
 #define PI 3.14159265358979323846
+
+/* A mirror alone lengthens chains of two interactions to three; what it adds to a single one is the
+ * pairs of sources'. */
+static bool adds_to_chains(const struct scene *scene)
+{
+    const sonject_material_params material = surface_material(&scene->surface);
+    const uint32_t interactions = scene->injection.interactions;
+    return interactions > 1 &&
+           (material_is_rough(&material) || (material_is_smooth(&material) && interactions > 2));
+}
+
+static double earliest_half_path(const struct tracer *tracer)
+{
+    const double sonar = tracer->view.altitude_m;
+    const double image = 2.0 * tracer->scene->surface.water_depth_m - sonar;
+    double earliest = INFINITY;
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
+        const struct placement *placement = &tracer->placements[i];
+        const double *centre = placement->centre;
+        const double by_centre =
+            0.5 * (hypot(centre[1], sonar - centre[2]) + hypot(centre[1], image - centre[2]));
+        earliest = fmin(earliest, by_centre - placement->bounding_radius_m);
+    }
+    return earliest;
+}
+
+bool sea_surface_is_in_chains(const struct tracer *tracer, const struct line_grid *grid)
+{
+    const struct patch_view *view = &tracer->view;
+    const struct water *water = view->water.water;
+    const double depth = tracer->scene->surface.water_depth_m;
+    if (!(depth > 0.0) || !adds_to_chains(tracer->scene) ||
+        (water->count > 1 && water->layers[1].bottom_m < depth))
+        return false;
+    const double side = tracer->scene->sonar.transducer_side_m;
+    return (earliest_half_path(tracer) - side) * view->range_ratio < line_grid_far_end(grid, view);
+}
+
+/* In sizes of the part, or in its heights if that is more. */
+#define REACH_AROUND 16.0
+
+/* In ways from below the part to the seabed's mirror point, which lies nearer to the sonar the
+ * flatter sound comes: what goes by there comes first. */
+#define REACH_TO_MIRROR 6.5
+
+/* Half the sum of the heights of the top and of the lowest point that is not buried. */
+static double mean_height(const struct tracer *tracer, const struct placement *placement)
+{
+    static const double upward[3] = {0.0, 0.0, 1.0};
+    const double half_extent = placement_half_extent(placement, upward);
+    const double height = placement->centre[2] - tracer_lowest_seabed(tracer);
+    return 0.5 * (fmax(height + half_extent, 0.0) + fmax(height - half_extent, 0.0));
+}
+
+/* What is further from the part is heard after the patch's last range, r_B + d + r over 2, even
+ * straight below the sonar; a little more, for the point response. */
+static double heard_reach(const struct tracer *tracer, const struct placement *placement)
+{
+    const struct patch_view *view = &tracer->view;
+    const double last = 1.02 * view_apparent_range(view, (double)view->columns);
+    return 2.0 * last - placement_range(placement, view) - view->altitude_m;
+}
+
+struct chain_reach chain_reach_of(const struct tracer *tracer, const struct placement *placement)
+{
+    const double radius = placement->bounding_radius_m;
+    const double height = mean_height(tracer, placement);
+    const double ground = placement->centre[1];
+    const double altitude = tracer->view.altitude_m;
+    struct chain_reach reach;
+    reach.around_m = radius + fmax(REACH_AROUND * radius,
+                                   fmin(REACH_AROUND * height, heard_reach(tracer, placement)));
+    /* seabed that sees the sonar steeper than 45 degrees fills many rays, and matters little */
+    const double wanted = radius + REACH_TO_MIRROR * height * ground / altitude;
+    reach.towards_sonar_m = fmax(reach.around_m, fmin(wanted, ground - altitude));
+    return reach;
+}
 
 #define PATCH_RAYS_PER_BIN  1.0 /* brute force */
 #define SEABED_RAYS_PER_BIN 4.0 /* near the objects; thinned out with distance */

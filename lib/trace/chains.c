@@ -7,11 +7,11 @@
 #include "base/memory.h"
 #include "cl/launch.h"
 #include "scene/surface_material.h"
+#include "trace/chain_fans.h"
 #include "trace/checkpoint.h"
+#include "trace/fan.h"
+#include "trace/image_sources.h"
 #include "trace/object_buffer.h"
-#include "trace/patch_fan.h"
-#include "trace/sea_surface.h"
-#include "trace/sources.h"
 #include "trace/target_spheres.h"
 
 #define PI              3.14159265358979323846

@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "kernels/tally.h"
-#include "trace/source_pairs.h"
+#include "trace/image_sources.h"
 
 bool corner_sums_init(struct corner_sums *sums, const struct line_grid *grid)
 {

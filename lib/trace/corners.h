@@ -1,11 +1,28 @@
-/* Echoes of several smooth faces one after the other, the first of which is a given part: one trace
- * for each pair of sources (the sonar and its images in mirrors). */
+/* Multi-bounce specular paths: echoes of several smooth faces one after the other, the first of
+ * which is a given part. There is one trace for each pair of sources (the sonar and its images in
+ * mirrors). */
 #ifndef SONJECT_TRACE_CORNERS_H
 #define SONJECT_TRACE_CORNERS_H
 
 #include "trace/corner_sums.h"
-#include "trace/source_pairs.h"
+#include "trace/image_sources.h"
 #include "trace/tracer.h"
+
+#define CORNER_PAIRS_MAX (SOURCES_MAX * (SOURCES_MAX + 1) / 2)
+
+/* All pairs of sources of a part, the straight one first, that leave two interactions to objects.
+ */
+struct corner_pairs {
+    struct source_pairs others;
+    struct sound_source sonar;
+    struct source_pair pair;
+    bool has_begun;
+};
+
+void corner_pairs_begin(struct corner_pairs *pairs, const struct tracer *tracer, uint32_t part);
+
+/* The next one, valid until the call after; NULL when there is none. */
+const struct source_pair *corner_pairs_next(struct corner_pairs *pairs);
 
 /* The echoes of one pair of sources. */
 struct corner_trace {

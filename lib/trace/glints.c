@@ -1,9 +1,189 @@
 #include "trace/glints.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "cl/launch.h"
+#include "trace/checkpoint.h"
+#include "trace/fan.h"
+#include "trace/object_buffer.h"
+
+#define STRIP_WAVELENGTHS  0.25 /* widest sub-strip: wider ones alias glints (physics.md 2) */
+#define BINS_PER_DEVIATION 16.0 /* linear sharing between bins then errs by 5e-4 */
+#define MIRRORED_STRIPS    64   /* of a launch: there may be dozens of pairs at a time */
+
+/* Sizes of the strips and bins of all glints: strips_per_row and bins_per_pixel of the grid. */
+static void glint_cells_lay(struct line_grid *grid, const struct tracer *tracer)
+{
+    const struct patch_view *view = &tracer->view;
+    grid->strips_per_row =
+        (uint32_t)ceil(view->row_spacing_m / (STRIP_WAVELENGTHS * view->wavelength_m) - 1e-9);
+    grid->bins_per_pixel = (uint32_t)ceil(
+        BINS_PER_DEVIATION * view->column_spacing_m / tracer->response.range_deviation_m - 1e-9);
+}
+
+double glint_shortest_deviation(const struct line_grid *grid, double column_spacing_m)
+{
+    return BINS_PER_DEVIATION * column_spacing_m / grid->bins_per_pixel;
+}
+
+void glint_strips_lay(struct line_grid *grid, const struct tracer *tracer, uint32_t number)
+{
+    static const double along[3] = {1.0, 0.0, 0.0};
+    const struct patch_view *view = &tracer->view;
+    const struct placement *placement = &tracer->placements[number];
+    glint_cells_lay(grid, tracer);
+    const double extent = placement_half_extent(placement, along);
+    const double per_row = grid->strips_per_row;
+    grid->strips.first =
+        (int32_t)floor((view_row_of_x(view, placement->centre[0] - extent) + 0.5) * per_row) - 1;
+    grid->strips.count =
+        (int32_t)floor((view_row_of_x(view, placement->centre[0] + extent) + 0.5) * per_row) + 2 -
+        grid->strips.first;
+}
+
+void glint_fan_lay(struct fan_record *fan, const struct tracer *tracer, uint32_t number,
+                   const struct water_way *way, double finer)
+{
+    const struct placement *placement = &tracer->placements[number];
+    const double radius =
+        water_way_ray(way, water_way_grazing(way, placement->centre[1], placement->centre[2]),
+                      placement->centre[2])
+            .wavefront_m;
+    const double cell = GLINT_CELL_WAVELENGTHS * tracer->view.wavelength_m /
+                        sqrt(tracer->scene->injection.ray_scale) / finer;
+    const struct elevations edges = elevations_of_object(tracer, number, way);
+    const double rays = ceil((edges.highest - edges.lowest) * radius / cell) + 1.0;
+    fan->rays = (uint32_t)rays;
+    fan->first_elevation = (float)edges.lowest;
+    fan->elevation_step = (float)((edges.highest - edges.lowest) / rays);
+    fan->strata = (uint32_t)ceil(fan->strip_width / cell - 1e-6);
+    fan->only_object = (int32_t)number;
+}
+
+static void choose_quanta(struct smooth_trace *trace, const struct tracer *tracer)
+{
+    const double ratio = tracer->view.range_ratio;
+    const double cell = (double)trace->fan.strip_width / trace->fan.strata *
+                        trace->fan.elevation_step * 2.0 * trace->fan.reference_range;
+    const double most = cell * trace->fan.inverse_wavelength;
+    trace->fan.quanta = power_of_two_below(ldexp(1.0, 36) / most);
+    trace->amplitude_of_quantum = ratio * ratio / trace->fan.quanta;
+}
+
+/* Of the parts, those in the way go to the device; the frame is centred on the one aimed at. */
+static sonject_status begin_on_device(struct smooth_trace *trace, struct tracer *tracer,
+                                      uint32_t number, bool is_straight, int32_t strips)
+{
+    struct launch_parts parts;
+    struct object_record *records = NULL;
+    sonject_status status = launch_parts_init(&parts, tracer, number, &trace->grid, is_straight);
+    THEN(status,
+         launch_records_create(&records, tracer, &parts, tracer->placements[number].centre));
+    if (status == SONJECT_OK) {
+        trace->fan.objects = (int32_t)parts.count;
+        trace->fan.relief_words = object_buffer_relief_words(tracer, parts.count);
+        trace->fan.only_object = (int32_t)parts.target;
+        status =
+            trace_device_init(&trace->on_device, tracer,
+                              is_straight ? PROGRAM_TRACE_SMOOTH : PROGRAM_TRACE_SMOOTH_MIRRORED,
+                              is_straight ? "trace_smooth" : "trace_smooth_mirrored", records,
+                              (struct part_list){parts.numbers, parts.count}, (size_t)strips,
+                              2 * (size_t)trace->grid.bins.count);
+    }
+    free(records);
+    launch_parts_clear(&parts);
+    return status;
+}
+
+sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tracer,
+                                  uint32_t number)
+{
+    const struct sound_source sonar = {tracer->view.water, 0, MIRROR_SEABED};
+    const struct source_pair straight = {&sonar, &sonar, 0};
+    memset(trace, 0, sizeof *trace);
+    if (!material_is_smooth(tracer->placements[number].material))
+        return SONJECT_OK;
+    /* the frame is centred on the object: phases then keep their digits */
+    const double *origin = tracer->placements[number].centre;
+    glint_strips_lay(&trace->grid, tracer, number);
+    trace->grid.bins = source_pair_bins(tracer, number, &straight, &trace->grid);
+    fan_record_init(&trace->fan, tracer, origin, &trace->grid);
+    trace->fan.stream = STREAM_SMOOTH_RAYS + number;
+    glint_fan_lay(&trace->fan, tracer, number, &sonar.way, 1.0);
+    choose_quanta(trace, tracer);
+    sonject_status status =
+        object_rays_add(&trace->rays, tracer, number, &sonar.way, &trace->fan.table);
+    THEN(status, begin_on_device(trace, tracer, number, true, trace->grid.strips.count));
+    if (status != SONJECT_OK)
+        smooth_trace_end(trace);
+    return status;
+}
+
+sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tracer *tracer,
+                                           uint32_t number, const struct source_pair *pair)
+{
+    struct source_pair_record sources;
+    memset(trace, 0, sizeof *trace);
+    glint_strips_lay(&trace->grid, tracer, number);
+    trace->grid.bins = source_pair_bins_in_patch(tracer, number, pair, &trace->grid);
+    if (trace->grid.bins.count == 0)
+        return SONJECT_OK;
+    sonject_status status =
+        source_pair_aim(&trace->fan, &sources, &trace->rays, tracer, number, pair, &trace->grid);
+    trace->fan.stream = STREAM_MIRRORED_RAYS + STREAMS_OF_PAIR * pair->number + number;
+    glint_fan_lay(&trace->fan, tracer, number, &pair->outgoing->way, 1.0);
+    choose_quanta(trace, tracer);
+    const int32_t strips =
+        trace->grid.strips.count < MIRRORED_STRIPS ? trace->grid.strips.count : MIRRORED_STRIPS;
+    THEN(status, begin_on_device(trace, tracer, number, false, strips));
+    THEN(status,
+         buffer_create(tracer->report, tracer->device, sizeof sources, &sources, &trace->sources));
+    if (status != SONJECT_OK)
+        smooth_trace_end(trace);
+    return status;
+}
+
+void smooth_trace_end(struct smooth_trace *trace)
+{
+    trace_device_clear(&trace->on_device);
+    ray_table_clear(&trace->rays);
+    buffer_release(&trace->sources);
+}
+
+int32_t smooth_trace_chunk(const struct smooth_trace *trace)
+{
+    return (int32_t)trace->on_device.tally_strips;
+}
+
+sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tracer,
+                                   struct span strips, float *real_part, float *imaginary_part)
+{
+    const size_t count = (size_t)strips.count * (size_t)trace->grid.bins.count;
+    const cl_mem buffers[] = {trace->on_device.objects, trace->on_device.tallies, trace->sources};
+    trace->fan.first_strip = strips.first;
+    trace->fan.strips = strips.count;
+    const void *mapped;
+    sonject_status status = buffer_clear(tracer->report, tracer->device, trace->on_device.tallies,
+                                         2 * count * sizeof(int64_t));
+    if (status == SONJECT_OK)
+        status = trace_launch(tracer, trace->on_device.kernel, &trace->fan, &trace->rays, buffers,
+                              trace->sources ? 3 : 2);
+    THEN(status, buffer_map(tracer->report, tracer->device, trace->on_device.tallies,
+                            2 * count * sizeof(int64_t), &mapped));
+    if (status != SONJECT_OK)
+        return status;
+    const int64_t *tallies;
+    status = checkpoint_sums(tracer->checkpoint, mapped, 2 * count, &tallies);
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++) {
+        real_part[i] = (float)((double)tallies[2 * i] * trace->amplitude_of_quantum);
+        imaginary_part[i] = (float)((double)tallies[2 * i + 1] * trace->amplitude_of_quantum);
+    }
+    buffer_unmap(tracer->device, trace->on_device.tallies, mapped);
+    return status;
+}
 
 static sonject_status begin_mirrored(struct glints *glints, struct tracer *tracer, uint32_t object)
 {

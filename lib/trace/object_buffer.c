@@ -6,14 +6,175 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "kernels/object_tree_records.h"
+#include "kernels/relief_records.h"
+#include "trace/fan.h"
 #include "trace/object_tree.h"
-#include "trace/relief_words.h"
 #include "user/user_program.h"
 
+#define MARGIN_M    1.0e-3 /* beyond the heights, so that rays cross them all between the bounds */
 #define WORD        4
 #define ALIGNED(n)  (((n) + 15) & ~(size_t)15) /* words: as wide as vectors are */
 #define WORDS_MOST  ((size_t)UINT32_MAX)
 #define WORDS_OF(x) (sizeof(x) / WORD)
+
+typedef char relief_record_is_packed[sizeof(struct relief_record) == 8 * 4 ? 1 : -1];
+
+static size_t blocks_of(uint32_t points)
+{
+    return (points - 1 + RELIEF_BLOCK - 1) / RELIEF_BLOCK;
+}
+
+size_t relief_word_count(const struct relief *relief)
+{
+    return sizeof(struct relief_record) / 4 + 3 * (size_t)relief->rows * relief->columns +
+           2 * blocks_of(relief->rows) * blocks_of(relief->columns);
+}
+
+/* Highest and lowest point of the cells of a block, edges included. */
+static void block_bounds(const struct relief *relief, size_t block_row, size_t block_column,
+                         float bounds[2])
+{
+    const size_t first_row = block_row * RELIEF_BLOCK;
+    const size_t first_column = block_column * RELIEF_BLOCK;
+    bounds[0] = -INFINITY;
+    bounds[1] = INFINITY;
+    for (size_t row = first_row; row <= first_row + RELIEF_BLOCK && row < relief->rows; row++)
+        for (size_t column = first_column;
+             column <= first_column + RELIEF_BLOCK && column < relief->columns; column++) {
+            const float height = relief->heights[row * relief->columns + column];
+            bounds[0] = fmaxf(bounds[0], height);
+            bounds[1] = fminf(bounds[1], height);
+        }
+}
+
+void relief_words_init(uint32_t *words, const struct relief *relief)
+{
+    const size_t points = (size_t)relief->rows * relief->columns;
+    struct relief_record record;
+    memset(&record, 0, sizeof record);
+    record.rows = (int32_t)relief->rows;
+    record.columns = (int32_t)relief->columns;
+    record.block_rows = (int32_t)blocks_of(relief->rows);
+    record.block_columns = (int32_t)blocks_of(relief->columns);
+    record.rows_per_metre = (float)(1.0 / relief->row_step_m);
+    record.columns_per_metre = (float)(1.0 / relief->column_step_m);
+    record.lowest = (float)(relief->lowest_m - MARGIN_M);
+    record.highest = (float)(relief->highest_m + MARGIN_M);
+    memcpy(words, &record, sizeof record);
+    words += sizeof record / 4;
+    memcpy(words, relief->heights, points * sizeof(float));
+    memcpy(words + points, relief->slopes, 2 * points * sizeof(float));
+    words += 3 * points;
+    for (size_t row = 0; row < (size_t)record.block_rows; row++)
+        for (size_t column = 0; column < (size_t)record.block_columns; column++, words += 2) {
+            float bounds[2];
+            block_bounds(relief, row, column, bounds);
+            memcpy(words, bounds, sizeof bounds);
+        }
+}
+
+/* Far more than rounding: of a radius, and in m. */
+#define MARGIN       0.01
+#define MARGIN_LEAST 0.001
+
+/* Where rays run that are aimed at a part. */
+struct corridor {
+    double first_x, last_x;         /* m, along-track */
+    bool is_straight;               /* and by what follows */
+    double least_angle, most_angle; /* rad below the horizontal, from the sonar */
+    double farthest;                /* m from the sonar's track */
+};
+
+static double padded_radius(const struct placement *placement)
+{
+    return (1.0 + MARGIN) * placement->bounding_radius_m + MARGIN_LEAST;
+}
+
+static double distance_from_track(const struct tracer *tracer, const struct placement *placement)
+{
+    return hypot(placement->centre[1], tracer->scene->sonar.altitude_m - placement->centre[2]);
+}
+
+static double angle_from_track(const struct tracer *tracer, const struct placement *placement)
+{
+    return atan2(tracer->scene->sonar.altitude_m - placement->centre[2], placement->centre[1]);
+}
+
+static struct corridor corridor_to(const struct tracer *tracer, uint32_t target,
+                                   const struct line_grid *grid, bool is_straight)
+{
+    const struct patch_view *view = &tracer->view;
+    const struct placement *placement = &tracer->placements[target];
+    const double per_row = grid->strips_per_row;
+    const double end = grid->strips.first + grid->strips.count;
+    struct corridor corridor;
+    memset(&corridor, 0, sizeof corridor);
+    corridor.first_x = view_x_of_row(view, grid->strips.first / per_row - 0.5) - MARGIN_LEAST;
+    corridor.last_x = view_x_of_row(view, end / per_row - 0.5) + MARGIN_LEAST;
+    corridor.is_straight = is_straight && view->water.is_straight;
+    if (corridor.is_straight) {
+        const struct elevations edges = elevations_of_object(tracer, target, &view->water);
+        const double angle = angle_from_track(tracer, placement);
+        corridor.least_angle = angle - edges.highest - 1e-4;
+        corridor.most_angle = angle - edges.lowest + 1e-4;
+        corridor.farthest = distance_from_track(tracer, placement) + padded_radius(placement);
+    }
+    return corridor;
+}
+
+static bool is_in_corridor(const struct tracer *tracer, const struct corridor *corridor,
+                           const struct placement *placement)
+{
+    const double radius = padded_radius(placement);
+    if (placement->centre[0] + radius < corridor->first_x ||
+        placement->centre[0] - radius > corridor->last_x)
+        return false;
+    if (!corridor->is_straight)
+        return true;
+    const double distance = distance_from_track(tracer, placement);
+    if (distance <= radius)
+        return true;
+    const double angle = angle_from_track(tracer, placement);
+    const double half = asin(radius / distance);
+    return distance - radius <= corridor->farthest && angle + half >= corridor->least_angle &&
+           angle - half <= corridor->most_angle;
+}
+
+sonject_status launch_parts_init(struct launch_parts *parts, const struct tracer *tracer,
+                                 uint32_t target, const struct line_grid *grid, bool is_straight)
+{
+    const struct corridor corridor = corridor_to(tracer, target, grid, is_straight);
+    memset(parts, 0, sizeof *parts);
+    parts->numbers = allocate_array(tracer->part_count, sizeof *parts->numbers);
+    CHECK_MEMORY(tracer->report, parts->numbers, "objects");
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
+        if (i == target)
+            parts->target = parts->count;
+        else if (tracer->part_count > OBJECTS_IN_LOOP &&
+                 !is_in_corridor(tracer, &corridor, &tracer->placements[i]))
+            continue;
+        parts->numbers[parts->count++] = i;
+    }
+    return SONJECT_OK;
+}
+
+void launch_parts_clear(struct launch_parts *parts)
+{
+    free(parts->numbers);
+    memset(parts, 0, sizeof *parts);
+}
+
+sonject_status launch_records_create(struct object_record **records, const struct tracer *tracer,
+                                     const struct launch_parts *parts, const double origin[3])
+{
+    *records = allocate_array(parts->count, sizeof **records);
+    if (!*records)
+        return report_out_of_memory(tracer->report, "objects");
+    for (uint32_t i = 0; i < parts->count; i++)
+        object_record_init(&(*records)[i], tracer, parts->numbers[i], origin);
+    return SONJECT_OK;
+}
 
 static size_t normal_words(const struct mesh *mesh)
 {

@@ -1,4 +1,5 @@
-/* The incoherent part: expected energies of seabed and rough surfaces, strip by strip. */
+/* The incoherent part: expected energies of seabed and rough surfaces, strip by strip, straight and
+ * by image sources. */
 #ifndef SONJECT_TRACE_ROUGH_H
 #define SONJECT_TRACE_ROUGH_H
 
@@ -36,10 +37,6 @@ void rough_trace_end(struct rough_trace *trace);
 sonject_status rough_trace_begin_beam(struct rough_trace *trace, struct tracer *tracer,
                                       const struct point_response *response);
 
-/* Tells the record of a part of an object where the object's tile is. */
-void rough_tile_describe(const struct rough_trace *trace, uint32_t object,
-                         struct object_record *record);
-
 /* How many strips a call of rough_trace_strips may take. */
 int32_t rough_trace_chunk(const struct rough_trace *trace);
 
@@ -58,5 +55,9 @@ void rough_trace_flatten(struct rough_trace *trace);
 /* Reads all tiles as energies (planes TILE_ENERGY, TILE_LOST; m^2) and counts (TILE_FOOTPRINT):
  * tile_elements floats. Plane p of a tile starts at offset + p * line_grid_cells(&tile.grid). */
 sonject_status rough_trace_tiles(struct rough_trace *trace, struct tracer *tracer, float *tiles);
+
+/* Adds to the objects' tiles (TILE_ENERGY) what mirrors carry to and from their rough surfaces.
+ * Errors: DEVICE, MEMORY. */
+sonject_status rough_trace_mirrored(struct rough_trace *trace, struct tracer *tracer);
 
 #endif

@@ -6,7 +6,6 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "trace/sums_block.h"
 
 /* A record of more sums than these is none that was written. */
 #define ANNOUNCED_MAX    ((uint64_t)1 << 27)

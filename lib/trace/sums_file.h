@@ -121,4 +121,27 @@ sonject_status sums_file_runs(const struct sums_file *file, struct report *repor
 sonject_status sums_file_record(const struct sums_file *file, struct report *report,
                                 uint64_t record, int64_t **values, uint64_t *count);
 
+/* What reader and writer share. */
+#define SUMS_MAGIC       "sonject sums 03\n"
+#define SUMS_MAGIC_BYTES 16
+
+enum block_kind {
+    BLOCK_HEAD = 1,
+    BLOCK_SUMS = 2,
+    BLOCK_END = 3
+};
+
+struct block_head {
+    uint64_t kind, bytes;
+    char digest[SUMS_DIGEST_CAPACITY];
+};
+
+typedef char block_head_is_packed[sizeof(struct block_head) == 56 ? 1 : -1];
+typedef char sums_head_is_packed[sizeof(struct sums_head) == 176 ? 1 : -1];
+typedef char sums_end_is_packed[sizeof(struct sums_end) == 96 ? 1 : -1];
+
+/* Fills in the digest of a block whose kind and number of bytes are there. False where memory
+ * lacks. */
+bool block_digest(struct block_head *head, const void *content);
+
 #endif

@@ -6,7 +6,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "trace/sums_block.h"
+#include "trace/sums_file.h"
 
 #define MEMORY_MOST ((size_t)32 << 20) /* short runs touch no file */
 #define ZEROS_MOST  4                  /* within a run: a new one takes two numbers */

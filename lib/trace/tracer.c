@@ -6,8 +6,8 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
-#include "trace/aspects.h"
 #include "trace/checkpoint.h"
+#include "trace/fan.h"
 #include "trace/object_buffer.h"
 #include "trace/object_shape.h"
 #include "user/user_program.h"

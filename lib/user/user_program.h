@@ -1,11 +1,18 @@
 /* Kernels for scenes: the library's own programs where no shape is a user's, else with the code of
- * all its users' shapes linked to them. */
+ * all its users' shapes linked to them; and what compilers say about users' code. */
 #ifndef SONJECT_USER_USER_PROGRAM_H
 #define SONJECT_USER_USER_PROGRAM_H
 
 #include "cl/program.h"
 #include "kernels/user_records.h"
 #include "scene/scene.h"
+#include "user/snippet.h"
+
+/* Makes "name:line: what" of the first error in the log of a snippet's unit. Known are the forms
+ * "error: file:line:column: what" and "file:line:column: error: what"; else the error itself is
+ * told. The log's lines go to report's log. Returns INPUT. */
+sonject_status explain_build_log(struct report *report, const struct user_snippet *snippet,
+                                 const char *device_name, const char *log);
 
 /* What the kernels know of a shape. */
 struct user_record user_record_of(const struct user_shape *shape);

@@ -11,8 +11,8 @@
 #include "benchmark_scene.h"
 #include "cl/launch.h"
 #include "native_kernel.h"
+#include "trace/glints.h"
 #include "trace/rough.h"
-#include "trace/smooth.h"
 
 #define REPEATS 7
 

@@ -9,7 +9,7 @@
 #include "physics/bench.h"
 #include "scene/cross_range.h"
 #include "scene/motion_response.h"
-#include "trace/rough_mirrored.h"
+#include "trace/rough.h"
 
 #define ROWS    96
 #define COLUMNS 128

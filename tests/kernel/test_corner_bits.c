@@ -5,7 +5,6 @@
 
 #include "cl/launch.h"
 #include "physics/bench.h"
-#include "trace/corner_reach.h"
 #include "trace/corners.h"
 
 #define ROWS    64

@@ -8,8 +8,8 @@
 #include "cl/launch.h"
 #include "kernel/clutter.h"
 #include "kernel/random_rays.h"
+#include "trace/fan.h"
 #include "trace/object_buffer.h"
-#include "trace/patch_fan.h"
 
 #define RAYS     12800 /* of each of four kinds */
 #define ROWS     160

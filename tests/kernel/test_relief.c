@@ -3,7 +3,7 @@
 #include "claims.h"
 #include "random_rays.h"
 #include "seabed.h"
-#include "trace/relief_words.h"
+#include "trace/object_buffer.h"
 
 #define RAYS       100000
 #define HIGHEST    0.7 /* m: nothing here is higher */

@@ -5,7 +5,7 @@
 #include "claims.h"
 #include "physics/bench.h"
 #include "physics/user_codes.h"
-#include "trace/rough_mirrored.h"
+#include "trace/rough.h"
 
 #define ROWS    160
 #define COLUMNS 96

@@ -13,7 +13,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "medium/water_layer.h"
+#include "medium/water.h"
 
 /* Layers, and how sound comes from the sonar: by `bounces` mirrors in turn, the last of which is
    the seabed (at 0) or the sea surface (at depth). */

@@ -3,8 +3,7 @@
 #include "bench.h"
 #include "reference_slab.h"
 #include "sea.h"
-#include "trace/chain_reach.h"
-#include "trace/sea_surface.h"
+#include "trace/chain_fans.h"
 
 #define ORDERS   2 /* of two and three interactions */
 #define RANGES   10

@@ -6,7 +6,7 @@
 #include "bench.h"
 #include "sea.h"
 #include "user/shape_check.h"
-#include "user/shape_probe.h"
+#include "user/shape_trial.h"
 #include "user/user_program.h"
 #include "user_codes.h"
 

@@ -1,6 +1,6 @@
 /* What is left out of image formation: nothing but zeros, and most of those. */
 #include "claims.h"
-#include "form/filled_strips.h"
+#include "form/form.h"
 
 #define BINS     301 /* several whole searches and a rest */
 #define STRIPS   400

@@ -11,7 +11,7 @@
 #include "inject/echoes.h"
 #include "inject/impulse_file.h"
 #include "inject/injection.h"
-#include "trace/smooth.h"
+#include "trace/glints.h"
 #include "unit/temporary_folder.h"
 
 #define ROWS    6

@@ -6,7 +6,7 @@
 #include "claims.h"
 #include "temporary_folder.h"
 #include "trace/checkpoint.h"
-#include "trace/sums_block.h"
+#include "trace/sums_file.h"
 #include "trace/sums_folder.h"
 
 #define SUMS 18

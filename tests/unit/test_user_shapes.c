@@ -6,7 +6,7 @@
 #include "base/text.h"
 #include "claims.h"
 #include "scene_folder.h"
-#include "user/build_log.h"
+#include "user/user_program.h"
 
 #define DISTANCE "float shape_distance(float3 p, float3 d, float t, const float *a) { return t; }\n"
 #define NORMAL   "float3 shape_normal(float3 p, const float *a) { return p; }\n"

@@ -1,7 +1,6 @@
 /* Sound through level layers against Snell's law summed up in long double, against Fermat's
  * principle, the arcs of a linear profile and the power that a ray tube carries. */
 #include "claims.h"
-#include "medium/profile.h"
 #include "medium/water.h"
 #include "physics/reference_layers.h"
 

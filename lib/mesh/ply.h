@@ -1,6 +1,6 @@
 /* The header of a PLY file: which elements it holds, and what each consists of. */
-#ifndef SONJECT_MESH_PLY_HEADER_H
-#define SONJECT_MESH_PLY_HEADER_H
+#ifndef SONJECT_MESH_PLY_H
+#define SONJECT_MESH_PLY_H
 
 #include "mesh/words.h"
 
@@ -49,14 +49,5 @@ struct ply_header {
     struct ply_element elements[PLY_ELEMENTS_MAX];
     int element_count;
 };
-
-size_t ply_type_bytes(enum ply_type type);
-
-/* Fewest bytes that one of the elements takes in the file. */
-size_t ply_least_bytes(const struct ply_header *header, const struct ply_element *element);
-
-/* Reads the header; words then stands at the first byte behind it. The header has vertices with
- * x, y, z and faces with corners, and the file is long enough for its counts. Errors: INPUT. */
-sonject_status ply_header_read(struct words *words, struct ply_header *header);
 
 #endif

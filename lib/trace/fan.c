@@ -1,16 +1,20 @@
-#include "trace/patch_fan.h"
+#include "trace/fan.h"
 
 #include <math.h>
 #include <string.h>
 
-#include "trace/chain_reach.h"
-#include "trace/object_rays.h"
-#include "trace/sources.h"
+#include "scene/sonar_array.h"
+#include "trace/chain_fans.h"
+#include "trace/image_sources.h"
 
-#define PI           3.14159265358979323846
-#define RAYS_MAX     67108864.0
-#define OBJECT_RAYS  16.0 /* at least, on a rough object: its energy is then known to 1 dB */
-#define SURROUNDINGS 18.0 /* in bounding radii of an object */
+#define PI            3.14159265358979323846
+#define RAYS_MAX      67108864.0
+#define OBJECT_RAYS   16.0 /* at least, on a rough object: its energy is then known to 1 dB */
+#define SURROUNDINGS  18.0 /* in bounding radii of an object */
+#define MARGIN        1.02
+#define LARGEST_SINE  0.70710678118654752 /* of 45 degrees */
+#define NULLS         2.0  /* main lobe and first side lobes: all but 3e-4 of the energy */
+#define STEEPEST_SINE 0.95 /* of kernels/aspects.h */
 
 void patch_fan_origin(double origin[3], const struct patch_view *view)
 {
@@ -160,4 +164,129 @@ sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
                         highest_elevation(tracer, central, central - edges.far),
                         fmin(fan_elevation_step(tracer, grid, far, rays_per_bin),
                              step_to_objects(tracer, (double)fan->strip_width)));
+}
+
+struct elevations elevations_of_object(const struct tracer *tracer, uint32_t object,
+                                       const struct water_way *way)
+{
+    const struct placement *placement = &tracer->placements[object];
+    const double *centre = placement->centre;
+    const double grazing = water_way_grazing(way, centre[1], centre[2]);
+    const double upward[3] = {0.0, sin(grazing), cos(grazing)};
+    const double across = MARGIN * placement_half_extent(placement, upward);
+    const double along = placement->bounding_radius_m;
+    double corners[4][2];
+    for (int i = 0; i < 4; i++) {
+        const double up = i & 1 ? across : -across;
+        const double away = i & 2 ? along : -along;
+        corners[i][0] = centre[1] + up * sin(grazing) + away * cos(grazing);
+        corners[i][1] = centre[2] + up * cos(grazing) - away * sin(grazing);
+    }
+    return elevations_of_points(way, grazing, (const double(*)[2])corners, 4);
+}
+
+sonject_status object_rays_add(struct ray_table *rays, const struct tracer *tracer, uint32_t object,
+                               const struct water_way *way, struct ray_table_record *record)
+{
+    const double *centre = tracer->placements[object].centre;
+    return ray_table_add(rays, tracer->report, way, centre[1], centre[2],
+                         elevations_of_object(tracer, object, way), record);
+}
+
+double aspects_sine(const struct tracer *tracer)
+{
+    const double aperture = tracer->scene->sonar.aperture_rad;
+    if (tracer->scene->sonar.kind != SONJECT_SONAR_SYNTHETIC)
+        return 0.0;
+    if (aperture >= 0.0)
+        return sin(0.5 * aperture);
+    return fmin(0.25 * tracer->view.wavelength_m / tracer->response.resolution_m, LARGEST_SINE);
+}
+
+double aspects_slide(const struct tracer *tracer, double length_m)
+{
+    const double sine = aspects_sine(tracer);
+    return length_m * sine / sqrt(1.0 - sine * sine);
+}
+
+/* True range of the grid's end. */
+static double range_of_end(const struct tracer *tracer, const struct line_grid *grid)
+{
+    return line_grid_far_end(grid, &tracer->view) / tracer->view.range_ratio;
+}
+
+void aspects_record_init(struct fan_record *fan, const struct tracer *tracer,
+                         const struct line_grid *grid)
+{
+    const struct point_response *response = &tracer->response;
+    struct aspects_record *aspects = &fan->aspects;
+    double square = 1.0;
+    aspects->sine = (float)aspects_sine(tracer);
+    if (!(aspects->sine > 0.0f))
+        return;
+    aspects->end = (float)(range_of_end(tracer, grid) - fan->reference_range);
+    aspects->terms = response->terms;
+    for (int term = 0; term < response->terms; term++) {
+        aspects->weights[term] = (float)(2.0 * response->weights[term]);
+        square += 2.0 * response->weights[term] * response->weights[term];
+    }
+    aspects->scale = (float)(1.0 / square);
+}
+
+int32_t aspects_relief_halo(const struct tracer *tracer, const struct line_grid *grid)
+{
+    const double height = fmax(fabs(tracer_lowest_seabed(tracer)), tracer_highest_seabed(tracer));
+    if (height == 0.0 || !(aspects_sine(tracer) > 0.0))
+        return 0;
+    /* from the mean plane to the relief along the ray that is closest to level */
+    const double range = range_of_end(tracer, grid) * tracer->view.range_ratio;
+    const double slide = aspects_slide(tracer, height / sin(view_grazing(&tracer->view, range)));
+    return (int32_t)ceil(slide * grid->strips_per_row / tracer->view.row_spacing_m) + 1;
+}
+
+/* Direction cosines off the middle that rays go out to, along the long side. */
+static double reach_of_beam(const struct tracer *tracer)
+{
+    return fmin(NULLS * tracer->view.wavelength_m / tracer->scene->sonar.array_length_m, 1.0);
+}
+
+double beam_largest_sine(const struct tracer *tracer)
+{
+    double axes[3][3];
+    sonar_array_axes(axes, &tracer->scene->sonar, tracer->view.is_mirrored);
+    const double slope = hypot(axes[0][1], axes[0][2]) / axes[0][0];
+    return fmin(slope / hypot(1.0, slope) + reach_of_beam(tracer) / axes[0][0], STEEPEST_SINE);
+}
+
+double beam_largest_weight(const struct tracer *tracer, const struct fan_record *fan)
+{
+    const double sine = beam_largest_sine(tracer);
+    const double cosine = sqrt(1.0 - sine * sine);
+    return 6.0 * sine * 2.0 * fan->reference_range / (fan->strip_width * pow(cosine, 3.0));
+}
+
+sonject_status beam_record_init(struct fan_record *fan, const struct tracer *tracer,
+                                const struct line_grid *grid)
+{
+    const sonject_sonar_params *sonar = &tracer->scene->sonar;
+    const struct patch_view *view = &tracer->view;
+    const double sine = beam_largest_sine(tracer);
+    double axes[3][3];
+    sonar_array_axes(axes, sonar, view->is_mirrored);
+    fan->beam.reach = (float)reach_of_beam(tracer);
+    fan->beam.length = (float)(sonar->array_length_m / view->wavelength_m);
+    fan->beam.height = (float)(sonar->array_height_m / view->wavelength_m);
+    for (int k = 0; k < 3; k++) {
+        fan->beam.along[k] = (float)axes[0][k];
+        fan->beam.across[k] = (float)axes[2][k];
+    }
+    /* what lies at the near end's range off broadside is nearer abreast */
+    const double near = line_grid_near_end(grid, view) * sqrt(1.0 - sine * sine);
+    double origin[3];
+    patch_fan_origin(origin, view);
+    const double central = water_way_grazing(&view->water, origin[1], 0.0);
+    const double highest = fan->first_elevation + (double)fan->rays * fan->elevation_step;
+    return fan_lay_rays(fan, tracer->report,
+                        fmin(central - view_grazing(view, near), fan->first_elevation), highest,
+                        fan->elevation_step);
 }

@@ -1,0 +1,82 @@
+/* Fans of rays: over a whole patch, seabed and objects, and what they need to know of objects, of
+ * the aspects that a synthetic aperture integrates over and of a real aperture's two-way beam (both
+ * in kernels/aspects.h). */
+#ifndef SONJECT_TRACE_FAN_H
+#define SONJECT_TRACE_FAN_H
+
+#include <stdbool.h>
+
+#include "trace/tracer.h"
+
+/* The middle of the patch on the seabed: origin of the frame that the patch is traced in. */
+void patch_fan_origin(double origin[3], const struct patch_view *view);
+
+/* Fills a fan record for the patch: elevations from the seabed at the grid's first bin up to that
+ * at the last bin or over the highest object, in steps that put rays_per_bin rays (times the
+ * scene's ray scale) into a bin where elevation covers most range, or more where a rough object is
+ * so small that few would meet it. Quanta and stream are left 0.
+ * has_map: a reflectivity map of the view's rows x columns goes with it. Errors: INPUT (too many
+ * rays). */
+sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
+                              const struct line_grid *grid, bool has_map, double rays_per_bin);
+
+/* Grazing angles, rad, at which sound comes to the near and the far end of what is traced. */
+struct grazing_angles {
+    double near, far;
+};
+
+/* Those of the mean plane, widened to what the tracer's relief needs. */
+struct grazing_angles grazing_over_relief(const struct tracer *tracer, struct grazing_angles plane);
+
+/* Works out the rays of all fans in the patch's frame: from the sonar to the patch and to whatever
+ * is near the objects. The table is the caller's for ray_table_clear, also on failure. Errors: as
+ * ray_table_add. */
+sonject_status patch_rays_init(struct ray_table *rays, struct ray_table_record *record,
+                               const struct tracer *tracer, const struct line_grid *grid);
+
+/* Elevation step, rad, that puts rays_per_bin rays (times the scene's ray scale) into a bin where
+ * sound meets the seabed at a grazing angle, and elevation covers most range. */
+double fan_elevation_step(const struct tracer *tracer, const struct line_grid *grid,
+                          double grazing_rad, double rays_per_bin);
+
+/* Lays rays from a lowest to a highest elevation (rad over the central direction). Errors: INPUT
+ * (too many rays). */
+sonject_status fan_lay_rays(struct fan_record *fan, struct report *report, double lowest,
+                            double highest, double step);
+
+/* Elevations that an object fills as seen on a way, from the direction of its centre; a little more
+ * than that. */
+struct elevations elevations_of_object(const struct tracer *tracer, uint32_t object,
+                                       const struct water_way *way);
+
+/* Appends the rays of a way to an object in the object's frame. Errors: as ray_table_add. */
+sonject_status object_rays_add(struct ray_table *rays, const struct tracer *tracer, uint32_t object,
+                               const struct water_way *way, struct ray_table_record *record);
+
+/* Sine of the largest angle off broadside; 0: broadside alone. The response's own, wavelength /
+ * (4 resolution), is taken to at most 45 degrees. */
+double aspects_sine(const struct tracer *tracer);
+
+/* Fills fan->aspects but for the strips; a fan of broadside rays keeps its zeros. */
+void aspects_record_init(struct fan_record *fan, const struct tracer *tracer,
+                         const struct line_grid *grid);
+
+/* How far, m along the track, a ray of the largest angle moves over a range of length_m. */
+double aspects_slide(const struct tracer *tracer, double length_m);
+
+/* Strips beyond those whose seabed is wanted, on each side, from which rays may come to it: 0 over
+ * the plane. */
+int32_t aspects_relief_halo(const struct tracer *tracer, const struct line_grid *grid);
+
+/* Fills fan->beam, and lays the fan's rays anew so that those off broadside reach the patch's near
+ * end too. fan: of patch_fan_init. Errors: INPUT (too many rays). */
+sonject_status beam_record_init(struct fan_record *fan, const struct tracer *tracer,
+                                const struct line_grid *grid);
+
+/* Sine of the largest angle off broadside that the beam's rays go out to. */
+double beam_largest_sine(const struct tracer *tracer);
+
+/* The most that a ray of the beam stands for, over one of a strip. */
+double beam_largest_weight(const struct tracer *tracer, const struct fan_record *fan);
+
+#endif
