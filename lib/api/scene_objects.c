@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "schema/scene_target.h"
-#include "scene/check_cuts.h"
+#include "scene/shapes/shape.h"
 #include "scene/pose.h"
 
 sonject_status sonject_scene_add_mesh(sonject_scene *scene, const char *path,

@@ -5,8 +5,8 @@
 
 #include "base/text.h"
 #include "scene/check_material.h"
-#include "scene/check_shape.h"
 #include "scene/scene.h"
+#include "scene/shapes/shape.h"
 #include "scene/surface_material.h"
 
 #define PI 3.14159265358979323846

@@ -81,11 +81,7 @@ static void take_shape(struct placement *part, const struct scene *scene, uint32
     part->shape = shape->shape;
     part->object = object;
     part->material = &shape->material;
-    shape_size_init(&part->size, shape);
-    if (shape->shape == SONJECT_SHAPE_MESH)
-        shape_size_of_mesh(&part->size, &scene->meshes[shape->mesh]);
-    if (shape->shape == SONJECT_SHAPE_USER)
-        shape_size_of_user_shape(&part->size, &scene->user_shapes.shapes[shape->user_shape]);
+    shape_size_init_in_scene(&part->size, scene, shape);
     part->bounding_radius_m = part->size.bounding_radius_m;
 }
 

@@ -6,7 +6,7 @@
 #include "scene/patch_view.h"
 #include "scene/relief.h"
 #include "scene/scene.h"
-#include "scene/shape_size.h"
+#include "scene/shapes/shape.h"
 
 /* One part. */
 struct placement {

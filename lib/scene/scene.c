@@ -176,17 +176,3 @@ sonject_status scene_share_mesh(struct scene *scene, struct report *report, cons
         *number = scene->mesh_count - 1;
     return status;
 }
-
-const char *shape_name(uint32_t shape)
-{
-    static const char *const names[] = {
-        [SONJECT_SHAPE_PLANE] = "plane",       [SONJECT_SHAPE_SPHERE] = "sphere",
-        [SONJECT_SHAPE_CYLINDER] = "cylinder", [SONJECT_SHAPE_CAPSULE] = "capsule",
-        [SONJECT_SHAPE_DISC] = "disc",         [SONJECT_SHAPE_ELLIPSOID] = "ellipsoid",
-        [SONJECT_SHAPE_BOX] = "box",           [SONJECT_SHAPE_WEDGE] = "wedge",
-        [SONJECT_SHAPE_CONE] = "cone",         [SONJECT_SHAPE_TRUNCATED_CONE] = "truncated_cone",
-        [SONJECT_SHAPE_TORUS] = "torus",       [SONJECT_SHAPE_PARTS] = "parts",
-        [SONJECT_SHAPE_MESH] = "mesh",         [SONJECT_SHAPE_USER] = "user",
-    };
-    return shape < sizeof names / sizeof *names ? names[shape] : NULL;
-}

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "scene/check_cuts.h"
+#include "scene/shapes/shape.h"
 
 #define STRUCTURE sonject_object_params
 
@@ -59,12 +59,6 @@ static const struct field cut_fields[] = {
 };
 const struct section cut_section = {cut_fields, COUNT(cut_fields), NULL};
 
-enum presence {
-    ABSENT = 0,
-    NEEDED,
-    POSSIBLE
-};
-
 /* By the sound: no shape's name begins with a u as in "under". */
 static const char *article_of(const char *name)
 {
@@ -83,55 +77,31 @@ void check_shape_keys(struct reader *reader, const struct tree_node *node, uint3
 {
     static const struct {
         const char *key;
-        unsigned char presence[SONJECT_SHAPE_USER + 1]; /* enum presence, by shape */
+        uint32_t bit;
     } sizes[] = {
-        {"length",
-         {[SONJECT_SHAPE_PLANE] = NEEDED,
-          [SONJECT_SHAPE_CYLINDER] = NEEDED,
-          [SONJECT_SHAPE_CAPSULE] = NEEDED,
-          [SONJECT_SHAPE_ELLIPSOID] = NEEDED,
-          [SONJECT_SHAPE_BOX] = NEEDED,
-          [SONJECT_SHAPE_WEDGE] = NEEDED}},
-        {"width",
-         {[SONJECT_SHAPE_PLANE] = NEEDED,
-          [SONJECT_SHAPE_ELLIPSOID] = NEEDED,
-          [SONJECT_SHAPE_BOX] = NEEDED,
-          [SONJECT_SHAPE_WEDGE] = NEEDED}},
-        {"diameter",
-         {[SONJECT_SHAPE_SPHERE] = NEEDED,
-          [SONJECT_SHAPE_CYLINDER] = NEEDED,
-          [SONJECT_SHAPE_CAPSULE] = NEEDED,
-          [SONJECT_SHAPE_DISC] = NEEDED,
-          [SONJECT_SHAPE_CONE] = NEEDED,
-          [SONJECT_SHAPE_TRUNCATED_CONE] = NEEDED,
-          [SONJECT_SHAPE_TORUS] = NEEDED}},
-        {"height",
-         {[SONJECT_SHAPE_ELLIPSOID] = NEEDED,
-          [SONJECT_SHAPE_BOX] = NEEDED,
-          [SONJECT_SHAPE_WEDGE] = NEEDED,
-          [SONJECT_SHAPE_CONE] = NEEDED,
-          [SONJECT_SHAPE_TRUNCATED_CONE] = NEEDED,
-          [SONJECT_SHAPE_TORUS] = NEEDED}},
-        {"user", {[SONJECT_SHAPE_USER] = NEEDED}},
-        {"top_diameter", {[SONJECT_SHAPE_TRUNCATED_CONE] = NEEDED}},
-        {"front_height", {[SONJECT_SHAPE_WEDGE] = POSSIBLE}},
-        {"nose_end", {[SONJECT_SHAPE_CYLINDER] = POSSIBLE}},
-        {"tail_end", {[SONJECT_SHAPE_CYLINDER] = POSSIBLE}},
-        {"mesh", {[SONJECT_SHAPE_MESH] = NEEDED}},
+        {"length", SHAPE_HAS_LENGTH},
+        {"width", SHAPE_HAS_WIDTH},
+        {"diameter", SHAPE_HAS_DIAMETER},
+        {"height", SHAPE_HAS_HEIGHT},
+        {"user", SHAPE_HAS_CODE},
+        {"top_diameter", SHAPE_HAS_TOP_DIAMETER},
+        {"front_height", SHAPE_HAS_FRONT_HEIGHT},
+        {"nose_end", SHAPE_HAS_ENDS},
+        {"tail_end", SHAPE_HAS_ENDS},
+        {"mesh", SHAPE_HAS_MESH},
     };
-    const char *name = shape_name(shape);
+    const struct shape *row = shape_of(shape);
     if (shape == SONJECT_SHAPE_PARTS) {
         refuse_shape_keys(reader, node, "the parts have shapes of their own");
         return;
     }
     for (size_t i = 0; i < COUNT(sizes); i++) {
-        const unsigned char presence = sizes[i].presence[shape];
-        if (presence == NEEDED && !is_given(node, sizes[i].key))
+        if ((row->needs & sizes[i].bit) && !is_given(node, sizes[i].key))
             refuse_relation(reader, node, sizes[i].key, "shape", "missing; %s %s needs it",
-                            article_of(name), name);
-        if (presence == ABSENT && is_given(node, sizes[i].key))
+                            article_of(row->name), row->name);
+        if (!((row->needs | row->may_have) & sizes[i].bit) && is_given(node, sizes[i].key))
             refuse_relation(reader, node, sizes[i].key, "shape", "%s %s has none; remove it",
-                            article_of(name), name);
+                            article_of(row->name), row->name);
     }
 }
 

@@ -18,21 +18,14 @@ static bool is_smooth(const struct tracer *tracer, uint32_t part)
     return material_is_smooth(tracer->placements[part].material);
 }
 
-/* As is_convex in kernels/intersection.h. */
-static bool is_convex(const struct placement *placement)
-{
-    const struct shape_size *size = &placement->size;
-    return !size->mesh && placement->shape != SONJECT_SHAPE_TORUS && !size->nose.is_open &&
-           !size->tail.is_open;
-}
-
 bool corners_may_echo(const struct tracer *tracer, uint32_t part)
 {
+    const struct placement *placement = &tracer->placements[part];
     uint32_t smooth_parts = 0;
     for (uint32_t i = 0; i < tracer->part_count; i++)
         smooth_parts += is_smooth(tracer, i);
     return tracer->scene->injection.interactions >= 2 && is_smooth(tracer, part) &&
-           (smooth_parts > 1 || !is_convex(&tracer->placements[part]));
+           (smooth_parts > 1 || !shape_is_convex(&placement->size, placement->shape));
 }
 
 void corner_pairs_begin(struct corner_pairs *pairs, const struct tracer *tracer, uint32_t part)
@@ -151,32 +144,6 @@ struct span corner_bins(const struct tracer *tracer, uint32_t part, const struct
     return bins;
 }
 
-/* The smallest radius of curvature of a part, m; INFINITY if all its faces are flat. */
-static double sharpest_curvature(const struct placement *placement)
-{
-    const struct shape_size *size = &placement->size;
-    switch (placement->shape) {
-    case SONJECT_SHAPE_SPHERE:
-    case SONJECT_SHAPE_CYLINDER:
-    case SONJECT_SHAPE_CAPSULE:
-        return size->radius_m;
-    case SONJECT_SHAPE_CONE:
-    case SONJECT_SHAPE_TRUNCATED_CONE:
-        return fmax(size->top_radius_m, 0.5 * size->radius_m);
-    case SONJECT_SHAPE_TORUS:
-        return size->ring_radius_m;
-    case SONJECT_SHAPE_ELLIPSOID: {
-        const double least =
-            fmin(size->half_length_m, fmin(size->half_width_m, size->half_height_m));
-        const double most =
-            fmax(size->half_length_m, fmax(size->half_width_m, size->half_height_m));
-        return least * least / most;
-    }
-    default:
-        return INFINITY;
-    }
-}
-
 /* The way from the middle of a part to that of the farthest that it may light. */
 static double farthest_middle(const struct tracer *tracer, uint32_t part)
 {
@@ -196,7 +163,7 @@ static double farthest_middle(const struct tracer *tracer, uint32_t part)
  * Cells there are all or nothing at edges, so they must not be wide. */
 static double corner_rays_finer(const struct tracer *tracer, uint32_t part)
 {
-    const double radius = sharpest_curvature(&tracer->placements[part]);
+    const double radius = tracer->placements[part].size.least_curvature_m;
     const double spread = 1.0 + 2.0 * farthest_middle(tracer, part) / radius;
     return fmin(fmax(spread * GLINT_CELL_WAVELENGTHS / WIDEST_WAVELENGTHS, 1.0), FINER_MAX);
 }

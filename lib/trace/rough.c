@@ -212,7 +212,7 @@ static sonject_status lay_fan(struct rough_trace *trace, struct tracer *tracer, 
 
 /* As dense as the fan that goes straight to the objects. */
 static void aim_at_part(struct fan_record *fan, const struct rough_trace *trace,
-                    const struct tracer *tracer, uint32_t part, const struct water_way *way)
+                        const struct tracer *tracer, uint32_t part, const struct water_way *way)
 {
     const struct placement *placement = &tracer->placements[part];
     const struct elevations edges = elevations_of_object(tracer, part, way);

@@ -22,7 +22,7 @@ static void overall_size(const struct placement *placement, double *half_length,
     uncut.cut_count = 0;
     *half_length = fmax(shape_extent(&uncut, placement->shape, nose),
                         shape_extent(&uncut, placement->shape, tail));
-    *radius = shape_radius_about_nose(&uncut, placement->shape);
+    *radius = uncut.radius_about_nose_m;
     if (placement->shape == SONJECT_SHAPE_SPHERE)
         *half_length = 0.0;
     /* unless it is slender, a user's shape has its own sphere */

@@ -6,10 +6,10 @@
 
 #include "base/memory.h"
 #include "cl/launch.h"
+#include "scene/shapes/shape.h"
 #include "trace/checkpoint.h"
 #include "trace/fan.h"
 #include "trace/object_buffer.h"
-#include "trace/object_shape.h"
 #include "user/user_program.h"
 
 #define PI          3.14159265358979323846
@@ -139,7 +139,7 @@ void object_record_init(struct object_record *record, const struct tracer *trace
     for (int axis = 0; axis < 3; axis++)
         for (int k = 0; k < 3; k++)
             record->axes[3 * axis + k] = (float)placement->axes[axis][k];
-    object_shape_init(record, &placement->size, placement->shape);
+    shape_record_init(record, &placement->size, placement->shape);
     surface_record_init(&record->surface, placement->material, tracer->view.wavelength_m);
 }
 

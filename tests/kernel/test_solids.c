@@ -2,8 +2,8 @@
  * double precision. Rays come from sonars at 50 m and 500 m, many of them grazing. */
 #include "claims.h"
 #include "reference_solids.h"
+#include "scene/shapes/shape.h"
 #include "sixteen_lanes.h"
-#include "trace/object_shape.h"
 
 #define RAYS 40000
 
@@ -106,7 +106,7 @@ static void make_record(struct solid *solid, double reach)
     struct shape_size size;
     memset(&solid->record, 0, sizeof solid->record);
     shape_size_init(&size, &solid->params);
-    object_shape_init(&solid->record, &size, solid->params.shape);
+    shape_record_init(&solid->record, &size, solid->params.shape);
     solid->record.centre_x = (float)uniform(-reach, reach);
     solid->record.centre_y = (float)uniform(-reach, reach);
     solid->record.centre_z = (float)uniform(-0.5, 0.5) * (float)fmin(reach, 2.0);

@@ -3,8 +3,8 @@
 #include "claims.h"
 #include "first_key.h"
 #include "kernel/mesh_samples.h"
-#include "scene/check_cuts.h"
 #include "scene/placement.h"
+#include "scene/shapes/shape.h"
 
 static void make_mesh(struct mesh *mesh, struct mesh_sample *sample)
 {

@@ -169,7 +169,7 @@ static void test_clouds_of_points(void **state)
                 if (!is_left(&object, p))
                     continue;
                 assert_true(dot(p, p) <= size.bounding_radius_m * size.bounding_radius_m);
-                assert_true(hypot(p[1], p[2]) <= shape_radius_about_nose(&size, shape) + 1e-9);
+                assert_true(hypot(p[1], p[2]) <= size.radius_about_nose_m + 1e-9);
                 for (int k = 0; k < 12; k++)
                     farthest[k] = fmax(farthest[k], dot(directions[k], p));
             }

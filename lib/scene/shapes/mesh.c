@@ -1,7 +1,8 @@
-#include "scene/cut_mesh.h"
-
+/* Triangles, which planes may cut. */
 #include <math.h>
 #include <string.h>
+
+#include "scene/shapes/shape.h"
 
 /* A triangle, with a corner more for each plane that cuts it. */
 #define CORNERS_MAX (3 + SONJECT_CUTS_CAPACITY)
@@ -48,8 +49,11 @@ static void clip(struct polygon *polygon, const struct cut_plane *cut)
     }
 }
 
-double cut_mesh_extent(const struct mesh *mesh, const struct cut_plane *cuts, uint32_t cut_count,
-                       const double v[3])
+/* The largest p . v over the points p of a mesh's facets that lie within all the cuts; -INFINITY
+ * where none do. Of a closed mesh that is what the solid left reaches too, for wherever the face of
+ * a cut reaches farthest a facet ends it. */
+static double extent_within(const struct mesh *mesh, const struct cut_plane *cuts,
+                            uint32_t cut_count, const double v[3])
 {
     double extent = -INFINITY;
     for (size_t i = 0; i < mesh->triangle_count; i++) {
@@ -64,3 +68,49 @@ double cut_mesh_extent(const struct mesh *mesh, const struct cut_plane *cuts, ui
     }
     return extent;
 }
+
+static double cut_extent(const struct shape_size *size, const double v[3])
+{
+    return extent_within(size->mesh, size->cuts, size->cut_count, v);
+}
+
+static double extent(const struct shape_size *size, const double v[3])
+{
+    const struct mesh *mesh = size->mesh;
+    double farthest = -INFINITY;
+    for (size_t i = 0; i < mesh->vertex_count; i++) {
+        const float *p = &mesh->vertices[3 * i];
+        farthest = fmax(farthest, p[0] * v[0] + p[1] * v[1] + p[2] * v[2]);
+    }
+    return farthest;
+}
+
+/* Whether something of a mesh is left, and not just where a plane touches it. */
+static bool is_left(const struct shape_size *size)
+{
+    static const double upward[3] = {0.0, 0.0, 1.0};
+    struct cut_plane cuts[SONJECT_CUTS_CAPACITY];
+    for (uint32_t i = 0; i < size->cut_count; i++) {
+        cuts[i] = size->cuts[i];
+        cuts[i].offset_m -= 1e-9 * size->bounding_radius_m;
+    }
+    return isfinite(extent_within(size->mesh, cuts, size->cut_count, upward));
+}
+
+void shape_size_of_mesh(struct shape_size *size, const struct mesh *mesh)
+{
+    size->mesh = mesh;
+    size->half_length_m = mesh->upper_m[0];
+    size->half_width_m = mesh->upper_m[1];
+    size->half_height_m = mesh->upper_m[2];
+    size->radius_about_nose_m = hypot(size->half_width_m, size->half_height_m);
+    size->bounding_radius_m = (1.0 + 1e-6) * mesh->radius_m;
+}
+
+const struct shape shape_mesh = {.name = "mesh",
+                                 .needs = SHAPE_HAS_MESH,
+                                 .kind = SHAPE_MESH,
+                                 .is_concave = true,
+                                 .extent = extent,
+                                 .cut_extent = cut_extent,
+                                 .is_left = is_left};

@@ -1,0 +1,132 @@
+/* The sizes of an object in its own frame (x nose, z up when level, origin in the middle of its
+ * overall sizes), how far it reaches, and what else differs from shape to shape: a file of this
+ * folder fills a row for its shape, and shape.c lists the rows. */
+#ifndef SONJECT_SCENE_SHAPES_SHAPE_H
+#define SONJECT_SCENE_SHAPES_SHAPE_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include <sonject/object.h>
+
+#include "base/ranges.h"
+#include "kernels/layout.h"
+#include "mesh/mesh.h"
+#include "scene/scene.h"
+#include "scene/user_shapes.h"
+
+/* Counted outwards along the axis. */
+struct end_size {
+    double joint_m; /* where the straight part ends */
+    double depth_m; /* of the part of a sphere beyond it; 0: flat or open */
+    bool is_open;
+};
+
+struct cut_plane {
+    double normal[3]; /* unit, outward */
+    double offset_m;  /* of the plane from the origin along it */
+};
+
+/* Which of them a shape has, the members of struct object_record in kernels/layout.h say. */
+struct shape_size {
+    double half_length_m; /* of the straight part for a capsule */
+    double half_width_m, half_height_m;
+    double radius_m;      /* cones: below; torus: of the ring's middle line */
+    double top_radius_m;  /* cones */
+    double ring_radius_m; /* torus: of the ring's section */
+    double front_height_m;
+    struct end_size nose, tail;
+    struct cut_plane cuts[SONJECT_CUTS_CAPACITY];
+    uint32_t cut_count;
+    const struct mesh *mesh;             /* of a mesh; borrowed from the scene */
+    const struct user_shape *user_shape; /* likewise */
+    /* Radii of the uncut shape: of a sphere about the origin and of a cylinder about the nose axis
+     * that hold it, and the least that its surface is bent by (INFINITY: all faces are flat). */
+    double bounding_radius_m, radius_about_nose_m, least_curvature_m;
+};
+
+/* Keys that say what a shape is. */
+enum shape_key {
+    SHAPE_HAS_LENGTH = 1,
+    SHAPE_HAS_WIDTH = 2,
+    SHAPE_HAS_DIAMETER = 4,
+    SHAPE_HAS_HEIGHT = 8,
+    SHAPE_HAS_CODE = 16,
+    SHAPE_HAS_TOP_DIAMETER = 32,
+    SHAPE_HAS_FRONT_HEIGHT = 64,
+    SHAPE_HAS_ENDS = 128,
+    SHAPE_HAS_MESH = 256
+};
+
+/* What a shape is. v: of any length. */
+struct shape {
+    const char *name;  /* as scene files write it */
+    uint32_t needs;    /* bits of enum shape_key */
+    uint32_t may_have; /* besides those */
+    int32_t kind;      /* of struct object_record, unless `record` says another */
+    bool is_concave;   /* sound may go from it to itself */
+    /* Relations between its sizes; NULL: none. */
+    void (*check)(struct check *check, const sonject_object_params *object);
+    /* Sizes and radii; those are at first half of what was given, and its radius_m. NULL: it has
+     * no others. */
+    void (*init)(struct shape_size *size, const sonject_object_params *object);
+    /* The largest p . v over its points p (its support function); uncut. */
+    double (*extent)(const struct shape_size *size, const double v[3]);
+    /* The same of what cuts leave, and whether they leave something; NULL: it is convex, and both
+     * follow from extent. */
+    double (*cut_extent)(const struct shape_size *size, const double v[3]);
+    bool (*is_left)(const struct shape_size *size);
+    /* What the device is told besides sizes and cuts; NULL: nothing. */
+    void (*record)(struct object_record *record, const struct shape_size *size);
+};
+
+extern const struct shape shape_plane, shape_sphere, shape_cylinder, shape_capsule, shape_disc,
+    shape_ellipsoid, shape_box, shape_wedge, shape_cone, shape_truncated_cone, shape_torus,
+    shape_mesh, shape_user;
+
+/* By its number, sonject_shape; NULL for an unknown one. */
+const struct shape *shape_of(uint32_t shape);
+
+/* The sizes of an object; those of a mesh and of a user's shape are not known without the scene. */
+void shape_size_init(struct shape_size *size, const sonject_object_params *object);
+void shape_size_init_in_scene(struct shape_size *size, const struct scene *scene,
+                              const sonject_object_params *object);
+
+/* What is borrowed. */
+void shape_size_of_mesh(struct shape_size *size, const struct mesh *mesh);
+void shape_size_of_user_shape(struct shape_size *size, const struct user_shape *shape);
+
+/* The largest p . v over the points p of what the cuts leave of a shape (its support function), v
+ * of any length; -INFINITY where they leave nothing. Exact but for cut tubes, which it takes as
+ * filled, and for user shapes, of which only a box and a sphere about them are known: the lesser of
+ * what the cuts leave of these. */
+double shape_extent(const struct shape_size *size, uint32_t shape, const double v[3]);
+
+/* Whether the cuts leave something. */
+bool shape_is_left(const struct shape_size *size, uint32_t shape);
+
+/* Whether no straight line from its surface outwards meets it again, as is_convex in
+ * kernels/intersection.h. */
+bool shape_is_convex(const struct shape_size *size, uint32_t shape);
+
+/* The shape, its sizes and cuts, in a record. */
+void shape_record_init(struct object_record *record, const struct shape_size *size, uint32_t shape);
+
+/* The slanting face of a record through two points of a profile, (across, up), seen from the left
+ * of the way between. */
+void record_set_slant(struct object_record *record, double across, double up, double to_across,
+                      double to_up);
+
+/* The radii of boxes and of what lies in them. */
+void shape_init_box(struct shape_size *size, const sonject_object_params *object);
+
+/* Shape, sizes, ends and cuts of an object, as object.h states them. */
+void check_shape(struct check *check, const sonject_object_params *object);
+
+/* Whether the cuts of a mesh or of a user's shape, which is the scene's, leave something;
+ * check_object tells it of all other shapes, and has passed this one. Errors: INPUT, as
+ * check_object. */
+sonject_status check_cuts_in_scene(const struct scene *scene, const sonject_object_params *object,
+                                   struct report *report, struct check_listener *listener);
+
+#endif
