@@ -6,14 +6,14 @@
 #include "fan.h"
 #include "random.h"
 
-/* A ray of a fan turned out of its strip's plane about an axis across the track: from abreast it
+/* A ray of a fan turned out of its strip's plane about an axis across the track: from broadside it
  * looks as it did, so ranges as the image has them stay. */
 struct aspect_ray {
     struct vector3 start;     /* at distance 0 of the fan's ray */
     struct vector3 direction; /* unit */
-    real sine, cosine;        /* of the angle off broadside; a distance along the fan's ray is
-                                 cosine times that along this one */
-    real weight;              /* of the aspect: 1 on the mean; within a beam: see there */
+    vfloat sine, cosine;      /* of the angle off broadside; a distance along the fan's ray is
+                               cosine times that along this one */
+    vfloat weight;            /* of the aspect: 1 on the mean; within a beam: see there */
 };
 
 /* A device builds without them where a scene has broadside rays alone; plain C has them unless it
@@ -38,29 +38,29 @@ FUNCTION int has_beam(const struct fan_record *fan)
 
 /* The share 0...1 of the aperture that a ray looks from: the lattice of the plastic number, even
  * over any few neighbours among rays and strips, each point moved within an eighth. */
-FUNCTION real aspect_share(const struct fan_record *fan, RECORD_WORD track_strip, word ray,
-                           real jitter)
+FUNCTION vfloat aspect_share(const struct fan_record *fan, RECORD_WORD track_strip, word ray,
+                             vfloat jitter)
 {
     const RECORD_WORD shift = track_strip * 0x91E10DA5u + fan->seed_low * 0x9E3779B9u;
-    const real share = uniform_from(ray * 0xC13FA9A9u + SPLAT_WORD(shift)) + 0.125f * jitter;
-    return CHOOSE(MASK_OF(share >= 1.0f), share - 1.0f, share);
+    const vfloat share = uniform_from(ray * 0xC13FA9A9u + SPLAT_WORD(shift)) + 0.125f * jitter;
+    return SELECT(MASK_OF(share >= 1.0f), share - 1.0f, share);
 }
 
 /* Energy weight of an aspect, `offset` of the aperture's width from its middle: the square of the
  * response's window. */
-FUNCTION real aspect_weight(const struct fan_record *fan, real offset)
+FUNCTION vfloat aspect_weight(const struct fan_record *fan, vfloat offset)
 {
     if (fan->aspects.terms == 0)
         return SPLAT(1.0f);
-    real sine, cosine;
+    vfloat sine, cosine;
     sine_cosine_of_cycles(offset, &sine, &cosine);
     /* cosines of multiples by Chebyshev's recursion */
-    real before = SPLAT(1.0f);
-    real now = cosine;
-    real amplitude = SPLAT(1.0f);
+    vfloat before = SPLAT(1.0f);
+    vfloat now = cosine;
+    vfloat amplitude = SPLAT(1.0f);
     for (int term = 0; term < fan->aspects.terms; term++) {
         amplitude = amplitude + fan->aspects.weights[term] * now;
-        const real next = 2.0f * cosine * now - before;
+        const vfloat next = 2.0f * cosine * now - before;
         before = now;
         now = next;
     }
@@ -69,10 +69,10 @@ FUNCTION real aspect_weight(const struct fan_record *fan, real offset)
 
 /* Power pattern of one side of the array at a direction cosine along it: sinc^2 one way, squared
  * for there and back. */
-FUNCTION real two_way_pattern(float wavelengths, real cosine)
+FUNCTION vfloat two_way_pattern(float wavelengths, vfloat cosine)
 {
-    const real amplitude = sinc_of_cycles(0.5f * wavelengths * cosine);
-    const real one_way = amplitude * amplitude;
+    const vfloat amplitude = sinc_of_cycles(0.5f * wavelengths * cosine);
+    const vfloat one_way = amplitude * amplitude;
     return one_way * one_way;
 }
 
@@ -82,20 +82,20 @@ FUNCTION real two_way_pattern(float wavelengths, real cosine)
  * of sines that the ray stands for with its kind, which takes the place of a strip's width over
  * range. share: 0...1. */
 FUNCTION struct aspect_ray beam_ray_of(const struct fan_record *fan, const struct fan_ray *ray,
-                                       real share)
+                                       vfloat share)
 {
     const struct beam_record *beam = &fan->beam;
     struct aspect_ray squinted;
     /* the middle: where the way is square to the long side */
-    const real slope =
+    const vfloat slope =
         -(ray->direction.y * beam->along[1] + ray->direction.z * beam->along[2]) / beam->along[0];
-    const real square = 1.0f + slope * slope;
-    const real middle = slope / SQUARE_ROOT(square);
-    const real reach = beam->reach / (beam->along[0] * square);
+    const vfloat square = 1.0f + slope * slope;
+    const vfloat middle = slope / SQUARE_ROOT(square);
+    const vfloat reach = beam->reach / (beam->along[0] * square);
     /* a cubic puts most rays where the pattern is high */
-    const real side = 2.0f * share - 1.0f;
-    const real sine = middle + reach * side * (0.3f + 0.7f * side * side);
-    const real range = 2.0f * reach * (0.3f + 2.1f * side * side);
+    const vfloat side = 2.0f * share - 1.0f;
+    const vfloat sine = middle + reach * side * (0.3f + 0.7f * side * side);
+    const vfloat range = 2.0f * reach * (0.3f + 2.1f * side * side);
     squinted.sine = smaller(larger(sine, SPLAT(-STEEPEST_SINE)), SPLAT(STEEPEST_SINE));
     const mask is_near = MASK_OF(squinted.sine == sine);
     squinted.cosine = SQUARE_ROOT(1.0f - squinted.sine * squinted.sine);
@@ -105,19 +105,20 @@ FUNCTION struct aspect_ray beam_ray_of(const struct fan_record *fan, const struc
     squinted.start = ray->closest;
     squinted.start.x = ray->closest.x + (fan->reference_range + ray->range_at_closest) *
                                             (squinted.sine / squinted.cosine);
-    const real u = squinted.direction.x * beam->along[0] + squinted.direction.y * beam->along[1] +
-                   squinted.direction.z * beam->along[2];
-    const real v = squinted.direction.x * beam->across[0] + squinted.direction.y * beam->across[1] +
-                   squinted.direction.z * beam->across[2];
-    const real pattern = two_way_pattern(beam->length, u) * two_way_pattern(beam->height, v);
-    squinted.weight = CHOOSE(is_near, range * pattern, SPLAT(0.0f));
+    const vfloat u = squinted.direction.x * beam->along[0] + squinted.direction.y * beam->along[1] +
+                     squinted.direction.z * beam->along[2];
+    const vfloat v = squinted.direction.x * beam->across[0] +
+                     squinted.direction.y * beam->across[1] +
+                     squinted.direction.z * beam->across[2];
+    const vfloat pattern = two_way_pattern(beam->length, u) * two_way_pattern(beam->height, v);
+    squinted.weight = SELECT(is_near, range * pattern, SPLAT(0.0f));
     return squinted;
 }
 
 /* The ray of the fan itself where the launch has one aspect only. track_strip: the ray's strip,
  * counted over the whole track; jitter: uniform in 0...1. */
 FUNCTION struct aspect_ray aspect_ray_of(const struct fan_record *fan, const struct fan_ray *ray,
-                                         RECORD_WORD track_strip, word number, real jitter)
+                                         RECORD_WORD track_strip, word number, vfloat jitter)
 {
     struct aspect_ray squinted;
     squinted.start = ray->closest;
@@ -127,16 +128,16 @@ FUNCTION struct aspect_ray aspect_ray_of(const struct fan_record *fan, const str
     squinted.weight = SPLAT(1.0f);
     if (!has_aspects(fan) && !has_beam(fan))
         return squinted;
-    const real share = aspect_share(fan, track_strip, number, jitter);
+    const vfloat share = aspect_share(fan, track_strip, number, jitter);
     if (has_beam(fan))
         return beam_ray_of(fan, ray, share);
-    const real offset = share - 0.5f;
+    const vfloat offset = share - 0.5f;
     squinted.sine = 2.0f * fan->aspects.sine * offset;
     squinted.cosine = SQUARE_ROOT(1.0f - squinted.sine * squinted.sine);
     squinted.weight = aspect_weight(fan, offset);
     /* across its strip where it meets the mean seabed, or where the patch ends */
-    const real anchor = smaller(plane_distance(fan, ray->closest, ray->direction),
-                                fan->aspects.end - ray->range_at_closest);
+    const vfloat anchor = smaller(plane_distance(fan, ray->closest, ray->direction),
+                                  fan->aspects.end - ray->range_at_closest);
     squinted.start.x = ray->closest.x - anchor * (squinted.sine / squinted.cosine);
     squinted.direction.x = squinted.sine;
     squinted.direction.y = ray->direction.y * squinted.cosine;
@@ -144,30 +145,30 @@ FUNCTION struct aspect_ray aspect_ray_of(const struct fan_record *fan, const str
     return squinted;
 }
 
-/* What a beam's ray at a range abreast (less the reference range) is over one that stands for a
+/* What a beam's ray at a broadside range (less the reference range) is over one that stands for a
  * strip: dA across the ray is range^2 d(sine) d(elevation), the range being the whole one. */
-FUNCTION real beam_spread(const struct fan_record *fan, const struct aspect_ray *squinted,
-                          real range_abreast)
+FUNCTION vfloat beam_spread(const struct fan_record *fan, const struct aspect_ray *squinted,
+                            vfloat broadside_range)
 {
-    return (fan->reference_range + range_abreast) /
+    return (fan->reference_range + broadside_range) /
            (squinted->cosine * squinted->cosine * squinted->cosine * fan->strip_width);
 }
 
-/* The whole range of a range abreast, each less the reference range. */
-FUNCTION real whole_range(const struct fan_record *fan, const struct aspect_ray *squinted,
-                          real range_abreast)
+/* The whole range of a broadside range, each less the reference range. */
+FUNCTION vfloat whole_range(const struct fan_record *fan, const struct aspect_ray *squinted,
+                            vfloat broadside_range)
 {
-    const real lack = squinted->sine * squinted->sine / (1.0f + squinted->cosine);
-    return (range_abreast + fan->reference_range * lack) / squinted->cosine;
+    const vfloat lack = squinted->sine * squinted->sine / (1.0f + squinted->cosine);
+    return (broadside_range + fan->reference_range * lack) / squinted->cosine;
 }
 
 /* The strip of the whole track that a position along it lies in. */
-FUNCTION whole track_strip_at(const struct fan_record *fan, real x)
+FUNCTION vint track_strip_at(const struct fan_record *fan, vfloat x)
 {
-    const real coordinate = (x - fan->first_strip_x) / fan->strip_width + 0.5f;
-    const real limited = smaller(larger(coordinate, SPLAT(-8.0e6f)), SPLAT(8.0e6f));
-    const whole truncated = WHOLE_OF(limited);
-    return truncated + MASK_OF(limited < REAL_OF(truncated)); /* a mask counts -1 */
+    const vfloat coordinate = (x - fan->first_strip_x) / fan->strip_width + 0.5f;
+    const vfloat limited = smaller(larger(coordinate, SPLAT(-8.0e6f)), SPLAT(8.0e6f));
+    const vint truncated = VINT_OF(limited);
+    return truncated + MASK_OF(limited < VFLOAT_OF(truncated)); /* a mask counts -1 */
 }
 
 #endif

@@ -10,13 +10,13 @@
 /* Where the source is as seen from a hit. */
 struct source_way {
     struct vector3 direction;
-    real path;      /* to the source, or to where it seems to be if layers bend the ray */
-    real spreading; /* of the energy on the way, 1/m^2 */
-    real range;     /* of half the whole path, less the reference range */
+    vfloat path;      /* to the source, or to where it seems to be if layers bend the ray */
+    vfloat spreading; /* of the energy on the way, 1/m^2 */
+    vfloat range;     /* of half the whole path, less the reference range */
 };
 
 /* The receiver is at -reference_range * central direction of the plane x = ray's x. */
-FUNCTION struct vector3 to_receiver(const struct fan_record *fan, struct vector3 point, real x)
+FUNCTION struct vector3 to_receiver(const struct fan_record *fan, struct vector3 point, vfloat x)
 {
     struct vector3 way;
     way.x = x - point.x;
@@ -25,12 +25,12 @@ FUNCTION struct vector3 to_receiver(const struct fan_record *fan, struct vector3
     return way;
 }
 
-/* The first leg less the reference range. In focused columns the receiver is not abreast of the
+/* The first leg less the reference range. In focused columns the receiver is not broadside of the
  * first hit: that leg is longer then. */
-FUNCTION real first_leg(const struct chain *chain, real receiver_x)
+FUNCTION vfloat first_leg(const struct chain *chain, vfloat receiver_x)
 {
-    const real shift = chain->first_x - receiver_x;
-    const real first = chain->first_reach;
+    const vfloat shift = chain->first_x - receiver_x;
+    const vfloat first = chain->first_reach;
     return chain->range + shift * shift / (SQUARE_ROOT(first * first + shift * shift) + first);
 }
 
@@ -40,7 +40,7 @@ FUNCTION struct source_way straight_way(struct vector3 to)
     struct source_way way;
     way.path = SQUARE_ROOT(dot3(to, to));
     way.spreading = 1.0f / (way.path * way.path);
-    const real inverse = 1.0f / way.path;
+    const vfloat inverse = 1.0f / way.path;
     way.direction.x = to.x * inverse;
     way.direction.y = to.y * inverse;
     way.direction.z = to.z * inverse;
@@ -53,7 +53,7 @@ FUNCTION struct source_way straight_way(struct vector3 to)
  * formed without subtracting ranges: |s - p|^2 - R^2 = |p|^2 - 2 s.p + up^2 (+ x^2), s the source,
  * up across s. */
 FUNCTION struct source_way way_to_source(const struct fan_record *fan, const struct chain *chain,
-                                         real receiver_x, real aside, real up)
+                                         vfloat receiver_x, vfloat aside, vfloat up)
 {
     const struct vector3 point = chain->hit.point;
     const float r = fan->reference_range;
@@ -61,12 +61,12 @@ FUNCTION struct source_way way_to_source(const struct fan_record *fan, const str
     to.y += up * fan->sine_depression;
     to.z += up * fan->cosine_depression;
     struct source_way way = straight_way(to);
-    const real height_along =
+    const vfloat height_along =
         point.y * fan->cosine_depression - point.z * fan->sine_depression; /* of p towards R */
-    const real height_across = point.y * fan->sine_depression + point.z * fan->cosine_depression;
-    const real excess = (to.x * to.x + point.y * point.y + point.z * point.z +
-                         2.0f * r * height_along - 2.0f * up * height_across + up * up) /
-                        (way.path + r);
+    const vfloat height_across = point.y * fan->sine_depression + point.z * fan->cosine_depression;
+    const vfloat excess = (to.x * to.x + point.y * point.y + point.z * point.z +
+                           2.0f * r * height_along - 2.0f * up * height_across + up * up) /
+                          (way.path + r);
     way.range = 0.5f * (first_leg(chain, receiver_x) + chain->length + excess);
     return way;
 }
@@ -75,23 +75,24 @@ FUNCTION struct source_way way_to_source(const struct fan_record *fan, const str
  * turned to where that plane stands. */
 FUNCTION struct source_way way_through_layers(const struct fan_record *fan,
                                               GLOBAL const struct ray_piece_record *pieces,
-                                              const struct chain *chain, real receiver_x,
-                                              real aside, real up)
+                                              const struct chain *chain, vfloat receiver_x,
+                                              vfloat aside, vfloat up)
 {
     const struct vector3 point = chain->hit.point;
-    const real off = receiver_x + aside - point.x;
-    const real abreast = fan->table.ground_range + point.y;
-    const real ground = SQUARE_ROOT(abreast * abreast + off * off);
+    const vfloat off = receiver_x + aside - point.x;
+    const vfloat broadside = fan->table.ground_range + point.y;
+    const vfloat ground = SQUARE_ROOT(broadside * broadside + off * off);
     const struct ray_to_point ray =
         find_ray_to(fan->table, pieces, fan->cosine_depression, fan->sine_depression,
-                    point.y + off * off / (ground + abreast), point.z);
+                    point.y + off * off / (ground + broadside), point.z);
     /* the source point lies `up` across the ray, at a distance of the wavefront's radius */
-    const real path = SQUARE_ROOT(ray.wavefront * ray.wavefront + up * up);
-    const real level = (ray.wavefront * ray.directions.away_y + up * ray.directions.away_z) / path;
+    const vfloat path = SQUARE_ROOT(ray.wavefront * ray.wavefront + up * up);
+    const vfloat level =
+        (ray.wavefront * ray.directions.away_y + up * ray.directions.away_z) / path;
     struct source_way way;
     way.path = path;
     way.direction.x = level * off / ground;
-    way.direction.y = -level * abreast / ground;
+    way.direction.y = -level * broadside / ground;
     way.direction.z = (up * ray.directions.away_y - ray.wavefront * ray.directions.away_z) / path;
     way.spreading = ray.spreading / (ground * ray.wavefront);
     way.range =
@@ -112,10 +113,10 @@ struct chain_echo {
 #define NO_STRIP (-1073741824)
 
 /* The strip of the whole track at x; NO_STRIP outside it. */
-FUNCTION whole strip_at(const struct fan_record *fan, real x)
+FUNCTION vint strip_at(const struct fan_record *fan, vfloat x)
 {
-    const real strip = (x - fan->first_strip_x) / fan->strip_width;
-    return WHOLE_OF(smaller(larger(strip, SPLAT(-1.0e6f)), SPLAT(1.0e6f)) + 1000000.5f) - 1000000;
+    const vfloat strip = (x - fan->first_strip_x) / fan->strip_width;
+    return VINT_OF(smaller(larger(strip, SPLAT(-1.0e6f)), SPLAT(1.0e6f)) + 1000000.5f) - 1000000;
 }
 
 FUNCTION void tally_chain_echo(const struct fan_record *fan,
@@ -153,7 +154,7 @@ FUNCTION void tally_chain_echo(const struct fan_record *fan,
  * where both are seen from the same place, so do the chains that began on the seabed and end on a
  * target: they are led there on purpose, and those found from the target are left out for them. */
 struct ways_counted {
-    mask is_counted, stands_for_reverse;
+    mask is_counted, counts_reverse;
 };
 
 /* Fans do not look at the sea surface, and at seabed for what it sends to targets: so nothing finds
@@ -171,12 +172,12 @@ FUNCTION void count_ways_by_sea_surface(GLOBAL const struct chain_record *chains
                                         const struct chain *chain, struct ways_counted *ways)
 {
     if (chains->estimator == CHAINS_BRUTE_FORCE) {
-        ways->stands_for_reverse = MASK_OF(chain->hit.surface == SEA_SURFACE);
+        ways->counts_reverse = MASK_OF(chain->hit.surface == SEA_SURFACE);
     } else {
         const mask is_alone = is_found_one_way(chain);
         ways->is_counted = ways->is_counted | is_alone;
-        ways->stands_for_reverse = chains->is_focused ? ways->stands_for_reverse | is_alone
-                                                      : ways->stands_for_reverse & ~is_alone;
+        ways->counts_reverse =
+            chains->is_focused ? ways->counts_reverse | is_alone : ways->counts_reverse & ~is_alone;
     }
     if (order > 1)
         ways->is_counted = ways->is_counted & chain->met_object;
@@ -190,11 +191,11 @@ FUNCTION struct ways_counted count_ways(GLOBAL const struct chain_record *chains
     const mask ends_on_seabed = MASK_OF(chain->hit.surface == SEABED);
     struct ways_counted ways;
     ways.is_counted = ~none;
-    ways.stands_for_reverse = chains->estimator == CHAINS_CONNECT ? chain->began_smooth : none;
+    ways.counts_reverse = chains->estimator == CHAINS_CONNECT ? chain->began_smooth : none;
     if (chains->is_reciprocal) {
         ways.is_counted = ~(~chain->began_smooth & ~began_on_seabed & ends_on_seabed);
-        ways.stands_for_reverse =
-            ways.stands_for_reverse | (~chain->began_smooth & began_on_seabed & ~ends_on_seabed);
+        ways.counts_reverse =
+            ways.counts_reverse | (~chain->began_smooth & began_on_seabed & ~ends_on_seabed);
     }
     if (has_sea_surface(chains))
         count_ways_by_sea_surface(chains, order, chain, &ways);
@@ -208,34 +209,34 @@ FUNCTION struct ways_counted count_ways(GLOBAL const struct chain_record *chains
 /* Keeps the echo that a hit sends to the source: energy is that of the path, way the one to the
  * source. */
 FUNCTION void keep_echo(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
-                        struct ways_counted ways, const struct chain *chain, real energy,
-                        real range, real normalisation, struct chain_echo *echo)
+                        struct ways_counted ways, const struct chain *chain, vfloat energy,
+                        vfloat range, vfloat normalisation, struct chain_echo *echo)
 {
-    const mask both = ways.stands_for_reverse;
-    real kept = energy * normalisation;
-    const whole none = WHOLE_OF(SPLAT((float)NO_STRIP));
-    whole strip, reverse;
+    const mask both = ways.counts_reverse;
+    vfloat kept = energy * normalisation;
+    const vint none = VINT_OF(SPLAT((float)NO_STRIP));
+    vint strip, reverse;
     if (chains->is_focused) {
         /* a path and its reverse are one echo of twice the amplitude */
-        kept = CHOOSE(both, kept * 4.0f, kept * 2.0f);
+        kept = SELECT(both, kept * 4.0f, kept * 2.0f);
         strip = strip_at(fan, 0.5f * (chain->first_x + chain->hit.point.x));
         reverse = none;
     } else {
         strip = strip_at(fan, chain->first_x);
-        reverse = CHOOSE(both, strip_at(fan, chain->hit.point.x), none);
+        reverse = SELECT(both, strip_at(fan, chain->hit.point.x), none);
     }
-    kept = CHOOSE(ways.is_counted & chain->is_alive, kept, SPLAT(0.0f));
+    kept = SELECT(ways.is_counted & chain->is_alive, kept, SPLAT(0.0f));
     const struct bin_pair bins = bins_about(range * fan->bins_per_metre + fan->first_bin);
     /* what is not a number is heard too, and then reported */
     const mask is_heard =
         ~MASK_OF(kept <= 0.0f) & MASK_OF(bins.bin >= -1) & MASK_OF(bins.bin < fan->bins);
-    STORE_REAL(kept, echo->energy);
-    STORE_REAL(chain->chance, echo->chance);
-    STORE_WHOLE(is_heard, echo->is_heard);
-    STORE_WHOLE(bins.bin, echo->bin);
-    STORE_REAL(bins.later, echo->later);
-    STORE_WHOLE(strip, echo->strip);
-    STORE_WHOLE(reverse, echo->reverse_strip);
+    STORE_VFLOAT(kept, echo->energy);
+    STORE_VFLOAT(chain->chance, echo->chance);
+    STORE_VINT(is_heard, echo->is_heard);
+    STORE_VINT(bins.bin, echo->bin);
+    STORE_VFLOAT(bins.later, echo->later);
+    STORE_VINT(strip, echo->strip);
+    STORE_VINT(reverse, echo->reverse_strip);
 }
 
 /* Connects the hit to the source and gives the echo: energy f cos / r^2 at the source, normalised
@@ -248,13 +249,13 @@ FUNCTION void connect_chain(const struct fan_record *fan,
                             struct chain_echo *echo, struct outcome_record *outcome)
 {
     const struct chain_hit *hit = &chain->hit;
-    real receiver_x = chain->first_x;
-    real source_aside = SPLAT(0.0f);
-    real source_up = SPLAT(0.0f);
+    vfloat receiver_x = chain->first_x;
+    vfloat source_aside = SPLAT(0.0f);
+    vfloat source_up = SPLAT(0.0f);
     if (chains->is_focused)
         receiver_x = 0.5f * (chain->first_x + hit->point.x);
     if (fan->source_side > 0.0f) {
-        real along, across;
+        vfloat along, across;
         two_uniforms(chain->key, chain->number, draw, &along, &across);
         source_aside = (along - 0.5f) * fan->source_side;
         source_up = (across - 0.5f) * fan->source_side;
@@ -264,18 +265,18 @@ FUNCTION void connect_chain(const struct fan_record *fan,
         way = way_through_layers(fan, pieces, chain, receiver_x, source_aside, source_up);
     else
         way = way_to_source(fan, chain, receiver_x, source_aside, source_up);
-    const real scattering = scattering_at(fan, chains, objects, hit, way.direction) *
-                            map_factor(fan, pieces, chains, map, hit);
-    const real cosine = dot3(hit->normal, way.direction);
+    const vfloat scattering = scattering_at(fan, chains, objects, hit, way.direction) *
+                              map_factor(fan, pieces, chains, map, hit);
+    const vfloat cosine = dot3(hit->normal, way.direction);
     mask is_open = chain->is_alive & MASK_OF(scattering > 0.0f);
     if (ANY(is_open)) {
         outcome->queries += count_lanes(is_open);
         is_open = is_open_way(fan, objects, hit, way.direction, way.path, is_open);
     }
-    const real energy =
-        CHOOSE(is_open, chain->energy * scattering * cosine * way.spreading, SPLAT(0.0f));
-    const real half_path = fan->reference_range + way.range;
-    const real square = half_path * half_path;
+    const vfloat energy =
+        SELECT(is_open, chain->energy * scattering * cosine * way.spreading, SPLAT(0.0f));
+    const vfloat half_path = fan->reference_range + way.range;
+    const vfloat square = half_path * half_path;
     keep_echo(fan, chains, count_ways(chains, order, chain), chain, energy, way.range,
               square * square, echo);
 }

@@ -14,20 +14,20 @@
 struct chain_hit {
     struct vector3 point, normal; /* the normal is on the side that the ray came from */
     struct vector3 back;          /* the way that it came, unit, away from the surface */
-    real distance;
-    whole surface;     /* object's number, SEABED or SEA_SURFACE */
-    whole left_behind; /* convex object that no way from here meets again, -1: none */
+    vfloat distance;
+    vint surface;     /* object's number, SEABED or SEA_SURFACE */
+    vint left_behind; /* convex object that no way from here meets again, -1: none */
     mask is_hit;
 };
 
 /* The nearest object on each way, but for the one that it leaves behind: where that holds for all
- * ways, as on a lone target, the search costs nothing. Where any object up to `limit` will do
+ * ways, as on a single target, the search costs nothing. Where any object up to `limit` will do
  * (is_any), what is found may not be the nearest. */
 FUNCTION struct nearest_hit find_nearest_ahead(const struct fan_record *fan,
                                                GLOBAL const struct object_record *objects,
                                                struct vector3 start, struct vector3 direction,
-                                               float minimum, real limit, int is_any,
-                                               whole left_behind, mask is_ray)
+                                               float minimum, vfloat limit, int is_any,
+                                               vint left_behind, mask is_ray)
 {
     struct nearest_hit nearest;
     if (has_object_tree(objects, fan->objects)) {
@@ -35,15 +35,15 @@ FUNCTION struct nearest_hit find_nearest_ahead(const struct fan_record *fan,
         return walk_objects(objects, fan->objects, start, direction, minimum, &search);
     }
     nearest.distance = SPLAT(FAR_AWAY);
-    nearest.object = WHOLE_OF(SPLAT(-1.0f));
+    nearest.object = VINT_OF(SPLAT(-1.0f));
     for (int i = 0; i < fan->objects; i++) {
         const mask is_ahead = is_ray & MASK_OF(left_behind != i);
         if (!ANY(is_ahead))
             continue;
-        const real distance = object_distance(&objects[i], start, direction, SPLAT(minimum));
+        const vfloat distance = object_distance(&objects[i], start, direction, SPLAT(minimum));
         const mask is_nearer = is_ahead & MASK_OF(distance < nearest.distance);
-        nearest.distance = CHOOSE(is_nearer, distance, nearest.distance);
-        nearest.object = CHOOSE(is_nearer, WHOLE_OF(SPLAT((float)i)), nearest.object);
+        nearest.distance = SELECT(is_nearer, distance, nearest.distance);
+        nearest.object = SELECT(is_nearer, VINT_OF(SPLAT((float)i)), nearest.object);
     }
     return nearest;
 }
@@ -52,18 +52,19 @@ FUNCTION struct nearest_hit find_nearest_ahead(const struct fan_record *fan,
 FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
                                          GLOBAL const struct object_record *objects,
                                          enum wanted_face wanted, struct vector3 start,
-                                         struct vector3 direction, float minimum, whole left_behind,
+                                         struct vector3 direction, float minimum, vint left_behind,
                                          mask is_ray)
 {
-    const real to_seabed = seabed_distance(fan, objects, start, direction, SPLAT(minimum), is_ray);
+    const vfloat to_seabed =
+        seabed_distance(fan, objects, start, direction, SPLAT(minimum), is_ray);
     const struct nearest_hit nearest = find_nearest_ahead(fan, objects, start, direction, minimum,
                                                           SPLAT(FAR_AWAY), 0, left_behind, is_ray);
     const mask on_object = MASK_OF(nearest.distance < to_seabed);
     struct chain_hit hit;
     hit.distance = smaller(nearest.distance, to_seabed);
     hit.is_hit = is_ray & MASK_OF(hit.distance < 0.5f * FAR_AWAY);
-    hit.distance = CHOOSE(hit.is_hit, hit.distance, SPLAT(0.0f));
-    hit.surface = CHOOSE(on_object, nearest.object, WHOLE_OF(SPLAT(-1.0f)));
+    hit.distance = SELECT(hit.is_hit, hit.distance, SPLAT(0.0f));
+    hit.surface = SELECT(on_object, nearest.object, VINT_OF(SPLAT(-1.0f)));
     hit.point = along3(start, direction, hit.distance);
     hit.back = reversed3(direction);
     struct surface_face face;
@@ -71,23 +72,23 @@ FUNCTION struct chain_hit find_chain_hit(const struct fan_record *fan,
 #if HAS_MESHES
     face.lift.x = face.lift.y = face.lift.z = SPLAT(0.0f);
 #endif
-    hit.left_behind = WHOLE_OF(SPLAT(-1.0f));
+    hit.left_behind = VINT_OF(SPLAT(-1.0f));
     for (int i = surface_after(-1, fan->objects, hit.surface, hit.is_hit); i < fan->objects;
          i = surface_after(i, fan->objects, hit.surface, hit.is_hit)) {
         const mask here = hit.is_hit & MASK_OF(hit.surface == i);
         if (!ANY(here))
             continue;
         const struct surface_face found = object_face(&objects[i], wanted, start, direction,
-                                                      CHOOSE(here, hit.distance, SPLAT(0.0f)));
+                                                      SELECT(here, hit.distance, SPLAT(0.0f)));
         face = choose_face(here, found, face);
         if (is_convex(&objects[i]))
-            hit.left_behind = CHOOSE(here, hit.surface, hit.left_behind);
+            hit.left_behind = SELECT(here, hit.surface, hit.left_behind);
     }
     /* inner sides scatter as outer ones do, but what they scatter meets the object again */
     const mask is_outer = MASK_OF(dot3(face.normal, hit.back) >= 0.0f);
     hit.normal = choose3(is_outer, face.normal, reversed3(face.normal));
     hit.point = lifted_point(hit.point, &face);
-    hit.left_behind = CHOOSE(is_outer, hit.left_behind, WHOLE_OF(SPLAT(-1.0f)));
+    hit.left_behind = SELECT(is_outer, hit.left_behind, VINT_OF(SPLAT(-1.0f)));
     return hit;
 }
 
@@ -113,17 +114,17 @@ FUNCTION GLOBAL const struct surface_record *surface_number(
 }
 
 /* Scattering at a hit from one direction into another (rough part), kernels/surface.h. */
-FUNCTION real scattering_at(const struct fan_record *fan, GLOBAL const struct chain_record *chain,
-                            GLOBAL const struct object_record *objects, const struct chain_hit *hit,
-                            struct vector3 out)
+FUNCTION vfloat scattering_at(const struct fan_record *fan, GLOBAL const struct chain_record *chain,
+                              GLOBAL const struct object_record *objects,
+                              const struct chain_hit *hit, struct vector3 out)
 {
-    real scattering = SPLAT(0.0f);
+    vfloat scattering = SPLAT(0.0f);
     const int before = first_surface_number(chain) - 1;
     for (int i = surface_after(before, fan->objects, hit->surface, hit->is_hit); i < fan->objects;
          i = surface_after(i, fan->objects, hit->surface, hit->is_hit)) {
         const mask here = hit->is_hit & MASK_OF(hit->surface == i);
         if (ANY(here))
-            scattering = CHOOSE(
+            scattering = SELECT(
                 here,
                 rough_scattering(surface_number(chain, objects, i), hit->normal, hit->back, out),
                 scattering);
@@ -141,7 +142,7 @@ FUNCTION struct vector3 start_from(const struct chain_hit *hit)
 
 /* Whether nothing is between a hit and a point that lies `path` away. */
 FUNCTION mask is_open_way(const struct fan_record *fan, GLOBAL const struct object_record *objects,
-                          const struct chain_hit *hit, struct vector3 direction, real path,
+                          const struct chain_hit *hit, struct vector3 direction, vfloat path,
                           mask is_way)
 {
     const struct vector3 start = start_from(hit);
@@ -158,17 +159,17 @@ struct target_choice;
 struct chain {
     struct chain_hit hit;
     struct random_key key;
-    word number;      /* of the ray, for its random numbers */
-    real energy;      /* what the receiver would get per unit of irradiance at the hit and unit of
+    word number;        /* of the ray, for its random numbers */
+    vfloat energy;      /* what the receiver would get per unit of irradiance at the hit and unit of
                          scattering, m^2 sr, in quanta of the hit's order */
-    real chance;      /* of rounding its echoes up */
-    real range;       /* from the receiver to the first hit less the reference range */
-    real length;      /* from the first hit to this one */
-    real first_x;     /* along-track, of the first hit */
-    real first_reach; /* ground range of the first hit that is no level mirror over the cosine of
+    vfloat chance;      /* of rounding its echoes up */
+    vfloat range;       /* from the receiver to the first hit less the reference range */
+    vfloat length;      /* from the first hit to this one */
+    vfloat first_x;     /* along-track, of the first hit */
+    vfloat first_reach; /* ground range of the first hit that is no level mirror over the cosine of
                          the grazing angle: without layers the range, by way of the mirrors */
-    whole first_surface;
-    whole surface_before;    /* that the sound came from to this hit */
+    vint first_surface;
+    vint surface_before;     /* that the sound came from to this hit */
     mask began_smooth;       /* the first hit was a mirror bounce: nothing finds the reverse path */
     mask only_mirrors;       /* every hit before this one was a mirror bounce */
     mask only_level_mirrors; /* all of those on seabed or sea surface */

@@ -11,33 +11,33 @@ FUNCTION void meet_sea_surface(GLOBAL const struct chain_record *chains, struct 
 {
     const float height = chains->sea_surface_height;
     const mask goes_up = is_ray & MASK_OF(direction.z > 1.0e-6f) & MASK_OF(start.z < height);
-    const real distance = (height - start.z) / CHOOSE(goes_up, direction.z, SPLAT(1.0f));
+    const vfloat distance = (height - start.z) / SELECT(goes_up, direction.z, SPLAT(1.0f));
     const mask is_first = goes_up & (~hit->is_hit | MASK_OF(distance < hit->distance));
-    hit->distance = CHOOSE(is_first, distance, hit->distance);
+    hit->distance = SELECT(is_first, distance, hit->distance);
     const struct vector3 point = along3(start, direction, hit->distance);
-    hit->point.x = CHOOSE(is_first, point.x, hit->point.x);
-    hit->point.y = CHOOSE(is_first, point.y, hit->point.y);
-    hit->point.z = CHOOSE(is_first, SPLAT(height), hit->point.z);
-    hit->normal.x = CHOOSE(is_first, SPLAT(0.0f), hit->normal.x);
-    hit->normal.y = CHOOSE(is_first, SPLAT(0.0f), hit->normal.y);
-    hit->normal.z = CHOOSE(is_first, SPLAT(-1.0f), hit->normal.z);
-    hit->surface = CHOOSE(is_first, WHOLE_OF(SPLAT((float)SEA_SURFACE)), hit->surface);
-    hit->left_behind = CHOOSE(is_first, WHOLE_OF(SPLAT(-1.0f)), hit->left_behind);
+    hit->point.x = SELECT(is_first, point.x, hit->point.x);
+    hit->point.y = SELECT(is_first, point.y, hit->point.y);
+    hit->point.z = SELECT(is_first, SPLAT(height), hit->point.z);
+    hit->normal.x = SELECT(is_first, SPLAT(0.0f), hit->normal.x);
+    hit->normal.y = SELECT(is_first, SPLAT(0.0f), hit->normal.y);
+    hit->normal.z = SELECT(is_first, SPLAT(-1.0f), hit->normal.z);
+    hit->surface = SELECT(is_first, VINT_OF(SPLAT((float)SEA_SURFACE)), hit->surface);
+    hit->left_behind = SELECT(is_first, VINT_OF(SPLAT(-1.0f)), hit->left_behind);
     hit->is_hit = hit->is_hit | is_first;
 }
 
-/* Ends the chains that cannot be heard any more: whose straight way home comes after the last bin.
- * And those that went from the seabed in view of the sonar to the sea surface: they are found from
- * their other end. order: of the hit before. */
+/* Ends the chains that cannot be heard any more: whose straight return path comes after the last
+ * bin. And those that went from the seabed in view of the sonar to the sea surface: they are found
+ * from their other end. order: of the hit before. */
 FUNCTION void leave_out_unheard(const struct fan_record *fan,
                                 GLOBAL const struct ray_piece_record *pieces,
                                 GLOBAL const struct chain_record *chains, int order,
                                 struct chain *chain)
 {
-    const real shortest =
-        0.5f * (chain->range + chain->length + range_abreast(fan, pieces, chain->hit.point)) -
+    const vfloat shortest =
+        0.5f * (chain->range + chain->length + broadside_range(fan, pieces, chain->hit.point)) -
         fan->source_side;
-    const real bin = shortest * fan->bins_per_metre + fan->first_bin;
+    const vfloat bin = shortest * fan->bins_per_metre + fan->first_bin;
     chain->is_alive = chain->is_alive & MASK_OF(bin < (float)fan->bins + 1.0f);
     if (order == 1 && chains->estimator == CHAINS_CONNECT)
         chain->is_alive = chain->is_alive & ~(MASK_OF(chain->first_surface == SEABED) &
@@ -49,24 +49,24 @@ FUNCTION void leave_out_unheard(const struct fan_record *fan,
  * point and H that of the surface. */
 FUNCTION struct source_way way_to_image(const struct fan_record *fan,
                                         GLOBAL const struct chain_record *chains,
-                                        const struct chain *chain, real receiver_x, real aside,
-                                        real up)
+                                        const struct chain *chain, vfloat receiver_x, vfloat aside,
+                                        vfloat up)
 {
     const struct vector3 point = chain->hit.point;
     const float r = fan->reference_range;
     const float surface = chains->sea_surface_height;
-    const real source_y = up * fan->sine_depression - r * fan->cosine_depression;
-    const real source_z = up * fan->cosine_depression + r * fan->sine_depression;
-    const real image_z = 2.0f * surface - source_z;
+    const vfloat source_y = up * fan->sine_depression - r * fan->cosine_depression;
+    const vfloat source_z = up * fan->cosine_depression + r * fan->sine_depression;
+    const vfloat image_z = 2.0f * surface - source_z;
     struct vector3 to;
     to.x = receiver_x + aside - point.x;
     to.y = source_y - point.y;
     to.z = image_z - point.z;
     struct source_way way = straight_way(to);
-    const real excess = (to.x * to.x + point.y * point.y + point.z * point.z -
-                         2.0f * (source_y * point.y + image_z * point.z) + up * up +
-                         4.0f * surface * (surface - source_z)) /
-                        (way.path + r);
+    const vfloat excess = (to.x * to.x + point.y * point.y + point.z * point.z -
+                           2.0f * (source_y * point.y + image_z * point.z) + up * up +
+                           4.0f * surface * (surface - source_z)) /
+                          (way.path + r);
     way.range = 0.5f * (first_leg(chain, receiver_x) + chain->length + excess);
     return way;
 }
@@ -78,32 +78,32 @@ FUNCTION mask is_open_to_image(const struct fan_record *fan,
                                const struct chain_hit *hit, const struct source_way *way,
                                mask is_way)
 {
-    const real upward = larger(way->direction.z, SPLAT(1.0e-6f));
-    const real to_surface = (chains->sea_surface_height - hit->point.z) / upward;
+    const vfloat upward = larger(way->direction.z, SPLAT(1.0e-6f));
+    const vfloat to_surface = (chains->sea_surface_height - hit->point.z) / upward;
     const mask is_open = is_open_way(fan, objects, hit, way->direction, to_surface, is_way);
     const struct vector3 bounce = along3(hit->point, way->direction, to_surface);
     struct vector3 down = way->direction;
     down.z = -down.z;
-    const real left = way->path - to_surface;
+    const vfloat left = way->path - to_surface;
     const struct nearest_hit blocking = find_nearest_ahead(fan, objects, bounce, down, 0.0f, left,
-                                                           1, WHOLE_OF(SPLAT(-1.0f)), is_open);
+                                                           1, VINT_OF(SPLAT(-1.0f)), is_open);
     return is_clear_of_relief(fan, objects, bounce, down, left,
                               is_open & MASK_OF(blocking.distance > left));
 }
 
-/* What the hit sends home in lanes that want it, to a receiver abreast of receiver_x: straight, or
+/* What the hit returns in lanes that want it, to a receiver broadside of receiver_x: straight, or
  * by way of the sea surface's mirror. */
-FUNCTION real energy_sent_home(const struct fan_record *fan,
-                               GLOBAL const struct ray_piece_record *pieces,
-                               GLOBAL const struct chain_record *chains,
-                               GLOBAL const struct object_record *objects, GLOBAL const float *map,
-                               const struct chain *chain, real receiver_x, int by_mirror,
-                               RECORD_WORD draw, mask is_wanted, real *range,
-                               struct outcome_record *outcome)
+FUNCTION vfloat energy_returned(const struct fan_record *fan,
+                                GLOBAL const struct ray_piece_record *pieces,
+                                GLOBAL const struct chain_record *chains,
+                                GLOBAL const struct object_record *objects, GLOBAL const float *map,
+                                const struct chain *chain, vfloat receiver_x, int by_mirror,
+                                RECORD_WORD draw, mask is_wanted, vfloat *range,
+                                struct outcome_record *outcome)
 {
     const struct chain_hit *hit = &chain->hit;
-    real aside = SPLAT(0.0f);
-    real up = SPLAT(0.0f);
+    vfloat aside = SPLAT(0.0f);
+    vfloat up = SPLAT(0.0f);
     if (fan->source_side > 0.0f) {
         two_uniforms(chain->key, chain->number, draw, &aside, &up);
         aside = (aside - 0.5f) * fan->source_side;
@@ -112,8 +112,8 @@ FUNCTION real energy_sent_home(const struct fan_record *fan,
     const struct source_way way = by_mirror
                                       ? way_to_image(fan, chains, chain, receiver_x, aside, up)
                                       : way_to_source(fan, chain, receiver_x, aside, up);
-    real scattering = scattering_at(fan, chains, objects, hit, way.direction) *
-                      map_factor(fan, pieces, chains, map, hit);
+    vfloat scattering = scattering_at(fan, chains, objects, hit, way.direction) *
+                        map_factor(fan, pieces, chains, map, hit);
     if (by_mirror)
         scattering = scattering * mirror_energy(&chains->sea_surface, magnitude(way.direction.z));
     mask is_open = is_wanted & MASK_OF(scattering > 0.0f);
@@ -122,14 +122,14 @@ FUNCTION real energy_sent_home(const struct fan_record *fan,
         is_open = by_mirror ? is_open_to_image(fan, chains, objects, hit, &way, is_open)
                             : is_open_way(fan, objects, hit, way.direction, way.path, is_open);
     *range = way.range;
-    const real half_path = fan->reference_range + way.range;
-    const real square = half_path * half_path;
-    const real cosine = dot3(hit->normal, way.direction);
-    return CHOOSE(is_open, chain->energy * scattering * cosine * way.spreading * (square * square),
+    const vfloat half_path = fan->reference_range + way.range;
+    const vfloat square = half_path * half_path;
+    const vfloat cosine = dot3(hit->normal, way.direction);
+    return SELECT(is_open, chain->energy * scattering * cosine * way.spreading * (square * square),
                   SPLAT(0.0f));
 }
 
-/* Where a path may end on the sea surface's mirror: a lone target between mirrors belongs to the
+/* Where a path may end on the sea surface's mirror: a single target between mirrors belongs to the
  * pairs of sources (trace_rough_mirrored.h). */
 FUNCTION mask may_end_on_mirror(int order, const struct chain *chain)
 {
@@ -150,18 +150,18 @@ FUNCTION void connect_by_mirror(const struct fan_record *fan,
 {
     struct ways_counted ways;
     ways.is_counted = may_end_on_mirror(order, chain);
-    ways.stands_for_reverse = chains->is_focused ? ways.is_counted : ways.is_counted & 0;
-    const real receiver_x =
+    ways.counts_reverse = chains->is_focused ? ways.is_counted : ways.is_counted & 0;
+    const vfloat receiver_x =
         chains->is_focused ? 0.5f * (chain->first_x + chain->hit.point.x) : chain->first_x;
-    real range;
-    const real energy = energy_sent_home(fan, pieces, chains, objects, map, chain, receiver_x, 1,
-                                         draw, ways.is_counted, &range, outcome);
+    vfloat range;
+    const vfloat energy = energy_returned(fan, pieces, chains, objects, map, chain, receiver_x, 1,
+                                          draw, ways.is_counted, &range, outcome);
     keep_echo(fan, chains, ways, chain, energy, range, SPLAT(chains->finer[order - 1]), echo);
 }
 
-/* In `paper` columns the reverse of a path that nothing finds: the receiver is abreast of its first
- * hit, this one. A scatterer on the sea surface may be far aside of the target, or near the sonar:
- * both legs are taken anew, what the other end does with sound from there is not. */
+/* In `paper` columns the reverse of a path that nothing finds: the receiver is broadside of its
+ * first hit, this one. A scatterer on the sea surface may be far aside of the target, or near the
+ * sonar: both legs are taken anew, what the other end does with sound from there is not. */
 FUNCTION void connect_reverse(const struct fan_record *fan,
                               GLOBAL const struct ray_piece_record *pieces,
                               GLOBAL const struct chain_record *chains,
@@ -172,13 +172,13 @@ FUNCTION void connect_reverse(const struct fan_record *fan,
     struct ways_counted ways;
     ways.is_counted = by_mirror ? may_end_on_mirror(order, chain)
                                 : chain->is_alive & chain->met_object & is_found_one_way(chain);
-    ways.stands_for_reverse = ways.is_counted;
-    const real shift = chain->first_x - chain->hit.point.x;
-    const real square = chain->first_reach * chain->first_reach;
-    real range;
-    const real energy =
-        energy_sent_home(fan, pieces, chains, objects, map, chain, chain->hit.point.x, by_mirror,
-                         draw, ways.is_counted, &range, outcome);
+    ways.counts_reverse = ways.is_counted;
+    const vfloat shift = chain->first_x - chain->hit.point.x;
+    const vfloat square = chain->first_reach * chain->first_reach;
+    vfloat range;
+    const vfloat energy =
+        energy_returned(fan, pieces, chains, objects, map, chain, chain->hit.point.x, by_mirror,
+                        draw, ways.is_counted, &range, outcome);
     const float finer = by_mirror ? chains->finer[order - 1] : 1.0f;
     keep_echo(fan, chains, ways, chain, energy, range, finer * square / (square + shift * shift),
               echo);
@@ -186,7 +186,7 @@ FUNCTION void connect_reverse(const struct fan_record *fan,
         echo->strip[lane] = NO_STRIP;
 }
 
-/* What chains by way of the sea surface send home beside what every hit does. order: of the hit. */
+/* What chains by way of the sea surface return beside what every hit does. order: of the hit. */
 FUNCTION void connect_by_sea_surface(const struct fan_record *fan,
                                      GLOBAL const struct ray_piece_record *pieces,
                                      GLOBAL const struct chain_record *chains,

@@ -1,4 +1,4 @@
-/* How a chain of sound goes on from a hit: by the surface's lobes, by its mirror, or from seabed
+/* How a chain of sound goes on from a hit: by the surface's BRDF, by its mirror, or from seabed
  * and sea surface towards the targets (kernels/MATH.md, "Chains"). */
 #ifndef SONJECT_KERNELS_CHAIN_STEP_H
 #define SONJECT_KERNELS_CHAIN_STEP_H
@@ -6,27 +6,27 @@
 #include "chain_hit.h"
 #include "many_targets.h"
 #include "reflectivity_map.h"
-#include "target_cones.h"
+#include "target_sampling.h"
 
 /* How a chain goes on from a hit. */
 struct chain_step {
     struct vector3 direction;
-    real weight; /* f cos / density, or the mirror's energy over its probability */
+    vfloat weight; /* f cos / density, or the mirror's energy over its probability */
     mask is_mirror;
 };
 
 /* A step by a rough part: what the surface scatters that way over the density it was drawn with. */
 FUNCTION struct chain_step step_in_direction(GLOBAL const struct surface_record *surface,
                                              const struct chain_hit *hit, struct vector3 direction,
-                                             real density)
+                                             vfloat density)
 {
-    const real cosine = dot3(hit->normal, direction);
+    const vfloat cosine = dot3(hit->normal, direction);
     const mask is_possible = MASK_OF(density > 0.0f) & MASK_OF(cosine > 0.0f);
-    const real scattering = rough_scattering(surface, hit->normal, hit->back, direction);
+    const vfloat scattering = rough_scattering(surface, hit->normal, hit->back, direction);
     struct chain_step step;
     step.direction = direction;
-    step.weight = CHOOSE(
-        is_possible, scattering * cosine / CHOOSE(is_possible, density, SPLAT(1.0f)), SPLAT(0.0f));
+    step.weight = SELECT(
+        is_possible, scattering * cosine / SELECT(is_possible, density, SPLAT(1.0f)), SPLAT(0.0f));
     step.is_mirror = is_possible & 0;
     return step;
 }
@@ -38,45 +38,45 @@ FUNCTION struct chain_step step_among_few(GLOBAL const struct chain_record *chai
                                           GLOBAL const struct sphere_record *spheres,
                                           GLOBAL const struct surface_record *surface,
                                           int leads_elsewhere, const struct chain_hit *hit,
-                                          real choice, real u, real v)
+                                          vfloat choice, vfloat u, vfloat v)
 {
-    struct target_cones cones;
+    struct target_sampling cones;
     view_targets(spheres, chains->spheres, hit->point, &cones);
-    const real elsewhere_share =
-        leads_elsewhere ? SPLAT(0.5f) : CHOOSE(cones.is_inside, SPLAT(0.5f), SPLAT(0.0f));
-    const real lobe_share = CHOOSE(MASK_OF(cones.sum > 0.0f), elsewhere_share, SPLAT(1.0f));
-    const real cone_share = 1.0f - lobe_share;
-    const mask by_lobe = MASK_OF(choice < lobe_share);
-    const real cone_choice = (choice - lobe_share) / larger(cone_share, SPLAT(0.5f));
+    const vfloat elsewhere_share =
+        leads_elsewhere ? SPLAT(0.5f) : SELECT(cones.is_inside, SPLAT(0.5f), SPLAT(0.0f));
+    const vfloat brdf_share = SELECT(MASK_OF(cones.sum > 0.0f), elsewhere_share, SPLAT(1.0f));
+    const vfloat cone_share = 1.0f - brdf_share;
+    const mask by_brdf = MASK_OF(choice < brdf_share);
+    const vfloat cone_choice = (choice - brdf_share) / larger(cone_share, SPLAT(0.5f));
     struct vector3 direction = sample_target_direction(spheres, chains->spheres, hit->point, &cones,
                                                        larger(cone_choice, SPLAT(0.0f)), u, v);
-    if (ANY(by_lobe)) {
+    if (ANY(by_brdf)) {
         const struct vector3 around = sample_rough_direction(
-            surface, hit->normal, hit->back, choice / larger(lobe_share, SPLAT(0.5f)), u, v);
-        direction = choose3(by_lobe, around, direction);
+            surface, hit->normal, hit->back, choice / larger(brdf_share, SPLAT(0.5f)), u, v);
+        direction = choose3(by_brdf, around, direction);
     }
-    real density = cone_share * target_direction_density(spheres, chains->spheres, hit->point,
-                                                         &cones, direction);
-    if (ANY(MASK_OF(lobe_share > 0.0f)))
-        density += lobe_share * rough_direction_density(surface, hit->normal, hit->back, direction);
+    vfloat density = cone_share * target_direction_density(spheres, chains->spheres, hit->point,
+                                                           &cones, direction);
+    if (ANY(MASK_OF(brdf_share > 0.0f)))
+        density += brdf_share * rough_direction_density(surface, hit->normal, hit->back, direction);
     return step_in_direction(surface, hit, direction, density);
 }
 
 /* As step_among_few among many targets. Where the point is inside the sphere chosen, the surface's
- * own lobes find the direction. targets: of first hits on the seabed; 0: each hit makes its own
+ * own BRDF finds the direction. targets: of first hits on the seabed; 0: each hit makes its own
  * choice. */
-APART struct chain_step step_among_many(GLOBAL const struct chain_record *chains,
-                                        GLOBAL const struct sphere_record *spheres,
-                                        const struct target_choice *targets,
-                                        GLOBAL const struct surface_record *surface,
-                                        int leads_elsewhere, const struct chain_hit *hit,
-                                        real choice, real u, real v)
+NOINLINE struct chain_step step_among_many(GLOBAL const struct chain_record *chains,
+                                           GLOBAL const struct sphere_record *spheres,
+                                           const struct target_choice *targets,
+                                           GLOBAL const struct surface_record *surface,
+                                           int leads_elsewhere, const struct chain_hit *hit,
+                                           vfloat choice, vfloat u, vfloat v)
 {
     const mask is_here = hit->is_hit & MASK_OF(hit->surface < 0);
     const float elsewhere_share = leads_elsewhere ? 0.5f : 0.0f;
     const float cone_share = 1.0f - elsewhere_share;
     const mask goes_elsewhere = MASK_OF(choice < elsewhere_share);
-    const real cone_choice = larger((choice - elsewhere_share) / cone_share, SPLAT(0.0f));
+    const vfloat cone_choice = larger((choice - elsewhere_share) / cone_share, SPLAT(0.0f));
     struct target_choice own[WIDTH];
     const struct chosen_spheres chosen =
         choose_spheres(chains, spheres, targets, own, hit->point, cone_choice, is_here);
@@ -85,23 +85,23 @@ APART struct chain_step step_among_many(GLOBAL const struct chain_record *chains
     way.y = chosen.centre.y - hit->point.y;
     way.z = chosen.centre.z - hit->point.z;
     mask is_outside;
-    const real opening = opening_at(dot3(way, way), chosen.radius * chosen.radius, &is_outside);
+    const vfloat opening = opening_at(dot3(way, way), chosen.radius * chosen.radius, &is_outside);
     struct vector3 direction =
         direction_in_cone(choose3(is_outside, way, hit->normal), opening, u, v);
-    const mask by_lobe = goes_elsewhere | ~is_outside;
-    if (ANY(is_here & by_lobe)) {
-        const real lobe_choice = CHOOSE(goes_elsewhere, 2.0f * choice, chosen.rest);
+    const mask by_brdf = goes_elsewhere | ~is_outside;
+    if (ANY(is_here & by_brdf)) {
+        const vfloat brdf_choice = SELECT(goes_elsewhere, 2.0f * choice, chosen.rest);
         direction = choose3(
-            by_lobe, sample_rough_direction(surface, hit->normal, hit->back, lobe_choice, u, v),
+            by_brdf, sample_rough_direction(surface, hit->normal, hit->back, brdf_choice, u, v),
             direction);
     }
-    real density, lobe_share;
+    vfloat density, brdf_share;
     densities_towards(chains, spheres, targets, own, hit->point, direction, is_here, &density,
-                      &lobe_share);
+                      &brdf_share);
     density = cone_share * density;
-    lobe_share = elsewhere_share + cone_share * lobe_share;
-    if (ANY(MASK_OF(lobe_share > 0.0f)))
-        density += lobe_share * rough_direction_density(surface, hit->normal, hit->back, direction);
+    brdf_share = elsewhere_share + cone_share * brdf_share;
+    if (ANY(MASK_OF(brdf_share > 0.0f)))
+        density += brdf_share * rough_direction_density(surface, hit->normal, hit->back, direction);
     return step_in_direction(surface, hit, direction, density);
 }
 
@@ -111,7 +111,7 @@ FUNCTION struct chain_step step_to_targets(GLOBAL const struct chain_record *cha
                                            const struct target_choice *targets,
                                            GLOBAL const struct surface_record *surface,
                                            int leads_elsewhere, const struct chain_hit *hit,
-                                           real choice, real u, real v)
+                                           vfloat choice, vfloat u, vfloat v)
 {
     if (chains->groups > 0)
         return step_among_many(chains, spheres, targets, surface, leads_elsewhere, hit, choice, u,
@@ -119,14 +119,14 @@ FUNCTION struct chain_step step_to_targets(GLOBAL const struct chain_record *cha
     return step_among_few(chains, spheres, surface, leads_elsewhere, hit, choice, u, v);
 }
 
-/* The rough part of an object, by its own lobes. */
+/* The rough part of an object, by its own BRDF. */
 FUNCTION struct chain_step step_from_object(GLOBAL const struct surface_record *surface,
-                                            const struct chain_hit *hit, real choice, real u,
-                                            real v)
+                                            const struct chain_hit *hit, vfloat choice, vfloat u,
+                                            vfloat v)
 {
     const struct vector3 direction =
         sample_rough_direction(surface, hit->normal, hit->back, choice, u, v);
-    const real density = rough_direction_density(surface, hit->normal, hit->back, direction);
+    const vfloat density = rough_direction_density(surface, hit->normal, hit->back, direction);
     return step_in_direction(surface, hit, direction, density);
 }
 
@@ -138,31 +138,31 @@ FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *c
                                              const struct target_choice *targets,
                                              GLOBAL const struct surface_record *surface,
                                              int number, int order, const struct chain_hit *hit,
-                                             real choice, real u, real v)
+                                             vfloat choice, vfloat u, vfloat v)
 {
     struct chain_step step;
-    const int follows_cones =
+    const int samples_targets =
         number < 0 && chains->spheres > 0 && chains->estimator == CHAINS_CONNECT;
     const int leads_elsewhere = has_sea_surface(chains) && order > 1;
     if (!has_smooth_part(surface))
-        return follows_cones ? step_to_targets(chains, spheres, targets, surface, leads_elsewhere,
-                                               hit, choice, u, v)
-                             : step_from_object(surface, hit, choice, u, v);
-    const real cosine = dot3(hit->normal, hit->back);
-    const real energy = mirror_energy(surface, cosine);
-    real probability = SPLAT(1.0f);
+        return samples_targets ? step_to_targets(chains, spheres, targets, surface, leads_elsewhere,
+                                                 hit, choice, u, v)
+                               : step_from_object(surface, hit, choice, u, v);
+    const vfloat cosine = dot3(hit->normal, hit->back);
+    const vfloat energy = mirror_energy(surface, cosine);
+    vfloat probability = SPLAT(1.0f);
     if (has_rough_part(surface)) {
         const float rough = rough_albedo(surface);
         probability = smaller(larger(energy / (energy + rough), SPLAT(0.1f)), SPLAT(0.9f));
     }
     const mask is_mirror = MASK_OF(choice < probability);
-    const real left = larger(1.0f - probability, SPLAT(1.0e-6f));
-    const real rest = smaller((choice - probability) / left, SPLAT(0.9999999f));
+    const vfloat left = larger(1.0f - probability, SPLAT(1.0e-6f));
+    const vfloat rest = smaller((choice - probability) / left, SPLAT(0.9999999f));
     if (has_rough_part(surface)) {
-        const real rough_choice = larger(rest, SPLAT(0.0f));
-        step = follows_cones ? step_to_targets(chains, spheres, targets, surface, leads_elsewhere,
-                                               hit, rough_choice, u, v)
-                             : step_from_object(surface, hit, rough_choice, u, v);
+        const vfloat rough_choice = larger(rest, SPLAT(0.0f));
+        step = samples_targets ? step_to_targets(chains, spheres, targets, surface, leads_elsewhere,
+                                                 hit, rough_choice, u, v)
+                               : step_from_object(surface, hit, rough_choice, u, v);
     } else {
         step.direction = hit->back;
         step.weight = SPLAT(0.0f);
@@ -172,7 +172,7 @@ FUNCTION struct chain_step step_from_surface(GLOBAL const struct chain_record *c
     mirrored.y = 2.0f * cosine * hit->normal.y - hit->back.y;
     mirrored.z = 2.0f * cosine * hit->normal.z - hit->back.z;
     step.direction = choose3(is_mirror, mirrored, step.direction);
-    step.weight = CHOOSE(is_mirror, energy / probability, step.weight / left);
+    step.weight = SELECT(is_mirror, energy / probability, step.weight / left);
     step.is_mirror = is_mirror;
     return step;
 }
@@ -185,7 +185,7 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
                                      GLOBAL const float *map, int order, const struct chain *chain,
                                      RECORD_WORD draw)
 {
-    real u, v, choice;
+    vfloat u, v, choice;
     three_uniforms(chain->key, chain->number, draw, &u, &v, &choice);
     const struct chain_hit *hit = &chain->hit;
     struct chain_step step;
@@ -202,11 +202,11 @@ FUNCTION struct chain_step next_step(const struct fan_record *fan,
             step_from_surface(chains, spheres, chain->choice, surface_number(chains, objects, i), i,
                               order, hit, choice, u, v);
         step.direction = choose3(here, from.direction, step.direction);
-        step.weight = CHOOSE(here, from.weight, step.weight);
-        step.is_mirror = CHOOSE(here, from.is_mirror, step.is_mirror);
+        step.weight = SELECT(here, from.weight, step.weight);
+        step.is_mirror = SELECT(here, from.is_mirror, step.is_mirror);
     }
-    const real factor = map_factor(fan, pieces, chains, map, hit);
-    step.weight = CHOOSE(step.is_mirror, step.weight, step.weight * factor);
+    const vfloat factor = map_factor(fan, pieces, chains, map, hit);
+    step.weight = SELECT(step.is_mirror, step.weight, step.weight * factor);
     return step;
 }
 

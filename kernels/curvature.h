@@ -9,8 +9,8 @@
  * rounding (6e-8) does not. */
 #define CURVATURE_STEP 5.0e-4f
 
-APART struct vector3 own_normal(GLOBAL const struct object_record *object, struct vector3 point,
-                                struct vector3 direction)
+NOINLINE struct vector3 own_normal(GLOBAL const struct object_record *object, struct vector3 point,
+                                   struct vector3 direction)
 {
 #ifdef WITH_USER_SHAPES
     if (object->shape == SHAPE_USER)
@@ -26,24 +26,24 @@ FUNCTION struct vector3 own_normal_change(GLOBAL const struct object_record *obj
                                           struct vector3 point, struct vector3 normal,
                                           struct vector3 direction, struct vector3 shift)
 {
-    const real length = larger(SQUARE_ROOT(dot3(shift, shift)), SPLAT(1.0e-12f));
-    const real step = CURVATURE_STEP * object->bounding_radius / length;
+    const vfloat length = larger(SQUARE_ROOT(dot3(shift, shift)), SPLAT(1.0e-12f));
+    const vfloat step = CURVATURE_STEP * object->bounding_radius / length;
     const struct vector3 here = own_normal(object, point, direction);
     const struct vector3 ahead = own_normal(object, along3(point, shift, step), direction);
     const struct vector3 behind = own_normal(object, along3(point, shift, -step), direction);
     const struct vector3 forth = along3(ahead, here, -1.0f);
     const struct vector3 back = along3(here, behind, -1.0f);
-    const real square_forth = dot3(forth, forth);
-    const real square_back = dot3(back, back);
+    const vfloat square_forth = dot3(forth, forth);
+    const vfloat square_back = dot3(back, back);
     const struct vector3 unlike = along3(forth, back, -1.0f);
     const mask is_even = MASK_OF(dot3(unlike, unlike) <= 0.25f * (square_forth + square_back));
     struct vector3 change = choose3(MASK_OF(square_forth < square_back), forth, back);
     change = choose3(is_even, along3(back, unlike, 0.5f), change);
     /* the hit's normal is on the side that the ray is on, which may be the inner one */
-    const real side = CHOOSE(MASK_OF(dot3(here, normal) < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
+    const vfloat side = SELECT(MASK_OF(dot3(here, normal) < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
     const struct vector3 off = along3(normal, here, -side);
     const mask is_own = MASK_OF(dot3(off, off) < 1.0e-4f);
-    const real scale = CHOOSE(is_own, side / step, SPLAT(0.0f));
+    const vfloat scale = SELECT(is_own, side / step, SPLAT(0.0f));
     change.x = change.x * scale;
     change.y = change.y * scale;
     change.z = change.z * scale;

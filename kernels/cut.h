@@ -9,9 +9,9 @@
 FUNCTION struct interval interval_under_cut(GLOBAL const struct cut_record *cut,
                                             struct vector3 point, struct vector3 direction)
 {
-    const real depth =
+    const vfloat depth =
         cut->offset - (point.x * cut->normal_x + point.y * cut->normal_y + point.z * cut->normal_z);
-    const real loss =
+    const vfloat loss =
         direction.x * cut->normal_x + direction.y * cut->normal_y + direction.z * cut->normal_z;
     return interval_of_half_space(depth, loss);
 }
@@ -42,8 +42,8 @@ struct cut_face {
  * closest approach in the object's own frame, `approach` along the ray; distance counts from where
  * `approach` does. */
 FUNCTION struct cut_face cut_face_at(GLOBAL const struct object_record *object,
-                                     struct vector3 start, struct vector3 direction, real approach,
-                                     real distance)
+                                     struct vector3 start, struct vector3 direction,
+                                     vfloat approach, vfloat distance)
 {
     struct cut_face face;
     face.is_met = MASK_OF(SPLAT(1.0f) < 0.0f);

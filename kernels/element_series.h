@@ -10,24 +10,24 @@
 
 /* From an impulse to one element. */
 struct element_leg {
-    real range;  /* m */
-    real beyond; /* m: range less the apparent range */
-    real slope;  /* sine of the aspect */
+    vfloat range;  /* m */
+    vfloat beyond; /* m: range less the processor range */
+    vfloat slope;  /* sine of the aspect */
 };
 
-/* (range - apparent range) by the difference of squares: their difference would lose the digits
+/* (range - processor range) by the difference of squares: their difference would lose the digits
  * that the phase needs. */
-FUNCTION struct element_leg element_leg_of(float offset, real apparent_range)
+FUNCTION struct element_leg element_leg_of(float offset, vfloat processor_range)
 {
     struct element_leg leg;
-    leg.range = SQUARE_ROOT(apparent_range * apparent_range + offset * offset);
-    leg.beyond = offset * offset / (leg.range + apparent_range);
+    leg.range = SQUARE_ROOT(processor_range * processor_range + offset * offset);
+    leg.beyond = offset * offset / (leg.range + processor_range);
     leg.slope = offset / leg.range;
     return leg;
 }
 
 /* Amplitude pattern of a line of the length that `cycles` stands for. */
-FUNCTION real element_pattern(float cycles, real slope)
+FUNCTION vfloat element_pattern(float cycles, vfloat slope)
 {
     return sinc_of_cycles(magnitude(cycles * slope));
 }
@@ -51,38 +51,39 @@ struct element_offsets {
 };
 
 FUNCTION void hear_impulses(const struct impulse_grid_record *grid, struct element_offsets offsets,
-                            whole bins, real amplitude_real, real amplitude_imaginary,
+                            vint bins, vfloat amplitude_real, vfloat amplitude_imaginary,
                             mask is_impulse, struct element_echo *echo)
 {
-    const real bin_range = REAL_OF(bins) * grid->bin_width;
-    const real apparent = grid->reference_range + bin_range;
-    const real range = larger(apparent, SPLAT(1.0e-3f)); /* margins may reach behind the track */
+    const vfloat bin_range = VFLOAT_OF(bins) * grid->bin_width;
+    const vfloat processor_range = grid->reference_range + bin_range;
+    const vfloat range =
+        larger(processor_range, SPLAT(1.0e-3f)); /* margins may reach behind the track */
     const struct element_leg to = element_leg_of(offsets.transmitter, range);
     const struct element_leg back = element_leg_of(offsets.hydrophone, range);
-    const real beyond = to.beyond + back.beyond;
-    const real limit = grid->largest_slope_squared * range * range;
-    const real position =
+    const vfloat beyond = to.beyond + back.beyond;
+    const vfloat limit = grid->largest_slope_squared * range * range;
+    const vfloat position =
         (beyond + 2.0f * bin_range) * grid->samples_per_metre + grid->first_sample;
-    const mask is_heard = is_impulse & MASK_OF(apparent == range) & MASK_OF(position >= -1.0f) &
-                          MASK_OF(position < (float)grid->samples) &
+    const mask is_heard = is_impulse & MASK_OF(processor_range == range) &
+                          MASK_OF(position >= -1.0f) & MASK_OF(position < (float)grid->samples) &
                           MASK_OF(limit >= offsets.transmitter * offsets.transmitter) &
                           MASK_OF(limit >= offsets.hydrophone * offsets.hydrophone);
     /* one more, since truncation is floor on positive numbers only */
-    const real kept = CHOOSE(is_heard, position + 1.0f, SPLAT(0.0f));
-    const whole sample = WHOLE_OF(kept);
-    const real gain = element_pattern(grid->transmitter_cycles, to.slope) *
-                      element_pattern(grid->hydrophone_cycles, back.slope) /
-                      (to.range * back.range);
-    real sine, cosine;
+    const vfloat kept = SELECT(is_heard, position + 1.0f, SPLAT(0.0f));
+    const vint sample = VINT_OF(kept);
+    const vfloat gain = element_pattern(grid->transmitter_cycles, to.slope) *
+                        element_pattern(grid->hydrophone_cycles, back.slope) /
+                        (to.range * back.range);
+    vfloat sine, cosine;
     sine_cosine_of_cycles(smaller(beyond * grid->cycles_per_metre, SPLAT(4.0e6f)), &sine, &cosine);
-    const real real_part = gain * (amplitude_real * cosine - amplitude_imaginary * sine);
-    const real imaginary_part = gain * (amplitude_real * sine + amplitude_imaginary * cosine);
-    const real fraction = kept - REAL_OF(sample);
-    const whole sample_or_none = CHOOSE(is_heard, sample - 1, SPLAT_WHOLE(-2));
-    STORE_REAL(real_part, echo->real_part);
-    STORE_REAL(imaginary_part, echo->imaginary_part);
-    STORE_REAL(fraction, echo->fraction);
-    STORE_WHOLE(sample_or_none, echo->sample);
+    const vfloat real_part = gain * (amplitude_real * cosine - amplitude_imaginary * sine);
+    const vfloat imaginary_part = gain * (amplitude_real * sine + amplitude_imaginary * cosine);
+    const vfloat fraction = kept - VFLOAT_OF(sample);
+    const vint sample_or_none = SELECT(is_heard, sample - 1, SPLAT_VINT(-2));
+    STORE_VFLOAT(real_part, echo->real_part);
+    STORE_VFLOAT(imaginary_part, echo->imaginary_part);
+    STORE_VFLOAT(fraction, echo->fraction);
+    STORE_VINT(sample_or_none, echo->sample);
 }
 
 /* Shares an echo between the two fine samples about it, of those from first to end - 1. */
@@ -147,9 +148,10 @@ FUNCTION void hear_strip(const struct impulse_grid_record *grid, struct element_
     high = first_impulse_from(bins, low, high, bin_of_sample(grid, offsets, (float)end) + margin);
     for (int impulse = low; impulse < high; impulse += WIDTH) {
         struct element_echo echo;
-        const mask is_impulse = MASK_OF(AS_WHOLE(LANE_NUMBERS) < high - impulse);
-        hear_impulses(grid, offsets, LOAD_WHOLE(bins + impulse), LOAD_REAL(impulses_real + impulse),
-                      LOAD_REAL(impulses_imaginary + impulse), is_impulse, &echo);
+        const mask is_impulse = MASK_OF(AS_VINT(LANE_NUMBERS) < high - impulse);
+        hear_impulses(grid, offsets, LOAD_VINT(bins + impulse),
+                      LOAD_VFLOAT(impulses_real + impulse),
+                      LOAD_VFLOAT(impulses_imaginary + impulse), is_impulse, &echo);
         for (int lane = 0; lane < WIDTH; lane++)
             add_element_echo(line_real, line_imaginary, &echo, lane, first, end);
     }
@@ -190,21 +192,21 @@ FUNCTION void pulse_series(GLOBAL const float *line_real, GLOBAL const float *li
                            GLOBAL const float *pulse_imaginary, int taps, int sample,
                            GLOBAL float *out_real, GLOBAL float *out_imaginary)
 {
-    real sum_real = SPLAT(0.0f);
-    real sum_imaginary = SPLAT(0.0f);
+    vfloat sum_real = SPLAT(0.0f);
+    vfloat sum_imaginary = SPLAT(0.0f);
     for (int tap = 0; tap < taps; tap++) {
         float lanes_real[WIDTH], lanes_imaginary[WIDTH];
         for (int lane = 0; lane < WIDTH; lane++) {
             lanes_real[lane] = line_real[(sample + lane) * fine + tap];
             lanes_imaginary[lane] = line_imaginary[(sample + lane) * fine + tap];
         }
-        const real a = LOAD_REAL(lanes_real);
-        const real b = LOAD_REAL(lanes_imaginary);
+        const vfloat a = LOAD_VFLOAT(lanes_real);
+        const vfloat b = LOAD_VFLOAT(lanes_imaginary);
         sum_real += a * pulse_real[tap] - b * pulse_imaginary[tap];
         sum_imaginary += a * pulse_imaginary[tap] + b * pulse_real[tap];
     }
-    STORE_REAL(sum_real, out_real + sample);
-    STORE_REAL(sum_imaginary, out_imaginary + sample);
+    STORE_VFLOAT(sum_real, out_real + sample);
+    STORE_VFLOAT(sum_imaginary, out_imaginary + sample);
 }
 
 #endif

@@ -8,7 +8,7 @@
  * Positions on the track count strips, ranges bins from the reference range on. */
 struct impulse_grid_record {
     float strip_width, bin_width; /* m */
-    float reference_range;        /* m, apparent, of bin 0 */
+    float reference_range;        /* m, the processor's, of bin 0 */
     RECORD_INT first_strip;       /* of the impulses */
     RECORD_INT strips;
     float largest_range;      /* m, of any impulse */

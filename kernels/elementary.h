@@ -7,91 +7,91 @@
 #include "width.h"
 
 /* The integer nearest to value, |value| < 2^22. */
-FUNCTION real nearest_integer(real value)
+FUNCTION vfloat nearest_integer(vfloat value)
 {
-    const real magic = SPLAT(12582912.0f); /* 1.5 * 2^23: adding it leaves no fraction bits */
+    const vfloat magic = SPLAT(12582912.0f); /* 1.5 * 2^23: adding it leaves no fraction bits */
     return (value + magic) - magic;
 }
 
 /* Sine and cosine of an angle in cycles, |cycles| < 2^22; error below 1e-7, and the sine's is
  * relative (1.3e-7) near 0. Phase in cycles reduces exactly, where phase in radians would lose
  * digits. */
-FUNCTION void sine_cosine_of_cycles(real cycles, real *sine, real *cosine)
+FUNCTION void sine_cosine_of_cycles(vfloat cycles, vfloat *sine, vfloat *cosine)
 {
-    const real turns = cycles - nearest_integer(cycles); /* -1/2...1/2, exact */
-    const real quarter = nearest_integer(turns * 4.0f);
-    const real rest = turns - quarter * 0.25f; /* -1/8...1/8, exact */
-    const real square = rest * rest;
-    const real s =
+    const vfloat turns = cycles - nearest_integer(cycles); /* -1/2...1/2, exact */
+    const vfloat quarter = nearest_integer(turns * 4.0f);
+    const vfloat rest = turns - quarter * 0.25f; /* -1/8...1/8, exact */
+    const vfloat square = rest * rest;
+    const vfloat s =
         rest *
         (6.283185307f +
          square * (-41.34170215f +
                    square * (81.60520475f + square * (-76.69786989f + square * 41.47294645f))));
-    const real c =
+    const vfloat c =
         1.0f + square * (-19.7392088f +
                          square * (64.93939383f +
                                    square * (-85.45676503f +
                                              square * (60.23819113f + square * -26.05833571f))));
-    const whole quadrant = WHOLE_OF(quarter) & 3;
+    const vint quadrant = VINT_OF(quarter) & 3;
     const mask swapped = MASK_OF((quadrant & 1) != 0);
-    const real plain_sine = CHOOSE(swapped, c, s);
-    const real plain_cosine = CHOOSE(swapped, s, c);
-    *sine = CHOOSE(MASK_OF((quadrant & 2) != 0), -plain_sine, plain_sine);
-    *cosine = CHOOSE(MASK_OF(((quadrant + 1) & 2) != 0), -plain_cosine, plain_cosine);
+    const vfloat plain_sine = SELECT(swapped, c, s);
+    const vfloat plain_cosine = SELECT(swapped, s, c);
+    *sine = SELECT(MASK_OF((quadrant & 2) != 0), -plain_sine, plain_sine);
+    *cosine = SELECT(MASK_OF(((quadrant + 1) & 2) != 0), -plain_cosine, plain_cosine);
 }
 
 /* sin(2 pi u) / (2 pi u), 1 at 0; |cycles| < 2^22; error below 2e-7. */
-FUNCTION real sinc_of_cycles(real cycles)
+FUNCTION vfloat sinc_of_cycles(vfloat cycles)
 {
-    real sine, cosine;
+    vfloat sine, cosine;
     sine_cosine_of_cycles(cycles, &sine, &cosine);
     const mask is_zero = MASK_OF(cycles == 0.0f);
-    return CHOOSE(is_zero, SPLAT(1.0f),
-                  sine / (CHOOSE(is_zero, SPLAT(1.0f), cycles) * 6.2831853072f));
+    return SELECT(is_zero, SPLAT(1.0f),
+                  sine / (SELECT(is_zero, SPLAT(1.0f), cycles) * 6.2831853072f));
 }
 
 /* exp(value) for value <= 0; relative error below 1.3e-7; 0 below -80. */
-FUNCTION real exponential_of_negative(real value)
+FUNCTION vfloat exponential_of_negative(vfloat value)
 {
-    const real limited = larger(value, SPLAT(-80.0f));
-    const real power = nearest_integer(limited * 1.44269504089f);
+    const vfloat limited = larger(value, SPLAT(-80.0f));
+    const vfloat power = nearest_integer(limited * 1.44269504089f);
     /* ln 2 in two parts, so that the remainder keeps its digits */
-    const real rest = (limited - power * 0.693359375f) - power * -2.12194440e-4f;
-    const real fraction =
+    const vfloat rest = (limited - power * 0.693359375f) - power * -2.12194440e-4f;
+    const vfloat fraction =
         1.0f +
         rest * (1.0f +
                 rest * (0.49999992f +
                         rest * (0.1666642f +
                                 rest * (0.04166823f + rest * (0.00837482f + rest * 0.00138368f)))));
-    const real scale = AS_REAL((WHOLE_OF(power) + 127) << 23);
-    return CHOOSE(MASK_OF(value < -80.0f), SPLAT(0.0f), fraction * scale);
+    const vfloat scale = AS_VFLOAT((VINT_OF(power) + 127) << 23);
+    return SELECT(MASK_OF(value < -80.0f), SPLAT(0.0f), fraction * scale);
 }
 
 /* Natural logarithm of a normal value > 0; absolute error below 1e-7 + 1.25e-7 |result|. */
-FUNCTION real natural_logarithm(real value)
+FUNCTION vfloat natural_logarithm(vfloat value)
 {
-    const whole bits = AS_WHOLE(value);
-    whole exponent = ((bits >> 23) & 255) - 127;
-    real fraction = AS_REAL((bits & 0x007fffff) | 0x3f800000); /* 1...2 */
+    const vint bits = AS_VINT(value);
+    vint exponent = ((bits >> 23) & 255) - 127;
+    vfloat fraction = AS_VFLOAT((bits & 0x007fffff) | 0x3f800000); /* 1...2 */
     const mask upper = MASK_OF(fraction > 1.41421356f);
-    fraction = CHOOSE(upper, fraction * 0.5f, fraction);
-    exponent = CHOOSE(upper, exponent + 1, exponent);
-    const real ratio = (fraction - 1.0f) / (fraction + 1.0f); /* ln f = 2 artanh(ratio) */
-    const real square = ratio * ratio;
-    const real series =
+    fraction = SELECT(upper, fraction * 0.5f, fraction);
+    exponent = SELECT(upper, exponent + 1, exponent);
+    const vfloat ratio = (fraction - 1.0f) / (fraction + 1.0f); /* ln f = 2 artanh(ratio) */
+    const vfloat square = ratio * ratio;
+    const vfloat series =
         2.0f * ratio *
         (1.0f + square * (0.33333333f +
                           square * (0.20000193f + square * (0.14267472f + square * 0.11809092f))));
-    return REAL_OF(exponent) * 0.69314718056f + series;
+    return VFLOAT_OF(exponent) * 0.69314718056f + series;
 }
 
 /* Cube root of a normal value > 0, below 1e30; relative error below 3e-7. A third of the exponent,
  * then two steps of Halley's. */
-FUNCTION real cube_root(real value)
+FUNCTION vfloat cube_root(vfloat value)
 {
-    real root = AS_REAL(WHOLE_OF(REAL_OF(AS_WHOLE(value)) * 0.333333333f) + 709921077);
+    vfloat root = AS_VFLOAT(VINT_OF(VFLOAT_OF(AS_VINT(value)) * 0.333333333f) + 709921077);
     for (int step = 0; step < 2; step++) {
-        const real cube = root * root * root;
+        const vfloat cube = root * root * root;
         root = root * ((cube + 2.0f * value) / (2.0f * cube + value));
     }
     return root;

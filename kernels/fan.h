@@ -13,20 +13,20 @@ struct fan_ray {
     struct vector3 closest;   /* point closest to the frame's origin (in the plane of the strip) */
     struct vector3 direction; /* unit, away from the sonar */
     struct vector3 upward;    /* unit, across the ray, towards larger elevation */
-    real range_at_closest;    /* range there less the reference range */
-    real wavefront;           /* m; the wavefront's width per rad of elevation there; it grows by
-                                 1 m per m, and without layers it is the range */
-    real spreading;           /* of layers: struct water_ray; else of no meaning */
+    vfloat range_at_closest;  /* range there less the reference range */
+    vfloat wavefront;         /* m; the wavefront's width per rad of elevation there; it grows by
+                               1 m per m, and without layers it is the range */
+    vfloat spreading;         /* of layers: struct water_ray; else of no meaning */
 };
 
 /* x: track position; elevation: rad over the direction from the track to the origin.
  * With d the central direction and u upward of it, the ray's direction is d cos e + u sin e, and it
  * passes the origin at R sin e (u cos e - d sin e), at range R cos e. */
 FUNCTION struct fan_ray fan_ray_at(const struct fan_record *fan,
-                                   GLOBAL const struct ray_piece_record *pieces, real x,
-                                   real elevation)
+                                   GLOBAL const struct ray_piece_record *pieces, vfloat x,
+                                   vfloat elevation)
 {
-    real sine, cosine;
+    vfloat sine, cosine;
     sine_cosine_of_cycles(elevation * 0.15915494309f, &sine, &cosine);
     cosine = SQUARE_ROOT(1.0f - sine * sine);
     struct fan_ray ray;
@@ -36,7 +36,7 @@ FUNCTION struct fan_ray fan_ray_at(const struct fan_record *fan,
     ray.upward.x = SPLAT(0.0f);
     ray.upward.y = -ray.direction.z;
     ray.upward.z = ray.direction.y;
-    real offset = fan->reference_range * sine;
+    vfloat offset = fan->reference_range * sine;
     ray.range_at_closest = -offset * sine / (1.0f + cosine);
     ray.wavefront = fan->reference_range + ray.range_at_closest;
     ray.spreading = SPLAT(1.0f);
@@ -55,13 +55,13 @@ FUNCTION struct fan_ray fan_ray_at(const struct fan_record *fan,
 
 /* What layers do to the amplitude of an echo from a point of the ray, over that in isovelocity
  * water: there and back, normalised by the square of the range. */
-FUNCTION real refraction_gain(const struct fan_record *fan, const struct fan_ray *ray,
-                              real distance)
+FUNCTION vfloat refraction_gain(const struct fan_record *fan, const struct fan_ray *ray,
+                                vfloat distance)
 {
     if (fan->table.pieces == 0)
         return SPLAT(1.0f);
-    const real range = fan->reference_range + (ray->range_at_closest + distance);
-    const real ground = fan->table.ground_range + (ray->closest.y + distance * ray->direction.y);
+    const vfloat range = fan->reference_range + (ray->range_at_closest + distance);
+    const vfloat ground = fan->table.ground_range + (ray->closest.y + distance * ray->direction.y);
     return ray->spreading * range * range / (ground * (ray->wavefront + distance));
 }
 
@@ -83,26 +83,26 @@ FUNCTION float strip_position(const struct fan_record *fan, int strip)
 
 /* The bins between whose middles a bin coordinate lies; far outside -> bins that do not exist. */
 struct bin_pair {
-    whole bin;  /* the first */
-    real later; /* 0...1: the share of the second */
+    vint bin;     /* the first */
+    vfloat later; /* 0...1: the share of the second */
 };
 
-FUNCTION struct bin_pair bins_about(real coordinate)
+FUNCTION struct bin_pair bins_about(vfloat coordinate)
 {
-    const real limited = smaller(larger(coordinate, SPLAT(-2.0f)), SPLAT(8.0e6f));
+    const vfloat limited = smaller(larger(coordinate, SPLAT(-2.0f)), SPLAT(8.0e6f));
     struct bin_pair pair;
-    pair.bin = WHOLE_OF(limited + 4.0f) - 4; /* truncation is floor on positive numbers */
-    pair.later = larger(limited - REAL_OF(pair.bin), SPLAT(0.0f));
+    pair.bin = VINT_OF(limited + 4.0f) - 4; /* truncation is floor on positive numbers */
+    pair.later = larger(limited - VFLOAT_OF(pair.bin), SPLAT(0.0f));
     return pair;
 }
 
 /* Distance from a point to the mean seabed; FAR_AWAY for rays that do not go down. */
-FUNCTION real plane_distance(const struct fan_record *fan, struct vector3 point,
-                             struct vector3 direction)
+FUNCTION vfloat plane_distance(const struct fan_record *fan, struct vector3 point,
+                               struct vector3 direction)
 {
     const mask is_downward = MASK_OF(direction.z < -1.0e-6f);
-    return CHOOSE(is_downward,
-                  (fan->seabed_height - point.z) / CHOOSE(is_downward, direction.z, SPLAT(-1.0f)),
+    return SELECT(is_downward,
+                  (fan->seabed_height - point.z) / SELECT(is_downward, direction.z, SPLAT(-1.0f)),
                   SPLAT(FAR_AWAY));
 }
 

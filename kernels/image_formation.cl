@@ -10,11 +10,11 @@ __kernel void draw_speckle(__global const float *energy, int bins, int first_bin
     const struct random_key key =
         random_key_of(seed_low, seed_high, stream, (uint)(first_strip + strip));
     const int first = (int)get_global_id(0) * WIDTH;
-    real a, b;
+    vfloat a, b;
     complex_normal(key, SPLAT_WORD((uint)(first_bin + first)) + LANE_NUMBERS, &a, &b);
     float lanes_a[WIDTH], lanes_b[WIDTH];
-    STORE_REAL(a, lanes_a);
-    STORE_REAL(b, lanes_b);
+    STORE_VFLOAT(a, lanes_a);
+    STORE_VFLOAT(b, lanes_b);
     for (int lane = 0; lane < WIDTH && first + lane < bins; lane++) {
         const long at = (long)strip * bins + first + lane;
         const float amplitude = sqrt(energy[at]);

@@ -10,32 +10,32 @@
 
 /* Complex normal deviates of unit mean square (Box and Muller: -ln u is the exponential intensity,
  * v the phase in cycles). */
-FUNCTION void complex_normal(struct random_key key, word number, real *real_part,
-                             real *imaginary_part)
+FUNCTION void complex_normal(struct random_key key, word number, vfloat *real_part,
+                             vfloat *imaginary_part)
 {
-    real u, v;
+    vfloat u, v;
     two_uniforms(key, number, 0, &u, &v);
-    const real amplitude = SQUARE_ROOT(-natural_logarithm(u));
-    real sine, cosine;
+    const vfloat amplitude = SQUARE_ROOT(-natural_logarithm(u));
+    vfloat sine, cosine;
     sine_cosine_of_cycles(v, &sine, &cosine);
     *real_part = amplitude * cosine;
     *imaginary_part = amplitude * sine;
 }
 
 /* The bins that WIDTH neighbouring pixels take one tap from; bins outside the line are empty. */
-FUNCTION real load_tap(GLOBAL const float *line, int bins, int start, int bins_per_pixel)
+FUNCTION vfloat load_tap(GLOBAL const float *line, int bins, int start, int bins_per_pixel)
 {
     float lanes[WIDTH];
     if (start >= 0 && start + (WIDTH - 1) * bins_per_pixel < bins) {
         for (int lane = 0; lane < WIDTH; lane++)
             lanes[lane] = line[start + lane * bins_per_pixel];
-        return LOAD_REAL(lanes);
+        return LOAD_VFLOAT(lanes);
     }
     for (int lane = 0; lane < WIDTH; lane++) {
         const int bin = start + lane * bins_per_pixel;
         lanes[lane] = bin >= 0 && bin < bins ? line[bin] : 0.0f;
     }
-    return LOAD_REAL(lanes);
+    return LOAD_VFLOAT(lanes);
 }
 
 /* The taps that meet these, for WIDTH pixels of which the first begins at `start`: the others would
@@ -59,11 +59,11 @@ FUNCTION void compress_range_of(GLOBAL const float *line, int bins, struct fille
                                 int column, GLOBAL float *out)
 {
     const int start = column * bins_per_pixel + first;
-    real sum = SPLAT(0.0f);
+    vfloat sum = SPLAT(0.0f);
     const int end = end_of_taps(start, filled, taps);
     for (int tap = first_tap_of(start, filled, bins_per_pixel); tap < end; tap++)
         sum += load_tap(line, bins, start + tap, bins_per_pixel) * pulse[tap];
-    STORE_REAL(sum, out + column);
+    STORE_VFLOAT(sum, out + column);
 }
 
 /* The same with a complex pulse, both parts of the line at once. */
@@ -74,17 +74,17 @@ FUNCTION void compress_complex_of(GLOBAL const float *line_real, GLOBAL const fl
                                   GLOBAL float *out_real, GLOBAL float *out_imaginary)
 {
     const int start = column * bins_per_pixel + first;
-    real sum_real = SPLAT(0.0f);
-    real sum_imaginary = SPLAT(0.0f);
+    vfloat sum_real = SPLAT(0.0f);
+    vfloat sum_imaginary = SPLAT(0.0f);
     const int end = end_of_taps(start, filled, taps);
     for (int tap = first_tap_of(start, filled, bins_per_pixel); tap < end; tap++) {
-        const real a = load_tap(line_real, bins, start + tap, bins_per_pixel);
-        const real b = load_tap(line_imaginary, bins, start + tap, bins_per_pixel);
+        const vfloat a = load_tap(line_real, bins, start + tap, bins_per_pixel);
+        const vfloat b = load_tap(line_imaginary, bins, start + tap, bins_per_pixel);
         sum_real += a * pulse_real[tap] - b * pulse_imaginary[tap];
         sum_imaginary += a * pulse_imaginary[tap] + b * pulse_real[tap];
     }
-    STORE_REAL(sum_real, out_real + column);
-    STORE_REAL(sum_imaginary, out_imaginary + column);
+    STORE_VFLOAT(sum_real, out_real + column);
+    STORE_VFLOAT(sum_imaginary, out_imaginary + column);
 }
 
 /* Where a row takes its aspects from. */
@@ -111,7 +111,7 @@ FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lin
                                  GLOBAL const float *response, int first_row, int rows, int column,
                                  GLOBAL float *out)
 {
-    real sum[FORM_ROWS];
+    vfloat sum[FORM_ROWS];
     for (int r = 0; r < FORM_ROWS; r++)
         sum[r] = SPLAT(0.0f);
     int low = first_row * aspects.strips_per_row - aspects.reach;
@@ -121,7 +121,7 @@ FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lin
     for (int strip = low; strip < high; strip++) {
         if (!is_filled_at(filled[strip - aspects.first_strip], column))
             continue;
-        const real a = LOAD_REAL(lines + (long)(strip - aspects.first_strip) * stride + column);
+        const vfloat a = LOAD_VFLOAT(lines + (long)(strip - aspects.first_strip) * stride + column);
         GLOBAL const float *tap =
             response + (first_row + FORM_ROWS - 1) * aspects.strips_per_row - strip + aspects.reach;
         UNROLLED
@@ -129,7 +129,7 @@ FUNCTION void combine_aspects_of(struct aspects aspects, GLOBAL const float *lin
             sum[r] += a * tap[r * aspects.strips_per_row];
     }
     for (int r = 0; r < FORM_ROWS && first_row + r < rows; r++)
-        STORE_REAL(sum[r], out + (long)(first_row + r) * stride + column);
+        STORE_VFLOAT(sum[r], out + (long)(first_row + r) * stride + column);
 }
 
 /* Responses of a set of rows and blocks of columns, each with the taps of struct aspects. */
@@ -158,22 +158,22 @@ FUNCTION void combine_varied_of(struct aspects aspects, struct response_set set,
         int high = last + 1;
         low = low < aspects.first_strip ? aspects.first_strip : low;
         high = high > aspects.end_strip ? aspects.end_strip : high;
-        real sum_real = SPLAT(0.0f);
-        real sum_imaginary = SPLAT(0.0f);
+        vfloat sum_real = SPLAT(0.0f);
+        vfloat sum_imaginary = SPLAT(0.0f);
         for (int strip = low; strip < high; strip++) {
             if (!is_filled_at(filled[strip - aspects.first_strip], column))
                 continue;
             const long at = (long)(strip - aspects.first_strip) * stride + column;
-            const real a = LOAD_REAL(lines_real + at);
-            const real b = LOAD_REAL(lines_imaginary + at);
+            const vfloat a = LOAD_VFLOAT(lines_real + at);
+            const vfloat b = LOAD_VFLOAT(lines_imaginary + at);
             const float w = response_real[first_tap + last - strip];
             const float v = response_imaginary[first_tap + last - strip];
             sum_real += a * w - b * v;
             sum_imaginary += a * v + b * w;
         }
         const long at = (long)row * stride + column;
-        STORE_REAL(sum_real, out_real + at);
-        STORE_REAL(sum_imaginary, out_imaginary + at);
+        STORE_VFLOAT(sum_real, out_real + at);
+        STORE_VFLOAT(sum_imaginary, out_imaginary + at);
     }
 }
 

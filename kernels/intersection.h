@@ -152,7 +152,7 @@ FUNCTION struct vector3 plain_normal(GLOBAL const struct object_record *object,
 FUNCTION struct vector3 shape_normal(GLOBAL const struct object_record *object,
                                      struct vector3 point, struct vector3 direction)
 {
-    real highest;
+    vfloat highest;
     switch (object->shape) {
     case SHAPE_DISC:
         return plane_normal(direction);
@@ -180,8 +180,8 @@ FUNCTION struct vector3 shape_normal(GLOBAL const struct object_record *object,
 }
 
 /* What the cuts leave of the shape. */
-APART struct spans object_spans(GLOBAL const struct object_record *object, struct vector3 point,
-                                struct vector3 direction)
+NOINLINE struct spans object_spans(GLOBAL const struct object_record *object, struct vector3 point,
+                                   struct vector3 direction)
 {
     struct spans spans = shape_spans(object, point, direction);
     for (int i = 0; i < object->cuts; i++) {
@@ -193,23 +193,23 @@ APART struct spans object_spans(GLOBAL const struct object_record *object, struc
 }
 
 /* The first end of an interval beyond `minimum`; both counted from `start`. */
-FUNCTION real first_end_beyond(struct interval inside, real start, real minimum)
+FUNCTION vfloat first_end_beyond(struct interval inside, vfloat start, vfloat minimum)
 {
-    const real entry = start + inside.entry;
-    const real exit = start + inside.exit;
-    const real first = CHOOSE(MASK_OF(entry > minimum), entry,
-                              CHOOSE(MASK_OF(exit > minimum), exit, SPLAT(FAR_AWAY)));
-    return CHOOSE(MASK_OF(inside.entry <= inside.exit), first, SPLAT(FAR_AWAY));
+    const vfloat entry = start + inside.entry;
+    const vfloat exit = start + inside.exit;
+    const vfloat first = SELECT(MASK_OF(entry > minimum), entry,
+                                SELECT(MASK_OF(exit > minimum), exit, SPLAT(FAR_AWAY)));
+    return SELECT(MASK_OF(inside.entry <= inside.exit), first, SPLAT(FAR_AWAY));
 }
 
 /* Distance along the ray to the first surface beyond `minimum`, FAR_AWAY if there is none. The ray
  * is first moved to its closest approach to the object, so that single precision holds the shape
  * and not the range (physics.md section 9 at 500 m). */
-FUNCTION real object_distance(GLOBAL const struct object_record *object, struct vector3 point,
-                              struct vector3 direction, real minimum)
+FUNCTION vfloat object_distance(GLOBAL const struct object_record *object, struct vector3 point,
+                                struct vector3 direction, vfloat minimum)
 {
     const struct vector3 relative = from_centre(object, point);
-    const real approach = -dot3(relative, direction);
+    const vfloat approach = -dot3(relative, direction);
     const struct vector3 closest = along3(relative, direction, approach);
     const mask is_near =
         MASK_OF(dot3(closest, closest) <= object->bounding_radius * object->bounding_radius);
@@ -223,8 +223,8 @@ FUNCTION real object_distance(GLOBAL const struct object_record *object, struct 
     if (object->shape == SHAPE_MESH && object->cuts > 0)
         return approach + cut_mesh_distance(object, start, step, minimum - approach, is_near);
     if (object->shape == SHAPE_MESH) {
-        const real beyond = minimum - approach;
-        const real farthest = CHOOSE(is_near, SPLAT(FAR_AWAY), beyond - 1.0f);
+        const vfloat beyond = minimum - approach;
+        const vfloat farthest = SELECT(is_near, SPLAT(FAR_AWAY), beyond - 1.0f);
         return approach + mesh_object_distance(object, start, step, beyond, farthest);
     }
 #endif
@@ -240,8 +240,9 @@ FUNCTION real object_distance(GLOBAL const struct object_record *object, struct 
 }
 
 /* The face of a cut takes the place of the shape's normal where the ray meets it. */
-APART struct vector3 normal_with_cuts(GLOBAL const struct object_record *object,
-                                      struct vector3 point, struct vector3 direction, real distance)
+NOINLINE struct vector3 normal_with_cuts(GLOBAL const struct object_record *object,
+                                         struct vector3 point, struct vector3 direction,
+                                         vfloat distance)
 {
     const struct vector3 relative = from_centre(object, point);
     const struct vector3 step = into_object(object, direction);
@@ -250,7 +251,7 @@ APART struct vector3 normal_with_cuts(GLOBAL const struct object_record *object,
     const struct vector3 normal = shape_normal(object, hit, step);
     if (object->cuts == 0 || !is_solid(object))
         return normal;
-    const real approach = -dot3(relative, direction);
+    const vfloat approach = -dot3(relative, direction);
     const struct vector3 start = into_object(object, along3(relative, direction, approach));
     const struct cut_face face = cut_face_at(object, start, step, approach, distance);
     return choose3(face.is_met, face.normal, normal);
@@ -260,10 +261,10 @@ APART struct vector3 normal_with_cuts(GLOBAL const struct object_record *object,
 /* In the object's own frame. */
 FUNCTION struct mesh_surface surface_of_mesh(GLOBAL const struct object_record *object,
                                              struct vector3 point, struct vector3 direction,
-                                             real distance)
+                                             vfloat distance)
 {
     const struct vector3 relative = from_centre(object, point);
-    const real approach = -dot3(relative, direction);
+    const vfloat approach = -dot3(relative, direction);
     const struct vector3 start = into_object(object, along3(relative, direction, approach));
     const struct vector3 step = into_object(object, direction);
     return object->cuts == 0 ? mesh_object_surface(object, start, step, distance - approach)
@@ -275,10 +276,10 @@ FUNCTION struct mesh_surface surface_of_mesh(GLOBAL const struct object_record *
 /* In the object's own frame. */
 FUNCTION struct vector3 normal_of_user_shape(GLOBAL const struct object_record *object,
                                              struct vector3 point, struct vector3 direction,
-                                             real distance)
+                                             vfloat distance)
 {
     const struct vector3 relative = from_centre(object, point);
-    const real approach = -dot3(relative, direction);
+    const vfloat approach = -dot3(relative, direction);
     const struct vector3 start = into_object(object, along3(relative, direction, approach));
     const struct vector3 step = into_object(object, direction);
     const struct vector3 normal =
@@ -293,7 +294,8 @@ FUNCTION struct vector3 normal_of_user_shape(GLOBAL const struct object_record *
 /* Outward unit normal where the ray meets the object at that distance, which object_distance gave
  * for the same ray. Of a mesh that of the facet: what physical optics integrates over. */
 FUNCTION struct vector3 object_normal(GLOBAL const struct object_record *object,
-                                      struct vector3 point, struct vector3 direction, real distance)
+                                      struct vector3 point, struct vector3 direction,
+                                      vfloat distance)
 {
 #if HAS_MESHES
     if (object->shape == SHAPE_MESH)
@@ -327,7 +329,7 @@ struct surface_face {
 
 FUNCTION struct surface_face object_face(GLOBAL const struct object_record *object,
                                          enum wanted_face wanted, struct vector3 point,
-                                         struct vector3 direction, real distance)
+                                         struct vector3 direction, vfloat distance)
 {
     struct surface_face face;
 #if HAS_MESHES
@@ -367,8 +369,8 @@ FUNCTION struct surface_face choose_face(mask condition, struct surface_face yes
 }
 
 struct nearest_hit {
-    real distance; /* FAR_AWAY: none */
-    whole object;  /* number, -1: none */
+    vfloat distance; /* FAR_AWAY: none */
+    vint object;     /* number, -1: none */
 };
 
 #include "object_tree.h"
@@ -379,26 +381,26 @@ FUNCTION struct nearest_hit find_nearest_hit(GLOBAL const struct object_record *
 {
     struct nearest_hit nearest;
     if (has_object_tree(objects, count)) {
-        const struct object_search search = {SPLAT(FAR_AWAY), 0, SPLAT_WHOLE(-1), SPLAT_WHOLE(-1)};
+        const struct object_search search = {SPLAT(FAR_AWAY), 0, SPLAT_VINT(-1), SPLAT_VINT(-1)};
         return walk_objects(objects, count, point, direction, minimum, &search);
     }
     nearest.distance = SPLAT(FAR_AWAY);
-    nearest.object = WHOLE_OF(SPLAT(-1.0f));
+    nearest.object = VINT_OF(SPLAT(-1.0f));
     for (int i = 0; i < count; i++) {
-        const real distance = object_distance(&objects[i], point, direction, SPLAT(minimum));
+        const vfloat distance = object_distance(&objects[i], point, direction, SPLAT(minimum));
         const mask is_nearer = MASK_OF(distance < nearest.distance);
-        nearest.distance = CHOOSE(is_nearer, distance, nearest.distance);
-        nearest.object = CHOOSE(is_nearer, WHOLE_OF(SPLAT((float)i)), nearest.object);
+        nearest.distance = SELECT(is_nearer, distance, nearest.distance);
+        nearest.object = SELECT(is_nearer, VINT_OF(SPLAT((float)i)), nearest.object);
     }
     return nearest;
 }
 
 /* A distance beyond `path` where nothing is in the way up to there, else one that is not. */
-FUNCTION real find_obstacle(GLOBAL const struct object_record *objects, int count,
-                            struct vector3 point, struct vector3 direction, real path)
+FUNCTION vfloat find_obstacle(GLOBAL const struct object_record *objects, int count,
+                              struct vector3 point, struct vector3 direction, vfloat path)
 {
     if (has_object_tree(objects, count)) {
-        const struct object_search search = {path, 1, SPLAT_WHOLE(-1), SPLAT_WHOLE(-1)};
+        const struct object_search search = {path, 1, SPLAT_VINT(-1), SPLAT_VINT(-1)};
         return walk_objects(objects, count, point, direction, 0.0f, &search).distance;
     }
     return find_nearest_hit(objects, count, point, direction, 0.0f).distance;

@@ -8,21 +8,21 @@
 
 /* Distances along the ray; empty if entry > exit. */
 struct interval {
-    real entry, exit;
+    vfloat entry, exit;
 };
 
-FUNCTION struct interval interval_where(mask m, real entry, real exit)
+FUNCTION struct interval interval_where(mask m, vfloat entry, vfloat exit)
 {
     struct interval inside;
-    inside.entry = CHOOSE(m, entry, SPLAT(FAR_AWAY));
-    inside.exit = CHOOSE(m, exit, SPLAT(-FAR_AWAY));
+    inside.entry = SELECT(m, entry, SPLAT(FAR_AWAY));
+    inside.exit = SELECT(m, exit, SPLAT(-FAR_AWAY));
     return inside;
 }
 
 FUNCTION struct interval interval_overlap(struct interval a, struct interval b)
 {
-    const real entry = larger(a.entry, b.entry);
-    const real exit = smaller(a.exit, b.exit);
+    const vfloat entry = larger(a.entry, b.entry);
+    const vfloat exit = smaller(a.exit, b.exit);
     return interval_where(MASK_OF(entry <= exit), entry, exit);
 }
 
@@ -36,12 +36,12 @@ FUNCTION struct interval interval_union(struct interval a, struct interval b)
 }
 
 /* Inside |coordinate| <= extent, where coordinate = start + step * distance. */
-FUNCTION struct interval interval_of_slab(real start, real step, float extent)
+FUNCTION struct interval interval_of_slab(vfloat start, vfloat step, float extent)
 {
     /* a ray along the slab becomes one that leaves it 10^20 m away */
-    const real safe = CHOOSE(MASK_OF(magnitude(step) < 1.0e-20f), SPLAT(1.0e-20f), step);
-    const real to_lower = (-extent - start) / safe;
-    const real to_upper = (extent - start) / safe;
+    const vfloat safe = SELECT(MASK_OF(magnitude(step) < 1.0e-20f), SPLAT(1.0e-20f), step);
+    const vfloat to_lower = (-extent - start) / safe;
+    const vfloat to_upper = (extent - start) / safe;
     struct interval inside;
     inside.entry = smaller(to_lower, to_upper);
     inside.exit = larger(to_lower, to_upper);
@@ -49,14 +49,14 @@ FUNCTION struct interval interval_of_slab(real start, real step, float extent)
 }
 
 /* Inside a half space: by `depth` where the distance is 0, by `loss` less with each metre. */
-FUNCTION struct interval interval_of_half_space(real depth, real loss)
+FUNCTION struct interval interval_of_half_space(vfloat depth, vfloat loss)
 {
-    const real safe = CHOOSE(MASK_OF(magnitude(loss) < 1.0e-20f), SPLAT(1.0e-20f), loss);
-    const real to_face = depth / safe;
+    const vfloat safe = SELECT(MASK_OF(magnitude(loss) < 1.0e-20f), SPLAT(1.0e-20f), loss);
+    const vfloat to_face = depth / safe;
     const mask is_leaving = MASK_OF(safe > 0.0f);
     struct interval inside;
-    inside.entry = CHOOSE(is_leaving, SPLAT(-FAR_AWAY), to_face);
-    inside.exit = CHOOSE(is_leaving, to_face, SPLAT(FAR_AWAY));
+    inside.entry = SELECT(is_leaving, SPLAT(-FAR_AWAY), to_face);
+    inside.exit = SELECT(is_leaving, to_face, SPLAT(FAR_AWAY));
     return inside;
 }
 

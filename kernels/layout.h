@@ -188,7 +188,7 @@ struct fan_record {
     RECORD_INT first_strip; /* number of the first strip of this launch; strips are numbered over
                                the whole track, so that chunks change nothing */
     RECORD_INT strips;      /* of this launch */
-    float bins_per_metre;   /* of true range; apparent range scales it */
+    float bins_per_metre;   /* of true range; processor range scales it */
     float first_bin;        /* bin coordinate of reference_range */
     RECORD_INT bins;
     float source_side;    /* m; 0: the source is a point at the receiver */
@@ -284,7 +284,7 @@ struct source_record {
 
 /* Two sources between which an object carries sound. The launch's fan goes out from `outgoing`; its
  * first_bin and first_cycles belong to half the path by way of the frame's origin. */
-struct source_pair_record {
+struct image_pair_record {
     struct source_record outgoing, returning;
     struct mirror_record mirrors[MIRROR_KINDS];
     float echoes; /* 2 where the reverse path is an echo of its own, else 1 */

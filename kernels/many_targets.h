@@ -5,7 +5,7 @@
 #ifndef SONJECT_KERNELS_MANY_TARGETS_H
 #define SONJECT_KERNELS_MANY_TARGETS_H
 
-#include "target_cones.h"
+#include "target_sampling.h"
 
 /* Groups lie behind the sphere_records: those of the spheres, then those of the spheres around
  * groups. What is left of a group has radius 0. */
@@ -25,25 +25,25 @@ struct target_choice {
 /* The spheres of a group from some slot on, as seen from a point. */
 struct seen_spheres {
     struct vector3 way;
-    real square_distance, square_radius;
+    vfloat square_distance, square_radius;
 };
 
 FUNCTION struct seen_spheres see_spheres(GLOBAL const struct sphere_group *group, int slot,
                                          struct vector3 point)
 {
     struct seen_spheres seen;
-    seen.way.x = LOAD_REAL(group->centre_x + slot) - point.x;
-    seen.way.y = LOAD_REAL(group->centre_y + slot) - point.y;
-    seen.way.z = LOAD_REAL(group->centre_z + slot) - point.z;
-    const real radius = LOAD_REAL(group->radius + slot);
+    seen.way.x = LOAD_VFLOAT(group->centre_x + slot) - point.x;
+    seen.way.y = LOAD_VFLOAT(group->centre_y + slot) - point.y;
+    seen.way.z = LOAD_VFLOAT(group->centre_z + slot) - point.z;
+    const vfloat radius = LOAD_VFLOAT(group->radius + slot);
     seen.square_distance = dot3(seen.way, seen.way);
     seen.square_radius = radius * radius;
     return seen;
 }
 
 /* The weight by which a sphere is chosen: its opening, 1 from inside. */
-FUNCTION real choice_weight(const struct target_choice *choice,
-                            GLOBAL const struct sphere_group *group, int slot)
+FUNCTION vfloat choice_weight(const struct target_choice *choice,
+                              GLOBAL const struct sphere_group *group, int slot)
 {
     struct vector3 from;
     from.x = SPLAT(choice->x);
@@ -51,9 +51,9 @@ FUNCTION real choice_weight(const struct target_choice *choice,
     from.z = SPLAT(choice->z);
     const struct seen_spheres seen = see_spheres(group, slot, from);
     mask is_outside;
-    const real opening =
+    const vfloat opening =
         opening_at(seen.square_distance + choice->square_blur, seen.square_radius, &is_outside);
-    return CHOOSE(MASK_OF(seen.square_radius > 0.0f), CHOOSE(is_outside, opening, SPLAT(1.0f)),
+    return SELECT(MASK_OF(seen.square_radius > 0.0f), SELECT(is_outside, opening, SPLAT(1.0f)),
                   SPLAT(0.0f));
 }
 
@@ -61,8 +61,8 @@ FUNCTION void weigh_group(const struct target_choice *choice,
                           GLOBAL const struct sphere_group *group, float weights[SPHERES_OF_GROUP])
 {
     for (int slot = 0; slot < SPHERES_OF_GROUP; slot += WIDTH) {
-        const real weight = choice_weight(choice, group, slot);
-        STORE_REAL(weight, weights + slot);
+        const vfloat weight = choice_weight(choice, group, slot);
+        STORE_VFLOAT(weight, weights + slot);
     }
 }
 
@@ -85,7 +85,7 @@ FUNCTION void begin_choice(GLOBAL const struct chain_record *chains,
 /* The spheres that lanes choose, and what is left of each lane's uniform number. */
 struct chosen_spheres {
     struct vector3 centre;
-    real radius, rest;
+    vfloat radius, rest;
 };
 
 /* The sphere of one lane: the last whose predecessors' weights sum to no more than `wanted`. */
@@ -122,15 +122,15 @@ FUNCTION struct chosen_spheres choose_spheres(GLOBAL const struct chain_record *
                                               GLOBAL const struct sphere_record *spheres,
                                               const struct target_choice *shared,
                                               struct target_choice *own, struct vector3 point,
-                                              real uniform, mask is_wanted)
+                                              vfloat uniform, mask is_wanted)
 {
     GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
     float from[3][WIDTH], uniforms[WIDTH];
     float x[WIDTH], y[WIDTH], z[WIDTH], radius[WIDTH], rest[WIDTH];
-    STORE_REAL(point.x, from[0]);
-    STORE_REAL(point.y, from[1]);
-    STORE_REAL(point.z, from[2]);
-    STORE_REAL(uniform, uniforms);
+    STORE_VFLOAT(point.x, from[0]);
+    STORE_VFLOAT(point.y, from[1]);
+    STORE_VFLOAT(point.z, from[2]);
+    STORE_VFLOAT(uniform, uniforms);
     for (int lane = 0; lane < WIDTH; lane++) {
         x[lane] = y[lane] = radius[lane] = rest[lane] = 0.0f;
         z[lane] = 1.0e6f; /* far up, where nothing is wanted */
@@ -155,18 +155,18 @@ FUNCTION struct chosen_spheres choose_spheres(GLOBAL const struct chain_record *
         radius[lane] = groups[group].radius[slot];
     }
     struct chosen_spheres chosen;
-    chosen.centre.x = LOAD_REAL(x);
-    chosen.centre.y = LOAD_REAL(y);
-    chosen.centre.z = LOAD_REAL(z);
-    chosen.radius = LOAD_REAL(radius);
-    chosen.rest = LOAD_REAL(rest);
+    chosen.centre.x = LOAD_VFLOAT(x);
+    chosen.centre.y = LOAD_VFLOAT(y);
+    chosen.centre.z = LOAD_VFLOAT(z);
+    chosen.radius = LOAD_VFLOAT(radius);
+    chosen.rest = LOAD_VFLOAT(rest);
     return chosen;
 }
 
 /* Densities with which directions are found: by cones, 1/sr, and the share of choices that are left
- * to the surface's own lobes, for the point is inside the sphere chosen. */
+ * to the surface's own BRDF, for the point is inside the sphere chosen. */
 struct target_density {
-    float by_cones, lobe_share;
+    float by_solid_angle, brdf_share;
 };
 
 /* Adds the spheres of a group that hold the direction, or the point. */
@@ -174,15 +174,15 @@ FUNCTION void add_group_density(const struct target_choice *choice,
                                 GLOBAL const struct sphere_group *group, struct vector3 point,
                                 struct vector3 direction, struct target_density *density)
 {
-    float by_cones[SPHERES_OF_GROUP], inside[SPHERES_OF_GROUP];
+    float by_solid_angle[SPHERES_OF_GROUP], inside[SPHERES_OF_GROUP];
     RECORD_WORD met = 0;
     for (int slot = 0; slot < SPHERES_OF_GROUP; slot += WIDTH) {
         const struct seen_spheres seen = see_spheres(group, slot, point);
-        const real along = dot3(seen.way, direction);
+        const vfloat along = dot3(seen.way, direction);
         const struct vector3 miss = along3(seen.way, direction, -along);
         const mask is_there = MASK_OF(seen.square_radius > 0.0f);
         mask is_outside;
-        const real opening = opening_at(seen.square_distance, seen.square_radius, &is_outside);
+        const vfloat opening = opening_at(seen.square_distance, seen.square_radius, &is_outside);
         const mask is_in_cone = is_there & is_outside & MASK_OF(along > 0.0f) &
                                 MASK_OF(dot3(miss, miss) <= seen.square_radius);
         const mask is_inside = is_there & ~is_outside;
@@ -190,17 +190,17 @@ FUNCTION void add_group_density(const struct target_choice *choice,
         if (here == 0)
             continue;
         met |= here << slot;
-        const real weight = choice_weight(choice, group, slot);
-        const real cones =
-            CHOOSE(is_in_cone, weight / CHOOSE(is_in_cone, opening, SPLAT(1.0f)), SPLAT(0.0f));
-        const real lobes = CHOOSE(is_inside, weight, SPLAT(0.0f));
-        STORE_REAL(cones, by_cones + slot);
-        STORE_REAL(lobes, inside + slot);
+        const vfloat weight = choice_weight(choice, group, slot);
+        const vfloat cones =
+            SELECT(is_in_cone, weight / SELECT(is_in_cone, opening, SPLAT(1.0f)), SPLAT(0.0f));
+        const vfloat brdf = SELECT(is_inside, weight, SPLAT(0.0f));
+        STORE_VFLOAT(cones, by_solid_angle + slot);
+        STORE_VFLOAT(brdf, inside + slot);
     }
     for (; met != 0; met &= met - 1) {
         const int slot = lowest_bit(met);
-        density->by_cones += by_cones[slot];
-        density->lobe_share += inside[slot];
+        density->by_solid_angle += by_solid_angle[slot];
+        density->brdf_share += inside[slot];
     }
 }
 
@@ -211,9 +211,9 @@ FUNCTION RECORD_WORD groups_ahead(GLOBAL const struct sphere_group *bounds, stru
     RECORD_WORD met = 0;
     for (int slot = 0; slot < SPHERES_OF_GROUP; slot += WIDTH) {
         const struct seen_spheres seen = see_spheres(bounds, slot, point);
-        const real along = dot3(seen.way, direction);
+        const vfloat along = dot3(seen.way, direction);
         const struct vector3 miss = along3(seen.way, direction, -along);
-        const real reach = seen.square_radius * 1.01f;
+        const vfloat reach = seen.square_radius * 1.01f;
         met |= lane_bits(MASK_OF(seen.square_radius > 0.0f) & MASK_OF(dot3(miss, miss) <= reach) &
                          (MASK_OF(along > 0.0f) | MASK_OF(seen.square_distance <= reach)))
                << slot;
@@ -222,10 +222,10 @@ FUNCTION RECORD_WORD groups_ahead(GLOBAL const struct sphere_group *bounds, stru
 }
 
 /* Density of one lane's direction. */
-FUNCTION struct target_density lone_density(GLOBAL const struct chain_record *chains,
-                                            GLOBAL const struct sphere_group *groups,
-                                            const struct target_choice *choice,
-                                            struct vector3 point, struct vector3 direction)
+FUNCTION struct target_density single_density(GLOBAL const struct chain_record *chains,
+                                              GLOBAL const struct sphere_group *groups,
+                                              const struct target_choice *choice,
+                                              struct vector3 point, struct vector3 direction)
 {
     GLOBAL const struct sphere_group *bounds = groups + chains->groups;
     struct target_density density = {0.0f, 0.0f};
@@ -235,8 +235,8 @@ FUNCTION struct target_density lone_density(GLOBAL const struct chain_record *ch
             add_group_density(choice, &groups[first + lowest_bit(met)], point, direction, &density);
     }
     const float all = choice->before[chains->groups];
-    density.by_cones = density.by_cones / all * 0.15915494309f;
-    density.lobe_share = density.lobe_share / all;
+    density.by_solid_angle = density.by_solid_angle / all * 0.15915494309f;
+    density.brdf_share = density.brdf_share / all;
     return density;
 }
 
@@ -244,16 +244,16 @@ FUNCTION void densities_towards(GLOBAL const struct chain_record *chains,
                                 GLOBAL const struct sphere_record *spheres,
                                 const struct target_choice *shared, const struct target_choice *own,
                                 struct vector3 point, struct vector3 direction, mask is_wanted,
-                                real *by_cones, real *lobe_share)
+                                vfloat *by_solid_angle, vfloat *brdf_share)
 {
     GLOBAL const struct sphere_group *groups = groups_of(chains, spheres);
     float lanes[6][WIDTH], cones[WIDTH], shares[WIDTH];
-    STORE_REAL(point.x, lanes[0]);
-    STORE_REAL(point.y, lanes[1]);
-    STORE_REAL(point.z, lanes[2]);
-    STORE_REAL(direction.x, lanes[3]);
-    STORE_REAL(direction.y, lanes[4]);
-    STORE_REAL(direction.z, lanes[5]);
+    STORE_VFLOAT(point.x, lanes[0]);
+    STORE_VFLOAT(point.y, lanes[1]);
+    STORE_VFLOAT(point.z, lanes[2]);
+    STORE_VFLOAT(direction.x, lanes[3]);
+    STORE_VFLOAT(direction.y, lanes[4]);
+    STORE_VFLOAT(direction.z, lanes[5]);
     for (int lane = 0; lane < WIDTH; lane++)
         cones[lane] = shares[lane] = 0.0f;
     for (RECORD_WORD left = lane_bits(is_wanted); left != 0; left &= left - 1) {
@@ -266,12 +266,12 @@ FUNCTION void densities_towards(GLOBAL const struct chain_record *chains,
         way.y = SPLAT(lanes[4][lane]);
         way.z = SPLAT(lanes[5][lane]);
         const struct target_density density =
-            lone_density(chains, groups, shared ? shared : &own[lane], from, way);
-        cones[lane] = density.by_cones;
-        shares[lane] = density.lobe_share;
+            single_density(chains, groups, shared ? shared : &own[lane], from, way);
+        cones[lane] = density.by_solid_angle;
+        shares[lane] = density.brdf_share;
     }
-    *by_cones = LOAD_REAL(cones);
-    *lobe_share = LOAD_REAL(shares);
+    *by_solid_angle = LOAD_VFLOAT(cones);
+    *brdf_share = LOAD_VFLOAT(shares);
 }
 
 #endif

@@ -1,6 +1,6 @@
 /* Where rays meet a triangle mesh. A packet of WIDTH rays walks the hierarchy together; a part that
  * only few of them reach is walked by each alone. What is found is the nearest triangle, of equally
- * near ones that of the lowest number, so the order of the walk and the company of a ray change
+ * near ones that of the lowest number, so the order of the walk and the packet of a ray change
  * nothing. */
 #ifndef SONJECT_KERNELS_MESH_H
 #define SONJECT_KERNELS_MESH_H
@@ -24,14 +24,14 @@ FUNCTION struct mesh_view mesh_view_of(GLOBAL const struct mesh_record *mesh,
 }
 
 struct mesh_hit {
-    real distance;  /* FAR_AWAY: none */
-    whole triangle; /* number, -1: none */
+    vfloat distance; /* FAR_AWAY: none */
+    vint triangle;   /* number, -1: none */
 };
 
 /* What is still to be visited. */
 struct mesh_stack {
     int child[MESH_STACK];
-    real entry[MESH_STACK]; /* distance to its box, FAR_AWAY for rays that miss it */
+    vfloat entry[MESH_STACK]; /* distance to its box, FAR_AWAY for rays that miss it */
     int count;
 };
 
@@ -49,8 +49,8 @@ struct mesh_box {
     float lower[3], upper[3];
 };
 
-FUNCTION real packet_entry(const struct mesh_ray *ray, const struct mesh_heading *heading,
-                           const struct mesh_box *box, real maximum)
+FUNCTION vfloat packet_entry(const struct mesh_ray *ray, const struct mesh_heading *heading,
+                             const struct mesh_box *box, vfloat maximum)
 {
     const struct vector3 lower = splat_point(box->lower[0], box->lower[1], box->lower[2]);
     const struct vector3 upper = splat_point(box->upper[0], box->upper[1], box->upper[2]);
@@ -66,8 +66,8 @@ FUNCTION real packet_entry(const struct mesh_ray *ray, const struct mesh_heading
     return entry_by_faces(ray, first, last, maximum);
 }
 
-FUNCTION real group_entry(const struct mesh_ray *ray, const struct mesh_heading *heading,
-                          GLOBAL const struct mesh_group_boxes *groups, int group, real maximum)
+FUNCTION vfloat group_entry(const struct mesh_ray *ray, const struct mesh_heading *heading,
+                            GLOBAL const struct mesh_group_boxes *groups, int group, vfloat maximum)
 {
     const struct mesh_box box = {
         {groups->lower_x[group], groups->lower_y[group], groups->lower_z[group]},
@@ -75,8 +75,8 @@ FUNCTION real group_entry(const struct mesh_ray *ray, const struct mesh_heading 
     return packet_entry(ray, heading, &box, maximum);
 }
 
-FUNCTION real child_entry(const struct mesh_ray *ray, const struct mesh_heading *heading,
-                          GLOBAL const struct mesh_branch *branch, int slot, real maximum)
+FUNCTION vfloat child_entry(const struct mesh_ray *ray, const struct mesh_heading *heading,
+                            GLOBAL const struct mesh_branch *branch, int slot, vfloat maximum)
 {
     const struct mesh_box box = {
         {branch->lower_x[slot], branch->lower_y[slot], branch->lower_z[slot]},
@@ -88,14 +88,14 @@ FUNCTION real child_entry(const struct mesh_ray *ray, const struct mesh_heading 
  * bits of the slots to be tested. */
 FUNCTION void open_group(const struct mesh_ray *ray, const struct mesh_heading *heading,
                          GLOBAL const struct mesh_branch *branch, int group, RECORD_WORD set,
-                         real maximum, struct mesh_stack *stack)
+                         vfloat maximum, struct mesh_stack *stack)
 {
     const int step = heading->downward[branch->axes >> 2 * group & 3] ? 1 : -1;
     int slot = group * MESH_GROUP + (step > 0 ? 0 : MESH_GROUP - 1);
     for (int k = 0; k < MESH_GROUP; k++, slot += step) {
         if ((set >> slot & 1u) == 0)
             continue;
-        const real entry = child_entry(ray, heading, branch, slot, maximum);
+        const vfloat entry = child_entry(ray, heading, branch, slot, maximum);
         if (ANY(MASK_OF(entry < FAR_AWAY))) {
             stack->child[stack->count] = branch->child[slot];
             stack->entry[stack->count++] = entry;
@@ -105,7 +105,7 @@ FUNCTION void open_group(const struct mesh_ray *ray, const struct mesh_heading *
 
 /* The slots of a group that are to be tested: all that are filled, if some ray may meet its box. */
 FUNCTION RECORD_WORD group_slots(const struct mesh_ray *ray, const struct mesh_heading *heading,
-                                 GLOBAL const struct mesh_branch *branch, int group, real maximum)
+                                 GLOBAL const struct mesh_branch *branch, int group, vfloat maximum)
 {
     const int children = branch->children[group];
     if (children > 1 &&
@@ -116,7 +116,7 @@ FUNCTION RECORD_WORD group_slots(const struct mesh_ray *ray, const struct mesh_h
 
 FUNCTION void open_branch(const struct mesh_ray *ray, const struct mesh_heading *heading,
                           const struct mesh_beam *beam, GLOBAL const struct mesh_branch *branch,
-                          real maximum, struct mesh_stack *stack)
+                          vfloat maximum, struct mesh_stack *stack)
 {
     const int is_beam = WIDTH > 1 && heading->is_common;
     const RECORD_WORD met = is_beam ? beam_meets(beam, heading, branch) : 0;
@@ -136,7 +136,7 @@ FUNCTION void test_slot(const struct mesh_ray *ray, GLOBAL const struct mesh_lea
                         int number, int is_any, struct mesh_hit *hit)
 {
     struct mesh_corners corners;
-    real distance;
+    vfloat distance;
     corners.a = splat_point(leaf->a_x[slot], leaf->a_y[slot], leaf->a_z[slot]);
     corners.b = splat_point(leaf->b_x[slot], leaf->b_y[slot], leaf->b_z[slot]);
     corners.c = splat_point(leaf->c_x[slot], leaf->c_y[slot], leaf->c_z[slot]);
@@ -147,8 +147,8 @@ FUNCTION void test_slot(const struct mesh_ray *ray, GLOBAL const struct mesh_lea
                  (MASK_OF(distance < hit->distance) |
                   (MASK_OF(distance == hit->distance) &
                    (MASK_OF(hit->triangle < 0) | MASK_OF(hit->triangle > number))));
-    hit->distance = CHOOSE(is_nearest, is_any ? SPLAT(-FAR_AWAY) : distance, hit->distance);
-    hit->triangle = CHOOSE(is_nearest, SPLAT_WHOLE(number), hit->triangle);
+    hit->distance = SELECT(is_nearest, is_any ? SPLAT(-FAR_AWAY) : distance, hit->distance);
+    hit->triangle = SELECT(is_nearest, SPLAT_VINT(number), hit->triangle);
 }
 
 FUNCTION void test_leaf(const struct mesh_ray *ray, const struct mesh_heading *heading,
@@ -174,29 +174,30 @@ FUNCTION int has_at_most(RECORD_WORD set, int count)
 }
 
 /* Visits a child with each ray of the set by itself. */
-FUNCTION void walk_each_alone(struct mesh_view mesh, const struct mesh_ray_lanes *lanes, int child,
-                              RECORD_WORD set, int is_any, struct mesh_hit *hit)
+FUNCTION void walk_each_ray(struct mesh_view mesh, const struct mesh_ray_lanes *lanes, int child,
+                            RECORD_WORD set, int is_any, struct mesh_hit *hit)
 {
     float distances[WIDTH];
     int triangles[WIDTH];
-    STORE_REAL(hit->distance, distances);
-    STORE_WHOLE(hit->triangle, triangles);
+    STORE_VFLOAT(hit->distance, distances);
+    STORE_VINT(hit->triangle, triangles);
     for (; set != 0; set &= set - 1) {
         const int lane = lowest_bit(set);
-        struct lone_hit alone;
+        struct single_hit alone;
         alone.distance = distances[lane];
         alone.triangle = triangles[lane];
-        walk_alone(mesh, lanes, lane, child, is_any, &alone);
+        walk_single_ray(mesh, lanes, lane, child, is_any, &alone);
         distances[lane] = is_any && alone.triangle >= 0 ? -FAR_AWAY : alone.distance;
         triangles[lane] = alone.triangle;
     }
-    hit->distance = LOAD_REAL(distances);
-    hit->triangle = LOAD_WHOLE(triangles);
+    hit->distance = LOAD_VFLOAT(distances);
+    hit->triangle = LOAD_VINT(triangles);
 }
 
 /* Walks the hierarchy from the root. */
 FUNCTION struct mesh_hit walk_mesh(struct mesh_view mesh, struct vector3 point,
-                                   struct vector3 direction, real minimum, real maximum, int is_any)
+                                   struct vector3 direction, vfloat minimum, vfloat maximum,
+                                   int is_any)
 {
     const struct mesh_ray ray = mesh_ray_of(point, direction, minimum, mesh.padding);
     const struct mesh_heading heading = mesh_heading_of(&ray);
@@ -205,7 +206,7 @@ FUNCTION struct mesh_hit walk_mesh(struct mesh_view mesh, struct vector3 point,
         beam = mesh_beam_of(&ray, &heading);
     struct mesh_hit hit;
     hit.distance = maximum;
-    hit.triangle = SPLAT_WHOLE(-1);
+    hit.triangle = SPLAT_VINT(-1);
     struct mesh_ray_lanes lanes;
     int has_lanes = 0;
     struct mesh_stack stack;
@@ -221,7 +222,7 @@ FUNCTION struct mesh_hit walk_mesh(struct mesh_view mesh, struct vector3 point,
             if (!has_lanes)
                 store_mesh_ray(&ray, &lanes);
             has_lanes = 1;
-            walk_each_alone(mesh, &lanes, child, set, is_any, &hit);
+            walk_each_ray(mesh, &lanes, child, set, is_any, &hit);
         } else if (child >= 0) {
             open_branch(&ray, &heading, &beam, &mesh.branches[child], hit.distance, &stack);
         } else {
@@ -234,17 +235,17 @@ FUNCTION struct mesh_hit walk_mesh(struct mesh_view mesh, struct vector3 point,
 /* The nearest triangle beyond `minimum` and not beyond `maximum`, both counted from `point`, which
  * is the rays' closest approach to the frame's origin. direction: unit. */
 FUNCTION struct mesh_hit mesh_nearest_hit(struct mesh_view mesh, struct vector3 point,
-                                          struct vector3 direction, real minimum, real maximum)
+                                          struct vector3 direction, vfloat minimum, vfloat maximum)
 {
     struct mesh_hit hit = walk_mesh(mesh, point, direction, minimum, maximum, 0);
-    hit.distance = CHOOSE(MASK_OF(hit.triangle >= 0), hit.distance, SPLAT(FAR_AWAY));
+    hit.distance = SELECT(MASK_OF(hit.triangle >= 0), hit.distance, SPLAT(FAR_AWAY));
     return hit;
 }
 
 /* Whether anything is met beyond `minimum` and not beyond `maximum`. A ray whose maximum is below
  * its minimum is not followed. */
 FUNCTION mask mesh_is_in_the_way(struct mesh_view mesh, struct vector3 point,
-                                 struct vector3 direction, real minimum, real maximum)
+                                 struct vector3 direction, vfloat minimum, vfloat maximum)
 {
     return MASK_OF(walk_mesh(mesh, point, direction, minimum, maximum, 1).triangle >= 0);
 }

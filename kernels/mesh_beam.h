@@ -4,7 +4,7 @@
 #ifndef SONJECT_KERNELS_MESH_BEAM_H
 #define SONJECT_KERNELS_MESH_BEAM_H
 
-#include "mesh_alone.h"
+#include "mesh_single.h"
 
 /* Which way the rays of a packet run. */
 struct mesh_heading {
@@ -14,7 +14,7 @@ struct mesh_heading {
 };
 
 /* 0 or 1: the first ray runs down the axis. Clears *is_common unless all do as it. */
-FUNCTION int runs_downward(real inverse, int *is_common)
+FUNCTION int runs_downward(vfloat inverse, int *is_common)
 {
     const RECORD_WORD all = ((1u << (WIDTH - 1)) - 1u) * 2u + 1u;
     const RECORD_WORD downward = lane_bits(MASK_OF(inverse < 0.0f));
@@ -37,21 +37,21 @@ struct mesh_beam {
     struct vector3 to_first, to_last; /* the point that is nearest to a box's first faces each way,
                                          farthest from its last ones */
     struct vector3 least, most;       /* of the inverse directions */
-    real minimum;
+    vfloat minimum;
 };
 
-FUNCTION float least_of_lanes(real value)
+FUNCTION float least_of_lanes(vfloat value)
 {
     float lanes[WIDTH];
-    STORE_REAL(value, lanes);
+    STORE_VFLOAT(value, lanes);
     for (int span = WIDTH / 2; span > 0; span /= 2)
         for (int lane = 0; lane < span; lane++)
             lanes[lane] = lanes[lane + span] < lanes[lane] ? lanes[lane + span] : lanes[lane];
     return lanes[0];
 }
 
-FUNCTION void set_beam_axis(real point, real inverse, int is_downward, real *to_first,
-                            real *to_last, real *least, real *most)
+FUNCTION void set_beam_axis(vfloat point, vfloat inverse, int is_downward, vfloat *to_first,
+                            vfloat *to_last, vfloat *least, vfloat *most)
 {
     const float lower = least_of_lanes(point);
     const float upper = -least_of_lanes(-point);
@@ -90,19 +90,19 @@ FUNCTION RECORD_WORD beam_meets(const struct mesh_beam *beam, const struct mesh_
             load_vector3(downward[0] ? branch->lower_x : branch->upper_x,
                          downward[1] ? branch->lower_y : branch->upper_y,
                          downward[2] ? branch->lower_z : branch->upper_z, slot);
-        const real x_first = first.x - beam->to_first.x;
-        const real y_first = first.y - beam->to_first.y;
-        const real z_first = first.z - beam->to_first.z;
-        const real x_last = last.x - beam->to_last.x;
-        const real y_last = last.y - beam->to_last.y;
-        const real z_last = last.z - beam->to_last.z;
-        const real entry =
+        const vfloat x_first = first.x - beam->to_first.x;
+        const vfloat y_first = first.y - beam->to_first.y;
+        const vfloat z_first = first.z - beam->to_first.z;
+        const vfloat x_last = last.x - beam->to_last.x;
+        const vfloat y_last = last.y - beam->to_last.y;
+        const vfloat z_last = last.z - beam->to_last.z;
+        const vfloat entry =
             larger(larger(smaller(x_first * beam->least.x, x_first * beam->most.x),
                           smaller(y_first * beam->least.y, y_first * beam->most.y)),
                    larger(smaller(z_first * beam->least.z, z_first * beam->most.z), beam->minimum));
-        const real exit = smaller(smaller(larger(x_last * beam->least.x, x_last * beam->most.x),
-                                          larger(y_last * beam->least.y, y_last * beam->most.y)),
-                                  larger(z_last * beam->least.z, z_last * beam->most.z));
+        const vfloat exit = smaller(smaller(larger(x_last * beam->least.x, x_last * beam->most.x),
+                                            larger(y_last * beam->least.y, y_last * beam->most.y)),
+                                    larger(z_last * beam->least.z, z_last * beam->most.z));
         met |= lane_bits(MASK_OF(entry <= exit)) << slot;
     }
     return met;

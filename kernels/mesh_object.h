@@ -33,20 +33,21 @@ FUNCTION struct mesh_view mesh_of_object(GLOBAL const struct object_record *obje
 
 /* Distance from the ray's closest approach `start`, in the object's own frame, to the first facet
  * beyond `minimum` and not beyond `farthest`; FAR_AWAY if there is none. */
-APART real mesh_object_distance(GLOBAL const struct object_record *object, struct vector3 start,
-                                struct vector3 direction, real minimum, real farthest)
+NOINLINE vfloat mesh_object_distance(GLOBAL const struct object_record *object,
+                                     struct vector3 start, struct vector3 direction, vfloat minimum,
+                                     vfloat farthest)
 {
     return mesh_nearest_hit(mesh_of_object(object), start, direction, minimum, farthest).distance;
 }
 
 /* The surface at a distance from the closest approach, in the object's own frame. Normals are
  * outward; those of sheets, which have no inside, on the side that the ray came from. */
-APART struct mesh_surface mesh_object_surface(GLOBAL const struct object_record *object,
-                                              struct vector3 start, struct vector3 direction,
-                                              real distance)
+NOINLINE struct mesh_surface mesh_object_surface(GLOBAL const struct object_record *object,
+                                                 struct vector3 start, struct vector3 direction,
+                                                 vfloat distance)
 {
     const struct mesh_view mesh = mesh_of_object(object);
-    const real slack = MESH_FACET_SLACK * (object->bounding_radius + magnitude(distance));
+    const vfloat slack = MESH_FACET_SLACK * (object->bounding_radius + magnitude(distance));
     const struct mesh_hit hit =
         mesh_nearest_hit(mesh, start, direction, distance - slack, distance + slack);
     struct mesh_surface surface = mesh_surface_at(mesh, start, direction, hit.triangle);

@@ -11,17 +11,17 @@ struct mesh_ray {
     struct vector3 direction, inverse; /* unit; one over its components */
     struct vector3 across, upward;     /* unit, square to direction */
     struct vector3 seen;               /* the point in the axes across, upward, direction */
-    real minimum;                      /* distance from the point beyond which hits count */
+    vfloat minimum;                    /* distance from the point beyond which hits count */
     float padding;                     /* of a triangle's own box, half of that of others, m */
 };
 
-FUNCTION real one_over_component(real component)
+FUNCTION vfloat one_over_component(vfloat component)
 {
     /* a ray along a box's face becomes one that leaves it 10^20 m away */
-    return 1.0f / CHOOSE(MASK_OF(magnitude(component) < 1.0e-20f), SPLAT(1.0e-20f), component);
+    return 1.0f / SELECT(MASK_OF(magnitude(component) < 1.0e-20f), SPLAT(1.0e-20f), component);
 }
 
-FUNCTION struct mesh_ray mesh_ray_of(struct vector3 point, struct vector3 direction, real minimum,
+FUNCTION struct mesh_ray mesh_ray_of(struct vector3 point, struct vector3 direction, vfloat minimum,
                                      float padding)
 {
     struct mesh_ray ray;
@@ -41,30 +41,30 @@ FUNCTION struct mesh_ray mesh_ray_of(struct vector3 point, struct vector3 direct
 
 /* Distance at which the ray enters the box, FAR_AWAY if it does not do so between its minimum and
  * `maximum`; by the faces that it meets first each way and those that it meets last. */
-FUNCTION real entry_by_faces(const struct mesh_ray *ray, struct vector3 first, struct vector3 last,
-                             real maximum)
+FUNCTION vfloat entry_by_faces(const struct mesh_ray *ray, struct vector3 first,
+                               struct vector3 last, vfloat maximum)
 {
-    const real x_first = (first.x - ray->point.x) * ray->inverse.x;
-    const real y_first = (first.y - ray->point.y) * ray->inverse.y;
-    const real z_first = (first.z - ray->point.z) * ray->inverse.z;
-    const real x_last = (last.x - ray->point.x) * ray->inverse.x;
-    const real y_last = (last.y - ray->point.y) * ray->inverse.y;
-    const real z_last = (last.z - ray->point.z) * ray->inverse.z;
-    const real entry = larger(larger(x_first, y_first), larger(z_first, ray->minimum));
-    const real exit = smaller(smaller(x_last, y_last), smaller(z_last, maximum));
-    return CHOOSE(MASK_OF(entry <= exit), entry, SPLAT(FAR_AWAY));
+    const vfloat x_first = (first.x - ray->point.x) * ray->inverse.x;
+    const vfloat y_first = (first.y - ray->point.y) * ray->inverse.y;
+    const vfloat z_first = (first.z - ray->point.z) * ray->inverse.z;
+    const vfloat x_last = (last.x - ray->point.x) * ray->inverse.x;
+    const vfloat y_last = (last.y - ray->point.y) * ray->inverse.y;
+    const vfloat z_last = (last.z - ray->point.z) * ray->inverse.z;
+    const vfloat entry = larger(larger(x_first, y_first), larger(z_first, ray->minimum));
+    const vfloat exit = smaller(smaller(x_last, y_last), smaller(z_last, maximum));
+    return SELECT(MASK_OF(entry <= exit), entry, SPLAT(FAR_AWAY));
 }
 
 /* Where the ray's line is inside a box, whichever faces are met first. */
 FUNCTION struct interval interval_in_box(const struct mesh_ray *ray, struct vector3 lower,
                                          struct vector3 upper)
 {
-    const real x_lower = (lower.x - ray->point.x) * ray->inverse.x;
-    const real y_lower = (lower.y - ray->point.y) * ray->inverse.y;
-    const real z_lower = (lower.z - ray->point.z) * ray->inverse.z;
-    const real x_upper = (upper.x - ray->point.x) * ray->inverse.x;
-    const real y_upper = (upper.y - ray->point.y) * ray->inverse.y;
-    const real z_upper = (upper.z - ray->point.z) * ray->inverse.z;
+    const vfloat x_lower = (lower.x - ray->point.x) * ray->inverse.x;
+    const vfloat y_lower = (lower.y - ray->point.y) * ray->inverse.y;
+    const vfloat z_lower = (lower.z - ray->point.z) * ray->inverse.z;
+    const vfloat x_upper = (upper.x - ray->point.x) * ray->inverse.x;
+    const vfloat y_upper = (upper.y - ray->point.y) * ray->inverse.y;
+    const vfloat z_upper = (upper.z - ray->point.z) * ray->inverse.z;
     struct interval inside;
     inside.entry = larger(larger(smaller(x_lower, x_upper), smaller(y_lower, y_upper)),
                           smaller(z_lower, z_upper));
@@ -74,12 +74,12 @@ FUNCTION struct interval interval_in_box(const struct mesh_ray *ray, struct vect
 }
 
 /* As entry_by_faces, to the bit. */
-FUNCTION real box_entry(const struct mesh_ray *ray, struct vector3 lower, struct vector3 upper,
-                        real maximum)
+FUNCTION vfloat box_entry(const struct mesh_ray *ray, struct vector3 lower, struct vector3 upper,
+                          vfloat maximum)
 {
     const struct interval inside = interval_in_box(ray, lower, upper);
-    const real entry = larger(inside.entry, ray->minimum);
-    return CHOOSE(MASK_OF(entry <= smaller(inside.exit, maximum)), entry, SPLAT(FAR_AWAY));
+    const vfloat entry = larger(inside.entry, ray->minimum);
+    return SELECT(MASK_OF(entry <= smaller(inside.exit, maximum)), entry, SPLAT(FAR_AWAY));
 }
 
 struct mesh_corners {
@@ -135,22 +135,22 @@ FUNCTION struct interval corners_interval(const struct mesh_ray *ray,
  * rounding alone could put it elsewhere, and whether a walk found it would depend on what it found
  * before. */
 FUNCTION mask meets_triangle(const struct mesh_ray *ray, const struct mesh_corners *corners,
-                             real *distance)
+                             vfloat *distance)
 {
     struct mesh_corners seen;
     seen.a = seen_along(ray, corners->a);
     seen.b = seen_along(ray, corners->b);
     seen.c = seen_along(ray, corners->c);
     const struct vector3 edges = edge_functions(&seen);
-    const real least = smaller(smaller(edges.x, edges.y), edges.z);
-    const real most = larger(larger(edges.x, edges.y), edges.z);
-    const real sum = edges.x + edges.y + edges.z;
+    const vfloat least = smaller(smaller(edges.x, edges.y), edges.z);
+    const vfloat most = larger(larger(edges.x, edges.y), edges.z);
+    const vfloat sum = edges.x + edges.y + edges.z;
     const mask is_met = (MASK_OF(least >= 0.0f) | MASK_OF(most <= 0.0f)) & MASK_OF(sum != 0.0f);
     *distance = SPLAT(FAR_AWAY);
     if (!ANY(is_met))
         return is_met;
-    const real middle = (edges.x * seen.a.z + edges.y * seen.b.z + edges.z * seen.c.z) /
-                        CHOOSE(is_met, sum, SPLAT(1.0f));
+    const vfloat middle = (edges.x * seen.a.z + edges.y * seen.b.z + edges.z * seen.c.z) /
+                          SELECT(is_met, sum, SPLAT(1.0f));
     const struct interval inside = corners_interval(ray, corners);
     *distance = smaller(larger(middle, inside.entry), inside.exit);
     return is_met & MASK_OF(inside.entry <= inside.exit);

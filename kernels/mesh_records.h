@@ -4,7 +4,7 @@
  *
  * The hierarchy has branches of up to 16 children and leaves of up to 16 triangles, each in up to
  * four groups of four. A packet of rays tests the groups' boxes and then what is in them; a ray
- * that has lost its company tests all 16 at once, one in each lane. */
+ * that has lost its packet tests all 16 at once, one in each lane. */
 #ifndef SONJECT_KERNELS_MESH_RECORDS_H
 #define SONJECT_KERNELS_MESH_RECORDS_H
 

@@ -73,13 +73,13 @@ FUNCTION struct vector3 minus3(struct vector3 a, struct vector3 b)
  * squares neither vanish nor overflow. */
 FUNCTION struct vector3 unit3(struct vector3 v, struct vector3 otherwise)
 {
-    const real largest = larger(larger(magnitude(v.x), magnitude(v.y)), magnitude(v.z));
+    const vfloat largest = larger(larger(magnitude(v.x), magnitude(v.y)), magnitude(v.z));
     const mask is_some = MASK_OF(largest > 0.0f);
-    const real safe = CHOOSE(is_some, largest, SPLAT(1.0f));
+    const vfloat safe = SELECT(is_some, largest, SPLAT(1.0f));
     v.x = v.x / safe;
     v.y = v.y / safe;
     v.z = v.z / safe;
-    const real length = SQUARE_ROOT(CHOOSE(is_some, dot3(v, v), SPLAT(1.0f)));
+    const vfloat length = SQUARE_ROOT(SELECT(is_some, dot3(v, v), SPLAT(1.0f)));
     v.x = v.x / length;
     v.y = v.y / length;
     v.z = v.z / length;
@@ -96,8 +96,8 @@ FUNCTION struct vector3 cross3(struct vector3 a, struct vector3 b)
 }
 
 /* How far a point lies below the plane through a corner, square to its normal times side; >= 0. */
-FUNCTION real depth_below(struct vector3 point, struct vector3 corner, struct vector3 normal,
-                          real side)
+FUNCTION vfloat depth_below(struct vector3 point, struct vector3 corner, struct vector3 normal,
+                            vfloat side)
 {
     return larger(-side * dot3(minus3(point, corner), normal), SPLAT(0.0f));
 }
@@ -105,21 +105,21 @@ FUNCTION real depth_below(struct vector3 point, struct vector3 corner, struct ve
 /* Bends the normal towards the way back along the ray where it would show a side that the ray did
  * not meet. */
 FUNCTION struct vector3 bend_to_ray(struct vector3 normal, struct vector3 facet,
-                                    struct vector3 direction, real side)
+                                    struct vector3 direction, vfloat side)
 {
-    const real facet_cosine = -side * dot3(facet, direction);
-    const real least = smaller(SPLAT(MESH_LEAST_COSINE), facet_cosine);
-    const real lack = larger(least + side * dot3(normal, direction), SPLAT(0.0f));
+    const vfloat facet_cosine = -side * dot3(facet, direction);
+    const vfloat least = smaller(SPLAT(MESH_LEAST_COSINE), facet_cosine);
+    const vfloat lack = larger(least + side * dot3(normal, direction), SPLAT(0.0f));
     return unit3(along3(normal, direction, -side * lack), facet);
 }
 
 /* Where rays with that closest approach to the frame's origin meet the triangles numbered by `hit`;
  * lanes without a hit hold something finite. direction: unit. */
 FUNCTION struct mesh_surface mesh_surface_at(struct mesh_view mesh, struct vector3 point,
-                                             struct vector3 direction, whole triangle)
+                                             struct vector3 direction, vint triangle)
 {
     int triangles[WIDTH];
-    STORE_WHOLE(triangle, triangles);
+    STORE_VINT(triangle, triangles);
     const struct mesh_ray ray = mesh_ray_of(point, direction, SPLAT(0.0f), 0.0f);
     const struct mesh_corners corners = gather_corners(mesh, triangles);
     struct mesh_corners seen;
@@ -127,12 +127,12 @@ FUNCTION struct mesh_surface mesh_surface_at(struct mesh_view mesh, struct vecto
     seen.b = seen_along(&ray, corners.b);
     seen.c = seen_along(&ray, corners.c);
     const struct vector3 edges = edge_functions(&seen);
-    const real sum = edges.x + edges.y + edges.z;
+    const vfloat sum = edges.x + edges.y + edges.z;
     const mask is_met = MASK_OF(sum != 0.0f) & MASK_OF(triangle >= 0);
-    const real safe = CHOOSE(is_met, sum, SPLAT(1.0f));
-    const real a = CHOOSE(is_met, edges.x / safe, SPLAT(1.0f));
-    const real b = CHOOSE(is_met, edges.y / safe, SPLAT(0.0f));
-    const real c = CHOOSE(is_met, edges.z / safe, SPLAT(0.0f));
+    const vfloat safe = SELECT(is_met, sum, SPLAT(1.0f));
+    const vfloat a = SELECT(is_met, edges.x / safe, SPLAT(1.0f));
+    const vfloat b = SELECT(is_met, edges.y / safe, SPLAT(0.0f));
+    const vfloat c = SELECT(is_met, edges.z / safe, SPLAT(0.0f));
     struct mesh_surface surface;
     surface.point = combine3(corners.a, a, corners.b, b, corners.c, c);
     surface.facet = unit3(cross3(minus3(corners.b, corners.a), minus3(corners.c, corners.a)),
@@ -142,8 +142,8 @@ FUNCTION struct mesh_surface mesh_surface_at(struct mesh_view mesh, struct vecto
     if (!mesh.normals)
         return surface;
     const struct mesh_corners normals = gather_normals(mesh, triangles);
-    const real side =
-        CHOOSE(MASK_OF(dot3(surface.facet, direction) > 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
+    const vfloat side =
+        SELECT(MASK_OF(dot3(surface.facet, direction) > 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
     const struct vector3 mixed =
         unit3(combine3(normals.a, a, normals.b, b, normals.c, c), surface.facet);
     const mask is_outward = MASK_OF(dot3(mixed, surface.facet) > 0.0f);

@@ -12,11 +12,11 @@
 /* The way from a hit to a source. */
 struct leg {
     mask is_open;
-    real reflection_real, reflection_imaginary; /* product of the mirrors' coherent amplitudes */
+    vfloat reflection_real, reflection_imaginary; /* product of the mirrors' coherent amplitudes */
 };
 
 /* Cosine of incidence on a mirror of sound that comes to the object with another: Snell's law. */
-FUNCTION real cosine_at_mirror(GLOBAL const struct mirror_record *mirror, real cosine)
+FUNCTION vfloat cosine_at_mirror(GLOBAL const struct mirror_record *mirror, vfloat cosine)
 {
     if (mirror->speed_ratio == 1.0f)
         return cosine;
@@ -27,23 +27,23 @@ FUNCTION real cosine_at_mirror(GLOBAL const struct mirror_record *mirror, real c
 /* direction: from the hit to the source in unfolded space, unit; length: m. Lanes that are not
  * wanted stay closed. */
 FUNCTION struct leg follow_leg(const struct fan_record *fan,
-                               GLOBAL const struct source_pair_record *pair,
+                               GLOBAL const struct image_pair_record *pair,
                                GLOBAL const struct source_record *source,
                                GLOBAL const struct object_record *objects, struct vector3 point,
-                               struct vector3 direction, real length, mask is_wanted)
+                               struct vector3 direction, vfloat length, mask is_wanted)
 {
     struct leg leg;
     leg.is_open = is_wanted;
     leg.reflection_real = SPLAT(1.0f);
     leg.reflection_imaginary = SPLAT(0.0f);
-    const real cosine = magnitude(direction.z); /* the same at every bounce: mirrors are level */
+    const vfloat cosine = magnitude(direction.z); /* the same at every bounce: mirrors are level */
     const int is_bent = source->table.pieces > 0;
     int is_seen = 1; /* through layers, only what is in the water around the object */
     int kind = source->last_mirror;
     for (int bounce = 0; bounce < source->bounces && ANY(leg.is_open); bounce++) {
         GLOBAL const struct mirror_record *mirror = &pair->mirrors[kind];
         const mask is_level = MASK_OF(cosine < 1.0e-6f);
-        const real step = (mirror->height - point.z) / CHOOSE(is_level, SPLAT(1.0f), direction.z);
+        const vfloat step = (mirror->height - point.z) / SELECT(is_level, SPLAT(1.0f), direction.z);
         if (is_seen) {
             leg.is_open = leg.is_open & MASK_OF(find_obstacle(objects, fan->objects, point,
                                                               direction, step) > step);
@@ -54,10 +54,10 @@ FUNCTION struct leg follow_leg(const struct fan_record *fan,
         point = along3(point, direction, step);
         direction.z = -direction.z;
         length = length - step;
-        real one_real, one_imaginary;
+        vfloat one_real, one_imaginary;
         smooth_reflection(&mirror->surface, cosine_at_mirror(mirror, cosine), &one_real,
                           &one_imaginary);
-        const real product_real =
+        const vfloat product_real =
             leg.reflection_real * one_real - leg.reflection_imaginary * one_imaginary;
         leg.reflection_imaginary =
             leg.reflection_real * one_imaginary + leg.reflection_imaginary * one_real;
@@ -75,9 +75,9 @@ FUNCTION struct leg follow_leg(const struct fan_record *fan,
 /* The line from a source to a hit. */
 struct line_from_source {
     struct vector3 direction; /* unit, towards the hit */
-    real wavefront;           /* width per rad of elevation at the hit: without layers its length */
-    real excess;              /* range less the source's range, formed without subtracting */
-    real spreading;           /* of layers: struct water_ray */
+    vfloat wavefront;         /* width per rad of elevation at the hit: without layers its length */
+    vfloat excess;            /* range less the source's range, formed without subtracting */
+    vfloat spreading;         /* of layers: struct water_ray */
 };
 
 FUNCTION struct line_from_source line_through_layers(GLOBAL const struct source_record *source,
@@ -103,8 +103,8 @@ FUNCTION struct line_from_source line_from_source(GLOBAL const struct source_rec
     if (source->table.pieces > 0)
         return line_through_layers(source, pieces, hit);
     const float range = source->range;
-    const real along = hit.y * source->cosine_depression - hit.z * source->sine_depression;
-    const real change = 2.0f * range * along + (hit.y * hit.y + hit.z * hit.z);
+    const vfloat along = hit.y * source->cosine_depression - hit.z * source->sine_depression;
+    const vfloat change = 2.0f * range * along + (hit.y * hit.y + hit.z * hit.z);
     struct line_from_source line;
     line.wavefront = SQUARE_ROOT(range * range + change);
     line.excess = change / (line.wavefront + range);
@@ -116,17 +116,17 @@ FUNCTION struct line_from_source line_from_source(GLOBAL const struct source_rec
 }
 
 /* Distance along a fan's rays from which on they are past their last mirror. */
-FUNCTION real distance_past_mirrors(const struct fan_record *fan,
-                                    GLOBAL const struct source_pair_record *pair,
-                                    const struct fan_ray *ray)
+FUNCTION vfloat distance_past_mirrors(const struct fan_record *fan,
+                                      GLOBAL const struct image_pair_record *pair,
+                                      const struct fan_ray *ray)
 {
     if (pair->outgoing.bounces == 0)
         return SPLAT(-fan->reference_range);
-    const real slope = ray->direction.z;
+    const vfloat slope = ray->direction.z;
     const mask is_away = pair->outgoing.last_mirror == MIRROR_SEABED ? MASK_OF(slope > 1.0e-6f)
                                                                      : MASK_OF(slope < -1.0e-6f);
     const float height = pair->mirrors[pair->outgoing.last_mirror].height;
-    return CHOOSE(is_away, (height - ray->closest.z) / CHOOSE(is_away, slope, SPLAT(1.0f)),
+    return SELECT(is_away, (height - ray->closest.z) / SELECT(is_away, slope, SPLAT(1.0f)),
                   SPLAT(FAR_AWAY));
 }
 
@@ -135,26 +135,26 @@ struct mirrored_hit {
     mask is_hit;
     struct vector3 point, normal;
     struct vector3
-        start;   /* where rays that test visibility start, but for a step off the surface */
-    real range;  /* from the outgoing source less the reference range */
-    real cosine; /* of the angle of incidence */
+        start;     /* where rays that test visibility start, but for a step off the surface */
+    vfloat range;  /* from the outgoing source less the reference range */
+    vfloat cosine; /* of the angle of incidence */
 };
 
 FUNCTION struct mirrored_hit find_mirrored_hit(const struct fan_record *fan,
-                                               GLOBAL const struct source_pair_record *pair,
+                                               GLOBAL const struct image_pair_record *pair,
                                                GLOBAL const struct object_record *objects,
                                                enum wanted_face wanted, const struct fan_ray *ray,
                                                mask is_ray)
 {
     GLOBAL const struct object_record *object = &objects[fan->only_object];
-    const real past_mirrors = distance_past_mirrors(fan, pair, ray);
-    const real distance = object_distance(object, ray->closest, ray->direction, past_mirrors);
+    const vfloat past_mirrors = distance_past_mirrors(fan, pair, ray);
+    const vfloat distance = object_distance(object, ray->closest, ray->direction, past_mirrors);
     const mask on_object = is_ray & MASK_OF(distance < 0.5f * FAR_AWAY);
     struct mirrored_hit hit;
     hit.is_hit =
         on_object & MASK_OF(distance < seabed_distance(fan, objects, ray->closest, ray->direction,
                                                        past_mirrors, on_object));
-    const real safe = CHOOSE(hit.is_hit, distance, SPLAT(0.0f));
+    const vfloat safe = SELECT(hit.is_hit, distance, SPLAT(0.0f));
     hit.point = along3(ray->closest, ray->direction, safe);
     const struct surface_face face =
         object_face(object, wanted, ray->closest, ray->direction, safe);
@@ -167,35 +167,35 @@ FUNCTION struct mirrored_hit find_mirrored_hit(const struct fan_record *fan,
     return hit;
 }
 
-/* The path from the outgoing source by way of a hit home to the other. */
+/* The path from the outgoing source by way of a hit back to the other. */
 struct mirrored_path {
     mask is_open;
     struct line_from_source back; /* from the returning source to the hit */
-    real wavefront_out;           /* width per rad of the fan's elevation at the hit */
-    real range;                   /* half the path less that by way of the frame's origin */
-    real spreading;               /* square of half the path over the product of both legs */
-    real cosine_back;             /* between the normal and the way home */
-    real reflection_real, reflection_imaginary; /* of all mirrors */
+    vfloat wavefront_out;         /* width per rad of the fan's elevation at the hit */
+    vfloat range;                 /* half the path less that by way of the frame's origin */
+    vfloat spreading;             /* square of half the path over the product of both legs */
+    vfloat cosine_back;           /* between the normal and the return path */
+    vfloat reflection_real, reflection_imaginary; /* of all mirrors */
 };
 
 /* Square root of both legs' intensities, normalised by the square of half the path. A leg that no
  * layer bends has the spreading cos(grazing angle). */
-FUNCTION real spreading_through_layers(const struct fan_record *fan,
-                                       GLOBAL const struct source_pair_record *pair,
-                                       const struct fan_ray *ray, const struct mirrored_hit *hit,
-                                       const struct mirrored_path *path, real half_path)
+FUNCTION vfloat spreading_through_layers(const struct fan_record *fan,
+                                         GLOBAL const struct image_pair_record *pair,
+                                         const struct fan_ray *ray, const struct mirrored_hit *hit,
+                                         const struct mirrored_path *path, vfloat half_path)
 {
-    const real out = fan->table.pieces > 0 ? ray->spreading : ray->direction.y;
-    const real back =
+    const vfloat out = fan->table.pieces > 0 ? ray->spreading : ray->direction.y;
+    const vfloat back =
         pair->returning.table.pieces > 0 ? path->back.spreading : path->back.direction.y;
-    const real ground = pair->outgoing.table.ground_range + hit->point.y;
+    const vfloat ground = pair->outgoing.table.ground_range + hit->point.y;
     return SQUARE_ROOT(out * back / (path->wavefront_out * path->back.wavefront)) * half_path *
            half_path / ground;
 }
 
 FUNCTION struct mirrored_path follow_path(const struct fan_record *fan,
                                           GLOBAL const struct ray_piece_record *pieces,
-                                          GLOBAL const struct source_pair_record *pair,
+                                          GLOBAL const struct image_pair_record *pair,
                                           GLOBAL const struct object_record *objects,
                                           const struct fan_ray *ray, const struct mirrored_hit *hit,
                                           struct outcome_record *outcome)
@@ -204,7 +204,7 @@ FUNCTION struct mirrored_path follow_path(const struct fan_record *fan,
     path.back = line_from_source(&pair->returning, pieces, hit->point);
     path.wavefront_out = ray->wavefront + (hit->range - ray->range_at_closest);
     path.range = 0.5f * (hit->range + path.back.excess);
-    const real half_path = 0.5f * (fan->reference_range + pair->returning.range) + path.range;
+    const vfloat half_path = 0.5f * (fan->reference_range + pair->returning.range) + path.range;
     path.spreading = (half_path / path.wavefront_out) * (half_path / path.back.wavefront);
     if (fan->table.pieces > 0 || pair->returning.table.pieces > 0)
         path.spreading = spreading_through_layers(fan, pair, ray, hit, &path, half_path);
@@ -214,15 +214,15 @@ FUNCTION struct mirrored_path follow_path(const struct fan_record *fan,
     const struct vector3 start = along3(hit->start, hit->normal, SPLAT(2.0e-5f));
     const struct leg out = follow_leg(fan, pair, &pair->outgoing, objects, start,
                                       reversed3(ray->direction), path.wavefront_out, is_lit);
-    const struct leg home =
+    const struct leg returned =
         follow_leg(fan, pair, &pair->returning, objects, start, reversed3(path.back.direction),
                    path.back.wavefront, out.is_open);
     outcome->queries += count_lanes(is_lit) + count_lanes(out.is_open);
-    path.is_open = home.is_open;
-    path.reflection_real = out.reflection_real * home.reflection_real -
-                           out.reflection_imaginary * home.reflection_imaginary;
-    path.reflection_imaginary = out.reflection_real * home.reflection_imaginary +
-                                out.reflection_imaginary * home.reflection_real;
+    path.is_open = returned.is_open;
+    path.reflection_real = out.reflection_real * returned.reflection_real -
+                           out.reflection_imaginary * returned.reflection_imaginary;
+    path.reflection_imaginary = out.reflection_real * returned.reflection_imaginary +
+                                out.reflection_imaginary * returned.reflection_real;
     return path;
 }
 

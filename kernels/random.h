@@ -57,14 +57,14 @@ FUNCTION struct random_key random_key_of(RECORD_WORD seed_low, RECORD_WORD seed_
 }
 
 /* The middle of one of 2^23 equal parts of (0, 1), exact: never 0, never 1. */
-FUNCTION real uniform_from(word bits)
+FUNCTION vfloat uniform_from(word bits)
 {
-    return (REAL_OF(bits >> 9) + 0.5f) * 1.1920928955078125e-7f;
+    return (VFLOAT_OF(bits >> 9) + 0.5f) * 1.1920928955078125e-7f;
 }
 
 /* Two uniform deviates of (0, 1) for ray number `ray`; draw counts interactions and dimensions. */
-FUNCTION void two_uniforms(struct random_key key, word ray, RECORD_WORD draw, real *first,
-                           real *second)
+FUNCTION void two_uniforms(struct random_key key, word ray, RECORD_WORD draw, vfloat *first,
+                           vfloat *second)
 {
     word a = ray;
     word b = SPLAT_WORD(draw);
@@ -75,15 +75,15 @@ FUNCTION void two_uniforms(struct random_key key, word ray, RECORD_WORD draw, re
 
 /* The same and a coarser third, the middle of one of 2^18 equal parts, from the bits that the
  * others leave over: good enough to choose between a few things. */
-FUNCTION void three_uniforms(struct random_key key, word ray, RECORD_WORD draw, real *first,
-                             real *second, real *choice)
+FUNCTION void three_uniforms(struct random_key key, word ray, RECORD_WORD draw, vfloat *first,
+                             vfloat *second, vfloat *choice)
 {
     word a = ray;
     word b = SPLAT_WORD(draw);
     threefry(key.first, key.second, &a, &b);
     *first = uniform_from(a);
     *second = uniform_from(b);
-    *choice = (REAL_OF(((a & 511u) << 9) | (b & 511u)) + 0.5f) * 3.814697265625e-6f;
+    *choice = (VFLOAT_OF(((a & 511u) << 9) | (b & 511u)) + 0.5f) * 3.814697265625e-6f;
 }
 
 #endif

@@ -9,24 +9,25 @@
 
 /* A ray's line in the plane of its strip. */
 struct table_ray {
-    real offset;    /* of its closest point from the frame's origin, along `upward` */
-    real range;     /* at that point less the reference range */
-    real wavefront; /* width per rad of elevation there; grows by 1 m per m */
-    real spreading; /* struct water_ray */
+    vfloat offset;    /* of its closest point from the frame's origin, along `upward` */
+    vfloat range;     /* at that point less the reference range */
+    vfloat wavefront; /* width per rad of elevation there; grows by 1 m per m */
+    vfloat spreading; /* struct water_ray */
 };
 
 /* The offset a(e) is a cubic in each piece; the range is its integral, -da, because wavefronts
  * stand at right angles to rays, and the wavefront its derivative. */
 FUNCTION struct table_ray look_up_ray(struct ray_table_record table,
-                                      GLOBAL const struct ray_piece_record *pieces, real elevation)
+                                      GLOBAL const struct ray_piece_record *pieces,
+                                      vfloat elevation)
 {
-    const real place = (elevation - table.first_elevation) * table.pieces_per_radian;
-    const real inside = smaller(larger(place, SPLAT(0.0f)), SPLAT((float)table.pieces - 0.5f));
-    const whole number = WHOLE_OF(inside);
-    const real along = place - REAL_OF(number); /* beyond the table the last cubic goes on */
+    const vfloat place = (elevation - table.first_elevation) * table.pieces_per_radian;
+    const vfloat inside = smaller(larger(place, SPLAT(0.0f)), SPLAT((float)table.pieces - 0.5f));
+    const vint number = VINT_OF(inside);
+    const vfloat along = place - VFLOAT_OF(number); /* beyond the table the last cubic goes on */
     int numbers[WIDTH];
     float lanes[7][WIDTH];
-    STORE_WHOLE(number, numbers);
+    STORE_VINT(number, numbers);
     for (int lane = 0; lane < WIDTH; lane++) {
         GLOBAL const struct ray_piece_record *piece = &pieces[table.first_piece + numbers[lane]];
         for (int i = 0; i < 4; i++)
@@ -35,28 +36,28 @@ FUNCTION struct table_ray look_up_ray(struct ray_table_record table,
         lanes[5][lane] = piece->spreading;
         lanes[6][lane] = piece->spreading_growth;
     }
-    const real a0 = LOAD_REAL(lanes[0]), a1 = LOAD_REAL(lanes[1]);
-    const real a2 = LOAD_REAL(lanes[2]), a3 = LOAD_REAL(lanes[3]);
+    const vfloat a0 = LOAD_VFLOAT(lanes[0]), a1 = LOAD_VFLOAT(lanes[1]);
+    const vfloat a2 = LOAD_VFLOAT(lanes[2]), a3 = LOAD_VFLOAT(lanes[3]);
     struct table_ray ray;
     ray.offset = ((a3 * along + a2) * along + a1) * along + a0;
     ray.wavefront = ((3.0f * a3 * along + 2.0f * a2) * along + a1) * table.pieces_per_radian;
-    ray.range = LOAD_REAL(lanes[4]) -
+    ray.range = LOAD_VFLOAT(lanes[4]) -
                 (((0.25f * a3 * along + 0.33333333f * a2) * along + 0.5f * a1) * along + a0) *
                     along * table.radians_per_piece;
-    ray.spreading = LOAD_REAL(lanes[5]) + along * LOAD_REAL(lanes[6]);
+    ray.spreading = LOAD_VFLOAT(lanes[5]) + along * LOAD_VFLOAT(lanes[6]);
     return ray;
 }
 
 /* Directions in the plane of a strip: away from the source, and across it towards larger elevation,
  * which is counted from the direction to the frame's origin. */
 struct ray_directions {
-    real away_y, away_z;
+    vfloat away_y, away_z;
 };
 
 FUNCTION struct ray_directions directions_at(float cosine_depression, float sine_depression,
-                                             real elevation)
+                                             vfloat elevation)
 {
-    real sine, cosine;
+    vfloat sine, cosine;
     sine_cosine_of_cycles(elevation * 0.15915494309f, &sine, &cosine);
     cosine = SQUARE_ROOT(1.0f - sine * sine);
     struct ray_directions directions;
@@ -65,24 +66,24 @@ FUNCTION struct ray_directions directions_at(float cosine_depression, float sine
     return directions;
 }
 
-/* A ray where it is abreast of a point. */
+/* A ray where it is broadside of a point. */
 struct ray_to_point {
     struct ray_directions directions;
-    real beside;    /* how far the point lies to its upper side, m */
-    real range;     /* there less the reference range */
-    real wavefront; /* width per rad of elevation there */
-    real spreading;
+    vfloat beside;    /* how far the point lies to its upper side, m */
+    vfloat range;     /* there less the reference range */
+    vfloat wavefront; /* width per rad of elevation there */
+    vfloat spreading;
 };
 
-FUNCTION struct ray_to_point ray_abreast(struct ray_table_record table,
-                                         GLOBAL const struct ray_piece_record *pieces,
-                                         float cosine_depression, float sine_depression,
-                                         real elevation, real y, real z)
+FUNCTION struct ray_to_point broadside_ray(struct ray_table_record table,
+                                           GLOBAL const struct ray_piece_record *pieces,
+                                           float cosine_depression, float sine_depression,
+                                           vfloat elevation, vfloat y, vfloat z)
 {
     const struct table_ray ray = look_up_ray(table, pieces, elevation);
     struct ray_to_point to;
     to.directions = directions_at(cosine_depression, sine_depression, elevation);
-    const real along = y * to.directions.away_y + z * to.directions.away_z;
+    const vfloat along = y * to.directions.away_y + z * to.directions.away_z;
     to.beside = z * to.directions.away_y - y * to.directions.away_z - ray.offset;
     to.range = ray.range + along;
     to.wavefront = ray.wavefront + along;
@@ -97,26 +98,26 @@ FUNCTION struct ray_to_point ray_abreast(struct ray_table_record table,
  * The larger its elevation, the less is the point to its upper side. */
 FUNCTION struct ray_to_point find_ray_to(struct ray_table_record table,
                                          GLOBAL const struct ray_piece_record *pieces,
-                                         float cosine_depression, float sine_depression, real y,
-                                         real z)
+                                         float cosine_depression, float sine_depression, vfloat y,
+                                         vfloat z)
 {
-    real low = SPLAT(table.first_elevation);
-    real high = low + (float)table.pieces * table.radians_per_piece;
-    real elevation = smaller(larger(SPLAT(0.0f), low), high);
+    vfloat low = SPLAT(table.first_elevation);
+    vfloat high = low + (float)table.pieces * table.radians_per_piece;
+    vfloat elevation = smaller(larger(SPLAT(0.0f), low), high);
     mask is_searching = MASK_OF(elevation == elevation);
     for (int i = 0; i < RAY_SEARCH_STEPS && ANY(is_searching); i++) {
         const struct ray_to_point to =
-            ray_abreast(table, pieces, cosine_depression, sine_depression, elevation, y, z);
+            broadside_ray(table, pieces, cosine_depression, sine_depression, elevation, y, z);
         const mask is_above = MASK_OF(to.beside > 0.0f);
-        low = CHOOSE(is_above, elevation, low);
-        high = CHOOSE(is_above, high, elevation);
-        const real newton = elevation + to.beside / larger(to.wavefront, SPLAT(1.0e-3f));
+        low = SELECT(is_above, elevation, low);
+        high = SELECT(is_above, high, elevation);
+        const vfloat newton = elevation + to.beside / larger(to.wavefront, SPLAT(1.0e-3f));
         const mask is_guarded = MASK_OF(newton > low) & MASK_OF(newton < high);
         is_searching = is_searching & MASK_OF(magnitude(to.beside) > RAY_NEAR_ENOUGH);
         elevation =
-            CHOOSE(is_searching, CHOOSE(is_guarded, newton, 0.5f * (low + high)), elevation);
+            SELECT(is_searching, SELECT(is_guarded, newton, 0.5f * (low + high)), elevation);
     }
-    return ray_abreast(table, pieces, cosine_depression, sine_depression, elevation, y, z);
+    return broadside_ray(table, pieces, cosine_depression, sine_depression, elevation, y, z);
 }
 
 #endif

@@ -21,8 +21,8 @@ FUNCTION float map_value(const struct fan_record *fan, GLOBAL const float *map, 
 }
 
 /* Slant range of a point from the track less the reference range. */
-FUNCTION real range_abreast(const struct fan_record *fan,
-                            GLOBAL const struct ray_piece_record *pieces, struct vector3 point)
+FUNCTION vfloat broadside_range(const struct fan_record *fan,
+                                GLOBAL const struct ray_piece_record *pieces, struct vector3 point)
 {
     if (fan->table.pieces > 0)
         return find_ray_to(fan->table, pieces, fan->cosine_depression, fan->sine_depression,
@@ -30,40 +30,41 @@ FUNCTION real range_abreast(const struct fan_record *fan,
             .range;
     /* formed as in way_to_source */
     const float r = fan->reference_range;
-    const real square =
+    const vfloat square =
         point.y * point.y + point.z * point.z +
         2.0f * r * (point.y * fan->cosine_depression - point.z * fan->sine_depression);
     return square / (SQUARE_ROOT(larger(square + r * r, SPLAT(0.0f))) + r);
 }
 
 /* The same of the mean seabed's point under or over a point: the image shows a level seabed. */
-FUNCTION real range_in_plan(const struct fan_record *fan,
-                            GLOBAL const struct ray_piece_record *pieces, struct vector3 point)
+FUNCTION vfloat range_in_plan(const struct fan_record *fan,
+                              GLOBAL const struct ray_piece_record *pieces, struct vector3 point)
 {
     point.z = SPLAT(fan->seabed_height);
-    return range_abreast(fan, pieces, point);
+    return broadside_range(fan, pieces, point);
 }
 
 /* The map at hits of a chain on the seabed where it rules sound that goes on, else 1. */
-FUNCTION real map_factor(const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
-                         GLOBAL const struct chain_record *chains, GLOBAL const float *map,
-                         const struct chain_hit *hit)
+FUNCTION vfloat map_factor(const struct fan_record *fan,
+                           GLOBAL const struct ray_piece_record *pieces,
+                           GLOBAL const struct chain_record *chains, GLOBAL const float *map,
+                           const struct chain_hit *hit)
 {
     const mask on_seabed = hit->is_hit & MASK_OF(hit->surface == -1);
     if (!chains->forward_is_map || !ANY(on_seabed))
         return SPLAT(1.0f);
-    const real range = has_relief(fan) ? range_in_plan(fan, pieces, hit->point)
-                                       : range_abreast(fan, pieces, hit->point);
-    const real row = fan->map_row_at_origin + hit->point.x * fan->map_rows_per_metre;
-    const real column = fan->map_first_column + range * fan->map_columns_per_metre;
-    const real safe_row = smaller(larger(row, SPLAT(-1.0f)), SPLAT(1.0e8f));
-    const real safe_column = smaller(larger(column, SPLAT(-1.0f)), SPLAT(1.0e8f));
+    const vfloat range = has_relief(fan) ? range_in_plan(fan, pieces, hit->point)
+                                         : broadside_range(fan, pieces, hit->point);
+    const vfloat row = fan->map_row_at_origin + hit->point.x * fan->map_rows_per_metre;
+    const vfloat column = fan->map_first_column + range * fan->map_columns_per_metre;
+    const vfloat safe_row = smaller(larger(row, SPLAT(-1.0f)), SPLAT(1.0e8f));
+    const vfloat safe_column = smaller(larger(column, SPLAT(-1.0f)), SPLAT(1.0e8f));
     float rows[WIDTH], columns[WIDTH], values[WIDTH];
-    STORE_REAL(safe_row, rows);
-    STORE_REAL(safe_column, columns);
+    STORE_VFLOAT(safe_row, rows);
+    STORE_VFLOAT(safe_column, columns);
     for (int lane = 0; lane < WIDTH; lane++)
         values[lane] = map_value(fan, map, rows[lane], columns[lane]);
-    return CHOOSE(on_seabed, LOAD_REAL(values), SPLAT(1.0f));
+    return SELECT(on_seabed, LOAD_VFLOAT(values), SPLAT(1.0f));
 }
 
 #endif

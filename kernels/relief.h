@@ -24,25 +24,26 @@ FUNCTION struct relief_view relief_of(const struct fan_record *fan,
 
 /* Distance along each ray to the seabed beyond `minimum`, FAR_AWAY if there is none. to_plane: to
  * the mean plane. Lanes that are not wanted keep that. */
-APART real relief_distance(const struct fan_record *fan, GLOBAL const struct object_record *objects,
-                           struct vector3 point, struct vector3 direction, real minimum,
-                           real to_plane, mask is_wanted)
+NOINLINE vfloat relief_distance(const struct fan_record *fan,
+                                GLOBAL const struct object_record *objects, struct vector3 point,
+                                struct vector3 direction, vfloat minimum, vfloat to_plane,
+                                mask is_wanted)
 {
     const struct relief_view relief = relief_of(fan, objects);
     const float rows = relief.grid->rows_per_metre;
     const float columns = relief.grid->columns_per_metre;
-    const real starts[3] = {(point.x - fan->relief_x) * rows, (point.y - fan->relief_y) * columns,
-                            point.z - fan->seabed_height};
-    const real gains[3] = {direction.x * rows, direction.y * columns, direction.z};
+    const vfloat starts[3] = {(point.x - fan->relief_x) * rows, (point.y - fan->relief_y) * columns,
+                              point.z - fan->seabed_height};
+    const vfloat gains[3] = {direction.x * rows, direction.y * columns, direction.z};
     float start[3][WIDTH], gain[3][WIDTH], plane[WIDTH], least[WIDTH];
     int wanted[WIDTH];
     for (int axis = 0; axis < 3; axis++) {
-        STORE_REAL(starts[axis], start[axis]);
-        STORE_REAL(gains[axis], gain[axis]);
+        STORE_VFLOAT(starts[axis], start[axis]);
+        STORE_VFLOAT(gains[axis], gain[axis]);
     }
-    STORE_REAL(to_plane, plane);
-    STORE_REAL(minimum, least);
-    STORE_WHOLE(is_wanted, wanted);
+    STORE_VFLOAT(to_plane, plane);
+    STORE_VFLOAT(minimum, least);
+    STORE_VINT(is_wanted, wanted);
     for (int lane = 0; lane < WIDTH; lane++) {
         if (!wanted[lane])
             continue;
@@ -53,7 +54,7 @@ APART real relief_distance(const struct fan_record *fan, GLOBAL const struct obj
         ray.rise = gain[2][lane];
         plane[lane] = relief_distance_of_one(relief, &ray, plane[lane], least[lane]);
     }
-    return LOAD_REAL(plane);
+    return LOAD_VFLOAT(plane);
 }
 
 /* Slope at a grid coordinate, mixed from those at the cell's corners, so that light does not show
@@ -73,29 +74,29 @@ FUNCTION float slope_at(struct relief_view relief, float row, float column, int 
 }
 
 /* Unit normal at points of the relief that rays of these directions have met, on their side. */
-APART struct vector3 relief_normal(const struct fan_record *fan,
-                                   GLOBAL const struct object_record *objects, struct vector3 point,
-                                   struct vector3 direction)
+NOINLINE struct vector3 relief_normal(const struct fan_record *fan,
+                                      GLOBAL const struct object_record *objects,
+                                      struct vector3 point, struct vector3 direction)
 {
     const struct relief_view relief = relief_of(fan, objects);
-    const real row = (point.x - fan->relief_x) * relief.grid->rows_per_metre;
-    const real column = (point.y - fan->relief_y) * relief.grid->columns_per_metre;
+    const vfloat row = (point.x - fan->relief_x) * relief.grid->rows_per_metre;
+    const vfloat column = (point.y - fan->relief_y) * relief.grid->columns_per_metre;
     float rows[WIDTH], columns[WIDTH], slopes[2][WIDTH];
-    STORE_REAL(row, rows);
-    STORE_REAL(column, columns);
+    STORE_VFLOAT(row, rows);
+    STORE_VFLOAT(column, columns);
     for (int lane = 0; lane < WIDTH; lane++)
         for (int part = 0; part < 2; part++)
             slopes[part][lane] = slope_at(relief, rows[lane], columns[lane], part);
-    const real along = LOAD_REAL(slopes[0]);
-    const real across = LOAD_REAL(slopes[1]);
-    const real up = 1.0f / SQUARE_ROOT(along * along + across * across + 1.0f);
+    const vfloat along = LOAD_VFLOAT(slopes[0]);
+    const vfloat across = LOAD_VFLOAT(slopes[1]);
+    const vfloat up = 1.0f / SQUARE_ROOT(along * along + across * across + 1.0f);
     struct vector3 normal;
     normal.x = -along * up;
     normal.y = -across * up;
     normal.z = up;
-    const real lack = larger(RELIEF_LEAST_COSINE + dot3(normal, direction), SPLAT(0.0f));
+    const vfloat lack = larger(RELIEF_LEAST_COSINE + dot3(normal, direction), SPLAT(0.0f));
     const struct vector3 bent = along3(normal, direction, -lack);
-    const real length = SQUARE_ROOT(dot3(bent, bent));
+    const vfloat length = SQUARE_ROOT(dot3(bent, bent));
     struct vector3 unit;
     unit.x = bent.x / length;
     unit.y = bent.y / length;

@@ -23,11 +23,11 @@ FUNCTION int has_relief(const struct fan_record *fan)
 
 /* Distance to the seabed beyond `minimum` (a plane has but one), FAR_AWAY if there is none; for
  * lanes that are not wanted, to the plane. */
-FUNCTION real seabed_distance(const struct fan_record *fan,
-                              GLOBAL const struct object_record *objects, struct vector3 point,
-                              struct vector3 direction, real minimum, mask is_wanted)
+FUNCTION vfloat seabed_distance(const struct fan_record *fan,
+                                GLOBAL const struct object_record *objects, struct vector3 point,
+                                struct vector3 direction, vfloat minimum, mask is_wanted)
 {
-    const real to_plane = plane_distance(fan, point, direction);
+    const vfloat to_plane = plane_distance(fan, point, direction);
 #if HAS_RELIEF
     if (has_relief(fan))
         return relief_distance(fan, objects, point, direction, minimum, to_plane, is_wanted);
@@ -61,7 +61,7 @@ FUNCTION struct vector3 seabed_normal(const struct fan_record *fan,
 /* Whether no relief is between two points. Over the plane nothing is: both are above it. */
 FUNCTION mask is_clear_of_relief(const struct fan_record *fan,
                                  GLOBAL const struct object_record *objects, struct vector3 point,
-                                 struct vector3 direction, real length, mask is_wanted)
+                                 struct vector3 direction, vfloat length, mask is_wanted)
 {
     if (!has_relief(fan))
         return is_wanted;

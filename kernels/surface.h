@@ -4,10 +4,10 @@
 #ifndef SONJECT_KERNELS_SURFACE_H
 #define SONJECT_KERNELS_SURFACE_H
 
+#include "brdf.h"
 #include "elementary.h"
 #include "fluid.h"
 #include "layout.h"
-#include "lobes.h"
 #include "vector3.h"
 
 FUNCTION int has_smooth_part(GLOBAL const struct surface_record *surface)
@@ -23,8 +23,8 @@ FUNCTION int has_rough_part(GLOBAL const struct surface_record *surface)
 }
 
 /* R at the cosine of the angle of incidence, a complex number. */
-FUNCTION void plane_reflection(GLOBAL const struct surface_record *surface, real cosine,
-                               real *real_part, real *imaginary_part)
+FUNCTION void plane_reflection(GLOBAL const struct surface_record *surface, vfloat cosine,
+                               vfloat *real_part, vfloat *imaginary_part)
 {
     if (surface->reflection_kind == REFLECTION_FLUID) {
         fluid_reflection(surface, cosine, real_part, imaginary_part);
@@ -35,11 +35,11 @@ FUNCTION void plane_reflection(GLOBAL const struct surface_record *surface, real
 }
 
 /* Amplitude of the mirror-like part, R exp(-P^2 / 2), P = 2 k eta cos(angle). */
-FUNCTION void smooth_reflection(GLOBAL const struct surface_record *surface, real cosine,
-                                real *real_part, real *imaginary_part)
+FUNCTION void smooth_reflection(GLOBAL const struct surface_record *surface, vfloat cosine,
+                                vfloat *real_part, vfloat *imaginary_part)
 {
-    const real phase = surface->roughness_phase * cosine;
-    const real kept = exponential_of_negative(-0.5f * phase * phase);
+    const vfloat phase = surface->roughness_phase * cosine;
+    const vfloat kept = exponential_of_negative(-0.5f * phase * phase);
     plane_reflection(surface, cosine, real_part, imaginary_part);
     *real_part = *real_part * kept;
     *imaginary_part = *imaginary_part * kept;
@@ -52,11 +52,11 @@ FUNCTION float rough_albedo(GLOBAL const struct surface_record *surface)
 }
 
 /* Energy of the mirror-like part, |R|^2 exp(-P^2). */
-FUNCTION real mirror_energy(GLOBAL const struct surface_record *surface, real cosine)
+FUNCTION vfloat mirror_energy(GLOBAL const struct surface_record *surface, vfloat cosine)
 {
-    real real_part, imaginary_part;
+    vfloat real_part, imaginary_part;
     smooth_reflection(surface, cosine, &real_part, &imaginary_part);
-    const real energy = real_part * real_part + imaginary_part * imaginary_part;
+    const vfloat energy = real_part * real_part + imaginary_part * imaginary_part;
     if (surface->rough_is_apart)
         return energy * (1.0f - rough_albedo(surface));
     return energy;
@@ -64,26 +64,26 @@ FUNCTION real mirror_energy(GLOBAL const struct surface_record *surface, real co
 
 /* What roughness takes out of the mirror direction of a smooth surface, 1 - exp(-P^2); of a
  * fluid's, whose reflection depends on the angle, |R|^2 of it. */
-FUNCTION real scattered_fraction(GLOBAL const struct surface_record *surface, real cosine)
+FUNCTION vfloat scattered_fraction(GLOBAL const struct surface_record *surface, vfloat cosine)
 {
-    const real phase = surface->roughness_phase * cosine;
-    const real fraction = 1.0f - exponential_of_negative(-phase * phase);
+    const vfloat phase = surface->roughness_phase * cosine;
+    const vfloat fraction = 1.0f - exponential_of_negative(-phase * phase);
     if (surface->reflection_kind != REFLECTION_FLUID)
         return fraction;
-    real real_part, imaginary_part;
+    vfloat real_part, imaginary_part;
     fluid_reflection(surface, cosine, &real_part, &imaginary_part);
     return fraction * (real_part * real_part + imaginary_part * imaginary_part);
 }
 
 /* Scattering per area and solid angle over cos cos (the f of kernels/MATH.md) from one direction
  * into the other; the same both ways. 0 where a direction is not above the surface. */
-FUNCTION real rough_scattering(GLOBAL const struct surface_record *surface, struct vector3 normal,
-                               struct vector3 one, struct vector3 other)
+FUNCTION vfloat rough_scattering(GLOBAL const struct surface_record *surface, struct vector3 normal,
+                                 struct vector3 one, struct vector3 other)
 {
-    const real cosine_one = dot3(normal, one);
-    const real cosine_other = dot3(normal, other);
+    const vfloat cosine_one = dot3(normal, one);
+    const vfloat cosine_other = dot3(normal, other);
     const mask is_above = MASK_OF(cosine_one > 0.0f) & MASK_OF(cosine_other > 0.0f);
-    real scattering =
+    vfloat scattering =
         surface->lambert * diffuse_shape(cosine_one, cosine_other, surface->lambert_exponent);
     if (surface->glossy_albedo > 0.0f)
         scattering +=
@@ -91,7 +91,7 @@ FUNCTION real rough_scattering(GLOBAL const struct surface_record *surface, stru
     if (has_smooth_part(surface) && !surface->rough_is_apart)
         scattering = scattering * (scattered_fraction(surface, cosine_one) *
                                    scattered_fraction(surface, cosine_other));
-    return CHOOSE(is_above, scattering, SPLAT(0.0f));
+    return SELECT(is_above, scattering, SPLAT(0.0f));
 }
 
 /* Share of the cone in the directions that are drawn. */
@@ -105,7 +105,7 @@ FUNCTION float cone_share(GLOBAL const struct surface_record *surface)
  * lie below the surface: then its scattering is 0. */
 FUNCTION struct vector3 sample_rough_direction(GLOBAL const struct surface_record *surface,
                                                struct vector3 normal, struct vector3 back,
-                                               real choice, real u, real v)
+                                               vfloat choice, vfloat u, vfloat v)
 {
     const float share = cone_share(surface);
     if (share == 0.0f)
@@ -118,17 +118,17 @@ FUNCTION struct vector3 sample_rough_direction(GLOBAL const struct surface_recor
 }
 
 /* Density of these directions, 1/sr; 0 below the surface. */
-FUNCTION real rough_direction_density(GLOBAL const struct surface_record *surface,
-                                      struct vector3 normal, struct vector3 back,
-                                      struct vector3 direction)
+FUNCTION vfloat rough_direction_density(GLOBAL const struct surface_record *surface,
+                                        struct vector3 normal, struct vector3 back,
+                                        struct vector3 direction)
 {
     const float share = cone_share(surface);
-    const real cosine = dot3(normal, direction);
-    const real diffuse = diffuse_density(cosine, surface->lambert_exponent);
+    const vfloat cosine = dot3(normal, direction);
+    const vfloat diffuse = diffuse_density(cosine, surface->lambert_exponent);
     if (share == 0.0f)
         return diffuse;
-    const real cone = cone_density(normal, back, direction, surface->glossy_slope);
-    return CHOOSE(MASK_OF(cosine > 0.0f), share * cone + (1.0f - share) * diffuse, SPLAT(0.0f));
+    const vfloat cone = cone_density(normal, back, direction, surface->glossy_slope);
+    return SELECT(MASK_OF(cosine > 0.0f), share * cone + (1.0f - share) * diffuse, SPLAT(0.0f));
 }
 
 #endif

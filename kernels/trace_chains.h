@@ -13,18 +13,18 @@
  * for 1 / (A cos theta). */
 FUNCTION void count_arrival(const struct fan_record *fan, GLOBAL const struct chain_record *chains,
                             int order, const struct chain *chain, const struct chain_step *step,
-                            real to_next_hit, struct chain_echo *echo)
+                            vfloat to_next_hit, struct chain_echo *echo)
 {
     const struct vector3 to = to_receiver(fan, chain->hit.point, chain->first_x);
     /* the rectangle's normal is the central direction, across it lies `up` */
-    const real cosine =
+    const vfloat cosine =
         -(step->direction.y * fan->cosine_depression - step->direction.z * fan->sine_depression);
-    const real distance_across = -(to.y * fan->cosine_depression - to.z * fan->sine_depression);
+    const vfloat distance_across = -(to.y * fan->cosine_depression - to.z * fan->sine_depression);
     const mask is_towards = MASK_OF(cosine > 1.0e-6f);
-    const real path = distance_across / CHOOSE(is_towards, cosine, SPLAT(1.0f));
-    const real off_x = step->direction.x * path - to.x;
-    const real off_up = (step->direction.y * path - to.y) * fan->sine_depression +
-                        (step->direction.z * path - to.z) * fan->cosine_depression;
+    const vfloat path = distance_across / SELECT(is_towards, cosine, SPLAT(1.0f));
+    const vfloat off_x = step->direction.x * path - to.x;
+    const vfloat off_up = (step->direction.y * path - to.y) * fan->sine_depression +
+                          (step->direction.z * path - to.z) * fan->cosine_depression;
     const float half_side = 0.5f * fan->source_side;
     /* what mirrors alone bring is the coherent part's */
     const mask met_rough = ~(chain->only_mirrors & step->is_mirror);
@@ -32,12 +32,12 @@ FUNCTION void count_arrival(const struct fan_record *fan, GLOBAL const struct ch
                          MASK_OF(path < to_next_hit) & MASK_OF(magnitude(off_x) < half_side) &
                          MASK_OF(magnitude(off_up) < half_side);
     const float area = fan->source_side * fan->source_side;
-    const real energy = CHOOSE(
-        arrives, chain->energy * step->weight / (CHOOSE(arrives, cosine, SPLAT(1.0f)) * area),
+    const vfloat energy = SELECT(
+        arrives, chain->energy * step->weight / (SELECT(arrives, cosine, SPLAT(1.0f)) * area),
         SPLAT(0.0f));
-    const real range = 0.5f * (chain->range + chain->length + (path - fan->reference_range));
-    const real half_path = fan->reference_range + range;
-    const real square = half_path * half_path;
+    const vfloat range = 0.5f * (chain->range + chain->length + (path - fan->reference_range));
+    const vfloat half_path = fan->reference_range + range;
+    const vfloat square = half_path * half_path;
     keep_echo(fan, chains, count_ways(chains, order, chain), chain, energy, range, square * square,
               echo);
 }
@@ -49,7 +49,7 @@ FUNCTION struct fan_ray middle_ray(const struct fan_record *fan,
                                    GLOBAL const struct ray_piece_record *pieces, int strip,
                                    word block)
 {
-    const real rays = (REAL_OF(block) + 0.5f) * (float)THIN_BLOCK;
+    const vfloat rays = (VFLOAT_OF(block) + 0.5f) * (float)THIN_BLOCK;
     return fan_ray_at(fan, pieces, SPLAT(strip_position(fan, strip)),
                       fan->first_elevation + rays * fan->elevation_step);
 }
@@ -61,14 +61,14 @@ FUNCTION mask may_meet_target(const struct fan_record *fan,
                               GLOBAL const struct sphere_record *spheres,
                               const struct fan_ray *middle)
 {
-    const real up = 0.5f * (float)THIN_BLOCK * fan->elevation_step * middle->wavefront;
-    const real margin = 1.1f * (0.5f * fan->strip_width + magnitude(up));
+    const vfloat up = 0.5f * (float)THIN_BLOCK * fan->elevation_step * middle->wavefront;
+    const vfloat margin = 1.1f * (0.5f * fan->strip_width + magnitude(up));
     mask may_meet = MASK_OF(margin < 0.0f);
     for (int i = 0; i < chains->spheres; i++) {
         const struct vector3 way = to_sphere(&spheres[i], middle->closest);
-        const real along = dot3(way, middle->direction);
+        const vfloat along = dot3(way, middle->direction);
         const struct vector3 miss = along3(way, middle->direction, -along);
-        const real reach = spheres[i].radius * 1.001f + margin;
+        const vfloat reach = spheres[i].radius * 1.001f + margin;
         may_meet = may_meet | MASK_OF(dot3(miss, miss) < reach * reach);
     }
     return may_meet;
@@ -86,15 +86,16 @@ FUNCTION mask may_be_mirrored_to_target(const struct fan_record *fan,
     return may_meet_target(fan, chains, spheres, &mirrored);
 }
 
-/* What a ray of each of WIDTH blocks stands for, 0: not followed. Seabed far from the targets
+/* The throughput of a ray of each of WIDTH blocks, 0: not followed. Seabed far from the targets
  * exchanges little sound with them unless it mirrors, so of its rays only some blocks are followed
  * and stand for the others. Of an object's own rays those blocks are left out that cannot meet it.
  */
-FUNCTION real thin_out(const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
-                       GLOBAL const struct chain_record *chains,
-                       GLOBAL const struct object_record *objects,
-                       GLOBAL const struct sphere_record *spheres, struct random_key key, int strip,
-                       word block)
+FUNCTION vfloat russian_roulette(const struct fan_record *fan,
+                                 GLOBAL const struct ray_piece_record *pieces,
+                                 GLOBAL const struct chain_record *chains,
+                                 GLOBAL const struct object_record *objects,
+                                 GLOBAL const struct sphere_record *spheres, struct random_key key,
+                                 int strip, word block)
 {
     const int begins_on_seabed = fan->only_object == -1;
     if (fan->only_object < -1 || (begins_on_seabed && chains->seabed_share == 0.0f) ||
@@ -102,45 +103,45 @@ FUNCTION real thin_out(const struct fan_record *fan, GLOBAL const struct ray_pie
         return SPLAT(1.0f);
     const struct fan_ray middle = middle_ray(fan, pieces, strip, block);
     if (!begins_on_seabed)
-        return CHOOSE(may_meet_target(fan, chains, spheres, &middle), SPLAT(1.0f), SPLAT(0.0f));
-    const real to_seabed =
+        return SELECT(may_meet_target(fan, chains, spheres, &middle), SPLAT(1.0f), SPLAT(0.0f));
+    const vfloat to_seabed =
         seabed_distance(fan, objects, middle.closest, middle.direction,
                         SPLAT(-fan->reference_range), MASK_OF(block < fan->rays));
     const mask is_seabed = MASK_OF(to_seabed < 0.5f * FAR_AWAY);
     const struct vector3 point =
-        along3(middle.closest, middle.direction, CHOOSE(is_seabed, to_seabed, SPLAT(0.0f)));
+        along3(middle.closest, middle.direction, SELECT(is_seabed, to_seabed, SPLAT(0.0f)));
     mask is_inside;
-    const real sum = sum_of_openings(spheres, chains->spheres, point, &is_inside);
-    real share = CHOOSE(is_inside | ~is_seabed, SPLAT(1.0f),
-                        smaller(chains->seabed_share * sum, SPLAT(1.0f)));
+    const vfloat sum = sum_of_openings(spheres, chains->spheres, point, &is_inside);
+    vfloat share = SELECT(is_inside | ~is_seabed, SPLAT(1.0f),
+                          smaller(chains->seabed_share * sum, SPLAT(1.0f)));
     if (has_smooth_part(&chains->seabed))
-        share = CHOOSE(may_be_mirrored_to_target(fan, chains, spheres, &middle, point), SPLAT(1.0f),
+        share = SELECT(may_be_mirrored_to_target(fan, chains, spheres, &middle, point), SPLAT(1.0f),
                        share);
-    real chosen, unused;
+    vfloat chosen, unused;
     two_uniforms(key, block, 1, &chosen, &unused);
     const mask is_followed = MASK_OF(chosen < share);
-    return CHOOSE(is_followed, 1.0f / CHOOSE(is_followed, share, SPLAT(1.0f)), SPLAT(0.0f));
+    return SELECT(is_followed, 1.0f / SELECT(is_followed, share, SPLAT(1.0f)), SPLAT(0.0f));
 }
 
 /* Sends out one group of rays. */
 FUNCTION void begin_chain(const struct fan_record *fan,
                           GLOBAL const struct ray_piece_record *pieces,
                           GLOBAL const struct object_record *objects, int strip,
-                          struct random_key key, RECORD_WORD first_ray, float stands_for,
+                          struct random_key key, RECORD_WORD first_ray, float throughput,
                           const struct target_choice *choice, struct chain *chain)
 {
     chain->choice = choice;
     chain->key = key;
     chain->number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
     const mask is_ray = MASK_OF(chain->number < fan->rays);
-    real along, across;
+    vfloat along, across;
     three_uniforms(key, chain->number, 0, &along, &across, &chain->chance);
-    const real x = strip_position(fan, strip) + (along - 0.5f) * fan->strip_width;
-    const struct fan_ray ray =
-        fan_ray_at(fan, pieces, x,
-                   fan->first_elevation + (REAL_OF(chain->number) + across) * fan->elevation_step);
+    const vfloat x = strip_position(fan, strip) + (along - 0.5f) * fan->strip_width;
+    const struct fan_ray ray = fan_ray_at(
+        fan, pieces, x,
+        fan->first_elevation + (VFLOAT_OF(chain->number) + across) * fan->elevation_step);
     chain->hit = find_chain_hit(fan, objects, FACE_OF_SCATTERING, ray.closest, ray.direction,
-                                -fan->reference_range, WHOLE_OF(SPLAT(-1.0f)), is_ray);
+                                -fan->reference_range, VINT_OF(SPLAT(-1.0f)), is_ray);
     chain->range = ray.range_at_closest + chain->hit.distance;
     chain->length = SPLAT(0.0f);
     chain->first_x = x;
@@ -155,28 +156,28 @@ FUNCTION void begin_chain(const struct fan_record *fan,
     chain->only_level_mirrors = chain->is_alive;
     /* the strip of wavefront w r de over r^2; through layers r de widens and 1/r^2 is s/(ground r)
      */
-    const real ground =
+    const vfloat ground =
         fan->table.pieces > 0 ? fan->table.ground_range + chain->hit.point.y : SPLAT(1.0f);
     chain->first_reach =
         fan->table.pieces > 0 ? ground / ray.direction.y : fan->reference_range + chain->range;
-    const real spreading =
+    const vfloat spreading =
         fan->table.pieces > 0 ? ray.spreading / ground : 1.0f / chain->first_reach;
-    chain->energy = stands_for * fan->strip_width * fan->elevation_step * fan->quanta *
-                    CHOOSE(chain->is_alive, spreading, SPLAT(1.0f));
+    chain->energy = throughput * fan->strip_width * fan->elevation_step * fan->quanta *
+                    SELECT(chain->is_alive, spreading, SPLAT(1.0f));
 }
 
 /* Behind level mirrors sound spreads from the sonar's image: the ray's strip of the wavefront grows
  * with the whole way, and its energy falls. Before the chain goes `distance` further. */
-FUNCTION void spread_from_image(struct chain *chain, const struct chain_step *step, real distance)
+FUNCTION void spread_from_image(struct chain *chain, const struct chain_step *step, vfloat distance)
 {
     chain->only_level_mirrors =
         chain->only_level_mirrors & step->is_mirror & MASK_OF(chain->hit.surface < 0);
     if (!ANY(chain->only_level_mirrors))
         return;
-    const real reach =
-        chain->first_reach + CHOOSE(chain->only_level_mirrors, distance, SPLAT(0.0f));
+    const vfloat reach =
+        chain->first_reach + SELECT(chain->only_level_mirrors, distance, SPLAT(0.0f));
     chain->energy =
-        chain->energy * CHOOSE(chain->only_level_mirrors, chain->first_reach / reach, SPLAT(1.0f));
+        chain->energy * SELECT(chain->only_level_mirrors, chain->first_reach / reach, SPLAT(1.0f));
     chain->first_reach = reach;
 }
 
@@ -187,13 +188,13 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
                                 GLOBAL const struct object_record *objects,
                                 GLOBAL const struct sphere_record *spheres, GLOBAL const float *map,
                                 GLOBAL TALLY *tallies, int strip, struct random_key key,
-                                RECORD_WORD first_ray, float stands_for,
+                                RECORD_WORD first_ray, float throughput,
                                 const struct target_choice *choice, struct outcome_record *outcome)
 {
     struct chain chain;
     struct chain_echo echo;
     const int is_connected = chains->estimator == CHAINS_CONNECT;
-    begin_chain(fan, pieces, objects, strip, key, first_ray, stands_for, choice, &chain);
+    begin_chain(fan, pieces, objects, strip, key, first_ray, throughput, choice, &chain);
     for (int order = 1; order <= chains->interactions && ANY(chain.is_alive); order++) {
         const RECORD_WORD draw = 4u * (RECORD_WORD)order;
         if (is_connected && order >= chains->first_order) {
@@ -216,8 +217,8 @@ FUNCTION void trace_chain_group(const struct fan_record *fan,
         if (has_sea_surface(chains))
             meet_sea_surface(chains, start_from(&chain.hit), step.direction, goes_on, &next);
         if (!is_connected) {
-            const real clear =
-                CHOOSE(next.is_hit, next.distance, CHOOSE(goes_on, SPLAT(FAR_AWAY), SPLAT(-1.0f)));
+            const vfloat clear =
+                SELECT(next.is_hit, next.distance, SELECT(goes_on, SPLAT(FAR_AWAY), SPLAT(-1.0f)));
             count_arrival(fan, chains, order, &chain, &step, clear, &echo);
             tally_chain_echo(fan, chains, tallies, order, &echo, outcome);
         }
@@ -256,21 +257,21 @@ FUNCTION void aim_choice(const struct fan_record *fan, GLOBAL const struct ray_p
                          GLOBAL const struct sphere_record *spheres, int strip,
                          RECORD_WORD first_ray, struct target_choice *choice)
 {
-    const real number = SPLAT((float)first_ray) + 0.5f * (float)CHOICE_RAYS;
+    const vfloat number = SPLAT((float)first_ray) + 0.5f * (float)CHOICE_RAYS;
     const struct fan_ray middle = fan_ray_at(fan, pieces, SPLAT(strip_position(fan, strip)),
                                              fan->first_elevation + number * fan->elevation_step);
-    const real to_seabed = plane_distance(fan, middle.closest, middle.direction);
+    const vfloat to_seabed = plane_distance(fan, middle.closest, middle.direction);
     const mask is_seabed = MASK_OF(to_seabed < 0.5f * FAR_AWAY);
-    const real distance = CHOOSE(is_seabed, to_seabed, SPLAT(0.0f));
+    const vfloat distance = SELECT(is_seabed, to_seabed, SPLAT(0.0f));
     const struct vector3 point = along3(middle.closest, middle.direction, distance);
-    const real apart = 0.5f * (float)CHOICE_RAYS * fan->elevation_step *
-                       (middle.wavefront + distance) / larger(-middle.direction.z, SPLAT(0.05f));
-    const real square = apart * apart + 0.25f * fan->strip_width * fan->strip_width;
+    const vfloat apart = 0.5f * (float)CHOICE_RAYS * fan->elevation_step *
+                         (middle.wavefront + distance) / larger(-middle.direction.z, SPLAT(0.05f));
+    const vfloat square = apart * apart + 0.25f * fan->strip_width * fan->strip_width;
     float x[WIDTH], y[WIDTH], z[WIDTH], blur[WIDTH];
-    STORE_REAL(point.x, x);
-    STORE_REAL(point.y, y);
-    STORE_REAL(point.z, z);
-    STORE_REAL(square, blur);
+    STORE_VFLOAT(point.x, x);
+    STORE_VFLOAT(point.y, y);
+    STORE_VFLOAT(point.z, z);
+    STORE_VFLOAT(square, blur);
     choice->x = x[0];
     choice->y = y[0];
     choice->z = z[0];
@@ -285,7 +286,7 @@ FUNCTION void trace_chain_block(const struct fan_record *fan,
                                 GLOBAL const struct object_record *objects,
                                 GLOBAL const struct sphere_record *spheres, GLOBAL const float *map,
                                 GLOBAL TALLY *tallies, int strip, struct random_key key,
-                                RECORD_WORD first_ray, float stands_for,
+                                RECORD_WORD first_ray, float throughput,
                                 struct outcome_record *outcome)
 {
     struct target_choice choice;
@@ -295,7 +296,7 @@ FUNCTION void trace_chain_block(const struct fan_record *fan,
         if (is_shared && ray % CHOICE_RAYS == 0)
             aim_choice(fan, pieces, chains, spheres, strip, first_ray + ray, &choice);
         trace_chain_group(fan, pieces, chains, objects, spheres, map, tallies, strip, key,
-                          first_ray + ray, stands_for, is_shared ? &choice : 0, outcome);
+                          first_ray + ray, throughput, is_shared ? &choice : 0, outcome);
     }
 }
 
@@ -314,10 +315,10 @@ FUNCTION struct outcome_record trace_chains_strip(const struct fan_record *fan,
     const RECORD_WORD blocks = (fan->rays + THIN_BLOCK - 1u) / THIN_BLOCK;
     const RECORD_WORD stride = (RECORD_WORD)fan->segments * WIDTH;
     for (RECORD_WORD some = (RECORD_WORD)segment * WIDTH; some < blocks; some += stride) {
-        const real stands_for = thin_out(fan, pieces, chains, objects, spheres, key, strip,
-                                         SPLAT_WORD(some) + LANE_NUMBERS);
+        const vfloat throughput = russian_roulette(fan, pieces, chains, objects, spheres, key,
+                                                   strip, SPLAT_WORD(some) + LANE_NUMBERS);
         float lanes[WIDTH];
-        STORE_REAL(stands_for, lanes);
+        STORE_VFLOAT(throughput, lanes);
         for (RECORD_WORD lane = 0; lane < WIDTH && some + lane < blocks; lane++) {
             const RECORD_WORD first_ray = (some + lane) * THIN_BLOCK;
             /* rays that are known to miss their object are traced by that */

@@ -4,7 +4,7 @@
 __kernel void trace_corners(__global const struct fan_record *fan_buffer,
                             __global const struct ray_piece_record *pieces,
                             __global const struct object_record *objects,
-                            __global const struct source_pair_record *pair,
+                            __global const struct image_pair_record *pair,
                             __global const struct corner_record *corners,
                             __global struct corner_echo_record *echoes, __global uint *listed,
                             __global struct outcome_record *outcomes)

@@ -1,12 +1,12 @@
 /* The coherent part of several smooth faces one after the other: mirror bounces, and physical
  * optics at the last hit (kernels/MATH.md, "Corners"). The fan goes out from one source of a pair,
- * the echo comes home to the other; both may be the sonar itself. */
+ * the echo returns to the other; both may be the sonar itself. */
 #ifndef SONJECT_KERNELS_TRACE_CORNERS_H
 #define SONJECT_KERNELS_TRACE_CORNERS_H
 
 #include "chain_echo.h"
-#include "corner_home.h"
 #include "curvature.h"
+#include "return_path.h"
 #include "trace_smooth.h"
 #include "tube.h"
 
@@ -14,13 +14,13 @@
 struct corner_path {
     struct chain_hit hit;
     struct tube tube;
-    real range;           /* from the outgoing source to the first hit less the source's range */
-    real length;          /* from the first hit to this one */
-    real first_x;         /* along-track, of the first hit */
-    real first_reach;     /* as struct chain has it */
-    real first_wavefront; /* width per rad of elevation at the first hit */
-    real first_spreading; /* of the amplitude on the way there, 1/m */
-    real reflection_real, reflection_imaginary; /* of all bounces and mirrors so far */
+    vfloat range;           /* from the outgoing source to the first hit less the source's range */
+    vfloat length;          /* from the first hit to this one */
+    vfloat first_x;         /* along-track, of the first hit */
+    vfloat first_reach;     /* as struct chain has it */
+    vfloat first_wavefront; /* width per rad of elevation at the first hit */
+    vfloat first_spreading; /* of the amplitude on the way there, 1/m */
+    vfloat reflection_real, reflection_imaginary; /* of all bounces and mirrors so far */
     mask is_alive;
 };
 
@@ -31,7 +31,7 @@ struct corner_echo {
 };
 
 FUNCTION void begin_corner(const struct fan_record *fan,
-                           GLOBAL const struct source_pair_record *pair,
+                           GLOBAL const struct image_pair_record *pair,
                            GLOBAL const struct object_record *objects,
                            const struct wavefront_cell *cell, struct corner_path *path,
                            struct outcome_record *outcome)
@@ -44,8 +44,8 @@ FUNCTION void begin_corner(const struct fan_record *fan,
     path->hit.point = first.point;
     path->hit.normal = first.normal;
     path->hit.back = reversed3(ray->direction);
-    path->hit.surface = WHOLE_OF(SPLAT((float)fan->only_object));
-    path->hit.left_behind = is_convex(object) ? path->hit.surface : WHOLE_OF(SPLAT(-1.0f));
+    path->hit.surface = VINT_OF(SPLAT((float)fan->only_object));
+    path->hit.left_behind = is_convex(object) ? path->hit.surface : VINT_OF(SPLAT(-1.0f));
     const struct leg out = follow_leg(fan, pair, &pair->outgoing, objects, start_from(&path->hit),
                                       path->hit.back, path->first_wavefront, first.is_hit);
     outcome->queries += count_lanes(first.is_hit);
@@ -59,11 +59,11 @@ FUNCTION void begin_corner(const struct fan_record *fan,
     path->first_reach = fan->reference_range + first.range;
     path->first_spreading = 1.0f / path->first_reach;
     if (fan->table.pieces > 0) {
-        const real ground = fan->table.ground_range + first.point.y;
+        const vfloat ground = fan->table.ground_range + first.point.y;
         path->first_reach = ground / ray->direction.y;
         path->first_spreading = SQUARE_ROOT(ray->spreading / (ground * path->first_wavefront));
     }
-    const real inverse = 1.0f / path->first_wavefront;
+    const vfloat inverse = 1.0f / path->first_wavefront;
     path->tube.along.offset.x = SPLAT(1.0f);
     path->tube.along.offset.y = path->tube.along.offset.z = SPLAT(0.0f);
     path->tube.along.turn.x = path->tube.along.turn.y = path->tube.along.turn.z = SPLAT(0.0f);
@@ -78,8 +78,8 @@ FUNCTION void begin_corner(const struct fan_record *fan,
 FUNCTION void reflection_of_hit(const struct fan_record *fan,
                                 GLOBAL const struct corner_record *corners,
                                 GLOBAL const struct object_record *objects,
-                                const struct chain_hit *hit, real cosine, mask *is_alive,
-                                real *real_part, real *imaginary_part)
+                                const struct chain_hit *hit, vfloat cosine, mask *is_alive,
+                                vfloat *real_part, vfloat *imaginary_part)
 {
     *real_part = SPLAT(0.0f);
     *imaginary_part = SPLAT(0.0f);
@@ -91,10 +91,10 @@ FUNCTION void reflection_of_hit(const struct fan_record *fan,
         const mask here = *is_alive & MASK_OF(hit->surface == i);
         if (!has_smooth_part(surface) || !ANY(here))
             continue;
-        real one_real, one_imaginary;
+        vfloat one_real, one_imaginary;
         smooth_reflection(surface, cosine, &one_real, &one_imaginary);
-        *real_part = CHOOSE(here, one_real, *real_part);
-        *imaginary_part = CHOOSE(here, one_imaginary, *imaginary_part);
+        *real_part = SELECT(here, one_real, *real_part);
+        *imaginary_part = SELECT(here, one_imaginary, *imaginary_part);
         is_smooth = is_smooth | here;
     }
     *is_alive = is_smooth;
@@ -106,14 +106,14 @@ FUNCTION void bounce_on(const struct fan_record *fan, GLOBAL const struct corner
                         struct outcome_record *outcome)
 {
     const struct chain_hit *hit = &path->hit;
-    const real cosine = larger(dot3(hit->normal, hit->back), SPLAT(1.0e-4f));
+    const vfloat cosine = larger(dot3(hit->normal, hit->back), SPLAT(1.0e-4f));
     const struct vector3 came = reversed3(hit->back);
-    real one_real, one_imaginary;
+    vfloat one_real, one_imaginary;
     reflection_of_hit(fan, corners, objects, hit, cosine, &path->is_alive, &one_real,
                       &one_imaginary);
     if (!ANY(path->is_alive))
         return;
-    const real was_real = path->reflection_real;
+    const vfloat was_real = path->reflection_real;
     path->reflection_real = was_real * one_real - path->reflection_imaginary * one_imaginary;
     path->reflection_imaginary = was_real * one_imaginary + path->reflection_imaginary * one_real;
     struct vector3 nothing;
@@ -144,77 +144,77 @@ FUNCTION void bounce_on(const struct fan_record *fan, GLOBAL const struct corner
     }
 }
 
-/* The whole path's gradient along one side of the tube at the last hit, home being the way to the
- * source at receiver_x. The source moves along: dx/2 with each of both hits in focused columns,
- * else with the first (kernels/MATH.md, "Corners"). first_step: how far the first hit moves
- * along-track.
+/* The whole path's gradient along one side of the tube at the last hit, the return path being the
+ * way to the source at receiver_x. The source moves along: dx/2 with each of both hits in focused
+ * columns, else with the first (kernels/MATH.md, "Corners"). first_step: how far the first hit
+ * moves along-track.
  */
-FUNCTION real path_gradient(const struct corner_path *path, const struct tube_side *side,
-                            struct vector3 home, real cosine, float first_step, real receiver_x,
-                            int is_focused)
+FUNCTION vfloat path_gradient(const struct corner_path *path, const struct tube_side *side,
+                              struct vector3 returned, vfloat cosine, float first_step,
+                              vfloat receiver_x, int is_focused)
 {
     const struct vector3 direction = reversed3(path->hit.back);
-    const real onward = dot3(path->hit.normal, side->offset) / cosine;
-    const real shift = path->first_x - receiver_x;
-    const real reach = SQUARE_ROOT(path->first_reach * path->first_reach + shift * shift);
-    const real last_step = side->offset.x + onward * direction.x;
-    const real source_step = is_focused ? 0.5f * (first_step + last_step) : SPLAT(first_step);
-    return onward * (1.0f - dot3(home, direction)) - dot3(home, side->offset) +
-           home.x * source_step + shift / reach * (first_step - source_step);
+    const vfloat onward = dot3(path->hit.normal, side->offset) / cosine;
+    const vfloat shift = path->first_x - receiver_x;
+    const vfloat reach = SQUARE_ROOT(path->first_reach * path->first_reach + shift * shift);
+    const vfloat last_step = side->offset.x + onward * direction.x;
+    const vfloat source_step = is_focused ? 0.5f * (first_step + last_step) : SPLAT(first_step);
+    return onward * (1.0f - dot3(returned, direction)) - dot3(returned, side->offset) +
+           returned.x * source_step + shift / reach * (first_step - source_step);
 }
 
-/* The echo that the last hit sends home by physical optics. */
+/* The echo that the last hit returns by physical optics. */
 FUNCTION void keep_corner_echo(const struct fan_record *fan,
                                GLOBAL const struct ray_piece_record *pieces,
-                               GLOBAL const struct source_pair_record *pair,
+                               GLOBAL const struct image_pair_record *pair,
                                GLOBAL const struct corner_record *corners,
                                GLOBAL const struct object_record *objects,
                                const struct wavefront_cell *cell, const struct corner_path *path,
                                struct corner_echo *kept, struct outcome_record *outcome)
 {
     const struct chain_hit *hit = &path->hit;
-    const real last_x = CHOOSE(path->is_alive, hit->point.x, path->first_x);
-    const real receiver_x = corners->is_focused ? 0.5f * (path->first_x + last_x) : path->first_x;
-    const struct way_home home =
-        way_home(&pair->returning, pieces, hit->point, receiver_x - last_x);
-    const real cosine = larger(dot3(hit->normal, hit->back), SPLAT(1.0e-4f));
-    const real cosine_home = dot3(hit->normal, home.direction);
-    mask is_lit = path->is_alive & MASK_OF(hit->surface >= 0) & MASK_OF(cosine_home > 0.0f);
-    real one_real, one_imaginary;
-    reflection_of_hit(fan, corners, objects, hit, 0.5f * (cosine + magnitude(cosine_home)), &is_lit,
-                      &one_real, &one_imaginary);
+    const vfloat last_x = SELECT(path->is_alive, hit->point.x, path->first_x);
+    const vfloat receiver_x = corners->is_focused ? 0.5f * (path->first_x + last_x) : path->first_x;
+    const struct return_path returned =
+        return_path(&pair->returning, pieces, hit->point, receiver_x - last_x);
+    const vfloat cosine = larger(dot3(hit->normal, hit->back), SPLAT(1.0e-4f));
+    const vfloat cosine_return = dot3(hit->normal, returned.direction);
+    mask is_lit = path->is_alive & MASK_OF(hit->surface >= 0) & MASK_OF(cosine_return > 0.0f);
+    vfloat one_real, one_imaginary;
+    reflection_of_hit(fan, corners, objects, hit, 0.5f * (cosine + magnitude(cosine_return)),
+                      &is_lit, &one_real, &one_imaginary);
     const struct leg leg = follow_leg(fan, pair, &pair->returning, objects, start_from(hit),
-                                      home.direction, home.length, is_lit);
+                                      returned.direction, returned.length, is_lit);
     outcome->queries += count_lanes(is_lit);
-    const real shift = path->first_x - receiver_x;
-    const real first = path->first_reach;
-    const real lengthened = shift * shift / (SQUARE_ROOT(first * first + shift * shift) + first);
-    const real range = 0.5f * (path->range + lengthened + path->length + home.excess);
-    const real half_path = 0.5f * (fan->reference_range + pair->returning.range) + range;
+    const vfloat shift = path->first_x - receiver_x;
+    const vfloat first = path->first_reach;
+    const vfloat lengthened = shift * shift / (SQUARE_ROOT(first * first + shift * shift) + first);
+    const vfloat range = 0.5f * (path->range + lengthened + path->length + returned.excess);
+    const vfloat half_path = 0.5f * (fan->reference_range + pair->returning.range) + range;
     struct cell_phase phase =
         integrate_cell(fan, cell,
-                       path_gradient(path, &path->tube.along, home.direction, cosine, 1.0f,
+                       path_gradient(path, &path->tube.along, returned.direction, cosine, 1.0f,
                                      receiver_x, corners->is_focused),
-                       path_gradient(path, &path->tube.across, home.direction, cosine, 0.0f,
+                       path_gradient(path, &path->tube.across, returned.direction, cosine, 0.0f,
                                      receiver_x, corners->is_focused),
                        range, path->first_wavefront);
-    const real section =
+    const vfloat section =
         magnitude(tube_section(&path->tube, reversed3(hit->back))); /* of the wavefront's */
-    const real amplitude = phase.amplitude * (0.5f * pair->echoes) * (1.0f + cosine_home / cosine) *
-                           SQUARE_ROOT(section) * (half_path * path->first_spreading) *
-                           (half_path * home.spreading);
+    const vfloat amplitude = phase.amplitude * (0.5f * pair->echoes) *
+                             (1.0f + cosine_return / cosine) * SQUARE_ROOT(section) *
+                             (half_path * path->first_spreading) * (half_path * returned.spreading);
     phase.amplitude = larger(smaller(amplitude, SPLAT(QUANTA_LIMIT)), SPLAT(-QUANTA_LIMIT));
-    const real product_real =
+    const vfloat product_real =
         path->reflection_real * one_real - path->reflection_imaginary * one_imaginary;
-    const real product_imaginary =
+    const vfloat product_imaginary =
         path->reflection_real * one_imaginary + path->reflection_imaginary * one_real;
     put_smooth_echo(
         fan, leg.is_open, phase,
         product_real * leg.reflection_real - product_imaginary * leg.reflection_imaginary,
         product_real * leg.reflection_imaginary + product_imaginary * leg.reflection_real,
         &kept->echo);
-    const whole strip = strip_at(fan, receiver_x);
-    STORE_WHOLE(strip, kept->strip);
+    const vint strip = strip_at(fan, receiver_x);
+    STORE_VINT(strip, kept->strip);
 }
 
 /* Where the next echo goes in a list that all work-items share. */
@@ -256,7 +256,7 @@ FUNCTION void list_corner_echo(GLOBAL struct corner_echo_record *echoes, GLOBAL 
 
 FUNCTION void trace_corner_group(
     const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
-    GLOBAL const struct source_pair_record *pair, GLOBAL const struct corner_record *corners,
+    GLOBAL const struct image_pair_record *pair, GLOBAL const struct corner_record *corners,
     GLOBAL const struct object_record *objects, GLOBAL struct corner_echo_record *echoes,
     GLOBAL RECORD_WORD *listed, int strip, int stratum, struct random_key key,
     RECORD_WORD first_ray, struct outcome_record *outcome)
@@ -279,7 +279,7 @@ FUNCTION void trace_corner_group(
  * 1) of each sub-strip; listed: how many there are. */
 FUNCTION struct outcome_record trace_corners_strip(
     const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
-    GLOBAL const struct source_pair_record *pair, GLOBAL const struct corner_record *corners,
+    GLOBAL const struct image_pair_record *pair, GLOBAL const struct corner_record *corners,
     GLOBAL const struct object_record *objects, GLOBAL struct corner_echo_record *echoes,
     GLOBAL RECORD_WORD *listed, int strip, int segment)
 {

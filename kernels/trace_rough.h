@@ -14,8 +14,8 @@
 
 /* A hit as seen by the source: where its echo lies and whether it gets there. */
 struct connection {
-    real range;               /* half the path less the reference range */
-    real cosine;              /* of the angle between normal and the way to the source */
+    vfloat range;             /* half the path less the reference range */
+    vfloat cosine;            /* of the angle between normal and the way to the source */
     struct vector3 direction; /* from the hit */
     mask is_open;
 };
@@ -27,17 +27,17 @@ FUNCTION struct connection connect_to_source(const struct fan_record *fan,
                                              GLOBAL const struct object_record *objects,
                                              const struct fan_ray *ray,
                                              const struct aspect_ray *squinted, struct vector3 hit,
-                                             struct vector3 normal, real distance, real along,
-                                             real across)
+                                             struct vector3 normal, vfloat distance, vfloat along,
+                                             vfloat across)
 {
     /* from the hit back to the receiver (to where it seems to be, if layers bend the ray) is
      * -direction * r; the source point lies an offset beside */
-    const real r = (ray->wavefront + distance) / squinted->cosine;
-    const real range = ray->range_at_closest + distance;
-    const real offset_x = (along - 0.5f) * fan->source_side;
-    const real offset_up = (across - 0.5f) * fan->source_side;
-    const real square = offset_x * offset_x + offset_up * offset_up;
-    const real path = SQUARE_ROOT((r * r + square) - 2.0f * r * offset_x * squinted->sine);
+    const vfloat r = (ray->wavefront + distance) / squinted->cosine;
+    const vfloat range = ray->range_at_closest + distance;
+    const vfloat offset_x = (along - 0.5f) * fan->source_side;
+    const vfloat offset_up = (across - 0.5f) * fan->source_side;
+    const vfloat square = offset_x * offset_x + offset_up * offset_up;
+    const vfloat path = SQUARE_ROOT((r * r + square) - 2.0f * r * offset_x * squinted->sine);
     struct vector3 way;
     way.x = (offset_x - r * squinted->direction.x) / path;
     way.y = (offset_up * ray->upward.y - r * squinted->direction.y) / path;
@@ -48,7 +48,7 @@ FUNCTION struct connection connect_to_source(const struct fan_record *fan,
     connection.direction = way;
     /* start off the surface by more than its rounding, less than anything that throws a shadow */
     const struct vector3 start = along3(hit, normal, SPLAT(2.0e-5f));
-    const real obstacle = find_obstacle(objects, fan->objects, start, way, path);
+    const vfloat obstacle = find_obstacle(objects, fan->objects, start, way, path);
     connection.is_open = MASK_OF(obstacle > path) & MASK_OF(connection.cosine > 0.0f);
     connection.is_open = is_clear_of_relief(fan, objects, start, way, path, connection.is_open);
     return connection;
@@ -172,33 +172,33 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
     const mask is_ray = MASK_OF(number < fan->rays);
     const int own_strip = fan->first_strip + strip;
-    real along, across, jitter;
+    vfloat along, across, jitter;
     three_uniforms(key, number, 0, &along, &across, &jitter);
     const float spread = has_beam(fan) ? 0.0f : fan->strip_width; /* pings are points */
-    const real x = strip_position(fan, strip) + (along - 0.5f) * spread;
+    const vfloat x = strip_position(fan, strip) + (along - 0.5f) * spread;
     const struct fan_ray ray = fan_ray_at(
-        fan, pieces, x, fan->first_elevation + (REAL_OF(number) + across) * fan->elevation_step);
+        fan, pieces, x, fan->first_elevation + (VFLOAT_OF(number) + across) * fan->elevation_step);
     /* distances along the squinted ray times its cosine are those along the fan's */
     const struct aspect_ray squinted =
         aspect_ray_of(fan, &ray, (RECORD_WORD)own_strip, number, jitter);
-    const real to_seabed = seabed_distance(fan, objects, squinted.start, squinted.direction,
-                                           SPLAT(-fan->reference_range), is_ray);
+    const vfloat to_seabed = seabed_distance(fan, objects, squinted.start, squinted.direction,
+                                             SPLAT(-fan->reference_range), is_ray);
     const struct nearest_hit nearest = find_nearest_hit(objects, fan->objects, squinted.start,
                                                         squinted.direction, -fan->reference_range);
     const mask on_object = is_ray & MASK_OF(nearest.distance < to_seabed);
 
-    const real bed_distance = to_seabed * squinted.cosine;
-    const real seabed_range = ray.range_at_closest + bed_distance;
+    const vfloat bed_distance = to_seabed * squinted.cosine;
+    const vfloat seabed_range = ray.range_at_closest + bed_distance;
     /* times wavefront: the area across the ray that it stands for */
-    const real strip_of_cell = fan->strip_width * fan->elevation_step * squinted.cosine;
+    const vfloat strip_of_cell = fan->strip_width * fan->elevation_step * squinted.cosine;
     const struct vector3 bed = along3(squinted.start, squinted.direction, to_seabed);
     const struct vector3 bed_normal = seabed_normal(fan, objects, bed, squinted.direction);
-    const real seabed_cosine =
+    const vfloat seabed_cosine =
         has_relief(fan) ? -dot3(bed_normal, squinted.direction) : -squinted.direction.z;
-    real bed_range = seabed_range;
-    real bed_cosine = seabed_cosine;
+    vfloat bed_range = seabed_range;
+    vfloat bed_cosine = seabed_cosine;
     mask bed_open = is_ray & MASK_OF(to_seabed < 0.5f * FAR_AWAY);
-    real source_along = SPLAT(0.5f), source_across = SPLAT(0.5f);
+    vfloat source_along = SPLAT(0.5f), source_across = SPLAT(0.5f);
     if (fan->source_side > 0.0f)
         two_uniforms(key, number, 1, &source_along, &source_across);
     if (fan->source_side > 0.0f && ANY(bed_open)) {
@@ -210,34 +210,34 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
         bed_cosine = way.cosine;
         bed_open = bed_open & (way.is_open | on_object);
     }
-    real bed_weight = squinted.weight * fan->quanta;
+    vfloat bed_weight = squinted.weight * fan->quanta;
     if (has_beam(fan)) {
         bed_weight = bed_weight * beam_spread(fan, &squinted, seabed_range);
         bed_range = whole_range(fan, &squinted, bed_range);
     }
-    const real bed_gain = refraction_gain(fan, &ray, bed_distance);
-    const real bed_energy = fan->seabed_lambert * bed_cosine * strip_of_cell *
-                            (ray.wavefront + bed_distance) * (bed_gain * bed_gain) * bed_weight;
-    const real bed_bin =
-        CHOOSE(bed_open, bed_range * fan->bins_per_metre + fan->first_bin, SPLAT(-9.0f));
+    const vfloat bed_gain = refraction_gain(fan, &ray, bed_distance);
+    const vfloat bed_energy = fan->seabed_lambert * bed_cosine * strip_of_cell *
+                              (ray.wavefront + bed_distance) * (bed_gain * bed_gain) * bed_weight;
+    const vfloat bed_bin =
+        SELECT(bed_open, bed_range * fan->bins_per_metre + fan->first_bin, SPLAT(-9.0f));
 
-    real energy = SPLAT(0.0f);
-    const real to_target = CHOOSE(on_object, nearest.distance, SPLAT(0.0f));
-    const real target_distance = to_target * squinted.cosine;
-    real target_range = ray.range_at_closest + target_distance;
-    const real target_gain = refraction_gain(fan, &ray, target_distance);
-    real target_weight = squinted.weight * fan->quanta;
+    vfloat energy = SPLAT(0.0f);
+    const vfloat to_target = SELECT(on_object, nearest.distance, SPLAT(0.0f));
+    const vfloat target_distance = to_target * squinted.cosine;
+    vfloat target_range = ray.range_at_closest + target_distance;
+    const vfloat target_gain = refraction_gain(fan, &ray, target_distance);
+    vfloat target_weight = squinted.weight * fan->quanta;
     if (has_beam(fan))
         target_weight = target_weight * beam_spread(fan, &squinted, target_range);
-    const real target_area = strip_of_cell * (ray.wavefront + target_distance) *
-                             (target_gain * target_gain) * target_weight;
+    const vfloat target_area = strip_of_cell * (ray.wavefront + target_distance) *
+                               (target_gain * target_gain) * target_weight;
     const int objects_end = ANY(on_object) ? fan->objects : 0;
     for (int i = surface_after(-1, objects_end, nearest.object, on_object); i < objects_end;
          i = surface_after(i, objects_end, nearest.object, on_object)) {
         const mask here = on_object & MASK_OF(nearest.object == i);
         if (!ANY(here))
             continue;
-        const real distance = CHOOSE(here, nearest.distance, SPLAT(0.0f));
+        const vfloat distance = SELECT(here, nearest.distance, SPLAT(0.0f));
         const struct surface_face face = object_face(&objects[i], FACE_OF_SCATTERING,
                                                      squinted.start, squinted.direction, distance);
         const struct vector3 normal = face.normal;
@@ -252,9 +252,9 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
             outcome->queries += count_lanes(here);
             is_open = is_open & way.is_open;
             out = way.direction;
-            target_range = CHOOSE(here, way.range, target_range);
+            target_range = SELECT(here, way.range, target_range);
         }
-        energy = CHOOSE(is_open,
+        energy = SELECT(is_open,
                         rough_scattering(&objects[i].surface, normal, back, out) *
                             dot3(normal, out) * target_area,
                         energy);
@@ -264,33 +264,33 @@ FUNCTION void trace_rough_group(const struct fan_record *fan,
     const struct bin_pair seabed_bins = bins_about(bed_bin);
     const struct bin_pair target_bins =
         bins_about(target_range * fan->bins_per_metre + fan->first_bin);
-    const whole object_numbers = CHOOSE(on_object, nearest.object, WHOLE_OF(SPLAT(-1.0f)));
-    const real kept = CHOOSE(bed_open, bed_energy, SPLAT(0.0f));
-    const real bed_x = has_relief(fan) || has_beam(fan) ? bed.x : x;
-    const real row = fan->map_row_at_origin + bed_x * fan->map_rows_per_metre;
-    const real map_range = has_relief(fan) ? range_in_plan(fan, pieces, bed) : seabed_range;
-    const real column = fan->map_first_column + map_range * fan->map_columns_per_metre;
-    const real safe_row = smaller(larger(row, SPLAT(-1.0f)), SPLAT(1.0e8f));
-    const real safe_column = smaller(larger(column, SPLAT(-1.0f)), SPLAT(1.0e8f));
-    whole seabed_strips = SPLAT_WHOLE(own_strip);
-    whole target_strips = seabed_strips;
+    const vint object_numbers = SELECT(on_object, nearest.object, VINT_OF(SPLAT(-1.0f)));
+    const vfloat kept = SELECT(bed_open, bed_energy, SPLAT(0.0f));
+    const vfloat bed_x = has_relief(fan) || has_beam(fan) ? bed.x : x;
+    const vfloat row = fan->map_row_at_origin + bed_x * fan->map_rows_per_metre;
+    const vfloat map_range = has_relief(fan) ? range_in_plan(fan, pieces, bed) : seabed_range;
+    const vfloat column = fan->map_first_column + map_range * fan->map_columns_per_metre;
+    const vfloat safe_row = smaller(larger(row, SPLAT(-1.0f)), SPLAT(1.0e8f));
+    const vfloat safe_column = smaller(larger(column, SPLAT(-1.0f)), SPLAT(1.0e8f));
+    vint seabed_strips = SPLAT_VINT(own_strip);
+    vint target_strips = seabed_strips;
     if (has_aspects(fan)) {
         if (has_relief(fan))
             seabed_strips = track_strip_at(fan, bed.x);
         target_strips = track_strip_at(fan, squinted.start.x + squinted.direction.x * to_target);
     }
-    STORE_REAL(kept, echo->seabed);
-    STORE_REAL(energy, echo->target);
-    STORE_WHOLE(seabed_strips, echo->seabed_strip);
-    STORE_WHOLE(target_strips, echo->target_strip);
-    STORE_WHOLE(seabed_bins.bin, echo->seabed_bin);
-    STORE_WHOLE(target_bins.bin, echo->target_bin);
-    STORE_REAL(seabed_bins.later, echo->seabed_later);
-    STORE_REAL(target_bins.later, echo->target_later);
-    STORE_WHOLE(object_numbers, echo->object);
-    STORE_REAL(safe_row, echo->row);
-    STORE_REAL(safe_column, echo->column);
-    STORE_REAL(jitter, echo->chance);
+    STORE_VFLOAT(kept, echo->seabed);
+    STORE_VFLOAT(energy, echo->target);
+    STORE_VINT(seabed_strips, echo->seabed_strip);
+    STORE_VINT(target_strips, echo->target_strip);
+    STORE_VINT(seabed_bins.bin, echo->seabed_bin);
+    STORE_VINT(target_bins.bin, echo->target_bin);
+    STORE_VFLOAT(seabed_bins.later, echo->seabed_later);
+    STORE_VFLOAT(target_bins.later, echo->target_later);
+    STORE_VINT(object_numbers, echo->object);
+    STORE_VFLOAT(safe_row, echo->row);
+    STORE_VFLOAT(safe_column, echo->column);
+    STORE_VFLOAT(jitter, echo->chance);
 }
 
 /* Traces the share `segment` of a strip's fan. */

@@ -16,40 +16,40 @@ struct mirrored_echo {
 
 FUNCTION void trace_rough_mirrored_group(const struct fan_record *fan,
                                          GLOBAL const struct ray_piece_record *pieces,
-                                         GLOBAL const struct source_pair_record *pair,
+                                         GLOBAL const struct image_pair_record *pair,
                                          GLOBAL const struct object_record *objects, int strip,
                                          struct random_key key, RECORD_WORD first_ray,
                                          struct mirrored_echo *echo, struct outcome_record *outcome)
 {
     const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
     GLOBAL const struct object_record *object = &objects[fan->only_object];
-    real along, across, chance;
+    vfloat along, across, chance;
     three_uniforms(key, number, 0, &along, &across, &chance);
     const struct fan_ray ray =
         fan_ray_at(fan, pieces, strip_position(fan, strip) + (along - 0.5f) * fan->strip_width,
-                   fan->first_elevation + (REAL_OF(number) + across) * fan->elevation_step);
+                   fan->first_elevation + (VFLOAT_OF(number) + across) * fan->elevation_step);
     const struct mirrored_hit hit = find_mirrored_hit(fan, pair, objects, FACE_OF_SCATTERING, &ray,
                                                       MASK_OF(number < fan->rays));
     const struct mirrored_path path = follow_path(fan, pieces, pair, objects, &ray, &hit, outcome);
-    const real wavefront = fan->strip_width * fan->elevation_step * path.wavefront_out;
-    const real mirrors = path.reflection_real * path.reflection_real +
-                         path.reflection_imaginary * path.reflection_imaginary;
-    const real energy = rough_scattering(&object->surface, hit.normal, reversed3(ray.direction),
-                                         reversed3(path.back.direction)) *
-                        path.cosine_back * wavefront * (path.spreading * path.spreading) * mirrors *
-                        (pair->echoes * pair->echoes * fan->quanta);
-    const real kept = CHOOSE(path.is_open, energy, SPLAT(0.0f));
+    const vfloat wavefront = fan->strip_width * fan->elevation_step * path.wavefront_out;
+    const vfloat mirrors = path.reflection_real * path.reflection_real +
+                           path.reflection_imaginary * path.reflection_imaginary;
+    const vfloat energy = rough_scattering(&object->surface, hit.normal, reversed3(ray.direction),
+                                           reversed3(path.back.direction)) *
+                          path.cosine_back * wavefront * (path.spreading * path.spreading) *
+                          mirrors * (pair->echoes * pair->echoes * fan->quanta);
+    const vfloat kept = SELECT(path.is_open, energy, SPLAT(0.0f));
     const struct bin_pair bins = bins_about(path.range * fan->bins_per_metre + fan->first_bin);
-    STORE_REAL(kept, echo->energy);
-    STORE_REAL(chance, echo->chance);
-    STORE_WHOLE(bins.bin, echo->bin);
-    STORE_REAL(bins.later, echo->later);
+    STORE_VFLOAT(kept, echo->energy);
+    STORE_VFLOAT(chance, echo->chance);
+    STORE_VINT(bins.bin, echo->bin);
+    STORE_VFLOAT(bins.later, echo->later);
 }
 
 /* Traces the share `segment` of a strip's fan into the object's tile. */
 FUNCTION struct outcome_record trace_rough_mirrored_strip(
     const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
-    GLOBAL const struct source_pair_record *pair, GLOBAL const struct object_record *objects,
+    GLOBAL const struct image_pair_record *pair, GLOBAL const struct object_record *objects,
     GLOBAL TALLY *tiles, int strip, int segment)
 {
     struct outcome_record outcome = {0, 0, 0, 0};

@@ -23,9 +23,9 @@ struct smooth_echo {
 struct wavefront_cell {
     struct fan_ray ray;
     mask is_ray;
-    float width_along;                  /* m */
-    real offset_along, fraction_across; /* where the ray met it: m off its middle; 0...1 */
-    real chance;                        /* of rounding its echo up */
+    float width_along;                    /* m */
+    vfloat offset_along, fraction_across; /* where the ray met it: m off its middle; 0...1 */
+    vfloat chance;                        /* of rounding its echo up */
 };
 
 FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
@@ -35,7 +35,7 @@ FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
 {
     const word number = SPLAT_WORD(first_ray) + LANE_NUMBERS;
     struct wavefront_cell cell;
-    real along;
+    vfloat along;
     three_uniforms(key, number, (RECORD_WORD)stratum, &along, &cell.fraction_across, &cell.chance);
     cell.is_ray = MASK_OF(number < fan->rays);
     cell.width_along = fan->strip_width / (float)fan->strata;
@@ -44,35 +44,35 @@ FUNCTION struct wavefront_cell wavefront_cell_at(const struct fan_record *fan,
                          ((float)stratum + 0.5f - 0.5f * (float)fan->strata) * cell.width_along;
     cell.ray = fan_ray_at(fan, pieces, middle + cell.offset_along,
                           fan->first_elevation +
-                              (REAL_OF(number) + cell.fraction_across) * fan->elevation_step);
+                              (VFLOAT_OF(number) + cell.fraction_across) * fan->elevation_step);
     return cell;
 }
 
 /* Half the path by way of the cell's middle (less the reference range), and the amplitude of the
  * cell over its reflection coefficient, in quanta. */
 struct cell_phase {
-    real range;
-    real amplitude;
-    real chance; /* of rounding it up */
+    vfloat range;
+    vfloat amplitude;
+    vfloat chance; /* of rounding it up */
 };
 
 /* gradient: of the whole path, along-track and across the ray. range: half the path by way of the
  * hit; wavefront: its width per rad of elevation at the hit. */
 FUNCTION struct cell_phase integrate_cell(const struct fan_record *fan,
-                                          const struct wavefront_cell *cell, real gradient_along,
-                                          real gradient_across, real range, real wavefront)
+                                          const struct wavefront_cell *cell, vfloat gradient_along,
+                                          vfloat gradient_across, vfloat range, vfloat wavefront)
 {
     const float width_along = cell->width_along;
-    const real width_across = fan->elevation_step * wavefront;
-    const real offset_across = (cell->fraction_across - 0.5f) * width_across;
+    const vfloat width_across = fan->elevation_step * wavefront;
+    const vfloat offset_across = (cell->fraction_across - 0.5f) * width_across;
     const float per_cycle =
         0.5f * fan->inverse_wavelength; /* k w g / 2 in cycles is w g / (2 lambda) */
     struct cell_phase phase;
     phase.chance = cell->chance;
     phase.range =
         range - 0.5f * (gradient_along * cell->offset_along + gradient_across * offset_across);
-    const real limit = SPLAT(4.0e6f);
-    const real integral =
+    const vfloat limit = SPLAT(4.0e6f);
+    const vfloat integral =
         sinc_of_cycles(smaller(magnitude(per_cycle * width_along * gradient_along), limit)) *
         sinc_of_cycles(smaller(magnitude(per_cycle * width_across * gradient_across), limit));
     phase.amplitude = integral * width_along * width_across * fan->inverse_wavelength * fan->quanta;
@@ -81,29 +81,29 @@ FUNCTION struct cell_phase integrate_cell(const struct fan_record *fan,
 
 /* -i times amplitude times reflection, at the phase and in the bin of a half path. */
 FUNCTION void put_smooth_echo(const struct fan_record *fan, mask is_hit, struct cell_phase phase,
-                              real reflection_real, real reflection_imaginary,
+                              vfloat reflection_real, vfloat reflection_imaginary,
                               struct smooth_echo *echo)
 {
-    real sine_of_phase, cosine_of_phase;
-    const real limited = smaller(larger(phase.range, SPLAT(-1.0e4f)), SPLAT(1.0e4f));
+    vfloat sine_of_phase, cosine_of_phase;
+    const vfloat limited = smaller(larger(phase.range, SPLAT(-1.0e4f)), SPLAT(1.0e4f));
     sine_cosine_of_cycles(limited * fan->cycles_per_metre + fan->first_cycles, &sine_of_phase,
                           &cosine_of_phase);
-    const real position = limited * fan->bins_per_metre + fan->first_bin;
+    const vfloat position = limited * fan->bins_per_metre + fan->first_bin;
     const mask is_counted =
         is_hit & MASK_OF(position >= 0.0f) & MASK_OF(position < (float)(fan->bins - 1));
-    const real kept = CHOOSE(is_counted, position, SPLAT(0.0f));
-    const whole bin = WHOLE_OF(kept);
-    const real fraction = kept - REAL_OF(bin);
-    const whole bin_or_none = CHOOSE(is_counted, bin, bin - bin - 1);
-    const real real_part = phase.amplitude * (reflection_real * sine_of_phase +
-                                              reflection_imaginary * cosine_of_phase);
-    const real imaginary_part = phase.amplitude * (reflection_imaginary * sine_of_phase -
-                                                   reflection_real * cosine_of_phase);
-    STORE_REAL(real_part, echo->real_part);
-    STORE_REAL(imaginary_part, echo->imaginary_part);
-    STORE_REAL(fraction, echo->fraction);
-    STORE_REAL(phase.chance, echo->chance);
-    STORE_WHOLE(bin_or_none, echo->bin);
+    const vfloat kept = SELECT(is_counted, position, SPLAT(0.0f));
+    const vint bin = VINT_OF(kept);
+    const vfloat fraction = kept - VFLOAT_OF(bin);
+    const vint bin_or_none = SELECT(is_counted, bin, bin - bin - 1);
+    const vfloat real_part = phase.amplitude * (reflection_real * sine_of_phase +
+                                                reflection_imaginary * cosine_of_phase);
+    const vfloat imaginary_part = phase.amplitude * (reflection_imaginary * sine_of_phase -
+                                                     reflection_real * cosine_of_phase);
+    STORE_VFLOAT(real_part, echo->real_part);
+    STORE_VFLOAT(imaginary_part, echo->imaginary_part);
+    STORE_VFLOAT(fraction, echo->fraction);
+    STORE_VFLOAT(phase.chance, echo->chance);
+    STORE_VINT(bin_or_none, echo->bin);
 }
 
 FUNCTION void trace_smooth_group(const struct fan_record *fan,
@@ -118,20 +118,20 @@ FUNCTION void trace_smooth_group(const struct fan_record *fan,
     const struct nearest_hit nearest =
         find_nearest_hit(objects, fan->objects, ray.closest, ray.direction, -fan->reference_range);
     const mask on_object = cell.is_ray & MASK_OF(nearest.object == fan->only_object);
-    const real to_seabed = seabed_distance(fan, objects, ray.closest, ray.direction,
-                                           SPLAT(-fan->reference_range), on_object);
+    const vfloat to_seabed = seabed_distance(fan, objects, ray.closest, ray.direction,
+                                             SPLAT(-fan->reference_range), on_object);
     const mask is_hit = on_object & MASK_OF(nearest.distance < to_seabed);
-    const real distance = CHOOSE(is_hit, nearest.distance, SPLAT(0.0f));
+    const vfloat distance = SELECT(is_hit, nearest.distance, SPLAT(0.0f));
     const GLOBAL struct object_record *object = &objects[fan->only_object];
     const struct vector3 normal = object_normal(object, ray.closest, ray.direction, distance);
-    const real cosine = larger(-dot3(normal, ray.direction), SPLAT(1.0e-6f));
-    const real range = ray.range_at_closest + distance;
+    const vfloat cosine = larger(-dot3(normal, ray.direction), SPLAT(1.0e-6f));
+    const vfloat range = ray.range_at_closest + distance;
     /* the path's gradient along a direction q across the ray is -2 n.q/(n.d) */
     struct cell_phase phase =
         integrate_cell(fan, &cell, 2.0f * normal.x / cosine,
                        2.0f * dot3(normal, ray.upward) / cosine, range, ray.wavefront + distance);
     phase.amplitude = phase.amplitude * refraction_gain(fan, &ray, distance);
-    real reflection_real, reflection_imaginary;
+    vfloat reflection_real, reflection_imaginary;
     smooth_reflection(&object->surface, cosine, &reflection_real, &reflection_imaginary);
     put_smooth_echo(fan, is_hit, phase, reflection_real, reflection_imaginary, echo);
 }

@@ -8,7 +8,7 @@
 
 FUNCTION void trace_smooth_mirrored_group(const struct fan_record *fan,
                                           GLOBAL const struct ray_piece_record *pieces,
-                                          GLOBAL const struct source_pair_record *pair,
+                                          GLOBAL const struct image_pair_record *pair,
                                           GLOBAL const struct object_record *objects, int strip,
                                           int stratum, struct random_key key, RECORD_WORD first_ray,
                                           struct smooth_echo *echo, struct outcome_record *outcome)
@@ -20,16 +20,16 @@ FUNCTION void trace_smooth_mirrored_group(const struct fan_record *fan,
         find_mirrored_hit(fan, pair, objects, FACE_OF_OPTICS, &cell.ray, cell.is_ray);
     const struct mirrored_path path =
         follow_path(fan, pieces, pair, objects, &cell.ray, &hit, outcome);
-    const real cosine_out = larger(hit.cosine, SPLAT(1.0e-4f));
-    const real bend = 1.0f + dot3(path.back.direction, cell.ray.direction);
-    const real gradient_along = bend * hit.normal.x / cosine_out;
-    const real gradient_across = bend * dot3(hit.normal, cell.ray.upward) / cosine_out +
-                                 dot3(path.back.direction, cell.ray.upward);
+    const vfloat cosine_out = larger(hit.cosine, SPLAT(1.0e-4f));
+    const vfloat bend = 1.0f + dot3(path.back.direction, cell.ray.direction);
+    const vfloat gradient_along = bend * hit.normal.x / cosine_out;
+    const vfloat gradient_across = bend * dot3(hit.normal, cell.ray.upward) / cosine_out +
+                                   dot3(path.back.direction, cell.ray.upward);
     struct cell_phase phase =
         integrate_cell(fan, &cell, gradient_along, gradient_across, path.range, path.wavefront_out);
     phase.amplitude = phase.amplitude * (0.5f * pair->echoes) *
                       (1.0f + path.cosine_back / cosine_out) * path.spreading;
-    real one_real, one_imaginary;
+    vfloat one_real, one_imaginary;
     smooth_reflection(&object->surface, 0.5f * (cosine_out + magnitude(path.cosine_back)),
                       &one_real, &one_imaginary);
     put_smooth_echo(fan, path.is_open, phase,
@@ -41,7 +41,7 @@ FUNCTION void trace_smooth_mirrored_group(const struct fan_record *fan,
 /* As trace_smooth_strip. */
 FUNCTION struct outcome_record trace_smooth_mirrored_strip(
     const struct fan_record *fan, GLOBAL const struct ray_piece_record *pieces,
-    GLOBAL const struct source_pair_record *pair, GLOBAL const struct object_record *objects,
+    GLOBAL const struct image_pair_record *pair, GLOBAL const struct object_record *objects,
     GLOBAL TALLY *tally, int strip, int segment)
 {
     struct outcome_record outcome = {0, 0, 0, 0};

@@ -16,7 +16,7 @@ struct tube {
 };
 
 /* (a x b) . c */
-FUNCTION real triple3(struct vector3 a, struct vector3 b, struct vector3 c)
+FUNCTION vfloat triple3(struct vector3 a, struct vector3 b, struct vector3 c)
 {
     return (a.y * b.z - a.z * b.y) * c.x + (a.z * b.x - a.x * b.z) * c.y +
            (a.x * b.y - a.y * b.x) * c.z;
@@ -25,17 +25,17 @@ FUNCTION real triple3(struct vector3 a, struct vector3 b, struct vector3 c)
 /* Where the ray beside meets the tangent plane of a surface that the middle ray meets at the
  * angle of that cosine. */
 FUNCTION struct vector3 offset_on_surface(const struct tube_side *side, struct vector3 direction,
-                                          struct vector3 normal, real cosine)
+                                          struct vector3 normal, vfloat cosine)
 {
     return along3(side->offset, direction, dot3(normal, side->offset) / cosine);
 }
 
-FUNCTION void transfer_side(struct tube_side *side, real distance)
+FUNCTION void transfer_side(struct tube_side *side, vfloat distance)
 {
     side->offset = along3(side->offset, side->turn, distance);
 }
 
-FUNCTION void transfer_tube(struct tube *tube, real distance)
+FUNCTION void transfer_tube(struct tube *tube, vfloat distance)
 {
     transfer_side(&tube->along, distance);
     transfer_side(&tube->across, distance);
@@ -49,7 +49,7 @@ FUNCTION struct vector3 mirrored3(struct vector3 v, struct vector3 normal)
 /* d' = d - 2 (d.n) n, varied in d and n. direction: of the ray that comes; cosine: -(d.n);
  * normal_change: of the surface where the ray beside meets it. */
 FUNCTION void mirror_side(struct tube_side *side, struct vector3 direction, struct vector3 normal,
-                          real cosine, struct vector3 normal_change)
+                          vfloat cosine, struct vector3 normal_change)
 {
     const struct vector3 turned = mirrored3(side->turn, normal);
     side->offset = mirrored3(side->offset, normal);
@@ -59,7 +59,7 @@ FUNCTION void mirror_side(struct tube_side *side, struct vector3 direction, stru
 
 /* The tube's cross-section over that of the wavefront at the first hit; its sign is the hand that
  * the sides make with the ray. */
-FUNCTION real tube_section(const struct tube *tube, struct vector3 direction)
+FUNCTION vfloat tube_section(const struct tube *tube, struct vector3 direction)
 {
     return triple3(tube->along.offset, tube->across.offset, direction);
 }
@@ -68,24 +68,24 @@ FUNCTION real tube_section(const struct tube *tube, struct vector3 direction)
  * no cross-section. A + B s + C s^2 has real roots always, since a wavefront's curvatures are real:
  * one between ends of unlike sign; two where the ends' signs are alike and the turning point, which
  * lies between them, is no longer of that sign (but for rounding: both roots may be one). */
-FUNCTION void turn_by_caustics(const struct tube *tube, struct vector3 direction, real distance,
-                               real *real_part, real *imaginary_part)
+FUNCTION void turn_by_caustics(const struct tube *tube, struct vector3 direction, vfloat distance,
+                               vfloat *real_part, vfloat *imaginary_part)
 {
-    const real a = tube_section(tube, direction);
-    const real b = triple3(tube->along.turn, tube->across.offset, direction) +
-                   triple3(tube->along.offset, tube->across.turn, direction);
-    const real c = triple3(tube->along.turn, tube->across.turn, direction);
-    const real end = a + distance * (b + distance * c);
+    const vfloat a = tube_section(tube, direction);
+    const vfloat b = triple3(tube->along.turn, tube->across.offset, direction) +
+                     triple3(tube->along.offset, tube->across.turn, direction);
+    const vfloat c = triple3(tube->along.turn, tube->across.turn, direction);
+    const vfloat end = a + distance * (b + distance * c);
     const mask is_one = MASK_OF(a * end < 0.0f);
     const mask is_bent = MASK_OF(magnitude(c) > 0.0f);
-    const real turning = -0.5f * b / CHOOSE(is_bent, c, SPLAT(1.0f));
-    const real there = a + 0.5f * b * turning;
+    const vfloat turning = -0.5f * b / SELECT(is_bent, c, SPLAT(1.0f));
+    const vfloat there = a + 0.5f * b * turning;
     const mask is_two = ~is_one & is_bent & MASK_OF(turning > 0.0f) & MASK_OF(turning < distance) &
                         MASK_OF(a * c > 0.0f) & MASK_OF(there * a < 0.1f * (a * a));
-    const real was_real = *real_part;
-    const real was_imaginary = *imaginary_part;
-    *real_part = CHOOSE(is_one, was_imaginary, CHOOSE(is_two, -was_real, was_real));
-    *imaginary_part = CHOOSE(is_one, -was_real, CHOOSE(is_two, -was_imaginary, was_imaginary));
+    const vfloat was_real = *real_part;
+    const vfloat was_imaginary = *imaginary_part;
+    *real_part = SELECT(is_one, was_imaginary, SELECT(is_two, -was_real, was_real));
+    *imaginary_part = SELECT(is_one, -was_real, SELECT(is_two, -was_imaginary, was_imaginary));
 }
 
 #define TUBE_LIMIT 1.0e4f /* a tube that has grown so much is no part of any echo */

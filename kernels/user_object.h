@@ -35,9 +35,9 @@ struct user_lanes {
 
 FUNCTION void store_user_lanes(struct user_lanes *lanes, struct vector3 v)
 {
-    STORE_REAL(v.x, lanes->x);
-    STORE_REAL(v.y, lanes->y);
-    STORE_REAL(v.z, lanes->z);
+    STORE_VFLOAT(v.x, lanes->x);
+    STORE_VFLOAT(v.y, lanes->y);
+    STORE_VFLOAT(v.z, lanes->z);
 }
 
 FUNCTION float3 user_lane(const struct user_lanes *lanes, int lane)
@@ -48,11 +48,12 @@ FUNCTION float3 user_lane(const struct user_lanes *lanes, int lane)
 /* Distance from the ray's closest approach `start`, in the object's own frame, to the first surface
  * beyond `minimum`; FAR_AWAY if there is none, or the ray is not wanted. Snippets are asked about
  * the part of the ray within the bounding sphere. */
-APART real user_object_distance(GLOBAL const struct object_record *object, struct vector3 start,
-                                struct vector3 direction, real minimum, mask is_wanted)
+NOINLINE vfloat user_object_distance(GLOBAL const struct object_record *object,
+                                     struct vector3 start, struct vector3 direction, vfloat minimum,
+                                     mask is_wanted)
 {
     GLOBAL const struct user_record *user = user_of_object(object);
-    const real beyond = larger(minimum, SPLAT(-object->bounding_radius));
+    const vfloat beyond = larger(minimum, SPLAT(-object->bounding_radius));
     const mask is_asked = is_wanted & MASK_OF(beyond < object->bounding_radius);
     float parameters[USER_PARAMETERS];
     struct user_lanes points, ways;
@@ -61,8 +62,8 @@ APART real user_object_distance(GLOBAL const struct object_record *object, struc
     copy_user_parameters(user, parameters);
     store_user_lanes(&points, start);
     store_user_lanes(&ways, direction);
-    STORE_REAL(beyond, nearest);
-    STORE_WHOLE(is_asked, asked);
+    STORE_VFLOAT(beyond, nearest);
+    STORE_VINT(is_asked, asked);
     for (int lane = 0; lane < WIDTH; lane++) {
         met[lane] = FAR_AWAY;
         if (!asked[lane])
@@ -72,13 +73,13 @@ APART real user_object_distance(GLOBAL const struct object_record *object, struc
         if (distance > nearest[lane] && distance < FAR_AWAY)
             met[lane] = distance;
     }
-    return LOAD_REAL(met);
+    return LOAD_VFLOAT(met);
 }
 
 /* Outward unit normal at a hit, both in the object's own frame; not a number where the snippet
  * gives none, which the tallies then report. Lanes far from the object get what does no harm. */
-APART struct vector3 user_object_normal(GLOBAL const struct object_record *object,
-                                        struct vector3 hit, struct vector3 direction)
+NOINLINE struct vector3 user_object_normal(GLOBAL const struct object_record *object,
+                                           struct vector3 hit, struct vector3 direction)
 {
     GLOBAL const struct user_record *user = user_of_object(object);
     const float reach = USER_REACH * object->bounding_radius;
@@ -89,7 +90,7 @@ APART struct vector3 user_object_normal(GLOBAL const struct object_record *objec
     copy_user_parameters(user, parameters);
     store_user_lanes(&points, hit);
     store_user_lanes(&normals, reversed3(direction));
-    STORE_WHOLE(is_near, near);
+    STORE_VINT(is_near, near);
     for (int lane = 0; lane < WIDTH; lane++) {
         if (!near[lane])
             continue;
@@ -99,16 +100,16 @@ APART struct vector3 user_object_normal(GLOBAL const struct object_record *objec
         normals.z[lane] = normal.z;
     }
     struct vector3 normal;
-    normal.x = LOAD_REAL(normals.x);
-    normal.y = LOAD_REAL(normals.y);
-    normal.z = LOAD_REAL(normals.z);
+    normal.x = LOAD_VFLOAT(normals.x);
+    normal.y = LOAD_VFLOAT(normals.y);
+    normal.z = LOAD_VFLOAT(normals.z);
     /* of any length: by the largest component first, so that no square overflows */
-    const real largest =
+    const vfloat largest =
         larger(larger(magnitude(normal.x), magnitude(normal.y)), magnitude(normal.z));
     normal.x = normal.x / largest;
     normal.y = normal.y / largest;
     normal.z = normal.z / largest;
-    const real length = SQUARE_ROOT(dot3(normal, normal));
+    const vfloat length = SQUARE_ROOT(dot3(normal, normal));
     normal.x = normal.x / length;
     normal.y = normal.y / length;
     normal.z = normal.z / length;

@@ -5,16 +5,16 @@
 #include "width.h"
 
 struct vector3 {
-    real x, y, z;
+    vfloat x, y, z;
 };
 
-FUNCTION real dot3(struct vector3 a, struct vector3 b)
+FUNCTION vfloat dot3(struct vector3 a, struct vector3 b)
 {
     return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 
 /* a + b * t */
-FUNCTION struct vector3 along3(struct vector3 a, struct vector3 b, real t)
+FUNCTION struct vector3 along3(struct vector3 a, struct vector3 b, vfloat t)
 {
     struct vector3 sum;
     sum.x = a.x + b.x * t;
@@ -35,9 +35,9 @@ FUNCTION struct vector3 reversed3(struct vector3 v)
 FUNCTION struct vector3 choose3(mask m, struct vector3 yes, struct vector3 no)
 {
     struct vector3 chosen;
-    chosen.x = CHOOSE(m, yes.x, no.x);
-    chosen.y = CHOOSE(m, yes.y, no.y);
-    chosen.z = CHOOSE(m, yes.z, no.z);
+    chosen.x = SELECT(m, yes.x, no.x);
+    chosen.y = SELECT(m, yes.y, no.y);
+    chosen.z = SELECT(m, yes.z, no.z);
     return chosen;
 }
 
@@ -47,9 +47,9 @@ FUNCTION struct vector3 choose3(mask m, struct vector3 yes, struct vector3 no)
 FUNCTION void tangents3(struct vector3 normal, struct vector3 *first, struct vector3 *second)
 {
     const mask is_upward = MASK_OF(normal.z >= 0.0f);
-    const real sign = CHOOSE(is_upward, SPLAT(1.0f), SPLAT(-1.0f));
-    const real a = -1.0f / (sign + normal.z);
-    const real b = normal.x * normal.y * a;
+    const vfloat sign = SELECT(is_upward, SPLAT(1.0f), SPLAT(-1.0f));
+    const vfloat a = -1.0f / (sign + normal.z);
+    const vfloat b = normal.x * normal.y * a;
     first->x = 1.0f + sign * normal.x * normal.x * a;
     first->y = sign * b;
     first->z = -sign * normal.x;
@@ -59,8 +59,8 @@ FUNCTION void tangents3(struct vector3 normal, struct vector3 *first, struct vec
 }
 
 /* first * a + second * b + third * c */
-FUNCTION struct vector3 combine3(struct vector3 first, real a, struct vector3 second, real b,
-                                 struct vector3 third, real c)
+FUNCTION struct vector3 combine3(struct vector3 first, vfloat a, struct vector3 second, vfloat b,
+                                 struct vector3 third, vfloat c)
 {
     struct vector3 sum;
     sum.x = first.x * a + second.x * b + third.x * c;

@@ -15,43 +15,43 @@
 
 #pragma OPENCL FP_CONTRACT OFF
 #define FUNCTION    static inline __attribute__((always_inline)) /* vectors travel badly by call */
-#define APART       static __attribute__((noinline)) /* what is rare and large is called instead */
+#define NOINLINE    static __attribute__((noinline)) /* what is rare and large is called instead */
 #define GLOBAL      __global
 #define UNROLLED    _Pragma("unroll") /* keeps sums of a loop in registers */
 #define JOIN_(a, b) a##b
 #define JOIN(a, b)  JOIN_(a, b)
 #if WIDTH == 1
-typedef float real;
-typedef int whole;
+typedef float vfloat;
+typedef int vint;
 typedef uint word;
 typedef int mask;
-#define MASK_OF(comparison)       (-(comparison))
-#define AS_WHOLE(value)           as_int(value)
-#define AS_REAL(value)            as_float(value)
-#define AS_WORD(value)            as_uint(value)
-#define REAL_OF(value)            convert_float(value)
-#define WHOLE_OF(value)           convert_int_rtz(value)
-#define STORE_REAL(value, array)  ((array)[0] = (value))
-#define STORE_WHOLE(value, array) ((array)[0] = (value))
-#define LOAD_REAL(array)          ((array)[0])
-#define LOAD_WHOLE(array)         ((array)[0])
-#define LANE_NUMBERS              0u
-#define LANE_FLAGS                1
+#define MASK_OF(comparison)        (-(comparison))
+#define AS_VINT(value)             as_int(value)
+#define AS_VFLOAT(value)           as_float(value)
+#define AS_WORD(value)             as_uint(value)
+#define VFLOAT_OF(value)           convert_float(value)
+#define VINT_OF(value)             convert_int_rtz(value)
+#define STORE_VFLOAT(value, array) ((array)[0] = (value))
+#define STORE_VINT(value, array)   ((array)[0] = (value))
+#define LOAD_VFLOAT(array)         ((array)[0])
+#define LOAD_VINT(array)           ((array)[0])
+#define LANE_NUMBERS               0u
+#define LANE_FLAGS                 1
 #else
-typedef JOIN(float, WIDTH) real;
-typedef JOIN(int, WIDTH) whole;
+typedef JOIN(float, WIDTH) vfloat;
+typedef JOIN(int, WIDTH) vint;
 typedef JOIN(uint, WIDTH) word;
 typedef JOIN(int, WIDTH) mask;
-#define MASK_OF(comparison)       (comparison)
-#define AS_WHOLE(value)           JOIN(as_int, WIDTH)(value)
-#define AS_REAL(value)            JOIN(as_float, WIDTH)(value)
-#define AS_WORD(value)            JOIN(as_uint, WIDTH)(value)
-#define REAL_OF(value)            JOIN(convert_float, WIDTH)(value)
-#define WHOLE_OF(value)           JOIN(JOIN(convert_int, WIDTH), _rtz)(value)
-#define STORE_REAL(value, array)  JOIN(vstore, WIDTH)(value, 0, array)
-#define STORE_WHOLE(value, array) JOIN(vstore, WIDTH)(value, 0, array)
-#define LOAD_REAL(array)          JOIN(vload, WIDTH)(0, array)
-#define LOAD_WHOLE(array)         JOIN(vload, WIDTH)(0, array)
+#define MASK_OF(comparison)        (comparison)
+#define AS_VINT(value)             JOIN(as_int, WIDTH)(value)
+#define AS_VFLOAT(value)           JOIN(as_float, WIDTH)(value)
+#define AS_WORD(value)             JOIN(as_uint, WIDTH)(value)
+#define VFLOAT_OF(value)           JOIN(convert_float, WIDTH)(value)
+#define VINT_OF(value)             JOIN(JOIN(convert_int, WIDTH), _rtz)(value)
+#define STORE_VFLOAT(value, array) JOIN(vstore, WIDTH)(value, 0, array)
+#define STORE_VINT(value, array)   JOIN(vstore, WIDTH)(value, 0, array)
+#define LOAD_VFLOAT(array)         JOIN(vload, WIDTH)(0, array)
+#define LOAD_VINT(array)           JOIN(vload, WIDTH)(0, array)
 #if WIDTH == 4
 #define LANE_NUMBERS ((word)(0, 1, 2, 3))
 #define LANE_FLAGS   ((mask)(1, 2, 4, 8))
@@ -65,11 +65,11 @@ typedef JOIN(int, WIDTH) mask;
 #endif
 #endif
 #define LOWEST_BIT(bits)   (31 - (int)clz((bits) & (0u - (bits))))
-#define SPLAT(value)       ((real)(value))
+#define SPLAT(value)       ((vfloat)(value))
 #define SPLAT_WORD(value)  ((word)(value))
-#define SPLAT_WHOLE(value) ((whole)(value))
+#define SPLAT_VINT(value)  ((vint)(value))
 #define SQUARE_ROOT(value) sqrt(value)
-#define CHOOSE(m, yes, no) select(no, yes, m)
+#define SELECT(m, yes, no) select(no, yes, m)
 #if WIDTH == 1
 #define ANY(m)   any(m)
 #define UNION(m) ((RECORD_WORD)(m))
@@ -99,78 +99,78 @@ FUNCTION RECORD_WORD UNION(mask m)
 
 #define FUNCTION static inline
 #ifdef __GNUC__
-#define APART static __attribute__((noinline, unused))
+#define NOINLINE static __attribute__((noinline, unused))
 #else
-#define APART static inline
+#define NOINLINE static inline
 #endif
 #define GLOBAL
 #define UNROLLED
 #define LOWEST_BIT(bits) __builtin_ctz(bits)
 #if WIDTH == 1
-typedef float real;
-typedef int32_t whole;
+typedef float vfloat;
+typedef int32_t vint;
 typedef uint32_t word;
 typedef int32_t mask;
-#define MASK_OF(comparison)       (-(int32_t)(comparison))
-FUNCTION int32_t AS_WHOLE(float value)
+#define MASK_OF(comparison)        (-(int32_t)(comparison))
+FUNCTION int32_t AS_VINT(float value)
 {
     int32_t bits;
     memcpy(&bits, &value, sizeof bits);
     return bits;
 }
-FUNCTION float AS_REAL(int32_t bits)
+FUNCTION float AS_VFLOAT(int32_t bits)
 {
     float value;
     memcpy(&value, &bits, sizeof value);
     return value;
 }
-#define AS_WORD(value)            ((word)(value))
-#define REAL_OF(value)            ((float)(value))
-#define WHOLE_OF(value)           ((int32_t)(value))
-#define SPLAT(value)              ((real)(value))
-#define SPLAT_WORD(value)         ((word)(value))
-#define SPLAT_WHOLE(value)        ((whole)(value))
-#define SQUARE_ROOT(value)        sqrtf(value)
-#define CHOOSE(m, yes, no)        ((m) ? (yes) : (no))
-#define ANY(m)                    ((m) != 0)
-#define UNION(m)                  ((RECORD_WORD)(m))
-#define STORE_REAL(value, array)  ((array)[0] = (value))
-#define STORE_WHOLE(value, array) ((array)[0] = (value))
-#define LOAD_REAL(array)          ((array)[0])
-#define LOAD_WHOLE(array)         ((array)[0])
-#define LANE_NUMBERS              0u
-#define LANE_FLAGS                1
+#define AS_WORD(value)             ((word)(value))
+#define VFLOAT_OF(value)           ((float)(value))
+#define VINT_OF(value)             ((int32_t)(value))
+#define SPLAT(value)               ((vfloat)(value))
+#define SPLAT_WORD(value)          ((word)(value))
+#define SPLAT_VINT(value)          ((vint)(value))
+#define SQUARE_ROOT(value)         sqrtf(value)
+#define SELECT(m, yes, no)         ((m) ? (yes) : (no))
+#define ANY(m)                     ((m) != 0)
+#define UNION(m)                   ((RECORD_WORD)(m))
+#define STORE_VFLOAT(value, array) ((array)[0] = (value))
+#define STORE_VINT(value, array)   ((array)[0] = (value))
+#define LOAD_VFLOAT(array)         ((array)[0])
+#define LOAD_VINT(array)           ((array)[0])
+#define LANE_NUMBERS               0u
+#define LANE_FLAGS                 1
 #else
-typedef float real __attribute__((vector_size(4 * WIDTH)));
-typedef int32_t whole __attribute__((vector_size(4 * WIDTH)));
+typedef float vfloat __attribute__((vector_size(4 * WIDTH)));
+typedef int32_t vint __attribute__((vector_size(4 * WIDTH)));
 typedef uint32_t word __attribute__((vector_size(4 * WIDTH)));
 typedef int32_t mask __attribute__((vector_size(4 * WIDTH)));
-#define MASK_OF(comparison)       (comparison)
-#define AS_WHOLE(value)           ((whole)(value))
-#define AS_REAL(value)            ((real)(value))
-#define AS_WORD(value)            ((word)(value))
-#define REAL_OF(value)            __builtin_convertvector(value, real)
-#define WHOLE_OF(value)           __builtin_convertvector(value, whole)
-#define SPLAT(value)              ((real){0} + (float)(value))
-#define SPLAT_WORD(value)         ((word){0} + (uint32_t)(value))
-#define SPLAT_WHOLE(value)        ((whole){0} + (int32_t)(value))
-FUNCTION real SQUARE_ROOT(real value)
+#define MASK_OF(comparison)        (comparison)
+#define AS_VINT(value)             ((vint)(value))
+#define AS_VFLOAT(value)           ((vfloat)(value))
+#define AS_WORD(value)             ((word)(value))
+#define VFLOAT_OF(value)           __builtin_convertvector(value, vfloat)
+#define VINT_OF(value)             __builtin_convertvector(value, vint)
+#define SPLAT(value)               ((vfloat){0} + (float)(value))
+#define SPLAT_WORD(value)          ((word){0} + (uint32_t)(value))
+#define SPLAT_VINT(value)          ((vint){0} + (int32_t)(value))
+FUNCTION vfloat SQUARE_ROOT(vfloat value)
 {
-    real root;
+    vfloat root;
     for (int lane = 0; lane < WIDTH; lane++)
         root[lane] = sqrtf(value[lane]);
     return root;
 }
-#define CHOOSE(m, yes, no)        ((__typeof__(yes))(((m) & (mask)(yes)) | (~(m) & (mask)(no))))
-FUNCTION real LOAD_REAL(const float *array)
+#define SELECT(m, yes, no)         ((__typeof__(yes))(((m) & (mask)(yes)) | (~(m) & (mask)(no))))
+FUNCTION vfloat LOAD_VFLOAT(const float *array)
 {
-    real value;
+    vfloat value;
     memcpy(&value, array, sizeof value);
     return value;
 }
-FUNCTION whole LOAD_WHOLE(const int32_t *array)
+FUNCTION vint LOAD_VINT(const int32_t *array)
 {
-    whole value;
+    vint value;
     memcpy(&value, array, sizeof value);
     return value;
 }
@@ -181,10 +181,10 @@ FUNCTION uint32_t UNION(mask m)
         all |= m[lane];
     return (uint32_t)all;
 }
-#define ANY(m)                    (UNION(m) != 0)
-#define STORE_REAL(value, array)  memcpy(array, &(value), sizeof(real))
-#define STORE_WHOLE(value, array) memcpy(array, &(value), sizeof(whole))
-#define LANE_NUMBERS              ((word){0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15})
+#define ANY(m)                     (UNION(m) != 0)
+#define STORE_VFLOAT(value, array) memcpy(array, &(value), sizeof(vfloat))
+#define STORE_VINT(value, array)   memcpy(array, &(value), sizeof(vint))
+#define LANE_NUMBERS               ((word){0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15})
 #define LANE_FLAGS                                                                                 \
     ((mask){1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, 32768})
 #endif
@@ -194,26 +194,26 @@ FUNCTION uint32_t UNION(mask m)
 /* A value that is used as scratch in several lanes must be named: STORE_* takes its address in C.
  */
 
-FUNCTION real smaller(real a, real b)
+FUNCTION vfloat smaller(vfloat a, vfloat b)
 {
-    return CHOOSE(MASK_OF(b < a), b, a);
+    return SELECT(MASK_OF(b < a), b, a);
 }
 
-FUNCTION real larger(real a, real b)
+FUNCTION vfloat larger(vfloat a, vfloat b)
 {
-    return CHOOSE(MASK_OF(b > a), b, a);
+    return SELECT(MASK_OF(b > a), b, a);
 }
 
-FUNCTION real magnitude(real value)
+FUNCTION vfloat magnitude(vfloat value)
 {
-    return AS_REAL(AS_WHOLE(value) & 0x7fffffff);
+    return AS_VFLOAT(AS_VINT(value) & 0x7fffffff);
 }
 
 /* How many lanes of the mask are set. */
 FUNCTION RECORD_WORD count_lanes(mask m)
 {
     int lanes[WIDTH];
-    STORE_WHOLE(m, lanes);
+    STORE_VINT(m, lanes);
     RECORD_WORD count = 0;
     for (int lane = 0; lane < WIDTH; lane++)
         count += lanes[lane] != 0;

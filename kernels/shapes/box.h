@@ -17,31 +17,31 @@ FUNCTION struct interval wedge_interval(struct vector3 point, struct vector3 dir
                                         float half_length, float half_width, float half_height,
                                         float slant_x, float slant_z, float slant_offset)
 {
-    const real depth = slant_offset - (point.x * slant_x + point.z * slant_z);
-    const real loss = direction.x * slant_x + direction.z * slant_z;
+    const vfloat depth = slant_offset - (point.x * slant_x + point.z * slant_z);
+    const vfloat loss = direction.x * slant_x + direction.z * slant_z;
     return interval_overlap(box_interval(point, direction, half_length, half_width, half_height),
                             interval_of_half_space(depth, loss));
 }
 
 /* A face's normal where the point lies further out (or less deep) than all faces before. */
-FUNCTION void offer_face(real height, struct vector3 candidate, real *highest,
+FUNCTION void offer_face(vfloat height, struct vector3 candidate, vfloat *highest,
                          struct vector3 *normal)
 {
     const mask is_higher = MASK_OF(height > *highest);
     *normal = choose3(is_higher, candidate, *normal);
-    *highest = CHOOSE(is_higher, height, *highest);
+    *highest = SELECT(is_higher, height, *highest);
 }
 
 /* Of the face that is nearest. */
 FUNCTION struct vector3 box_normal(struct vector3 point, float half_length, float half_width,
-                                   float half_height, real *highest)
+                                   float half_height, vfloat *highest)
 {
     struct vector3 end, side, top, normal;
-    end.x = CHOOSE(MASK_OF(point.x < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
+    end.x = SELECT(MASK_OF(point.x < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
     end.y = end.z = SPLAT(0.0f);
-    side.y = CHOOSE(MASK_OF(point.y < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
+    side.y = SELECT(MASK_OF(point.y < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
     side.x = side.z = SPLAT(0.0f);
-    top.z = CHOOSE(MASK_OF(point.z < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
+    top.z = SELECT(MASK_OF(point.z < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
     top.x = top.y = SPLAT(0.0f);
     *highest = magnitude(point.x) - half_length;
     normal = end;
@@ -54,7 +54,7 @@ FUNCTION struct vector3 wedge_normal(struct vector3 point, float half_length, fl
                                      float half_height, float slant_x, float slant_z,
                                      float slant_offset)
 {
-    real highest;
+    vfloat highest;
     struct vector3 normal = box_normal(point, half_length, half_width, half_height, &highest);
     struct vector3 slant;
     slant.x = SPLAT(slant_x);

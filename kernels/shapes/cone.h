@@ -13,34 +13,35 @@ FUNCTION struct interval cone_interval(struct vector3 point, struct vector3 dire
 {
     const struct interval slab = interval_of_slab(point.z, direction.z, half_height);
     const float square_across = slant_across * slant_across;
-    const real widening = -slant_up * direction.z;
-    const real steepness = square_across * (direction.x * direction.x + direction.y * direction.y) -
-                           widening * widening;
-    const real a = CHOOSE(MASK_OF(magnitude(steepness) < 1.0e-14f), SPLAT(1.0e-14f), steepness);
-    const real from_here = square_across * (point.x * direction.x + point.y * direction.y) -
-                           widening * (slant_offset - slant_up * point.z);
+    const vfloat widening = -slant_up * direction.z;
+    const vfloat steepness =
+        square_across * (direction.x * direction.x + direction.y * direction.y) -
+        widening * widening;
+    const vfloat a = SELECT(MASK_OF(magnitude(steepness) < 1.0e-14f), SPLAT(1.0e-14f), steepness);
+    const vfloat from_here = square_across * (point.x * direction.x + point.y * direction.y) -
+                             widening * (slant_offset - slant_up * point.z);
     /* counted from where the ray is deepest within the slab, where nothing cancels */
-    const real limit = SPLAT(2.0f * (radius + half_height));
-    const real deepest = smaller(larger(-from_here / a, slab.entry), slab.exit);
-    const real start = smaller(larger(deepest, -limit), limit);
+    const vfloat limit = SPLAT(2.0f * (radius + half_height));
+    const vfloat deepest = smaller(larger(-from_here / a, slab.entry), slab.exit);
+    const vfloat start = smaller(larger(deepest, -limit), limit);
     const struct vector3 p = along3(point, direction, start);
-    const real outer = slant_across * SQUARE_ROOT(p.x * p.x + p.y * p.y);
-    const real side = slant_offset - slant_up * p.z;
-    const real b = square_across * (p.x * direction.x + p.y * direction.y) - widening * side;
-    const real c = (outer - side) * (outer + side);
-    const real square = b * b - a * c;
-    const real root = SQUARE_ROOT(larger(square, SPLAT(0.0f)));
-    const real sum = CHOOSE(MASK_OF(b < 0.0f), root - b, -(root + b));
-    const real safe = CHOOSE(MASK_OF(magnitude(sum) < 1.0e-20f), SPLAT(1.0e-20f), sum);
-    const real one = start + safe / a;
-    const real other = start + c / safe;
-    const real lower = smaller(one, other);
-    const real upper = larger(one, other);
+    const vfloat outer = slant_across * SQUARE_ROOT(p.x * p.x + p.y * p.y);
+    const vfloat side = slant_offset - slant_up * p.z;
+    const vfloat b = square_across * (p.x * direction.x + p.y * direction.y) - widening * side;
+    const vfloat c = (outer - side) * (outer + side);
+    const vfloat square = b * b - a * c;
+    const vfloat root = SQUARE_ROOT(larger(square, SPLAT(0.0f)));
+    const vfloat sum = SELECT(MASK_OF(b < 0.0f), root - b, -(root + b));
+    const vfloat safe = SELECT(MASK_OF(magnitude(sum) < 1.0e-20f), SPLAT(1.0e-20f), sum);
+    const vfloat one = start + safe / a;
+    const vfloat other = start + c / safe;
+    const vfloat lower = smaller(one, other);
+    const vfloat upper = larger(one, other);
     /* a ray steeper than the side runs in one half up to its crossing, or from there on */
     const mask is_steep = MASK_OF(a < 0.0f);
     const mask widens = MASK_OF(widening > 0.0f);
-    const real entry = CHOOSE(is_steep, CHOOSE(widens, upper, SPLAT(-FAR_AWAY)), lower);
-    const real exit = CHOOSE(is_steep, CHOOSE(widens, SPLAT(FAR_AWAY), lower), upper);
+    const vfloat entry = SELECT(is_steep, SELECT(widens, upper, SPLAT(-FAR_AWAY)), lower);
+    const vfloat exit = SELECT(is_steep, SELECT(widens, SPLAT(FAR_AWAY), lower), upper);
     return interval_overlap(interval_where(is_steep | MASK_OF(square > 0.0f), entry, exit), slab);
 }
 
@@ -48,15 +49,15 @@ FUNCTION struct interval cone_interval(struct vector3 point, struct vector3 dire
 FUNCTION struct vector3 cone_normal(struct vector3 point, float half_height, float slant_across,
                                     float slant_up, float slant_offset)
 {
-    const real from_axis = SQUARE_ROOT(point.x * point.x + point.y * point.y);
-    const real over_side = slant_across * from_axis + slant_up * point.z - slant_offset;
+    const vfloat from_axis = SQUARE_ROOT(point.x * point.x + point.y * point.y);
+    const vfloat over_side = slant_across * from_axis + slant_up * point.z - slant_offset;
     const mask on_end = MASK_OF(magnitude(point.z) - half_height > over_side);
     const mask is_on_axis = MASK_OF(from_axis <= 0.0f);
-    const real safe = CHOOSE(is_on_axis, SPLAT(1.0f), from_axis);
+    const vfloat safe = SELECT(is_on_axis, SPLAT(1.0f), from_axis);
     struct vector3 end, side;
     end.x = end.y = SPLAT(0.0f);
-    end.z = CHOOSE(MASK_OF(point.z < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
-    side.x = slant_across * CHOOSE(is_on_axis, SPLAT(1.0f), point.x / safe);
+    end.z = SELECT(MASK_OF(point.z < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
+    side.x = slant_across * SELECT(is_on_axis, SPLAT(1.0f), point.x / safe);
     side.y = slant_across * (point.y / safe);
     side.z = SPLAT(slant_up);
     return choose3(on_end, end, side);

@@ -8,16 +8,16 @@
  * to the axis, where nothing cancels. */
 FUNCTION struct interval tube_interval(struct vector3 point, struct vector3 direction, float radius)
 {
-    const real across = direction.y * direction.y + direction.z * direction.z;
+    const vfloat across = direction.y * direction.y + direction.z * direction.z;
     const mask is_parallel = MASK_OF(across < 1.0e-14f);
-    const real safe = CHOOSE(is_parallel, SPLAT(1.0e-14f), across);
+    const vfloat safe = SELECT(is_parallel, SPLAT(1.0e-14f), across);
     /* a ray along the axis stays where it is */
-    const real middle =
-        CHOOSE(is_parallel, SPLAT(0.0f), -(point.y * direction.y + point.z * direction.z) / safe);
-    const real y = point.y + direction.y * middle;
-    const real z = point.z + direction.z * middle;
-    const real square = radius * radius - (y * y + z * z);
-    const real reach = SQUARE_ROOT(larger(square, SPLAT(0.0f)) / safe);
+    const vfloat middle =
+        SELECT(is_parallel, SPLAT(0.0f), -(point.y * direction.y + point.z * direction.z) / safe);
+    const vfloat y = point.y + direction.y * middle;
+    const vfloat z = point.z + direction.z * middle;
+    const vfloat square = radius * radius - (y * y + z * z);
+    const vfloat reach = SQUARE_ROOT(larger(square, SPLAT(0.0f)) / safe);
     return interval_where(MASK_OF(square > 0.0f), middle - reach, middle + reach);
 }
 
@@ -31,11 +31,11 @@ FUNCTION struct interval cylinder_interval(struct vector3 point, struct vector3 
 /* Of the end where the point is nearer to an end than to the side. */
 FUNCTION struct vector3 cylinder_normal(struct vector3 point, float half_length, float radius)
 {
-    const real from_axis = SQUARE_ROOT(point.y * point.y + point.z * point.z);
+    const vfloat from_axis = SQUARE_ROOT(point.y * point.y + point.z * point.z);
     const mask on_end = MASK_OF(half_length - magnitude(point.x) < radius - from_axis);
-    const real safe = CHOOSE(MASK_OF(from_axis > 0.0f), from_axis, SPLAT(1.0f));
+    const vfloat safe = SELECT(MASK_OF(from_axis > 0.0f), from_axis, SPLAT(1.0f));
     struct vector3 end, side;
-    end.x = CHOOSE(MASK_OF(point.x < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
+    end.x = SELECT(MASK_OF(point.x < 0.0f), SPLAT(-1.0f), SPLAT(1.0f));
     end.y = SPLAT(0.0f);
     end.z = SPLAT(0.0f);
     side.x = SPLAT(0.0f);

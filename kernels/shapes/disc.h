@@ -7,7 +7,7 @@
 FUNCTION struct interval disc_interval(struct vector3 point, struct vector3 direction, float radius)
 {
     const mask is_parallel = MASK_OF(magnitude(direction.z) < 1.0e-12f);
-    const real distance = -point.z / CHOOSE(is_parallel, SPLAT(1.0f), direction.z);
+    const vfloat distance = -point.z / SELECT(is_parallel, SPLAT(1.0f), direction.z);
     const struct vector3 hit = along3(point, direction, distance);
     const mask is_hit = ~is_parallel & MASK_OF(hit.x * hit.x + hit.y * hit.y <= radius * radius);
     return interval_where(is_hit, distance, distance);

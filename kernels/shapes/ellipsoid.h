@@ -20,11 +20,11 @@ FUNCTION struct interval ellipsoid_interval(struct vector3 point, struct vector3
 {
     const struct vector3 start = in_semi_axes(point, half_length, half_width, half_height);
     const struct vector3 step = in_semi_axes(direction, half_length, half_width, half_height);
-    const real square_of_step = dot3(step, step);
-    const real middle = -dot3(start, step) / square_of_step;
+    const vfloat square_of_step = dot3(step, step);
+    const vfloat middle = -dot3(start, step) / square_of_step;
     const struct vector3 closest = along3(start, step, middle);
-    const real square = 1.0f - dot3(closest, closest);
-    const real reach = SQUARE_ROOT(larger(square, SPLAT(0.0f)) / square_of_step);
+    const vfloat square = 1.0f - dot3(closest, closest);
+    const vfloat reach = SQUARE_ROOT(larger(square, SPLAT(0.0f)) / square_of_step);
     return interval_where(MASK_OF(square > 0.0f), middle - reach, middle + reach);
 }
 
@@ -39,8 +39,8 @@ FUNCTION struct vector3 ellipsoid_normal(struct vector3 point, float half_length
     normal.x = scaled.x * (shortest / half_length);
     normal.y = scaled.y * (shortest / half_width);
     normal.z = scaled.z * (shortest / half_height);
-    const real length = SQUARE_ROOT(dot3(normal, normal));
-    const real safe = CHOOSE(MASK_OF(length > 0.0f), length, SPLAT(1.0f));
+    const vfloat length = SQUARE_ROOT(dot3(normal, normal));
+    const vfloat safe = SELECT(MASK_OF(length > 0.0f), length, SPLAT(1.0f));
     normal.x = normal.x / safe;
     normal.y = normal.y / safe;
     normal.z = normal.z / safe;

@@ -14,17 +14,17 @@ FUNCTION struct interval round_end_interval(struct vector3 point, struct vector3
 {
     struct vector3 from_pole = point;
     from_pole.x = point.x - outward * (end->joint + end->depth);
-    const real start = -dot3(from_pole, direction);
+    const vfloat start = -dot3(from_pole, direction);
     const struct vector3 q = along3(from_pole, direction, start);
     const float a = 0.5f * end->curvature;
-    const real b = a * dot3(q, direction) + (0.5f * outward) * direction.x;
-    const real c = a * dot3(q, q) + outward * q.x;
-    const real square = b * b - a * c;
-    const real root = SQUARE_ROOT(larger(square, SPLAT(0.0f)));
-    const real sum = CHOOSE(MASK_OF(b < 0.0f), root - b, -(root + b));
-    const real safe = CHOOSE(MASK_OF(magnitude(sum) < 1.0e-20f), SPLAT(1.0e-20f), sum);
-    const real one = start + safe / a;
-    const real other = start + c / safe;
+    const vfloat b = a * dot3(q, direction) + (0.5f * outward) * direction.x;
+    const vfloat c = a * dot3(q, q) + outward * q.x;
+    const vfloat square = b * b - a * c;
+    const vfloat root = SQUARE_ROOT(larger(square, SPLAT(0.0f)));
+    const vfloat sum = SELECT(MASK_OF(b < 0.0f), root - b, -(root + b));
+    const vfloat safe = SELECT(MASK_OF(magnitude(sum) < 1.0e-20f), SPLAT(1.0e-20f), sum);
+    const vfloat one = start + safe / a;
+    const vfloat other = start + c / safe;
     return interval_overlap(
         interval_where(MASK_OF(square > 0.0f), smaller(one, other), larger(one, other)),
         interval_of_half_space(outward * point.x - end->joint, -outward * direction.x));
@@ -77,8 +77,8 @@ FUNCTION struct spans open_cylinder_spans(struct vector3 point, struct vector3 d
 FUNCTION struct vector3 ended_cylinder_normal(struct vector3 point,
                                               GLOBAL const struct end_record *ends, float radius)
 {
-    const real from_axis = SQUARE_ROOT(point.y * point.y + point.z * point.z);
-    const real safe = CHOOSE(MASK_OF(from_axis > 0.0f), from_axis, SPLAT(1.0f));
+    const vfloat from_axis = SQUARE_ROOT(point.y * point.y + point.z * point.z);
+    const vfloat safe = SELECT(MASK_OF(from_axis > 0.0f), from_axis, SPLAT(1.0f));
     struct vector3 normal;
     normal.x = SPLAT(0.0f);
     normal.y = point.y / safe;
@@ -86,7 +86,7 @@ FUNCTION struct vector3 ended_cylinder_normal(struct vector3 point,
     for (int number = END_NOSE; number <= END_TAIL; number++) {
         GLOBAL const struct end_record *end = &ends[number];
         const float outward = number == END_NOSE ? 1.0f : -1.0f;
-        const real to_joint = end->joint - outward * point.x;
+        const vfloat to_joint = end->joint - outward * point.x;
         struct vector3 on_end;
         on_end.x = 1.0f + end->curvature * (outward * point.x - (end->joint + end->depth));
         on_end.x = outward * on_end.x;

@@ -8,10 +8,10 @@
 FUNCTION struct interval sphere_interval(struct vector3 point, struct vector3 direction,
                                          float radius)
 {
-    const real middle = -dot3(point, direction);
+    const vfloat middle = -dot3(point, direction);
     const struct vector3 closest = along3(point, direction, middle);
-    const real square = radius * radius - dot3(closest, closest);
-    const real reach = SQUARE_ROOT(larger(square, SPLAT(0.0f)));
+    const vfloat square = radius * radius - dot3(closest, closest);
+    const vfloat reach = SQUARE_ROOT(larger(square, SPLAT(0.0f)));
     return interval_where(MASK_OF(square > 0.0f), middle - reach, middle + reach);
 }
 

@@ -14,33 +14,34 @@
 struct torus_ray {
     struct vector3 point, direction;
     float radius, ring_radius;
-    real across;  /* square of the direction's part across the axis */
-    real curving; /* rho'' rho^3: across times the square of the least distance from the axis */
+    vfloat across;  /* square of the direction's part across the axis */
+    vfloat curving; /* rho'' rho^3: across times the square of the least distance from the axis */
 };
 
-FUNCTION real distance_from_axis(struct vector3 p)
+FUNCTION vfloat distance_from_axis(struct vector3 p)
 {
     return larger(SQUARE_ROOT(p.x * p.x + p.y * p.y), SPLAT(1.0e-12f));
 }
 
 /* F/2 and its slope. */
-FUNCTION void torus_depth(const struct torus_ray *ray, real distance, real *value, real *slope)
+FUNCTION void torus_depth(const struct torus_ray *ray, vfloat distance, vfloat *value,
+                          vfloat *slope)
 {
     const struct vector3 p = along3(ray->point, ray->direction, distance);
-    const real rho = distance_from_axis(p);
-    const real outward = rho - ray->radius;
-    const real rho_slope = (p.x * ray->direction.x + p.y * ray->direction.y) / rho;
+    const vfloat rho = distance_from_axis(p);
+    const vfloat outward = rho - ray->radius;
+    const vfloat rho_slope = (p.x * ray->direction.x + p.y * ray->direction.y) / rho;
     *value = 0.5f * ((outward - ray->ring_radius) * (outward + ray->ring_radius) + p.z * p.z);
     *slope = outward * rho_slope + p.z * ray->direction.z;
 }
 
 /* The slope of F/2 and its own slope. */
-FUNCTION void torus_slope(const struct torus_ray *ray, real distance, real *slope, real *bend)
+FUNCTION void torus_slope(const struct torus_ray *ray, vfloat distance, vfloat *slope, vfloat *bend)
 {
     const struct vector3 p = along3(ray->point, ray->direction, distance);
-    const real rho = distance_from_axis(p);
-    const real rho_slope = (p.x * ray->direction.x + p.y * ray->direction.y) / rho;
-    const real square = ray->across + ray->direction.z * ray->direction.z;
+    const vfloat rho = distance_from_axis(p);
+    const vfloat rho_slope = (p.x * ray->direction.x + p.y * ray->direction.y) / rho;
+    const vfloat square = ray->across + ray->direction.z * ray->direction.z;
     *slope = (rho - ray->radius) * rho_slope + p.z * ray->direction.z;
     *bend = square - ray->radius * (ray->curving / (rho * rho * rho));
 }
@@ -49,31 +50,31 @@ FUNCTION void torus_slope(const struct torus_ray *ray, real distance, real *slop
  * upper itself where it does not change sign. Newton's step where it stays between the bounds and
  * halves the one before, else the middle. A lane that has arrived rests, so that no lane depends on
  * others. */
-FUNCTION real torus_crossing(const struct torus_ray *ray, int is_slope, real sense, real lower,
-                             real upper, real tolerance)
+FUNCTION vfloat torus_crossing(const struct torus_ray *ray, int is_slope, vfloat sense,
+                               vfloat lower, vfloat upper, vfloat tolerance)
 {
-    real distance = 0.5f * (lower + upper);
-    real last_step = upper - lower;
+    vfloat distance = 0.5f * (lower + upper);
+    vfloat last_step = upper - lower;
     mask is_going = MASK_OF(last_step > tolerance);
     for (int i = 0; i < 48 && ANY(is_going); i++) {
-        real value, slope;
+        vfloat value, slope;
         if (is_slope)
             torus_slope(ray, distance, &value, &slope);
         else
             torus_depth(ray, distance, &value, &slope);
         const mask is_before = MASK_OF(value * sense > 0.0f);
-        lower = CHOOSE(is_going & is_before, distance, lower);
-        upper = CHOOSE(is_going & ~is_before, distance, upper);
-        const real safe = CHOOSE(MASK_OF(magnitude(slope) < 1.0e-20f), SPLAT(1.0e-20f), slope);
-        const real step = -value / safe;
-        const real reached = distance + step;
+        lower = SELECT(is_going & is_before, distance, lower);
+        upper = SELECT(is_going & ~is_before, distance, upper);
+        const vfloat safe = SELECT(MASK_OF(magnitude(slope) < 1.0e-20f), SPLAT(1.0e-20f), slope);
+        const vfloat step = -value / safe;
+        const vfloat reached = distance + step;
         const mask is_good = MASK_OF(reached >= lower) & MASK_OF(reached <= upper) &
                              MASK_OF(magnitude(step) <= 0.5f * last_step);
-        const real middle = 0.5f * (lower + upper);
-        const real next = CHOOSE(is_good, reached, middle);
-        const real moved = magnitude(next - distance);
-        last_step = CHOOSE(is_going, CHOOSE(is_good, moved, upper - lower), last_step);
-        distance = CHOOSE(is_going, next, distance);
+        const vfloat middle = 0.5f * (lower + upper);
+        const vfloat next = SELECT(is_good, reached, middle);
+        const vfloat moved = magnitude(next - distance);
+        last_step = SELECT(is_going, SELECT(is_good, moved, upper - lower), last_step);
+        distance = SELECT(is_going, next, distance);
         is_going = is_going & MASK_OF(last_step > tolerance);
     }
     return distance;
@@ -81,18 +82,18 @@ FUNCTION real torus_crossing(const struct torus_ray *ray, int is_slope, real sen
 
 /* The bounds of the valley-crest-valley order: where F's slope may turn. */
 struct torus_order {
-    real first, one, crest, other, last; /* distances, never falling */
-    mask is_near;                        /* the ray comes near the torus at all */
+    vfloat first, one, crest, other, last; /* distances, never falling */
+    mask is_near;                          /* the ray comes near the torus at all */
 };
 
 FUNCTION struct torus_order torus_order_along(struct torus_ray *ray)
 {
     const struct vector3 d = ray->direction;
     const float size = ray->radius + ray->ring_radius;
-    const real middle = -dot3(ray->point, d);
+    const vfloat middle = -dot3(ray->point, d);
     const struct vector3 closest = along3(ray->point, d, middle);
-    const real square = size * size - dot3(closest, closest);
-    const real reach = SQUARE_ROOT(larger(square, SPLAT(0.0f)));
+    const vfloat square = size * size - dot3(closest, closest);
+    const vfloat reach = SQUARE_ROOT(larger(square, SPLAT(0.0f)));
     const struct interval slab = interval_of_slab(ray->point.z, d.z, ray->ring_radius);
     struct torus_order order;
     order.first = larger(middle - reach, slab.entry);
@@ -101,21 +102,21 @@ FUNCTION struct torus_order torus_order_along(struct torus_ray *ray)
     order.last = larger(order.first, order.last);
     ray->across = d.x * d.x + d.y * d.y;
     const mask is_parallel = MASK_OF(ray->across < 1.0e-14f);
-    const real safe = CHOOSE(is_parallel, SPLAT(1.0e-14f), ray->across);
-    const real axis_at =
-        CHOOSE(is_parallel, SPLAT(0.0f), -(ray->point.x * d.x + ray->point.y * d.y) / safe);
+    const vfloat safe = SELECT(is_parallel, SPLAT(1.0e-14f), ray->across);
+    const vfloat axis_at =
+        SELECT(is_parallel, SPLAT(0.0f), -(ray->point.x * d.x + ray->point.y * d.y) / safe);
     const struct vector3 nearest = along3(ray->point, d, axis_at);
-    const real square_of_least = nearest.x * nearest.x + nearest.y * nearest.y;
+    const vfloat square_of_least = nearest.x * nearest.x + nearest.y * nearest.y;
     ray->curving = ray->across * square_of_least;
     /* F'' = 0: rho^3 = R * curving */
-    const real turning = cube_root(larger(ray->radius * ray->curving, SPLAT(1.0e-30f)));
-    const real concave =
+    const vfloat turning = cube_root(larger(ray->radius * ray->curving, SPLAT(1.0e-30f)));
+    const vfloat concave =
         SQUARE_ROOT(larger(turning * turning - square_of_least, SPLAT(0.0f)) / safe);
-    const real from = smaller(larger(axis_at - concave, order.first), order.last);
-    const real to = smaller(larger(axis_at + concave, order.first), order.last);
-    const real tolerance = SPLAT(1.0e-4f * ray->ring_radius);
-    const real rising = SPLAT(-1.0f);
-    const real falling = SPLAT(1.0f);
+    const vfloat from = smaller(larger(axis_at - concave, order.first), order.last);
+    const vfloat to = smaller(larger(axis_at + concave, order.first), order.last);
+    const vfloat tolerance = SPLAT(1.0e-4f * ray->ring_radius);
+    const vfloat rising = SPLAT(-1.0f);
+    const vfloat falling = SPLAT(1.0f);
     order.one = torus_crossing(ray, 1, rising, order.first, from, tolerance);
     order.crest = torus_crossing(ray, 1, falling, from, to, tolerance);
     order.other = torus_crossing(ray, 1, rising, to, order.last, tolerance);
@@ -131,40 +132,40 @@ FUNCTION struct spans torus_spans(struct vector3 point, struct vector3 direction
     ray.radius = radius;
     ray.ring_radius = ring_radius;
     const struct torus_order order = torus_order_along(&ray);
-    real at_one, at_crest, at_other, slope;
+    vfloat at_one, at_crest, at_other, slope;
     torus_depth(&ray, order.one, &at_one, &slope);
     torus_depth(&ray, order.crest, &at_crest, &slope);
     torus_depth(&ray, order.other, &at_other, &slope);
     const mask in_one = order.is_near & MASK_OF(at_one < 0.0f);
     const mask in_other = order.is_near & MASK_OF(at_other < 0.0f);
     const mask is_parted = MASK_OF(at_crest > 0.0f);
-    const real tolerance = SPLAT(2.0e-7f * (radius + ring_radius));
-    const real falling = SPLAT(1.0f);
-    const real rising = SPLAT(-1.0f);
+    const vfloat tolerance = SPLAT(2.0e-7f * (radius + ring_radius));
+    const vfloat falling = SPLAT(1.0f);
+    const vfloat rising = SPLAT(-1.0f);
     struct spans spans = spans_of_one(interval_where(in_one, order.one, order.one));
     if (!ANY(in_one | in_other))
         return spans;
-    const real into_one = torus_crossing(&ray, 0, falling, order.first, order.one, tolerance);
-    const real out_of_one = torus_crossing(&ray, 0, rising, order.one, order.crest, tolerance);
-    const real into_other = torus_crossing(&ray, 0, falling, order.crest, order.other, tolerance);
-    const real out_of_other = torus_crossing(&ray, 0, rising, order.other, order.last, tolerance);
+    const vfloat into_one = torus_crossing(&ray, 0, falling, order.first, order.one, tolerance);
+    const vfloat out_of_one = torus_crossing(&ray, 0, rising, order.one, order.crest, tolerance);
+    const vfloat into_other = torus_crossing(&ray, 0, falling, order.crest, order.other, tolerance);
+    const vfloat out_of_other = torus_crossing(&ray, 0, rising, order.other, order.last, tolerance);
     const mask both = in_one & in_other;
     spans.first =
-        interval_where(in_one, into_one, CHOOSE(both & ~is_parted, out_of_other, out_of_one));
+        interval_where(in_one, into_one, SELECT(both & ~is_parted, out_of_other, out_of_one));
     spans.second = interval_where(in_other & (is_parted | ~in_one), into_other, out_of_other);
     return spans;
 }
 
 FUNCTION struct vector3 torus_normal(struct vector3 point, float radius)
 {
-    const real rho = distance_from_axis(point);
-    const real outward = (rho - radius) / rho;
+    const vfloat rho = distance_from_axis(point);
+    const vfloat outward = (rho - radius) / rho;
     struct vector3 normal;
     normal.x = point.x * outward;
     normal.y = point.y * outward;
     normal.z = point.z;
-    const real length = SQUARE_ROOT(dot3(normal, normal));
-    const real safe = CHOOSE(MASK_OF(length > 0.0f), length, SPLAT(1.0f));
+    const vfloat length = SQUARE_ROOT(dot3(normal, normal));
+    const vfloat safe = SELECT(MASK_OF(length > 0.0f), length, SPLAT(1.0f));
     normal.x = normal.x / safe;
     normal.y = normal.y / safe;
     normal.z = normal.z / safe;

@@ -156,7 +156,7 @@ static void take_outputs(struct data_set *set, const json_t *outputs)
 }
 
 /* True if what documents need of the head is as it should be. */
-static bool take_head(struct data_set *set)
+static bool read_head(struct data_set *set)
 {
     const json_t *outputs = json_object_get(set->head, "outputs");
     const json_t *device = json_object_get(set->head, "device");
@@ -186,7 +186,7 @@ sonject_status data_set_open(struct data_set *set, struct report *report, const 
         status = report_failure(report, SONJECT_ERROR_INPUT,
                                 "%s: holds no campaign: there is no campaign.json", folder);
     THEN(status, json_document_read(report, path, &set->head));
-    if (status == SONJECT_OK && !take_head(set))
+    if (status == SONJECT_OK && !read_head(set))
         status = report_failure(report, SONJECT_ERROR_INPUT,
                                 "%s: damaged; remove it and run the campaign again", path);
     free(path);

@@ -52,9 +52,9 @@ static void text_add(struct text *text, const char *format, ...)
     text->length += length;
 }
 
-static double grazing_degrees(const struct patch_view *view, double apparent_range)
+static double grazing_degrees(const struct patch_view *view, double processor_range)
 {
-    return view_grazing(view, apparent_range) * DEGREES_PER_RADIAN;
+    return view_grazing(view, processor_range) * DEGREES_PER_RADIAN;
 }
 
 static void describe_water(struct text *text, const struct water_way *way)
@@ -72,7 +72,7 @@ static void describe_water(struct text *text, const struct water_way *way)
 static void describe_patch(struct text *text, const struct scene *scene, const struct swath *swath,
                            const struct patch_view *view)
 {
-    const double last = view_apparent_range(view, (double)view->columns - 1.0);
+    const double last = view_processor_range(view, (double)view->columns - 1.0);
     text_add(text, "image      %llu x %llu pixels, %u channel%s\n",
              (unsigned long long)swath->layout.rows, (unsigned long long)swath->layout.columns,
              (unsigned)swath->layout.channels, swath->layout.channels == 1 ? "" : "s");
@@ -176,7 +176,7 @@ static void mark(char plan[MAP_ROWS][MAP_COLUMNS + 1], const struct patch_view *
         for (int column = 0; column < MAP_COLUMNS; column++) {
             const double x = view_x_of_row(view, (row + 0.5) / MAP_ROWS * (double)view->rows);
             const double range =
-                view_apparent_range(view, (column + 0.5) / MAP_COLUMNS * (double)view->columns);
+                view_processor_range(view, (column + 0.5) / MAP_COLUMNS * (double)view->columns);
             const double y = view_ground_range(view, range);
             const double half_x = 0.5 * (double)view->rows / MAP_ROWS * view->row_spacing_m;
             const double half_y =

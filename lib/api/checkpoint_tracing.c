@@ -16,7 +16,7 @@ static int tell(void *user, double fraction, const char *stage)
     tracing->stage = stage;
     if (!tracing->is_cancelled && job->progress && job->progress(job->user, fraction, stage))
         tracing->is_cancelled = true;
-    if (!tracing->is_cancelled || !tracing->checkpoint.course || tracing->checkpoint.files)
+    if (!tracing->is_cancelled || !tracing->checkpoint.launches || tracing->checkpoint.files)
         return tracing->is_cancelled;
     tracing->checkpoint.is_stopping = true;
     return 0;
@@ -63,7 +63,7 @@ static sonject_status end_checkpoint(struct tracing *tracing, sonject_status tra
 {
     struct checkpoint *checkpoint = &tracing->checkpoint;
     sonject_status status = traced;
-    const bool is_through = !checkpoint->course; /* all launches were gone through */
+    const bool is_through = !checkpoint->launches; /* all launches were gone through */
     if ((traced == SONJECT_OK || traced == SONJECT_CANCELLED) && is_through)
         status = keep_checkpoint(tracing);
     *next = checkpoint->next;

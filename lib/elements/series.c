@@ -127,7 +127,7 @@ static struct impulse_grid_record impulse_grid_record_of(const sonject_element_l
     const double c = layout->sound_speed_mps;
     const double wavelength = c / layout->centre_frequency_hz;
     const double bin_width = view->column_spacing_m / piece->grid.bins_per_pixel;
-    const double reference = view_apparent_range(view, 0.0);
+    const double reference = view_processor_range(view, 0.0);
     const double fine_rate = elements->sampling_rate_hz * pulse->fine;
     struct impulse_grid_record record;
     memset(&record, 0, sizeof record);

@@ -82,7 +82,7 @@ static void fill_blocks(struct taps *taps, const struct form_lines *lines)
     for (size_t block = 0; block < taps->blocks; block++) {
         const double column =
             (double)lines->first_column + ((double)block + 0.5) * BLOCK_COLUMNS - 0.5;
-        const double range = view_apparent_range(lines->view, column);
+        const double range = view_processor_range(lines->view, column);
         for (size_t i = 0; i < taps->each; i++) {
             const struct complex_number w = cross_range_response(
                 &lines->response, range, ((double)i - lines->reach) * strip + offset_of(lines));

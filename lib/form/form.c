@@ -128,7 +128,7 @@ int32_t form_reach(const struct patch_view *view, const struct point_response *r
 {
     const double whole = (double)view->rows * strips_per_row;
     const double strip = view->row_spacing_m / strips_per_row;
-    const double farthest = view_apparent_range(view, (double)(view->columns - 1));
+    const double farthest = view_processor_range(view, (double)(view->columns - 1));
     const double reach = kind == FORM_GLINT
                              ? cross_range_tail(response, farthest)
                              : cross_range_energy_reach(response, farthest, SPECKLE_ENERGY_SHARE);

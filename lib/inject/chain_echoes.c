@@ -51,8 +51,8 @@ void chain_former_clear(struct chain_former *former)
     memset(former, 0, sizeof *former);
 }
 
-sonject_status chain_echoes_take(struct chain_former *former, struct echoes *echoes,
-                                 struct tracer *tracer, const struct impulse_lines *lines)
+sonject_status chain_echoes_add(struct chain_former *former, struct echoes *echoes,
+                                struct tracer *tracer, const struct impulse_lines *lines)
 {
     const size_t cells = line_grid_cells(&lines->grid);
     float *kept = echoes->order_energy[lines->number - 1];
@@ -91,7 +91,7 @@ static void add_to_image(const struct chain_image *image, struct echoes *echoes,
 
 /* What one interaction brings: the energy of the objects' echoes, and of the seabed in view. By
  * brute force the chains bring it anew, all but the glints. */
-static void take_first_order(struct echoes *echoes, const struct tracer *tracer)
+static void copy_first_order(struct echoes *echoes, const struct tracer *tracer)
 {
     for (size_t i = 0; i < echoes->rows * echoes->columns; i++) {
         const float in_view = fmaxf(0.0f, echoes->seabed_energy[i] - echoes->lost_energy[i]);
@@ -106,7 +106,7 @@ sonject_status chain_echoes_finish(struct chain_former *former, struct echoes *e
                                    struct tracer *tracer)
 {
     const size_t pixels = echoes->rows * echoes->columns;
-    take_first_order(echoes, tracer);
+    copy_first_order(echoes, tracer);
     if (!former->sum)
         return SONJECT_OK;
     struct chain_image image = {allocate_array(pixels, sizeof(float)),

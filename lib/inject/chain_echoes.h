@@ -11,8 +11,8 @@ struct chain_former {
 };
 
 /* Takes lines of CHAINS; forms order_energy where that is wanted. Errors: DEVICE, MEMORY. */
-sonject_status chain_echoes_take(struct chain_former *former, struct echoes *echoes,
-                                 struct tracer *tracer, const struct impulse_lines *lines);
+sonject_status chain_echoes_add(struct chain_former *former, struct echoes *echoes,
+                                struct tracer *tracer, const struct impulse_lines *lines);
 
 /* To be called when all else is in `echoes`, also where no chains came in: adds them to
  * target_energy and to one realisation (the target's; by brute force, which counts everything that

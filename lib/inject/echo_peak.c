@@ -25,13 +25,14 @@ static int32_t cells_of(double resolution_m, double cell_m)
     return (int32_t)fmax(1.0, floor(resolution_m / (POINTS_PER_RESOLUTION * cell_m)));
 }
 
-sonject_status peak_lattice_lay(struct peak_lattice *lattice, const struct tracer *tracer,
-                                const struct line_grid *tile, const struct line_grid *grid)
+sonject_status peak_lattice_init(struct peak_lattice *lattice, const struct tracer *tracer,
+                                 const struct line_grid *tile, const struct line_grid *grid)
 {
     const struct patch_view *view = &tracer->view;
     const double strip = view->row_spacing_m / grid->strips_per_row;
     const double bin = view->column_spacing_m / grid->bins_per_pixel;
-    const double range = view_apparent_range(view, (double)tile->bins.first / tile->bins_per_pixel);
+    const double range =
+        view_processor_range(view, (double)tile->bins.first / tile->bins_per_pixel);
     const int32_t strips = cells_of(
         cross_range_energy_width(&tracer->response, fmax(range, view->first_range_m)), strip);
     const int32_t bins = cells_of(range_energy_width(&tracer->response), bin);
@@ -141,7 +142,7 @@ static double energy_of_both(const struct echo_points *points, size_t row, size_
     return energy_at_point(points->own, points->own_is_field, row * own->columns + column) +
            energy_between(points->other, !points->own_is_field,
                           view_row_of_x(other, view_x_of_row(own, (double)row)),
-                          view_column_of_range(other, view_apparent_range(own, (double)column)));
+                          view_column_of_range(other, view_processor_range(own, (double)column)));
 }
 
 /* The peak of the parabola through the levels of a point and its neighbours; the point's own energy
@@ -184,7 +185,7 @@ static void find_peak(const struct echo_points *points, double *peak, double *ra
     if (!(brightest > *peak))
         return;
     *peak = peak_around(points, at / view->columns, at % view->columns);
-    *range_m = view_apparent_range(view, (double)(at % view->columns));
+    *range_m = view_processor_range(view, (double)(at % view->columns));
 }
 
 double peak_of_echo(const struct peak_lattice *glint, const struct peak_lattice *rough,

@@ -16,8 +16,8 @@ struct peak_lattice {
 
 /* Lays points over a tile: every so many strips and bins of the grid as are a quarter of the
  * resolution, at least one. Errors: MEMORY. */
-sonject_status peak_lattice_lay(struct peak_lattice *lattice, const struct tracer *tracer,
-                                const struct line_grid *tile, const struct line_grid *grid);
+sonject_status peak_lattice_init(struct peak_lattice *lattice, const struct tracer *tracer,
+                                 const struct line_grid *tile, const struct line_grid *grid);
 void peak_lattice_clear(struct peak_lattice *lattice);
 
 /* Form lines of a grid of such strips and bins: begin, then form_lines_add to lattice->lines, then
@@ -27,7 +27,7 @@ sonject_status peak_lattice_begin(struct peak_lattice *lattice, struct tracer *t
 sonject_status peak_lattice_finish(struct peak_lattice *lattice);
 
 /* The largest expected cross-section, m^2, of glints (both parts of a field, m) and rough surfaces
- * (energies, m^2) together, and the apparent range where it is. 0: there is no echo. */
+ * (energies, m^2) together, and the processor range where it is. 0: there is no echo. */
 double peak_of_echo(const struct peak_lattice *glint, const struct peak_lattice *rough,
                     double *range_m);
 

@@ -102,17 +102,17 @@ static sonject_status form_set(struct forming *forming, const struct impulse_lin
     struct tracer *tracer = forming->tracer;
     switch (lines->kind) {
     case IMPULSES_SEABED:
-        return seabed_echoes_take(&forming->seabed, echoes, tracer, forming->request, lines);
+        return seabed_echoes_add(&forming->seabed, echoes, tracer, forming->request, lines);
     case IMPULSES_LEVEL:
-        return level_seabed_take(&forming->seabed, echoes, tracer, forming->request, lines);
+        return level_seabed_add(&forming->seabed, echoes, tracer, forming->request, lines);
     case IMPULSES_OBJECT:
     case IMPULSES_GLINT:
-        return object_echoes_take(&forming->object, echoes, tracer, lines);
+        return object_echoes_add(&forming->object, echoes, tracer, lines);
     case IMPULSES_BEAM:
     case IMPULSES_HIDDEN:
-        return beam_shadows_take(&forming->beam, echoes, tracer, lines);
+        return beam_shadows_add(&forming->beam, echoes, tracer, lines);
     case IMPULSES_CHAINS:
-        return chain_echoes_take(&forming->chains, echoes, tracer, lines);
+        return chain_echoes_add(&forming->chains, echoes, tracer, lines);
     }
     return SONJECT_OK;
 }

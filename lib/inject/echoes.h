@@ -15,7 +15,7 @@ struct object_echo {
     float *lost;                      /* seabed energy that it hides, m^2 */
     uint8_t *covered;                 /* 1 where some ray of that pixel hit it */
     double peak_energy, peak_range_m; /* of its echo, wherever pixels lie: m^2, 0 where there is
-                                         none, and the apparent range where it is */
+                                         none, and the processor range where it is */
 };
 
 /* Everything is rows x columns of the view unless said otherwise. Owned. */

@@ -23,8 +23,8 @@ struct element_taker {
     struct line_grid chains_grid;
 };
 
-static sonject_status take_coherent_seabed(struct element_taker *taker,
-                                           const struct impulse_lines *lines)
+static sonject_status add_coherent_seabed(struct element_taker *taker,
+                                          const struct impulse_lines *lines)
 {
     const size_t cells = (size_t)lines->strips.count * (size_t)lines->grid.bins.count;
     float *real_part = allocate_array(cells, sizeof *real_part);
@@ -45,15 +45,15 @@ static sonject_status take_coherent_seabed(struct element_taker *taker,
     return status;
 }
 
-static sonject_status take_speckle(struct element_taker *taker, const struct impulse_lines *lines,
-                                   const float *energy, uint32_t stream)
+static sonject_status add_speckle(struct element_taker *taker, const struct impulse_lines *lines,
+                                  const float *energy, uint32_t stream)
 {
     return impulse_list_add_speckle(&taker->impulses, &lines->grid, lines->strips, energy,
                                     taker->tracer->scene->injection.seed, stream);
 }
 
 /* Orders are added up, and drawn together at the end. */
-static sonject_status take_chains(struct element_taker *taker, const struct impulse_lines *lines)
+static sonject_status add_chains(struct element_taker *taker, const struct impulse_lines *lines)
 {
     const size_t cells = line_grid_cells(&lines->grid);
     if (!taker->chains) {
@@ -66,17 +66,17 @@ static sonject_status take_chains(struct element_taker *taker, const struct impu
     return SONJECT_OK;
 }
 
-static sonject_status take_seabed(struct element_taker *taker, const struct impulse_lines *lines)
+static sonject_status form_seabed(struct element_taker *taker, const struct impulse_lines *lines)
 {
     switch (taker->request->field) {
     case SEABED_FIELD_NONE:
         return SONJECT_OK;
     case SEABED_FIELD_COHERENT:
-        return take_coherent_seabed(taker, lines);
+        return add_coherent_seabed(taker, lines);
     case SEABED_FIELD_SPECKLE:
         break;
     }
-    return take_speckle(taker, lines, lines->plane[1], STREAM_SEABED_SPECKLE);
+    return add_speckle(taker, lines, lines->plane[1], STREAM_SEABED_SPECKLE);
 }
 
 static sonject_status take(void *user, const struct impulse_lines *lines)
@@ -84,10 +84,10 @@ static sonject_status take(void *user, const struct impulse_lines *lines)
     struct element_taker *taker = user;
     switch (lines->kind) {
     case IMPULSES_SEABED:
-        return take_seabed(taker, lines);
+        return form_seabed(taker, lines);
     case IMPULSES_OBJECT:
-        return take_speckle(taker, lines, lines->plane[TILE_ENERGY],
-                            STREAM_OBJECT_SPECKLE + lines->number);
+        return add_speckle(taker, lines, lines->plane[TILE_ENERGY],
+                           STREAM_OBJECT_SPECKLE + lines->number);
     case IMPULSES_GLINT:
         return impulse_list_add(&taker->impulses, &lines->grid, lines->strips, lines->plane[0],
                                 lines->plane[1]);
@@ -96,7 +96,7 @@ static sonject_status take(void *user, const struct impulse_lines *lines)
     case IMPULSES_LEVEL:
         return SONJECT_OK;
     case IMPULSES_CHAINS:
-        return take_chains(taker, lines);
+        return add_chains(taker, lines);
     }
     return SONJECT_OK;
 }
@@ -182,7 +182,7 @@ sonject_status element_echoes_describe(struct report *report, const struct scene
 {
     struct injection_setup setup;
     CHECK(check_scene(report, scene));
-    sonject_status status = injection_setup_lay(&setup, report, NULL, scene, input);
+    sonject_status status = injection_setup_init_scene(&setup, report, NULL, scene, input);
     THEN(status, element_plan(layout, report, scene, &setup.tracer.view, &setup.tracer.response));
     injection_setup_clear(&setup);
     return status;

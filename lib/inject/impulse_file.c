@@ -78,7 +78,7 @@ static sonject_status read_facts(struct impulse_file *file)
     const struct sums_file *sums = &file->sums;
     int64_t *words;
     uint64_t count;
-    if (sums->end.course[0] != '\0' || sums->head.shards != 1)
+    if (sums->end.launches[0] != '\0' || sums->head.shards != 1)
         return report_failure(file->report, SONJECT_ERROR_INPUT,
                               "%s: a shard's sums, not what sonject trace leaves: sonject merge "
                               "forms it",

@@ -1,7 +1,7 @@
 /* What tracing leaves for image formation, in a file of sums (trace/sums_file.h), so that images
  * can be formed later, with another pulse or cross-range response too. Its head has shard 1 of 1,
- * the hash of what tracing depends on and the scene's text; its end has no course. Its records,
- * 64-bit words each:
+ * the hash of what tracing depends on and the scene's text; its end has no digest of launches. Its
+ * records, 64-bit words each:
  *
  *   lines  LINES_HEAD_WORDS numbers: kind, number, strips_per_row, bins_per_pixel, the grid's first
  *          strip and strips, its first bin and bins, first strip and strips of these lines, planes;

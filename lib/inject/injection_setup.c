@@ -165,9 +165,9 @@ static sonject_status copy_pixels(struct injection_setup *setup, struct report *
     return SONJECT_OK;
 }
 
-sonject_status injection_setup_lay(struct injection_setup *setup, struct report *report,
-                                   struct device *device, const struct scene *scene,
-                                   const struct injection_input *input)
+sonject_status injection_setup_init_scene(struct injection_setup *setup, struct report *report,
+                                          struct device *device, const struct scene *scene,
+                                          const struct injection_input *input)
 {
     struct tracer *tracer = &setup->tracer;
     memset(setup, 0, sizeof *setup);
@@ -199,6 +199,6 @@ sonject_status injection_setup_init(struct injection_setup *setup, struct report
                                     struct device *device, const struct scene *scene,
                                     const struct injection_input *input)
 {
-    CHECK(injection_setup_lay(setup, report, device, scene, input));
+    CHECK(injection_setup_init_scene(setup, report, device, scene, input));
     return copy_pixels(setup, report, input);
 }

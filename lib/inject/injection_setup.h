@@ -26,9 +26,9 @@ struct injection_setup {
 
 /* Lays the scene out without the pixels, which stay NULL: geometry, water, objects, response. To be
  * given to injection_setup_clear, also on failure. Errors: INPUT, MEMORY. */
-sonject_status injection_setup_lay(struct injection_setup *setup, struct report *report,
-                                   struct device *device, const struct scene *scene,
-                                   const struct injection_input *input);
+sonject_status injection_setup_init_scene(struct injection_setup *setup, struct report *report,
+                                          struct device *device, const struct scene *scene,
+                                          const struct injection_input *input);
 
 /* The same with the pixels. */
 sonject_status injection_setup_init(struct injection_setup *setup, struct report *report,

@@ -60,8 +60,8 @@ static void fill_energies(const struct line_grid *grid, const struct tracer *tra
     for (size_t bin = 0; bin < bins; bin++) {
         /* half a bin at least: a beam has no width at range 0 */
         const double range =
-            fmax(view_apparent_range(view, ((double)grid->bins.first + (double)bin) /
-                                               grid->bins_per_pixel),
+            fmax(view_processor_range(view, ((double)grid->bins.first + (double)bin) /
+                                                grid->bins_per_pixel),
                  0.5 * view->column_spacing_m / grid->bins_per_pixel);
         energies[bin] = (float)(cell / (cross_range_energy_width(&tracer->response, range) *
                                         range_energy_width(&tracer->response)));
@@ -70,7 +70,8 @@ static void fill_energies(const struct line_grid *grid, const struct tracer *tra
         energies[i] = energies[i - bins];
 }
 
-static sonject_status draw_noise(struct form_lines *lines, const struct tracer *tracer, uint32_t stream)
+static sonject_status draw_noise(struct form_lines *lines, const struct tracer *tracer,
+                                 uint32_t stream)
 {
     const struct line_grid *grid = &lines->grid;
     float *energies = allocate_array((size_t)CHUNK * (size_t)grid->bins.count, sizeof *energies);

@@ -36,7 +36,7 @@ static void mark_covered(struct object_echo *echo, const struct line_grid *grid,
 static sonject_status form_rough_peak(struct peak_lattice *lattice, struct tracer *tracer,
                                       const struct impulse_lines *tile)
 {
-    sonject_status status = peak_lattice_lay(lattice, tracer, &tile->grid, &tile->grid);
+    sonject_status status = peak_lattice_init(lattice, tracer, &tile->grid, &tile->grid);
     THEN(status, peak_lattice_begin(lattice, tracer, FORM_ENERGY, &tile->grid));
     THEN(status, form_lines_add(&lattice->lines, tile->strips.first - lattice->grid.strips.first,
                                 tile->strips.count, tile->plane[TILE_ENERGY], NULL));
@@ -163,7 +163,7 @@ static sonject_status finish_field(struct echoes *echoes, struct form_lines *lin
 }
 
 /* The same lines between pixels. */
-static sonject_status take_glint_peak(struct object_former *former, struct tracer *tracer,
+static sonject_status find_glint_peak(struct object_former *former, struct tracer *tracer,
                                       const struct impulse_lines *lines)
 {
     struct peak_lattice *lattice = &former->glint_peak;
@@ -171,7 +171,7 @@ static sonject_status take_glint_peak(struct object_former *former, struct trace
     if (line_grid_cells(&former->grid) == 0)
         return SONJECT_OK;
     if (!lattice->plane[0])
-        status = peak_lattice_lay(lattice, tracer, &former->grid, &lines->grid);
+        status = peak_lattice_init(lattice, tracer, &former->grid, &lines->grid);
     if (status == SONJECT_OK && impulse_lines_begin(lines))
         status = peak_lattice_begin(lattice, tracer, FORM_SPECKLE, &lines->grid);
     THEN(status, form_lines_add(&lattice->lines, lines->strips.first - lattice->grid.strips.first,
@@ -179,10 +179,10 @@ static sonject_status take_glint_peak(struct object_former *former, struct trace
     return status == SONJECT_OK && impulse_lines_end(lines) ? peak_lattice_finish(lattice) : status;
 }
 
-static sonject_status take_glint(struct object_former *former, struct echoes *echoes,
+static sonject_status form_glint(struct object_former *former, struct echoes *echoes,
                                  struct tracer *tracer, const struct impulse_lines *lines)
 {
-    sonject_status status = take_glint_peak(former, tracer, lines);
+    sonject_status status = find_glint_peak(former, tracer, lines);
     if (status == SONJECT_OK && impulse_lines_begin(lines))
         status = form_lines_begin(&former->lines, tracer->report, tracer->device, &tracer->view,
                                   &tracer->response, FORM_GLINT, &lines->grid);
@@ -229,11 +229,11 @@ sonject_status object_echoes_finish(struct object_former *former, struct echoes 
     return status;
 }
 
-sonject_status object_echoes_take(struct object_former *former, struct echoes *echoes,
-                                  struct tracer *tracer, const struct impulse_lines *lines)
+sonject_status object_echoes_add(struct object_former *former, struct echoes *echoes,
+                                 struct tracer *tracer, const struct impulse_lines *lines)
 {
     if (lines->kind == IMPULSES_GLINT)
-        return take_glint(former, echoes, tracer, lines);
+        return form_glint(former, echoes, tracer, lines);
     CHECK(object_echoes_finish(former, echoes, tracer));
     return begin_object(former, echoes, tracer, lines);
 }

@@ -23,8 +23,8 @@ struct object_former {
 
 /* Takes lines of OBJECT and GLINT. The next OBJECT finishes the one before; object_echoes_finish
  * the last. Errors: DEVICE, MEMORY. */
-sonject_status object_echoes_take(struct object_former *former, struct echoes *echoes,
-                                  struct tracer *tracer, const struct impulse_lines *lines);
+sonject_status object_echoes_add(struct object_former *former, struct echoes *echoes,
+                                 struct tracer *tracer, const struct impulse_lines *lines);
 sonject_status object_echoes_finish(struct object_former *former, struct echoes *echoes,
                                     struct tracer *tracer);
 void object_former_clear(struct object_former *former);

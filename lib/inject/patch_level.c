@@ -13,18 +13,18 @@
           */
 
 double seabed_cell_energy(const struct patch_view *view, const struct point_response *response,
-                          double mu, double apparent_range_m)
+                          double mu, double processor_range_m)
 {
     /* half a cell beyond the first return: before it there is no seabed, and straight below its
      * cells would cover any area */
     const double steepest = view_bottom_range(view) + 0.5 * range_energy_width(response);
-    const double grazing = view_grazing(view, fmax(apparent_range_m, steepest));
+    const double grazing = view_grazing(view, fmax(processor_range_m, steepest));
     const double sine = sin(grazing);
     const double cosine = fmax(1e-6, cos(grazing));
-    const double area = cross_range_energy_width(response, apparent_range_m) *
+    const double area = cross_range_energy_width(response, processor_range_m) *
                         range_energy_width(response) / (view->range_ratio * cosine);
     return mu * sine * sine * area * view_energy_scale(view) *
-           view_refraction_gain(view, apparent_range_m);
+           view_refraction_gain(view, processor_range_m);
 }
 
 void patch_level_clear(struct patch_level *level)
@@ -38,9 +38,9 @@ void patch_level_clear(struct patch_level *level)
 
 #define WATER_SHARE 0.05f /* of seabed around a pixel that tells its level */
 
-static sonject_status take_intensity(struct patch_level *level, struct report *report,
-                                     const struct patch_view *view, const float *pixels,
-                                     bool is_complex, double *mean)
+static sonject_status set_intensity(struct patch_level *level, struct report *report,
+                                    const struct patch_view *view, const float *pixels,
+                                    bool is_complex, double *mean)
 {
     double sum = 0.0;
     for (size_t i = 0; i < view->rows * view->columns; i++) {
@@ -130,7 +130,7 @@ sonject_status patch_level_init(struct patch_level *level, struct report *report
     sonject_status status = level->intensity && level->level && level->map && level->cell_energy
                                 ? SONJECT_OK
                                 : report_out_of_memory(report, "the patch");
-    THEN(status, take_intensity(level, report, view, pixels, is_complex, &mean));
+    THEN(status, set_intensity(level, report, view, pixels, is_complex, &mean));
     if (status == SONJECT_OK && level->water_columns > 0)
         status = level_beside_water(level, report, scene, view);
     else if (status == SONJECT_OK)
@@ -141,8 +141,8 @@ sonject_status patch_level_init(struct patch_level *level, struct report *report
         for (size_t i = 0; i < count; i++)
             level->level[i] = fmaxf(level->level[i], (float)(LEVEL_FLOOR * mean));
         for (size_t j = 0; j < view->columns; j++)
-            level->cell_energy[j] = (float)seabed_cell_energy(view, response, scene->seabed.lambert,
-                                                              view_apparent_range(view, (double)j));
+            level->cell_energy[j] = (float)seabed_cell_energy(
+                view, response, scene->seabed.lambert, view_processor_range(view, (double)j));
         status = make_map(level, report, scene, view);
     }
     level->noise_ratio = pow(10.0, scene->injection.noise_floor_db / 10.0);

@@ -30,10 +30,10 @@ sonject_status patch_level_init(struct patch_level *level, struct report *report
                                 bool is_complex);
 void patch_level_clear(struct patch_level *level);
 
-/* Expected cross-section in m^2 of a pixel of Lambert seabed (mu) at an apparent range: mu sin^2 of
+/* Expected cross-section in m^2 of a pixel of Lambert seabed (mu) at a processor range: mu sin^2 of
  * the grazing angle times the area that the point response covers. */
 double seabed_cell_energy(const struct patch_view *view, const struct point_response *response,
-                          double mu, double apparent_range_m);
+                          double mu, double processor_range_m);
 
 /* Finds for each object the factor that gives its echo's peak the level it asks for,
  * and scales fields and energies by it: at each pixel by the mean of the objects' factors, weighted

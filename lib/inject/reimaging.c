@@ -54,7 +54,7 @@ static sonject_status check_strips(const struct line_grid *grid, const struct tr
                               "trace again with a finer one",
                               1e2 * tracer->response.strip_m, file, 1e2 * strip);
     /* half of what is not within the margin lies beyond it */
-    const double farthest = view_apparent_range(&tracer->view, (double)tracer->view.columns - 1.0);
+    const double farthest = view_processor_range(&tracer->view, (double)tracer->view.columns - 1.0);
     const double reach = cross_range_energy_reach(&tracer->response, farthest, 2.0 * EDGE_LOSS);
     const bool is_moved = tracer->response.motion != NULL;
     if (reach <= margin)

@@ -45,7 +45,7 @@ static sonject_status add_coherent(struct seabed_former *former, struct tracer *
                           former->imaginary);
 }
 
-static sonject_status take_field(struct seabed_former *former, struct echoes *echoes,
+static sonject_status form_field(struct seabed_former *former, struct echoes *echoes,
                                  struct tracer *tracer, const struct echo_request *request,
                                  const struct impulse_lines *lines)
 {
@@ -66,14 +66,14 @@ static sonject_status take_field(struct seabed_former *former, struct echoes *ec
     return status;
 }
 
-sonject_status seabed_echoes_take(struct seabed_former *former, struct echoes *echoes,
-                                  struct tracer *tracer, const struct echo_request *request,
-                                  const struct impulse_lines *lines)
+sonject_status seabed_echoes_add(struct seabed_former *former, struct echoes *echoes,
+                                 struct tracer *tracer, const struct echo_request *request,
+                                 const struct impulse_lines *lines)
 {
     sonject_status status = form_energies_as_they_come(&former->energies, tracer, &tracer->response,
                                                        lines, echoes->seabed_energy);
     if (status == SONJECT_OK && request->field != SEABED_FIELD_NONE)
-        status = take_field(former, echoes, tracer, request, lines);
+        status = form_field(former, echoes, tracer, request, lines);
     return status;
 }
 
@@ -106,7 +106,7 @@ static void multiply(float *plane, const float *map, size_t rows, size_t columns
 }
 
 /* Gives energies that were traced with an even reflectivity the map's pattern. */
-static void take_pattern(struct echoes *echoes, const float *map)
+static void set_pattern(struct echoes *echoes, const float *map)
 {
     const size_t rows = echoes->rows;
     const size_t columns = echoes->columns;
@@ -119,9 +119,9 @@ static void take_pattern(struct echoes *echoes, const float *map)
                      echoes->objects[i].first_column, columns);
 }
 
-sonject_status level_seabed_take(struct seabed_former *former, struct echoes *echoes,
-                                 struct tracer *tracer, const struct echo_request *request,
-                                 const struct impulse_lines *lines)
+sonject_status level_seabed_add(struct seabed_former *former, struct echoes *echoes,
+                                struct tracer *tracer, const struct echo_request *request,
+                                const struct impulse_lines *lines)
 {
     if (!echoes->level_energy)
         echoes->level_energy = allocate_array(echoes->rows * echoes->columns, sizeof(float));
@@ -129,7 +129,7 @@ sonject_status level_seabed_take(struct seabed_former *former, struct echoes *ec
     const sonject_status status = form_energies_as_they_come(
         &former->energies, tracer, &tracer->response, lines, echoes->level_energy);
     if (status == SONJECT_OK && impulse_lines_end(lines) && request->map && is_composite(request))
-        take_pattern(echoes, request->map);
+        set_pattern(echoes, request->map);
     return status;
 }
 
@@ -148,8 +148,8 @@ void response_of_pings(struct point_response *response, const struct tracer *tra
                         tracer->view.row_spacing_m);
 }
 
-/* The even seabed; with its last lines, what was found from abreast is forgotten. */
-static sonject_status take_seabed(struct beam_former *former, struct echoes *echoes,
+/* The even seabed; with its last lines, what was found from broadside is forgotten. */
+static sonject_status form_seabed(struct beam_former *former, struct echoes *echoes,
                                   struct tracer *tracer, const struct point_response *response,
                                   const struct impulse_lines *lines)
 {
@@ -188,7 +188,7 @@ static void add_lost(const float *seabed, struct echoes *echoes, struct object_e
         }
 }
 
-static sonject_status take_hidden(struct beam_former *former, struct echoes *echoes,
+static sonject_status form_hidden(struct beam_former *former, struct echoes *echoes,
                                   struct tracer *tracer, const struct point_response *response,
                                   const struct impulse_lines *lines)
 {
@@ -210,13 +210,13 @@ static sonject_status take_hidden(struct beam_former *former, struct echoes *ech
     return status;
 }
 
-sonject_status beam_shadows_take(struct beam_former *former, struct echoes *echoes,
-                                 struct tracer *tracer, const struct impulse_lines *lines)
+sonject_status beam_shadows_add(struct beam_former *former, struct echoes *echoes,
+                                struct tracer *tracer, const struct impulse_lines *lines)
 {
     struct point_response response;
     response_of_pings(&response, tracer);
-    return lines->kind == IMPULSES_BEAM ? take_seabed(former, echoes, tracer, &response, lines)
-                                        : take_hidden(former, echoes, tracer, &response, lines);
+    return lines->kind == IMPULSES_BEAM ? form_seabed(former, echoes, tracer, &response, lines)
+                                        : form_hidden(former, echoes, tracer, &response, lines);
 }
 
 void beam_former_clear(struct beam_former *former)

@@ -23,9 +23,9 @@ struct tracing {
     float *chunk, *second; /* lines that are handed out */
 };
 
-static sonject_status hand_out(const struct tracing *tracing, enum impulse_kind kind,
-                               uint32_t number, const struct line_grid *grid, struct span strips,
-                               uint32_t planes, const float *const *plane)
+static sonject_status emit(const struct tracing *tracing, enum impulse_kind kind, uint32_t number,
+                           const struct line_grid *grid, struct span strips, uint32_t planes,
+                           const float *const *plane)
 {
     struct impulse_lines lines;
     if (checkpoint_is_cut_short(tracing->tracer->checkpoint))
@@ -101,8 +101,8 @@ static sonject_status trace_seabed(struct tracing *tracing)
         if (status == SONJECT_OK && wants_field(tracing))
             status = find_in_view(tracing, strips);
         if (status == SONJECT_OK)
-            status = hand_out(tracing, IMPULSES_SEABED, 0, &trace->grid, strips,
-                              wants_field(tracing) ? 2 : 1, planes);
+            status = emit(tracing, IMPULSES_SEABED, 0, &trace->grid, strips,
+                          wants_field(tracing) ? 2 : 1, planes);
         THEN(status, echo_request_tell(
                          tracing->request, tracing->tracer->report,
                          ROUGH_SHARE * (strips.first + strips.count - trace->grid.strips.first) /
@@ -114,15 +114,15 @@ static sonject_status trace_seabed(struct tracing *tracing)
     return status;
 }
 
-static sonject_status hand_out_tile(const struct tracing *tracing, uint32_t number)
+static sonject_status emit_tile(const struct tracing *tracing, uint32_t number)
 {
     const struct rough_tile *tile = &tracing->rough.tiles[number];
     const size_t cells = line_grid_cells(&tile->grid);
     const float *planes[TILE_PLANES];
     for (size_t i = 0; i < TILE_PLANES; i++)
         planes[i] = tracing->tiles + tile->offset + i * cells;
-    return hand_out(tracing, IMPULSES_OBJECT, number, &tile->grid, tile->grid.strips, TILE_PLANES,
-                    planes);
+    return emit(tracing, IMPULSES_OBJECT, number, &tile->grid, tile->grid.strips, TILE_PLANES,
+                planes);
 }
 
 /* Chunks that are the same wherever the grid begins: its extent depends on echoes of corners, which
@@ -148,7 +148,7 @@ static sonject_status trace_glint_strips(const struct tracing *tracing, struct g
                                 : report_out_of_memory(tracing->tracer->report, "glints");
     while (status == SONJECT_OK && (strips = next_glint_strips(glints, strips)).count > 0) {
         status = glints_trace(glints, tracing->tracer, strips, real_part, imaginary_part);
-        THEN(status, hand_out(tracing, IMPULSES_GLINT, part, &glints->grid, strips, 2, planes));
+        THEN(status, emit(tracing, IMPULSES_GLINT, part, &glints->grid, strips, 2, planes));
     }
     free(real_part);
     free(imaginary_part);
@@ -173,7 +173,7 @@ static sonject_status trace_objects(const struct tracing *tracing)
     sonject_status status = SONJECT_OK;
     for (uint32_t i = 0; status == SONJECT_OK && i < count; i++) {
         const struct placed_object *object = &tracing->tracer->objects[i];
-        status = hand_out_tile(tracing, i);
+        status = emit_tile(tracing, i);
         for (uint32_t k = 0; status == SONJECT_OK && k < object->part_count; k++)
             status = trace_glints(tracing, object->first_part + k);
         THEN(status, echo_request_tell(tracing->request, tracing->tracer->report,
@@ -195,7 +195,7 @@ static sonject_status trace_level_seabed(struct tracing *tracing)
     while (status == SONJECT_OK &&
            (strips = next_strips(&trace->grid, strips, rough_trace_chunk(trace))).count > 0) {
         status = rough_trace_strips(trace, tracing->tracer, strips, tracing->chunk);
-        THEN(status, hand_out(tracing, IMPULSES_LEVEL, 0, &trace->grid, strips, 1, planes));
+        THEN(status, emit(tracing, IMPULSES_LEVEL, 0, &trace->grid, strips, 1, planes));
         THEN(status, echo_request_tell(tracing->request, tracing->tracer->report,
                                        ROUGH_SHARE + OBJECT_SHARE, "tracing the level seabed"));
     }
@@ -226,7 +226,7 @@ static sonject_status trace_pings(struct tracing *beam)
     while (status == SONJECT_OK &&
            (strips = next_strips(&trace->grid, strips, rough_trace_chunk(trace))).count > 0) {
         status = rough_trace_strips(trace, beam->tracer, strips, beam->chunk);
-        THEN(status, hand_out(beam, IMPULSES_BEAM, 0, &trace->grid, strips, 1, planes));
+        THEN(status, emit(beam, IMPULSES_BEAM, 0, &trace->grid, strips, 1, planes));
         THEN(status, echo_request_tell(beam->request, beam->tracer->report,
                                        ROUGH_SHARE + OBJECT_SHARE, "tracing the beam"));
     }
@@ -234,14 +234,14 @@ static sonject_status trace_pings(struct tracing *beam)
     return status;
 }
 
-static sonject_status hand_out_hidden(const struct tracing *beam)
+static sonject_status emit_hidden(const struct tracing *beam)
 {
     sonject_status status = SONJECT_OK;
     for (uint32_t i = 0; status == SONJECT_OK && i < beam->tracer->scene->object_count; i++) {
         const struct rough_tile *tile = &beam->rough.tiles[i];
         const float *const planes[] = {beam->tiles + tile->offset +
                                        TILE_LOST * line_grid_cells(&tile->grid)};
-        status = hand_out(beam, IMPULSES_HIDDEN, i, &tile->grid, tile->grid.strips, 1, planes);
+        status = emit(beam, IMPULSES_HIDDEN, i, &tile->grid, tile->grid.strips, 1, planes);
     }
     return status;
 }
@@ -260,7 +260,7 @@ static sonject_status trace_beam(struct tracer *tracer, const struct echo_reques
     sonject_status status = allocate_chunks(&beam);
     THEN(status, trace_pings(&beam));
     THEN(status, rough_trace_tiles(&beam.rough, tracer, beam.tiles));
-    THEN(status, hand_out_hidden(&beam));
+    THEN(status, emit_hidden(&beam));
     rough_trace_end(&beam.rough);
     free(beam.tiles);
     free(beam.chunk);
@@ -291,7 +291,7 @@ static sonject_status trace_fan(const struct tracing *tracing, struct chain_trac
     return status;
 }
 
-static sonject_status hand_out_chains(const struct tracing *tracing, struct chain_trace *trace)
+static sonject_status emit_chains(const struct tracing *tracing, struct chain_trace *trace)
 {
     float *energy = allocate_array(line_grid_cells(&trace->grid), sizeof *energy);
     const float *const planes[] = {energy};
@@ -300,8 +300,8 @@ static sonject_status hand_out_chains(const struct tracing *tracing, struct chai
                : report_out_of_memory(tracing->tracer->report, "multiple interactions");
     for (uint32_t plane = 0; status == SONJECT_OK && plane < trace->planes; plane++) {
         status = chain_trace_read(trace, tracing->tracer, plane, energy);
-        THEN(status, hand_out(tracing, IMPULSES_CHAINS, trace->first_order + plane, &trace->grid,
-                              trace->grid.strips, 1, planes));
+        THEN(status, emit(tracing, IMPULSES_CHAINS, trace->first_order + plane, &trace->grid,
+                          trace->grid.strips, 1, planes));
     }
     free(energy);
     return status;
@@ -315,7 +315,7 @@ static sonject_status trace_chains(const struct tracing *tracing)
         return status;
     for (uint32_t i = 0; status == SONJECT_OK && i < chain_fan_count(tracing->tracer); i++)
         status = trace_fan(tracing, &trace, i);
-    THEN(status, hand_out_chains(tracing, &trace));
+    THEN(status, emit_chains(tracing, &trace));
     chain_trace_end(&trace);
     return status;
 }

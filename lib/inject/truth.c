@@ -13,7 +13,7 @@ struct box_search {
     uint64_t pixels;
 };
 
-static void box_take(struct box_search *box, size_t row, size_t column)
+static void box_include(struct box_search *box, size_t row, size_t column)
 {
     if (box->pixels == 0 || row < box->first_row)
         box->first_row = row;
@@ -106,14 +106,14 @@ static void find_object(const struct patch_level *level, const struct echoes *ec
             if (levels.own > levels.background && is_on_object(echo, echoes->rows, row, column)) {
                 result->highlight[i] = 255;
                 result->labels[i] = (uint8_t)(number + 1);
-                box_take(&highlight, row, column);
-                box_take(&both, row, column);
+                box_include(&highlight, row, column);
+                box_include(&both, row, column);
             } else if (levels.hidden_share > 0.5) {
                 if (!result->labels[i])
                     result->labels[i] = (uint8_t)(number + 1);
                 result->shadow[i] = 255;
-                box_take(&shadow, row, column);
-                box_take(&both, row, column);
+                box_include(&shadow, row, column);
+                box_include(&both, row, column);
             }
         }
     sonject_object_truth *truth = &result->objects[number];

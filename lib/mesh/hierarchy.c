@@ -247,7 +247,7 @@ static bool fill_branch(struct builder *builder, const struct pending *pending)
     return true;
 }
 
-static void lay_triangles(struct builder *builder, size_t count)
+static void set_triangles(struct builder *builder, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
         struct split_box *box = &builder->triangles[i].box;
@@ -266,7 +266,7 @@ static bool build(struct builder *builder, size_t count)
 {
     struct split_range all;
     int32_t root;
-    lay_triangles(builder, count);
+    set_triangles(builder, count);
     all.first = 0;
     all.last = count;
     all.box = split_box_of(builder->triangles, 0, count);

@@ -157,7 +157,7 @@ static sonject_status weld_all(struct report *report, const char *name,
 }
 
 /* Takes over what was welded. */
-static sonject_status take_welded(struct report *report, const char *name, struct mesh_soup *welded,
+static sonject_status copy_welded(struct report *report, const char *name, struct mesh_soup *welded,
                                   struct mesh *mesh)
 {
     double square = 0.0;
@@ -187,7 +187,7 @@ static sonject_status take_welded(struct report *report, const char *name, struc
 }
 
 /* Smooth normals in the order of the leaves' slots. */
-static sonject_status lay_normals(struct report *report, double angle, struct mesh *mesh)
+static sonject_status set_normals(struct report *report, double angle, struct mesh *mesh)
 {
     float *normals;
     const size_t slots = mesh->hierarchy.leaf_count * MESH_SLOTS;
@@ -221,7 +221,7 @@ static sonject_status weld_and_orient(struct report *report, const char *name,
     mesh->vertices = NULL;
     mesh->corners = NULL;
     sonject_status status = weld_all(report, name, soup, options, tolerance, mesh, &welded);
-    THEN(status, take_welded(report, name, &welded, mesh));
+    THEN(status, copy_welded(report, name, &welded, mesh));
     mesh_soup_clear(&welded);
     return status == SONJECT_OK
                ? mesh_topology_find(report, mesh->vertices, mesh->vertex_count, mesh->corners,
@@ -270,7 +270,7 @@ static sonject_status prepare(struct report *report, const char *name, const str
                                       mesh->radius_m, &mesh->hierarchy);
     }
     if (status == SONJECT_OK && options->smooth_angle_rad > 0.0)
-        status = lay_normals(report, options->smooth_angle_rad, mesh);
+        status = set_normals(report, options->smooth_angle_rad, mesh);
     return status;
 }
 

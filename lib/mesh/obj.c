@@ -54,9 +54,9 @@ sonject_status obj_read(struct report *report, const char *path, const char *byt
     struct words words = {report, path, bytes, bytes + count, 1};
     while (words_left(&words, '#')) {
         sonject_status status = SONJECT_OK;
-        if (words_take(&words, "v"))
+        if (words_accept(&words, "v"))
             status = read_vertex(&words, soup);
-        else if (words_take(&words, "f"))
+        else if (words_accept(&words, "f"))
             status = read_face(&words, soup);
         if (status != SONJECT_OK)
             return status;

@@ -24,7 +24,7 @@ static size_t ply_least_bytes(const struct ply_header *header, const struct ply_
     return bytes;
 }
 
-static sonject_status take_type(struct words *words, enum ply_type *type)
+static sonject_status accept_type(struct words *words, enum ply_type *type)
 {
     static const struct {
         const char *name;
@@ -37,24 +37,25 @@ static sonject_status take_type(struct words *words, enum ply_type *type)
                  {"float64", PLY_FLOAT64}};
     if (words_on_line(words))
         for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-            if (words_take(words, types[i].name)) {
+            if (words_accept(words, types[i].name)) {
                 *type = types[i].type;
                 return SONJECT_OK;
             }
     return words_failure(words, "a type such as float or uchar");
 }
 
-static enum ply_role take_role(struct words *words, const struct ply_element *element, bool is_list)
+static enum ply_role accept_role(struct words *words, const struct ply_element *element,
+                                 bool is_list)
 {
     static const char *const axes[] = {"x", "y", "z"};
     if (!words_on_line(words))
         return PLY_OTHER;
     if (element->is_vertex && !is_list)
         for (int axis = 0; axis < 3; axis++)
-            if (words_take(words, axes[axis]))
+            if (words_accept(words, axes[axis]))
                 return (enum ply_role)(PLY_X + axis);
     if (element->is_face && is_list &&
-        (words_take(words, "vertex_indices") || words_take(words, "vertex_index")))
+        (words_accept(words, "vertex_indices") || words_accept(words, "vertex_index")))
         return PLY_CORNERS;
     return PLY_OTHER;
 }
@@ -68,14 +69,14 @@ static sonject_status read_property(struct words *words, struct ply_header *head
     if (element->property_count == PLY_PROPERTIES_MAX)
         return words_failure(words, "at most 64 properties of an element");
     struct ply_property *property = &element->properties[element->property_count++];
-    property->is_list = words_on_line(words) && words_take(words, "list");
+    property->is_list = words_on_line(words) && words_accept(words, "list");
     if (property->is_list) {
-        CHECK(take_type(words, &property->length_type));
+        CHECK(accept_type(words, &property->length_type));
         if (property->length_type >= PLY_FLOAT32)
             return words_failure(words, "a list whose length is a whole number");
     }
-    CHECK(take_type(words, &property->type));
-    property->role = take_role(words, element, property->is_list);
+    CHECK(accept_type(words, &property->type));
+    property->role = accept_role(words, element, property->is_list);
     if (property->role == PLY_CORNERS && property->type >= PLY_FLOAT32)
         return words_failure(words, "vertex numbers that are whole");
     return SONJECT_OK;
@@ -90,8 +91,8 @@ static sonject_status read_element(struct words *words, struct ply_header *heade
     int64_t count = 0;
     if (!words_on_line(words))
         return words_failure(words, "the name of an element");
-    element->is_vertex = words_take(words, "vertex");
-    element->is_face = !element->is_vertex && words_take(words, "face");
+    element->is_vertex = words_accept(words, "vertex");
+    element->is_face = !element->is_vertex && words_accept(words, "face");
     while (words->at < words->end && !strchr(" \t\r\n", *words->at))
         words->at++; /* any other name */
     CHECK(words_whole(words, "the number of elements", &count));
@@ -105,29 +106,29 @@ static sonject_status read_format(struct words *words, struct ply_header *header
 {
     if (!words_on_line(words))
         return words_failure(words, "the name of a format");
-    if (words_take(words, "ascii"))
+    if (words_accept(words, "ascii"))
         header->format = PLY_TEXT;
-    else if (words_take(words, "binary_little_endian"))
+    else if (words_accept(words, "binary_little_endian"))
         header->format = PLY_LITTLE_ENDIAN;
-    else if (words_take(words, "binary_big_endian"))
+    else if (words_accept(words, "binary_big_endian"))
         header->format = PLY_BIG_ENDIAN;
     else
         return words_failure(words, "ascii, binary_little_endian or binary_big_endian");
-    if (!words_on_line(words) || !words_take(words, "1.0"))
+    if (!words_on_line(words) || !words_accept(words, "1.0"))
         return words_failure(words, "version 1.0");
     return SONJECT_OK;
 }
 
 static sonject_status read_line(struct words *words, struct ply_header *header, bool *is_end)
 {
-    *is_end = words_take(words, "end_header");
-    if (*is_end || words_take(words, "comment") || words_take(words, "obj_info"))
+    *is_end = words_accept(words, "end_header");
+    if (*is_end || words_accept(words, "comment") || words_accept(words, "obj_info"))
         return SONJECT_OK;
-    if (words_take(words, "format"))
+    if (words_accept(words, "format"))
         return read_format(words, header);
-    if (words_take(words, "element"))
+    if (words_accept(words, "element"))
         return read_element(words, header);
-    if (words_take(words, "property"))
+    if (words_accept(words, "property"))
         return read_property(words, header);
     return words_failure(words, "a line of a PLY header");
 }
@@ -175,7 +176,7 @@ static sonject_status ply_header_read(struct words *words, struct ply_header *he
 {
     bool is_end = false;
     memset(header, 0, sizeof *header);
-    if (!words_on_line(words) || !words_take(words, "ply"))
+    if (!words_on_line(words) || !words_accept(words, "ply"))
         return words_failure(words, "'ply'");
     words_skip_line(words);
     while (!is_end) {

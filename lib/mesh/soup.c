@@ -119,7 +119,7 @@ static size_t find_slot(const struct weld *weld, const struct mesh_soup *soup, s
     return slot;
 }
 
-static void put_vertex(struct weld *weld, const struct mesh_soup *soup, size_t vertex)
+static void set_vertex(struct weld *weld, const struct mesh_soup *soup, size_t vertex)
 {
     size_t slot = slot_of(weld, &soup->positions[3 * vertex], (const int[3]){0, 0, 0});
     while (weld->slots[slot] != 0)
@@ -134,7 +134,7 @@ static bool widen(struct weld *weld, const struct mesh_soup *soup)
     if (!wider.slots)
         return false;
     for (size_t i = 0; i < soup->vertices; i++)
-        put_vertex(&wider, soup, i);
+        set_vertex(&wider, soup, i);
     free(weld->slots);
     *weld = wider;
     return true;
@@ -174,7 +174,7 @@ bool weld_vertex(struct weld *weld, struct mesh_soup *soup, const double positio
         if (!mesh_soup_add_vertex(soup, point))
             return false;
         found = (uint32_t)soup->vertices;
-        put_vertex(weld, soup, found - 1);
+        set_vertex(weld, soup, found - 1);
     }
     *number = found - 1;
     return true;

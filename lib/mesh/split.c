@@ -67,7 +67,7 @@ static int bins_for(size_t count)
     return count >= 64 ? BINS_MOST : count >= 16 ? 8 : 4;
 }
 
-static void lay_bins(struct bins *bins, const struct split_triangle *triangles,
+static void set_bins(struct bins *bins, const struct split_triangle *triangles,
                      const struct split_range *range)
 {
     float lower[3] = {FLT_MAX, FLT_MAX, FLT_MAX};
@@ -228,7 +228,7 @@ void split_cut(struct split_triangle *triangles, const struct split_range *range
     const size_t count = range->last - range->first;
     struct bins bins;
     struct cut best = {-1, 0, FLT_MAX, 0};
-    lay_bins(&bins, triangles, range);
+    set_bins(&bins, triangles, range);
     fill_bins(&bins, triangles, range);
     for (int axis = 0; axis < 3; axis++)
         if (bins.scale[axis] > 0.0f)

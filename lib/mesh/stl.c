@@ -63,10 +63,10 @@ static sonject_status read_binary(struct report *report, const char *path, const
 }
 
 /* Takes the words in turn, which may stand on several lines. */
-static sonject_status take_all(struct words *words, const char *const *expected)
+static sonject_status accept_all(struct words *words, const char *const *expected)
 {
     for (; *expected; expected++)
-        if (!words_left(words, '\0') || !words_take(words, *expected))
+        if (!words_left(words, '\0') || !words_accept(words, *expected))
             return words_failure(words, *expected);
     return SONJECT_OK;
 }
@@ -76,7 +76,7 @@ static sonject_status read_vertex(struct words *words, struct weld *weld, struct
 {
     static const char *const vertex[] = {"vertex", NULL};
     double position[3];
-    sonject_status status = take_all(words, vertex);
+    sonject_status status = accept_all(words, vertex);
     for (int axis = 0; axis < 3 && status == SONJECT_OK; axis++)
         status = words_number(words, "a finite coordinate", &position[axis]);
     if (status == SONJECT_OK && !weld_vertex(weld, soup, position, corner))
@@ -91,10 +91,10 @@ static sonject_status read_facet(struct words *words, struct weld *weld, struct 
     static const char *const end[] = {"endloop", "endfacet", NULL};
     uint32_t corners[3];
     words_skip_line(words);
-    sonject_status status = take_all(words, begin);
+    sonject_status status = accept_all(words, begin);
     for (int corner = 0; corner < 3 && status == SONJECT_OK; corner++)
         status = read_vertex(words, weld, soup, &corners[corner]);
-    THEN(status, take_all(words, end));
+    THEN(status, accept_all(words, end));
     if (status == SONJECT_OK && !mesh_soup_add_triangle(soup, corners[0], corners[1], corners[2]))
         status = mesh_soup_failure(words->report, words->path, soup);
     return status;
@@ -103,15 +103,15 @@ static sonject_status read_facet(struct words *words, struct weld *weld, struct 
 static sonject_status read_text(struct words *words, struct weld *weld, struct mesh_soup *soup)
 {
     while (words_left(words, '\0')) {
-        if (!words_take(words, "solid"))
+        if (!words_accept(words, "solid"))
             return words_failure(words, "'solid'");
         words_skip_line(words); /* its name */
         for (;;) {
             if (!words_left(words, '\0'))
                 return words_failure(words, "'facet' or 'endsolid'");
-            if (words_take(words, "endsolid"))
+            if (words_accept(words, "endsolid"))
                 break;
-            if (!words_take(words, "facet"))
+            if (!words_accept(words, "facet"))
                 return words_failure(words, "'facet' or 'endsolid'");
             CHECK(read_facet(words, weld, soup));
         }

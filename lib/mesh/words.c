@@ -62,7 +62,7 @@ static char lower(char c)
     return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
 }
 
-bool words_take(struct words *words, const char *word)
+bool words_accept(struct words *words, const char *word)
 {
     const char *at = words->at;
     for (; *word; word++, at++)

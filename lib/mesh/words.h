@@ -24,7 +24,7 @@ bool words_left(struct words *words, char comment);
 void words_skip_line(struct words *words);
 
 /* Takes the word, in any case of letters, if it is next (words_left must be true). */
-bool words_take(struct words *words, const char *word);
+bool words_accept(struct words *words, const char *word);
 
 /* "path, line n: expected <what>, found '<word>'". Returns INPUT. */
 sonject_status words_failure(const struct words *words, const char *what);

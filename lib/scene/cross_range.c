@@ -24,7 +24,7 @@ bool cross_range_is_plain(const struct point_response *response)
     return response->array_length_m == 0.0 && !response->cross_range_table && !response->motion;
 }
 
-/* Cosine between the array's long side and the way abreast to the seabed at a range. */
+/* Cosine between the array's long side and the way at broadside to the seabed at a range. */
 static double lean_of_array(const struct point_response *response, double range)
 {
     const double down = fmin(response->array_altitude_m / range, 1.0);
@@ -40,7 +40,7 @@ static double beam_at(const struct point_response *response, double lean, double
     return one_way * one_way;
 }
 
-/* How far from abreast the beam of a turned array looks at most, along the track, to a range. */
+/* How far from broadside the beam of a turned array looks at most, along the track, to a range. */
 static double largest_shift(const struct point_response *response, double range)
 {
     return (range * fabs(response->array_along[1]) +
@@ -133,7 +133,7 @@ double cross_range_tail(const struct point_response *response, double range_m)
 }
 
 /* What a turned array's images leave out: its shadows over relief, ways by which sound comes in at
- * another angle than from the seabed there, and the map, whose pixels are seen from abreast. */
+ * another angle than from the seabed there, and the map, whose pixels are seen from broadside. */
 static sonject_status check_turned(struct report *report, const struct scene *scene,
                                    const struct patch_view *view)
 {
@@ -154,13 +154,13 @@ static sonject_status check_turned(struct report *report, const struct scene *sc
                           what);
 }
 
-/* By how much the range of an echo at an apparent range changes within the beam's half power. */
-static double migration_at(const struct point_response *response, double apparent)
+/* By how much the range of an echo at a processor range changes within the beam's half power. */
+static double migration_at(const struct point_response *response, double processor_range)
 {
-    const double range = apparent / response->range_ratio;
+    const double range = processor_range / response->range_ratio;
     const double tangent = tangent_at(response, HALF_POWER_POINT) +
                            fabs(lean_of_array(response, range)) / response->array_along[0];
-    return apparent * (sqrt(1.0 + tangent * tangent) - 1.0);
+    return processor_range * (sqrt(1.0 + tangent * tangent) - 1.0);
 }
 
 sonject_status cross_range_check(const struct point_response *response, struct report *report,
@@ -173,8 +173,8 @@ sonject_status cross_range_check(const struct point_response *response, struct r
     if (status != SONJECT_OK)
         return status;
     const double most = MIGRATION_SHARE * response->range_resolution_m;
-    const double ends[2] = {view_apparent_range(view, (double)view->columns - 1.0),
-                            view_apparent_range(view, 0.0)};
+    const double ends[2] = {view_processor_range(view, (double)view->columns - 1.0),
+                            view_processor_range(view, 0.0)};
     for (int i = 0; i < 2; i++) {
         const double migration = migration_at(response, ends[i]);
         if (migration > most)

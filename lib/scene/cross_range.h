@@ -12,7 +12,7 @@
 /* Whether W is one real function at all ranges and rows: along_track_response. */
 bool cross_range_is_plain(const struct point_response *response);
 
-/* W of a pixel `distance_m` farther along the track than the point, at an apparent slant range;
+/* W of a pixel `distance_m` farther along the track than the point, at a processor's slant range;
  * without residual motion. */
 struct complex_number cross_range_response(const struct point_response *response, double range_m,
                                            double distance_m);

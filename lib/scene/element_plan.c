@@ -46,7 +46,7 @@ static sonject_status plan_pings(sonject_element_layout *layout, struct report *
                                  const struct patch_view *view)
 {
     sonject_elements_params *elements = &layout->elements;
-    const double last_range = view_apparent_range(view, (double)view->columns - 1.0);
+    const double last_range = view_processor_range(view, (double)view->columns - 1.0);
     const double half = half_aperture(layout, last_range);
     const double patch = (double)(view->rows - 1) * view->row_spacing_m;
     const double first_x = view->is_mirrored ? -(view->first_x_m + patch) : view->first_x_m;
@@ -98,8 +98,8 @@ static sonject_status plan_times(sonject_element_layout *layout, struct report *
     sonject_elements_params *elements = &layout->elements;
     const double c = layout->sound_speed_mps;
     const double reach = response->pulse_tail_m;
-    const double first_range = view_apparent_range(view, 0.0) - reach;
-    const double last_range = view_apparent_range(view, (double)view->columns - 1.0) + reach;
+    const double first_range = view_processor_range(view, 0.0) - reach;
+    const double last_range = view_processor_range(view, (double)view->columns - 1.0) + reach;
     const double aside = half_aperture(layout, last_range) + 0.5 * array_length(elements) +
                          fabs(elements->transmitter_offset_m);
     const bool is_chirp = elements->pulse == SONJECT_SERIES_CHIRP;

@@ -31,7 +31,7 @@ void line_grid_for_patch(struct line_grid *grid, const struct patch_view *view,
     grid->strips_per_row = (uint32_t)ceil(view->row_spacing_m / response->strip_m - ROUNDING);
     grid->bins_per_pixel =
         (uint32_t)ceil(BINS_PER_RESOLUTION * view->column_spacing_m / resolution - ROUNDING);
-    const double farthest = view_apparent_range(view, (double)(view->columns - 1));
+    const double farthest = view_processor_range(view, (double)(view->columns - 1));
     const double strip = view->row_spacing_m / grid->strips_per_row;
     const int32_t strip_margin =
         (int32_t)ceil(cross_range_energy_reach(response, farthest, MARGIN_ENERGY_SHARE) / strip);
@@ -54,13 +54,13 @@ double line_grid_shortest_deviation(const struct line_grid *grid, double column_
 
 double line_grid_near_end(const struct line_grid *grid, const struct patch_view *view)
 {
-    return view_apparent_range(view, (grid->bins.first - 1.0) / grid->bins_per_pixel);
+    return view_processor_range(view, (grid->bins.first - 1.0) / grid->bins_per_pixel);
 }
 
 double line_grid_far_end(const struct line_grid *grid, const struct patch_view *view)
 {
     const double end = grid->bins.first + grid->bins.count;
-    return view_apparent_range(view, end / grid->bins_per_pixel);
+    return view_processor_range(view, end / grid->bins_per_pixel);
 }
 
 size_t line_grid_cells(const struct line_grid *grid)

@@ -38,8 +38,8 @@ int32_t pulse_tail_bins(const struct patch_view *view, const struct point_respon
  * enough for. */
 double line_grid_shortest_deviation(const struct line_grid *grid, double column_spacing_m);
 
-/* The apparent ranges, m, between which echoes share with the grid's bins: a bin beyond the middles
- * of its outermost ones. */
+/* The processor ranges, m, between which echoes share with the grid's bins: a bin beyond the
+ * middles of its outermost ones. */
 double line_grid_near_end(const struct line_grid *grid, const struct patch_view *view);
 double line_grid_far_end(const struct line_grid *grid, const struct patch_view *view);
 

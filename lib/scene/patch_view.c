@@ -58,7 +58,7 @@ sonject_status patch_view_init(struct patch_view *view, struct report *report,
     view->first_x_m =
         view->is_mirrored ? -(along + (double)(rows - 1) * geometry->row_spacing_m) : along;
     view->first_range_m = geometry->first_slant_range_m + first_column * geometry->column_spacing_m;
-    const double last_range = view_apparent_range(view, (double)columns - 1.0);
+    const double last_range = view_processor_range(view, (double)columns - 1.0);
     /* near the vertical, layers and heights would need rays that start at the nadir */
     const bool may_begin_in_water = view->water.is_straight && scene->relief.count == 0;
     if (!(view_ground_range(view, view->first_range_m) > 0.0) &&
@@ -107,33 +107,33 @@ double view_row_of_x(const struct patch_view *view, double x_m)
     return (x_m - view->first_x_m) / view->row_spacing_m;
 }
 
-double view_apparent_range(const struct patch_view *view, double column)
+double view_processor_range(const struct patch_view *view, double column)
 {
     return view->first_range_m + column * view->column_spacing_m;
 }
 
-double view_column_of_range(const struct patch_view *view, double apparent_range_m)
+double view_column_of_range(const struct patch_view *view, double processor_range_m)
 {
-    return (apparent_range_m - view->first_range_m) / view->column_spacing_m;
+    return (processor_range_m - view->first_range_m) / view->column_spacing_m;
 }
 
-double view_ground_range(const struct patch_view *view, double apparent_range_m)
+double view_ground_range(const struct patch_view *view, double processor_range_m)
 {
-    return water_way_ground_range(&view->water, apparent_range_m / view->range_ratio);
+    return water_way_ground_range(&view->water, processor_range_m / view->range_ratio);
 }
 
-double view_grazing(const struct patch_view *view, double apparent_range_m)
+double view_grazing(const struct patch_view *view, double processor_range_m)
 {
-    const double ground = view_ground_range(view, apparent_range_m);
+    const double ground = view_ground_range(view, processor_range_m);
     return ground > 0.0 ? water_way_grazing(&view->water, ground, 0.0) : 0.5 * PI;
 }
 
-double view_refraction_gain(const struct patch_view *view, double apparent_range_m)
+double view_refraction_gain(const struct patch_view *view, double processor_range_m)
 {
     if (view->water.is_straight)
         return 1.0;
     const struct water_ray ray =
-        water_way_ray(&view->water, view_grazing(view, apparent_range_m), 0.0);
+        water_way_ray(&view->water, view_grazing(view, processor_range_m), 0.0);
     const double gain = ray.spreading * ray.straight_range_m * ray.straight_range_m /
                         (ray.ground_range_m * ray.wavefront_m);
     return gain * gain;

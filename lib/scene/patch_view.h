@@ -14,8 +14,8 @@ struct patch_view {
     size_t rows, columns;
     double row_spacing_m, column_spacing_m;
     double first_x_m;     /* of row 0 of the view */
-    double first_range_m; /* apparent slant range of column 0 */
-    double range_ratio;   /* apparent over straight range: reference over straight sound speed */
+    double first_range_m; /* processor's slant range of column 0 */
+    double range_ratio;   /* processor over straight range: reference over straight sound speed */
     double altitude_m;
     double wavelength_m; /* in the straight water, around seabed and targets */
     bool is_mirrored;
@@ -42,7 +42,7 @@ sonject_status patch_view_init(struct patch_view *view, struct report *report,
 void view_find_pixel(const struct patch_view *view, double first_row, double first_column,
                      uint32_t kind, double along, double range, double *row, double *column);
 
-/* Apparent range of the first return from the bottom, straight below. */
+/* Processor range of the first return from the bottom, straight below. */
 double view_bottom_range(const struct patch_view *view);
 
 /* Columns of the view that lie in the water column, before the first return. */
@@ -52,21 +52,22 @@ size_t view_water_columns(const struct patch_view *view);
 double view_x_of_row(const struct patch_view *view, double row);
 
 double view_row_of_x(const struct patch_view *view, double x_m);
-double view_apparent_range(const struct patch_view *view, double column);
-double view_column_of_range(const struct patch_view *view, double apparent_range_m);
+double view_processor_range(const struct patch_view *view, double column);
+double view_column_of_range(const struct patch_view *view, double processor_range_m);
 
-/* Horizontal range of the seabed point seen at an apparent slant range; 0 above the altitude. */
-double view_ground_range(const struct patch_view *view, double apparent_range_m);
+/* Horizontal range of the seabed point seen at a processor's slant range; 0 above the altitude. */
+double view_ground_range(const struct patch_view *view, double processor_range_m);
 
-/* Grazing angle in rad of the seabed at an apparent slant range; straight down above the altitude.
+/* Grazing angle in rad of the seabed at a processor's slant range; straight down above the
+ * altitude.
  */
-double view_grazing(const struct patch_view *view, double apparent_range_m);
+double view_grazing(const struct patch_view *view, double processor_range_m);
 
-/* What refraction does to the energy of echoes of the seabed at an apparent slant range: 1 in
+/* What refraction does to the energy of echoes of the seabed at a processor's slant range: 1 in
  * isovelocity water. */
-double view_refraction_gain(const struct patch_view *view, double apparent_range_m);
+double view_refraction_gain(const struct patch_view *view, double processor_range_m);
 
-/* (apparent / true range)^4: what the target-strength normalisation by apparent range does to
+/* (processor / true range)^4: what the target-strength normalisation by processor range does to
  * energies when the processor's sound speed is off. */
 double view_energy_scale(const struct patch_view *view);
 

@@ -175,14 +175,14 @@ static sonject_status find_ground_point(double origin[3], struct report *report,
             "object '%s' lies outside the patch: its centre is %.1f m along-track "
             "and at %.1f m slant range; move it or the patch",
             object->name, view_x_of_row(view, row) * (view->is_mirrored ? -1 : 1),
-            view_apparent_range(view, column));
-    if (!(view_ground_range(view, view_apparent_range(view, column)) > 0.0))
+            view_processor_range(view, column));
+    if (!(view_ground_range(view, view_processor_range(view, column)) > 0.0))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "object '%s' lies in the water column, before the first return from "
                               "the bottom at %.2f m slant range: move it outwards",
                               object->name, view_bottom_range(view));
     origin[0] = view_x_of_row(view, row);
-    origin[1] = view_ground_range(view, view_apparent_range(view, column));
+    origin[1] = view_ground_range(view, view_processor_range(view, column));
     origin[2] = 0.0;
     return SONJECT_OK;
 }

@@ -55,7 +55,7 @@ double placement_extent(const struct placement *placement, const double directio
 /* The same both ways: the part lies within so much of its centre along a line. */
 double placement_half_extent(const struct placement *placement, const double direction[3]);
 
-/* Slant range in m (straight: travel time times the sound speed there) from the track abreast of
+/* Slant range in m (straight: travel time times the sound speed there) from the track broadside of
  * the centre to the centre. */
 double placement_range(const struct placement *placement, const struct patch_view *view);
 

@@ -60,12 +60,12 @@ sonject_status relief_check_scene(const struct scene *scene, struct report *repo
 static sonject_status lay_grid(struct relief *relief, struct report *report,
                                const struct scene *scene, const struct patch_view *view)
 {
-    const double near = view_ground_range(view, view_apparent_range(view, -0.5));
+    const double near = view_ground_range(view, view_processor_range(view, -0.5));
     const double first_y =
-        near > 0.0 ? near : view_ground_range(view, view_apparent_range(view, 0.0));
+        near > 0.0 ? near : view_ground_range(view, view_processor_range(view, 0.0));
     const double length = (double)view->rows * view->row_spacing_m;
     const double width =
-        view_ground_range(view, view_apparent_range(view, (double)view->columns - 0.5)) - first_y;
+        view_ground_range(view, view_processor_range(view, (double)view->columns - 0.5)) - first_y;
     double finest = INFINITY;   /* m, of all features */
     double coarsest = INFINITY; /* step that shows them */
     double step = fmin(view->row_spacing_m, view->column_spacing_m) / POINTS_PER_PIXEL;
@@ -146,7 +146,7 @@ static sonject_status add_feature(const struct relief *relief, struct report *re
     view_find_pixel(view, first_row, first_column, feature->position_kind, feature->position_along,
                     feature->position_range, &row, &column);
     relief_add_bump(relief, heights, view_x_of_row(view, row),
-                    view_ground_range(view, view_apparent_range(view, column)), feature->radius_m,
+                    view_ground_range(view, view_processor_range(view, column)), feature->radius_m,
                     sign * feature->height_m);
     return SONJECT_OK;
 }

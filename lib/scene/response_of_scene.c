@@ -53,7 +53,7 @@ static sonject_status check_size(const struct point_response *response, struct r
 static sonject_status set_motion(struct point_response *response, struct report *report,
                                  const struct scene *scene, const struct patch_view *view)
 {
-    const double middle = view_apparent_range(view, 0.5 * (double)(view->columns - 1));
+    const double middle = view_processor_range(view, 0.5 * (double)(view->columns - 1));
     if (aperture_motion_has_yaw(&scene->motion) && scene->motion.params.yaw_advance_m == 0.0)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "sonar.motion.yaw: a table of yaw is given without the advance from "

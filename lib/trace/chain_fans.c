@@ -66,7 +66,7 @@ static double mean_height(const struct tracer *tracer, const struct placement *p
 static double heard_reach(const struct tracer *tracer, const struct placement *placement)
 {
     const struct patch_view *view = &tracer->view;
-    const double last = 1.02 * view_apparent_range(view, (double)view->columns);
+    const double last = 1.02 * view_processor_range(view, (double)view->columns);
     return 2.0 * last - placement_range(placement, view) - view->altitude_m;
 }
 
@@ -86,7 +86,7 @@ struct chain_reach chain_reach_of(const struct tracer *tracer, const struct plac
 }
 
 #define PATCH_RAYS_PER_BIN  1.0 /* brute force */
-#define SEABED_RAYS_PER_BIN 4.0 /* near the objects; thinned out with distance */
+#define SEABED_RAYS_PER_BIN 4.0 /* near the objects; fewer with distance, by Russian roulette */
 /* An object is small, and what it mirrors, or sends to the sea surface, spreads far; else its rough
  * part matters between objects. */
 #define OBJECT_RAYS_PER_BIN 16.0
@@ -123,8 +123,8 @@ static struct surroundings surroundings_of_objects(const struct tracer *tracer)
     return around;
 }
 
-static sonject_status lay_seabed_fan(struct chain_fan *fan, struct tracer *tracer,
-                                     const struct line_grid *grid, double central)
+static sonject_status init_seabed_fan(struct chain_fan *fan, struct tracer *tracer,
+                                      const struct line_grid *grid, double central)
 {
     const struct patch_view *view = &tracer->view;
     const struct surroundings around = surroundings_of_objects(tracer);
@@ -140,12 +140,12 @@ static sonject_status lay_seabed_fan(struct chain_fan *fan, struct tracer *trace
         edges = grazing_over_relief(tracer, edges);
     fan->strips = strips_between(tracer, grid, around.first_x, around.last_x);
     fan->record.only_object = -1;
-    return fan_lay_rays(&fan->record, tracer->report, central - edges.near, central - edges.far,
+    return fan_set_rays(&fan->record, tracer->report, central - edges.near, central - edges.far,
                         fan_elevation_step(tracer, grid, far, SEABED_RAYS_PER_BIN));
 }
 
-static sonject_status lay_object_fan(struct chain_fan *fan, struct tracer *tracer,
-                                     const struct line_grid *grid, double central, uint32_t object)
+static sonject_status init_object_fan(struct chain_fan *fan, struct tracer *tracer,
+                                      const struct line_grid *grid, double central, uint32_t object)
 {
     static const double along[3] = {1.0, 0.0, 0.0};
     const struct placement *placement = &tracer->placements[object];
@@ -156,15 +156,15 @@ static sonject_status lay_object_fan(struct chain_fan *fan, struct tracer *trace
     const sonject_material_params *material = tracer->placements[object].material;
     const bool is_mirror =
         material->reflection_kind == SONJECT_REFLECTION_FLUID || material->reflection != 0.0;
-    const bool is_stood_for = tracer->scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED &&
-                              tracer->scene->sonar.transducer_side_m == 0.0;
+    const bool has_reverse = tracer->scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED &&
+                             tracer->scene->sonar.transducer_side_m == 0.0;
     const bool finds_surface = sea_surface_is_in_chains(tracer, grid);
     const double rays_per_bin =
-        is_mirror || !is_stood_for || finds_surface ? OBJECT_RAYS_PER_BIN : ROUGH_RAYS_PER_BIN;
+        is_mirror || !has_reverse || finds_surface ? OBJECT_RAYS_PER_BIN : ROUGH_RAYS_PER_BIN;
     fan->strips = strips_between(tracer, grid, placement->centre[0] - half_length,
                                  placement->centre[0] + half_length);
     fan->record.only_object = (int32_t)object;
-    return fan_lay_rays(&fan->record, tracer->report, middle + edges.lowest, middle + edges.highest,
+    return fan_set_rays(&fan->record, tracer->report, middle + edges.lowest, middle + edges.highest,
                         fan_elevation_step(tracer, grid, grazing, rays_per_bin));
 }
 
@@ -186,8 +186,8 @@ sonject_status chain_fan_init(struct chain_fan *fan, struct tracer *tracer,
     fan->strips = grid->strips;
     fan->record.only_object = -2;
     if (status == SONJECT_OK && chain_fan_count(tracer) > 1)
-        status = i == 0 ? lay_seabed_fan(fan, tracer, grid, central)
-                        : lay_object_fan(fan, tracer, grid, central, i - 1);
+        status = i == 0 ? init_seabed_fan(fan, tracer, grid, central)
+                        : init_object_fan(fan, tracer, grid, central, i - 1);
     fan->record.stream = (uint32_t)(STREAM_CHAIN_RAYS + fan->record.only_object);
     return status;
 }

@@ -62,7 +62,7 @@ static void chain_record_init(struct chain_record *record, const struct chain_tr
 
 /* The most of the sound that meets a surface: what goes on, and what scatters to the source. */
 struct most_sent {
-    double onward, home;
+    double onward, returned;
 };
 
 /* is_led: the way on is sought among the targets, so that what goes there counts for itself and not
@@ -75,7 +75,7 @@ static void join_surface(struct most_sent *most, const sonject_material_params *
     const double scattering = rough * material_brightness(material);
     const double albedo = rough * (PI * material->lambert + material->glossy_albedo);
     most->onward = fmax(most->onward, mirror + (is_led ? 2.0 * PI * scattering : albedo));
-    most->home = fmax(most->home, scattering);
+    most->returned = fmax(most->returned, scattering);
 }
 
 static struct most_sent most_sent_by_surfaces(const struct chain_trace *trace,
@@ -99,7 +99,7 @@ static struct most_sent most_sent_by_surfaces(const struct chain_trace *trace,
     return most;
 }
 
-/* The most that one ray can bring is about its wavefront times what surfaces send on and home.
+/* The most that one ray can bring is about its wavefront times what surfaces send on and back.
  * Quanta leave four powers of ten over that, since directions that are drawn rarely count for many,
  * and below it eleven. Orders in one plane have the quanta of the one that brings most. */
 static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tracer,
@@ -111,8 +111,8 @@ static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tr
     const double area = (double)fan.source_side * fan.source_side;
     struct most_sent most = most_sent_by_surfaces(trace, tracer, map);
     if (tracer->scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE && area > 0.0)
-        most.home = fmax(most.home, most.onward * range * range / area);
-    double bound = (double)fan.strip_width * fan.elevation_step * 2.0 * range * most.home;
+        most.returned = fmax(most.returned, most.onward * range * range / area);
+    double bound = (double)fan.strip_width * fan.elevation_step * 2.0 * range * most.returned;
     if (trace->planes == 1)
         bound *= pow(most.onward, trace->first_order - 1.0) *
                  fmax(1.0, pow(most.onward, trace->orders - 1.0));

@@ -14,8 +14,8 @@ static sonject_status begin(struct checkpoint *checkpoint, struct report *report
     memset(checkpoint, 0, sizeof *checkpoint);
     checkpoint->report = report;
     checkpoint->shard = checkpoint->shards = 1;
-    checkpoint->course = hash_begin();
-    return checkpoint->course ? SONJECT_OK : report_out_of_memory(report, "a hash");
+    checkpoint->launches = hash_begin();
+    return checkpoint->launches ? SONJECT_OK : report_out_of_memory(report, "a hash");
 }
 
 sonject_status checkpoint_begin(struct checkpoint *checkpoint, struct report *report,
@@ -47,8 +47,8 @@ sonject_status checkpoint_begin_adding(struct checkpoint *checkpoint, struct rep
 void checkpoint_clear(struct checkpoint *checkpoint)
 {
     char digest[HASH_TEXT_CAPACITY];
-    if (checkpoint->course)
-        hash_end(checkpoint->course, digest);
+    if (checkpoint->launches)
+        hash_end(checkpoint->launches, digest);
     sums_writer_clear(&checkpoint->writer);
     free(checkpoint->sums);
     memset(checkpoint, 0, sizeof *checkpoint);
@@ -63,9 +63,9 @@ void checkpoint_launch(struct checkpoint *checkpoint, const struct fan_record *f
     checkpoint->before = checkpoint->strips;
     checkpoint->strips += strips * checkpoint->shard / checkpoint->shards - checkpoint->turn;
     checkpoint->slice = (int32_t)(most < SLICE_STRIPS ? SLICE_STRIPS : most);
-    hash_add(checkpoint->course, fan, sizeof *fan);
+    hash_add(checkpoint->launches, fan, sizeof *fan);
     if (rays->count > 0)
-        hash_add(checkpoint->course, rays->pieces, rays->count * sizeof *rays->pieces);
+        hash_add(checkpoint->launches, rays->pieces, rays->count * sizeof *rays->pieces);
 }
 
 bool checkpoint_next(struct checkpoint *checkpoint, struct span *turns)
@@ -138,19 +138,19 @@ sonject_status checkpoint_sums(struct checkpoint *checkpoint, const int64_t *tra
     return checkpoint_add_up(checkpoint, count, add_run, &all);
 }
 
-static void end_course(struct checkpoint *checkpoint)
+static void end_launches(struct checkpoint *checkpoint)
 {
     char digest[HASH_TEXT_CAPACITY];
-    hash_end(checkpoint->course, digest);
-    checkpoint->course = NULL;
-    memcpy(checkpoint->end.course, digest, sizeof digest);
+    hash_end(checkpoint->launches, digest);
+    checkpoint->launches = NULL;
+    memcpy(checkpoint->end.launches, digest, sizeof digest);
 }
 
-static sonject_status compare_courses(const struct checkpoint *checkpoint)
+static sonject_status compare_launches(const struct checkpoint *checkpoint)
 {
     for (size_t i = 0; i < checkpoint->file_count; i++) {
         const struct sums_file *file = checkpoint->files[i];
-        if (strcmp(file->end.course, checkpoint->end.course) != 0 ||
+        if (strcmp(file->end.launches, checkpoint->end.launches) != 0 ||
             file->end.records != checkpoint->record)
             return report_failure(checkpoint->report, SONJECT_ERROR_INPUT,
                                   "%s: traced other rays than this machine would, whose "
@@ -163,7 +163,7 @@ static sonject_status compare_courses(const struct checkpoint *checkpoint)
 
 sonject_status checkpoint_finish(struct checkpoint *checkpoint, struct trace_counts *counts)
 {
-    end_course(checkpoint);
+    end_launches(checkpoint);
     checkpoint->end.rays = counts->rays;
     checkpoint->end.queries = counts->queries;
     checkpoint->end.impulses = counts->impulses;
@@ -178,7 +178,7 @@ sonject_status checkpoint_finish(struct checkpoint *checkpoint, struct trace_cou
         counts->queries += checkpoint->files[i]->end.queries;
         counts->impulses += checkpoint->files[i]->end.impulses;
     }
-    return compare_courses(checkpoint);
+    return compare_launches(checkpoint);
 }
 
 sonject_status checkpoint_publish(struct checkpoint *checkpoint)

@@ -28,13 +28,13 @@ struct checkpoint {
     size_t file_count;
 
     /* How far it went. */
-    struct hash *course; /* of all launches; owned; NULL once they are over */
-    uint64_t strips;     /* of the shard, in the launches so far */
-    uint64_t before;     /* of them, in the launches before this one */
-    uint64_t turn;       /* the shard's first in this launch */
-    int32_t slice;       /* strips of this launch that are traced at a time */
-    uint64_t record;     /* number of the next sums */
-    int64_t *sums;       /* added up; owned */
+    struct hash *launches; /* of all launches; owned; NULL once they are over */
+    uint64_t strips;       /* of the shard, in the launches so far */
+    uint64_t before;       /* of them, in the launches before this one */
+    uint64_t turn;         /* the shard's first in this launch */
+    int32_t slice;         /* strips of this launch that are traced at a time */
+    uint64_t record;       /* number of the next sums */
+    int64_t *sums;         /* added up; owned */
     struct sums_end end;
 };
 

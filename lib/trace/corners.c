@@ -33,10 +33,10 @@ void corner_pairs_begin(struct corner_pairs *pairs, const struct tracer *tracer,
     const struct sound_source sonar = {tracer->view.water, 0, MIRROR_SEABED};
     pairs->sonar = sonar;
     pairs->has_begun = false;
-    source_pairs_begin(&pairs->others, tracer, part);
+    image_pairs_begin(&pairs->others, tracer, part);
 }
 
-const struct source_pair *corner_pairs_next(struct corner_pairs *pairs)
+const struct image_pair *corner_pairs_next(struct corner_pairs *pairs)
 {
     const uint32_t interactions = pairs->others.tracer->scene->injection.interactions;
     if (!pairs->has_begun) {
@@ -45,7 +45,7 @@ const struct source_pair *corner_pairs_next(struct corner_pairs *pairs)
         pairs->pair.number = 0;
         return &pairs->pair;
     }
-    while (source_pairs_next(&pairs->others, &pairs->pair))
+    while (image_pairs_next(&pairs->others, &pairs->pair))
         if (2 + pairs->pair.outgoing->bounces + pairs->pair.returning->bounces <= interactions)
             return &pairs->pair;
     return NULL;
@@ -88,29 +88,29 @@ static struct ranges ranges_of(const struct sound_source *source, const struct p
 
 /* Half of the shortest and of the longest path. */
 static struct ranges half_paths(const struct tracer *tracer, uint32_t part,
-                                const struct source_pair *pair)
+                                const struct image_pair *pair)
 {
     const struct placement *first = &tracer->placements[part];
     const uint32_t interactions =
         tracer->scene->injection.interactions - pair->outgoing->bounces - pair->returning->bounces;
     const struct ranges out = ranges_of(pair->outgoing, first);
-    struct ranges home = {INFINITY, 0.0};
+    struct ranges returned = {INFINITY, 0.0};
     double aside = 0.0;
     for (uint32_t i = 0; i < tracer->part_count; i++) {
         const struct placement *last = &tracer->placements[i];
         if (!is_smooth(tracer, i))
             continue;
         const struct ranges one = ranges_of(pair->returning, last);
-        home.nearest = fmin(home.nearest, one.nearest);
-        home.farthest = fmax(home.farthest, one.farthest);
+        returned.nearest = fmin(returned.nearest, one.nearest);
+        returned.farthest = fmax(returned.farthest, one.farthest);
         aside = fmax(aside, fabs(first->centre[0] - last->centre[0]) + first->bounding_radius_m +
                                 last->bounding_radius_m);
     }
     /* the source stands beside both hits: each leg is longer by no more than aside^2 / 2 range */
-    const double lengthened = aside * aside / fmax(fmin(out.nearest, home.nearest), 1e-3);
+    const double lengthened = aside * aside / fmax(fmin(out.nearest, returned.nearest), 1e-3);
     struct ranges half;
-    half.nearest = 0.5 * (out.nearest + home.nearest);
-    half.farthest = 0.5 * (out.farthest + home.farthest + lengthened +
+    half.nearest = 0.5 * (out.nearest + returned.nearest);
+    half.farthest = 0.5 * (out.farthest + returned.farthest + lengthened +
                            (interactions - 1.0) * longest_step(tracer));
     return half;
 }
@@ -118,7 +118,7 @@ static struct ranges half_paths(const struct tracer *tracer, uint32_t part,
 /* Bins of the patch where a pair's echoes may lie; count 0 if there are none. Of the grid only the
  * size of its bins is used. */
 static struct span corner_pair_bins(const struct tracer *tracer, uint32_t part,
-                                    const struct source_pair *pair, const struct line_grid *grid)
+                                    const struct image_pair *pair, const struct line_grid *grid)
 {
     const struct patch_view *view = &tracer->view;
     const struct ranges half = half_paths(tracer, part, pair);
@@ -134,7 +134,7 @@ static struct span corner_pair_bins(const struct tracer *tracer, uint32_t part,
 struct span corner_bins(const struct tracer *tracer, uint32_t part, const struct line_grid *grid)
 {
     struct corner_pairs pairs;
-    const struct source_pair *pair;
+    const struct image_pair *pair;
     struct span bins = {0, 0};
     if (!corners_may_echo(tracer, part))
         return bins;
@@ -178,16 +178,16 @@ static struct span mean_strips(struct span one, struct span other)
     return mean;
 }
 
-void corners_lay(struct corners *corners, const struct tracer *tracer, uint32_t part)
+void corners_init(struct corners *corners, const struct tracer *tracer, uint32_t part)
 {
     struct line_grid other;
-    glint_strips_lay(&corners->grid, tracer, part);
+    glint_strips_init(&corners->grid, tracer, part);
     corners->grid.bins.first = corners->grid.bins.count = 0;
     corners->first_hits = corners->grid.strips;
     struct span last_hits = corners->grid.strips;
     for (uint32_t i = 0; i < tracer->part_count; i++)
         if (material_is_smooth(tracer->placements[i].material)) {
-            glint_strips_lay(&other, tracer, i);
+            glint_strips_init(&other, tracer, i);
             last_hits = span_join(last_hits, other.strips);
         }
     if (tracer->scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED)
@@ -204,7 +204,7 @@ static void choose_quanta(struct fan_record *fan)
 }
 
 static void corner_record_init(struct corner_record *record, const struct tracer *tracer,
-                               const struct source_pair *pair)
+                               const struct image_pair *pair)
 {
     const sonject_injection_params *injection = &tracer->scene->injection;
     double height;
@@ -252,7 +252,7 @@ static void choose_chunk(struct corner_launch *launch, const struct corners *cor
 
 sonject_status corner_launch_begin(struct corner_launch *launch, struct line_grid *grid,
                                    const struct corners *corners, struct tracer *tracer,
-                                   uint32_t part, const struct source_pair *pair)
+                                   uint32_t part, const struct image_pair *pair)
 {
     memset(launch, 0, sizeof *launch);
     *grid = corners->grid;
@@ -261,10 +261,10 @@ sonject_status corner_launch_begin(struct corner_launch *launch, struct line_gri
         return SONJECT_OK;
     corner_record_init(&launch->record, tracer, pair);
     sonject_status status =
-        source_pair_aim(&launch->fan, &launch->sources, &launch->rays, tracer, part, pair, grid);
+        image_pair_aim(&launch->fan, &launch->sources, &launch->rays, tracer, part, pair, grid);
     launch->fan.stream = STREAM_CORNER_RAYS + STREAMS_OF_PAIR * pair->number + part;
-    glint_fan_lay(&launch->fan, tracer, part, &pair->outgoing->way,
-                  corner_rays_finer(tracer, part));
+    glint_fan_init(&launch->fan, tracer, part, &pair->outgoing->way,
+                   corner_rays_finer(tracer, part));
     choose_quanta(&launch->fan);
     choose_chunk(launch, corners);
     THEN(status, begin_on_device(launch, tracer, tracer->placements[part].centre));
@@ -329,7 +329,7 @@ static sonject_status trace_pair(struct corner_trace *trace, struct corner_launc
 static sonject_status trace_pairs(struct corners *corners, struct tracer *tracer, uint32_t part)
 {
     struct corner_pairs pairs;
-    const struct source_pair *pair;
+    const struct image_pair *pair;
     struct corner_launch launch;
     struct line_grid grid;
     sonject_status status = SONJECT_OK;
@@ -351,7 +351,7 @@ sonject_status corners_begin(struct corners *corners, struct tracer *tracer, uin
         return SONJECT_OK;
     corners->traces = allocate_array(CORNER_PAIRS_MAX, sizeof *corners->traces);
     CHECK_MEMORY(tracer->report, corners->traces, "echoes of corners");
-    corners_lay(corners, tracer, part);
+    corners_init(corners, tracer, part);
     const sonject_status status = trace_pairs(corners, tracer, part);
     if (status != SONJECT_OK) {
         corners_end(corners);

@@ -13,16 +13,16 @@
 /* All pairs of sources of a part, the straight one first, that leave two interactions to objects.
  */
 struct corner_pairs {
-    struct source_pairs others;
+    struct image_pairs others;
     struct sound_source sonar;
-    struct source_pair pair;
+    struct image_pair pair;
     bool has_begun;
 };
 
 void corner_pairs_begin(struct corner_pairs *pairs, const struct tracer *tracer, uint32_t part);
 
 /* The next one, valid until the call after; NULL when there is none. */
-const struct source_pair *corner_pairs_next(struct corner_pairs *pairs);
+const struct image_pair *corner_pairs_next(struct corner_pairs *pairs);
 
 /* The echoes of one pair of sources. */
 struct corner_trace {
@@ -42,7 +42,7 @@ struct corner_launch {
     struct fan_record fan;
     struct ray_table rays;
     struct corner_record record;
-    struct source_pair_record sources;
+    struct image_pair_record sources;
     struct trace_device on_device; /* without tallies worth the name */
     cl_mem source_buffer, record_buffer, echoes, listed;
     size_t capacity; /* of echoes */
@@ -69,10 +69,10 @@ void corners_add(const struct corners *corners, struct span strips, const struct
 /* The steps of corners_begin: the grid of one pair's echoes and its launch, whose echoes are listed
  * chunk by chunk of first hits. The grid's bins.count is 0, and nothing is held, where there can be
  * none; else to be given to corner_launch_end. */
-void corners_lay(struct corners *corners, const struct tracer *tracer, uint32_t part);
+void corners_init(struct corners *corners, const struct tracer *tracer, uint32_t part);
 sonject_status corner_launch_begin(struct corner_launch *launch, struct line_grid *grid,
                                    const struct corners *corners, struct tracer *tracer,
-                                   uint32_t part, const struct source_pair *pair);
+                                   uint32_t part, const struct image_pair *pair);
 void corner_launch_end(struct corner_launch *launch);
 
 /* Adds the echoes of first hits in strips.count <= chunk sub-strips to the sums. */

@@ -19,7 +19,7 @@
 void patch_fan_origin(double origin[3], const struct patch_view *view)
 {
     const double first = fmax(0.0, view_column_of_range(view, view_bottom_range(view)));
-    const double middle = view_apparent_range(view, 0.5 * (first + (double)(view->columns - 1)));
+    const double middle = view_processor_range(view, 0.5 * (first + (double)(view->columns - 1)));
     origin[0] = view_x_of_row(view, 0.5 * (double)(view->rows - 1));
     origin[1] = view_ground_range(view, middle);
     origin[2] = 0.0;
@@ -120,7 +120,7 @@ static double step_to_objects(const struct tracer *tracer, double strip_m)
     return step / tracer->scene->injection.ray_scale;
 }
 
-sonject_status fan_lay_rays(struct fan_record *fan, struct report *report, double lowest,
+sonject_status fan_set_rays(struct fan_record *fan, struct report *report, double lowest,
                             double highest, double step)
 {
     const double rays = ceil((highest - lowest) / step);
@@ -160,7 +160,7 @@ sonject_status patch_fan_init(struct fan_record *fan, struct tracer *tracer,
     struct grazing_angles edges = {near, far};
     if (tracer->relief)
         edges = grazing_over_relief(tracer, edges);
-    return fan_lay_rays(fan, tracer->report, central - edges.near,
+    return fan_set_rays(fan, tracer->report, central - edges.near,
                         highest_elevation(tracer, central, central - edges.far),
                         fmin(fan_elevation_step(tracer, grid, far, rays_per_bin),
                              step_to_objects(tracer, (double)fan->strip_width)));
@@ -280,13 +280,13 @@ sonject_status beam_record_init(struct fan_record *fan, const struct tracer *tra
         fan->beam.along[k] = (float)axes[0][k];
         fan->beam.across[k] = (float)axes[2][k];
     }
-    /* what lies at the near end's range off broadside is nearer abreast */
+    /* what lies at the near end's range off broadside is nearer at broadside */
     const double near = line_grid_near_end(grid, view) * sqrt(1.0 - sine * sine);
     double origin[3];
     patch_fan_origin(origin, view);
     const double central = water_way_grazing(&view->water, origin[1], 0.0);
     const double highest = fan->first_elevation + (double)fan->rays * fan->elevation_step;
-    return fan_lay_rays(fan, tracer->report,
+    return fan_set_rays(fan, tracer->report,
                         fmin(central - view_grazing(view, near), fan->first_elevation), highest,
                         fan->elevation_step);
 }

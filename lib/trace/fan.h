@@ -41,7 +41,7 @@ double fan_elevation_step(const struct tracer *tracer, const struct line_grid *g
 
 /* Lays rays from a lowest to a highest elevation (rad over the central direction). Errors: INPUT
  * (too many rays). */
-sonject_status fan_lay_rays(struct fan_record *fan, struct report *report, double lowest,
+sonject_status fan_set_rays(struct fan_record *fan, struct report *report, double lowest,
                             double highest, double step);
 
 /* Elevations that an object fills as seen on a way, from the direction of its centre; a little more

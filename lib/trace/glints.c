@@ -15,7 +15,7 @@
 #define MIRRORED_STRIPS    64   /* of a launch: there may be dozens of pairs at a time */
 
 /* Sizes of the strips and bins of all glints: strips_per_row and bins_per_pixel of the grid. */
-static void glint_cells_lay(struct line_grid *grid, const struct tracer *tracer)
+static void glint_cells_init(struct line_grid *grid, const struct tracer *tracer)
 {
     const struct patch_view *view = &tracer->view;
     grid->strips_per_row =
@@ -29,12 +29,12 @@ double glint_shortest_deviation(const struct line_grid *grid, double column_spac
     return BINS_PER_DEVIATION * column_spacing_m / grid->bins_per_pixel;
 }
 
-void glint_strips_lay(struct line_grid *grid, const struct tracer *tracer, uint32_t number)
+void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint32_t number)
 {
     static const double along[3] = {1.0, 0.0, 0.0};
     const struct patch_view *view = &tracer->view;
     const struct placement *placement = &tracer->placements[number];
-    glint_cells_lay(grid, tracer);
+    glint_cells_init(grid, tracer);
     const double extent = placement_half_extent(placement, along);
     const double per_row = grid->strips_per_row;
     grid->strips.first =
@@ -44,8 +44,8 @@ void glint_strips_lay(struct line_grid *grid, const struct tracer *tracer, uint3
         grid->strips.first;
 }
 
-void glint_fan_lay(struct fan_record *fan, const struct tracer *tracer, uint32_t number,
-                   const struct water_way *way, double finer)
+void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t number,
+                    const struct water_way *way, double finer)
 {
     const struct placement *placement = &tracer->placements[number];
     const double radius =
@@ -102,17 +102,17 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
                                   uint32_t number)
 {
     const struct sound_source sonar = {tracer->view.water, 0, MIRROR_SEABED};
-    const struct source_pair straight = {&sonar, &sonar, 0};
+    const struct image_pair straight = {&sonar, &sonar, 0};
     memset(trace, 0, sizeof *trace);
     if (!material_is_smooth(tracer->placements[number].material))
         return SONJECT_OK;
     /* the frame is centred on the object: phases then keep their digits */
     const double *origin = tracer->placements[number].centre;
-    glint_strips_lay(&trace->grid, tracer, number);
-    trace->grid.bins = source_pair_bins(tracer, number, &straight, &trace->grid);
+    glint_strips_init(&trace->grid, tracer, number);
+    trace->grid.bins = image_pair_bins(tracer, number, &straight, &trace->grid);
     fan_record_init(&trace->fan, tracer, origin, &trace->grid);
     trace->fan.stream = STREAM_SMOOTH_RAYS + number;
-    glint_fan_lay(&trace->fan, tracer, number, &sonar.way, 1.0);
+    glint_fan_init(&trace->fan, tracer, number, &sonar.way, 1.0);
     choose_quanta(trace, tracer);
     sonject_status status =
         object_rays_add(&trace->rays, tracer, number, &sonar.way, &trace->fan.table);
@@ -123,18 +123,18 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
 }
 
 sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tracer *tracer,
-                                           uint32_t number, const struct source_pair *pair)
+                                           uint32_t number, const struct image_pair *pair)
 {
-    struct source_pair_record sources;
+    struct image_pair_record sources;
     memset(trace, 0, sizeof *trace);
-    glint_strips_lay(&trace->grid, tracer, number);
-    trace->grid.bins = source_pair_bins_in_patch(tracer, number, pair, &trace->grid);
+    glint_strips_init(&trace->grid, tracer, number);
+    trace->grid.bins = image_pair_bins_in_patch(tracer, number, pair, &trace->grid);
     if (trace->grid.bins.count == 0)
         return SONJECT_OK;
     sonject_status status =
-        source_pair_aim(&trace->fan, &sources, &trace->rays, tracer, number, pair, &trace->grid);
+        image_pair_aim(&trace->fan, &sources, &trace->rays, tracer, number, pair, &trace->grid);
     trace->fan.stream = STREAM_MIRRORED_RAYS + STREAMS_OF_PAIR * pair->number + number;
-    glint_fan_lay(&trace->fan, tracer, number, &pair->outgoing->way, 1.0);
+    glint_fan_init(&trace->fan, tracer, number, &pair->outgoing->way, 1.0);
     choose_quanta(trace, tracer);
     const int32_t strips =
         trace->grid.strips.count < MIRRORED_STRIPS ? trace->grid.strips.count : MIRRORED_STRIPS;
@@ -187,10 +187,10 @@ sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tr
 
 static sonject_status begin_mirrored(struct glints *glints, struct tracer *tracer, uint32_t object)
 {
-    struct source_pairs pairs;
-    struct source_pair pair;
-    source_pairs_begin(&pairs, tracer, object);
-    while (source_pairs_next(&pairs, &pair)) {
+    struct image_pairs pairs;
+    struct image_pair pair;
+    image_pairs_begin(&pairs, tracer, object);
+    while (image_pairs_next(&pairs, &pair)) {
         struct smooth_trace *trace = &glints->traces[glints->count];
         CHECK(smooth_trace_begin_mirrored(trace, tracer, object, &pair));
         glints->grid.bins = span_join(glints->grid.bins, trace->grid.bins);

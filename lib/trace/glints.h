@@ -16,19 +16,19 @@ struct smooth_trace {
     struct fan_record fan;
     struct ray_table rays;
     struct trace_device on_device;
-    cl_mem sources; /* source_pair_record; NULL: straight there and back */
+    cl_mem sources; /* image_pair_record; NULL: straight there and back */
 };
 
 /* Standard deviation in m of the shortest pulse that such bins are fine enough for. */
 double glint_shortest_deviation(const struct line_grid *grid, double column_spacing_m);
 
 /* Sizes of sub-strips and bins, and the sub-strips that a part covers. */
-void glint_strips_lay(struct line_grid *grid, const struct tracer *tracer, uint32_t part);
+void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint32_t part);
 
 /* Rays of a fan, whose strips are known, from a source to a part; `finer` than glints need them by
  * that factor each way, >= 1. */
-void glint_fan_lay(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
-                   const struct water_way *way, double finer);
+void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
+                    const struct water_way *way, double finer);
 
 /* Prepares a trace of one object's glints; as rough_trace_begin. An object without a smooth part
  * has grid.strips.count 0 and nothing to trace. */
@@ -38,7 +38,7 @@ sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tra
 /* The same by way of mirrors. grid.bins.count is 0, and there is nothing to trace, where no such
  * echo can reach the patch. */
 sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tracer *tracer,
-                                           uint32_t object, const struct source_pair *pair);
+                                           uint32_t object, const struct image_pair *pair);
 void smooth_trace_end(struct smooth_trace *trace);
 
 int32_t smooth_trace_chunk(const struct smooth_trace *trace);

@@ -87,7 +87,7 @@ static double source_grazing(const struct sound_source *source, const struct pla
 }
 
 /* Half the path by way of the object's centre. */
-static double half_path(const struct source_pair *pair, const struct placement *placement)
+static double half_path(const struct image_pair *pair, const struct placement *placement)
 {
     return 0.5 *
            (source_range(pair->outgoing, placement) + source_range(pair->returning, placement));
@@ -104,8 +104,8 @@ static double reach_from(const struct sound_source *source, const struct placeme
     return 1.01 * placement_half_extent(placement, sight) + bound * bound / (radius - bound);
 }
 
-struct span source_pair_bins(const struct tracer *tracer, uint32_t object,
-                             const struct source_pair *pair, const struct line_grid *grid)
+struct span image_pair_bins(const struct tracer *tracer, uint32_t object,
+                            const struct image_pair *pair, const struct line_grid *grid)
 {
     const struct patch_view *view = &tracer->view;
     const struct placement *placement = &tracer->placements[object];
@@ -121,10 +121,10 @@ struct span source_pair_bins(const struct tracer *tracer, uint32_t object,
     return bins;
 }
 
-struct span source_pair_bins_in_patch(const struct tracer *tracer, uint32_t object,
-                                      const struct source_pair *pair, const struct line_grid *grid)
+struct span image_pair_bins_in_patch(const struct tracer *tracer, uint32_t object,
+                                     const struct image_pair *pair, const struct line_grid *grid)
 {
-    return bins_in_patch(tracer, grid, source_pair_bins(tracer, object, pair, grid));
+    return bins_in_patch(tracer, grid, image_pair_bins(tracer, object, pair, grid));
 }
 
 struct span bins_in_patch(const struct tracer *tracer, const struct line_grid *grid,
@@ -169,7 +169,7 @@ static double roughness_exponent(const struct tracer *tracer, const struct sound
     return exponent;
 }
 
-void source_pairs_begin(struct source_pairs *pairs, const struct tracer *tracer, uint32_t object)
+void image_pairs_begin(struct image_pairs *pairs, const struct tracer *tracer, uint32_t object)
 {
     pairs->tracer = tracer;
     pairs->placement = &tracer->placements[object];
@@ -179,7 +179,7 @@ void source_pairs_begin(struct source_pairs *pairs, const struct tracer *tracer,
     pairs->returning = 0;
 }
 
-static bool is_heard(const struct source_pairs *pairs)
+static bool is_heard(const struct image_pairs *pairs)
 {
     const struct sound_source *outgoing = &pairs->sources[pairs->outgoing];
     const struct sound_source *returning = &pairs->sources[pairs->returning];
@@ -190,7 +190,7 @@ static bool is_heard(const struct source_pairs *pairs)
                LOSS_EXPONENT_MAX;
 }
 
-bool source_pairs_next(struct source_pairs *pairs, struct source_pair *pair)
+bool image_pairs_next(struct image_pairs *pairs, struct image_pair *pair)
 {
     do {
         if (++pairs->returning >= pairs->count) {
@@ -232,12 +232,12 @@ struct span span_overlap(struct span one, struct span other)
 struct span mirrored_bins(const struct tracer *tracer, uint32_t object,
                           const struct line_grid *grid)
 {
-    struct source_pairs pairs;
-    struct source_pair pair;
+    struct image_pairs pairs;
+    struct image_pair pair;
     struct span bins = {0, 0};
-    source_pairs_begin(&pairs, tracer, object);
-    while (source_pairs_next(&pairs, &pair))
-        bins = span_join(bins, source_pair_bins_in_patch(tracer, object, &pair, grid));
+    image_pairs_begin(&pairs, tracer, object);
+    while (image_pairs_next(&pairs, &pair))
+        bins = span_join(bins, image_pair_bins_in_patch(tracer, object, &pair, grid));
     return bins;
 }
 
@@ -255,9 +255,8 @@ static struct source_record source_record_of(const struct sound_source *source,
     return record;
 }
 
-static void source_pair_record_init(struct source_pair_record *record, const struct tracer *tracer,
-                                    const struct placement *placement,
-                                    const struct source_pair *pair)
+static void image_pair_record_init(struct image_pair_record *record, const struct tracer *tracer,
+                                   const struct placement *placement, const struct image_pair *pair)
 {
     memset(record, 0, sizeof *record);
     record->outgoing = source_record_of(pair->outgoing, placement);
@@ -276,15 +275,15 @@ static void source_pair_record_init(struct source_pair_record *record, const str
     }
 }
 
-sonject_status source_pair_aim(struct fan_record *fan, struct source_pair_record *record,
-                               struct ray_table *rays, const struct tracer *tracer, uint32_t object,
-                               const struct source_pair *pair, const struct line_grid *grid)
+sonject_status image_pair_aim(struct fan_record *fan, struct image_pair_record *record,
+                              struct ray_table *rays, const struct tracer *tracer, uint32_t object,
+                              const struct image_pair *pair, const struct line_grid *grid)
 {
     const struct patch_view *view = &tracer->view;
     const struct placement *placement = &tracer->placements[object];
     const double range = half_path(pair, placement);
     const double cycles = 2.0 * range / view->wavelength_m;
-    source_pair_record_init(record, tracer, placement, pair);
+    image_pair_record_init(record, tracer, placement, pair);
     fan_record_init(fan, tracer, placement->centre, grid);
     fan->reference_range = record->outgoing.range;
     fan->cosine_depression = record->outgoing.cosine_depression;

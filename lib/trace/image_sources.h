@@ -37,13 +37,13 @@ size_t sources_list(const struct scene *scene, const struct water *water, uint32
                     struct sound_source sources[SOURCES_MAX]);
 
 /* outgoing->bounces <= returning->bounces: the reverse path is counted along. */
-struct source_pair {
+struct image_pair {
     const struct sound_source *outgoing, *returning;
     uint32_t number; /* among all pairs of the scene, for the random numbers */
 };
 
 /* All pairs of one object but the straight one, in turn. */
-struct source_pairs {
+struct image_pairs {
     const struct tracer *tracer;
     const struct placement *placement;
     struct sound_source sources[SOURCES_MAX];
@@ -52,20 +52,20 @@ struct source_pairs {
 };
 
 /* The tracer is borrowed. */
-void source_pairs_begin(struct source_pairs *pairs, const struct tracer *tracer, uint32_t object);
+void image_pairs_begin(struct image_pairs *pairs, const struct tracer *tracer, uint32_t object);
 
 /* Finds the next pair (which points into *pairs) within the limit of interactions whose mirrors
  * return anything; false when there is none. */
-bool source_pairs_next(struct source_pairs *pairs, struct source_pair *pair);
+bool image_pairs_next(struct image_pairs *pairs, struct image_pair *pair);
 
-/* Bins of half the path out from one source to the object and home to the other. Of the grid only
+/* Bins of half the path out from one source to the object and back to the other. Of the grid only
  * the size of its bins is used. */
-struct span source_pair_bins(const struct tracer *tracer, uint32_t object,
-                             const struct source_pair *pair, const struct line_grid *grid);
+struct span image_pair_bins(const struct tracer *tracer, uint32_t object,
+                            const struct image_pair *pair, const struct line_grid *grid);
 
 /* Of these, the bins whose pulse reaches the patch; count 0 if there is none. */
-struct span source_pair_bins_in_patch(const struct tracer *tracer, uint32_t object,
-                                      const struct source_pair *pair, const struct line_grid *grid);
+struct span image_pair_bins_in_patch(const struct tracer *tracer, uint32_t object,
+                                     const struct image_pair *pair, const struct line_grid *grid);
 
 /* What of some bins, of the grid's size, has a pulse that reaches the patch. */
 struct span bins_in_patch(const struct tracer *tracer, const struct line_grid *grid,
@@ -85,8 +85,8 @@ struct span span_overlap(struct span one, struct span other);
 /* Fills in the pair's record, and a fan from the outgoing source, in a frame centred on the
  * object. The fan as fan_record_init, its bins and phases those of half the path. Appends the rays
  * of both ways. Errors: as ray_table_add. */
-sonject_status source_pair_aim(struct fan_record *fan, struct source_pair_record *record,
-                               struct ray_table *rays, const struct tracer *tracer, uint32_t object,
-                               const struct source_pair *pair, const struct line_grid *grid);
+sonject_status image_pair_aim(struct fan_record *fan, struct image_pair_record *record,
+                              struct ray_table *rays, const struct tracer *tracer, uint32_t object,
+                              const struct image_pair *pair, const struct line_grid *grid);
 
 #endif

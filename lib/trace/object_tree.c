@@ -132,7 +132,7 @@ static double centre_of(const struct object_record *record, int axis)
     return axis == 0 ? record->centre_x : axis == 1 ? record->centre_y : record->centre_z;
 }
 
-static void lay_middle(const struct object_record *records, const struct object_reach *reaches,
+static void set_middle(const struct object_record *records, const struct object_reach *reaches,
                        uint32_t count, double middle[3], double *radius)
 {
     double half[3];
@@ -150,7 +150,7 @@ static void lay_middle(const struct object_record *records, const struct object_
 }
 
 /* Boxes about the middle; the mean of their longest sides. */
-static double lay_boxes(struct split_triangle *objects, const struct object_record *records,
+static double set_boxes(struct split_triangle *objects, const struct object_record *records,
                         const struct object_reach *reaches, uint32_t count, const double middle[3])
 {
     double sum = 0.0;
@@ -189,11 +189,11 @@ sonject_status object_tree_build(struct report *report, const struct object_reco
     builder.pending = allocate_array(count, sizeof *builder.pending);
     const bool has_room = builder.objects && builder.branches && builder.pending;
     if (has_room) {
-        lay_middle(records, reaches, count, middle, &radius);
+        set_middle(records, reaches, count, middle, &radius);
         record.middle_x = (float)middle[0];
         record.middle_y = (float)middle[1];
         record.middle_z = (float)middle[2];
-        record.grain = (float)(GRAIN * lay_boxes(builder.objects, records, reaches, count, middle));
+        record.grain = (float)(GRAIN * set_boxes(builder.objects, records, reaches, count, middle));
         record.radius = (float)radius;
         record.farthest = (float)fmax(FAR_RADII * radius, FAR_LEAST_M);
         record.slack = 2.0f * OBJECT_TREE_PADDING * record.farthest;

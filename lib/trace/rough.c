@@ -17,8 +17,8 @@
 #define RAYS_PER_BIN_OF_BEAM                                                                       \
     3.0 /* a pixel is one ping's alone, and a beam's rays weigh unequally */
 
-static double bin_of_apparent_range(const struct rough_trace *trace, const struct tracer *tracer,
-                                    double range)
+static double bin_of_processor_range(const struct rough_trace *trace, const struct tracer *tracer,
+                                     double range)
 {
     return view_column_of_range(&tracer->view, range) * trace->grid.bins_per_pixel;
 }
@@ -55,12 +55,12 @@ static struct span part_bins(const struct rough_trace *trace, const struct trace
 {
     const struct part_ranges ranges = ranges_of_part(tracer, &tracer->placements[number]);
     const double ratio = tracer->view.range_ratio;
-    const double first = floor(bin_of_apparent_range(trace, tracer, ranges.first * ratio)) - 2.0;
+    const double first = floor(bin_of_processor_range(trace, tracer, ranges.first * ratio)) - 2.0;
     const struct span mirrored = mirrored_bins(tracer, number, &trace->grid);
     /* a beam sees what is off broadside farther away */
     const double sine = has_beam(trace) ? beam_largest_sine(tracer) : 0.0;
     const double farthest = ranges.last / sqrt(1.0 - sine * sine);
-    const double last = fmax(ceil(bin_of_apparent_range(trace, tracer, farthest * ratio)) + 2.0,
+    const double last = fmax(ceil(bin_of_processor_range(trace, tracer, farthest * ratio)) + 2.0,
                              mirrored.first + mirrored.count);
     const double limit = trace->grid.bins.first + trace->grid.bins.count;
     struct span bins;
@@ -133,8 +133,8 @@ static void rough_tile_describe(const struct rough_trace *trace, uint32_t object
     record->tile_bins = tile->grid.bins.count;
 }
 
-static sonject_status lay_tiles(struct rough_trace *trace, struct tracer *tracer,
-                                struct object_record *records)
+static sonject_status init_tiles(struct rough_trace *trace, struct tracer *tracer,
+                                 struct object_record *records)
 {
     size_t elements = 0;
     for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
@@ -195,8 +195,8 @@ static sonject_status make_buffers(struct rough_trace *trace, struct tracer *tra
 }
 
 /* Strips of a fan, or a beam's rays on a grid of one strip a ping. */
-static sonject_status lay_fan(struct rough_trace *trace, struct tracer *tracer, bool has_map,
-                              bool is_beam)
+static sonject_status init_fan(struct rough_trace *trace, struct tracer *tracer, bool has_map,
+                               bool is_beam)
 {
     const double rays_per_bin = is_beam ? RAYS_PER_BIN_OF_BEAM : RAYS_PER_BIN;
     sonject_status status =
@@ -240,11 +240,11 @@ static sonject_status begin(struct rough_trace *trace, struct tracer *tracer, co
     struct object_record *records = allocate_array(tracer->part_count, sizeof *records);
     CHECK_MEMORY(tracer->report, records, "objects");
     object_records_init(records, tracer, origin);
-    sonject_status status = lay_fan(trace, tracer, map != NULL, is_beam);
+    sonject_status status = init_fan(trace, tracer, map != NULL, is_beam);
     trace->relief_halo = aspects_relief_halo(tracer, &trace->grid);
     trace->object_halo = object_halo(trace, tracer);
     rough_trace_aim(trace, trace->grid.strips);
-    THEN(status, lay_tiles(trace, tracer, records));
+    THEN(status, init_tiles(trace, tracer, records));
     if (status == SONJECT_OK) {
         choose_quanta(trace, tracer, map);
         status = make_buffers(trace, tracer, records, map);
@@ -355,15 +355,15 @@ sonject_status rough_trace_tiles(struct rough_trace *trace, struct tracer *trace
 
 static sonject_status trace_pair(struct rough_trace *trace, struct tracer *tracer,
                                  const struct trace_device *on_device,
-                                 const struct launch_parts *parts, const struct source_pair *pair)
+                                 const struct launch_parts *parts, const struct image_pair *pair)
 {
     const uint32_t part = parts->numbers[parts->target];
     const struct rough_tile *tile = &trace->tiles[tracer->placements[part].object];
-    struct source_pair_record record;
+    struct image_pair_record record;
     struct fan_record fan;
     cl_mem sources = NULL;
     struct ray_table rays = {NULL, 0};
-    sonject_status status = source_pair_aim(&fan, &record, &rays, tracer, part, pair, &trace->grid);
+    sonject_status status = image_pair_aim(&fan, &record, &rays, tracer, part, pair, &trace->grid);
     aim_at_part(&fan, trace, tracer, part, &pair->outgoing->way);
     fan.objects = (int32_t)parts->count;
     fan.relief_words = object_buffer_relief_words(tracer, parts->count);
@@ -385,12 +385,12 @@ static sonject_status trace_pairs(struct rough_trace *trace, struct tracer *trac
                                   const struct launch_parts *parts)
 {
     const uint32_t part = parts->numbers[parts->target];
-    struct source_pairs pairs;
-    struct source_pair pair;
+    struct image_pairs pairs;
+    struct image_pair pair;
     sonject_status status = SONJECT_OK;
-    source_pairs_begin(&pairs, tracer, part);
-    while (status == SONJECT_OK && source_pairs_next(&pairs, &pair))
-        if (source_pair_bins_in_patch(tracer, part, &pair, &trace->grid).count > 0)
+    image_pairs_begin(&pairs, tracer, part);
+    while (status == SONJECT_OK && image_pairs_next(&pairs, &pair))
+        if (image_pair_bins_in_patch(tracer, part, &pair, &trace->grid).count > 0)
             status = trace_pair(trace, tracer, on_device, parts, &pair);
     return status;
 }

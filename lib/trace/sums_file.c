@@ -69,7 +69,7 @@ static bool is_terminated(const char *text, size_t capacity)
     return memchr(text, 0, capacity) != NULL;
 }
 
-static bool take_head(struct sums_file *file, const struct block_head *block,
+static bool read_head(struct sums_file *file, const struct block_head *block,
                       unsigned char *content)
 {
     struct sums_head *head = &file->head;
@@ -88,7 +88,7 @@ static bool take_head(struct sums_file *file, const struct block_head *block,
            (file->source.bytes == 0 || file->source.texts[file->source.bytes - 1] == '\0');
 }
 
-static bool take_end(struct sums_file *file, const struct block_head *block,
+static bool read_end(struct sums_file *file, const struct block_head *block,
                      const unsigned char *content, uint64_t records)
 {
     struct sums_end *end = &file->end;
@@ -96,7 +96,7 @@ static bool take_end(struct sums_file *file, const struct block_head *block,
         return false;
     memcpy(end, content, sizeof *end);
     return end->records == records && end->first <= end->last && end->is_last <= 1 &&
-           is_terminated(end->course, sizeof end->course);
+           is_terminated(end->launches, sizeof end->launches);
 }
 
 /* False where memory lacks. */
@@ -133,14 +133,14 @@ static sonject_status read_blocks(struct sums_file *file, struct report *report,
         sonject_status status = read_block(report, file->path, opened, left, &block, &content);
         bool is_sound = status == SONJECT_OK;
         if (is_sound && block.kind == BLOCK_HEAD) {
-            is_sound = take_head(file, &block, content);
+            is_sound = read_head(file, &block, content);
             if ((unsigned char *)file->source.texts == content)
                 content = NULL; /* handed over */
         } else if (is_sound && block.kind == BLOCK_SUMS && file->source.texts) {
             if (!note_sums(file, records++, size - left + sizeof block, block.bytes, content))
                 status = report_out_of_memory(report, file->path);
         } else if (is_sound && block.kind == BLOCK_END && file->source.texts) {
-            is_sound = take_end(file, &block, content, records);
+            is_sound = read_end(file, &block, content, records);
             is_ended = true;
         } else {
             is_sound = false;
@@ -201,8 +201,8 @@ void sums_file_close(struct sums_file *file)
 }
 
 /* Hands out what a block holds; false where that is not runs of `count` sums. */
-static bool hand_out(const unsigned char *content, uint64_t bytes, uint64_t count,
-                     sums_run_function *take, void *user)
+static bool emit(const unsigned char *content, uint64_t bytes, uint64_t count,
+                 sums_run_function *take, void *user)
 {
     uint64_t numbers[2];
     uint64_t at = sizeof count;
@@ -240,7 +240,7 @@ sonject_status sums_file_runs(const struct sums_file *file, struct report *repor
             ? read_block(report, file->path, opened, sizeof block + sums->bytes, &block, &content)
             : file_failure(report, file->path, "read", errno);
     if (status == SONJECT_OK &&
-        (block.kind != BLOCK_SUMS || !hand_out(content, block.bytes, count, take, user)))
+        (block.kind != BLOCK_SUMS || !emit(content, block.bytes, count, take, user)))
         status = refuse(report, file->path);
     free(content);
     fclose(opened);

@@ -45,7 +45,7 @@ struct sums_end {
     uint64_t is_last;     /* 1: to the shard's end */
     uint64_t records;     /* blocks of sums */
     uint64_t rays, queries, impulses;
-    char course[SUMS_DIGEST_CAPACITY]; /* of what was launched, by whichever shard */
+    char launches[SUMS_DIGEST_CAPACITY]; /* of what was launched, by whichever shard */
 };
 
 /* The scene's text and where it came from: texts one after the other. */

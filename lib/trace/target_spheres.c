@@ -119,7 +119,7 @@ static struct sphere_record sphere_around(const struct sphere_record *spheres,
     return around;
 }
 
-static void lay_groups(struct target_spheres *spheres, struct split_triangle *sorted)
+static void init_groups(struct target_spheres *spheres, struct split_triangle *sorted)
 {
     struct sphere_group *groups =
         (struct sphere_group *)(void *)(spheres->records + spheres->count);
@@ -163,7 +163,7 @@ sonject_status target_spheres_init(struct target_spheres *spheres, const struct 
     if (spheres->count > FEW_SPHERES_MAX) {
         spheres->groups = (spheres->count + SPHERES_OF_GROUP - 1) / SPHERES_OF_GROUP;
         const size_t around = (spheres->groups + SPHERES_OF_GROUP - 1) / SPHERES_OF_GROUP;
-        lay_groups(spheres, sorted);
+        init_groups(spheres, sorted);
         spheres->bytes += (spheres->groups + around) * sizeof(struct sphere_group);
     }
     free(sorted);

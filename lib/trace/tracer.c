@@ -21,7 +21,7 @@ typedef char fan_record_is_packed[sizeof(struct fan_record) == 76 * 4 ? 1 : -1];
 typedef char chain_record_is_packed[sizeof(struct chain_record) == 43 * 4 ? 1 : -1];
 typedef char sphere_group_is_packed[sizeof(struct sphere_group) == 64 * 4 ? 1 : -1];
 typedef char sphere_record_is_packed[sizeof(struct sphere_record) == 4 * 4 ? 1 : -1];
-typedef char source_pair_record_is_packed[sizeof(struct source_pair_record) == 49 * 4 ? 1 : -1];
+typedef char image_pair_record_is_packed[sizeof(struct image_pair_record) == 49 * 4 ? 1 : -1];
 typedef char corner_record_is_packed[sizeof(struct corner_record) == 13 * 4 ? 1 : -1];
 typedef char corner_echo_record_is_packed[sizeof(struct corner_echo_record) == 6 * 4 ? 1 : -1];
 typedef char ray_piece_record_is_packed[sizeof(struct ray_piece_record) == 7 * 4 ? 1 : -1];
@@ -41,7 +41,7 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
     const double range = water_way_range(&view->water, origin[1], origin[2]);
     const double grazing = water_way_grazing(&view->water, origin[1], origin[2]);
     const double row_of_strip0 = 0.5 / grid->strips_per_row - 0.5;
-    const double bins_per_apparent_metre = grid->bins_per_pixel / view->column_spacing_m;
+    const double bins_per_processor_metre = grid->bins_per_pixel / view->column_spacing_m;
     const double cycles = 2.0 * range / view->wavelength_m;
     memset(fan, 0, sizeof *fan);
     fan->reference_range = (float)range;
@@ -52,9 +52,9 @@ void fan_record_init(struct fan_record *fan, const struct tracer *tracer, const 
     fan->first_strip_x = (float)(view_x_of_row(view, row_of_strip0) - origin[0]);
     fan->strip_width = (float)(view->row_spacing_m / grid->strips_per_row);
     fan->strata = 1;
-    fan->bins_per_metre = (float)(bins_per_apparent_metre * view->range_ratio);
+    fan->bins_per_metre = (float)(bins_per_processor_metre * view->range_ratio);
     fan->first_bin =
-        (float)((range * view->range_ratio - view->first_range_m) * bins_per_apparent_metre -
+        (float)((range * view->range_ratio - view->first_range_m) * bins_per_processor_metre -
                 grid->bins.first);
     fan->bins = grid->bins.count;
     fan->source_side = (float)tracer->scene->sonar.transducer_side_m;

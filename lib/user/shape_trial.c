@@ -140,7 +140,7 @@ static void draw_ray(struct trial *trial, struct meeting *ray)
 
 /* Takes what a ray met; the normal is made a unit vector, on the ray's side if the shape is open.
  */
-static sonject_status take_meeting(const struct trial *trial, struct meeting *ray,
+static sonject_status copy_meeting(const struct trial *trial, struct meeting *ray,
                                    const struct probe_hit *hit)
 {
     double largest = 0.0;
@@ -200,7 +200,7 @@ sonject_status trial_shoot(struct trial *trial)
                                   (double)trial->rays[i].nearest);
         struct meeting *met = &trial->meetings[trial->count];
         *met = trial->meetings[i];
-        status = take_meeting(trial, met, hit);
+        status = copy_meeting(trial, met, hit);
         trial->count++;
     }
     if (status == SONJECT_OK && trial->count == 0)

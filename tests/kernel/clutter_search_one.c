@@ -9,9 +9,9 @@
 static struct vector3 load_three(const float *planes, uint32_t rays)
 {
     struct vector3 v;
-    v.x = LOAD_REAL(planes);
-    v.y = LOAD_REAL(planes + rays);
-    v.z = LOAD_REAL(planes + 2 * rays);
+    v.x = LOAD_VFLOAT(planes);
+    v.y = LOAD_VFLOAT(planes + rays);
+    v.z = LOAD_VFLOAT(planes + 2 * rays);
     return v;
 }
 
@@ -24,8 +24,8 @@ void CLUTTER_SEARCH(const struct object_record *objects, int count, enum search_
     for (uint32_t ray = 0; ray < rays; ray += WIDTH) {
         const struct vector3 point = load_three(input + ray, rays);
         const struct vector3 direction = load_three(input + 3 * rays + ray, rays);
-        const real limit = LOAD_REAL(input + 6 * rays + ray);
-        const whole left_behind = WHOLE_OF(LOAD_REAL(input + 7 * rays + ray));
+        const vfloat limit = LOAD_VFLOAT(input + 6 * rays + ray);
+        const vint left_behind = VINT_OF(LOAD_VFLOAT(input + 7 * rays + ray));
         struct nearest_hit hit;
         if (question == SEARCH_NEAREST) {
             hit = find_nearest_hit(objects, count, point, direction, -60.0f);
@@ -37,10 +37,10 @@ void CLUTTER_SEARCH(const struct object_record *objects, int count, enum search_
             const mask is_ray = MASK_OF(limit > 0.5f);
             hit = find_nearest_ahead(&fan, objects, point, direction, 0.0f, SPLAT(FAR_AWAY), 0,
                                      left_behind, is_ray);
-            hit.distance = CHOOSE(is_ray, hit.distance, SPLAT(0.0f));
-            hit.object = CHOOSE(is_ray, hit.object, SPLAT_WHOLE(-1));
+            hit.distance = SELECT(is_ray, hit.distance, SPLAT(0.0f));
+            hit.object = SELECT(is_ray, hit.object, SPLAT_VINT(-1));
         }
-        STORE_REAL(hit.distance, distance + ray);
-        STORE_WHOLE(hit.object, object + ray);
+        STORE_VFLOAT(hit.distance, distance + ray);
+        STORE_VINT(hit.object, object + ray);
     }
 }

@@ -27,21 +27,21 @@ enum probe_output {
 FUNCTION struct vector3 probe_load(GLOBAL const float *planes, RECORD_WORD rays, RECORD_WORD first)
 {
     struct vector3 v;
-    v.x = LOAD_REAL(planes + first);
-    v.y = LOAD_REAL(planes + rays + first);
-    v.z = LOAD_REAL(planes + 2 * rays + first);
+    v.x = LOAD_VFLOAT(planes + first);
+    v.y = LOAD_VFLOAT(planes + rays + first);
+    v.z = LOAD_VFLOAT(planes + 2 * rays + first);
     return v;
 }
 
 FUNCTION void probe_store(struct vector3 v, mask is_kept, GLOBAL float *planes, RECORD_WORD rays,
                           RECORD_WORD first)
 {
-    const real x = CHOOSE(is_kept, v.x, SPLAT(0.0f));
-    const real y = CHOOSE(is_kept, v.y, SPLAT(0.0f));
-    const real z = CHOOSE(is_kept, v.z, SPLAT(0.0f));
-    STORE_REAL(x, planes + first);
-    STORE_REAL(y, planes + rays + first);
-    STORE_REAL(z, planes + 2 * rays + first);
+    const vfloat x = SELECT(is_kept, v.x, SPLAT(0.0f));
+    const vfloat y = SELECT(is_kept, v.y, SPLAT(0.0f));
+    const vfloat z = SELECT(is_kept, v.z, SPLAT(0.0f));
+    STORE_VFLOAT(x, planes + first);
+    STORE_VFLOAT(y, planes + rays + first);
+    STORE_VFLOAT(z, planes + 2 * rays + first);
 }
 
 FUNCTION void probe_nearest(struct mesh_view mesh, GLOBAL const float *input, GLOBAL float *output,
@@ -50,11 +50,11 @@ FUNCTION void probe_nearest(struct mesh_view mesh, GLOBAL const float *input, GL
     const struct mesh_hit hit =
         mesh_nearest_hit(mesh, probe_load(input + PROBE_POINT * rays, rays, first),
                          probe_load(input + PROBE_DIRECTION * rays, rays, first),
-                         LOAD_REAL(input + PROBE_MINIMUM * rays + first),
-                         LOAD_REAL(input + PROBE_MAXIMUM * rays + first));
-    const real triangle = AS_REAL(hit.triangle);
-    STORE_REAL(hit.distance, output + PROBE_DISTANCE * rays + first);
-    STORE_REAL(triangle, output + PROBE_TRIANGLE * rays + first);
+                         LOAD_VFLOAT(input + PROBE_MINIMUM * rays + first),
+                         LOAD_VFLOAT(input + PROBE_MAXIMUM * rays + first));
+    const vfloat triangle = AS_VFLOAT(hit.triangle);
+    STORE_VFLOAT(hit.distance, output + PROBE_DISTANCE * rays + first);
+    STORE_VFLOAT(triangle, output + PROBE_TRIANGLE * rays + first);
 }
 
 FUNCTION void probe_blocked(struct mesh_view mesh, GLOBAL const float *input, GLOBAL float *output,
@@ -63,17 +63,17 @@ FUNCTION void probe_blocked(struct mesh_view mesh, GLOBAL const float *input, GL
     const mask is_blocked =
         mesh_is_in_the_way(mesh, probe_load(input + PROBE_POINT * rays, rays, first),
                            probe_load(input + PROBE_DIRECTION * rays, rays, first),
-                           LOAD_REAL(input + PROBE_MINIMUM * rays + first),
-                           LOAD_REAL(input + PROBE_MAXIMUM * rays + first));
-    const real blocked = AS_REAL(is_blocked);
-    STORE_REAL(blocked, output + PROBE_BLOCKED * rays + first);
+                           LOAD_VFLOAT(input + PROBE_MINIMUM * rays + first),
+                           LOAD_VFLOAT(input + PROBE_MAXIMUM * rays + first));
+    const vfloat blocked = AS_VFLOAT(is_blocked);
+    STORE_VFLOAT(blocked, output + PROBE_BLOCKED * rays + first);
 }
 
 /* Of the triangles that probe_nearest found. */
 FUNCTION void probe_surface(struct mesh_view mesh, GLOBAL const float *input, GLOBAL float *output,
                             RECORD_WORD rays, RECORD_WORD first)
 {
-    const whole triangle = AS_WHOLE(LOAD_REAL(output + PROBE_TRIANGLE * rays + first));
+    const vint triangle = AS_VINT(LOAD_VFLOAT(output + PROBE_TRIANGLE * rays + first));
     const mask is_hit = MASK_OF(triangle >= 0);
     const struct mesh_surface surface =
         mesh_surface_at(mesh, probe_load(input + PROBE_POINT * rays, rays, first),

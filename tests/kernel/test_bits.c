@@ -281,7 +281,7 @@ static struct tallies trace_rough_as_c(struct bench *bench, const float *map)
 
 /* By way of mirrors where there is a pair of sources, else straight. */
 static void begin_smooth(struct smooth_trace *trace, struct bench *bench, uint32_t object,
-                         const struct source_pair *pair)
+                         const struct image_pair *pair)
 {
     const sonject_status status =
         pair ? smooth_trace_begin_mirrored(trace, &bench->tracer, object, pair)
@@ -290,7 +290,7 @@ static void begin_smooth(struct smooth_trace *trace, struct bench *bench, uint32
 }
 
 static struct tallies trace_smooth_on_device(struct bench *bench, uint32_t object,
-                                             const struct source_pair *pair, int32_t wanted_chunk)
+                                             const struct image_pair *pair, int32_t wanted_chunk)
 {
     struct smooth_trace trace;
     struct tallies tallies = {0, 0, NULL, NULL, {0, 0, 0, 0}};
@@ -322,10 +322,10 @@ static struct tallies trace_smooth_on_device(struct bench *bench, uint32_t objec
 }
 
 static struct tallies trace_smooth_as_c(struct bench *bench, uint32_t object,
-                                        const struct source_pair *pair)
+                                        const struct image_pair *pair)
 {
     struct smooth_trace trace;
-    struct source_pair_record sources;
+    struct image_pair_record sources;
     struct tallies tallies = {0, 0, NULL, NULL, {0, 0, 0, 0}};
     begin_smooth(&trace, bench, object, pair);
     assert_true(trace.grid.bins.count > 0);
@@ -450,7 +450,7 @@ static void test_rough_tallies(void **state)
 }
 
 /* Whether there was anything to compare. */
-static bool compare_pair(struct bench *bench, uint32_t object, const struct source_pair *pair)
+static bool compare_pair(struct bench *bench, uint32_t object, const struct image_pair *pair)
 {
     struct tallies expected = trace_smooth_as_c(bench, object, pair);
     const bool had_echoes = is_alive(&expected);
@@ -493,8 +493,8 @@ static void compare_under_relief(struct bench *bench)
     bench->scene.surface.water_depth_m = 7.5;
     assert_int_equal(sources_list(&bench->scene, &bench->water, 2, sources), 2);
     for (uint32_t object = 0; object < bench->scene.object_count; object++) {
-        const struct source_pair there_and_back = {&sources[0], &sources[1], 0};
-        const struct source_pair twice = {&sources[1], &sources[1], 1};
+        const struct image_pair there_and_back = {&sources[0], &sources[1], 0};
+        const struct image_pair twice = {&sources[1], &sources[1], 1};
         alive += compare_pair(bench, object, &there_and_back);
         alive += compare_pair(bench, object, &twice);
     }
@@ -521,8 +521,8 @@ static void compare_mirrored(struct bench *bench, enum scene_kind kind)
     size_t alive = 0;
     for (uint32_t object = 0; object < bench->scene.object_count; object++)
         for (size_t i = 0; i < COUNT(numbers); i++) {
-            const struct source_pair pair = {&sources[numbers[i][0]], &sources[numbers[i][1]],
-                                             (uint32_t)i};
+            const struct image_pair pair = {&sources[numbers[i][0]], &sources[numbers[i][1]],
+                                            (uint32_t)i};
             alive += compare_pair(bench, object, &pair);
         }
     /* of 20: the plate is not seen from two sides everywhere */
@@ -680,7 +680,7 @@ static void response_as_c(struct bench *bench, const struct form_lines *lines, i
         const double middle = (double)lines->first_column + column / 16 * 16 + 7.5;
         for (int i = 0; i < taps; i++) {
             const struct complex_number w =
-                cross_range_response(&lines->response, view_apparent_range(lines->view, middle),
+                cross_range_response(&lines->response, view_processor_range(lines->view, middle),
                                      (i - lines->reach) * strip + offset);
             a[i] = w.real_part;
             b[i] = w.imaginary_part;

@@ -134,7 +134,7 @@ static void expect_same(const struct corner_sums *a, const struct corner_sums *b
 
 /* Echoes of one pair; compares them in launches as they come and in small ones. */
 static uint64_t compare_pair(struct bench *bench, const struct corners *corners, uint32_t part,
-                             const struct source_pair *pair)
+                             const struct image_pair *pair)
 {
     static const int32_t chunks[] = {1 << 20, 37};
     struct corner_launch launch;
@@ -165,9 +165,9 @@ static void compare_variant(struct bench *bench, const struct variant *variant)
     for (uint32_t part = 0; part < bench->scene.object_count; part++) {
         struct corners corners;
         struct corner_pairs all;
-        const struct source_pair *pair;
+        const struct image_pair *pair;
         assert_true(corners_may_echo(&bench->tracer, part));
-        corners_lay(&corners, &bench->tracer, part);
+        corners_init(&corners, &bench->tracer, part);
         corner_pairs_begin(&all, &bench->tracer, part);
         for (; (pair = corner_pairs_next(&all)) != NULL; pairs++)
             impulses += compare_pair(bench, &corners, part, pair);

@@ -250,7 +250,7 @@ static void test_delays_and_phases(void **state)
     /* the impulse: strip 11 of 7 a row, bin 613 of 26 a pixel */
     const struct line_grid grid = {7, 26, {11, 1}, {613, 1}};
     const double x = view_x_of_row(&tracer->view, 11.5 / 7.0 - 0.5);
-    const double range = view_apparent_range(&tracer->view, 613.0 / 26.0);
+    const double range = view_processor_range(&tracer->view, 613.0 / 26.0);
     struct impulse_list impulses;
     impulse_list_init(&impulses, &bench.report, tracer->device);
     expect_ok(&bench, impulse_list_add(&impulses, &grid, grid.strips, &one, &none));

@@ -42,11 +42,11 @@ struct reference_sound sound_from(const struct sea *sea, enum image_of_sonar ima
     return reference_sound_at(&way, range, height);
 }
 
-struct reference_sound sound_on_seabed(const struct sea *sea, double apparent_range, double *area)
+struct reference_sound sound_on_seabed(const struct sea *sea, double processor_range, double *area)
 {
     const double speed = reference_speed(sea);
     const struct reference_way way = way_from(sea, SONAR);
-    const long double p = reference_parameter_of_time(&way, apparent_range / speed);
+    const long double p = reference_parameter_of_time(&way, processor_range / speed);
     const double length = sqrt(PI / (4.0 * log(2.0))) * speed / (2.0 * sea->sonar->bandwidth_hz);
     *area = sea->geometry->row_spacing_m * length / (speed * (double)p);
     return reference_sound_at(&way, (double)reference_sum(&way, 0.0, p).range, 0.0);

@@ -29,7 +29,7 @@ struct reference_sound sound_from(const struct sea *sea, enum image_of_sonar ima
                                   double height);
 
 /* On the seabed, where it appears at a range; area: of a resolution cell there, m2 (dt/dy = p). */
-struct reference_sound sound_on_seabed(const struct sea *sea, double apparent_range, double *area);
+struct reference_sound sound_on_seabed(const struct sea *sea, double processor_range, double *area);
 
 /* Amplitude of a target of unit cross-section there, out by one way and home by another, and what
  * planes between layers of unlike density leave of it (Rayleigh's reflection, one way each). */

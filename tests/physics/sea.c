@@ -266,22 +266,22 @@ static const struct patch_view *view_of(const struct sea *sea)
 
 double sea_range(const struct sea *sea, double column)
 {
-    return view_apparent_range(view_of(sea), column);
+    return view_processor_range(view_of(sea), column);
 }
 
-double sea_column(const struct sea *sea, double apparent_range_m)
+double sea_column(const struct sea *sea, double processor_range_m)
 {
-    return view_column_of_range(view_of(sea), apparent_range_m);
+    return view_column_of_range(view_of(sea), processor_range_m);
 }
 
-double sea_ground(const struct sea *sea, double apparent_range_m)
+double sea_ground(const struct sea *sea, double processor_range_m)
 {
-    return view_ground_range(view_of(sea), apparent_range_m);
+    return view_ground_range(view_of(sea), processor_range_m);
 }
 
-double sea_grazing(const struct sea *sea, double apparent_range_m)
+double sea_grazing(const struct sea *sea, double processor_range_m)
 {
-    return view_grazing(view_of(sea), apparent_range_m);
+    return view_grazing(view_of(sea), processor_range_m);
 }
 
 double sea_x(const struct sea *sea, double row)
@@ -342,9 +342,9 @@ double sea_window_reach(const struct sea *sea, double share)
     return along_track_energy_reach(&sea->bench->tracer.response, share);
 }
 
-double sea_cross_range_energy(const struct sea *sea, double apparent_range_m)
+double sea_cross_range_energy(const struct sea *sea, double processor_range_m)
 {
-    return cross_range_energy_width(&sea->bench->tracer.response, apparent_range_m);
+    return cross_range_energy_width(&sea->bench->tracer.response, processor_range_m);
 }
 
 void sea_set_pulse(struct sea *sea, const double *positions, const double *real_part,
@@ -364,10 +364,10 @@ void sea_set_window(struct sea *sea, const double *positions, const double *real
                                  positions, real_part, imaginary_part, count, false));
 }
 
-double sea_seabed_level(const struct sea *sea, double apparent_range_m)
+double sea_seabed_level(const struct sea *sea, double processor_range_m)
 {
     return seabed_cell_energy(view_of(sea), &sea->bench->tracer.response, sea->seabed->lambert,
-                              apparent_range_m);
+                              processor_range_m);
 }
 
 const double *sea_centre(const struct sea *sea, uint32_t part)

@@ -124,9 +124,9 @@ const char *sea_message(const struct sea *sea);
 /* Works out view, response and places from the scene as it now is. */
 void sea_ready(struct sea *sea);
 double sea_range(const struct sea *sea, double column); /* apparent */
-double sea_column(const struct sea *sea, double apparent_range_m);
-double sea_ground(const struct sea *sea, double apparent_range_m);
-double sea_grazing(const struct sea *sea, double apparent_range_m);
+double sea_column(const struct sea *sea, double processor_range_m);
+double sea_ground(const struct sea *sea, double processor_range_m);
+double sea_grazing(const struct sea *sea, double processor_range_m);
 double sea_x(const struct sea *sea, double row);
 double sea_height(const struct sea *sea, double x_m, double ground_m);      /* of the relief */
 const struct water_layer *sea_layers(const struct sea *sea, size_t *count); /* as they were laid */
@@ -142,7 +142,7 @@ double sea_window_energy(const struct sea *sea);
 double sea_window_reach(const struct sea *sea, double share);
 
 /* Integral of |W|^2, m, whatever the aperture, at an apparent range. */
-double sea_cross_range_energy(const struct sea *sea, double apparent_range_m);
+double sea_cross_range_energy(const struct sea *sea, double processor_range_m);
 
 /* Tables of the pulse, over seconds or m, and of W over m; imaginary parts may be NULL. */
 void sea_set_pulse(struct sea *sea, const double *positions, const double *real_part,
@@ -151,7 +151,7 @@ void sea_set_window(struct sea *sea, const double *positions, const double *real
                     const double *imaginary_part, size_t count);
 
 /* Expected cross-section of a pixel of level seabed as the library levels patches. */
-double sea_seabed_level(const struct sea *sea, double apparent_range_m);
+double sea_seabed_level(const struct sea *sea, double processor_range_m);
 
 /* Of a part of an object. */
 const double *sea_centre(const struct sea *sea, uint32_t part);

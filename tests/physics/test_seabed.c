@@ -10,18 +10,18 @@
 /* From the formulas, not from the library's: mu sin^2(g) dA, dA = width of |W|^2 times the ground
  * length of G^2, 1.0645 c/2B / cos(g) on the water's own range scale. What lies at r shows at
  * r c_ref/c, and energies gain (c_ref/c)^4. */
-static double closed_form(const struct sea *sea, double apparent_range)
+static double closed_form(const struct sea *sea, double processor_range)
 {
     const double c = sea->medium->sound_speed_mps;
     const double reference = sea->medium->reference_sound_speed_mps;
-    const double range = apparent_range * (reference > 0.0 ? c / reference : 1.0);
+    const double range = processor_range * (reference > 0.0 ? c / reference : 1.0);
     const double sine = sea->sonar->altitude_m / range;
     const double delta = sea->sonar->along_track_resolution_m > 0.0
                              ? sea->sonar->along_track_resolution_m
                              : sea->geometry->row_spacing_m;
     const double length = sqrt(PI / (4.0 * log(2.0))) * c / (2.0 * sea->sonar->bandwidth_hz);
     return sea->seabed->lambert * sine * sine * delta * length / sqrt(1.0 - sine * sine) *
-           pow(apparent_range / range, 4.0);
+           pow(processor_range / range, 4.0);
 }
 
 /* Mean over the pixels away from the edges, each over its own closed form; its standard error from

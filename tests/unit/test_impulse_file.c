@@ -51,7 +51,7 @@ static void set_up_init(struct set_up *set)
     point_response_init(&tracer->response, &set->scene.sonar,
                         tracer->view.range_ratio * set->water.straight_speed_mps, 0.025);
     line_grid_for_patch(&set->patch, &tracer->view, &tracer->response);
-    glint_strips_lay(&set->glints, tracer, 0);
+    glint_strips_init(&set->glints, tracer, 0);
     set->glints.bins.first = -3;
     set->glints.bins.count = 40;
 }

@@ -37,7 +37,7 @@ static struct sums_end end_of(uint64_t first, uint64_t last, uint64_t is_last)
     end.last = last;
     end.is_last = is_last;
     end.rays = 100 + first;
-    strcpy(end.course, "course");
+    strcpy(end.launches, "course");
     return end;
 }
 
@@ -110,7 +110,7 @@ static void test_what_is_written_is_read(void **state)
     assert_int_equal(file.end.last, 9);
     assert_int_equal(file.end.is_last, 1);
     assert_int_equal(file.end.rays, 104);
-    assert_string_equal(file.end.course, "course");
+    assert_string_equal(file.end.launches, "course");
     assert_int_equal(file.end.records, 2);
     expect_sums(&file, 0, values, many, 1);
     /* 5; -7; the three at the limits with the 3 behind two zeros */
@@ -238,7 +238,7 @@ static void test_what_makes_no_sense_is_refused(void **state)
     expect_head_refused(path, head, end_of(9, 0, 1), 0);
     expect_head_refused(path, head, end_of(0, 9, 2), 0);
     expect_head_refused(path, head, end, 1);
-    memset(end.course, 'x', sizeof end.course);
+    memset(end.launches, 'x', sizeof end.launches);
     expect_head_refused(path, head, end, 0);
     end = end_of(0, 9, 1);
 
@@ -459,7 +459,7 @@ static void test_only_what_goes_together_is_added_up(void **state)
     char nothing[HASH_TEXT_CAPACITY];
     assert_non_null(hash);
     hash_end(hash, nothing);
-    strcpy(file.end.course, nothing);
+    strcpy(file.end.launches, nothing);
     assert_int_equal(checkpoint_begin_adding(&checkpoint, &report, files, 1), SONJECT_OK);
     assert_int_equal(checkpoint_finish(&checkpoint, &counts), SONJECT_ERROR_INPUT);
     checkpoint_clear(&checkpoint);

@@ -7,18 +7,18 @@
 #include "vector3.h"
 
 /* cosine^exponent for a cosine in (0, 1]; exponent >= 0. */
-FUNCTION real cosine_power(real cosine, float exponent)
+FUNCTION vfloat cosine_power(vfloat cosine, float exponent)
 {
     if (exponent == 0.0f)
         return SPLAT(1.0f);
     if (exponent == 1.0f)
         return cosine;
-    const real positive = larger(cosine, SPLAT(1.0e-30f));
+    const vfloat positive = larger(cosine, SPLAT(1.0e-30f));
     return exponential_of_negative(smaller(exponent * natural_logarithm(positive), SPLAT(0.0f)));
 }
 
 /* (n + 1)/2 (cos cos)^(n - 1), over which mu stands for Lambert's law at n = 1. */
-FUNCTION real diffuse_shape(real cosine_one, real cosine_other, float exponent)
+FUNCTION vfloat diffuse_shape(vfloat cosine_one, vfloat cosine_other, float exponent)
 {
     if (exponent == 1.0f)
         return SPLAT(1.0f);
@@ -26,29 +26,30 @@ FUNCTION real diffuse_shape(real cosine_one, real cosine_other, float exponent)
 }
 
 /* Density (n + 1)/(2 pi) cos^n, 1/sr; 0 below the surface. */
-FUNCTION real diffuse_density(real cosine, float exponent)
+FUNCTION vfloat diffuse_density(vfloat cosine, float exponent)
 {
     const mask is_above = MASK_OF(cosine > 0.0f);
-    const real shape = cosine_power(CHOOSE(is_above, cosine, SPLAT(1.0f)), exponent);
-    return CHOOSE(is_above, 0.15915494309f * (exponent + 1.0f) * shape, SPLAT(0.0f));
+    const vfloat shape = cosine_power(SELECT(is_above, cosine, SPLAT(1.0f)), exponent);
+    return SELECT(is_above, 0.15915494309f * (exponent + 1.0f) * shape, SPLAT(0.0f));
 }
 
 /* A direction about the normal: cosine and turn (cycles) from it. */
-FUNCTION struct vector3 direction_about(struct vector3 normal, real cosine, real sine, real turn)
+FUNCTION struct vector3 direction_about(struct vector3 normal, vfloat cosine, vfloat sine,
+                                        vfloat turn)
 {
     struct vector3 first, second;
-    real sine_about, cosine_about;
+    vfloat sine_about, cosine_about;
     tangents3(normal, &first, &second);
     sine_cosine_of_cycles(turn, &sine_about, &cosine_about);
     return combine3(normal, cosine, first, sine * cosine_about, second, sine * sine_about);
 }
 
-FUNCTION struct vector3 sample_diffuse(struct vector3 normal, float exponent, real u, real v)
+FUNCTION struct vector3 sample_diffuse(struct vector3 normal, float exponent, vfloat u, vfloat v)
 {
     /* 1 - cos^2 = u at n = 1: no difference of nearly equal numbers */
-    real square_sine = u;
+    vfloat square_sine = u;
     if (exponent != 1.0f) {
-        const real cosine =
+        const vfloat cosine =
             exponential_of_negative(natural_logarithm(1.0f - u) / (exponent + 1.0f));
         square_sine = (1.0f - cosine) * (1.0f + cosine);
     }
@@ -58,20 +59,20 @@ FUNCTION struct vector3 sample_diffuse(struct vector3 normal, float exponent, re
 /* Facets whose slopes are normally distributed (P. Beckmann, A. Spizzichino, "The Scattering of
  * Electromagnetic Waves from Rough Surfaces"): area of facets per area of surface and solid angle
  * of their normals, 1/sr, whose integral times the cosine is 1. slope: rms, over both axes. */
-FUNCTION real facet_density(real cosine, float slope)
+FUNCTION vfloat facet_density(vfloat cosine, float slope)
 {
     const mask is_above = MASK_OF(cosine > 1.0e-4f);
-    const real inverse = 1.0f / CHOOSE(is_above, cosine * cosine, SPLAT(1.0f));
+    const vfloat inverse = 1.0f / SELECT(is_above, cosine * cosine, SPLAT(1.0f));
     const float square = slope * slope;
-    const real density = 0.31830988618f / square * inverse * inverse *
-                         exponential_of_negative((1.0f - inverse) / square);
-    return CHOOSE(is_above, density, SPLAT(0.0f));
+    const vfloat density = 0.31830988618f / square * inverse * inverse *
+                           exponential_of_negative((1.0f - inverse) / square);
+    return SELECT(is_above, density, SPLAT(0.0f));
 }
 
 /* The facet that mirrors one direction into another. */
 struct mirror_facet {
     struct vector3 normal;
-    real half_angle; /* cosine between its normal and either direction */
+    vfloat half_angle; /* cosine between its normal and either direction */
 };
 
 /* The sum of the directions is twice that cosine long: near grazing their product with the normal
@@ -82,8 +83,8 @@ FUNCTION struct mirror_facet facet_between(struct vector3 one, struct vector3 ot
     facet.normal.x = one.x + other.x;
     facet.normal.y = one.y + other.y;
     facet.normal.z = one.z + other.z;
-    const real length = larger(SQUARE_ROOT(dot3(facet.normal, facet.normal)), SPLAT(2.0e-6f));
-    const real inverse = 1.0f / length;
+    const vfloat length = larger(SQUARE_ROOT(dot3(facet.normal, facet.normal)), SPLAT(2.0e-6f));
+    const vfloat inverse = 1.0f / length;
     facet.normal.x = facet.normal.x * inverse;
     facet.normal.y = facet.normal.y * inverse;
     facet.normal.z = facet.normal.z * inverse;
@@ -94,40 +95,40 @@ FUNCTION struct mirror_facet facet_between(struct vector3 one, struct vector3 ot
 /* Scattering of the cone over cos cos, both directions above the surface: facets mirror, and shade
  * each other as in V-shaped grooves, min(1, 2 nh no/oh, 2 nh ni/oh) (K. E. Torrance, E. M. Sparrow,
  * J. Opt. Soc. Am. 57, 1967). It returns no more than comes, since grooves do not either. */
-FUNCTION real cone_scattering(struct vector3 normal, struct vector3 one, struct vector3 other,
-                              float slope)
+FUNCTION vfloat cone_scattering(struct vector3 normal, struct vector3 one, struct vector3 other,
+                                float slope)
 {
     const struct mirror_facet facet = facet_between(one, other);
-    const real cosine_one = dot3(normal, one);
-    const real cosine_other = dot3(normal, other);
-    const real tilt = dot3(normal, facet.normal);
+    const vfloat cosine_one = dot3(normal, one);
+    const vfloat cosine_other = dot3(normal, other);
+    const vfloat tilt = dot3(normal, facet.normal);
     /* the shading is divided by both cosines here, and so is never a quotient of zeros */
-    const real least = smaller(cosine_one, cosine_other);
-    const real most = larger(larger(cosine_one, cosine_other), SPLAT(1.0e-6f));
-    const real shading =
+    const vfloat least = smaller(cosine_one, cosine_other);
+    const vfloat most = larger(larger(cosine_one, cosine_other), SPLAT(1.0e-6f));
+    const vfloat shading =
         smaller(2.0f * tilt / facet.half_angle, 1.0f / larger(least, SPLAT(1.0e-6f)));
     return facet_density(tilt, slope) * 0.25f * shading / most;
 }
 
 /* Density of the cone's directions, 1/sr, as sample_cone draws them. */
-FUNCTION real cone_density(struct vector3 normal, struct vector3 back, struct vector3 direction,
-                           float slope)
+FUNCTION vfloat cone_density(struct vector3 normal, struct vector3 back, struct vector3 direction,
+                             float slope)
 {
     const struct mirror_facet facet = facet_between(back, direction);
-    const real tilt = dot3(normal, facet.normal);
+    const vfloat tilt = dot3(normal, facet.normal);
     return facet_density(tilt, slope) * tilt / (4.0f * facet.half_angle);
 }
 
 /* The direction into which a random facet mirrors sound that came along -back; it may lie below the
  * surface. */
-FUNCTION struct vector3 sample_cone(struct vector3 normal, struct vector3 back, float slope, real u,
-                                    real v)
+FUNCTION struct vector3 sample_cone(struct vector3 normal, struct vector3 back, float slope,
+                                    vfloat u, vfloat v)
 {
-    const real square_slope = -(slope * slope) * natural_logarithm(u);
-    const real cosine = 1.0f / SQUARE_ROOT(1.0f + square_slope);
+    const vfloat square_slope = -(slope * slope) * natural_logarithm(u);
+    const vfloat cosine = 1.0f / SQUARE_ROOT(1.0f + square_slope);
     const struct vector3 facet =
         direction_about(normal, cosine, SQUARE_ROOT(square_slope) * cosine, v);
-    const real twice = 2.0f * dot3(back, facet);
+    const vfloat twice = 2.0f * dot3(back, facet);
     struct vector3 mirrored;
     mirrored.x = twice * facet.x - back.x;
     mirrored.y = twice * facet.y - back.y;

@@ -10,9 +10,9 @@
 
 /* The cones of all spheres as seen from a point. An opening is 1 - cosine of the cone's half angle;
  * 0 where the point is inside the sphere, which then is all around. */
-struct target_cones {
-    real openings[FEW_SPHERES_MAX];
-    real sum;
+struct target_sampling {
+    vfloat openings[FEW_SPHERES_MAX];
+    vfloat sum;
     mask is_inside; /* of some sphere */
 };
 
@@ -26,22 +26,22 @@ FUNCTION struct vector3 to_sphere(GLOBAL const struct sphere_record *sphere, str
 }
 
 /* Opening of a sphere at a distance; 0 where that is not outside. */
-FUNCTION real opening_at(real square_distance, real square_radius, mask *is_outside)
+FUNCTION vfloat opening_at(vfloat square_distance, vfloat square_radius, mask *is_outside)
 {
     *is_outside = MASK_OF(square_distance > square_radius * 1.0001f);
     /* 1 - sqrt(1 - r^2/d^2) without a difference of nearly equal numbers, and one division */
-    const real square_tangent_length = square_distance - square_radius;
-    const real divisor =
+    const vfloat square_tangent_length = square_distance - square_radius;
+    const vfloat divisor =
         square_distance +
-        SQUARE_ROOT(square_distance * CHOOSE(*is_outside, square_tangent_length, SPLAT(0.0f)));
-    return CHOOSE(*is_outside, square_radius / divisor, SPLAT(0.0f));
+        SQUARE_ROOT(square_distance * SELECT(*is_outside, square_tangent_length, SPLAT(0.0f)));
+    return SELECT(*is_outside, square_radius / divisor, SPLAT(0.0f));
 }
 
 /* Sum of the openings of any number of spheres as seen from a point. */
-FUNCTION real sum_of_openings(GLOBAL const struct sphere_record *spheres, int count,
-                              struct vector3 point, mask *is_inside)
+FUNCTION vfloat sum_of_openings(GLOBAL const struct sphere_record *spheres, int count,
+                                struct vector3 point, mask *is_inside)
 {
-    real sum = SPLAT(0.0f);
+    vfloat sum = SPLAT(0.0f);
     *is_inside = MASK_OF(sum > 1.0f);
     for (int i = 0; i < count; i++) {
         const struct vector3 way = to_sphere(&spheres[i], point);
@@ -55,7 +55,7 @@ FUNCTION real sum_of_openings(GLOBAL const struct sphere_record *spheres, int co
 
 /* count: FEW_SPHERES_MAX at most. */
 FUNCTION void view_targets(GLOBAL const struct sphere_record *spheres, int count,
-                           struct vector3 point, struct target_cones *cones)
+                           struct vector3 point, struct target_sampling *cones)
 {
     cones->sum = SPLAT(0.0f);
     cones->is_inside = MASK_OF(cones->sum > 1.0f);
@@ -70,16 +70,16 @@ FUNCTION void view_targets(GLOBAL const struct sphere_record *spheres, int count
 }
 
 /* A direction in a cone, uniform over its solid angle; way: to the middle of its sphere. */
-FUNCTION struct vector3 direction_in_cone(struct vector3 way, real opening, real u, real v)
+FUNCTION struct vector3 direction_in_cone(struct vector3 way, vfloat opening, vfloat u, vfloat v)
 {
-    const real inverse = 1.0f / SQUARE_ROOT(dot3(way, way));
+    const vfloat inverse = 1.0f / SQUARE_ROOT(dot3(way, way));
     struct vector3 axis;
     axis.x = way.x * inverse;
     axis.y = way.y * inverse;
     axis.z = way.z * inverse;
-    const real fall = u * opening; /* 1 - cosine */
-    const real sine = SQUARE_ROOT(fall * (2.0f - fall));
-    real sine_about, cosine_about;
+    const vfloat fall = u * opening; /* 1 - cosine */
+    const vfloat sine = SQUARE_ROOT(fall * (2.0f - fall));
+    vfloat sine_about, cosine_about;
     sine_cosine_of_cycles(v, &sine_about, &cosine_about);
     struct vector3 first, second;
     tangents3(axis, &first, &second);
@@ -89,12 +89,12 @@ FUNCTION struct vector3 direction_in_cone(struct vector3 way, real opening, real
 /* A direction in the cone of one sphere, chosen in proportion to the cones' solid angles. */
 FUNCTION struct vector3 sample_target_direction(GLOBAL const struct sphere_record *spheres,
                                                 int count, struct vector3 point,
-                                                const struct target_cones *cones, real choice,
-                                                real u, real v)
+                                                const struct target_sampling *cones, vfloat choice,
+                                                vfloat u, vfloat v)
 {
-    const real wanted = choice * cones->sum;
-    real before = SPLAT(0.0f);
-    real opening = SPLAT(0.0f);
+    const vfloat wanted = choice * cones->sum;
+    vfloat before = SPLAT(0.0f);
+    vfloat opening = SPLAT(0.0f);
     struct vector3 way;
     way.x = SPLAT(0.0f);
     way.y = SPLAT(0.0f);
@@ -102,7 +102,7 @@ FUNCTION struct vector3 sample_target_direction(GLOBAL const struct sphere_recor
     for (int i = 0; i < count; i++) {
         const mask is_next = MASK_OF(before <= wanted) & MASK_OF(cones->openings[i] > 0.0f);
         way = choose3(is_next, to_sphere(&spheres[i], point), way);
-        opening = CHOOSE(is_next, cones->openings[i], opening);
+        opening = SELECT(is_next, cones->openings[i], opening);
         before += cones->openings[i];
     }
     return direction_in_cone(way, opening, u, v);
@@ -110,22 +110,22 @@ FUNCTION struct vector3 sample_target_direction(GLOBAL const struct sphere_recor
 
 /* Density of these directions, 1/sr: the number of cones that hold the direction over the sum of
  * their solid angles. */
-FUNCTION real target_direction_density(GLOBAL const struct sphere_record *spheres, int count,
-                                       struct vector3 point, const struct target_cones *cones,
-                                       struct vector3 direction)
+FUNCTION vfloat target_direction_density(GLOBAL const struct sphere_record *spheres, int count,
+                                         struct vector3 point, const struct target_sampling *cones,
+                                         struct vector3 direction)
 {
-    real holding = SPLAT(0.0f);
+    vfloat holding = SPLAT(0.0f);
     for (int i = 0; i < count; i++) {
         const struct vector3 way = to_sphere(&spheres[i], point);
-        const real along = dot3(way, direction);
+        const vfloat along = dot3(way, direction);
         /* not the difference of two squares: a far sphere is smaller than their rounding */
         const struct vector3 miss = along3(way, direction, -along);
         const mask is_in_cone = MASK_OF(cones->openings[i] > 0.0f) & MASK_OF(along > 0.0f) &
                                 MASK_OF(dot3(miss, miss) <= spheres[i].radius * spheres[i].radius);
-        holding += CHOOSE(is_in_cone, SPLAT(1.0f), SPLAT(0.0f));
+        holding += SELECT(is_in_cone, SPLAT(1.0f), SPLAT(0.0f));
     }
     const mask is_some = MASK_OF(cones->sum > 0.0f);
-    return CHOOSE(is_some, holding / CHOOSE(is_some, cones->sum, SPLAT(1.0f)), SPLAT(0.0f)) *
+    return SELECT(is_some, holding / SELECT(is_some, cones->sum, SPLAT(1.0f)), SPLAT(0.0f)) *
            0.15915494309f;
 }
 

@@ -24,9 +24,9 @@ struct mesh_ray_lanes {
 
 FUNCTION void store_vector3(struct vector3 v, float lanes[3][WIDTH])
 {
-    STORE_REAL(v.x, lanes[0]);
-    STORE_REAL(v.y, lanes[1]);
-    STORE_REAL(v.z, lanes[2]);
+    STORE_VFLOAT(v.x, lanes[0]);
+    STORE_VFLOAT(v.y, lanes[1]);
+    STORE_VFLOAT(v.z, lanes[2]);
 }
 
 FUNCTION struct vector3 splat_vector3(const float lanes[3][WIDTH], int lane)
@@ -41,9 +41,9 @@ FUNCTION struct vector3 splat_vector3(const float lanes[3][WIDTH], int lane)
 FUNCTION struct vector3 load_lanes3(float lanes[3][WIDTH])
 {
     struct vector3 v;
-    v.x = LOAD_REAL(lanes[0]);
-    v.y = LOAD_REAL(lanes[1]);
-    v.z = LOAD_REAL(lanes[2]);
+    v.x = LOAD_VFLOAT(lanes[0]);
+    v.y = LOAD_VFLOAT(lanes[1]);
+    v.z = LOAD_VFLOAT(lanes[2]);
     return v;
 }
 
@@ -55,7 +55,7 @@ FUNCTION void store_mesh_ray(const struct mesh_ray *ray, struct mesh_ray_lanes *
     store_vector3(ray->across, lanes->across);
     store_vector3(ray->upward, lanes->upward);
     store_vector3(ray->seen, lanes->seen);
-    STORE_REAL(ray->minimum, lanes->minimum);
+    STORE_VFLOAT(ray->minimum, lanes->minimum);
     lanes->padding = ray->padding;
 }
 
@@ -78,36 +78,37 @@ FUNCTION struct vector3 load_vector3(GLOBAL const float *x, GLOBAL const float *
                                      GLOBAL const float *z, int slot)
 {
     struct vector3 v;
-    v.x = LOAD_REAL(x + slot);
-    v.y = LOAD_REAL(y + slot);
-    v.z = LOAD_REAL(z + slot);
+    v.x = LOAD_VFLOAT(x + slot);
+    v.y = LOAD_VFLOAT(y + slot);
+    v.z = LOAD_VFLOAT(z + slot);
     return v;
 }
 
-struct lone_hit {
+struct single_hit {
     float distance;
     int triangle; /* -1: none */
 };
 
 /* Children to be visited, with the distances to their boxes. */
-struct lone_stack {
+struct single_stack {
     int child[MESH_STACK];
     float entry[MESH_STACK];
     int count;
 };
 
-FUNCTION void open_branch_alone(const struct mesh_ray *ray, GLOBAL const struct mesh_branch *branch,
-                                float maximum, struct lone_stack *stack)
+FUNCTION void open_branch_single(const struct mesh_ray *ray,
+                                 GLOBAL const struct mesh_branch *branch, float maximum,
+                                 struct single_stack *stack)
 {
     for (int first = 0; first < MESH_SLOTS; first += WIDTH) {
-        const real entry = box_entry(
+        const vfloat entry = box_entry(
             ray, load_vector3(branch->lower_x, branch->lower_y, branch->lower_z, first),
             load_vector3(branch->upper_x, branch->upper_y, branch->upper_z, first), SPLAT(maximum));
         RECORD_WORD met = lane_bits(MASK_OF(entry < FAR_AWAY));
         if (met == 0)
             continue;
         float entries[WIDTH];
-        STORE_REAL(entry, entries);
+        STORE_VFLOAT(entry, entries);
         for (; met != 0; met &= met - 1) {
             const int lane = lowest_bit(met);
             stack->child[stack->count] = branch->child[first + lane];
@@ -116,20 +117,20 @@ FUNCTION void open_branch_alone(const struct mesh_ray *ray, GLOBAL const struct 
     }
 }
 
-FUNCTION void test_leaf_alone(const struct mesh_ray *ray, GLOBAL const struct mesh_leaf *leaf,
-                              int first_number, float minimum, struct lone_hit *hit)
+FUNCTION void test_leaf_single(const struct mesh_ray *ray, GLOBAL const struct mesh_leaf *leaf,
+                               int first_number, float minimum, struct single_hit *hit)
 {
     for (int first = 0; first < leaf->triangles; first += WIDTH) {
         struct mesh_corners corners;
         corners.a = load_vector3(leaf->a_x, leaf->a_y, leaf->a_z, first);
         corners.b = load_vector3(leaf->b_x, leaf->b_y, leaf->b_z, first);
         corners.c = load_vector3(leaf->c_x, leaf->c_y, leaf->c_z, first);
-        real distance;
+        vfloat distance;
         RECORD_WORD met = lane_bits(meets_triangle(ray, &corners, &distance));
         if (met == 0)
             continue;
         float distances[WIDTH];
-        STORE_REAL(distance, distances);
+        STORE_VFLOAT(distance, distances);
         for (; met != 0; met &= met - 1) {
             const int lane = lowest_bit(met);
             const int number = first_number + first + lane;
@@ -146,11 +147,11 @@ FUNCTION void test_leaf_alone(const struct mesh_ray *ray, GLOBAL const struct me
 
 /* Visits a child and all below it with the ray of one lane. `is_any`: the first hit found will do.
  */
-FUNCTION void walk_alone(struct mesh_view mesh, const struct mesh_ray_lanes *lanes, int lane,
-                         int child, int is_any, struct lone_hit *hit)
+FUNCTION void walk_single_ray(struct mesh_view mesh, const struct mesh_ray_lanes *lanes, int lane,
+                              int child, int is_any, struct single_hit *hit)
 {
     const struct mesh_ray ray = one_mesh_ray(lanes, lane);
-    struct lone_stack stack;
+    struct single_stack stack;
     stack.count = 1;
     stack.child[0] = child;
     stack.entry[0] = -FAR_AWAY;
@@ -160,11 +161,11 @@ FUNCTION void walk_alone(struct mesh_view mesh, const struct mesh_ray_lanes *lan
             continue;
         const int number = stack.child[stack.count];
         if (number >= 0) {
-            open_branch_alone(&ray, &mesh.branches[number], hit->distance, &stack);
+            open_branch_single(&ray, &mesh.branches[number], hit->distance, &stack);
             continue;
         }
-        test_leaf_alone(&ray, &mesh.leaves[~number], ~number * MESH_SLOTS, lanes->minimum[lane],
-                        hit);
+        test_leaf_single(&ray, &mesh.leaves[~number], ~number * MESH_SLOTS, lanes->minimum[lane],
+                         hit);
         if (is_any && hit->triangle >= 0)
             return;
     }
