@@ -16,8 +16,8 @@
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "dataset/labels.h"
-#include "io/geometry_notes.h"
-#include "io/raster_file.h"
+#include "swath/geometry_notes.h"
+#include "swath/raster_file.h"
 
 void campaign_image_clear(struct campaign_image *image)
 {

@@ -8,7 +8,7 @@
 #include "base/memory.h"
 #include "image/canvas.h"
 #include "image/font.h"
-#include "io/raster_file.h"
+#include "swath/raster_file.h"
 
 #define CELLS_ACROSS 8
 #define CELLS_MAX    64

@@ -14,7 +14,7 @@
 #include "image/canvas.h"
 #include "image/font.h"
 #include "image/sample_comparison.h"
-#include "io/raster_file.h"
+#include "swath/raster_file.h"
 
 #define MEASURES_BYTES_MAX ((size_t)1 << 28)
 #define PANELS_ACROSS      4

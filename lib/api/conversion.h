@@ -5,7 +5,7 @@
 #include <sonject/convert.h>
 
 #include "base/report.h"
-#include "io/geometry_notes.h"
+#include "swath/geometry_notes.h"
 
 struct conversion {
     struct raster_layout layout;

@@ -8,7 +8,7 @@
 
 #include "api/conversion.h"
 #include "base/memory.h"
-#include "io/raster_formats.h"
+#include "swath/raster_formats.h"
 
 #define PIXELS_MAX ((uint64_t)1 << 31)
 

@@ -18,8 +18,8 @@
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "inject/element_echoes.h"
-#include "io/numpy_file.h"
 #include "scene/element_plan.h"
+#include "swath/numpy_file.h"
 
 #define SERIES_FILE "series.npy"
 #define DOCUMENT    "elements.json"

@@ -11,8 +11,8 @@
 #include "base/report.h"
 #include "cl/device.h"
 #include "inject/injection.h"
-#include "io/decoder.h"
 #include "scene/scene.h"
+#include "swath/decoder.h"
 
 struct sonject_context {
     struct report report; /* its host is the next member */

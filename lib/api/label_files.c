@@ -9,8 +9,8 @@
 #include "base/file_list.h"
 #include "base/json_document.h"
 #include "dataset/labels.h"
-#include "io/png_palette.h"
-#include "io/raster_file.h"
+#include "swath/png_palette.h"
+#include "swath/raster_file.h"
 
 static const struct {
     const char *name;

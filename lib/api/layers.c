@@ -10,8 +10,8 @@
 #include "base/file_list.h"
 #include "base/memory.h"
 #include "image/plot.h"
-#include "io/geometry_notes.h"
-#include "io/raster_file.h"
+#include "swath/geometry_notes.h"
+#include "swath/raster_file.h"
 
 static sonject_status write_float_layer(struct report *report, const struct geometry_notes *notes,
                                         const struct swath *swath, uint32_t channels,

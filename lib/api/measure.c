@@ -10,7 +10,7 @@
 #include "image/seam.h"
 #include "image/speckle_statistics.h"
 #include "image/transfer.h"
-#include "io/swath_file.h"
+#include "swath/swath_file.h"
 
 #define NEAR 2 /* pixels around changed ones: rounding hides small changes */
 

@@ -9,9 +9,9 @@
 #include "base/memory.h"
 #include "image/plot.h"
 #include "image/transfer.h"
-#include "io/geometry_notes.h"
-#include "io/raster_file.h"
-#include "io/swath_file.h"
+#include "swath/geometry_notes.h"
+#include "swath/raster_file.h"
+#include "swath/swath_file.h"
 
 #define SIDE_LIMIT 4096 /* pixels that are drawn a side; larger images are averaged down to it */
 

@@ -4,9 +4,9 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
-#include "io/recording.h"
-#include "io/xtf_file.h"
 #include "medium/water.h"
+#include "swath/recording.h"
+#include "swath/xtf_file.h"
 
 /* Takes a structure into a local copy, checks it, and only then changes the scene. */
 #define SET_CHECKED(scene_handle, type, member, params, checker, name)                             \

@@ -8,8 +8,8 @@
 
 #include "base/memory.h"
 #include "inject/injection_setup.h"
-#include "io/geometry_notes.h"
-#include "io/raster_file.h"
+#include "swath/geometry_notes.h"
+#include "swath/raster_file.h"
 
 void sonject_seabed_file_params_init(sonject_seabed_file_params *params)
 {

@@ -7,9 +7,9 @@
 #include "base/memory.h"
 #include "image/transfer.h"
 #include "inject/injection_setup.h"
-#include "io/geometry_notes.h"
-#include "io/raster_file.h"
-#include "io/swath_file.h"
+#include "swath/geometry_notes.h"
+#include "swath/raster_file.h"
+#include "swath/swath_file.h"
 
 /* The scene's patch; all zeros mean the whole swath. */
 static sonject_status choose_patch(struct report *report, const struct scene *scene,

@@ -6,9 +6,9 @@
 #include "base/report.h"
 #include "image/raster.h"
 #include "inject/injection.h"
-#include "io/swath_file.h"
-#include "io/track.h"
 #include "scene/scene.h"
+#include "swath/swath_file.h"
+#include "swath/track.h"
 
 /* Owned parts are freed by swath_close. */
 struct swath {

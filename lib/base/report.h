@@ -19,7 +19,7 @@ struct decoder;
 /* What a context lends to all its calls. */
 struct report_host {
     void *log_user;
-    struct decoder *decoder; /* who reads its images and HDF5 files (io/decoder.h) */
+    struct decoder *decoder; /* who reads its images and HDF5 files (swath/decoder.h) */
 };
 
 struct report {

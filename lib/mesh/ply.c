@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "io/byte_order.h"
+#include "base/byte_order.h"
 #include "mesh/mesh_reader.h"
 
 static size_t ply_type_bytes(enum ply_type type)

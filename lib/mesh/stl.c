@@ -1,7 +1,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "io/byte_order.h"
+#include "base/byte_order.h"
 #include "mesh/mesh_reader.h"
 #include "mesh/words.h"
 

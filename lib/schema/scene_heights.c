@@ -6,7 +6,7 @@
 #include "base/memory.h"
 #include "base/ranges.h"
 #include "schema/scene_fields.h"
-#include "io/swath_file.h"
+#include "swath/swath_file.h"
 
 enum positive_way {
     POSITIVE_UP,

@@ -2,9 +2,9 @@
 #include <string.h>
 
 #include "base/text.h"
-#include "io/recording.h"
 #include "schema/scene_fields.h"
-#include "io/xtf_file.h"
+#include "swath/recording.h"
+#include "swath/xtf_file.h"
 
 static bool is_word(const struct tree_node *node, const char *word)
 {

@@ -1,7 +1,7 @@
 /* The tables. A line: key, meaning, what it is, where it goes. */
 #include "schema/scene_bands.h"
 #include "schema/scene_fields.h"
-#include "io/xtf_file.h"
+#include "swath/xtf_file.h"
 
 #define SIDE_MAX  (UINT64_C(1) << 20)
 #define INDEX_MAX (UINT64_C(1) << 40)

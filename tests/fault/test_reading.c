@@ -7,8 +7,8 @@
 #include <errno.h>
 #include <sys/stat.h>
 
-#include "io/raster_formats.h"
-#include "io/swath_file.h"
+#include "swath/raster_formats.h"
+#include "swath/swath_file.h"
 #include "unit/temporary_folder.h"
 
 #define SIDE       16

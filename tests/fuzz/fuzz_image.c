@@ -2,7 +2,7 @@
  * OpenImageIO's. */
 #include "fuzz.h"
 
-#include "io/plain_head.h"
+#include "swath/plain_head.h"
 
 static void check_head(sonject_status (*check)(struct report *report, const char *path))
 {

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
-#include "io/mat_file.h"
+#include "swath/mat_file.h"
 
 /* More than that and it is not read: compressed files may hold a thousand times their size. */
 #define BYTES_READ_MAX ((size_t)1 << 24)

@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
-#include "io/npy_file.h"
+#include "swath/npy_file.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {

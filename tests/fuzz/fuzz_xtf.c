@@ -5,7 +5,7 @@
 
 #include "base/memory.h"
 #include "image/raster.h"
-#include "io/xtf_file.h"
+#include "swath/xtf_file.h"
 
 static void read_channel(int32_t channel)
 {

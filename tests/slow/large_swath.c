@@ -10,9 +10,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "io/byte_order.h"
-#include "io/raster_file.h"
-#include "io/swath_file.h"
+#include "base/byte_order.h"
+#include "swath/raster_file.h"
+#include "swath/swath_file.h"
 #include "unit/tiff_encode.h"
 
 #define ROWS       UINT64_C(65536)

@@ -5,10 +5,10 @@
 #define _POSIX_C_SOURCE   200809L
 #define _FILE_OFFSET_BITS 64
 
+#include "base/byte_order.h"
 #include "claims.h"
-#include "io/byte_order.h"
-#include "io/decoder.h"
-#include "io/swath_file.h"
+#include "swath/decoder.h"
+#include "swath/swath_file.h"
 #include "temporary_folder.h"
 
 #define LARGEST_FILE 65536

@@ -2,7 +2,7 @@
  * damaged. */
 #include "file_drafts.h"
 
-#include "io/mat_element.h"
+#include "swath/mat_element.h"
 
 #ifdef HAS_HDF5
 #include "base/hdf5_values.h"

@@ -13,8 +13,8 @@
 #include <hdf5.h>
 
 #include "claims.h"
-#include "io/decoder.h"
-#include "io/swath_file.h"
+#include "swath/decoder.h"
+#include "swath/swath_file.h"
 #include "temporary_folder.h"
 
 #ifndef MUTATIONS

@@ -7,8 +7,8 @@
 #include <sys/resource.h>
 
 #include "claims.h"
-#include "io/raster_file.h"
-#include "io/swath_file.h"
+#include "swath/raster_file.h"
+#include "swath/swath_file.h"
 #include "temporary_folder.h"
 #include "tiff_builder.h"
 

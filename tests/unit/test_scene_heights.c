@@ -4,8 +4,8 @@
 
 #include "api/scene_hash.h"
 #include "claims.h"
-#include "io/raster_file.h"
 #include "scene_folder.h"
+#include "swath/raster_file.h"
 
 /* Five lines. */
 #define BASE                                                                                       \

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "io/byte_order.h"
+#include "base/byte_order.h"
 #include "unit/tiff_encode.h"
 
 #define TIFF_BUILD_CAPACITY ((size_t)1 << 20)

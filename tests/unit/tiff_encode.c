@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "base/byte_order.h"
 #include "base/memory.h"
-#include "io/byte_order.h"
 
 /* Compressed bytes as they grow. */
 struct coded {

@@ -1,0 +1,381 @@
+#define _POSIX_C_SOURCE 200809L
+#include "swath/decoder.h"
+
+#include <errno.h>
+#include <signal.h>
+#include <spawn.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/socket.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/module_path.h"
+
+#define ANNOUNCED_BYTES_MAX ((uint64_t)1 << 30)
+#define INFLATION_MAX       1100 /* bytes that one byte of deflated data can stand for, and some */
+
+extern char **environ;
+
+/* Its wait status; -1 where the host has waited for it. */
+static int end_process(struct decoder *decoder)
+{
+    int ended = -1;
+    if (decoder->process == 0)
+        return ended;
+    close(decoder->socket);
+    /* a host that was forked has its parent's numbers; one whose child was waited for, none */
+    const bool is_ours = decoder->owner == (long)getpid();
+    pid_t waited = is_ours ? waitpid((pid_t)decoder->process, &ended, WNOHANG) : -1;
+    if (waited == 0) {
+        kill((pid_t)decoder->process, SIGKILL);
+        do
+            waited = waitpid((pid_t)decoder->process, &ended, 0);
+        while (waited < 0 && errno == EINTR);
+    }
+    decoder->process = 0;
+    return waited > 0 ? ended : -1;
+}
+
+void decoder_stop(struct decoder *decoder)
+{
+    (void)end_process(decoder);
+    decoder_state_release(&decoder->state);
+}
+
+/* It gets the socket as its standard input, and of the others nothing. Signals for all of a job's
+ * processes are the host's to answer; the child ends with the socket. */
+static int spawn(struct decoder *decoder, const char *program, int end)
+{
+    char stamp[64];
+    char *arguments[] = {DECODER_PROGRAM, stamp, NULL};
+    const int kept_away[] = {SIGINT, SIGTERM, SIGHUP, SIGQUIT, SIGUSR1, SIGUSR2, SIGTSTP};
+    sigset_t blocked, usual;
+    posix_spawnattr_t attributes;
+    posix_spawn_file_actions_t actions;
+    pid_t process;
+    decoder_stamp(stamp);
+    sigemptyset(&blocked);
+    for (size_t i = 0; i < sizeof kept_away / sizeof *kept_away; i++)
+        sigaddset(&blocked, kept_away[i]);
+    sigemptyset(&usual);
+    const int handled[] = {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGPIPE, SIGCHLD};
+    for (size_t i = 0; i < sizeof handled / sizeof *handled; i++)
+        sigaddset(&usual, handled[i]);
+    int error = posix_spawnattr_init(&attributes);
+    if (error != 0)
+        return error;
+    error = posix_spawn_file_actions_init(&actions);
+    if (error == 0) {
+        posix_spawnattr_setsigmask(&attributes, &blocked);
+        posix_spawnattr_setsigdefault(&attributes, &usual);
+        posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK | POSIX_SPAWN_SETSIGDEF);
+        error = posix_spawn_file_actions_adddup2(&actions, end, 0);
+        for (int i = 1; error == 0 && i <= 2; i++)
+            error = posix_spawn_file_actions_addopen(&actions, i, "/dev/null", 1, 0);
+        if (error == 0)
+            error = posix_spawn(&process, program, &actions, &attributes, arguments, environ);
+        posix_spawn_file_actions_destroy(&actions);
+    }
+    posix_spawnattr_destroy(&attributes);
+    if (error == 0) {
+        decoder->process = (long)process;
+        decoder->owner = (long)getpid();
+        decoder->starts++;
+    }
+    return error;
+}
+
+/* A system call that waits longer than this fails. */
+static int limit_waits(int descriptor)
+{
+    const struct timeval limit = {DECODER_SILENCE_S, 0};
+    return setsockopt(descriptor, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit) == 0 &&
+                   setsockopt(descriptor, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit) == 0
+               ? 0
+               : errno;
+}
+
+static sonject_status start(struct report *report, struct decoder *decoder, const char *path)
+{
+    int ends[2];
+    char *program = module_path(DECODER_PROGRAM);
+    if (!program)
+        return report_out_of_memory(report, "a path");
+    int error = socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) == 0 ? 0 : errno;
+    sonject_status status = SONJECT_OK;
+    if (error == 0) {
+        error = limit_waits(ends[0]);
+        if (error == 0)
+            error = spawn(decoder, program, ends[1]);
+        close(ends[1]);
+        decoder->socket = ends[0];
+        if (error != 0)
+            close(ends[0]);
+    }
+    if (error == ENOENT || error == EACCES || error == ENOEXEC)
+        status = report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                                "%s: sonject reads it by %s, which cannot be used: %s: install "
+                                "sonject anew",
+                                path, program, strerror(error));
+    else if (error != 0)
+        status = file_failure(report, program, "start", error);
+    free(program);
+    return status;
+}
+
+/* What came of a child that does not answer. */
+static sonject_status tell_end(struct report *report, struct decoder *decoder, const char *path)
+{
+    const bool is_late = errno == EAGAIN || errno == EWOULDBLOCK;
+    const int ended = end_process(decoder);
+    if (ended != -1 && WIFEXITED(ended) && WEXITSTATUS(ended) == DECODER_STRANGER)
+        return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                              "%s: the program " DECODER_PROGRAM
+                              " is of another version of sonject: install sonject anew",
+                              path);
+    if (is_late || (ended != -1 && WIFSIGNALED(ended) && WTERMSIG(ended) == SIGXCPU))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: reading it takes longer than it can if it is sound: copy it "
+                              "again",
+                              path);
+    char signal_name[32] = "";
+    if (ended != -1 && WIFSIGNALED(ended))
+        snprintf(signal_name, sizeof signal_name, " (signal %d)", WTERMSIG(ended));
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "%s: is damaged: the program that reads it ended%s; copy it again", path,
+                          signal_name);
+}
+
+static bool send_all(int descriptor, const void *bytes, size_t count)
+{
+    const char *rest = bytes;
+    while (count > 0) {
+        const ssize_t sent = send(descriptor, rest, count, MSG_NOSIGNAL);
+        if (sent < 0 && errno == EINTR)
+            continue;
+        if (sent < 0)
+            return false;
+        rest += sent;
+        count -= (size_t)sent;
+    }
+    return true;
+}
+
+static bool receive_all(int descriptor, void *bytes, size_t count)
+{
+    char *rest = bytes;
+    while (count > 0) {
+        const ssize_t got = recv(descriptor, rest, count, 0);
+        if (got < 0 && errno == EINTR)
+            continue;
+        if (got <= 0) {
+            errno = got == 0 ? 0 : errno;
+            return false;
+        }
+        rest += got;
+        count -= (size_t)got;
+    }
+    return true;
+}
+
+/* Room for a reply's bytes. False if they are more than can be, or memory is out (errno). */
+static bool make_room(struct decoder_bytes *out, uint64_t bytes)
+{
+    errno = 0;
+    if (bytes > 0 && (!out || bytes > out->capacity))
+        return false;
+    if (out && !out->bytes)
+        out->bytes = allocate_array((size_t)bytes + 1, 1);
+    if (out)
+        out->count = (size_t)bytes;
+    errno = ENOMEM;
+    return !out || out->bytes;
+}
+
+static sonject_status ask_child(struct report *report, struct decoder *decoder, const char *path,
+                                const struct decoder_request *request, const void *in,
+                                struct decoder_reply *reply, struct decoder_bytes *out)
+{
+    char message[REPORT_CAPACITY] = "";
+    struct decoder_bytes told = {message, sizeof message - 1, 0};
+    if (!send_all(decoder->socket, request, sizeof *request) ||
+        !send_all(decoder->socket, in, (size_t)request->bytes) ||
+        !receive_all(decoder->socket, reply, sizeof *reply))
+        return tell_end(report, decoder, path);
+    struct decoder_bytes *to = reply->status == SONJECT_OK ? out : &told;
+    if (!make_room(to, reply->bytes)) {
+        const int error = errno;
+        const sonject_status status = tell_end(report, decoder, path);
+        return error == ENOMEM ? report_out_of_memory(report, path) : status;
+    }
+    if (to && !receive_all(decoder->socket, to->bytes, to->count))
+        return tell_end(report, decoder, path);
+    switch (reply->status) {
+    case SONJECT_OK:
+        return SONJECT_OK;
+    case SONJECT_ERROR_STORAGE:
+    case SONJECT_ERROR_MEMORY:
+    case SONJECT_ERROR_UNSUPPORTED:
+        return report_failure(report, (sonject_status)reply->status, "%s", message);
+    default:
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s", message);
+    }
+}
+
+static sonject_status ask_here(struct report *report, struct decoder *decoder, const char *path,
+                               const struct decoder_request *request, const void *in,
+                               struct decoder_reply *reply, struct decoder_bytes *out)
+{
+    void *made = NULL;
+    if (!decoder->state)
+        decoder->state = decoder_state_make();
+    if (!decoder->state)
+        return report_out_of_memory(report, path);
+    memset(reply, 0, sizeof *reply);
+    sonject_status status = decoder_answer(report, decoder->state, request, in, reply, &made);
+    if (status == SONJECT_OK && !make_room(out, reply->bytes))
+        status = report_out_of_memory(report, path);
+    if (status == SONJECT_OK && made)
+        memcpy(out->bytes, made, out->count);
+    free(made);
+    return status;
+}
+
+static sonject_status ask(struct report *report, struct decoder *decoder, const char *path,
+                          const struct decoder_request *request, const void *in,
+                          struct decoder_reply *reply, struct decoder_bytes *out)
+{
+    void *const given = out ? out->bytes : NULL;
+    const sonject_status status = (decoder->is_in_process ? ask_here : ask_child)(
+        report, decoder, path, request, in, reply, out);
+    if (status != SONJECT_OK && out && !given) {
+        free(out->bytes);
+        out->bytes = NULL;
+    }
+    return status;
+}
+
+/* The three texts that a file is opened by, each with its 0. The child has a working folder of its
+ * own. */
+static char *opening_texts(const char *path, const char *place, const char *array, size_t *bytes)
+{
+    char *whole = path_absolute(place);
+    char *texts = NULL;
+    if (whole) {
+        const size_t lengths[3] = {strlen(path) + 1, strlen(whole) + 1, strlen(array) + 1};
+        *bytes = lengths[0] + lengths[1] + lengths[2];
+        texts = allocate_array(*bytes, 1);
+        if (texts) {
+            memcpy(texts, path, lengths[0]);
+            memcpy(texts + lengths[0], whole, lengths[1]);
+            memcpy(texts + lengths[0] + lengths[1], array, lengths[2]);
+        }
+    }
+    free(whole);
+    return texts;
+}
+
+static sonject_status open_file(struct report *report, enum decoder_function function,
+                                const char *place, const char *array, struct decoder_file *file,
+                                struct decoder_reply *reply)
+{
+    struct decoder *decoder = file->decoder;
+    struct file_identity identity;
+    struct decoder_request request = {.function = (uint32_t)function};
+    sonject_status status = file_identify(report, place, &identity);
+    if (status != SONJECT_OK)
+        return status;
+    file->bytes = identity.bytes;
+    if (!decoder->is_in_process && decoder->owner != (long)getpid())
+        (void)end_process(decoder);
+    if (!decoder->is_in_process && decoder->process == 0)
+        status = start(report, decoder, file->path);
+    if (status != SONJECT_OK)
+        return status;
+    size_t bytes = 0;
+    char *texts = opening_texts(file->path, place, array ? array : "", &bytes);
+    request.bytes = bytes;
+    status = texts ? ask(report, decoder, file->path, &request, texts, reply, NULL)
+                   : report_out_of_memory(report, file->path);
+    free(texts);
+    file->handle = reply->handle;
+    file->start = decoder->starts;
+    return status;
+}
+
+sonject_status decoder_open(struct report *report, enum decoder_function function, const char *path,
+                            const char *place, const char *array, struct decoder_file *file,
+                            struct decoder_reply *reply)
+{
+    memset(file, 0, sizeof *file);
+    memset(reply, 0, sizeof *reply);
+    file->decoder = report->host ? report->host->decoder : &file->own;
+    file->path = copy_text(path);
+    const sonject_status status =
+        file->path ? open_file(report, function, place ? place : path, array, file, reply)
+                   : report_out_of_memory(report, "a file name");
+    if (status != SONJECT_OK) {
+        file->handle = 0;
+        decoder_close(file);
+    }
+    return status;
+}
+
+/* False once its decoder has ended, and in a process that was forked from the one that opened it.
+ */
+static bool is_open(const struct decoder_file *file)
+{
+    const struct decoder *decoder = file->decoder;
+    return file->handle != 0 &&
+           (decoder->is_in_process || (decoder->process != 0 && decoder->starts == file->start &&
+                                       decoder->owner == (long)getpid()));
+}
+
+void decoder_close(struct decoder_file *file)
+{
+    struct report unheard = {{0}, NULL, NULL};
+    struct decoder_reply reply;
+    const struct decoder_request request = {.function = DECODER_CLOSE, .handle = file->handle};
+    if (!file->decoder)
+        return;
+    if (is_open(file))
+        (void)ask(&unheard, file->decoder, file->path, &request, NULL, &reply, NULL);
+    decoder_stop(&file->own);
+    free(file->path);
+    memset(file, 0, sizeof *file);
+}
+
+sonject_status decoder_ask(struct report *report, struct decoder_file *file,
+                           struct decoder_request *request, const void *in,
+                           struct decoder_reply *reply, struct decoder_bytes *out)
+{
+    memset(reply, 0, sizeof *reply);
+    request->handle = file->handle;
+    if (!is_open(file))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: the program that reads it ended before: copy it again",
+                              file->path);
+    return ask(report, file->decoder, file->path, request, in, reply, out);
+}
+
+sonject_status decoder_check_announced(struct report *report, const struct decoder_file *file,
+                                       uint64_t rows, uint64_t columns, size_t sample_bytes)
+{
+    const uint64_t most =
+        (file->bytes < UINT64_MAX / 2 / INFLATION_MAX ? INFLATION_MAX * file->bytes
+                                                      : UINT64_MAX / 2) +
+        ANNOUNCED_BYTES_MAX;
+    if (columns == 0 || rows <= most / columns / sample_bytes)
+        return SONJECT_OK;
+    return report_failure(
+        report, SONJECT_ERROR_INPUT,
+        "%s: announces %llu x %llu samples, more than its %llu bytes can hold: it "
+        "is damaged or was never filled",
+        file->path, (unsigned long long)rows, (unsigned long long)columns,
+        (unsigned long long)file->bytes);
+}

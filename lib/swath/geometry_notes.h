@@ -1,0 +1,47 @@
+/* The geometry that an image file says of itself, in texts that sonject writes and reads. */
+#ifndef SONJECT_IO_GEOMETRY_NOTES_H
+#define SONJECT_IO_GEOMETRY_NOTES_H
+
+#include <sonject/image.h>
+#include <sonject/sonar.h>
+
+#include "swath/raster_file.h"
+#include "swath/swath_file.h"
+
+#define GEOMETRY_NOTES_MAX 9
+
+/* Where the pixels of a file lie and what made them, as far as it is known: NaN where it is not. */
+struct noted_geometry {
+    enum range_axis axis;
+    double row_spacing_m, column_spacing_m; /* columns: along the axis */
+    double first_along_track_m, first_range_m;
+    double altitude_m, frequency_hz, bandwidth_hz;
+    bool knows_side;
+    uint32_t side; /* SONJECT_SIDE_... */
+};
+
+/* The texts and the attributes that point at them. */
+struct geometry_notes {
+    char texts[GEOMETRY_NOTES_MAX][48];
+    struct raster_attribute attributes[GEOMETRY_NOTES_MAX];
+    size_t count;
+};
+
+/* Texts of all that is known. */
+void geometry_notes_make(struct geometry_notes *notes, const struct noted_geometry *geometry);
+
+/* The same of a scene's image. first_row, first_column: where the file's pixel (0, 0) lies in the
+ * geometry. */
+void geometry_notes_init(struct geometry_notes *notes, const sonject_sonar_params *sonar,
+                         const sonject_geometry_params *geometry, double first_row,
+                         double first_column);
+
+/* What a file says: in such texts, or as a recording (means over all of it). Nothing of it is
+ * checked but that numbers are finite. */
+void geometry_notes_read(const struct swath_file *file, struct noted_geometry *geometry);
+
+/* As parameters of a slant range image; false (and nothing changed) where they are not all known,
+ * or are none that an image has. */
+bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_params *geometry);
+
+#endif

@@ -1,0 +1,188 @@
+#include "swath/raster_file.h"
+
+#include <limits.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/growing_text.h"
+#include "base/memory.h"
+#include "swath/png_palette.h"
+#include "swath/raster_module.h"
+
+#define PIXELS_MAX      ((uint64_t)1 << 40)
+#define DESCRIPTION_MAX 8192    /* bytes of one that a copy keeps */
+#define PNG_SIDE_MAX    1000000 /* of libpng */
+#define JPEG_SIDE_MAX   65500   /* of libjpeg */
+
+/* Rows of an image that is written: those of source, or zeros, but for the region's pixels. */
+struct patched_rows {
+    struct report *report;
+    struct decoded_image *source; /* NULL: zeros */
+    struct raster_layout layout;
+    const struct region *region;
+    const void *pixels;
+    sonject_progress_function progress; /* may be NULL */
+    void *user;
+};
+
+static sonject_status give_rows(void *user, uint64_t first, uint64_t end, void *pixels)
+{
+    const struct patched_rows *rows = user;
+    const struct region *region = rows->region;
+    const size_t pixel = rows->layout.channels * pixel_bytes(rows->layout.type);
+    const size_t row_bytes = (size_t)rows->layout.columns * pixel;
+    const size_t patch_bytes = (size_t)region->columns * pixel;
+    const struct region strip = {first, 0, end - first, rows->layout.columns};
+    const uint64_t region_end = region->first_row + region->rows;
+    if (rows->source) {
+        const sonject_status status =
+            decoded_image_read(rows->report, rows->source, &strip, pixels);
+        if (status != SONJECT_OK)
+            return status;
+    } else {
+        memset(pixels, 0, (size_t)(end - first) * row_bytes);
+    }
+    for (uint64_t row = first > region->first_row ? first : region->first_row;
+         row < end && row < region_end; row++)
+        memcpy((unsigned char *)pixels + (size_t)(row - first) * row_bytes +
+                   (size_t)region->first_column * pixel,
+               (const unsigned char *)rows->pixels +
+                   (size_t)(row - region->first_row) * patch_bytes,
+               patch_bytes);
+    if (rows->progress &&
+        rows->progress(rows->user, (double)end / (double)rows->layout.rows, "write") != 0)
+        return report_failure(rows->report, SONJECT_CANCELLED, "cancelled");
+    return SONJECT_OK;
+}
+
+static sonject_status encode(struct patched_rows *rows, const char *part, const char *name,
+                             enum image_kind kind, const char *description, bool is_drawn)
+{
+    const struct raster_module *module = NULL;
+    const struct raster_encoding encoding = {part,        name,     kind,      rows->layout,
+                                             description, is_drawn, give_rows, rows};
+    const sonject_status status = raster_module_find(rows->report, name, &module);
+    return status == SONJECT_OK ? module->encode(rows->report, &encoding) : status;
+}
+
+/* The part file becomes path, or goes. */
+static sonject_status publish(struct report *report, sonject_status status, const char *part,
+                              const char *path)
+{
+    if (status == SONJECT_OK)
+        return file_publish(report, part, path);
+    file_discard(part);
+    return status;
+}
+
+sonject_status raster_file_copy_with_patch(struct report *report, struct decoded_image *source,
+                                           enum image_kind kind, const char *path,
+                                           const struct region *region, const void *pixels,
+                                           sonject_progress_function progress, void *user)
+{
+    struct patched_rows rows = {report, source, source->layout, region, pixels, progress, user};
+    if (!region_is_inside(&source->layout, region))
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: the region is not inside the image",
+                              source->file.path);
+    if (kind == IMAGE_TIFF)
+        return decoded_image_copy_with_patch(report, source, path, region, pixels, progress, user);
+    char description[DESCRIPTION_MAX];
+    if (!decoded_image_attribute(source, "", description, sizeof description))
+        *description = '\0';
+    char *part = file_part_name(path);
+    if (!part)
+        return report_out_of_memory(report, "a file name");
+    const enum image_kind new_kind =
+        kind == IMAGE_PNG || kind == IMAGE_JPEG ? IMAGE_PNG : IMAGE_TIFF;
+    const sonject_status status = encode(&rows, part, path, new_kind, description, false);
+    const sonject_status published = publish(report, status, part, path);
+    free(part);
+    return published;
+}
+
+static sonject_status kind_to_write(struct report *report, const char *path,
+                                    const struct raster_layout *layout, enum image_kind *kind)
+{
+    if (!image_kind_of_name(path, kind))
+        return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                              "%s: images are written as .tif, .png or .jpg: choose one of these "
+                              "extensions",
+                              path);
+    if ((*kind == IMAGE_PNG && layout->type == PIXEL_FLOAT32) ||
+        (*kind == IMAGE_JPEG && layout->type != PIXEL_UINT8))
+        return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                              "%s: this format does not hold %s pixels: write .tif", path,
+                              layout->type == PIXEL_FLOAT32 ? "floating-point" : "16-bit");
+    const bool is_grey_or_colour = layout->channels == 1 || layout->channels == 3;
+    if (!is_grey_or_colour && (*kind != IMAGE_TIFF || layout->channels != 2))
+        return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                              "%s: this format does not hold %u channels: write .tif with 1 to 3",
+                              path, layout->channels);
+    const uint64_t side_max = *kind == IMAGE_PNG    ? PNG_SIDE_MAX
+                              : *kind == IMAGE_JPEG ? JPEG_SIDE_MAX
+                                                    : INT_MAX;
+    if (layout->rows == 0 || layout->columns == 0 || layout->rows > side_max ||
+        layout->columns > side_max || layout->rows > PIXELS_MAX / layout->columns)
+        return report_failure(
+            report, SONJECT_ERROR_UNSUPPORTED, "%s: %llu x %llu pixels cannot be written", path,
+            (unsigned long long)layout->rows, (unsigned long long)layout->columns);
+    return SONJECT_OK;
+}
+
+static sonject_status write_rows(struct patched_rows *rows, const char *path,
+                                 const char *description, bool is_drawn, const uint8_t *palette)
+{
+    enum image_kind kind;
+    sonject_status status = kind_to_write(rows->report, path, &rows->layout, &kind);
+    if (status != SONJECT_OK)
+        return status;
+    char *part = file_part_name(path);
+    char *coloured = part ? file_part_name(part) : NULL;
+    if (coloured) {
+        status = encode(rows, part, path, kind, description, is_drawn);
+        if (status == SONJECT_OK && palette)
+            status = png_colour(rows->report, part, palette, coloured, path);
+        status = publish(rows->report, status, palette ? coloured : part, path);
+        file_discard(part);
+    } else {
+        status = report_out_of_memory(rows->report, "a file name");
+    }
+    free(coloured);
+    free(part);
+    return status;
+}
+
+sonject_status raster_file_write(struct report *report, const char *path,
+                                 const struct raster_layout *layout,
+                                 const char *const *channel_names,
+                                 const struct raster_attribute *attributes, size_t attribute_count,
+                                 const void *pixels)
+{
+    const struct region whole = {0, 0, layout->rows, layout->columns};
+    struct patched_rows rows = {report, NULL, *layout, &whole, pixels, NULL, NULL};
+    struct growing_text text = {0};
+    for (uint32_t i = 0; channel_names && i < layout->channels; i++)
+        growing_text_add(&text, "%s%s", i == 0 ? "channels=" : ",", channel_names[i]);
+    for (size_t i = 0; i < attribute_count; i++)
+        growing_text_add(&text, "%s%s=%s", text.length > 0 ? "\n" : "", attributes[i].name,
+                         attributes[i].value);
+    char *description = growing_text_end(&text);
+    const sonject_status status =
+        description ? write_rows(&rows, path, description, layout->channels == 3, NULL)
+                    : report_out_of_memory(report, "a description");
+    free(description);
+    return status;
+}
+
+sonject_status raster_file_write_placed(struct report *report, const char *path,
+                                        const struct raster_layout *layout,
+                                        const struct region *region, const void *pixels,
+                                        const uint8_t *palette)
+{
+    struct patched_rows rows = {report, NULL, *layout, region, pixels, NULL, NULL};
+    return region_is_inside(layout, region)
+               ? write_rows(&rows, path, "", true, palette)
+               : report_failure(report, SONJECT_ERROR_STORAGE,
+                                "%s: the region is not inside the image", path);
+}

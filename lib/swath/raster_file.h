@@ -1,0 +1,43 @@
+/* New image files, by OpenImageIO. What reads them is the decoder (swath/decoded_image.h). */
+#ifndef SONJECT_IO_RASTER_FILE_H
+#define SONJECT_IO_RASTER_FILE_H
+
+#include "base/report.h"
+#include "image/raster.h"
+#include "swath/decoded_image.h"
+#include "swath/image_kind.h"
+
+/* A named text that is stored with an image, as a line "name=value" of its description. Neither
+ * part may hold a newline. */
+struct raster_attribute {
+    const char *name;
+    const char *value;
+};
+
+/* Writes at path a copy of source, a file of that kind, with region replaced by pixels: a TIFF
+ * keeps all else; of other kinds the copy has the samples and the description, as PNG where the
+ * source is PNG or JPEG, else as TIFF. Streams in strips of at most about 64 MB. path is published
+ * whole or not at all. progress may be NULL. Errors: INPUT, STORAGE, MEMORY, CANCELLED. */
+sonject_status raster_file_copy_with_patch(struct report *report, struct decoded_image *source,
+                                           enum image_kind kind, const char *path,
+                                           const struct region *region, const void *pixels,
+                                           sonject_progress_function progress, void *user);
+
+/* Writes a whole raster at path; the extension chooses the format. channel_names: layout->channels
+ * names, or NULL. Published whole or not at all. Errors: STORAGE, UNSUPPORTED (format), MEMORY. */
+sonject_status raster_file_write(struct report *report, const char *path,
+                                 const struct raster_layout *layout,
+                                 const char *const *channel_names,
+                                 const struct raster_attribute *attributes, size_t attribute_count,
+                                 const void *pixels);
+
+/* Writes at path a raster that is 0 everywhere but in region, which gets pixels: masks of a swath
+ * that may be larger than memory. palette: PNG_PALETTE_BYTES for the colours of a PNG of 8 bit
+ * numbers, which are read as they were written; NULL: grey. Streams as raster_file_copy_with_patch
+ * does; published whole or not at all. Errors: STORAGE, UNSUPPORTED (format), MEMORY. */
+sonject_status raster_file_write_placed(struct report *report, const char *path,
+                                        const struct raster_layout *layout,
+                                        const struct region *region, const void *pixels,
+                                        const uint8_t *palette);
+
+#endif

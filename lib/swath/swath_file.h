@@ -1,0 +1,69 @@
+/* Files that hold a swath: images, channels of XTF files, arrays of NumPy, HDF5 and MATLAB files.
+ */
+#ifndef SONJECT_IO_SWATH_FILE_H
+#define SONJECT_IO_SWATH_FILE_H
+
+#include "base/report.h"
+#include "image/raster.h"
+#include "swath/xtf_file.h"
+
+struct swath_file;
+
+/* Opens for reading; the file's first bytes tell what it is. channel: of an XTF file; must be
+ * SONJECT_CHANNEL_ONLY for other files. Of several arrays in a file none is chosen. Errors: INPUT
+ * (as decoded_image_open, xtf_file_open and the like say), UNSUPPORTED, STORAGE, MEMORY. On success
+ * *file is the caller's, for swath_file_close; on failure NULL. */
+sonject_status swath_file_open(struct report *report, const char *path, int32_t channel,
+                               struct swath_file **file);
+
+/* The same, and the name of the array in an HDF5 or MATLAB file; NULL: the only one. Must be NULL
+ * for other files. */
+sonject_status swath_file_open_array(struct report *report, const char *path, int32_t channel,
+                                     const char *array, struct swath_file **file);
+
+/* The same where channel and array may be meant for another file that is opened too, or for both:
+ * each takes what its kind has. other: NULL for none. */
+sonject_status swath_file_open_beside(struct report *report, const char *path, const char *other,
+                                      int32_t channel, const char *array, struct swath_file **file);
+void swath_file_close(struct swath_file **file);
+
+void swath_file_layout(const struct swath_file *file, struct raster_layout *layout);
+
+/* NULL: copies keep the file's format and all else that it says. Else they are new images, of which
+ * this is the extension (".png" or ".tif"). */
+const char *swath_file_new_extension(const struct swath_file *file);
+
+/* The largest number that the file may hold where that is less than its type's; 0 elsewhere. */
+uint32_t swath_file_largest(const struct swath_file *file);
+
+/* Which range axis a file says that its columns have. */
+enum range_axis {
+    RANGE_UNKNOWN,
+    RANGE_SLANT,
+    RANGE_GROUND
+};
+enum range_axis swath_file_range_axis(const struct swath_file *file);
+
+/* The XTF file behind it; NULL for other kinds. */
+const struct xtf_file *swath_file_xtf(const struct swath_file *file);
+
+/* A text that sonject stored with an image, copied into value; false if it has none of that name or
+ * it does not fit. */
+bool swath_file_attribute(const struct swath_file *file, const char *name, char *value,
+                          size_t capacity);
+
+/* Reads a region's stored pixels, row after row, channels interleaved. Errors: INPUT (cut short,
+ * damaged), STORAGE, MEMORY. */
+sonject_status swath_file_read(struct report *report, struct swath_file *file,
+                               const struct region *region, void *pixels);
+
+/* Writes at path a copy of the file with region replaced by pixels, everything else as it was, or
+ * a new image (swath_file_new_extension). Published whole or not at all. progress may be NULL.
+ * Errors: INPUT, STORAGE, MEMORY, CANCELLED.
+ */
+sonject_status swath_file_copy_with_patch(struct report *report, const struct swath_file *file,
+                                          const char *path, const struct region *region,
+                                          const void *pixels, sonject_progress_function progress,
+                                          void *user);
+
+#endif

@@ -1,0 +1,157 @@
+#include "swath/track.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+
+#define PI                 3.14159265358979323846
+#define EQUATOR_RADIUS_M   6378137.0
+#define ECCENTRICITY_2     6.69437999014e-3 /* of the WGS 84 ellipsoid, squared */
+#define HIGHEST_LATITUDE   89.9             /* beyond, east and west mean nothing */
+#define COURSE_ROWS        25.0             /* to either side, of which the course is the mean */
+#define DEGREES_PER_RADIAN (180.0 / PI)
+
+void track_clear(struct track *track)
+{
+    free(track->fixes);
+    free(track->headings_deg);
+    memset(track, 0, sizeof *track);
+}
+
+/* Whether a ping says where it was, and elsewhere than the fix before. */
+static bool is_new_fix(const struct track *track, const struct xtf_ping *ping)
+{
+    const struct track_fix *last =
+        track->fix_count > 0 ? &track->fixes[track->fix_count - 1] : NULL;
+    if (!xtf_ping_has_position(ping))
+        return false;
+    if (track->is_geographic &&
+        (fabs(ping->northing) > HIGHEST_LATITUDE || fabs(ping->easting) > 360.0))
+        return false;
+    return !last || last->x < ping->easting || last->x > ping->easting ||
+           last->y < ping->northing || last->y > ping->northing;
+}
+
+sonject_status track_of_recording(struct track *track, struct report *report,
+                                  const struct xtf_file *file)
+{
+    const size_t rows = (size_t)file->rows.layout.rows;
+    bool has_headings = false;
+    bool are_angles = true;
+    size_t told = rows; /* the last row so far whose ping says anything */
+    memset(track, 0, sizeof *track);
+    track->rows = rows;
+    track->is_geographic = file->is_geographic;
+    track->fixes = allocate_array(rows, sizeof *track->fixes);
+    track->headings_deg = allocate_array(rows, sizeof *track->headings_deg);
+    if (!track->fixes || !track->headings_deg) {
+        track_clear(track);
+        return report_out_of_memory(report, "the track");
+    }
+    for (size_t row = 0; row < rows; row++) {
+        const struct xtf_ping *ping = &file->pings[row];
+        const bool is_empty = ping->heading_deg == 0.0f && !xtf_ping_has_position(ping);
+        track->headings_deg[row] =
+            is_empty && told < rows ? track->headings_deg[told] : ping->heading_deg;
+        for (size_t before = 0; !is_empty && told == rows && before < row; before++)
+            track->headings_deg[before] = ping->heading_deg;
+        told = is_empty ? told : row;
+        has_headings = has_headings || ping->heading_deg != 0.0f;
+        are_angles = are_angles && fabsf(ping->heading_deg) <= 360.0f;
+        if (is_new_fix(track, ping)) {
+            const struct track_fix fix = {(double)row, ping->easting, ping->northing};
+            track->fixes[track->fix_count++] = fix;
+        }
+    }
+    if (!has_headings || !are_angles) {
+        free(track->headings_deg);
+        track->headings_deg = NULL;
+    }
+    return SONJECT_OK;
+}
+
+/* From one x to another: the short way round where they are longitudes. */
+static double step_in_x(const struct track *track, double from, double to)
+{
+    return track->is_geographic ? remainder(to - from, 360.0) : to - from;
+}
+
+/* Position at a row, on the line through the two fixes around it (or next to it). */
+static void position_at(const struct track *track, double row, double *x, double *y)
+{
+    const struct track_fix *fixes = track->fixes;
+    size_t low = 0;
+    size_t high = track->fix_count - 1; /* the first fix beyond the row is not above it */
+    *x = fixes[0].x;
+    *y = fixes[0].y;
+    if (high == 0)
+        return;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (fixes[middle].row <= row)
+            low = middle;
+        else
+            high = middle;
+    }
+    const double share = (row - fixes[low].row) / (fixes[high].row - fixes[low].row);
+    *x = fixes[low].x + share * step_in_x(track, fixes[low].x, fixes[high].x);
+    *y = fixes[low].y + share * (fixes[high].y - fixes[low].y);
+}
+
+/* Metres in a unit of x and of y. */
+static void unit_sizes(const struct track *track, double y, double *x_m, double *y_m)
+{
+    *x_m = *y_m = 1.0;
+    if (track->is_geographic) {
+        const double latitude = y / DEGREES_PER_RADIAN;
+        const double w = 1.0 - ECCENTRICITY_2 * sin(latitude) * sin(latitude);
+        *x_m = EQUATOR_RADIUS_M / sqrt(w) * cos(latitude) / DEGREES_PER_RADIAN;
+        *y_m = EQUATOR_RADIUS_M * (1.0 - ECCENTRICITY_2) / (w * sqrt(w)) / DEGREES_PER_RADIAN;
+    }
+}
+
+static bool course_at(const struct track *track, double row, double *heading)
+{
+    double x0, y0, x1, y1, x_m, y_m;
+    position_at(track, fmax(0.0, row - COURSE_ROWS), &x0, &y0);
+    position_at(track, fmin((double)track->rows - 1.0, row + COURSE_ROWS), &x1, &y1);
+    unit_sizes(track, 0.5 * (y0 + y1), &x_m, &y_m);
+    const double east = step_in_x(track, x0, x1) * x_m;
+    const double north = (y1 - y0) * y_m;
+    *heading = atan2(east, north);
+    return east != 0.0 || north != 0.0;
+}
+
+/* The headings of the rows on both sides, the short way round. */
+static double recorded_heading(const struct track *track, double row)
+{
+    const size_t low = (size_t)row;
+    const size_t high = low + 1 < track->rows ? low + 1 : low;
+    const double from = (double)track->headings_deg[low];
+    const double turn = remainder((double)track->headings_deg[high] - from, 360.0);
+    return (from + (row - (double)low) * turn) / DEGREES_PER_RADIAN;
+}
+
+bool track_place(const struct track *track, double row, double ground_range_m, bool is_to_port,
+                 struct place *place)
+{
+    double heading, x, y, x_m, y_m;
+    if (track->fix_count == 0 || !isfinite(row) || !isfinite(ground_range_m))
+        return false;
+    row = fmin(fmax(row, 0.0), (double)track->rows - 1.0);
+    if (track->headings_deg)
+        heading = recorded_heading(track, row);
+    else if (!course_at(track, row, &heading))
+        return false;
+    position_at(track, row, &x, &y);
+    unit_sizes(track, y, &x_m, &y_m);
+    const double bearing = heading + (is_to_port ? -0.5 : 0.5) * PI;
+    place->x = x + ground_range_m * sin(bearing) / x_m;
+    place->y = y + ground_range_m * cos(bearing) / y_m;
+    if (track->is_geographic)
+        place->x = remainder(place->x, 360.0);
+    place->heading_deg = fmod(heading * DEGREES_PER_RADIAN + 720.0, 360.0);
+    return fabs(place->y) <= 90.0 || !track->is_geographic;
+}

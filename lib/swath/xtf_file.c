@@ -1,0 +1,395 @@
+#define _POSIX_C_SOURCE 200809L
+#include "swath/xtf_file.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/byte_file.h"
+#include "base/byte_order.h"
+#include "base/file.h"
+#include "base/memory.h"
+
+#define PI                  3.14159265358979323846
+#define METRES_PER_DEGREE   (1852.0 * 60.0)
+#define FILE_MARK           0x7B
+#define PACKET_MARK         0xFACE
+#define HEADER_BLOCK        1024
+#define CHANNELS_PLACE      256
+#define CHANNEL_BYTES       128
+#define PACKET_BYTES        256 /* of a ping's header */
+#define CHANNEL_HEAD_BYTES  64
+#define PACKET_KIND_SONAR   0
+#define CORRECTED_TO_GROUND 2 /* of a channel's correction flags; 1: slant range */
+#define UNITS_GEOGRAPHIC    3
+#define SAMPLES_MAX         (UINT32_C(1) << 24)
+#define LARGEST_POSITIVE_16 32767
+
+struct xtf_channel {
+    uint32_t kind; /* enum xtf_side, or others */
+    uint32_t sample_bytes;
+    bool is_signed;
+    bool is_ground_range;
+};
+
+/* A file being opened. */
+struct opening {
+    struct report *report;
+    struct xtf_file *file;
+    struct xtf_channel channels[XTF_CHANNEL_MAX + 1];
+    uint32_t channel_count;
+    uint64_t capacity; /* of pings and places */
+};
+
+bool xtf_begins(const unsigned char *bytes, size_t count)
+{
+    return count >= 2 && bytes[0] == FILE_MARK && bytes[1] > 0;
+}
+
+static uint32_t word_at(const unsigned char *bytes, size_t place, size_t size)
+{
+    return (uint32_t)number_from_bytes(bytes + place, size, false);
+}
+
+static float float_at(const unsigned char *bytes, size_t place)
+{
+    const uint32_t word = word_at(bytes, place, 4);
+    float value;
+    memcpy(&value, &word, sizeof value);
+    return isfinite(value) ? value : 0.0f;
+}
+
+static double double_at(const unsigned char *bytes, size_t place)
+{
+    const uint64_t word = number_from_bytes(bytes + place, 8, false);
+    double value;
+    memcpy(&value, &word, sizeof value);
+    return isfinite(value) ? value : 0.0;
+}
+
+static sonject_status damaged(const struct opening *opening, uint64_t place, const char *what)
+{
+    return report_failure(opening->report, SONJECT_ERROR_INPUT,
+                          "%s: damaged at byte %llu: %s: copy or export it again",
+                          opening->file->rows.path, (unsigned long long)place, what);
+}
+
+static bool is_sidescan(const struct xtf_channel *channel)
+{
+    return channel->kind == XTF_PORT || channel->kind == XTF_STARBOARD;
+}
+
+/* Reads the file's header and the channels' descriptions; *first_packet gets where pings begin. */
+static sonject_status read_header(struct opening *opening, uint64_t *first_packet)
+{
+    struct sample_rows *rows = &opening->file->rows;
+    unsigned char head[CHANNELS_PLACE];
+    unsigned char info[CHANNEL_BYTES];
+    if (!byte_file_read(rows->file, 0, head, sizeof head))
+        return damaged(opening, 0, "its header is cut short");
+    opening->file->is_geographic = word_at(head, 164, 2) == UNITS_GEOGRAPHIC;
+    opening->channel_count = word_at(head, 166, 2);
+    const uint32_t described = opening->channel_count + word_at(head, 168, 2);
+    if (opening->channel_count > XTF_CHANNEL_MAX + 1 || described > 4 * (XTF_CHANNEL_MAX + 1))
+        return damaged(opening, 166, "more channels than such files have");
+    for (uint32_t i = 0; i < opening->channel_count; i++) {
+        if (!byte_file_read(rows->file, CHANNELS_PLACE + (uint64_t)i * CHANNEL_BYTES, info,
+                            sizeof info))
+            return damaged(opening, CHANNELS_PLACE, "its channels are cut short");
+        opening->channels[i].kind = info[0];
+        opening->channels[i].is_ground_range = word_at(info, 2, 2) == CORRECTED_TO_GROUND;
+        opening->channels[i].is_signed = word_at(info, 4, 2) == 0;
+        opening->channels[i].sample_bytes = word_at(info, 6, 2);
+    }
+    *first_packet =
+        ((uint64_t)CHANNELS_PLACE + (uint64_t)described * CHANNEL_BYTES + HEADER_BLOCK - 1) /
+        HEADER_BLOCK * HEADER_BLOCK;
+    return SONJECT_OK;
+}
+
+static sonject_status choose_channel(struct opening *opening, int32_t wanted)
+{
+    char list[256] = "";
+    uint32_t matches = 0;
+    uint32_t found = 0;
+    for (uint32_t i = 0; i < opening->channel_count; i++) {
+        const struct xtf_channel *channel = &opening->channels[i];
+        const size_t length = strlen(list);
+        if (!is_sidescan(channel))
+            continue;
+        snprintf(list + length, sizeof list - length, "%s%u (%s)", length > 0 ? ", " : "", i,
+                 channel->kind == XTF_PORT ? "port" : "starboard");
+        if ((wanted == SONJECT_CHANNEL_PORT && channel->kind != XTF_PORT) ||
+            (wanted == SONJECT_CHANNEL_STARBOARD && channel->kind != XTF_STARBOARD) ||
+            (wanted >= 0 && (uint32_t)wanted != i))
+            continue;
+        matches++;
+        found = i;
+    }
+    if (*list == '\0')
+        return report_failure(opening->report, SONJECT_ERROR_INPUT, "%s: has no sidescan channel",
+                              opening->file->rows.path);
+    if (matches != 1)
+        return report_failure(opening->report, SONJECT_ERROR_INPUT,
+                              "%s: has %s such sidescan channel: choose one of %s",
+                              opening->file->rows.path, matches == 0 ? "no" : "more than one",
+                              list);
+    opening->file->channel = found;
+    opening->file->side = opening->channels[found].kind;
+    opening->file->is_ground_range = opening->channels[found].is_ground_range;
+    return SONJECT_OK;
+}
+
+static sonject_status set_samples(struct opening *opening)
+{
+    struct sample_rows *rows = &opening->file->rows;
+    const struct xtf_channel *channel = &opening->channels[opening->file->channel];
+    if (channel->sample_bytes != 1 && channel->sample_bytes != 2)
+        return report_failure(opening->report, SONJECT_ERROR_INPUT,
+                              "%s: channel %u has samples of %u bytes; sonject reads 1 and 2",
+                              rows->path, opening->file->channel, channel->sample_bytes);
+    rows->layout.type = channel->sample_bytes == 1 ? PIXEL_UINT8 : PIXEL_UINT16;
+    rows->layout.channels = 1;
+    rows->largest = channel->is_signed && channel->sample_bytes == 2 ? LARGEST_POSITIVE_16 : 0;
+    rows->above_is_negative = true;
+    /* port's samples are stored as a display shows them: from far to near */
+    rows->is_reversed = opening->file->side == XTF_PORT;
+    return SONJECT_OK;
+}
+
+static bool make_room(struct opening *opening)
+{
+    struct xtf_file *file = opening->file;
+    if (file->rows.layout.rows < opening->capacity)
+        return true;
+    const uint64_t capacity = opening->capacity > 0 ? 2 * opening->capacity : 256;
+    struct xtf_ping *pings = realloc(file->pings, (size_t)capacity * sizeof *pings);
+    if (!pings)
+        return false;
+    file->pings = pings;
+    uint64_t *places = realloc(file->rows.places, (size_t)capacity * sizeof *places);
+    if (!places)
+        return false;
+    file->rows.places = places;
+    opening->capacity = capacity;
+    return true;
+}
+
+/* Every row of an image has the same cells. */
+static sonject_status check_same(struct opening *opening, const struct xtf_ping *ping,
+                                 uint64_t samples)
+{
+    const struct xtf_file *file = opening->file;
+    const struct raster_layout *layout = &file->rows.layout;
+    if (layout->rows == 0 ||
+        (samples == layout->columns && fabsf(ping->slant_range_m - file->pings[0].slant_range_m) <=
+                                           1e-3f * file->pings[0].slant_range_m))
+        return SONJECT_OK;
+    return report_failure(opening->report, SONJECT_ERROR_INPUT,
+                          "%s: ping %llu has %llu samples to %g m, the pings before it %llu to %g "
+                          "m: cut the file there",
+                          file->rows.path, (unsigned long long)layout->rows,
+                          (unsigned long long)samples, (double)ping->slant_range_m,
+                          (unsigned long long)layout->columns,
+                          (double)file->pings[0].slant_range_m);
+}
+
+static sonject_status add_ping(struct opening *opening, const unsigned char *packet,
+                               const unsigned char *channel, uint64_t place, uint64_t samples)
+{
+    struct xtf_file *file = opening->file;
+    const double sensor_x = double_at(packet, 168);
+    const double sensor_y = double_at(packet, 160);
+    const bool has_sensor = sensor_x != 0.0 || sensor_y != 0.0;
+    struct xtf_ping ping;
+    ping.easting = has_sensor ? sensor_x : double_at(packet, 136);
+    ping.northing = has_sensor ? sensor_y : double_at(packet, 128);
+    ping.altitude_m = float_at(packet, 196);
+    ping.heading_deg = float_at(packet, 212);
+    if (ping.heading_deg == 0.0f)
+        ping.heading_deg = float_at(packet, 124);
+    ping.slant_range_m = float_at(channel, 4);
+    ping.delay_s = float_at(channel, 12);
+    ping.duration_s = float_at(channel, 16);
+    if (samples == 0 || samples > SAMPLES_MAX || !(ping.slant_range_m > 0.0f))
+        return damaged(opening, place, "a ping without samples or slant range");
+    const sonject_status status = check_same(opening, &ping, samples);
+    if (status != SONJECT_OK)
+        return status;
+    if (!make_room(opening))
+        return report_out_of_memory(opening->report, "the pings");
+    file->rows.layout.columns = samples;
+    file->pings[file->rows.layout.rows] = ping;
+    file->rows.places[file->rows.layout.rows++] = place;
+    return SONJECT_OK;
+}
+
+/* Finds the chosen channel in a packet; packets may lack it. */
+static sonject_status read_packet(struct opening *opening, const unsigned char *packet,
+                                  uint64_t start, uint64_t end)
+{
+    struct sample_rows *rows = &opening->file->rows;
+    const uint32_t channels = word_at(packet, 4, 2);
+    unsigned char head[CHANNEL_HEAD_BYTES];
+    uint64_t place = start + PACKET_BYTES;
+    for (uint32_t i = 0; i < channels; i++) {
+        if (end - place < sizeof head || !byte_file_read(rows->file, place, head, sizeof head))
+            return damaged(opening, place, "a channel is cut short");
+        const uint32_t number = word_at(head, 0, 2);
+        const uint64_t samples = word_at(head, 42, 4);
+        place += sizeof head;
+        if (number >= opening->channel_count)
+            return damaged(opening, place - sizeof head, "a channel that the header lacks");
+        const uint64_t bytes = samples * opening->channels[number].sample_bytes;
+        if (bytes > end - place)
+            return damaged(opening, place, "more samples than the ping holds");
+        if (number == opening->file->channel)
+            return add_ping(opening, packet, head, place, samples);
+        place += bytes;
+    }
+    return SONJECT_OK;
+}
+
+static sonject_status read_packets(struct opening *opening, uint64_t place)
+{
+    struct sample_rows *rows = &opening->file->rows;
+    unsigned char packet[PACKET_BYTES];
+    sonject_status status = SONJECT_OK;
+    while (status == SONJECT_OK && place < rows->file_bytes) {
+        const uint64_t left = rows->file_bytes - place;
+        if (left < 14 || !byte_file_read(rows->file, place, packet, 14))
+            return damaged(opening, place, "the last packet is cut short");
+        const uint64_t bytes = word_at(packet, 10, 4);
+        if (word_at(packet, 0, 2) != PACKET_MARK || bytes < 14)
+            return damaged(opening, place, "no packet where one should be");
+        if (bytes > left)
+            return damaged(opening, place, "the last packet is cut short");
+        if (packet[2] == PACKET_KIND_SONAR) {
+            if (bytes < PACKET_BYTES || !byte_file_read(rows->file, place, packet, PACKET_BYTES))
+                return damaged(opening, place, "a ping is cut short");
+            status = read_packet(opening, packet, place, place + bytes);
+        }
+        place += bytes;
+    }
+    if (status == SONJECT_OK && rows->layout.rows == 0)
+        return report_failure(opening->report, SONJECT_ERROR_INPUT, "%s: has no pings", rows->path);
+    return status;
+}
+
+sonject_status xtf_file_open(struct report *report, const char *path, int32_t channel,
+                             struct xtf_file *file)
+{
+    struct opening opening;
+    uint64_t first_packet = 0;
+    memset(file, 0, sizeof *file);
+    memset(&opening, 0, sizeof opening);
+    opening.report = report;
+    opening.file = file;
+    file->rows.path = copy_text(path);
+    if (!file->rows.path)
+        return report_out_of_memory(report, "a file name");
+    file->rows.file = byte_file_open(path, &file->rows.file_bytes);
+    sonject_status status = file->rows.file ? SONJECT_OK : file_refuse(report, path, errno);
+    if (status == SONJECT_OK)
+        status = read_header(&opening, &first_packet);
+    if (status == SONJECT_OK)
+        status = choose_channel(&opening, channel);
+    if (status == SONJECT_OK)
+        status = set_samples(&opening);
+    if (status == SONJECT_OK)
+        status = read_packets(&opening, first_packet);
+    if (status != SONJECT_OK)
+        xtf_file_close(file);
+    return status;
+}
+
+void xtf_file_close(struct xtf_file *file)
+{
+    sample_rows_clear(&file->rows);
+    free(file->pings);
+    memset(file, 0, sizeof *file);
+}
+
+bool xtf_ping_has_position(const struct xtf_ping *ping)
+{
+    return ping->easting != 0.0 || ping->northing != 0.0;
+}
+
+/* Straight distance between two pings with positions, m. */
+static double distance_between(const struct xtf_file *file, const struct xtf_ping *a,
+                               const struct xtf_ping *b)
+{
+    double across = b->easting - a->easting;
+    double along = b->northing - a->northing;
+    if (file->is_geographic) {
+        const double latitude = 0.5 * (a->northing + b->northing) * PI / 180.0;
+        across = remainder(across, 360.0) * METRES_PER_DEGREE * cos(latitude);
+        along *= METRES_PER_DEGREE;
+    }
+    return hypot(across, along);
+}
+
+/* Takes in as many rows on either side; false if all of the file's were there. */
+static bool widen(const struct xtf_file *file, uint64_t *first, uint64_t *end)
+{
+    const uint64_t rows = file->rows.layout.rows;
+    const uint64_t more = *end - *first;
+    const bool is_more = *first > 0 || *end < rows;
+    *first -= more < *first ? more : *first;
+    *end += more < rows - *end ? more : rows - *end;
+    return is_more;
+}
+
+/* Between the first and the last position of the rows, and of those around them where two are not
+ * there; NaN if they are nowhere. */
+static double mean_spacing(const struct xtf_file *file, uint64_t first, uint64_t end)
+{
+    do {
+        uint64_t from = first;
+        uint64_t to = end - 1;
+        while (from < to && !xtf_ping_has_position(&file->pings[from]))
+            from++;
+        while (from < to && !xtf_ping_has_position(&file->pings[to]))
+            to--;
+        if (from < to)
+            return distance_between(file, &file->pings[from], &file->pings[to]) /
+                   (double)(to - from);
+    } while (widen(file, &first, &end));
+    return NAN;
+}
+
+/* Of the rows' pings that have an altitude, or of those around them; 0 if there are none. */
+static double mean_altitude(const struct xtf_file *file, uint64_t first, uint64_t end)
+{
+    do {
+        double sum = 0.0;
+        uint64_t sounded = 0;
+        for (uint64_t row = first; row < end; row++)
+            if (file->pings[row].altitude_m > 0.0f) {
+                sum += (double)file->pings[row].altitude_m;
+                sounded++;
+            }
+        if (sounded > 0)
+            return sum / (double)sounded;
+    } while (widen(file, &first, &end));
+    return 0.0;
+}
+
+struct xtf_geometry xtf_geometry_of(const struct xtf_file *file, uint64_t first_row, uint64_t count)
+{
+    const struct xtf_ping *first = &file->pings[first_row];
+    struct xtf_geometry geometry;
+    geometry.row_spacing_m = mean_spacing(file, first_row, first_row + count);
+    geometry.altitude_m = mean_altitude(file, first_row, first_row + count);
+    /* the delay is part of the way to the far edge */
+    const double duration = (double)first->duration_s;
+    const double delay = (double)first->delay_s;
+    const double delay_share = duration > 0.0 && delay > 0.0 ? delay / (delay + duration) : 0.0;
+    const double near_edge = (double)first->slant_range_m * delay_share;
+    geometry.column_spacing_m =
+        ((double)first->slant_range_m - near_edge) / (double)file->rows.layout.columns;
+    geometry.first_slant_range_m = near_edge + 0.5 * geometry.column_spacing_m;
+    return geometry;
+}

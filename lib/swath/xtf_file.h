@@ -1,0 +1,65 @@
+/* Sidescan channels of XTF files (eXtended Triton Format, X41): rows are pings, columns range cells
+ * from the track outwards. Little-endian; offsets after Triton's published format description. */
+#ifndef SONJECT_IO_XTF_FILE_H
+#define SONJECT_IO_XTF_FILE_H
+
+#include <sonject/image.h>
+
+#include "swath/sample_rows.h"
+
+#define XTF_CHANNEL_MAX 63 /* highest number */
+
+enum xtf_side {
+    XTF_PORT = 1, /* as the format numbers them */
+    XTF_STARBOARD = 2
+};
+
+/* What the file says of a ping. 0 where it says nothing. */
+struct xtf_ping {
+    double easting, northing; /* of the sonar, else of the ship, in the file's units */
+    float altitude_m;
+    float heading_deg;   /* of the sonar, else of the ship; clockwise from north */
+    float slant_range_m; /* to the far edge of the last cell */
+    float delay_s;       /* until the first cell's near edge */
+    float duration_s;    /* of all cells */
+};
+
+struct xtf_file {
+    struct sample_rows rows;
+    struct xtf_ping *pings; /* owned; rows.layout.rows of them */
+    uint32_t side;          /* enum xtf_side */
+    uint32_t channel;       /* its number */
+    bool is_ground_range;   /* samples are equally spaced on the seabed, as the file says */
+    bool is_geographic;     /* positions are degrees of longitude and latitude, else m */
+};
+
+/* Where a channel's pixels lie. */
+struct xtf_geometry {
+    double row_spacing_m; /* mean; NaN where the file has no positions, 0 where the sonar stood */
+    double column_spacing_m;
+    double first_slant_range_m; /* of the middle of column 0 */
+    double altitude_m;          /* mean; 0 where the file has none */
+};
+
+/* True if the file begins as XTF does. */
+bool xtf_begins(const unsigned char *bytes, size_t count);
+
+/* Opens a channel: its number, or SONJECT_CHANNEL_PORT and the like. Refused (INPUT): a file that
+ * is cut short or damaged, no sidescan channel, no channel as chosen or several (lists them),
+ * samples of other sizes than 1 or 2 bytes, pings of the channel with different numbers of samples
+ * or slant ranges (says where). On success to be given to xtf_file_close; on failure nothing is
+ * held. Errors: INPUT, STORAGE, MEMORY. */
+sonject_status xtf_file_open(struct report *report, const char *path, int32_t channel,
+                             struct xtf_file *file);
+void xtf_file_close(struct xtf_file *file);
+
+/* False for a ping that the recorder left empty, or had no navigation for. */
+bool xtf_ping_has_position(const struct xtf_ping *ping);
+
+/* Geometry of the rows first_row... first_row + count - 1 (within the layout): spacing from the
+ * straight line between the first and the last position. Pings without a position, or an altitude,
+ * are passed over; where too few have one, the pings around the rows stand in. */
+struct xtf_geometry xtf_geometry_of(const struct xtf_file *file, uint64_t first_row,
+                                    uint64_t count);
+
+#endif
