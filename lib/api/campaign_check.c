@@ -19,7 +19,7 @@
 static double highest_altitude(const struct scene *scene, const struct xtf_file *xtf)
 {
     double highest = scene->sonar.altitude_m;
-    for (uint64_t i = 0; xtf && scene->has_recorded_altitude && i < xtf->rows.layout.rows; i++)
+    for (uint64_t i = 0; xtf && scene->has_recorded_altitude && i < xtf->rows; i++)
         highest = fmax(highest, (double)xtf->pings[i].altitude_m);
     return highest;
 }

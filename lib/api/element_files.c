@@ -19,7 +19,7 @@
 #include "base/memory.h"
 #include "inject/element_echoes.h"
 #include "scene/element_plan.h"
-#include "swath/numpy_file.h"
+#include "swath/raster_file.h"
 
 #define SERIES_FILE "series.npy"
 #define DOCUMENT    "elements.json"
@@ -124,8 +124,8 @@ static sonject_status write_files(struct report *report, const struct scene *sce
                                                          : report_out_of_memory(report, "a path");
     if (status == SONJECT_OK) {
         earlier = earlier_withdraw(folder, DOCUMENT);
-        status = numpy_file_write(report, series_path, shape,
-                                  layout->elements.form == SONJECT_SERIES_BASEBAND, series);
+        status = npy_write(report, series_path, PIXEL_FLOAT32,
+                           layout->elements.form == SONJECT_SERIES_BASEBAND, shape, 3, series);
     }
     THEN(status, file_list_add(&files, report, folder, SERIES_FILE, true));
     THEN(status, earlier_describe(report, &document, inputs, files, scene));

@@ -7,9 +7,10 @@
 #include "base/byte_file.h"
 #include "base/file.h"
 #include "base/memory.h"
+#include "swath/raster_file.h"
+#include "swath/swath_format.h"
 
-#define SIDE_MAX      ((uint64_t)1 << 31)
-#define ATTRIBUTE_MAX ((size_t)64 << 20) /* bytes of any that a decoder gives */
+#define SIDE_MAX ((uint64_t)1 << 31)
 
 static sonject_status check_reply(struct report *report, const struct decoder_file *file,
                                   const struct decoder_reply *reply)
@@ -28,26 +29,23 @@ sonject_status decoded_image_open(struct report *report, const char *path, const
                                   struct decoded_image **image)
 {
     struct decoder_reply reply;
-    struct decoded_image *opened = allocate_array(1, sizeof *opened);
-    *image = NULL;
-    if (opened && array)
+    struct decoded_image *opened = *image = allocate_array(1, sizeof *opened);
+    CHECK_MEMORY(report, opened, "a file");
+    if (array)
         opened->array = copy_text(array);
-    if (!opened || (array && !opened->array)) {
-        free(opened);
-        return report_out_of_memory(report, "a file");
-    }
     sonject_status status =
-        decoder_open(report, DECODER_OPEN_IMAGE, path, NULL, array, &opened->file, &reply);
-    if (status == SONJECT_OK)
-        status = check_reply(report, &opened->file, &reply);
+        !array || opened->array ? SONJECT_OK : report_out_of_memory(report, "a file");
+    THEN(status,
+         decoder_open(report, DECODER_OPEN_IMAGE, path, NULL, array, &opened->file, &reply));
+    THEN(status, check_reply(report, &opened->file, &reply));
+    if (status != SONJECT_OK) {
+        decoded_image_close(image);
+        return status;
+    }
     opened->layout = reply.layout;
     opened->largest = reply.largest;
     opened->is_turned = reply.is_turned != 0;
-    if (status == SONJECT_OK)
-        *image = opened;
-    else
-        decoded_image_close(&opened);
-    return status;
+    return SONJECT_OK;
 }
 
 void decoded_image_close(struct decoded_image **image)
@@ -64,18 +62,15 @@ bool decoded_image_attribute(struct decoded_image *image, const char *name, char
                              size_t capacity)
 {
     struct report unheard = {{0}, NULL, NULL};
-    struct decoder_request request = {.function = DECODER_ATTRIBUTE, .bytes = strlen(name) + 1};
+    struct decoder_request request = {
+        .function = DECODER_ATTRIBUTE, .bytes = strlen(name) + 1, .capacity = capacity};
     struct decoder_reply reply;
-    struct decoder_bytes out = {NULL, ATTRIBUTE_MAX, 0};
-    const bool is_there =
-        decoder_ask(&unheard, &image->file, &request, name, &reply, &out) == SONJECT_OK &&
-        out.count > 0 && out.count <= capacity;
-    if (is_there) {
-        memcpy(value, out.bytes, out.count);
-        value[out.count - 1] = '\0';
-    }
-    free(out.bytes);
-    return is_there;
+    struct decoder_bytes out = {value, capacity, 0};
+    if (decoder_ask(&unheard, &image->file, &request, name, &reply, &out) != SONJECT_OK ||
+        out.count == 0)
+        return false;
+    value[out.count - 1] = '\0';
+    return true;
 }
 
 /* A region's samples pass piece by piece, each of some rows, or of some columns where these lie
@@ -169,91 +164,105 @@ sonject_status decoded_image_read(struct report *report, struct decoded_image *i
     return pass(&(struct passage){report, image, &image->file, region, false, pixels, NULL, NULL});
 }
 
-static sonject_status copy_bytes(struct report *report, const struct decoded_image *image,
-                                 const char *part, const char *path)
+static sonject_status patch_copy(struct report *report, const struct decoded_image *image,
+                                 const struct swath_copy *copy)
 {
-    uint64_t bytes = 0;
-    sonject_status status = SONJECT_OK;
-    FILE *from = byte_file_open(image->file.path, &bytes);
-    if (!from)
-        return file_refuse(report, image->file.path, errno);
-    errno = 0;
-    FILE *to = fopen(part, "wb");
-    if (!to || (!byte_file_copy(from, 0, bytes, to) && ferror(to)))
-        status = file_failure(report, path, "write", errno ? errno : EIO);
-    else if (ferror(from))
-        status = file_failure(report, image->file.path, "read", errno ? errno : EIO);
-    else if (bytes != image->file.bytes)
-        status = report_failure(report, SONJECT_ERROR_INPUT, "%s: changed while it was read",
-                                image->file.path);
-    if (to && fclose(to) != 0 && status == SONJECT_OK)
-        status = file_failure(report, path, "write", errno);
-    fclose(from);
-    return status;
-}
-
-static sonject_status patch_copy(struct passage *passage, const char *part)
-{
-    struct decoder_file copy;
+    struct decoder_file file;
     struct decoder_reply reply;
-    sonject_status status = decoder_open(passage->report, DECODER_OPEN_COPY, passage->file->path,
-                                         part, passage->image->array, &copy, &reply);
-    if (status != SONJECT_OK)
-        return status;
     struct decoder_request request = {.function = DECODER_FINISH};
-    passage->file = &copy;
-    status = pass(passage);
-    if (status == SONJECT_OK)
-        status = decoder_ask(passage->report, &copy, &request, NULL, &reply, NULL);
-    decoder_close(&copy);
+    CHECK(decoder_open(report, DECODER_OPEN_COPY, image->file.path, copy->part, image->array, &file,
+                       &reply));
+    sonject_status status =
+        pass(&(struct passage){report, image, &file, copy->region, true,
+                               (unsigned char *)copy->pixels, copy->progress, copy->user});
+    THEN(status, decoder_ask(report, &file, &request, NULL, &reply, NULL));
+    decoder_close(&file);
     return status;
 }
 
 /* Whatever went into the copy must come out of it: a file that says contradictory things of itself
  * may fool the writer, but not the reader as well. */
-static sonject_status check_copy(const struct passage *passage, const char *part)
+static sonject_status check_copy(struct report *report, const struct decoded_image *image,
+                                 const struct swath_copy *copy)
 {
-    const struct decoded_image *image = passage->image;
-    struct report unheard = {{0}, NULL, passage->report->host};
-    struct decoded_image *copy = NULL;
+    struct report unheard = {{0}, NULL, report->host};
+    struct decoded_image *made = NULL;
     size_t bytes = 0;
     void *found =
-        region_bytes(&image->layout, passage->region, &bytes) ? allocate_array(bytes, 1) : NULL;
-    if (!found)
-        return report_out_of_memory(passage->report, "the patch");
-    sonject_status status = decoded_image_open(&unheard, part, image->array, &copy);
-    if (status == SONJECT_OK)
-        status = decoded_image_read(&unheard, copy, passage->region, found);
-    if (status == SONJECT_OK && memcmp(found, passage->pixels, bytes) != 0)
+        region_bytes(&image->layout, copy->region, &bytes) ? allocate_array(bytes, 1) : NULL;
+    CHECK_MEMORY(report, found, "the patch");
+    sonject_status status = decoded_image_open(&unheard, copy->part, image->array, &made);
+    THEN(status, decoded_image_read(&unheard, made, copy->region, found));
+    if (status == SONJECT_OK && memcmp(found, copy->pixels, bytes) != 0)
         status = SONJECT_ERROR_INPUT;
-    decoded_image_close(&copy);
+    decoded_image_close(&made);
     free(found);
-    return status == SONJECT_OK ? SONJECT_OK
-           : status == SONJECT_ERROR_INPUT
-               ? report_failure(passage->report, status,
-                                "%s: damaged: its pixels cannot be replaced", image->file.path)
-               : report_failure(passage->report, status, "%s", unheard.message);
+    if (status == SONJECT_ERROR_INPUT)
+        return report_failure(report, status, "%s: damaged: its pixels cannot be replaced",
+                              image->file.path);
+    return status == SONJECT_OK ? status : report_failure(report, status, "%s", unheard.message);
 }
 
-sonject_status decoded_image_copy_with_patch(struct report *report, struct decoded_image *image,
-                                             const char *path, const struct region *region,
-                                             const void *pixels, sonject_progress_function progress,
-                                             void *user)
+/* The decoder changes samples in a copy of all bytes. */
+static sonject_status copy_with_patch(struct report *report, const struct swath_file *file,
+                                      const struct swath_copy *copy)
 {
-    struct passage passage = {report,   image, &image->file, region, true, (unsigned char *)pixels,
-                              progress, user};
-    char *part = file_part_name(path);
-    if (!part)
-        return report_out_of_memory(report, "a file name");
-    sonject_status status = copy_bytes(report, image, part, path);
-    if (status == SONJECT_OK)
-        status = patch_copy(&passage, part);
-    if (status == SONJECT_OK)
-        status = check_copy(&passage, part);
-    if (status == SONJECT_OK)
-        status = file_publish(report, part, path);
-    else
-        file_discard(part);
-    free(part);
-    return status;
+    struct swath_copy quiet = *copy;
+    FILE *out = fopen(copy->part, "wb");
+    if (!out)
+        return file_failure(report, copy->path, "write", errno);
+    quiet.progress = NULL;
+    CHECK(swath_close_copy(report, copy, out,
+                           swath_copy_bytes(report, file, &quiet, 0, file->bytes, out)));
+    if (file->bytes != file->decoded->file.bytes)
+        return swath_refuse(report, file, "changed while it was read");
+    CHECK(patch_copy(report, file->decoded, copy));
+    return check_copy(report, file->decoded, copy);
 }
+
+static sonject_status copy_image(struct report *report, const struct swath_file *file,
+                                 const struct swath_copy *copy)
+{
+    return file->image == IMAGE_TIFF
+               ? copy_with_patch(report, file, copy)
+               : raster_file_copy_with_patch(report, file->decoded, file->image, copy);
+}
+
+static sonject_status open_decoded(struct report *report, struct swath_file *file, int32_t channel,
+                                   const char *array)
+{
+    (void)channel;
+    CHECK(decoded_image_open(report, file->path, array, &file->decoded));
+    file->layout = file->decoded->layout;
+    file->largest = file->decoded->largest;
+    return SONJECT_OK;
+}
+
+static sonject_status read_decoded(struct report *report, struct swath_file *file,
+                                   const struct region *region, void *pixels)
+{
+    return decoded_image_read(report, file->decoded, region, pixels);
+}
+
+static bool is_image(struct swath_file *file, const unsigned char *head, size_t count)
+{
+    return image_kind_of_beginning(head, count, &file->image);
+}
+
+/* Its mark stands at byte 0, or at 512, 1024, 2048, ..., behind a user's block. */
+static bool is_hdf5(struct swath_file *file, const unsigned char *head, size_t count)
+{
+    static const unsigned char mark[] = {0x89, 'H', 'D', 'F', '\r', '\n', 0x1A, '\n'};
+    unsigned char bytes[sizeof mark];
+    (void)head, (void)count;
+    for (uint64_t place = 0; place < file->bytes; place = place == 0 ? 512 : 2 * place)
+        if (byte_file_read(file->stream, place, bytes, sizeof bytes) &&
+            memcmp(bytes, mark, sizeof mark) == 0)
+            return true;
+    return false;
+}
+
+const struct swath_format image_format = {false,        false,        is_image,
+                                          open_decoded, read_decoded, copy_image};
+const struct swath_format hdf5_format = {false,        true,         is_hdf5,
+                                         open_decoded, read_decoded, copy_with_patch};

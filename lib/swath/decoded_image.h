@@ -15,8 +15,8 @@ struct decoded_image {
     char *array;      /* which of the file; NULL: the only one */
 };
 
-/* array: as of hdf5_array_open. Errors: as decoder_open, and INPUT for more samples than the file
- * can hold. On success *image is the caller's, for decoded_image_close; on failure NULL. */
+/* array: as of swath_file_open_array. Errors: as decoder_open, and INPUT for more samples than the
+ * file can hold. On success *image is the caller's, for decoded_image_close; on failure NULL. */
 sonject_status decoded_image_open(struct report *report, const char *path, const char *array,
                                   struct decoded_image **image);
 void decoded_image_close(struct decoded_image **image);
@@ -29,13 +29,5 @@ bool decoded_image_attribute(struct decoded_image *image, const char *name, char
 /* Samples of a region, row after row. Errors: INPUT, STORAGE, MEMORY. */
 sonject_status decoded_image_read(struct report *report, struct decoded_image *image,
                                   const struct region *region, void *pixels);
-
-/* Writes at path a copy of the file with the region's samples replaced: the decoder changes them in
- * a copy of all bytes. Published whole or not at all. progress may be NULL. Errors: INPUT, STORAGE,
- * MEMORY, CANCELLED. */
-sonject_status decoded_image_copy_with_patch(struct report *report, struct decoded_image *image,
-                                             const char *path, const struct region *region,
-                                             const void *pixels, sonject_progress_function progress,
-                                             void *user);
 
 #endif

@@ -183,20 +183,6 @@ static bool receive_all(int descriptor, void *bytes, size_t count)
     return true;
 }
 
-/* Room for a reply's bytes. False if they are more than can be, or memory is out (errno). */
-static bool make_room(struct decoder_bytes *out, uint64_t bytes)
-{
-    errno = 0;
-    if (bytes > 0 && (!out || bytes > out->capacity))
-        return false;
-    if (out && !out->bytes)
-        out->bytes = allocate_array((size_t)bytes + 1, 1);
-    if (out)
-        out->count = (size_t)bytes;
-    errno = ENOMEM;
-    return !out || out->bytes;
-}
-
 static sonject_status ask_child(struct report *report, struct decoder *decoder, const char *path,
                                 const struct decoder_request *request, const void *in,
                                 struct decoder_reply *reply, struct decoder_bytes *out)
@@ -208,13 +194,11 @@ static sonject_status ask_child(struct report *report, struct decoder *decoder, 
         !receive_all(decoder->socket, reply, sizeof *reply))
         return tell_end(report, decoder, path);
     struct decoder_bytes *to = reply->status == SONJECT_OK ? out : &told;
-    if (!make_room(to, reply->bytes)) {
-        const int error = errno;
-        const sonject_status status = tell_end(report, decoder, path);
-        return error == ENOMEM ? report_out_of_memory(report, path) : status;
-    }
-    if (to && !receive_all(decoder->socket, to->bytes, to->count))
+    errno = 0;
+    if (reply->bytes > to->capacity ||
+        !receive_all(decoder->socket, to->bytes, (size_t)reply->bytes))
         return tell_end(report, decoder, path);
+    to->count = (size_t)reply->bytes;
     switch (reply->status) {
     case SONJECT_OK:
         return SONJECT_OK;
@@ -234,30 +218,25 @@ static sonject_status ask_here(struct report *report, struct decoder *decoder, c
     void *made = NULL;
     if (!decoder->state)
         decoder->state = decoder_state_make();
-    if (!decoder->state)
-        return report_out_of_memory(report, path);
-    memset(reply, 0, sizeof *reply);
-    sonject_status status = decoder_answer(report, decoder->state, request, in, reply, &made);
-    if (status == SONJECT_OK && !make_room(out, reply->bytes))
-        status = report_out_of_memory(report, path);
-    if (status == SONJECT_OK && made)
-        memcpy(out->bytes, made, out->count);
+    CHECK_MEMORY(report, decoder->state, path);
+    const sonject_status status = decoder_answer(report, decoder->state, request, in, reply, &made);
+    if (made && reply->bytes <= out->capacity) {
+        memcpy(out->bytes, made, (size_t)reply->bytes);
+        out->count = (size_t)reply->bytes;
+    }
     free(made);
     return status;
 }
 
+/* out: NULL where no bytes come. */
 static sonject_status ask(struct report *report, struct decoder *decoder, const char *path,
                           const struct decoder_request *request, const void *in,
                           struct decoder_reply *reply, struct decoder_bytes *out)
 {
-    void *const given = out ? out->bytes : NULL;
-    const sonject_status status = (decoder->is_in_process ? ask_here : ask_child)(
-        report, decoder, path, request, in, reply, out);
-    if (status != SONJECT_OK && out && !given) {
-        free(out->bytes);
-        out->bytes = NULL;
-    }
-    return status;
+    struct decoder_bytes none = {NULL, 0, 0};
+    memset(reply, 0, sizeof *reply);
+    return (decoder->is_in_process ? ask_here : ask_child)(report, decoder, path, request, in,
+                                                           reply, out ? out : &none);
 }
 
 /* The three texts that a file is opened by, each with its 0. The child has a working folder of its
@@ -354,7 +333,6 @@ sonject_status decoder_ask(struct report *report, struct decoder_file *file,
                            struct decoder_request *request, const void *in,
                            struct decoder_reply *reply, struct decoder_bytes *out)
 {
-    memset(reply, 0, sizeof *reply);
     request->handle = file->handle;
     if (!is_open(file))
         return report_failure(report, SONJECT_ERROR_INPUT,

@@ -30,7 +30,7 @@ enum decoder_function {
                            -> handle, layout, largest, is_turned */
     DECODER_OPEN_COPY,  /* the same, to be written to */
     DECODER_CLOSE,      /* handle; what was written to a copy may be lost */
-    DECODER_ATTRIBUTE,  /* handle of an image; in: its name -> out: text; value 0: it has none */
+    DECODER_ATTRIBUTE,  /* handle of an image; in: its name -> out: text; none: it has none */
     DECODER_READ,       /* handle of an image, region -> out: its samples, row after row */
     DECODER_WRITE,      /* handle of a copy, region; in: samples */
     DECODER_FINISH,     /* handle of a copy, which is then closed: all is to be in the file */
@@ -40,7 +40,8 @@ enum decoder_function {
 struct decoder_request {
     uint32_t function, handle;
     struct region region;
-    uint64_t bytes; /* that follow */
+    uint64_t capacity; /* more bytes of a text are not wanted */
+    uint64_t bytes;    /* that follow */
 };
 
 struct decoder_reply {
@@ -49,8 +50,7 @@ struct decoder_reply {
     struct raster_layout layout;
     uint32_t largest;   /* 0: of its type */
     uint32_t is_turned; /* columns lie together in the file */
-    uint64_t value;
-    uint64_t bytes; /* that follow */
+    uint64_t bytes;     /* that follow */
 };
 
 /* What the child's first argument must be. */
@@ -99,9 +99,9 @@ void decoder_close(struct decoder_file *file);
 
 /* Where a reply's bytes go. */
 struct decoder_bytes {
-    void *bytes;     /* NULL: allocated, with a 0 behind them, for free() */
+    void *bytes;
     size_t capacity; /* more of them are refused */
-    size_t count;
+    size_t count;    /* that came */
 };
 
 /* Asks about an open file. request->handle is set here. out: NULL where no bytes come. Errors: as

@@ -11,6 +11,7 @@
 #include "base/memory.h"
 #include "swath/decoder.h"
 #include "swath/hdf5_array.h"
+#include "swath/image_kind.h"
 #include "swath/raster_module.h"
 
 #define TEXT_OF(number)   #number
@@ -25,11 +26,10 @@ void decoder_stamp(char stamp[64])
 }
 
 struct opened {
-    char *path;                         /* in messages; NULL: none is open */
-    struct raster_image *raster;        /* NULL: it is image */
-    const struct raster_module *module; /* whose raster is */
-    struct raster_layout layout;        /* of raster */
-    struct hdf5_array *image;
+    char *path; /* in messages; NULL: none is open */
+    const struct image_library *library;
+    void *image; /* of the library's */
+    struct raster_layout layout;
 };
 
 struct decoder_state {
@@ -55,10 +55,8 @@ struct decoder_state *decoder_state_make(void)
 
 static void close_file(struct opened *file)
 {
-    if (file->raster)
-        file->module->close(&file->raster);
-    else if (file->image)
-        hdf5_array_close(&file->image);
+    if (file->image)
+        file->library->close(file->image);
     free(file->path);
     memset(file, 0, sizeof *file);
 }
@@ -98,45 +96,38 @@ static bool is_raster(const char *path)
     return image_kind_of_beginning(head, got, &kind);
 }
 
-static sonject_status open_raster(struct question *question, struct opened *place)
+static sonject_status find_library(struct report *report, const char *name, bool is_of_rasters,
+                                   const struct image_library **library)
 {
-    place->path = copy_text(question->texts[0]);
-    sonject_status status = place->path
-                                ? raster_module_find(question->report, place->path, &place->module)
-                                : report_out_of_memory(question->report, "a path");
-    if (status == SONJECT_OK)
-        status = place->module->open(question->report, question->texts[0], question->texts[1],
-                                     &place->raster, &place->layout);
-    question->reply->layout = place->layout;
-    if (status != SONJECT_OK) {
-        free(place->path);
-        place->path = NULL;
-    }
-    return status;
+    const struct raster_module *module;
+    if (!is_of_rasters)
+        return hdf5_library_find(report, name, library);
+    CHECK(raster_module_find(report, name, &module));
+    *library = &module->library;
+    return SONJECT_OK;
 }
 
 static sonject_status open_image(struct question *question)
 {
+    const char *name = question->texts[0];
     const char *array = *question->texts[2] ? question->texts[2] : NULL;
+    const bool is_of_rasters = !array && is_raster(question->texts[1]);
     struct opened *place = free_place(question);
+    struct image_facts facts = {{0, 0, 0, PIXEL_UINT8}, 0, false};
     if (!place)
         return SONJECT_ERROR_STORAGE;
-    if (!array && is_raster(question->texts[1]))
-        return open_raster(question, place);
-    const sonject_status status =
-        hdf5_array_open(question->report, question->texts[0], question->texts[1], array,
-                        question->request->function == DECODER_OPEN_COPY, &place->image);
-    place->path = status == SONJECT_OK ? copy_text(question->texts[0]) : NULL;
+    CHECK(find_library(question->report, name, is_of_rasters, &place->library));
+    place->path = copy_text(name);
+    CHECK_MEMORY(question->report, place->path, name);
+    const sonject_status status = place->library->open(
+        question->report, name, question->texts[1], array,
+        question->request->function == DECODER_OPEN_COPY, &place->image, &facts);
+    place->layout = question->reply->layout = facts.layout;
+    question->reply->largest = facts.largest;
+    question->reply->is_turned = facts.is_turned;
     if (status != SONJECT_OK)
-        return status;
-    if (!place->path) {
-        hdf5_array_close(&place->image);
-        return report_out_of_memory(question->report, question->texts[0]);
-    }
-    hdf5_array_layout(place->image, &question->reply->layout);
-    question->reply->largest = hdf5_array_largest(place->image);
-    question->reply->is_turned = hdf5_array_is_turned(place->image);
-    return SONJECT_OK;
+        close_file(place);
+    return status;
 }
 
 static sonject_status close_handle(struct question *question)
@@ -145,63 +136,41 @@ static sonject_status close_handle(struct question *question)
     return SONJECT_OK;
 }
 
-static sonject_status give_text(struct question *question, char *text)
-{
-    question->out = text;
-    question->reply->value = 1;
-    question->reply->bytes = strlen(text) + 1;
-    return SONJECT_OK;
-}
-
 static sonject_status read_attribute(struct question *question)
 {
     const struct opened *file = question->file;
-    char *text = file->raster ? file->module->attribute(file->raster, question->texts[0]) : NULL;
-    const bool is_there =
-        file->raster ? text != NULL : hdf5_array_attribute(file->image, question->texts[0], &text);
-    return is_there ? give_text(question, text) : SONJECT_OK;
-}
-
-/* Of the region's samples, as the layout has them. */
-static bool make_room(struct question *question, const struct raster_layout *layout)
-{
-    size_t bytes = 0;
-    if (region_bytes(layout, &question->request->region, &bytes))
-        question->out = malloc(bytes + 1);
-    question->reply->bytes = bytes;
-    return question->out != NULL;
+    char *text = file->library->attribute(file->image, question->texts[0]);
+    if (text && strlen(text) < question->request->capacity) {
+        question->out = text;
+        question->reply->bytes = strlen(text) + 1;
+    } else {
+        free(text);
+    }
+    return SONJECT_OK;
 }
 
 static sonject_status read_samples(struct question *question)
 {
-    struct opened *file = question->file;
-    struct raster_layout layout = file->layout;
-    if (!file->raster)
-        hdf5_array_layout(file->image, &layout);
-    if (!make_room(question, &layout))
-        return report_out_of_memory(question->report, "samples");
-    if (file->raster)
-        return file->module->read(question->report, file->raster, &question->request->region,
-                                  question->out);
-    return hdf5_array_read(question->report, question->file->image, &question->request->region,
-                           question->out);
+    const struct opened *file = question->file;
+    const struct region *region = &question->request->region;
+    size_t bytes = 0;
+    if (region_bytes(&file->layout, region, &bytes))
+        question->out = malloc(bytes + 1);
+    CHECK_MEMORY(question->report, question->out, "samples");
+    question->reply->bytes = bytes;
+    return file->library->read(question->report, file->image, region, question->out);
 }
 
 static sonject_status write_samples(struct question *question)
 {
-    const struct opened *file = question->file;
-    if (file->raster)
-        return file->module->change(question->report, file->raster, &question->request->region,
-                                    question->samples);
-    return hdf5_array_change(question->report, question->file->image, &question->request->region,
-                             question->samples);
+    return question->file->library->change(question->report, question->file->image,
+                                           &question->request->region, question->samples);
 }
 
 static sonject_status finish_copy(struct question *question)
 {
-    const sonject_status status = question->file->raster
-                                      ? SONJECT_OK
-                                      : hdf5_array_finish(question->report, question->file->image);
+    const sonject_status status =
+        question->file->library->finish(question->report, question->file->image);
     close_file(question->file);
     return status;
 }
@@ -232,10 +201,12 @@ static bool is_possible(struct question *question, const struct answer *answer)
     }
     if (request->handle > 0 && request->handle <= DECODER_FILES_MAX)
         question->file = &question->state->files[request->handle - 1];
-    const struct opened *file = question->file;
-    const bool is_image = file && (file->image || file->raster);
-    return (!answer->needs_image || is_image) &&
-           (request->function != DECODER_CLOSE || question->file);
+    const bool is_open = question->file && question->file->image;
+    const bool is_of_region =
+        request->function == DECODER_READ || request->function == DECODER_WRITE;
+    return (!answer->needs_image || is_open) &&
+           (request->function != DECODER_CLOSE || question->file) &&
+           (!is_of_region || region_is_inside(&question->file->layout, &request->region));
 }
 
 /* Where the disk could not be read HDF5 says that it is damaged, or does without what lies there: a

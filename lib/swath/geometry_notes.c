@@ -73,7 +73,7 @@ static double noted_number(const struct swath_file *file, const char *name)
 
 static void read_recording(const struct xtf_file *xtf, struct noted_geometry *geometry)
 {
-    const struct xtf_geometry told = xtf_geometry_of(xtf, 0, xtf->rows.layout.rows);
+    const struct xtf_geometry told = xtf_geometry_of(xtf, 0, xtf->rows);
     geometry->row_spacing_m = told.row_spacing_m > 0.0 ? told.row_spacing_m : NAN;
     geometry->column_spacing_m = told.column_spacing_m;
     geometry->first_along_track_m = 0.0;

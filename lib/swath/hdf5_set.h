@@ -5,8 +5,8 @@
 
 #include "base/hdf5_values.h"
 #include "image/raster.h"
-#include "swath/array_list.h"
 #include "swath/hdf5_array.h"
+#include "swath/samples.h"
 
 #define HDF5_NAME_MAX 256 /* bytes of a data set's path, the final 0 among them */
 

@@ -84,8 +84,8 @@ static const char *foreign_name(const unsigned char *head, size_t count)
     return NULL;
 }
 
-static sonject_status refuse_kind(struct report *report, const char *path,
-                                  const unsigned char *head, size_t count)
+sonject_status image_kind_refuse(struct report *report, const char *path, const unsigned char *head,
+                                 size_t count)
 {
     static const char readable[] =
         "TIFF, PNG, JPEG, OpenEXR, PGM (P5), PFM (Pf), BMP, XTF, NumPy (.npy), HDF5 and MATLAB "
@@ -110,23 +110,6 @@ bool image_kind_of_beginning(const unsigned char *bytes, size_t count, enum imag
             return true;
         }
     return false;
-}
-
-sonject_status image_kind_of(struct report *report, const char *path, enum image_kind *kind)
-{
-    unsigned char head[16] = {0};
-    uint64_t bytes;
-    FILE *file = byte_file_open(path, &bytes);
-    if (!file)
-        return file_refuse(report, path, errno);
-    const size_t got = fread(head, 1, sizeof head, file);
-    const bool is_read = ferror(file) == 0;
-    fclose(file);
-    if (!is_read)
-        return file_failure(report, path, "read", errno);
-    if (image_kind_of_beginning(head, got, kind))
-        return SONJECT_OK;
-    return refuse_kind(report, path, head, got);
 }
 
 static bool is_same_but_for_case(const char *text, const char *letters)

@@ -20,8 +20,9 @@ enum image_kind {
     IMAGE_PNM /* PGM and PFM */
 };
 
-/* Told by the file's first bytes. Errors: INPUT (cannot be opened, another kind). */
-sonject_status image_kind_of(struct report *report, const char *path, enum image_kind *kind);
+/* The message for a file of no kind that sonject reads, by its first bytes. Returns INPUT. */
+sonject_status image_kind_refuse(struct report *report, const char *path, const unsigned char *head,
+                                 size_t count);
 
 /* Told by bytes from a file's beginning; false for another kind. */
 bool image_kind_of_beginning(const unsigned char *bytes, size_t count, enum image_kind *kind);

@@ -9,6 +9,7 @@
 #include "base/memory.h"
 #include "swath/png_palette.h"
 #include "swath/raster_module.h"
+#include "swath/swath_format.h"
 
 #define PIXELS_MAX      ((uint64_t)1 << 40)
 #define DESCRIPTION_MAX 8192    /* bytes of one that a copy keeps */
@@ -77,28 +78,16 @@ static sonject_status publish(struct report *report, sonject_status status, cons
 }
 
 sonject_status raster_file_copy_with_patch(struct report *report, struct decoded_image *source,
-                                           enum image_kind kind, const char *path,
-                                           const struct region *region, const void *pixels,
-                                           sonject_progress_function progress, void *user)
+                                           enum image_kind kind, const struct swath_copy *copy)
 {
-    struct patched_rows rows = {report, source, source->layout, region, pixels, progress, user};
-    if (!region_is_inside(&source->layout, region))
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: the region is not inside the image",
-                              source->file.path);
-    if (kind == IMAGE_TIFF)
-        return decoded_image_copy_with_patch(report, source, path, region, pixels, progress, user);
+    struct patched_rows rows = {report,       source,         source->layout, copy->region,
+                                copy->pixels, copy->progress, copy->user};
+    const enum image_kind new_kind =
+        kind == IMAGE_PNG || kind == IMAGE_JPEG ? IMAGE_PNG : IMAGE_TIFF;
     char description[DESCRIPTION_MAX];
     if (!decoded_image_attribute(source, "", description, sizeof description))
         *description = '\0';
-    char *part = file_part_name(path);
-    if (!part)
-        return report_out_of_memory(report, "a file name");
-    const enum image_kind new_kind =
-        kind == IMAGE_PNG || kind == IMAGE_JPEG ? IMAGE_PNG : IMAGE_TIFF;
-    const sonject_status status = encode(&rows, part, path, new_kind, description, false);
-    const sonject_status published = publish(report, status, part, path);
-    free(part);
-    return published;
+    return encode(&rows, copy->part, copy->path, new_kind, description, false);
 }
 
 static sonject_status kind_to_write(struct report *report, const char *path,

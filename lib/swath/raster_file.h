@@ -14,14 +14,13 @@ struct raster_attribute {
     const char *value;
 };
 
-/* Writes at path a copy of source, a file of that kind, with region replaced by pixels: a TIFF
- * keeps all else; of other kinds the copy has the samples and the description, as PNG where the
- * source is PNG or JPEG, else as TIFF. Streams in strips of at most about 64 MB. path is published
- * whole or not at all. progress may be NULL. Errors: INPUT, STORAGE, MEMORY, CANCELLED. */
+struct swath_copy;
+
+/* Writes a new image as the copy of source, a file of that kind: its samples, patched, and its
+ * description; PNG where the source is PNG or JPEG, else TIFF. Streams in strips of at most about
+ * 64 MB. Errors: INPUT, STORAGE, MEMORY, CANCELLED. */
 sonject_status raster_file_copy_with_patch(struct report *report, struct decoded_image *source,
-                                           enum image_kind kind, const char *path,
-                                           const struct region *region, const void *pixels,
-                                           sonject_progress_function progress, void *user);
+                                           enum image_kind kind, const struct swath_copy *copy);
 
 /* Writes a whole raster at path; the extension chooses the format. channel_names: layout->channels
  * names, or NULL. Published whole or not at all. Errors: STORAGE, UNSUPPORTED (format), MEMORY. */
@@ -39,5 +38,11 @@ sonject_status raster_file_write_placed(struct report *report, const char *path,
                                         const struct raster_layout *layout,
                                         const struct region *region, const void *pixels,
                                         const uint8_t *palette);
+
+/* A NumPy array of a float32, complex64 or whole type, the last index running fastest. Published
+ * whole or not at all. Errors: STORAGE, MEMORY. */
+sonject_status npy_write(struct report *report, const char *path, enum pixel_type type,
+                         bool is_complex, const uint64_t *sides, int side_count,
+                         const void *numbers);
 
 #endif

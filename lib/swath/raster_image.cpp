@@ -1,5 +1,5 @@
-#include "swath/raster_image.h"
 
+#include <cerrno>
 #include <cstdio>
 #include <cstring>
 #include <memory>
@@ -11,12 +11,17 @@
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/strutil.h>
 
+#include <sonject/version.h>
+
 #include "base/byte_file.h"
 #include "swath/plain_head.h"
 #include "swath/png_palette.h"
 #include "swath/raster_failure.hpp"
 #include "swath/raster_streams.hpp"
 #include "swath/raster_writer.hpp"
+
+namespace
+{
 
 struct raster_image {
     std::string name; /* in messages */
@@ -63,9 +68,6 @@ struct raster_image {
 };
 
 using namespace raster;
-
-namespace
-{
 
 /* A coloured PNG as the grey one that it was made of. */
 void restore_numbers(struct raster_image &file)
@@ -251,9 +253,6 @@ void read_by_tiles(struct report *report, struct raster_image &file, const struc
 void read_region(struct report *report, struct raster_image &file, const struct region &region,
                  void *pixels)
 {
-    if (!region_is_inside(&file.layout, &region))
-        throw failure{report_failure(report, SONJECT_ERROR_INPUT,
-                                     "%s: the region is not inside the image", file.name.c_str())};
     if (file.spec.tile_width > 0)
         read_by_tiles(report, file, region, static_cast<unsigned char *>(pixels));
     else
@@ -274,7 +273,17 @@ std::unique_ptr<struct raster_image> open_file(struct report *report, const char
     std::unique_ptr<struct raster_image> file(new struct raster_image);
     file->name = name;
     file->path = path;
-    require(image_kind_of(report, path, &file->kind));
+    unsigned char head[16];
+    uint64_t bytes = 0;
+    FILE *stream = byte_file_open(path, &bytes);
+    const size_t count = stream ? std::fread(head, 1, sizeof head, stream) : 0;
+    const int error = stream && !std::ferror(stream) ? 0 : errno;
+    if (stream)
+        std::fclose(stream);
+    if (error != 0)
+        throw failure{file_refuse(report, name, error)};
+    if (!image_kind_of_beginning(head, count, &file->kind))
+        throw failure{image_kind_refuse(report, name, head, count)};
     bool is_coloured = false;
     if (file->kind == IMAGE_TIFF)
         require(tiff_check(report, name, path));
@@ -295,36 +304,33 @@ std::unique_ptr<struct raster_image> open_file(struct report *report, const char
     return file;
 }
 
-} // namespace
-
-sonject_status raster_image_open(struct report *report, const char *name, const char *path,
-                                 struct raster_image **image, struct raster_layout *layout)
+void raster_close(void *image)
 {
-    *image = nullptr;
-    return guarded(report, name, [&] {
-        *image = open_file(report, name, path).release();
-        *layout = (*image)->layout;
-    });
-}
-
-void raster_image_close(struct raster_image **image)
-{
-    if (!image || !*image)
-        return;
+    std::unique_ptr<struct raster_image> file(static_cast<struct raster_image *>(image));
     try {
-        (*image)->input->close();
-        (*image)->input->geterror();
+        file->input->close();
+        file->input->geterror();
     } catch (...) {
         /* nothing is lost by a file that was only read */
     }
-    delete *image;
-    *image = nullptr;
 }
 
-char *raster_image_attribute(const struct raster_image *image, const char *name)
+sonject_status raster_open(struct report *report, const char *name, const char *path, const char *,
+                           bool, void **image, struct image_facts *facts)
+{
+    *image = nullptr;
+    return guarded(report, name, [&] {
+        auto file = open_file(report, name, path);
+        *facts = {file->layout, 0, false};
+        *image = file.release();
+    });
+}
+
+char *raster_attribute(void *image, const char *name)
 {
     try {
-        const std::string description(image->spec.get_string_attribute(description_name));
+        const std::string description(
+            static_cast<struct raster_image *>(image)->spec.get_string_attribute(description_name));
         if (!*name)
             return strdup(description.c_str());
         const std::string lines = "\n" + description + "\n";
@@ -339,24 +345,28 @@ char *raster_image_attribute(const struct raster_image *image, const char *name)
     }
 }
 
-sonject_status raster_image_read(struct report *report, struct raster_image *image,
-                                 const struct region *region, void *pixels)
+sonject_status raster_read(struct report *report, void *image, const struct region *region,
+                           void *pixels)
 {
-    return guarded(report, image->name.c_str(),
-                   [&] { read_region(report, *image, *region, pixels); });
+    auto &file = *static_cast<struct raster_image *>(image);
+    return guarded(report, file.name.c_str(), [&] { read_region(report, file, *region, pixels); });
 }
 
-sonject_status raster_image_change(struct report *report, const struct raster_image *image,
-                                   const struct region *region, const void *pixels)
+sonject_status raster_change(struct report *report, void *image, const struct region *region,
+                             const void *pixels)
 {
-    const char *name = image->name.c_str();
-    if (image->kind != IMAGE_TIFF || !region_is_inside(&image->layout, region))
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: the region is not inside a TIFF",
-                              name);
-    return tiff_change(report, name, image->path.c_str(), region, pixels);
+    const auto &file = *static_cast<const struct raster_image *>(image);
+    if (file.kind != IMAGE_TIFF)
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: is no TIFF", file.name.c_str());
+    return tiff_change(report, file.name.c_str(), file.path.c_str(), region, pixels);
 }
 
-sonject_status raster_image_encode(struct report *report, const struct raster_encoding *encoding)
+sonject_status raster_finish(struct report *, void *)
+{
+    return SONJECT_OK;
+}
+
+sonject_status raster_encode(struct report *report, const struct raster_encoding *encoding)
 {
     return guarded(report, encoding->name, [&] {
         const struct raster_layout &layout = encoding->layout;
@@ -374,3 +384,19 @@ sonject_status raster_image_encode(struct report *report, const struct raster_en
         output->finish();
     });
 }
+
+} // namespace
+
+#define TEXT_OF(number)   #number
+#define DIGITS_OF(number) TEXT_OF(number)
+
+const struct raster_module raster_module_openimageio = {
+    RASTER_MODULE_MARK,
+    sizeof(struct raster_module),
+    sizeof(struct report),
+    sizeof(struct raster_encoding),
+    DIGITS_OF(SONJECT_VERSION_MAJOR) "." DIGITS_OF(SONJECT_VERSION_MINOR) "." DIGITS_OF(
+        SONJECT_VERSION_PATCH),
+    {raster_open, raster_close, raster_attribute, raster_read, raster_change, raster_finish},
+    raster_encode,
+};

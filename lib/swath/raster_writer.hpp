@@ -14,7 +14,7 @@
 #include "image/raster.h"
 #include "swath/image_kind.h"
 #include "swath/raster_failure.hpp"
-#include "swath/raster_image.h"
+#include "swath/raster_module.h"
 #include "swath/raster_streams.hpp"
 #include "swath/tiff_file.h"
 

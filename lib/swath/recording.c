@@ -9,7 +9,7 @@
 static sonject_status patch_rows(struct report *report, const struct scene *scene,
                                  const struct xtf_file *xtf, uint64_t *first, uint64_t *count)
 {
-    const uint64_t rows = xtf->rows.layout.rows;
+    const uint64_t rows = xtf->rows;
     *first = scene->patch.first_row;
     *count = scene->patch.rows > 0 ? scene->patch.rows : rows;
     if (*first >= rows || *count > rows - *first) {

@@ -1,3 +1,5 @@
+#define _POSIX_C_SOURCE   200809L
+#define _FILE_OFFSET_BITS 64
 #include "swath/swath_file.h"
 
 #include <errno.h>
@@ -7,104 +9,96 @@
 #include "base/byte_file.h"
 #include "base/file.h"
 #include "base/memory.h"
-#include "swath/decoded_image.h"
-#include "swath/hdf5_mark.h"
-#include "swath/image_kind.h"
-#include "swath/mat_file.h"
-#include "swath/npy_file.h"
-#include "swath/raster_file.h"
+#include "swath/swath_format.h"
 
-enum swath_kind {
-    SWATH_IMAGE,
-    SWATH_XTF,
-    SWATH_NPY,
-    SWATH_HDF5,
-    SWATH_MAT
-};
+#define COPIED_AT_ONCE ((uint64_t)8 << 20)
 
-struct swath_file {
-    enum swath_kind kind;
-    char *path;
-    enum image_kind image; /* of SWATH_IMAGE */
-    struct xtf_file xtf;
-    struct sample_rows plain;      /* SWATH_NPY */
-    struct decoded_image *decoded; /* SWATH_IMAGE, SWATH_HDF5 */
-    struct mat_file mat;
-};
+/* Recognised in this order. */
+static const struct swath_format *const formats[] = {&xtf_format, &npy_format, &mat_format,
+                                                     &image_format, &hdf5_format};
 
-static sonject_status tell_kind(struct report *report, const char *path, enum swath_kind *kind,
-                                enum image_kind *image)
+sonject_status swath_refuse(struct report *report, const struct swath_file *file, const char *what)
+{
+    return report_failure(report, SONJECT_ERROR_INPUT, "%s: %s", file->path, what);
+}
+
+void swath_file_close(struct swath_file **file)
+{
+    if (!file || !*file)
+        return;
+    if ((*file)->stream)
+        fclose((*file)->stream);
+    free((*file)->lines.places);
+    free((*file)->xtf.pings);
+    mat_array_release(&(*file)->mat);
+    decoded_image_close(&(*file)->decoded);
+    free((*file)->path);
+    free(*file);
+    *file = NULL;
+}
+
+static sonject_status recognise(struct report *report, const char *path, struct swath_file **opened)
 {
     unsigned char head[16] = {0};
-    uint64_t bytes;
-    FILE *stream = byte_file_open(path, &bytes);
-    if (!stream) {
+    struct swath_file *file = *opened = allocate_array(1, sizeof *file);
+    CHECK_MEMORY(report, file && (file->path = copy_text(path)), "a file");
+    file->stream = byte_file_open(path, &file->bytes);
+    if (!file->stream)
         return file_refuse(report, path, errno);
-    }
-    const size_t got = fread(head, 1, sizeof head, stream);
-    const bool is_read = ferror(stream) == 0;
-    fclose(stream);
-    if (!is_read)
+    const size_t count = fread(head, 1, sizeof head, file->stream);
+    if (ferror(file->stream))
         return file_failure(report, path, "read", errno);
-    *kind = xtf_begins(head, got)                       ? SWATH_XTF
-            : npy_begins(head, got)                     ? SWATH_NPY
-            : mat_begins(head, got)                     ? SWATH_MAT
-            : image_kind_of_beginning(head, got, image) ? SWATH_IMAGE
-            : hdf5_mark_is_in(path)                     ? SWATH_HDF5
-                                                        : SWATH_IMAGE;
-    return *kind == SWATH_IMAGE ? file_check_disk(report, path, image_kind_of(report, path, image))
-                                : SONJECT_OK;
+    for (size_t i = 0; i < sizeof formats / sizeof *formats; i++)
+        if (formats[i]->is_of(file, head, count)) {
+            file->format = formats[i];
+            return SONJECT_OK;
+        }
+    return image_kind_refuse(report, path, head, count);
 }
 
-static bool has_channels(enum swath_kind kind)
+static sonject_status open_recognised(struct report *report, struct swath_file *file,
+                                      const struct swath_format *beside, int32_t channel,
+                                      const char *array)
 {
-    return kind == SWATH_XTF;
+    const struct swath_format *format = file->format;
+    if (!format->has_channels && beside && beside->has_channels)
+        channel = SONJECT_CHANNEL_ONLY;
+    if (!format->has_names && beside && beside->has_names)
+        array = NULL;
+    if (channel != SONJECT_CHANNEL_ONLY && !format->has_channels)
+        return swath_refuse(report, file,
+                            "is no XTF file, so it has no channels: take the channel out");
+    if (array && !format->has_names)
+        return swath_refuse(
+            report, file,
+            "is neither HDF5 nor MATLAB, so its arrays have no names: take the array out");
+    return format->open(report, file, channel, array);
 }
 
-static bool has_names(enum swath_kind kind)
+/* NULL for a file that cannot be read: who opens it says so. */
+static const struct swath_format *format_of(const char *path)
 {
-    return kind == SWATH_HDF5 || kind == SWATH_MAT;
+    struct report unheard = {{0}, NULL, NULL};
+    struct swath_file *file = NULL;
+    const struct swath_format *format =
+        path && recognise(&unheard, path, &file) == SONJECT_OK ? file->format : NULL;
+    swath_file_close(&file);
+    return format;
 }
 
-/* SWATH_IMAGE of a file that cannot be read: who opens it says so. */
-static enum swath_kind kind_if_any(const char *path)
+sonject_status swath_file_open_beside(struct report *report, const char *path, const char *other,
+                                      int32_t channel, const char *array, struct swath_file **file)
 {
-    struct report report = {{0}, NULL, NULL};
-    enum swath_kind kind = SWATH_IMAGE;
-    enum image_kind image;
-    return tell_kind(&report, path, &kind, &image) == SONJECT_OK ? kind : SWATH_IMAGE;
-}
-
-static sonject_status open_kind(struct report *report, struct swath_file *file, int32_t channel,
-                                const char *array)
-{
-    if (channel != SONJECT_CHANNEL_ONLY && !has_channels(file->kind))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: is no XTF file, so it has no channels: take the channel out",
-                              file->path);
-    if (array && !has_names(file->kind))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: is neither HDF5 nor MATLAB, so its arrays have no names: take "
-                              "the array out",
-                              file->path);
-    switch (file->kind) {
-    case SWATH_XTF:
-        return xtf_file_open(report, file->path, channel, &file->xtf);
-    case SWATH_NPY:
-        return npy_file_open(report, file->path, &file->plain);
-    case SWATH_MAT:
-        return mat_file_open(report, file->path, array, &file->mat);
-    case SWATH_HDF5:
-    case SWATH_IMAGE:
-        break;
-    }
-    return decoded_image_open(report, file->path, array, &file->decoded);
-}
-
-sonject_status swath_file_open(struct report *report, const char *path, int32_t channel,
-                               struct swath_file **file)
-{
-    return swath_file_open_array(report, path, channel, NULL, file);
+    errno = 0;
+    sonject_status status = file_check_disk(report, path, recognise(report, path, file));
+    const struct swath_format *beside = status == SONJECT_OK ? format_of(other) : NULL;
+    errno = 0;
+    if (status == SONJECT_OK)
+        status =
+            file_check_disk(report, path, open_recognised(report, *file, beside, channel, array));
+    if (status != SONJECT_OK)
+        swath_file_close(file);
+    return status;
 }
 
 sonject_status swath_file_open_array(struct report *report, const char *path, int32_t channel,
@@ -113,85 +107,27 @@ sonject_status swath_file_open_array(struct report *report, const char *path, in
     return swath_file_open_beside(report, path, NULL, channel, array, file);
 }
 
-sonject_status swath_file_open_beside(struct report *report, const char *path, const char *other,
-                                      int32_t channel, const char *array, struct swath_file **file)
-{
-    *file = NULL;
-    struct swath_file *opened = allocate_array(1, sizeof *opened);
-    char *copy = copy_text(path);
-    sonject_status status = SONJECT_OK;
-    if (!opened || !copy) {
-        free(copy);
-        free(opened);
-        return report_out_of_memory(report, "a file");
-    }
-    opened->path = copy;
-    errno = 0;
-    status = tell_kind(report, opened->path, &opened->kind, &opened->image);
-    if (status == SONJECT_OK) {
-        const enum swath_kind beside = other ? kind_if_any(other) : SWATH_IMAGE;
-        if (!has_channels(opened->kind) && has_channels(beside))
-            channel = SONJECT_CHANNEL_ONLY;
-        if (!has_names(opened->kind) && has_names(beside))
-            array = NULL;
-        status = file_check_disk(report, path, open_kind(report, opened, channel, array));
-    }
-    if (status == SONJECT_OK)
-        *file = opened;
-    else
-        swath_file_close(&opened);
-    return status;
-}
-
-void swath_file_close(struct swath_file **file)
-{
-    if (!file || !*file)
-        return;
-    xtf_file_close(&(*file)->xtf);
-    sample_rows_clear(&(*file)->plain);
-    decoded_image_close(&(*file)->decoded);
-    mat_file_close(&(*file)->mat);
-    free((*file)->path);
-    free(*file);
-    *file = NULL;
-}
-
-/* NULL: it is of another kind. */
-static const struct sample_rows *sample_rows_of(const struct swath_file *file)
-{
-    if (file->kind == SWATH_XTF)
-        return &file->xtf.rows;
-    return file->plain.file ? &file->plain : NULL;
-}
-
 void swath_file_layout(const struct swath_file *file, struct raster_layout *layout)
 {
-    const struct sample_rows *rows = sample_rows_of(file);
-    if (rows)
-        *layout = rows->layout;
-    else
-        *layout = file->kind == SWATH_MAT ? file->mat.layout : file->decoded->layout;
+    *layout = file->layout;
 }
 
 const char *swath_file_new_extension(const struct swath_file *file)
 {
-    if (file->kind != SWATH_IMAGE || file->image == IMAGE_TIFF)
+    if (file->format != &image_format || file->image == IMAGE_TIFF)
         return NULL;
     return file->image == IMAGE_PNG || file->image == IMAGE_JPEG ? ".png" : ".tif";
 }
 
 uint32_t swath_file_largest(const struct swath_file *file)
 {
-    const struct sample_rows *rows = sample_rows_of(file);
-    if (rows)
-        return rows->largest;
-    return file->kind == SWATH_MAT ? mat_file_largest(&file->mat) : file->decoded->largest;
+    return file->largest;
 }
 
 enum range_axis swath_file_range_axis(const struct swath_file *file)
 {
     char axis[16] = "";
-    if (file->kind == SWATH_XTF)
+    if (swath_file_xtf(file))
         return file->xtf.is_ground_range ? RANGE_GROUND : RANGE_SLANT;
     if (!swath_file_attribute(file, "sonject:range_axis", axis, sizeof axis))
         return RANGE_UNKNOWN;
@@ -202,7 +138,7 @@ enum range_axis swath_file_range_axis(const struct swath_file *file)
 
 const struct xtf_file *swath_file_xtf(const struct swath_file *file)
 {
-    return file->kind == SWATH_XTF ? &file->xtf : NULL;
+    return file->format == &xtf_format ? &file->xtf : NULL;
 }
 
 bool swath_file_attribute(const struct swath_file *file, const char *name, char *value,
@@ -211,38 +147,20 @@ bool swath_file_attribute(const struct swath_file *file, const char *name, char 
     return file->decoded && decoded_image_attribute(file->decoded, name, value, capacity);
 }
 
-static sonject_status read_kind(struct report *report, struct swath_file *file,
-                                const struct region *region, void *pixels)
+static sonject_status check_region(struct report *report, const struct swath_file *file,
+                                   const struct region *region)
 {
-    const struct sample_rows *rows = sample_rows_of(file);
-    if (rows)
-        return sample_rows_read(report, rows, region, pixels);
-    if (file->kind == SWATH_MAT)
-        return mat_file_read(report, &file->mat, region, pixels);
-    return decoded_image_read(report, file->decoded, region, pixels);
+    return region_is_inside(&file->layout, region)
+               ? SONJECT_OK
+               : swath_refuse(report, file, "the region is not inside the image");
 }
 
 sonject_status swath_file_read(struct report *report, struct swath_file *file,
                                const struct region *region, void *pixels)
 {
+    CHECK(check_region(report, file, region));
     errno = 0;
-    return file_check_disk(report, file->path, read_kind(report, file, region, pixels));
-}
-
-static sonject_status copy_kind(struct report *report, const struct swath_file *file,
-                                const char *path, const struct region *region, const void *pixels,
-                                sonject_progress_function progress, void *user)
-{
-    const struct sample_rows *rows = sample_rows_of(file);
-    if (rows)
-        return sample_rows_copy_with_patch(report, rows, path, region, pixels, progress, user);
-    if (file->kind == SWATH_HDF5)
-        return decoded_image_copy_with_patch(report, file->decoded, path, region, pixels, progress,
-                                             user);
-    if (file->kind == SWATH_MAT)
-        return mat_file_copy_with_patch(report, &file->mat, path, region, pixels, progress, user);
-    return raster_file_copy_with_patch(report, file->decoded, file->image, path, region, pixels,
-                                       progress, user);
+    return file_check_disk(report, file->path, file->format->read(report, file, region, pixels));
 }
 
 sonject_status swath_file_copy_with_patch(struct report *report, const struct swath_file *file,
@@ -250,7 +168,108 @@ sonject_status swath_file_copy_with_patch(struct report *report, const struct sw
                                           const void *pixels, sonject_progress_function progress,
                                           void *user)
 {
+    CHECK(check_region(report, file, region));
+    char *part = file_part_name(path);
+    CHECK_MEMORY(report, part, "a file name");
+    const struct swath_copy copy = {path, part, region, pixels, progress, user};
     errno = 0;
-    return file_check_disk(report, file->path,
-                           copy_kind(report, file, path, region, pixels, progress, user));
+    sonject_status status =
+        file_check_disk(report, file->path, file->format->copy(report, file, &copy));
+    if (status == SONJECT_OK)
+        status = file_publish(report, part, path);
+    else
+        file_discard(part);
+    free(part);
+    return status;
+}
+
+sonject_status swath_copy_bytes(struct report *report, const struct swath_file *file,
+                                const struct swath_copy *copy, uint64_t first, uint64_t end,
+                                FILE *out)
+{
+    for (uint64_t place = first; place < end; place += COPIED_AT_ONCE) {
+        const uint64_t some = end - place < COPIED_AT_ONCE ? end - place : COPIED_AT_ONCE;
+        errno = 0;
+        if (!byte_file_copy(file->stream, place, some, out))
+            return ferror(out) ? file_failure(report, copy->path, "write", errno)
+                               : swath_refuse(report, file, "is cut short: copy it again");
+        if (copy->progress &&
+            copy->progress(copy->user, (double)place / (double)file->bytes, "write") != 0)
+            return report_failure(report, SONJECT_CANCELLED, "cancelled");
+    }
+    return SONJECT_OK;
+}
+
+sonject_status swath_close_copy(struct report *report, const struct swath_copy *copy, FILE *out,
+                                sonject_status status)
+{
+    if (out && fclose(out) != 0)
+        THEN(status, file_failure(report, copy->path, "write", errno));
+    return status;
+}
+
+/* Reads a region's lines, one at a time, or writes them to a copy (out). */
+static sonject_status exchange_lines(struct report *report, const struct swath_file *file,
+                                     const struct region *region, void *pixels,
+                                     const struct swath_copy *copy, FILE *out)
+{
+    const struct sample_lines *lines = &file->lines;
+    const bool turned = lines->is_transposed;
+    const size_t sample = stored_bytes(lines->type);
+    const size_t pixel = file->layout.channels * sample;
+    const uint64_t count = turned ? region->columns : region->rows;
+    const size_t bytes = (size_t)(turned ? region->rows : region->columns) * pixel;
+    const uint64_t before = turned ? region->first_row
+                            : lines->is_reversed
+                                ? file->layout.columns - region->first_column - region->columns
+                                : region->first_column;
+    unsigned char *line = allocate_array(bytes, 1);
+    const ptrdiff_t step = (ptrdiff_t)file->layout.channels;
+    unsigned char *first = lines->is_reversed && line ? line + bytes - pixel : line;
+    const struct stored_samples stored = {
+        .bytes = {first, line ? first + sample : NULL},
+        .types = {lines->type, lines->type},
+        .row_step = step,
+        .column_step = lines->is_reversed ? -step : step,
+        .is_big_endian = lines->is_big_endian,
+        .are_amplitudes = true,
+        .largest = file->largest,
+    };
+    sonject_status status = line ? SONJECT_OK : report_out_of_memory(report, "a row");
+    for (uint64_t i = 0; status == SONJECT_OK && i < count; i++) {
+        const uint64_t number = i + (turned ? region->first_column : region->first_row);
+        const uint64_t place =
+            before * pixel + (lines->places ? lines->places[number]
+                                            : lines->first_place + number * lines->line_bytes);
+        const struct region part = {region->first_row + (turned ? 0 : i),
+                                    region->first_column + (turned ? i : 0),
+                                    turned ? region->rows : 1, turned ? 1 : region->columns};
+        if (!byte_file_read(file->stream, place, line, bytes))
+            status = swath_refuse(report, file, "is cut short: copy it again");
+        else
+            status = samples_exchange(report, file->path, &file->layout, &stored, &part, region,
+                                      pixels, out != NULL);
+        if (status == SONJECT_OK && out &&
+            (fseeko(out, (off_t)place, SEEK_SET) != 0 || fwrite(line, 1, bytes, out) != bytes))
+            status = file_failure(report, copy->path, "write", errno);
+    }
+    free(line);
+    return status;
+}
+
+sonject_status sample_lines_read(struct report *report, struct swath_file *file,
+                                 const struct region *region, void *pixels)
+{
+    return exchange_lines(report, file, region, pixels, NULL, NULL);
+}
+
+sonject_status sample_lines_copy(struct report *report, const struct swath_file *file,
+                                 const struct swath_copy *copy)
+{
+    FILE *out = fopen(copy->part, "w+b");
+    if (!out)
+        return file_failure(report, copy->path, "write", errno);
+    sonject_status status = swath_copy_bytes(report, file, copy, 0, file->bytes, out);
+    THEN(status, exchange_lines(report, file, copy->region, (void *)copy->pixels, copy, out));
+    return swath_close_copy(report, copy, out, status);
 }

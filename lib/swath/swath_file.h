@@ -10,14 +10,10 @@
 struct swath_file;
 
 /* Opens for reading; the file's first bytes tell what it is. channel: of an XTF file; must be
- * SONJECT_CHANNEL_ONLY for other files. Of several arrays in a file none is chosen. Errors: INPUT
- * (as decoded_image_open, xtf_file_open and the like say), UNSUPPORTED, STORAGE, MEMORY. On success
- * *file is the caller's, for swath_file_close; on failure NULL. */
-sonject_status swath_file_open(struct report *report, const char *path, int32_t channel,
-                               struct swath_file **file);
-
-/* The same, and the name of the array in an HDF5 or MATLAB file; NULL: the only one. Must be NULL
- * for other files. */
+ * SONJECT_CHANNEL_ONLY for other files. array: its name in an HDF5 or MATLAB file, NULL for the
+ * only one; must be NULL for other files. Errors: INPUT (as decoded_image_open and the formats'
+ * files say), UNSUPPORTED, STORAGE, MEMORY. On success *file is the caller's, for swath_file_close;
+ * on failure NULL. */
 sonject_status swath_file_open_array(struct report *report, const char *path, int32_t channel,
                                      const char *array, struct swath_file **file);
 

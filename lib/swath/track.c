@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "swath/xtf_file.h"
 
 #define PI                 3.14159265358979323846
 #define EQUATOR_RADIUS_M   6378137.0
@@ -37,7 +38,7 @@ static bool is_new_fix(const struct track *track, const struct xtf_ping *ping)
 sonject_status track_of_recording(struct track *track, struct report *report,
                                   const struct xtf_file *file)
 {
-    const size_t rows = (size_t)file->rows.layout.rows;
+    const size_t rows = (size_t)file->rows;
     bool has_headings = false;
     bool are_angles = true;
     size_t told = rows; /* the last row so far whose ping says anything */

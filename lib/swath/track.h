@@ -4,7 +4,9 @@
 
 #include <stdbool.h>
 
-#include "swath/xtf_file.h"
+#include "base/report.h"
+
+struct xtf_file;
 
 /* Where the recorder wrote a new position. */
 struct track_fix {

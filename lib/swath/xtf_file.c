@@ -1,7 +1,5 @@
-#define _POSIX_C_SOURCE 200809L
 #include "swath/xtf_file.h"
 
-#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -9,8 +7,7 @@
 
 #include "base/byte_file.h"
 #include "base/byte_order.h"
-#include "base/file.h"
-#include "base/memory.h"
+#include "swath/swath_format.h"
 
 #define PI                  3.14159265358979323846
 #define METRES_PER_DEGREE   (1852.0 * 60.0)
@@ -25,7 +22,6 @@
 #define CORRECTED_TO_GROUND 2 /* of a channel's correction flags; 1: slant range */
 #define UNITS_GEOGRAPHIC    3
 #define SAMPLES_MAX         (UINT32_C(1) << 24)
-#define LARGEST_POSITIVE_16 32767
 
 struct xtf_channel {
     uint32_t kind; /* enum xtf_side, or others */
@@ -37,15 +33,16 @@ struct xtf_channel {
 /* A file being opened. */
 struct opening {
     struct report *report;
-    struct xtf_file *file;
+    struct swath_file *file;
     struct xtf_channel channels[XTF_CHANNEL_MAX + 1];
     uint32_t channel_count;
     uint64_t capacity; /* of pings and places */
 };
 
-bool xtf_begins(const unsigned char *bytes, size_t count)
+static bool is_xtf(struct swath_file *file, const unsigned char *head, size_t count)
 {
-    return count >= 2 && bytes[0] == FILE_MARK && bytes[1] > 0;
+    (void)file;
+    return count >= 2 && head[0] == FILE_MARK && head[1] > 0;
 }
 
 static uint32_t word_at(const unsigned char *bytes, size_t place, size_t size)
@@ -53,27 +50,27 @@ static uint32_t word_at(const unsigned char *bytes, size_t place, size_t size)
     return (uint32_t)number_from_bytes(bytes + place, size, false);
 }
 
+static double finite_at(const unsigned char *bytes, size_t place, size_t size)
+{
+    const double number = float_from_bytes(bytes + place, size, false);
+    return isfinite(number) ? number : 0.0;
+}
+
 static float float_at(const unsigned char *bytes, size_t place)
 {
-    const uint32_t word = word_at(bytes, place, 4);
-    float value;
-    memcpy(&value, &word, sizeof value);
-    return isfinite(value) ? value : 0.0f;
+    return (float)finite_at(bytes, place, 4);
 }
 
 static double double_at(const unsigned char *bytes, size_t place)
 {
-    const uint64_t word = number_from_bytes(bytes + place, 8, false);
-    double value;
-    memcpy(&value, &word, sizeof value);
-    return isfinite(value) ? value : 0.0;
+    return finite_at(bytes, place, 8);
 }
 
 static sonject_status damaged(const struct opening *opening, uint64_t place, const char *what)
 {
     return report_failure(opening->report, SONJECT_ERROR_INPUT,
                           "%s: damaged at byte %llu: %s: copy or export it again",
-                          opening->file->rows.path, (unsigned long long)place, what);
+                          opening->file->path, (unsigned long long)place, what);
 }
 
 static bool is_sidescan(const struct xtf_channel *channel)
@@ -84,18 +81,18 @@ static bool is_sidescan(const struct xtf_channel *channel)
 /* Reads the file's header and the channels' descriptions; *first_packet gets where pings begin. */
 static sonject_status read_header(struct opening *opening, uint64_t *first_packet)
 {
-    struct sample_rows *rows = &opening->file->rows;
+    FILE *stream = opening->file->stream;
     unsigned char head[CHANNELS_PLACE];
     unsigned char info[CHANNEL_BYTES];
-    if (!byte_file_read(rows->file, 0, head, sizeof head))
+    if (!byte_file_read(stream, 0, head, sizeof head))
         return damaged(opening, 0, "its header is cut short");
-    opening->file->is_geographic = word_at(head, 164, 2) == UNITS_GEOGRAPHIC;
+    opening->file->xtf.is_geographic = word_at(head, 164, 2) == UNITS_GEOGRAPHIC;
     opening->channel_count = word_at(head, 166, 2);
     const uint32_t described = opening->channel_count + word_at(head, 168, 2);
     if (opening->channel_count > XTF_CHANNEL_MAX + 1 || described > 4 * (XTF_CHANNEL_MAX + 1))
         return damaged(opening, 166, "more channels than such files have");
     for (uint32_t i = 0; i < opening->channel_count; i++) {
-        if (!byte_file_read(rows->file, CHANNELS_PLACE + (uint64_t)i * CHANNEL_BYTES, info,
+        if (!byte_file_read(stream, CHANNELS_PLACE + (uint64_t)i * CHANNEL_BYTES, info,
                             sizeof info))
             return damaged(opening, CHANNELS_PLACE, "its channels are cut short");
         opening->channels[i].kind = info[0];
@@ -130,49 +127,50 @@ static sonject_status choose_channel(struct opening *opening, int32_t wanted)
     }
     if (*list == '\0')
         return report_failure(opening->report, SONJECT_ERROR_INPUT, "%s: has no sidescan channel",
-                              opening->file->rows.path);
+                              opening->file->path);
     if (matches != 1)
         return report_failure(opening->report, SONJECT_ERROR_INPUT,
                               "%s: has %s such sidescan channel: choose one of %s",
-                              opening->file->rows.path, matches == 0 ? "no" : "more than one",
-                              list);
-    opening->file->channel = found;
-    opening->file->side = opening->channels[found].kind;
-    opening->file->is_ground_range = opening->channels[found].is_ground_range;
+                              opening->file->path, matches == 0 ? "no" : "more than one", list);
+    opening->file->xtf.channel = found;
+    opening->file->xtf.side = opening->channels[found].kind;
+    opening->file->xtf.is_ground_range = opening->channels[found].is_ground_range;
     return SONJECT_OK;
 }
 
 static sonject_status set_samples(struct opening *opening)
 {
-    struct sample_rows *rows = &opening->file->rows;
-    const struct xtf_channel *channel = &opening->channels[opening->file->channel];
+    struct swath_file *file = opening->file;
+    const struct xtf_channel *channel = &opening->channels[file->xtf.channel];
     if (channel->sample_bytes != 1 && channel->sample_bytes != 2)
         return report_failure(opening->report, SONJECT_ERROR_INPUT,
                               "%s: channel %u has samples of %u bytes; sonject reads 1 and 2",
-                              rows->path, opening->file->channel, channel->sample_bytes);
-    rows->layout.type = channel->sample_bytes == 1 ? PIXEL_UINT8 : PIXEL_UINT16;
-    rows->layout.channels = 1;
-    rows->largest = channel->is_signed && channel->sample_bytes == 2 ? LARGEST_POSITIVE_16 : 0;
-    rows->above_is_negative = true;
+                              file->path, file->xtf.channel, channel->sample_bytes);
+    file->layout.type = channel->sample_bytes == 1 ? PIXEL_UINT8 : PIXEL_UINT16;
+    file->layout.channels = 1;
+    file->lines.type = channel->sample_bytes == 1 ? STORED_UINT8
+                       : channel->is_signed       ? STORED_INT16
+                                                  : STORED_UINT16;
+    file->largest = file->lines.type == STORED_INT16 ? INT16_MAX : 0;
     /* port's samples are stored as a display shows them: from far to near */
-    rows->is_reversed = opening->file->side == XTF_PORT;
+    file->lines.is_reversed = file->xtf.side == XTF_PORT;
     return SONJECT_OK;
 }
 
 static bool make_room(struct opening *opening)
 {
-    struct xtf_file *file = opening->file;
-    if (file->rows.layout.rows < opening->capacity)
+    struct swath_file *file = opening->file;
+    if (file->layout.rows < opening->capacity)
         return true;
     const uint64_t capacity = opening->capacity > 0 ? 2 * opening->capacity : 256;
-    struct xtf_ping *pings = realloc(file->pings, (size_t)capacity * sizeof *pings);
+    struct xtf_ping *pings = realloc(file->xtf.pings, (size_t)capacity * sizeof *pings);
     if (!pings)
         return false;
-    file->pings = pings;
-    uint64_t *places = realloc(file->rows.places, (size_t)capacity * sizeof *places);
+    file->xtf.pings = pings;
+    uint64_t *places = realloc(file->lines.places, (size_t)capacity * sizeof *places);
     if (!places)
         return false;
-    file->rows.places = places;
+    file->lines.places = places;
     opening->capacity = capacity;
     return true;
 }
@@ -181,25 +179,24 @@ static bool make_room(struct opening *opening)
 static sonject_status check_same(struct opening *opening, const struct xtf_ping *ping,
                                  uint64_t samples)
 {
-    const struct xtf_file *file = opening->file;
-    const struct raster_layout *layout = &file->rows.layout;
-    if (layout->rows == 0 ||
-        (samples == layout->columns && fabsf(ping->slant_range_m - file->pings[0].slant_range_m) <=
-                                           1e-3f * file->pings[0].slant_range_m))
+    const struct swath_file *file = opening->file;
+    const struct raster_layout *layout = &file->layout;
+    if (layout->rows == 0 || (samples == layout->columns &&
+                              fabsf(ping->slant_range_m - file->xtf.pings[0].slant_range_m) <=
+                                  1e-3f * file->xtf.pings[0].slant_range_m))
         return SONJECT_OK;
     return report_failure(opening->report, SONJECT_ERROR_INPUT,
                           "%s: ping %llu has %llu samples to %g m, the pings before it %llu to %g "
                           "m: cut the file there",
-                          file->rows.path, (unsigned long long)layout->rows,
-                          (unsigned long long)samples, (double)ping->slant_range_m,
-                          (unsigned long long)layout->columns,
-                          (double)file->pings[0].slant_range_m);
+                          file->path, (unsigned long long)layout->rows, (unsigned long long)samples,
+                          (double)ping->slant_range_m, (unsigned long long)layout->columns,
+                          (double)file->xtf.pings[0].slant_range_m);
 }
 
 static sonject_status add_ping(struct opening *opening, const unsigned char *packet,
                                const unsigned char *channel, uint64_t place, uint64_t samples)
 {
-    struct xtf_file *file = opening->file;
+    struct swath_file *file = opening->file;
     const double sensor_x = double_at(packet, 168);
     const double sensor_y = double_at(packet, 160);
     const bool has_sensor = sensor_x != 0.0 || sensor_y != 0.0;
@@ -215,14 +212,11 @@ static sonject_status add_ping(struct opening *opening, const unsigned char *pac
     ping.duration_s = float_at(channel, 16);
     if (samples == 0 || samples > SAMPLES_MAX || !(ping.slant_range_m > 0.0f))
         return damaged(opening, place, "a ping without samples or slant range");
-    const sonject_status status = check_same(opening, &ping, samples);
-    if (status != SONJECT_OK)
-        return status;
-    if (!make_room(opening))
-        return report_out_of_memory(opening->report, "the pings");
-    file->rows.layout.columns = samples;
-    file->pings[file->rows.layout.rows] = ping;
-    file->rows.places[file->rows.layout.rows++] = place;
+    CHECK(check_same(opening, &ping, samples));
+    CHECK_MEMORY(opening->report, make_room(opening), "the pings");
+    file->layout.columns = samples;
+    file->xtf.pings[file->layout.rows] = ping;
+    file->lines.places[file->layout.rows++] = place;
     return SONJECT_OK;
 }
 
@@ -230,12 +224,12 @@ static sonject_status add_ping(struct opening *opening, const unsigned char *pac
 static sonject_status read_packet(struct opening *opening, const unsigned char *packet,
                                   uint64_t start, uint64_t end)
 {
-    struct sample_rows *rows = &opening->file->rows;
+    struct swath_file *file = opening->file;
     const uint32_t channels = word_at(packet, 4, 2);
     unsigned char head[CHANNEL_HEAD_BYTES];
     uint64_t place = start + PACKET_BYTES;
     for (uint32_t i = 0; i < channels; i++) {
-        if (end - place < sizeof head || !byte_file_read(rows->file, place, head, sizeof head))
+        if (end - place < sizeof head || !byte_file_read(file->stream, place, head, sizeof head))
             return damaged(opening, place, "a channel is cut short");
         const uint32_t number = word_at(head, 0, 2);
         const uint64_t samples = word_at(head, 42, 4);
@@ -245,7 +239,7 @@ static sonject_status read_packet(struct opening *opening, const unsigned char *
         const uint64_t bytes = samples * opening->channels[number].sample_bytes;
         if (bytes > end - place)
             return damaged(opening, place, "more samples than the ping holds");
-        if (number == opening->file->channel)
+        if (number == file->xtf.channel)
             return add_ping(opening, packet, head, place, samples);
         place += bytes;
     }
@@ -254,12 +248,11 @@ static sonject_status read_packet(struct opening *opening, const unsigned char *
 
 static sonject_status read_packets(struct opening *opening, uint64_t place)
 {
-    struct sample_rows *rows = &opening->file->rows;
+    struct swath_file *file = opening->file;
     unsigned char packet[PACKET_BYTES];
-    sonject_status status = SONJECT_OK;
-    while (status == SONJECT_OK && place < rows->file_bytes) {
-        const uint64_t left = rows->file_bytes - place;
-        if (left < 14 || !byte_file_read(rows->file, place, packet, 14))
+    while (place < file->bytes) {
+        const uint64_t left = file->bytes - place;
+        if (left < 14 || !byte_file_read(file->stream, place, packet, 14))
             return damaged(opening, place, "the last packet is cut short");
         const uint64_t bytes = word_at(packet, 10, 4);
         if (word_at(packet, 0, 2) != PACKET_MARK || bytes < 14)
@@ -267,50 +260,32 @@ static sonject_status read_packets(struct opening *opening, uint64_t place)
         if (bytes > left)
             return damaged(opening, place, "the last packet is cut short");
         if (packet[2] == PACKET_KIND_SONAR) {
-            if (bytes < PACKET_BYTES || !byte_file_read(rows->file, place, packet, PACKET_BYTES))
+            if (bytes < PACKET_BYTES || !byte_file_read(file->stream, place, packet, PACKET_BYTES))
                 return damaged(opening, place, "a ping is cut short");
-            status = read_packet(opening, packet, place, place + bytes);
+            CHECK(read_packet(opening, packet, place, place + bytes));
         }
         place += bytes;
     }
-    if (status == SONJECT_OK && rows->layout.rows == 0)
-        return report_failure(opening->report, SONJECT_ERROR_INPUT, "%s: has no pings", rows->path);
-    return status;
+    return file->layout.rows > 0 ? SONJECT_OK : swath_refuse(opening->report, file, "has no pings");
 }
 
-sonject_status xtf_file_open(struct report *report, const char *path, int32_t channel,
-                             struct xtf_file *file)
+static sonject_status open_xtf(struct report *report, struct swath_file *file, int32_t channel,
+                               const char *array)
 {
-    struct opening opening;
+    struct opening opening = {.report = report, .file = file};
     uint64_t first_packet = 0;
-    memset(file, 0, sizeof *file);
-    memset(&opening, 0, sizeof opening);
-    opening.report = report;
-    opening.file = file;
-    file->rows.path = copy_text(path);
-    if (!file->rows.path)
-        return report_out_of_memory(report, "a file name");
-    file->rows.file = byte_file_open(path, &file->rows.file_bytes);
-    sonject_status status = file->rows.file ? SONJECT_OK : file_refuse(report, path, errno);
-    if (status == SONJECT_OK)
-        status = read_header(&opening, &first_packet);
-    if (status == SONJECT_OK)
-        status = choose_channel(&opening, channel);
-    if (status == SONJECT_OK)
-        status = set_samples(&opening);
-    if (status == SONJECT_OK)
-        status = read_packets(&opening, first_packet);
-    if (status != SONJECT_OK)
-        xtf_file_close(file);
-    return status;
+    (void)array;
+    CHECK(read_header(&opening, &first_packet));
+    CHECK(choose_channel(&opening, channel));
+    CHECK(set_samples(&opening));
+    CHECK(read_packets(&opening, first_packet));
+    file->xtf.rows = file->layout.rows;
+    file->xtf.columns = file->layout.columns;
+    return SONJECT_OK;
 }
 
-void xtf_file_close(struct xtf_file *file)
-{
-    sample_rows_clear(&file->rows);
-    free(file->pings);
-    memset(file, 0, sizeof *file);
-}
+const struct swath_format xtf_format = {
+    true, false, is_xtf, open_xtf, sample_lines_read, sample_lines_copy};
 
 bool xtf_ping_has_position(const struct xtf_ping *ping)
 {
@@ -334,7 +309,7 @@ static double distance_between(const struct xtf_file *file, const struct xtf_pin
 /* Takes in as many rows on either side; false if all of the file's were there. */
 static bool widen(const struct xtf_file *file, uint64_t *first, uint64_t *end)
 {
-    const uint64_t rows = file->rows.layout.rows;
+    const uint64_t rows = file->rows;
     const uint64_t more = *end - *first;
     const bool is_more = *first > 0 || *end < rows;
     *first -= more < *first ? more : *first;
@@ -388,8 +363,7 @@ struct xtf_geometry xtf_geometry_of(const struct xtf_file *file, uint64_t first_
     const double delay = (double)first->delay_s;
     const double delay_share = duration > 0.0 && delay > 0.0 ? delay / (delay + duration) : 0.0;
     const double near_edge = (double)first->slant_range_m * delay_share;
-    geometry.column_spacing_m =
-        ((double)first->slant_range_m - near_edge) / (double)file->rows.layout.columns;
+    geometry.column_spacing_m = ((double)first->slant_range_m - near_edge) / (double)file->columns;
     geometry.first_slant_range_m = near_edge + 0.5 * geometry.column_spacing_m;
     return geometry;
 }

@@ -1,11 +1,15 @@
 /* Sidescan channels of XTF files (eXtended Triton Format, X41): rows are pings, columns range cells
- * from the track outwards. Little-endian; offsets after Triton's published format description. */
-#ifndef SONJECT_IO_XTF_FILE_H
-#define SONJECT_IO_XTF_FILE_H
+ * from the track outwards. Little-endian; offsets after Triton's published format description.
+ * Refused: a file that is cut short or damaged, no sidescan channel, no channel as chosen or
+ * several (lists them), samples of other sizes than 1 or 2 bytes, pings of the channel with
+ * different numbers of samples or slant ranges (says where). */
+#ifndef SONJECT_SWATH_XTF_FILE_H
+#define SONJECT_SWATH_XTF_FILE_H
 
 #include <sonject/image.h>
 
-#include "swath/sample_rows.h"
+#include <stdbool.h>
+#include <stdint.h>
 
 #define XTF_CHANNEL_MAX 63 /* highest number */
 
@@ -24,13 +28,14 @@ struct xtf_ping {
     float duration_s;    /* of all cells */
 };
 
+/* What the file says of a channel. */
 struct xtf_file {
-    struct sample_rows rows;
-    struct xtf_ping *pings; /* owned; rows.layout.rows of them */
-    uint32_t side;          /* enum xtf_side */
-    uint32_t channel;       /* its number */
-    bool is_ground_range;   /* samples are equally spaced on the seabed, as the file says */
-    bool is_geographic;     /* positions are degrees of longitude and latitude, else m */
+    struct xtf_ping *pings; /* owned; rows of them */
+    uint64_t rows, columns;
+    uint32_t side;        /* enum xtf_side */
+    uint32_t channel;     /* its number */
+    bool is_ground_range; /* samples are equally spaced on the seabed, as the file says */
+    bool is_geographic;   /* positions are degrees of longitude and latitude, else m */
 };
 
 /* Where a channel's pixels lie. */
@@ -40,18 +45,6 @@ struct xtf_geometry {
     double first_slant_range_m; /* of the middle of column 0 */
     double altitude_m;          /* mean; 0 where the file has none */
 };
-
-/* True if the file begins as XTF does. */
-bool xtf_begins(const unsigned char *bytes, size_t count);
-
-/* Opens a channel: its number, or SONJECT_CHANNEL_PORT and the like. Refused (INPUT): a file that
- * is cut short or damaged, no sidescan channel, no channel as chosen or several (lists them),
- * samples of other sizes than 1 or 2 bytes, pings of the channel with different numbers of samples
- * or slant ranges (says where). On success to be given to xtf_file_close; on failure nothing is
- * held. Errors: INPUT, STORAGE, MEMORY. */
-sonject_status xtf_file_open(struct report *report, const char *path, int32_t channel,
-                             struct xtf_file *file);
-void xtf_file_close(struct xtf_file *file);
 
 /* False for a ping that the recorder left empty, or had no navigation for. */
 bool xtf_ping_has_position(const struct xtf_ping *ping);

@@ -146,7 +146,7 @@ static void check_copy(const char *path, const struct region *patch)
     struct swath_file *file;
     const struct region around = {patch->first_row - 100, patch->first_column - 100,
                                   patch->rows + 200, patch->columns + 200};
-    if (swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file) != SONJECT_OK)
+    if (swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, NULL, &file) != SONJECT_OK)
         fail("checking", report.message);
     check_window(file, &around, patch);
     for (uint64_t row = 0; row + 300 < ROWS; row += 5003)
@@ -167,7 +167,7 @@ static void put_patch(const char *source, const char *copy, const struct region 
         pixels[i] = (uint16_t)~pixel_at(patch->first_row + i / patch->columns,
                                         patch->first_column + i % patch->columns);
     struct swath_file *file;
-    if (swath_file_open(&report, source, SONJECT_CHANNEL_ONLY, &file) != SONJECT_OK ||
+    if (swath_file_open_array(&report, source, SONJECT_CHANNEL_ONLY, NULL, &file) != SONJECT_OK ||
         swath_file_copy_with_patch(&report, file, copy, patch, pixels, NULL, NULL) != SONJECT_OK)
         fail(copy, report.message);
     swath_file_close(&file);

@@ -32,7 +32,7 @@ static sonject_status use_file(const char *path, const char *copy, int32_t chann
     struct swath_file *file;
     struct raster_layout layout;
     size_t bytes = 0;
-    sonject_status status = swath_file_open(&report, path, channel, &file);
+    sonject_status status = swath_file_open_array(&report, path, channel, NULL, &file);
     if (status == SONJECT_OK) {
         swath_file_layout(file, &layout);
         const struct region whole = {0, 0, layout.rows, layout.columns};

@@ -2,7 +2,7 @@
  * damaged. */
 #include "file_drafts.h"
 
-#include "swath/mat_element.h"
+#include "swath/mat.h"
 
 #ifdef HAS_HDF5
 #include "base/hdf5_values.h"
@@ -27,6 +27,11 @@ static void add_element(struct draft *draft, uint32_t type, const void *bytes, s
     add(draft, zeros, (8 - count % 8) % 8);
 }
 
+static size_t number_bytes(uint32_t type)
+{
+    return type == MAT_DOUBLE ? 8 : type == MAT_UINT16 ? 2 : 1;
+}
+
 /* parts: one or two, of rows x columns numbers of the stored type. */
 static void add_variable(struct draft *draft, const char *name, uint32_t kind, uint32_t rows,
                          uint32_t columns, uint32_t type, const void *const *parts)
@@ -39,7 +44,7 @@ static void add_variable(struct draft *draft, const char *name, uint32_t kind, u
     add_element(draft, MAT_INT32, sides, sizeof sides);
     add_element(draft, MAT_INT8, name, strlen(name));
     for (int i = 0; i < 2 && parts[i]; i++)
-        add_element(draft, type, parts[i], rows * columns * mat_type_bytes(type));
+        add_element(draft, type, parts[i], rows * columns * number_bytes(type));
     number_to_bytes(draft->count - start - 8, draft->bytes + start + 4, 4, false);
 }
 

@@ -140,7 +140,8 @@ static sonject_status use_file(struct host *host, const char *path, const char *
     float *samples = NULL;
     struct region region;
     host->report.message[0] = '\0';
-    sonject_status status = swath_file_open(&host->report, path, SONJECT_CHANNEL_ONLY, &file);
+    sonject_status status =
+        swath_file_open_array(&host->report, path, SONJECT_CHANNEL_ONLY, NULL, &file);
     if (status != SONJECT_OK)
         return status;
     (void)swath_file_range_axis(file);
@@ -256,8 +257,9 @@ static void what_was_open_in_a_dead_decoder_is_refused(void **state)
     const char *path = temporary_file(*state, "a.h5");
     make_file(path, CHUNKS);
     for (int i = 0; i < 2; i++)
-        assert_int_equal(swath_file_open(&host.report, path, SONJECT_CHANNEL_ONLY, &files[i]),
-                         SONJECT_OK);
+        assert_int_equal(
+            swath_file_open_array(&host.report, path, SONJECT_CHANNEL_ONLY, NULL, &files[i]),
+            SONJECT_OK);
     assert_int_equal(kill((pid_t)host.decoder.process, SIGKILL), 0);
     for (int i = 0; i < 2; i++) {
         assert_int_equal(read_image(&host, files[i], &samples, &region), SONJECT_ERROR_INPUT);

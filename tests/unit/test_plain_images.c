@@ -135,7 +135,7 @@ static sonject_status take_by(const struct report_host *by, const char *path,
     struct raster_layout layout;
     float samples[SAMPLES];
     const struct region whole = {0, 0, ROWS, COLUMNS};
-    sonject_status status = swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file);
+    sonject_status status = swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, NULL, &file);
     *is_right = false;
     if (status == SONJECT_OK) {
         swath_file_layout(file, &layout);

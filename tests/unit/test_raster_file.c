@@ -67,7 +67,8 @@ static sonject_status copy_with_patch(const char *source, const char *path,
                                       sonject_progress_function progress, void *user)
 {
     struct swath_file *file;
-    sonject_status status = swath_file_open(&report, source, SONJECT_CHANNEL_ONLY, &file);
+    sonject_status status =
+        swath_file_open_array(&report, source, SONJECT_CHANNEL_ONLY, NULL, &file);
     if (status == SONJECT_OK)
         status = swath_file_copy_with_patch(&report, file, path, region, pixels, progress, user);
     swath_file_close(&file);
@@ -80,7 +81,7 @@ static unsigned char *read_file(const char *path, const struct raster_layout *ex
     struct swath_file *file;
     struct raster_layout layout;
     size_t bytes = 0;
-    expect_ok(swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file));
+    expect_ok(swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, NULL, &file));
     swath_file_layout(file, &layout);
     assert_int_equal(layout.rows, expected->rows);
     assert_int_equal(layout.columns, expected->columns);
@@ -128,7 +129,8 @@ static void expect_message(const char *path, const char *part)
 static void expect_no_open(const char *path, const char *part)
 {
     struct swath_file *file = (struct swath_file *)&report;
-    if (swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file) != SONJECT_ERROR_INPUT)
+    if (swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, NULL, &file) !=
+        SONJECT_ERROR_INPUT)
         fail_msg("%s was not refused (%s)", path, part);
     assert_null(file);
     expect_message(path, part);
@@ -192,7 +194,7 @@ static void test_regions_in_any_order(void **state)
         struct swath_file *file;
         expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
         unsigned char *stored = read_file(path, &grey8, &everything);
-        expect_ok(swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file));
+        expect_ok(swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, NULL, &file));
         for (size_t j = 0; j < sizeof regions / sizeof *regions; j++) {
             unsigned char part[ROWS * COLUMNS];
             expect_ok(swath_file_read(&report, file, &regions[j], part));
@@ -217,7 +219,7 @@ static void test_a_region_outside_is_refused(void **state)
     unsigned char *pixels = make_pixels(&grey8, &everything, 1);
     struct swath_file *file;
     expect_ok(raster_file_write(&report, path, &grey8, NULL, NULL, 0, pixels));
-    expect_ok(swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file));
+    expect_ok(swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, NULL, &file));
     assert_int_equal(swath_file_read(&report, file, &outside, pixels), SONJECT_ERROR_INPUT);
     swath_file_close(&file);
     assert_int_equal(copy_with_patch(path, path, &outside, pixels, NULL, NULL),
@@ -242,7 +244,7 @@ static void test_attributes(void **state)
         char value[10];
         struct swath_file *file;
         expect_ok(raster_file_write(&report, path, &grey8, channels, attributes, 2, pixels));
-        expect_ok(swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file));
+        expect_ok(swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, NULL, &file));
         assert_true(swath_file_attribute(file, "sonject:frequency", value, sizeof value));
         assert_string_equal(value, "100000 Hz"); /* just fits */
         assert_false(swath_file_attribute(file, "sonject:frequency", value, sizeof value - 1));
@@ -363,7 +365,7 @@ static void test_png_and_jpeg_become_a_png_of_their_pixels(void **state)
         size_t count;
         unsigned char *copy = bytes_of_file(path, &count);
         assert_memory_equal(copy, "\x89PNG", 4);
-        expect_ok(swath_file_open(&report, path, SONJECT_CHANNEL_ONLY, &file));
+        expect_ok(swath_file_open_array(&report, path, SONJECT_CHANNEL_ONLY, NULL, &file));
         assert_true(swath_file_attribute(file, "sonject:side", value, sizeof value));
         assert_string_equal(value, "port");
         assert_string_equal(swath_file_new_extension(file), ".png");
@@ -510,6 +512,29 @@ static void test_blocks_that_grow(void **state)
     free(source);
 }
 
+/* What TIFF says of one strip for all rows: as many in it as a number can say. The image is taller
+ * than wide, and the patch lies at its lower end. */
+static void test_strips_of_all_rows(void **state)
+{
+    struct temporary_folder *folder = *state;
+    const struct tiff_build build = {.layout = {97, COLUMNS, 2, PIXEL_FLOAT32},
+                                     .is_separate = true,
+                                     .compression = TIFF_LZW,
+                                     .predictor = 1,
+                                     .block_rows = UINT32_MAX};
+    const struct region everything = whole_of(&build.layout);
+    const struct region bottom = {75, 23, 20, 31};
+    unsigned char *pixels = make_pixels(&build.layout, &everything, 7);
+    size_t count;
+    unsigned char *source = build_tiff(&build, pixels, &count);
+    const char *path = temporary_file(folder, "a.tif");
+    write_bytes(path, source, count);
+    expect_pixels(path, &build.layout, pixels, NULL, NULL);
+    (void)copy_and_compare(folder, path, "b.tif", &build.layout, &bottom, pixels);
+    free(source);
+    free(pixels);
+}
+
 /* Deflate stores at most 65535 bytes at a time. */
 static void test_large_blocks(void **state)
 {
@@ -579,6 +604,9 @@ static void test_tiff_that_is_not_for_sonject(void **state)
     build = plain;
     build.compression = 7;
     expect_build_refused(folder, &build, "compression (number 7)");
+    build = plain;
+    build.fill_order = 2; /* the lowest bit first */
+    expect_build_refused(folder, &build, "how pixels are stored");
     build = plain;
     build.has_second_page = true;
     build.second_page_kind = 1;
@@ -768,7 +796,8 @@ static void try_damaged(struct damage *damage, const unsigned char *bytes, size_
     if (!out || fwrite(bytes, 1, count, out) != count || fclose(out) != 0)
         return;
     unlink(damage->copy);
-    sonject_status status = swath_file_open(&report, damage->source, SONJECT_CHANNEL_ONLY, &file);
+    sonject_status status =
+        swath_file_open_array(&report, damage->source, SONJECT_CHANNEL_ONLY, NULL, &file);
     damage->refused_at_once += status == SONJECT_ERROR_INPUT;
     if (status == SONJECT_OK) {
         struct raster_layout layout;
@@ -1042,6 +1071,7 @@ int main(void)
         WITH_FOLDER(test_tiff_of_every_build),
         WITH_FOLDER(test_blocks_that_are_stored_once),
         WITH_FOLDER(test_blocks_that_grow),
+        WITH_FOLDER(test_strips_of_all_rows),
         WITH_FOLDER(test_large_blocks),
         WITH_FOLDER(test_a_file_that_contradicts_itself),
         WITH_FOLDER(test_tiff_that_is_not_for_sonject),

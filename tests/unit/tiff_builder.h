@@ -23,7 +23,7 @@ struct tiff_build {
     uint32_t compression, predictor;
     uint64_t block_rows, block_columns;
     /* for what is to be refused; 0: as the layout says */
-    uint32_t bits, sample_format, photometric, extra_channel;
+    uint32_t bits, sample_format, photometric, extra_channel, fill_order;
 };
 
 struct tiff_bytes {
@@ -128,6 +128,8 @@ static inline void tiff_put_directory(struct tiff_bytes *out,
     tiff_put_entry(out, 258, 3, channels, build->bits ? build->bits : bits);
     tiff_put_entry(out, 259, 3, 1, build->compression);
     tiff_put_entry(out, 262, 3, 1, build->photometric ? build->photometric - 1 : 1);
+    if (build->fill_order)
+        tiff_put_entry(out, 266, 3, 1, build->fill_order);
     if (!build->is_tiled)
         tiff_put_entry(out, 273, place_type, structure->block_count, offsets);
     tiff_put_entry(out, 277, 3, 1, channels);

@@ -1,6 +1,26 @@
-/* Loads the module of image files. */
+/* Finds the module of image files: RASTERS_ARE_LINKED where it is part of the program (static
+ * libraries, and tests that let its calls fail), else a shared object is loaded; HAS_RASTERS is not
+ * defined in builds without OpenImageIO. */
 #include "swath/raster_module.h"
 
+#if !defined(HAS_RASTERS)
+sonject_status raster_module_find(struct report *report, const char *path,
+                                  const struct raster_module **module)
+{
+    *module = NULL;
+    return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
+                          "%s: this build of sonject has no image files: build it with OpenImageIO",
+                          path);
+}
+#elif defined(RASTERS_ARE_LINKED)
+sonject_status raster_module_find(struct report *report, const char *path,
+                                  const struct raster_module **module)
+{
+    (void)report, (void)path;
+    *module = &raster_module_openimageio;
+    return SONJECT_OK;
+}
+#else
 #include <dlfcn.h>
 #include <pthread.h>
 #include <stdlib.h>
@@ -74,3 +94,4 @@ sonject_status raster_module_find(struct report *report, const char *path,
     pthread_mutex_unlock(&one_at_a_time);
     return status;
 }
+#endif

@@ -1,0 +1,245 @@
+#include "swath/samples.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "base/byte_order.h"
+#include "base/text.h"
+
+size_t stored_bytes(enum stored_type type)
+{
+    static const size_t bytes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+    return bytes[type];
+}
+
+static bool is_whole(enum stored_type type)
+{
+    return type < STORED_FLOAT32;
+}
+
+static bool is_signed(enum stored_type type)
+{
+    return type == STORED_INT8 || type == STORED_INT16 || type == STORED_INT32;
+}
+
+double float_from_bytes(const unsigned char *bytes, size_t count, bool is_big_endian)
+{
+    const uint64_t word = number_from_bytes(bytes, count, is_big_endian);
+    const uint32_t half = (uint32_t)word;
+    double number;
+    float single;
+    memcpy(&number, &word, sizeof number);
+    memcpy(&single, &half, sizeof single);
+    return count == sizeof single ? (double)single : number;
+}
+
+static double stored_number(bool is_big_endian, enum stored_type type, const unsigned char *bytes)
+{
+    const size_t size = stored_bytes(type);
+    if (!is_whole(type))
+        return float_from_bytes(bytes, size, is_big_endian);
+    const uint64_t word = number_from_bytes(bytes, size, is_big_endian);
+    const bool is_negative = is_signed(type) && word >> (8 * size - 1) != 0;
+    return is_negative ? (double)word - (double)(UINT64_C(1) << (8 * size)) : (double)word;
+}
+
+/* False for a finite number that is too large. */
+static bool float_of_double(double number, float *rounded)
+{
+    const bool is_held = !(fabs(number) > (double)FLT_MAX) || isinf(number);
+    *rounded = is_held ? (float)number : 0.0f;
+    return is_held;
+}
+
+/* A number that the type holds. */
+static void put_number(double number, enum stored_type type, unsigned char *bytes,
+                       bool is_big_endian)
+{
+    uint64_t word = is_whole(type) ? (uint64_t)(int64_t)number : 0;
+    const float single = type == STORED_FLOAT32 ? (float)number : 0.0f;
+    uint32_t half;
+    memcpy(&half, &single, sizeof half);
+    if (type == STORED_FLOAT64)
+        memcpy(&word, &number, sizeof number);
+    number_to_bytes(type == STORED_FLOAT32 ? half : word, bytes, stored_bytes(type), is_big_endian);
+}
+
+void samples_convert(enum stored_type from_type, const unsigned char *from, enum stored_type type,
+                     unsigned char *to, bool is_big_endian)
+{
+    put_number(stored_number(is_big_endian, from_type, from), type, to, is_big_endian);
+}
+
+static double shown_number(enum pixel_type type, const unsigned char *shown)
+{
+    uint16_t half;
+    float single;
+    switch (type) {
+    case PIXEL_UINT8:
+        return (double)*shown;
+    case PIXEL_UINT16:
+        memcpy(&half, shown, sizeof half);
+        return (double)half;
+    case PIXEL_FLOAT32:
+        break;
+    }
+    memcpy(&single, shown, sizeof single);
+    return (double)single;
+}
+
+/* False if the image cannot hold it. */
+static bool show(enum pixel_type type, double number, unsigned char *shown)
+{
+    const uint16_t half = number >= 0.0 && number <= pixel_full_scale(type) ? (uint16_t)number : 0;
+    float single;
+    switch (type) {
+    case PIXEL_UINT8:
+        *shown = (unsigned char)half;
+        return number >= 0.0 && number <= UINT8_MAX;
+    case PIXEL_UINT16:
+        memcpy(shown, &half, sizeof half);
+        return number >= 0.0 && number <= UINT16_MAX;
+    case PIXEL_FLOAT32:
+        break;
+    }
+    const bool is_held = float_of_double(number, &single);
+    memcpy(shown, &single, sizeof single);
+    return is_held;
+}
+
+/* The largest number of a whole type that a file may hold. */
+static double largest_of(const struct stored_samples *stored, enum stored_type type)
+{
+    const double full = (double)(UINT64_C(1) << (8 * stored_bytes(type) - is_signed(type))) - 1.0;
+    return stored->largest > 0 ? (double)stored->largest : full;
+}
+
+/* False if the file cannot hold the number. One that the file's own is shown as changes nothing. */
+static bool store(const struct stored_samples *stored, enum stored_type type, double number,
+                  unsigned char *bytes)
+{
+    const double old = stored_number(stored->is_big_endian, type, bytes);
+    const double most = is_whole(type) ? largest_of(stored, type) : 0.0;
+    float single;
+    if ((float_of_double(old, &single) && (double)single == number) ||
+        (isnan(old) && isnan(number)))
+        return !is_whole(type) || old <= most;
+    if (is_whole(type) && !(number >= 0.0 && number <= (double)(float)most))
+        return false;
+    put_number(is_whole(type) ? fmin(floor(number + 0.5), most) : number, type, bytes,
+               stored->is_big_endian);
+    return true;
+}
+
+/* The same bits on both sides, whatever they are, but for their order. */
+static void exchange_floats(const struct stored_samples *stored, bool writes, unsigned char *bytes,
+                            unsigned char *shown)
+{
+    uint32_t word;
+    if (writes) {
+        memcpy(&word, shown, sizeof word);
+        number_to_bytes(word, bytes, sizeof word, stored->is_big_endian);
+    } else {
+        word = (uint32_t)number_from_bytes(bytes, sizeof word, stored->is_big_endian);
+        memcpy(shown, &word, sizeof word);
+    }
+}
+
+static bool exchange(const struct stored_samples *stored, uint32_t channel, enum pixel_type type,
+                     bool writes, unsigned char *bytes, unsigned char *shown)
+{
+    const enum stored_type from = stored->types[channel];
+    if (from == STORED_FLOAT32 && type == PIXEL_FLOAT32) {
+        exchange_floats(stored, writes, bytes, shown);
+        return true;
+    }
+    if (writes)
+        return store(stored, from, shown_number(type, shown), bytes);
+    const double number = stored_number(stored->is_big_endian, from, bytes);
+    return !(stored->are_amplitudes && is_whole(from) && number < 0.0) && show(type, number, shown);
+}
+
+static sonject_status refuse_sample(struct report *report, const char *path,
+                                    const struct stored_samples *stored, enum stored_type type,
+                                    uint64_t row, uint64_t column, double number, bool writes)
+{
+    char why[80] = "beyond what float32 holds: scale the array";
+    if (!writes && is_whole(type))
+        snprintf(why, sizeof why, "more than its array's type holds");
+    if (writes)
+        snprintf(why, sizeof why, "%.9g, more than the file's largest number of %.10g", number,
+                 largest_of(stored, type));
+    else if (number < 0.0 && is_whole(type))
+        snprintf(why, sizeof why, "negative: sonject reads magnitudes, so convert the file first");
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "%s: the sample at row %llu, column %llu is %s", path,
+                          (unsigned long long)row, (unsigned long long)column, why);
+}
+
+sonject_status samples_exchange(struct report *report, const char *path,
+                                const struct raster_layout *layout,
+                                const struct stored_samples *stored, const struct region *part,
+                                const struct region *region, void *pixels, bool writes)
+{
+    const size_t size = pixel_bytes(layout->type);
+    for (uint64_t i = 0; i < part->rows; i++) {
+        const size_t first = (size_t)((part->first_row - region->first_row + i) * region->columns +
+                                      (part->first_column - region->first_column));
+        unsigned char *shown = (unsigned char *)pixels + first * layout->channels * size;
+        ptrdiff_t step = (ptrdiff_t)i * stored->row_step;
+        for (uint64_t j = 0; j < part->columns; j++, step += stored->column_step)
+            for (uint32_t k = 0; k < layout->channels; k++, shown += size) {
+                const enum stored_type type = stored->types[k];
+                unsigned char *at = stored->bytes[k] + step * (ptrdiff_t)stored_bytes(type);
+                if (!exchange(stored, k, layout->type, writes, at, shown))
+                    return refuse_sample(report, path, stored, type, part->first_row + i,
+                                         part->first_column + j,
+                                         writes ? shown_number(layout->type, shown)
+                                                : stored_number(stored->is_big_endian, type, at),
+                                         writes);
+            }
+    }
+    return SONJECT_OK;
+}
+
+bool array_list_add(struct array_list *list, const char *name, uint64_t rows, uint64_t columns,
+                    bool is_image)
+{
+    char excerpt[80];
+    const size_t length = strlen(list->text);
+    const bool is_wanted = list->wanted ? strcmp(list->wanted, name) == 0 : is_image;
+    if (is_image) {
+        if (length < sizeof list->text - 140)
+            snprintf(list->text + length, sizeof list->text - length, "%s%s (%llu x %llu)",
+                     list->count > 0 ? ", " : "", text_excerpt(excerpt, sizeof excerpt, name),
+                     (unsigned long long)rows, (unsigned long long)columns);
+        else if (list->text[length - 1] != '.')
+            strcat(list->text, ", ...");
+        list->count++;
+    }
+    list->matches += is_wanted;
+    return is_wanted;
+}
+
+sonject_status array_list_check(struct report *report, const char *path,
+                                const struct array_list *list)
+{
+    char excerpt[80];
+    if (list->matches == 1)
+        return SONJECT_OK;
+    if (list->count == 0 && !list->wanted)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: holds no two-dimensional array of numbers of float64, float32, "
+                              "uint8, uint16 or int16, or of complex ones of float64 or float32",
+                              path);
+    if (list->wanted)
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: %s array '%s'; %s%s", path,
+                              list->matches > 1 ? "holds more than one" : "holds no",
+                              text_excerpt(excerpt, sizeof excerpt, list->wanted),
+                              list->count > 0 ? "choose one of " : "nor another image", list->text);
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "%s: holds several arrays: say which is the image (array): %s", path,
+                          list->text);
+}
