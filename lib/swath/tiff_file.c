@@ -131,6 +131,7 @@ static sonject_status check_coding(const struct tiff_blocks *blocks)
                               COMPRESSION_DEFLATE, COMPRESSION_PACKBITS};
     uint16_t fill_order = FILLORDER_MSB2LSB;
     uint16_t predictor = PREDICTOR_NONE;
+    uint32_t strip_rows = 0;
     bool is_known = false;
     TIFFGetFieldDefaulted(blocks->file, TIFFTAG_FILLORDER, &fill_order);
     for (size_t i = 0; i < sizeof known / sizeof *known; i++)
@@ -146,6 +147,13 @@ static sonject_status check_coding(const struct tiff_blocks *blocks)
     if (predictor == PREDICTOR_FLOATINGPOINT && TIFFIsByteSwapped(blocks->file))
         return refuse(blocks, "keeps floating-point differences in the other byte order, which "
                               "libtiff cannot write: write it anew in this machine's");
+    /* OpenImageIO then takes turns between the planes, row by row, and cannot go back in a strip.
+     */
+    TIFFGetFieldDefaulted(blocks->file, TIFFTAG_ROWSPERSTRIP, &strip_rows);
+    if (blocks->planes > 1 && !blocks->is_tiled && blocks->compression != COMPRESSION_NONE &&
+        strip_rows > INT32_MAX)
+        return refuse(blocks, "is compressed in planes and does not say how many rows a strip has: "
+                              "write it anew, without compression or with rows per strip");
     if (blocks->count > BLOCKS_MAX)
         return refuse(blocks, "has more than 2^25 tiles or strips: write it with larger ones");
     if ((blocks->is_tiled ? TIFFTileSize64(blocks->file) : TIFFStripSize64(blocks->file)) >

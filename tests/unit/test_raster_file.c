@@ -517,22 +517,27 @@ static void test_blocks_that_grow(void **state)
 static void test_strips_of_all_rows(void **state)
 {
     struct temporary_folder *folder = *state;
-    const struct tiff_build build = {.layout = {97, COLUMNS, 2, PIXEL_FLOAT32},
-                                     .is_separate = true,
-                                     .compression = TIFF_LZW,
-                                     .predictor = 1,
-                                     .block_rows = UINT32_MAX};
-    const struct region everything = whole_of(&build.layout);
     const struct region bottom = {75, 23, 20, 31};
-    unsigned char *pixels = make_pixels(&build.layout, &everything, 7);
-    size_t count;
-    unsigned char *source = build_tiff(&build, pixels, &count);
-    const char *path = temporary_file(folder, "a.tif");
-    write_bytes(path, source, count);
-    expect_pixels(path, &build.layout, pixels, NULL, NULL);
-    (void)copy_and_compare(folder, path, "b.tif", &build.layout, &bottom, pixels);
-    free(source);
-    free(pixels);
+    for (uint32_t planes = 1; planes <= 2; planes++) {
+        struct tiff_build build = {.layout = {97, COLUMNS, planes, PIXEL_FLOAT32},
+                                   .is_separate = planes > 1,
+                                   .compression = planes > 1 ? TIFF_UNCOMPRESSED : TIFF_LZW,
+                                   .predictor = 1,
+                                   .block_rows = UINT32_MAX};
+        const struct region everything = whole_of(&build.layout);
+        unsigned char *pixels = make_pixels(&build.layout, &everything, 7);
+        size_t count;
+        unsigned char *source = build_tiff(&build, pixels, &count);
+        const char *path = temporary_file(folder, "a.tif");
+        write_bytes(path, source, count);
+        expect_pixels(path, &build.layout, pixels, NULL, NULL);
+        (void)copy_and_compare(folder, path, "b.tif", &build.layout, &bottom, pixels);
+        free(source);
+        free(pixels);
+        build.compression = TIFF_LZW;
+        if (planes > 1)
+            expect_build_refused(folder, &build, "does not say how many rows");
+    }
 }
 
 /* Deflate stores at most 65535 bytes at a time. */

@@ -178,7 +178,7 @@ static inline struct tiff_structure tiff_structure_of(const struct tiff_build *b
     return structure;
 }
 
-/* A file with these pixels, for free(). At least two blocks. */
+/* A file with these pixels, for free(). */
 static inline unsigned char *build_tiff(const struct tiff_build *build, const void *pixels,
                                         size_t *count)
 {
@@ -186,7 +186,7 @@ static inline unsigned char *build_tiff(const struct tiff_build *build, const vo
     struct tiff_bytes out = {build, calloc(TIFF_BUILD_CAPACITY, 1), 0, 0};
     uint64_t *places = calloc((size_t)structure.block_count, sizeof *places);
     size_t *counts = calloc((size_t)structure.block_count, sizeof *counts);
-    assert_true(out.bytes && places && counts && structure.block_count > 1);
+    assert_true(out.bytes && places && counts);
     memcpy(out.bytes, build->is_big_endian ? "MM" : "II", 2);
     out.count = 2;
     tiff_put(&out, build->is_big ? 43 : 42, 2);
@@ -201,10 +201,11 @@ static inline unsigned char *build_tiff(const struct tiff_build *build, const vo
     }
     places[structure.block_count - 1] += build->last_is_later;
     out.count += out.count % 2;
-    const uint64_t place_list = out.count;
+    const bool is_list = structure.block_count > 1; /* else its number stands in the entry */
+    const uint64_t place_list = is_list ? out.count : places[0];
     for (uint64_t i = 0; i < structure.block_count; i++)
         tiff_put(&out, places[i], tiff_wide(&out));
-    const uint64_t count_list = out.count;
+    const uint64_t count_list = is_list ? out.count : counts[0];
     for (uint64_t i = 0; i < structure.block_count; i++)
         tiff_put(&out, counts[i], tiff_wide(&out));
     number_to_bytes(out.count, out.bytes + first_directory, tiff_wide(&out), build->is_big_endian);
