@@ -1,7 +1,6 @@
 #include "api/handles.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,90 +8,61 @@
 #include <sonject/run.h>
 
 #include "api/swath.h"
-#include "base/memory.h"
+#include "base/growing_text.h"
 #include "base/text.h"
-#include "scene/cross_range.h"
+#include "inject/injection_setup.h"
 #include "scene/placement.h"
-#include "scene/point_response.h"
 #include "user/shape_check.h"
 
 #define DEGREES_PER_RADIAN 57.29577951308232
 #define MAP_ROWS           20
 #define MAP_COLUMNS        64
 
-/* A text that grows; a failed allocation makes the rest a no-op. */
-struct text {
-    char *characters;
-    size_t length, capacity;
-    bool failed;
-};
-
-static void text_add(struct text *text, const char *format, ...) REPORT_FORMAT(2);
-
-static void text_add(struct text *text, const char *format, ...)
-{
-    char line[512];
-    va_list arguments;
-    va_start(arguments, format);
-    vsnprintf(line, sizeof line, format, arguments);
-    va_end(arguments);
-    const size_t length = strlen(line);
-    if (!text->failed && text->length + length + 1 > text->capacity) {
-        const size_t capacity = 2 * text->capacity + length + 1;
-        char *grown = realloc(text->characters, capacity);
-        text->failed = !grown;
-        if (grown) {
-            text->characters = grown;
-            text->capacity = capacity;
-        }
-    }
-    if (text->failed)
-        return;
-    memcpy(text->characters + text->length, line, length + 1);
-    text->length += length;
-}
-
 static double grazing_degrees(const struct patch_view *view, double processor_range)
 {
     return view_grazing(view, processor_range) * DEGREES_PER_RADIAN;
 }
 
-static void describe_water(struct text *text, const struct water_way *way)
+static void describe_water(struct growing_text *text, const struct water_way *way)
 {
     const struct water *water = way->water;
-    text_add(text, "water      %.1f m/s around seabed and objects", water->straight_speed_mps);
+    growing_text_add(text, "water      %.1f m/s around seabed and objects",
+                     water->straight_speed_mps);
     if (water->count == 1)
-        text_add(text, "\n");
+        growing_text_add(text, "\n");
     else
-        text_add(text, " up to %.2f m, %.1f m/s at the sonar, %zu layers%s\n",
-                 water->layers[1].bottom_m, water_layer_at(water, way->sonar_height_m)->speed_mps,
-                 water->count, way->is_straight ? ", none of which the sound crosses" : "");
+        growing_text_add(text, " up to %.2f m, %.1f m/s at the sonar, %zu layers%s\n",
+                         water->layers[1].bottom_m,
+                         water_layer_at(water, way->sonar_height_m)->speed_mps, water->count,
+                         way->is_straight ? ", none of which the sound crosses" : "");
 }
 
-static void describe_patch(struct text *text, const struct scene *scene, const struct swath *swath,
-                           const struct patch_view *view)
+static void describe_patch(struct growing_text *text, const struct scene *scene,
+                           const struct swath *swath, const struct patch_view *view)
 {
     const double last = view_processor_range(view, (double)view->columns - 1.0);
-    text_add(text, "image      %llu x %llu pixels, %u channel%s\n",
-             (unsigned long long)swath->layout.rows, (unsigned long long)swath->layout.columns,
-             (unsigned)swath->layout.channels, swath->layout.channels == 1 ? "" : "s");
-    text_add(text, "patch      %llu x %llu pixels from row %llu, column %llu\n",
-             (unsigned long long)swath->patch.rows, (unsigned long long)swath->patch.columns,
-             (unsigned long long)swath->patch.first_row,
-             (unsigned long long)swath->patch.first_column);
-    text_add(text, "           %.2f m along-track, slant range %.2f...%.2f m, %s\n",
-             (double)view->rows * view->row_spacing_m, view->first_range_m, last,
-             view->is_mirrored ? "starboard" : "port");
-    text_add(text, "           grazing angle %.1f...%.1f deg\n",
-             grazing_degrees(view, view->first_range_m), grazing_degrees(view, last));
-    text_add(text, "sonar      %.4g kHz, bandwidth %.4g kHz, altitude %.3g m, wavelength %.4g mm\n",
-             scene->sonar.centre_frequency_hz / 1e3, scene->sonar.bandwidth_hz / 1e3,
-             scene->sonar.altitude_m, view->wavelength_m * 1e3);
+    growing_text_add(text, "image      %llu x %llu pixels, %u channel%s\n",
+                     (unsigned long long)swath->layout.rows,
+                     (unsigned long long)swath->layout.columns, (unsigned)swath->layout.channels,
+                     swath->layout.channels == 1 ? "" : "s");
+    growing_text_add(
+        text, "patch      %llu x %llu pixels from row %llu, column %llu\n",
+        (unsigned long long)swath->patch.rows, (unsigned long long)swath->patch.columns,
+        (unsigned long long)swath->patch.first_row, (unsigned long long)swath->patch.first_column);
+    growing_text_add(text, "           %.2f m along-track, slant range %.2f...%.2f m, %s\n",
+                     (double)view->rows * view->row_spacing_m, view->first_range_m, last,
+                     view->is_mirrored ? "starboard" : "port");
+    growing_text_add(text, "           grazing angle %.1f...%.1f deg\n",
+                     grazing_degrees(view, view->first_range_m), grazing_degrees(view, last));
+    growing_text_add(
+        text, "sonar      %.4g kHz, bandwidth %.4g kHz, altitude %.3g m, wavelength %.4g mm\n",
+        scene->sonar.centre_frequency_hz / 1e3, scene->sonar.bandwidth_hz / 1e3,
+        scene->sonar.altitude_m, view->wavelength_m * 1e3);
     describe_water(text, &view->water);
-    text_add(text, "injection  %s, paths that meet up to %u surface%s\n",
-             scene->injection.mode == SONJECT_MODE_RESYNTHESISE ? "resynthesise" : "composite",
-             (unsigned)scene->injection.interactions,
-             scene->injection.interactions == 1 ? "" : "s");
+    growing_text_add(
+        text, "injection  %s, paths that meet up to %u surface%s\n",
+        scene->injection.mode == SONJECT_MODE_RESYNTHESISE ? "resynthesise" : "composite",
+        (unsigned)scene->injection.interactions, scene->injection.interactions == 1 ? "" : "s");
 }
 
 /* Length on the ground of the shadow of something high up at a ground range. */
@@ -101,15 +71,15 @@ static double shadow_length(const struct patch_view *view, double ground_range, 
     return top > 0.0 ? top / tan(water_way_grazing(&view->water, ground_range, top)) : 0.0;
 }
 
-static void describe_relief(struct text *text, const struct relief *relief)
+static void describe_relief(struct growing_text *text, const struct relief *relief)
 {
     if (relief)
-        text_add(text,
-                 "relief     %.3f...%.3f m over the mean seabed, points %.3g m x %.3g m apart\n",
-                 relief->lowest_m, relief->highest_m, relief->row_step_m, relief->column_step_m);
+        growing_text_add(
+            text, "relief     %.3f...%.3f m over the mean seabed, points %.3g m x %.3g m apart\n",
+            relief->lowest_m, relief->highest_m, relief->row_step_m, relief->column_step_m);
 }
 
-static void describe_objects(struct text *text, const struct scene *scene,
+static void describe_objects(struct growing_text *text, const struct scene *scene,
                              const struct patch_view *view, const struct placements *placements)
 {
     for (uint32_t i = 0; i < scene->object_count; i++) {
@@ -118,12 +88,13 @@ static void describe_objects(struct text *text, const struct scene *scene,
         const double range =
             water_way_range(&view->water, origin[1], origin[2]) * view->range_ratio;
         const double grazing = water_way_grazing(&view->water, origin[1], origin[2]);
-        text_add(text,
-                 "object %-3u %s (%s): row %.1f, slant range %.2f m, grazing angle %.1f deg, top "
-                 "%.3f m, shadow %.2f m\n",
-                 (unsigned)(i + 1), scene->objects[i].name, shape_name(scene->objects[i].shape),
-                 view_row_of_x(view, origin[0]), range, grazing * DEGREES_PER_RADIAN, object->top_m,
-                 shadow_length(view, origin[1], object->top_m));
+        growing_text_add(
+            text,
+            "object %-3u %s (%s): row %.1f, slant range %.2f m, grazing angle %.1f deg, top "
+            "%.3f m, shadow %.2f m\n",
+            (unsigned)(i + 1), scene->objects[i].name, shape_name(scene->objects[i].shape),
+            view_row_of_x(view, origin[0]), range, grazing * DEGREES_PER_RADIAN, object->top_m,
+            shadow_length(view, origin[1], object->top_m));
     }
 }
 
@@ -135,36 +106,37 @@ static uint32_t count_showing(const struct placements *placements, const struct 
     return count;
 }
 
-static void describe_meshes(struct text *text, const struct scene *scene,
+static void describe_meshes(struct growing_text *text, const struct scene *scene,
                             const struct placements *placements)
 {
     for (uint32_t i = 0; i < scene->mesh_count; i++) {
         const struct mesh *mesh = &scene->meshes[i];
         const struct mesh_topology *topology = &mesh->topology;
         char excerpt[200];
-        text_add(text, "mesh %-5u %s: %zu triangles, %.4g x %.4g x %.4g m, shown %lu time%s\n",
-                 (unsigned)(i + 1), text_excerpt(excerpt, sizeof excerpt, mesh->name),
-                 mesh->triangle_count, (double)mesh->upper_m[0] - (double)mesh->lower_m[0],
-                 (double)mesh->upper_m[1] - (double)mesh->lower_m[1],
-                 (double)mesh->upper_m[2] - (double)mesh->lower_m[2],
-                 (unsigned long)count_showing(placements, mesh),
-                 count_showing(placements, mesh) == 1 ? "" : "s");
+        growing_text_add(text,
+                         "mesh %-5u %s: %zu triangles, %.4g x %.4g x %.4g m, shown %lu time%s\n",
+                         (unsigned)(i + 1), text_excerpt(excerpt, sizeof excerpt, mesh->name),
+                         mesh->triangle_count, (double)mesh->upper_m[0] - (double)mesh->lower_m[0],
+                         (double)mesh->upper_m[1] - (double)mesh->lower_m[1],
+                         (double)mesh->upper_m[2] - (double)mesh->lower_m[2],
+                         (unsigned long)count_showing(placements, mesh),
+                         count_showing(placements, mesh) == 1 ? "" : "s");
         if (topology->is_closed)
-            text_add(text, "           watertight, %.4g m3", mesh->volume_m3);
+            growing_text_add(text, "           watertight, %.4g m3", mesh->volume_m3);
         else
-            text_add(
+            growing_text_add(
                 text,
                 "           not watertight, thin sheets: %zu edges of one triangle, %zu of more "
                 "than two, %zu twisted",
                 topology->open_edges, topology->crowded_edges, topology->twisted_edges);
-        text_add(text, ", %zu piece%s", topology->pieces, topology->pieces == 1 ? "" : "s");
+        growing_text_add(text, ", %zu piece%s", topology->pieces, topology->pieces == 1 ? "" : "s");
         if (topology->turned > 0)
-            text_add(text, "; %zu triangles turned to show the outside", topology->turned);
+            growing_text_add(text, "; %zu triangles turned to show the outside", topology->turned);
         if (mesh->welded > 0)
-            text_add(text, "; %zu vertices of seams welded", mesh->welded);
+            growing_text_add(text, "; %zu vertices of seams welded", mesh->welded);
         if (mesh->degenerate > 0)
-            text_add(text, "; %zu triangles without area left out", mesh->degenerate);
-        text_add(text, "\n");
+            growing_text_add(text, "; %zu triangles without area left out", mesh->degenerate);
+        growing_text_add(text, "\n");
     }
 }
 
@@ -187,7 +159,7 @@ static void mark(char plan[MAP_ROWS][MAP_COLUMNS + 1], const struct patch_view *
         }
 }
 
-static void draw_plan(struct text *text, const struct patch_view *view,
+static void draw_plan(struct growing_text *text, const struct patch_view *view,
                       const struct placements *placements)
 {
     static const double along[3] = {1.0, 0.0, 0.0};
@@ -209,13 +181,14 @@ static void draw_plan(struct text *text, const struct patch_view *view,
         mark(plan, view, low, high, '#');
         mark(plan, view, low, end, ':');
     }
-    text_add(text, "\nplan, track at the left, range to the right (# object's bounds, : shadow)\n");
+    growing_text_add(
+        text, "\nplan, track at the left, range to the right (# object's bounds, : shadow)\n");
     for (int row = 0; row < MAP_ROWS; row++)
-        text_add(text, "  |%s|\n", plan[view->is_mirrored ? MAP_ROWS - 1 - row : row]);
+        growing_text_add(text, "  |%s|\n", plan[view->is_mirrored ? MAP_ROWS - 1 - row : row]);
 }
 
 /* Only scenes with users' shapes need a device to be checked. */
-static sonject_status try_user_shapes(struct text *text, sonject_context *context,
+static sonject_status try_user_shapes(struct growing_text *text, sonject_context *context,
                                       const struct user_shapes *shapes)
 {
     struct device *device = NULL;
@@ -226,13 +199,14 @@ static sonject_status try_user_shapes(struct text *text, sonject_context *contex
         struct shape_check check;
         status = shape_check_run(&context->report, device, shapes, i, &check);
         if (status == SONJECT_OK)
-            text_add(text,
-                     "user shape %u (%s): %zu of %d rays meet it, %zu of %zu that leave it meet it "
-                     "again at once; normals at %zu hits are off by %.2g deg in the median, %.2g "
-                     "deg at most\n",
-                     (unsigned)(i + 1), shapes->snippets[shapes->shapes[i].snippet].name,
-                     check.hits, SHAPE_CHECK_RAYS, check.acne, check.restarts, check.compared,
-                     check.median_deg, check.largest_deg);
+            growing_text_add(
+                text,
+                "user shape %u (%s): %zu of %d rays meet it, %zu of %zu that leave it meet it "
+                "again at once; normals at %zu hits are off by %.2g deg in the median, %.2g "
+                "deg at most\n",
+                (unsigned)(i + 1), shapes->snippets[shapes->shapes[i].snippet].name, check.hits,
+                SHAPE_CHECK_RAYS, check.acne, check.restarts, check.compared, check.median_deg,
+                check.largest_deg);
     }
     return status;
 }
@@ -248,34 +222,35 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
         return null_argument(report, "scene");
     const struct scene *scene = &handle->scene;
     struct swath swath;
-    struct water water = {NULL, 0, 0.0};
-    struct patch_view view;
-    struct placements placements = {NULL, 0, NULL, 0, NULL};
-    sonject_status status = swath_describe(report, scene, &swath);
-    THEN(status, injection_check(report, scene, (double)swath.patch.first_row,
-                                 (double)swath.patch.first_column, (size_t)swath.patch.rows,
-                                 (size_t)swath.patch.columns, &water, &view, &placements));
-    struct point_response response;
-    THEN(status, point_response_of_scene(&response, report, scene, &view,
-                                         view.range_ratio * water.straight_speed_mps));
-    THEN(status, cross_range_check(&response, report, scene, &view));
+    struct injection_setup setup;
+    CHECK(swath_describe(report, scene, &swath));
+    const struct injection_input input = {
+        .rows = (size_t)swath.patch.rows,
+        .columns = (size_t)swath.patch.columns,
+        .first_row = (double)swath.patch.first_row,
+        .first_column = (double)swath.patch.first_column,
+        .is_complex = swath.is_complex,
+    };
+    sonject_status status = injection_setup_init_scene(&setup, report, NULL, scene, &input);
     if (status == SONJECT_OK) {
-        struct text text = {NULL, 0, 0, false};
-        describe_patch(&text, scene, &swath, &view);
-        describe_relief(&text, placements.relief);
-        describe_objects(&text, scene, &view, &placements);
-        describe_meshes(&text, scene, &placements);
+        const struct patch_view *view = &setup.tracer.view;
+        const struct placements *placements = &setup.placements;
+        struct growing_text text = {0};
+        describe_patch(&text, scene, &swath, view);
+        describe_relief(&text, placements->relief);
+        describe_objects(&text, scene, view, placements);
+        describe_meshes(&text, scene, placements);
         status = try_user_shapes(&text, context, &scene->user_shapes);
-        draw_plan(&text, &view, &placements);
-        if (text.failed && status == SONJECT_OK)
-            status = report_out_of_memory(report, "the description");
+        draw_plan(&text, view, placements);
+        char *characters = growing_text_end(&text);
+        if (!characters)
+            THEN(status, report_out_of_memory(report, "the description"));
         if (status == SONJECT_OK)
-            *out = text.characters;
+            *out = characters;
         else
-            free(text.characters);
+            free(characters);
     }
-    placements_clear(&placements);
-    water_clear(&water);
+    injection_setup_clear(&setup);
     return status;
 }
 

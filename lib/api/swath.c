@@ -108,12 +108,13 @@ static sonject_status open_and_describe(struct report *report, const struct scen
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "the scene has no input image: give input.path");
     if (scene->input_kind == SONJECT_INPUT_FILE) {
-        status = open_input(report, scene, file);
-        THEN(status, describe_file(report, scene, *file, swath));
+        status = scene_locate(scene, report, open_input(report, scene, file), "input.path");
+        THEN(status,
+             scene_locate(scene, report, describe_file(report, scene, *file, swath), "input.path"));
     } else {
         status = describe_made(scene, swath);
     }
-    THEN(status, choose_patch(report, scene, swath));
+    THEN(status, scene_locate(scene, report, choose_patch(report, scene, swath), "patch"));
     if (status != SONJECT_OK) {
         swath_file_close(file);
         track_clear(&swath->track);

@@ -2,6 +2,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "base/text.h"
 
@@ -13,6 +14,20 @@ sonject_status report_failure(struct report *report, sonject_status status, cons
     va_end(arguments);
     text_make_printable(report->message);
     return status;
+}
+
+sonject_status report_gather(struct report *report, char lines[REPORT_CAPACITY],
+                             sonject_status so_far, sonject_status step)
+{
+    const size_t length = strlen(lines);
+    if (step == SONJECT_OK)
+        return so_far;
+    if (step == SONJECT_ERROR_INPUT) {
+        if (length + strlen(report->message) + 2 < REPORT_CAPACITY)
+            sprintf(lines + length, "%s%s", length > 0 ? "\n" : "", report->message);
+        strcpy(report->message, lines);
+    }
+    return step;
 }
 
 sonject_status report_out_of_memory(struct report *report, const char *what)

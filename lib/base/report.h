@@ -42,6 +42,12 @@ sonject_status report_failure(struct report *report, sonject_status status, cons
 /* The message for an allocation that failed; returns SONJECT_ERROR_MEMORY. what: "histogram". */
 sonject_status report_out_of_memory(struct report *report, const char *what);
 
+/* The status so far of steps that are all taken though one finds bad input: starts as SONJECT_OK. A
+ * step's message is added to lines, which start as "", and these become the report's, while there
+ * is room. No step follows a status that is neither OK nor INPUT. */
+sonject_status report_gather(struct report *report, char lines[REPORT_CAPACITY],
+                             sonject_status so_far, sonject_status step);
+
 /* Returns from the function where expression, a sonject_status, is a failure. */
 #define CHECK(expression)                                                                          \
     do {                                                                                           \

@@ -15,18 +15,6 @@
 #include "inject/traced_impulses.h"
 #include "inject/truth.h"
 
-sonject_status injection_check(struct report *report, const struct scene *scene, double first_row,
-                               double first_column, size_t rows, size_t columns,
-                               struct water *water, struct patch_view *view,
-                               struct placements *placements)
-{
-    sonject_status status = scene_lay_water(scene, report, water);
-    THEN(status,
-         patch_view_init(view, report, scene, water, first_row, first_column, rows, columns));
-    THEN(status, placements_init(placements, report, scene, view, first_row, first_column));
-    return status;
-}
-
 void injection_result_clear(struct injection_result *result)
 {
     free(result->image);

@@ -58,12 +58,4 @@ sonject_status injection_form(struct report *report, struct device *device,
                               sonject_progress_function progress, void *user,
                               struct injection_result *result);
 
-/* Everything that can be checked without tracing: geometry, water, objects, map. water, which
- * the view borrows, is the caller's for water_clear and placements for placements_clear, also on
- * failure. Errors: INPUT, MEMORY. */
-sonject_status injection_check(struct report *report, const struct scene *scene, double first_row,
-                               double first_column, size_t rows, size_t columns,
-                               struct water *water, struct patch_view *view,
-                               struct placements *placements);
-
 #endif

@@ -131,6 +131,16 @@ static sonject_status check_combination(struct report *report, const struct scen
     return SONJECT_OK;
 }
 
+static sonject_status check_straight_rays(const struct tracer *tracer)
+{
+    if (tracer->scene->injection.estimator != SONJECT_ESTIMATOR_BRUTE_FORCE ||
+        tracer->view.water.is_straight)
+        return SONJECT_OK;
+    return report_failure(tracer->report, SONJECT_ERROR_INPUT,
+                          "the brute force estimator follows straight rays only: use connect where "
+                          "layers of water bend them");
+}
+
 /* The coherent map's scale is known for one real cross-range response. */
 static sonject_status check_coherent_map(const struct tracer *tracer)
 {
@@ -141,6 +151,16 @@ static sonject_status check_coherent_map(const struct tracer *tracer)
     return report_failure(tracer->report, SONJECT_ERROR_INPUT,
                           "the coherent seabed map needs a synthetic aperture without motion or a "
                           "measured cross-range response: use map: intensity or despeckled");
+}
+
+/* The sonar's response on the patch. */
+static sonject_status find_response(struct tracer *tracer)
+{
+    const struct patch_view *view = &tracer->view;
+    CHECK(point_response_of_scene(&tracer->response, tracer->report, tracer->scene, view,
+                                  view->range_ratio * view->water.water->straight_speed_mps));
+    CHECK(cross_range_check(&tracer->response, tracer->report, tracer->scene, view));
+    return check_coherent_map(tracer);
 }
 
 void injection_setup_clear(struct injection_setup *setup)
@@ -170,29 +190,34 @@ sonject_status injection_setup_init_scene(struct injection_setup *setup, struct 
                                           const struct injection_input *input)
 {
     struct tracer *tracer = &setup->tracer;
+    char lines[REPORT_CAPACITY] = "";
     memset(setup, 0, sizeof *setup);
     tracer->report = report;
     tracer->device = device;
     tracer->scene = scene;
     tracer->checkpoint = input->checkpoint;
-    sonject_status status = check_combination(report, scene, input->is_complex);
-    THEN(status, injection_check(report, scene, input->first_row, input->first_column, input->rows,
-                                 input->columns, &setup->water, &tracer->view, &setup->placements));
+    sonject_status status = scene_locate(
+        scene, report, check_combination(report, scene, input->is_complex), "injection");
+    status = report_gather(report, lines, SONJECT_OK, status);
+    sonject_status of_view = scene_lay_water(scene, report, &setup->water);
+    THEN(of_view,
+         scene_locate(scene, report,
+                      patch_view_init(&tracer->view, report, scene, &setup->water, input->first_row,
+                                      input->first_column, input->rows, input->columns),
+                      "input.geometry"));
+    status = report_gather(report, lines, status, of_view);
+    if (of_view != SONJECT_OK)
+        return status;
+    status = report_gather(report, lines, status,
+                           placements_init(&setup->placements, report, scene, &tracer->view,
+                                           input->first_row, input->first_column));
     tracer->placements = setup->placements.parts;
     tracer->part_count = setup->placements.part_count;
     tracer->objects = setup->placements.objects;
     tracer->relief = setup->placements.relief;
-    if (status == SONJECT_OK && scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
-        !tracer->view.water.is_straight)
-        status = report_failure(report, SONJECT_ERROR_INPUT,
-                                "the brute force estimator follows straight rays only: use connect "
-                                "where layers of water bend them");
-    if (status != SONJECT_OK)
-        return status;
-    status = point_response_of_scene(&tracer->response, report, scene, &tracer->view,
-                                     tracer->view.range_ratio * setup->water.straight_speed_mps);
-    THEN(status, cross_range_check(&tracer->response, report, scene, &tracer->view));
-    return status == SONJECT_OK ? check_coherent_map(tracer) : status;
+    sonject_status of_sonar = check_straight_rays(tracer);
+    THEN(of_sonar, find_response(tracer));
+    return report_gather(report, lines, status, scene_locate(scene, report, of_sonar, "sonar"));
 }
 
 sonject_status injection_setup_init(struct injection_setup *setup, struct report *report,

@@ -24,8 +24,9 @@ struct injection_setup {
     char *scratch; /* a row of the widest layer, the field */
 };
 
-/* Lays the scene out without the pixels, which stay NULL: geometry, water, objects, response. To be
- * given to injection_setup_clear, also on failure. Errors: INPUT, MEMORY. */
+/* Lays the scene out without the pixels, which stay NULL: geometry, water, objects, response.
+ * device may be NULL where no ray follows. All that is wrong is told, a line each. To be given to
+ * injection_setup_clear, also on failure. Errors: INPUT, MEMORY. */
 sonject_status injection_setup_init_scene(struct injection_setup *setup, struct report *report,
                                           struct device *device, const struct scene *scene,
                                           const struct injection_input *input);

@@ -279,9 +279,16 @@ static sonject_status pose(struct placements *placements, struct report *report,
     placed->part_count = pose_parts(parts, scene, number, view->is_mirrored);
     placements->part_count += placed->part_count;
     if (placed->part_count == 0)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "object '%s' has no parts: give it some or a shape", object->name);
-    return find_ground_point(placed->origin, report, view, first_row, first_column, object);
+        return scene_locate(scene, report,
+                            report_failure(report, SONJECT_ERROR_INPUT,
+                                           "object '%s' has no parts: give it some or a shape",
+                                           object->name),
+                            "objects[%u]", (unsigned)number);
+    const sonject_status status =
+        find_ground_point(placed->origin, report, view, first_row, first_column, object);
+    if (status != SONJECT_OK)
+        placed->part_count = 0; /* it is not to be settled */
+    return scene_locate(scene, report, status, "objects[%u].position", (unsigned)number);
 }
 
 /* Lets a posed object down on the seabed. */
@@ -293,9 +300,9 @@ static sonject_status settle(struct placements *placements, struct report *repor
     struct placed_object *placed = &placements->objects[number];
     struct placement *parts = &placements->parts[placed->first_part];
     double height = 0.0;
-    const sonject_status status = find_height(&height, report, object, parts, placed->part_count);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(scene_locate(scene, report,
+                       find_height(&height, report, object, parts, placed->part_count),
+                       "objects[%u].burial", (unsigned)number));
     placed->seabed_m = relief_height(placements->relief, placed->origin[0], placed->origin[1]);
     placed->origin[2] = placed->seabed_m + height;
     for (uint32_t i = 0; i < placed->part_count; i++)
@@ -305,9 +312,9 @@ static sonject_status settle(struct placements *placements, struct report *repor
     placed->top_m = parts_extent(parts, placed->part_count, upward);
     for (int axis = 0; axis < 3; axis++)
         placed->size_m = fmax(placed->size_m, overall_size(parts, placed->part_count, axis));
-    const sonject_status is_seen = check_size(report, view, object->name, placed->size_m);
-    return is_seen != SONJECT_OK ? is_seen
-                                 : check_room(report, view, object, parts, placed->part_count);
+    sonject_status status = check_size(report, view, object->name, placed->size_m);
+    THEN(status, check_room(report, view, object, parts, placed->part_count));
+    return scene_locate(scene, report, status, "objects[%u]", (unsigned)number);
 }
 
 /* Random numbers are told apart by the number of a shape. */
@@ -347,6 +354,7 @@ sonject_status placements_init(struct placements *placements, struct report *rep
                                const struct scene *scene, const struct patch_view *view,
                                double first_row, double first_column)
 {
+    char lines[REPORT_CAPACITY] = "";
     memset(placements, 0, sizeof *placements);
     placements->object_count = scene->object_count;
     placements->parts =
@@ -355,14 +363,22 @@ sonject_status placements_init(struct placements *placements, struct report *rep
     sonject_status status = placements->parts && placements->objects
                                 ? SONJECT_OK
                                 : report_out_of_memory(report, "objects");
-    if (status == SONJECT_OK)
-        status = check_shape_count(report, scene);
-    for (uint32_t i = 0; status == SONJECT_OK && i < scene->object_count; i++)
-        status = pose(placements, report, scene, view, first_row, first_column, i);
+    THEN(status, check_shape_count(report, scene));
+    const bool can_be_posed = status == SONJECT_OK;
+    for (uint32_t i = 0; can_be_posed && i < scene->object_count; i++)
+        status = report_gather(report, lines, status,
+                               pose(placements, report, scene, view, first_row, first_column, i));
     if (status == SONJECT_OK && scene_has_relief(scene))
-        status = lay_relief(placements, report, scene, view, first_row, first_column);
-    for (uint32_t i = 0; status == SONJECT_OK && i < scene->object_count; i++)
-        status = settle(placements, report, scene, view, i);
+        status = report_gather(
+            report, lines, status,
+            scene_locate(scene, report,
+                         lay_relief(placements, report, scene, view, first_row, first_column),
+                         "seabed.relief"));
+    for (uint32_t i = 0; can_be_posed && status != SONJECT_ERROR_MEMORY && i < scene->object_count;
+         i++)
+        if (placements->objects[i].part_count > 0)
+            status =
+                report_gather(report, lines, status, settle(placements, report, scene, view, i));
     if (status != SONJECT_OK)
         placements_clear(placements);
     return status;

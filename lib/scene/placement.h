@@ -38,9 +38,9 @@ struct placements {
 
 /* Places all objects. first_row, first_column: of the patch in the swath, for positions in swath
  * pixels. The materials are borrowed from the scene. On success to be given to placements_clear; on
- * failure nothing is held. Errors: INPUT (more shapes than SCENE_SHAPES_MAX, an object without
- * parts, outside the patch, larger than it, smaller than half a wavelength, prouder than it is
- * high, up to the sonar), MEMORY. */
+ * failure nothing is held. All wrong objects are told, a line each. Errors: INPUT (more shapes than
+ * SCENE_SHAPES_MAX, an object without parts, outside the patch, larger than it, smaller than half a
+ * wavelength, prouder than it is high, up to the sonar), MEMORY. */
 sonject_status placements_init(struct placements *placements, struct report *report,
                                const struct scene *scene, const struct patch_view *view,
                                double first_row, double first_column);

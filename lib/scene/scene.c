@@ -51,6 +51,7 @@ void scene_clear(struct scene *scene)
     response_table_clear(&scene->cross_range_table);
     aperture_motion_clear(&scene->motion);
     relief_features_clear(&scene->relief);
+    written_keys_clear(&scene->written);
     scene_init(scene);
 }
 

@@ -16,6 +16,7 @@
 #include "scene/relief_features.h"
 #include "scene/response_table.h"
 #include "scene/user_shapes.h"
+#include "scene/written.h"
 
 #define SCENE_OBJECTS_MAX      250 /* ids must fit the 8-bit label image */
 #define SCENE_PARTS_MAX        1000
@@ -66,6 +67,7 @@ struct scene {
     struct scene_part *parts; /* owned; in no order */
     uint32_t part_count;
     struct relief_features relief;
+    struct written_keys written; /* none where no file was read */
 };
 
 /* All defaults; geometry.first_slant_range_m has none and is NaN, which check_geometry refuses. */

@@ -47,6 +47,23 @@ sonject_status scene_file_load(struct report *report, const char *path, char **t
     return file_read_whole(report, path, TREE_BYTES_MAX, text, bytes);
 }
 
+/* The place of every key, for what is found wrong when the image is known. */
+static sonject_status write_down(const struct tree *tree, const struct tree_node *node,
+                                 struct key_path *path, struct scene *scene)
+{
+    for (size_t i = 0; i < node->count; i++) {
+        const struct tree_entry *entry = &node->entries[i];
+        const size_t before =
+            entry->key ? key_path_add(path, entry->key) : key_path_add_index(path, i);
+        char place[TREE_PLACE_TEXT];
+        tree_place_text(tree, entry->value.place, place);
+        CHECK(written_keys_add(&scene->written, tree->report, path->text, place));
+        CHECK(write_down(tree, &entry->value, path, scene));
+        key_path_shorten(path, before);
+    }
+    return SONJECT_OK;
+}
+
 sonject_status scene_text_read(struct report *report, const struct scene_text *source,
                                struct scene *scene)
 {
@@ -59,6 +76,8 @@ sonject_status scene_text_read(struct report *report, const struct scene_text *s
     if (status == SONJECT_OK)
         status = fill_scene(&tree, source, scene);
     status = mistakes_tell(&mistakes, report, status);
+    struct key_path path = {"", 0};
+    THEN(status, write_down(&tree, &tree.root, &path, scene));
     tree_clear(&tree);
     if (status != SONJECT_OK)
         scene_clear(scene);

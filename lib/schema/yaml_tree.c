@@ -92,22 +92,28 @@ bool tree_is_null(const struct tree_node *node)
            strcmp(node->text, "null") == 0;
 }
 
+void tree_place_text(const struct tree *tree, struct tree_place place, char text[TREE_PLACE_TEXT])
+{
+    char name[240];
+    if (place.override)
+        snprintf(text, TREE_PLACE_TEXT, "--set %s",
+                 text_excerpt(name, sizeof name, place.override));
+    else
+        snprintf(text, TREE_PLACE_TEXT, "%s:%zu:%zu", text_excerpt(name, sizeof name, tree->file),
+                 place.line, place.column);
+}
+
 /* The key is left out where the override's own path says it already. */
 sonject_status tree_failure(const struct tree *tree, struct tree_place place, const char *path,
                             const char *format, ...)
 {
-    char where[320];
-    char name[240];
+    char where[TREE_PLACE_TEXT];
     char what[REPORT_LINE], line[2 * REPORT_LINE];
     va_list arguments;
     va_start(arguments, format);
     vsnprintf(what, sizeof what, format, arguments);
     va_end(arguments);
-    if (place.override)
-        snprintf(where, sizeof where, "--set %s", text_excerpt(name, sizeof name, place.override));
-    else
-        snprintf(where, sizeof where, "%s:%zu:%zu", text_excerpt(name, sizeof name, tree->file),
-                 place.line, place.column);
+    tree_place_text(tree, place, where);
     const bool is_told = *path == 0 || (place.override && strcmp(path, place.override) == 0);
     snprintf(line, sizeof line, "%s%s%s: %s", where, is_told ? "" : ": ", is_told ? "" : path,
              what);

@@ -16,6 +16,8 @@
 #define TREE_NODES_MAX 100000
 #define TREE_KEYS_MAX  256 /* in one section */
 
+#define TREE_PLACE_TEXT 320 /* bytes of a place in words */
+
 enum tree_kind {
     TREE_TEXT,
     TREE_LIST,
@@ -90,6 +92,9 @@ const struct tree_entry *tree_find(const struct tree_node *node, const char *key
 bool tree_is_null(const struct tree_node *node);
 
 void tree_node_clear(struct tree_node *node);
+
+/* "file:line:column" or "--set path". */
+void tree_place_text(const struct tree *tree, struct tree_place place, char text[TREE_PLACE_TEXT]);
 
 /* The message "file:line:column: path: ..." or "--set path: ...", to the tree's mistakes or, where
  * they are not collected, to its report. Returns INPUT. */

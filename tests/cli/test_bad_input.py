@@ -84,6 +84,40 @@ def test_an_unknown_unit(sonject, scene):
     refuse(sonject, scene, 3, "scene.yaml:9:", "frequency", "parsec")
 
 
+WRONG_PLACES = """
+  - shape: sphere
+    diameter: 0.5 m
+    position: {row: 2, column: 9000}
+  - {shape: sphere, diameter: 0.5 m, burial: {proud: 0.9 m}}
+  - {shape: sphere, diameter: 7.4 mm}
+  - {shape: sphere, diameter: 900 m}
+"""
+
+
+def test_all_objects_that_do_not_fit_are_told_with_their_places(sonject, scene):
+    lines = len(scene.read_text().splitlines())
+    scene.write_text(scene.read_text() + WRONG_PLACES.lstrip("\n"))
+    count = scene.read_text()[:scene.read_text().index(WRONG_PLACES.lstrip("\n"))].count("shape:")
+    told = [(f"scene.yaml:{lines + 3}:15", f"objects[{count}].position", "lies outside the patch"),
+            (f"scene.yaml:{lines + 4}:46", f"objects[{count + 1}].burial", "0.900 m proud"),
+            (f"scene.yaml:{lines + 5}:5", f"objects[{count + 2}]", "half the wavelength of 15 mm"),
+            (f"scene.yaml:{lines + 6}:5", f"objects[{count + 3}]", "larger than the patch")]
+    for verb in (["check"], ["run", "-o", "result"]):
+        answer = sonject(verb[0], scene, *verb[1:])
+        assert_refused(answer, 3, *told[0], mistakes=4)
+        for line, words in zip(answer.stderr.splitlines(), told):
+            assert [word in line for word in words] == [True] * 3, line
+
+
+def test_what_the_image_refuses_has_a_place(sonject, scene):
+    refuse(sonject, scene, 3, "--set patch: ", "not inside the image",
+           options=["--set", "patch={rows: 1, columns: 9000}"])
+    edit(scene, "path: ", "path: no/")
+    line = [number for number, text in enumerate(scene.read_text().splitlines(), 1)
+            if "no/" in text][0]
+    refuse(sonject, scene, 3, f"scene.yaml:{line}:", "input.path: ", "swath.tif")
+
+
 def test_an_object_smaller_than_half_a_wavelength(sonject, scene):
     edit(scene, "diameter: 0.5 m", "diameter: 7.4 mm")
     refuse(sonject, scene, 3, "object", "7.4 mm", "half the wavelength of 15 mm", "frequency")

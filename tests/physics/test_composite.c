@@ -1,7 +1,7 @@
 /* Measured and traced sound in one picture: what is kept, what is added, with which response,
  * looks, saturation and level, and how a whole patch comes out when it is traced anew. */
 #include "bench.h"
-#include "inject/injection.h"
+#include "inject/injection_setup.h"
 #include "inject/looks.h"
 #include "inject/match.h"
 #include "sea.h"
@@ -527,17 +527,14 @@ static void the_water_column_keeps_its_pixels(void)
 
 static void expect_refused(struct sea *sea, const char *words)
 {
-    struct water water;
-    struct patch_view view;
-    struct placements placements;
-    memset(&water, 0, sizeof water);
-    memset(&placements, 0, sizeof placements);
-    assert_int_equal(injection_check(&sea->bench->report, &sea->bench->scene, 0.0, 0.0, sea->rows,
-                                     sea->columns, &water, &view, &placements),
-                     SONJECT_ERROR_INPUT);
+    struct injection_setup setup;
+    const struct injection_input input = {.rows = sea->rows, .columns = sea->columns};
+    assert_int_equal(
+        injection_setup_init_scene(&setup, &sea->bench->report, NULL, &sea->bench->scene, &input),
+        SONJECT_ERROR_INPUT);
     if (!strstr(sea_message(sea), words))
         fail_msg("%s", sea_message(sea));
-    water_clear(&water);
+    injection_setup_clear(&setup);
 }
 
 /* Nothing but water; layers, whose rays would start straight down; a target before the bottom. */

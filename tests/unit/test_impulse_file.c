@@ -10,7 +10,7 @@
 #include "base/memory.h"
 #include "inject/echoes.h"
 #include "inject/impulse_file.h"
-#include "inject/injection.h"
+#include "inject/injection_setup.h"
 #include "trace/glints.h"
 #include "unit/temporary_folder.h"
 
@@ -21,9 +21,7 @@
 struct set_up {
     struct report report;
     struct scene scene;
-    struct water water;
-    struct placements placements;
-    struct tracer tracer;
+    struct injection_setup setup;
     struct line_grid patch, glints;
 };
 
@@ -39,17 +37,13 @@ static void set_up_init(struct set_up *set)
     object.shape = SONJECT_SHAPE_SPHERE;
     object.diameter_m = 0.02;
     assert_int_equal(scene_append_object(&set->scene, &set->report, &object), SONJECT_OK);
-    struct tracer *tracer = &set->tracer;
-    tracer->report = &set->report;
-    tracer->scene = &set->scene;
-    assert_int_equal(injection_check(&set->report, &set->scene, 0.0, 0.0, ROWS, COLUMNS,
-                                     &set->water, &tracer->view, &set->placements),
-                     SONJECT_OK);
-    tracer->placements = set->placements.parts;
-    tracer->part_count = set->placements.part_count;
-    tracer->objects = set->placements.objects;
+    struct tracer *tracer = &set->setup.tracer;
+    const struct injection_input input = {.rows = ROWS, .columns = COLUMNS};
+    assert_int_equal(
+        injection_setup_init_scene(&set->setup, &set->report, NULL, &set->scene, &input),
+        SONJECT_OK);
     point_response_init(&tracer->response, &set->scene.sonar,
-                        tracer->view.range_ratio * set->water.straight_speed_mps, 0.025);
+                        tracer->view.range_ratio * set->setup.water.straight_speed_mps, 0.025);
     line_grid_for_patch(&set->patch, &tracer->view, &tracer->response);
     glint_strips_init(&set->glints, tracer, 0);
     set->glints.bins.first = -3;
@@ -58,8 +52,7 @@ static void set_up_init(struct set_up *set)
 
 static void set_up_clear(struct set_up *set)
 {
-    placements_clear(&set->placements);
-    water_clear(&set->water);
+    injection_setup_clear(&set->setup);
     scene_clear(&set->scene);
 }
 
@@ -185,7 +178,7 @@ static sonject_status read_file(struct set_up *set, const char *path, struct tak
     if (status != SONJECT_OK)
         return status;
     const struct impulse_source source = impulse_file_source(&file);
-    status = source.deliver(source.giver, &set->tracer, &request, &sink);
+    status = source.deliver(source.giver, &set->setup.tracer, &request, &sink);
     impulse_file_close(&file);
     return status;
 }
@@ -204,7 +197,7 @@ static void lines_come_back(void **state)
     assert_int_equal(taken.cells[IMPULSES_GLINT], line_grid_cells(&set.glints));
     assert_int_equal(taken.cells[IMPULSES_LEVEL], 0);
     assert_int_equal(taken.cells[IMPULSES_CHAINS], line_grid_cells(&set.patch));
-    assert_true(set.tracer.counts.rays == (uint64_t)1 << 40);
+    assert_true(set.setup.tracer.counts.rays == (uint64_t)1 << 40);
     set_up_clear(&set);
 }
 
