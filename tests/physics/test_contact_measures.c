@@ -307,8 +307,13 @@ static const struct {
     {                                                                                              \
 #name, offsetof(sonject_object_truth, name), offsetof(sonject_contact_measures, name), 0   \
     }
-    LENGTH(highlight_along),     LENGTH(highlight_range), LENGTH(shadow_along),
-    LENGTH(shadow_range),        LENGTH(gap_range),       CONTRAST(highlight_contrast_db),
+    LENGTH(highlight_along),
+    LENGTH(highlight_range),
+    LENGTH(shadow_along),
+    LENGTH(shadow_range),
+    LENGTH(gap_range),
+    LENGTH(dim_range),
+    CONTRAST(highlight_contrast_db),
     CONTRAST(shadow_contrast_db)};
 
 #define SHARED_NAMES (sizeof shared_names / sizeof *shared_names)
@@ -355,6 +360,7 @@ static void measure(sonject_context *context, const struct pose *pose, uint64_t 
     params.row_spacing_m = params.column_spacing_m = SPACING;
     measures->struct_size = sizeof *measures;
     expect_ok(context, sonject_measure_contact(context, &pixels, &params, measures));
+    assert_true(fabs(measures->dim_range_m - measures->dim_range_pixels * SPACING) < 1e-9);
     add_agreement(&truth, measures);
     sonject_result_release(&result);
     sonject_scene_release(&scene);
