@@ -2,85 +2,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "api/campaign_handle.h"
+#include "api/handles.h"
 #include "base/memory.h"
+#include "dataset/campaign_handle.h"
 #include "schema/scene_file.h"
 #include "schema/yaml_tree.h"
-
-/* What the scene reader says of "--set KEY: what" is the campaign file's where that drew the key.
- */
-static bool place_line(struct tree *tree, const struct image_plan *plan, const char *line)
-{
-    static const char start[] = "--set ";
-    if (strncmp(line, start, strlen(start)) != 0)
-        return false;
-    line += strlen(start);
-    for (size_t i = 0; i < plan->key_count; i++) {
-        const char *text = plan->keys[i].text;
-        const size_t length = strcspn(text, "=");
-        if (plan->keys[i].place.line == 0 || strncmp(line, text, length) != 0 ||
-            !strchr(":.[", line[length]))
-            continue;
-        char key[256];
-        const size_t end = strcspn(line, ":");
-        snprintf(key, sizeof key, "%.*s", (int)end, line);
-        tree_failure(tree, plan->keys[i].place, key, "%s", line + end + (line[end] == ':') + 1);
-        return true;
-    }
-    return false;
-}
-
-static void place_message(struct sonject_campaign *campaign, const struct image_plan *plan)
-{
-    static const struct tree_place behind = {NULL, SIZE_MAX, 1};
-    char message[REPORT_CAPACITY];
-    struct mistakes mistakes = {NULL, 0, 0, 0};
-    struct tree *tree = &campaign->campaign.tree;
-    memcpy(message, campaign->report->message, sizeof message);
-    tree->mistakes = &mistakes;
-    for (char *line = message, *next; *line; line = next) {
-        next = line + strcspn(line, "\n");
-        next += *next ? (*next = 0, 1) : 0;
-        if (!place_line(tree, plan, line))
-            mistakes_add(&mistakes, tree, &behind, line, line);
-    }
-    tree->mistakes = NULL;
-    mistakes_tell(&mistakes, campaign->report, SONJECT_ERROR_INPUT);
-}
-
-sonject_status campaign_read_scene(struct sonject_campaign *campaign, const struct image_plan *plan,
-                                   struct scene *scene)
-{
-    const struct swath_plan *swath = &campaign->campaign.swaths[plan->swath];
-    const struct tree_node path = {.kind = TREE_TEXT, .is_quoted = true, .text = swath->path};
-    struct growing_text input = {NULL, 0, 0, false};
-    const char **overrides = allocate_array(plan->key_count + 1, sizeof *overrides);
-    growing_text_add(&input, "input.path=");
-    tree_write_flow(&path, &input);
-    char *input_text = growing_text_end(&input);
-    sonject_status status = overrides && input_text
-                                ? SONJECT_OK
-                                : report_out_of_memory(campaign->report, "an image's scene");
-    if (status == SONJECT_OK) {
-        for (size_t i = 0; i < plan->key_count; i++)
-            overrides[i] = plan->keys[i].text;
-        overrides[plan->key_count] = input_text;
-        const struct scene_text source = {campaign->campaign.scene_path,
-                                          campaign->scene_text,
-                                          campaign->scene_bytes,
-                                          overrides,
-                                          plan->key_count + 1,
-                                          campaign->campaign.folder,
-                                          plan->key_count,
-                                          campaign->allows_user_shapes};
-        status = scene_text_read(campaign->report, &source, scene);
-        if (status != SONJECT_OK)
-            place_message(campaign, plan);
-    }
-    free(overrides);
-    free(input_text);
-    return status;
-}
 
 static sonject_status take_classes(struct sonject_campaign *campaign)
 {
@@ -167,15 +93,6 @@ sonject_status sonject_campaign_image_count(const sonject_campaign *campaign, ui
     return SONJECT_OK;
 }
 
-sonject_status campaign_check_id(const struct sonject_campaign *campaign, uint64_t id)
-{
-    if (id < campaign->campaign.images)
-        return SONJECT_OK;
-    return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
-                          "there is no image %llu: the campaign has %llu, counted from 0",
-                          (unsigned long long)id, (unsigned long long)campaign->campaign.images);
-}
-
 static void describe_plan(const struct campaign *campaign, const struct image_plan *plan,
                           sonject_campaign_image *told)
 {
@@ -246,11 +163,13 @@ sonject_status sonject_campaign_inject(sonject_context *context, sonject_campaig
     context_begin_call(context);
     if (!campaign)
         return null_argument(&context->report, "campaign");
+    struct device *device;
     CHECK(campaign_check_id(campaign, id));
+    CHECK(context_device(context, &device));
     struct sonject_result *made = allocate_array(1, sizeof *made);
     CHECK_MEMORY(&context->report, made, "a result");
     memset(&image, 0, sizeof image);
-    sonject_status status = campaign_image_make(context, campaign, id, progress, user, &image);
+    sonject_status status = campaign_image_make(device, campaign, id, progress, user, &image);
     if (status == SONJECT_OK) {
         made->report = &context->report;
         made->result = image.result;

@@ -5,11 +5,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "api/campaign_documents.h"
+#include "api/handles.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
+#include "dataset/campaign_documents.h"
 
 void sonject_campaign_run_params_init(sonject_campaign_run_params *params)
 {
@@ -52,9 +53,10 @@ static int tell_image(void *user, double fraction, const char *stage)
 static sonject_status make_image(struct sweep *sweep, uint64_t id)
 {
     struct campaign_image image;
+    struct device *device;
     memset(&image, 0, sizeof image);
-    sonject_status status =
-        campaign_image_make(sweep->context, sweep->campaign, id, tell_image, sweep, &image);
+    sonject_status status = context_device(sweep->context, &device);
+    THEN(status, campaign_image_make(device, sweep->campaign, id, tell_image, sweep, &image));
     THEN(status, campaign_image_write(sweep->campaign, &image, sweep->params->folder));
     campaign_image_clear(&image);
     sweep->made++;

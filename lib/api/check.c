@@ -7,10 +7,10 @@
 
 #include <sonject/run.h>
 
-#include "api/swath.h"
 #include "base/growing_text.h"
 #include "base/text.h"
 #include "inject/injection_setup.h"
+#include "inject/swath.h"
 #include "scene/placement.h"
 #include "user/shape_check.h"
 

@@ -13,7 +13,7 @@
 #include "base/text.h"
 #include "image/canvas.h"
 #include "image/font.h"
-#include "image/sample_comparison.h"
+#include "measure/sample_comparison.h"
 #include "swath/raster_file.h"
 
 #define MEASURES_BYTES_MAX ((size_t)1 << 28)

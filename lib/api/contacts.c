@@ -7,8 +7,8 @@
 
 #include "api/handles.h"
 #include "base/memory.h"
-#include "image/contact_ruler.h"
 #include "image/speckle_statistics.h"
+#include "measure/contact_ruler.h"
 
 #define NUMBER(name)                                                                               \
     {                                                                                              \

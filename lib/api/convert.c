@@ -6,8 +6,8 @@
 
 #include <sonject/convert.h>
 
-#include "api/conversion.h"
 #include "base/memory.h"
+#include "swath/conversion.h"
 #include "swath/raster_formats.h"
 
 #define PIXELS_MAX ((uint64_t)1 << 31)

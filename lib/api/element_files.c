@@ -10,14 +10,14 @@
 #include <sonject/elements.h>
 #include <sonject/version.h>
 
-#include "api/earlier_result.h"
-#include "api/scene_hash.h"
-#include "api/swath.h"
 #include "base/file.h"
 #include "base/file_list.h"
 #include "base/json_document.h"
 #include "base/memory.h"
+#include "dataset/earlier_result.h"
 #include "inject/element_echoes.h"
+#include "inject/scene_hash.h"
+#include "inject/swath.h"
 #include "scene/element_plan.h"
 #include "swath/raster_file.h"
 

@@ -11,6 +11,7 @@
 #include "base/report.h"
 #include "cl/device.h"
 #include "inject/injection.h"
+#include "inject/kept_scene.h"
 #include "scene/scene.h"
 #include "swath/decoder.h"
 
@@ -20,13 +21,6 @@ struct sonject_context {
     struct decoder decoder;
     sonject_context_params params; /* its strings are owned */
     struct device *device;         /* NULL until first needed */
-};
-
-/* The file that a scene was read from, as it was then; owned. */
-struct scene_source {
-    char *path, *text; /* NULL: it was not read from a file */
-    char **overrides;
-    size_t override_count;
 };
 
 struct sonject_scene {

@@ -7,9 +7,9 @@
 #include "api/contacts.h"
 #include "api/handles.h"
 #include "base/memory.h"
-#include "image/seam.h"
 #include "image/speckle_statistics.h"
 #include "image/transfer.h"
+#include "measure/seam.h"
 #include "swath/swath_file.h"
 
 #define NEAR 2 /* pixels around changed ones: rounding hides small changes */

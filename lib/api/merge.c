@@ -5,12 +5,12 @@
 #include <sonject/run.h>
 #include <sonject/version.h>
 
-#include "api/checkpoints.h"
-#include "api/earlier_result.h"
-#include "api/kept_scene.h"
-#include "api/merged_bands.h"
 #include "api/run_scene.h"
 #include "base/file.h"
+#include "dataset/earlier_result.h"
+#include "dataset/merged_bands.h"
+#include "inject/checkpoints.h"
+#include "inject/kept_scene.h"
 #include "trace/sums_folder.h"
 
 void sonject_merge_params_init(sonject_merge_params *params)

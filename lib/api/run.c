@@ -6,18 +6,18 @@
 
 #include <sonject/run.h>
 
-#include "api/checkpoints.h"
-#include "api/documents.h"
-#include "api/earlier_result.h"
-#include "api/label_files.h"
-#include "api/layers.h"
 #include "api/run_scene.h"
-#include "api/scene_hash.h"
-#include "api/swath.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/file_list.h"
 #include "base/json_document.h"
+#include "dataset/documents.h"
+#include "dataset/earlier_result.h"
+#include "dataset/label_files.h"
+#include "dataset/layers.h"
+#include "inject/checkpoints.h"
+#include "inject/scene_hash.h"
+#include "inject/swath.h"
 
 /* Shares of a run's progress. */
 #define TRACE_START 0.1
@@ -123,8 +123,8 @@ static sonject_status run_swath(struct sonject_context *context, const struct ru
         status = injection_form(&context->report, device, scene, &input, &source, tell_stage,
                                 &stage, &result);
     } else if (status == SONJECT_OK) {
-        const struct checkpoint_job job = {context, device, request,    facts->scene_hash,
-                                           &input,  start,  tell_stage, &stage};
+        const struct checkpoint_job job = {&context->report, device, request,    facts->scene_hash,
+                                           &input,           start,  tell_stage, &stage};
         status = inject_by_checkpoints(&job, &result, &is_formed);
     }
     if (status != SONJECT_OK || !is_formed)

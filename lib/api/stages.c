@@ -7,10 +7,10 @@
 #include <sonject/version.h>
 
 #include "api/run_scene.h"
-#include "api/scene_hash.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "inject/impulse_export.h"
+#include "inject/scene_hash.h"
 #include "schema/scene_file.h"
 
 void sonject_trace_params_init(sonject_trace_params *params)

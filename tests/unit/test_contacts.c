@@ -1,8 +1,8 @@
 /* Edges in speckle against what drew them, and contacts that are looked for in an image. */
 #include "claims.h"
-#include "image/contact_edges.h"
-#include "image/contact_ruler.h"
-#include "image/contact_search.h"
+#include "measure/contact_edges.h"
+#include "measure/contact_ruler.h"
+#include "measure/contact_search.h"
 
 #define PIXELS  60
 #define DRAWS   400

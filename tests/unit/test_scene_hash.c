@@ -1,8 +1,8 @@
 /* What counts as the same inputs of a run. */
 #define _POSIX_C_SOURCE 200809L
 
-#include "api/scene_hash.h"
 #include "claims.h"
+#include "inject/scene_hash.h"
 #include "scene_keys.h"
 
 static void hash_of(const struct scene *scene, const char *identity, char text[HASH_TEXT_CAPACITY])

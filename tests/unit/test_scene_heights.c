@@ -2,8 +2,8 @@
  * what is said about files that are no heights. */
 #define _POSIX_C_SOURCE 200809L
 
-#include "api/scene_hash.h"
 #include "claims.h"
+#include "inject/scene_hash.h"
 #include "scene_folder.h"
 #include "swath/raster_file.h"
 

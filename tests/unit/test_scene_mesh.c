@@ -4,8 +4,8 @@
 
 #include <sys/stat.h>
 
-#include "api/scene_hash.h"
 #include "claims.h"
+#include "inject/scene_hash.h"
 #include "scene_folder.h"
 
 #define SCENE                                                                                      \

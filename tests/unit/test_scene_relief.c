@@ -1,8 +1,8 @@
 /* The seabed's relief in scene files: what is taken, what is refused, and what comes of it. */
 #define _POSIX_C_SOURCE 200809L
 
-#include "api/scene_hash.h"
 #include "claims.h"
+#include "inject/scene_hash.h"
 #include "scene/placement.h"
 #include "scene_folder.h"
 

@@ -5,8 +5,8 @@
 #include <sonject/sonject.h>
 
 #include "api/handles.h"
-#include "api/scene_hash.h"
 #include "claims.h"
+#include "inject/scene_hash.h"
 #include "scene_folder.h"
 
 #define TARGETS SOURCE_ROOT "/tools/targets/"

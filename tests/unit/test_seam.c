@@ -3,8 +3,8 @@
 
 #include <sonject/image.h>
 
-#include "image/seam.h"
 #include "image/synthetic.h"
+#include "measure/seam.h"
 
 #define ROWS    400
 #define COLUMNS 400

@@ -2,9 +2,9 @@
  * scene files that hold code, and that they need consent. */
 #define _POSIX_C_SOURCE 200809L
 
-#include "api/scene_hash.h"
 #include "base/text.h"
 #include "claims.h"
+#include "inject/scene_hash.h"
 #include "scene_folder.h"
 #include "user/user_program.h"
 

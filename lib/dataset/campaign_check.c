@@ -1,0 +1,200 @@
+/* Whether all that a campaign may draw can be made, and the hash of what its images depend on. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include <sonject/version.h>
+
+#include "base/file_list.h"
+#include "base/json_document.h"
+#include "base/memory.h"
+#include "base/text.h"
+#include "dataset/campaign_handle.h"
+#include "inject/scene_hash.h"
+#include "schema/yaml_tree.h"
+
+#define TRIALS_MAX 20000 /* scenes, about as many milliseconds at the most */
+
+/* Over all of the swath, whose pings say it, or as the scene does. */
+static double highest_altitude(const struct scene *scene, const struct xtf_file *xtf)
+{
+    double highest = scene->sonar.altitude_m;
+    for (uint64_t i = 0; xtf && scene->has_recorded_altitude && i < xtf->rows; i++)
+        highest = fmax(highest, (double)xtf->pings[i].altitude_m);
+    return highest;
+}
+
+/* Size and room of a swath, whose scene tells its geometry. */
+static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t number)
+{
+    struct swath_plan *swath = &campaign->campaign.swaths[number];
+    struct image_plan plan;
+    struct scene scene;
+    struct swath_file *file = NULL;
+    scene_init(&scene);
+    scene.mesh_store = &campaign->meshes;
+    sonject_status status =
+        file_hash(campaign->report, swath->path, campaign->swath_hashes[number]);
+    if (status == SONJECT_ERROR_MEMORY)
+        return status;
+    if (status != SONJECT_OK)
+        return tree_failure(&campaign->campaign.tree, swath->place, "swaths",
+                            "there is no %s that can be read; check its name", swath->path);
+    status =
+        image_plan_try(campaign->report, &campaign->campaign, number, CATEGORY_EMPTY, 0, 0, &plan);
+    THEN(status, campaign_read_scene(campaign, &plan, &scene));
+    THEN(status,
+         swath_file_open_array(campaign->report, swath->path, scene.channel, scene.array, &file));
+    if (status == SONJECT_OK) {
+        swath_file_layout(file, &swath->layout);
+        status = campaign_measure(campaign->report, &campaign->campaign, number, &scene.geometry,
+                                  highest_altitude(&scene, swath_file_xtf(file)));
+    }
+    swath_file_close(&file);
+    scene_clear(&scene);
+    image_plan_clear(&plan);
+    return status;
+}
+
+static sonject_status try_scene(struct sonject_campaign *campaign, struct hash *hash,
+                                uint32_t swath, uint32_t category, uint32_t item, uint32_t step)
+{
+    struct image_plan plan;
+    struct scene scene;
+    char text[HASH_TEXT_CAPACITY];
+    scene_init(&scene);
+    scene.mesh_store = &campaign->meshes;
+    sonject_status status =
+        image_plan_try(campaign->report, &campaign->campaign, swath, category, item, step, &plan);
+    THEN(status, campaign_read_scene(campaign, &plan, &scene));
+    THEN(status, scene_hash(campaign->report, &scene, NULL, text));
+    if (status == SONJECT_OK)
+        hash_add_text(hash, text);
+    campaign->has_user_shapes = campaign->has_user_shapes || scene.user_shapes.count > 0;
+    scene_clear(&scene);
+    image_plan_clear(&plan);
+    return status;
+}
+
+/* Each step of what is drawn of an item, or of the scene alone. */
+static sonject_status try_steps(struct sonject_campaign *campaign, struct hash *hash,
+                                uint32_t category, uint32_t number, const struct item *item,
+                                uint64_t *trials)
+{
+    const uint32_t steps = image_plan_steps(&campaign->campaign, item);
+    sonject_status status = SONJECT_OK;
+    *trials += steps;
+    if (*trials > TRIALS_MAX)
+        return report_failure(campaign->report, SONJECT_ERROR_INPUT,
+                              "%s: draws from so many choices that more than %d scenes were to be "
+                              "checked; make several campaigns of it",
+                              campaign->campaign.path, TRIALS_MAX);
+    for (uint32_t step = 0; status == SONJECT_OK && step < steps; step++)
+        status = try_scene(campaign, hash, 0, category, number, step);
+    return status;
+}
+
+/* Tries each swath, and each object with the ends and all choices of what is drawn of it. Files
+ * that objects name are read, so that the content of all that may be drawn is in the hash. */
+static sonject_status try_scenes(struct sonject_campaign *campaign, struct hash *hash)
+{
+    const struct campaign *plan = &campaign->campaign;
+    uint64_t trials = 0;
+    sonject_status status = SONJECT_OK;
+    for (uint32_t i = 0; status == SONJECT_OK && i < plan->swath_count; i++)
+        status = try_scene(campaign, hash, i, CATEGORY_EMPTY, 0, 1);
+    THEN(status, try_steps(campaign, hash, CATEGORY_EMPTY, 0, NULL, &trials));
+    for (uint32_t i = 0; status == SONJECT_OK && i < plan->target_count; i++)
+        status = try_steps(campaign, hash, CATEGORY_TARGET + i, 0, &plan->targets[i], &trials);
+    for (uint32_t i = 0; status == SONJECT_OK && i < plan->clutter_count; i++)
+        status = try_steps(campaign, hash, CATEGORY_CLUTTER, i, &plan->clutter[i], &trials);
+    return status;
+}
+
+static sonject_status split_swaths(struct sonject_campaign *campaign)
+{
+    struct campaign *plan = &campaign->campaign;
+    const char **identities = allocate_array(plan->swath_count, sizeof *identities);
+    CHECK_MEMORY(campaign->report, identities, "the splits");
+    for (size_t i = 0; i < plan->swath_count; i++)
+        identities[i] = campaign->swath_hashes[i];
+    const sonject_status status = campaign_split(campaign->report, plan, identities);
+    free(identities);
+    return status;
+}
+
+/* A key of the campaign's file with its value: a number, or a digest of its text. */
+static void add_key(struct sonject_campaign *campaign, struct hash *hash,
+                    const struct tree_entry *entry)
+{
+    struct growing_text text = {NULL, 0, 0, false};
+    char digest[HASH_TEXT_CAPACITY];
+    uint64_t count;
+    tree_write_flow(&entry->value, &text);
+    char *value = growing_text_end(&text);
+    hash_add_text(hash, value);
+    hash_restart(hash, digest);
+    json_add(&campaign->inputs, entry->key,
+             !value                         ? NULL
+             : text_to_count(value, &count) ? json_seed(count)
+                                            : json_string(digest));
+    free(value);
+}
+
+static void add_inputs(struct sonject_campaign *campaign, struct hash *hash, const char *code,
+                       const char *trials)
+{
+    const struct campaign *plan = &campaign->campaign;
+    const struct tree_node *root = &plan->tree.root;
+    char digest[HASH_TEXT_CAPACITY];
+    char name[48];
+    campaign->inputs = json_object();
+    json_add(&campaign->inputs, "sonject", json_string(sonject_version()));
+    json_add(&campaign->inputs, "sonject's kernels", json_string(code));
+    for (size_t i = 0; i < root->count; i++)
+        add_key(campaign, hash, &root->entries[i]);
+    hash_add(hash, campaign->scene_text, campaign->scene_bytes);
+    hash_restart(hash, digest);
+    json_add(&campaign->inputs, "the scene's file", json_string(digest));
+    for (size_t i = 0; i < plan->swath_count; i++) {
+        snprintf(name, sizeof name, "the file of swaths[%lu]", (unsigned long)i);
+        json_add(&campaign->inputs, name, json_string(campaign->swath_hashes[i]));
+    }
+    json_add(&campaign->inputs, "files that scene or targets name", json_string(trials));
+    char *text = json_document_text(campaign->inputs, JSON_COMPACT | JSON_SORT_KEYS);
+    hash_add_text(hash, text);
+    hash_restart(hash, campaign->hash);
+    free(text);
+}
+
+sonject_status campaign_check(struct sonject_campaign *campaign)
+{
+    struct campaign *plan = &campaign->campaign;
+    char code[HASH_TEXT_CAPACITY];
+    char trials[HASH_TEXT_CAPACITY];
+    struct hash *hash = hash_begin();
+    CHECK_MEMORY(campaign->report, hash, "a hash");
+    sonject_status status = code_hash(campaign->report, code);
+    for (uint32_t i = 0; status == SONJECT_OK && i < plan->swath_count; i++)
+        status = measure_swath(campaign, i);
+    THEN(status, split_swaths(campaign));
+    THEN(status, image_plan_check_grid(plan));
+    THEN(status, try_scenes(campaign, hash));
+    hash_restart(hash, trials);
+    if (status == SONJECT_OK) {
+        add_inputs(campaign, hash, code, trials);
+        if (!campaign->inputs)
+            status = report_out_of_memory(campaign->report, "the campaign's inputs");
+    }
+    hash_end(hash, trials);
+    return status;
+}
+
+sonject_status campaign_check_id(const struct sonject_campaign *campaign, uint64_t id)
+{
+    if (id < campaign->campaign.images)
+        return SONJECT_OK;
+    return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
+                          "there is no image %llu: the campaign has %llu, counted from 0",
+                          (unsigned long long)id, (unsigned long long)campaign->campaign.images);
+}

@@ -1,0 +1,227 @@
+/* A picture of images from all over a data set, with boxes around their objects. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "dataset/campaign_documents.h"
+#include "image/canvas.h"
+#include "image/font.h"
+#include "swath/raster_file.h"
+
+#define CELLS_ACROSS 8
+#define CELLS_MAX    64
+#define CELL_SIDE    144 /* pixels that an image may take */
+#define CELL_GAP     6
+#define CAPTION      22
+
+/* A chip as amplitudes or grey levels, made smaller to fit a cell. */
+struct thumbnail {
+    uint32_t rows, columns;
+    double scale; /* of its pixels to the chip's, at most 1 */
+    float *values;
+};
+
+static float stored_value(enum pixel_type type, const void *pixels, size_t i)
+{
+    if (type == PIXEL_UINT8)
+        return ((const uint8_t *)pixels)[i];
+    if (type == PIXEL_UINT16)
+        return ((const uint16_t *)pixels)[i];
+    return ((const float *)pixels)[i];
+}
+
+static float value_at(const struct raster_layout *layout, const void *pixels, size_t i)
+{
+    if (layout->channels == 2)
+        return hypotf(stored_value(layout->type, pixels, 2 * i),
+                      stored_value(layout->type, pixels, 2 * i + 1));
+    return stored_value(layout->type, pixels, i);
+}
+
+/* Means of the pixels that a smaller one stands for. */
+static void reduce(const struct raster_layout *layout, const void *pixels, struct thumbnail *small)
+{
+    for (uint32_t row = 0; row < small->rows; row++)
+        for (uint32_t column = 0; column < small->columns; column++) {
+            const size_t first_row = (size_t)((double)row / small->scale);
+            const size_t first_column = (size_t)((double)column / small->scale);
+            const size_t end_row =
+                (size_t)fmin(ceil((row + 1) / small->scale), (double)layout->rows);
+            const size_t end_column =
+                (size_t)fmin(ceil((column + 1) / small->scale), (double)layout->columns);
+            double sum = 0.0;
+            for (size_t r = first_row; r < end_row; r++)
+                for (size_t c = first_column; c < end_column; c++)
+                    sum += value_at(layout, pixels, r * (size_t)layout->columns + c);
+            small->values[(size_t)row * small->columns + column] =
+                (float)(sum / (double)((end_row - first_row) * (end_column - first_column)));
+        }
+}
+
+static int compare_values(const void *a, const void *b)
+{
+    const float first = *(const float *)a;
+    const float second = *(const float *)b;
+    return first < second ? -1 : first > second;
+}
+
+/* Grey levels as they are; other pixels in dB, from the 1st to the 99.8th percentile. */
+static sonject_status shade(struct report *report, enum pixel_type type, struct thumbnail *small)
+{
+    const size_t count = (size_t)small->rows * small->columns;
+    float low = 0.0f;
+    float high = 255.0f;
+    if (type != PIXEL_UINT8) {
+        float *sorted = allocate_array(count, sizeof *sorted);
+        CHECK_MEMORY(report, sorted, "the contact sheet");
+        for (size_t i = 0; i < count; i++)
+            small->values[i] = 20.0f * log10f(fmaxf(small->values[i], 1e-20f));
+        memcpy(sorted, small->values, count * sizeof *sorted);
+        qsort(sorted, count, sizeof *sorted, compare_values);
+        low = sorted[count / 100];
+        high = sorted[count - 1 - count / 500];
+        free(sorted);
+    }
+    for (size_t i = 0; i < count; i++)
+        small->values[i] =
+            high > low ? fminf(fmaxf((small->values[i] - low) / (high - low), 0.0f), 1.0f) : 0.0f;
+    return SONJECT_OK;
+}
+
+static sonject_status load_thumbnail(struct report *report, const char *path,
+                                     struct thumbnail *small)
+{
+    struct decoded_image *file;
+    struct raster_layout layout;
+    size_t bytes;
+    void *pixels = NULL;
+    memset(small, 0, sizeof *small);
+    CHECK(decoded_image_open(report, path, NULL, &file));
+    layout = file->layout;
+    const struct region all = {0, 0, layout.rows, layout.columns};
+    const double longer = (double)(layout.rows > layout.columns ? layout.rows : layout.columns);
+    small->scale = fmin(1.0, CELL_SIDE / longer);
+    small->rows = (uint32_t)fmax(1.0, floor((double)layout.rows * small->scale));
+    small->columns = (uint32_t)fmax(1.0, floor((double)layout.columns * small->scale));
+    if (layout.rows <= CAMPAIGN_CHIP_MAX && layout.columns <= CAMPAIGN_CHIP_MAX &&
+        region_bytes(&layout, &all, &bytes))
+        pixels = allocate_array(bytes, 1);
+    small->values = allocate_array((size_t)small->rows * small->columns, sizeof *small->values);
+    sonject_status status = pixels && small->values
+                                ? decoded_image_read(report, file, &all, pixels)
+                                : report_out_of_memory(report, "the contact sheet");
+    if (status == SONJECT_OK) {
+        reduce(&layout, pixels, small);
+        status = shade(report, layout.type, small);
+    }
+    decoded_image_close(&file);
+    free(pixels);
+    return status;
+}
+
+static void draw_thumbnail(struct canvas *canvas, const struct thumbnail *small, int64_t x,
+                           int64_t y)
+{
+    for (uint32_t row = 0; row < small->rows; row++)
+        for (uint32_t column = 0; column < small->columns; column++) {
+            const uint8_t grey =
+                (uint8_t)(255.0f * small->values[(size_t)row * small->columns + column] + 0.5f);
+            const struct colour colour = {grey, grey, grey};
+            canvas_fill(canvas, x + column, y + row, 1, 1, colour);
+        }
+}
+
+/* False where there is no box. */
+static bool find_box(const json_t *box, double scale, int64_t sides[4])
+{
+    static const char *const keys[] = {"column", "row", "columns", "rows"};
+    for (size_t i = 0; i < 4; i++) {
+        const double side = scale * (double)json_integer_value(json_object_get(box, keys[i]));
+        sides[i] = (int64_t)(i < 2 ? side : ceil(side));
+    }
+    return json_is_object(box);
+}
+
+static void draw_boxes(struct canvas *canvas, const json_t *truth, const struct thumbnail *small,
+                       const char *target, int64_t x, int64_t y)
+{
+    static const struct colour of_targets = {255, 160, 0};
+    static const struct colour of_others = {80, 180, 255};
+    size_t i;
+    const json_t *object;
+    json_array_foreach(json_object_get(truth, "objects"), i, object)
+    {
+        int64_t sides[4]; /* column, row, columns, rows */
+        if (find_box(json_object_get(object, "box"), small->scale, sides))
+            canvas_frame(canvas, x + sides[0], y + sides[1], sides[2], sides[3],
+                         i == 0 && *target ? of_targets : of_others);
+    }
+}
+
+static sonject_status draw_cell(const struct data_set *set, struct canvas *canvas, size_t split,
+                                uint64_t id, int64_t x, int64_t y)
+{
+    static const struct colour black = {0, 0, 0};
+    json_t *record, *truth;
+    struct thumbnail small = {0, 0, 0.0, NULL};
+    char caption[96];
+    char *path;
+    CHECK(data_set_image(set, split, id, &record, &truth, &path));
+    sonject_status status = load_thumbnail(set->report, path, &small);
+    if (status == SONJECT_OK) {
+        const char *target = member_text(record, "target");
+        draw_thumbnail(canvas, &small, x, y);
+        draw_boxes(canvas, truth, &small, target, x, y);
+        snprintf(caption, sizeof caption, "%llu %s", (unsigned long long)id, target);
+        size_t length = strlen(caption);
+        while (length > 0 && text_length(caption, length) > CELL_SIDE)
+            length--;
+        draw_text(canvas, x, y + CELL_SIDE + FONT_ASCENT + 2, caption, length, TEXT_RIGHTWARDS,
+                  black);
+    }
+    free(small.values);
+    free(path);
+    json_decref(record);
+    json_decref(truth);
+    return status;
+}
+
+static sonject_status draw_cells(const struct data_set *set, struct canvas *canvas, uint32_t cells)
+{
+    sonject_status status = SONJECT_OK;
+    for (uint32_t i = 0; status == SONJECT_OK && i < cells; i++) {
+        const uint64_t id = set->images * i / cells;
+        size_t split = 0;
+        while (id - set->split_first[split] >= set->split_images[split])
+            split++;
+        status = draw_cell(
+            set, canvas, split, id, CELL_GAP + (int64_t)(i % CELLS_ACROSS) * (CELL_SIDE + CELL_GAP),
+            CELL_GAP + (int64_t)(i / CELLS_ACROSS) * (CELL_SIDE + CAPTION + CELL_GAP));
+    }
+    return status;
+}
+
+sonject_status write_contact_sheet(const struct data_set *set)
+{
+    static const struct colour white = {255, 255, 255};
+    const uint32_t cells = set->images < CELLS_MAX ? (uint32_t)set->images : CELLS_MAX;
+    const uint32_t across = cells < CELLS_ACROSS ? cells : CELLS_ACROSS;
+    const uint32_t down = (cells + CELLS_ACROSS - 1) / CELLS_ACROSS;
+    struct canvas canvas;
+    char *path = path_join(set->folder, "contact_sheet.png");
+    if (!path || !canvas_create(&canvas, CELL_GAP + down * (CELL_SIDE + CAPTION + CELL_GAP),
+                                CELL_GAP + across * (CELL_SIDE + CELL_GAP), white)) {
+        free(path);
+        return report_out_of_memory(set->report, "the contact sheet");
+    }
+    sonject_status status = draw_cells(set, &canvas, cells);
+    if (status == SONJECT_OK) {
+        const struct raster_layout layout = {canvas.height, canvas.width, 3, PIXEL_UINT8};
+        status = raster_file_write(set->report, path, &layout, NULL, NULL, 0, canvas.rgb);
+    }
+    free(canvas.rgb);
+    free(path);
+    return status;
+}

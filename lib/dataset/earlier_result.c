@@ -1,0 +1,191 @@
+#include "dataset/earlier_result.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/file_list.h"
+#include "base/growing_text.h"
+#include "base/json_document.h"
+#include "dataset/label_files.h"
+
+#define DIFFERENCES_NAMED 4
+
+sonject_status earlier_document(struct report *report, const char *folder, const char *name,
+                                json_t **document)
+{
+    char *path = path_join(folder, name);
+    *document = NULL;
+    sonject_status status = path ? SONJECT_OK : report_out_of_memory(report, "a file name");
+    if (status == SONJECT_OK && file_exists(path))
+        status = json_document_read(report, path, document);
+    if (status == SONJECT_ERROR_INPUT) {
+        report->message[0] = '\0';
+        status = SONJECT_OK;
+    }
+    free(path);
+    return status;
+}
+
+static bool has_document(const char *folder, const char *name)
+{
+    char *path = path_join(folder, name);
+    const bool is_there = path && file_exists(path);
+    free(path);
+    return is_there;
+}
+
+bool folder_has_result(const char *folder)
+{
+    return has_document(folder, RUN_DOCUMENT);
+}
+
+/* What differs, the first of it by name. */
+struct differences {
+    size_t count;
+    struct growing_text text;
+};
+
+static void add_difference(struct differences *differences, const char *name, const json_t *there,
+                           const json_t *here)
+{
+    if (differences->count++ >= DIFFERENCES_NAMED)
+        return;
+    growing_text_add(&differences->text, "%s%s", differences->count > 1 ? ", " : "", name);
+    char *old = json_is_integer(there) ? json_dumps(there, JSON_ENCODE_ANY) : NULL;
+    char *new = json_is_integer(here) ? json_dumps(here, JSON_ENCODE_ANY) : NULL;
+    if (old && new)
+        growing_text_add(&differences->text, " (%s there, %s here)", old, new);
+    free(old);
+    free(new);
+}
+
+sonject_status inputs_check(struct report *report, const char *folder, const json_t *there,
+                            const json_t *here, const char *image, bool overwrites, bool *is_same)
+{
+    struct differences differences = {0, {NULL, 0, 0, false}};
+    const char *name;
+    json_t *value;
+    if (!json_is_object(there))
+        add_difference(&differences, "inputs that it does not tell", NULL, NULL);
+    json_object_foreach((json_t *)here, name, value)
+    {
+        if (there && !json_equal(json_object_get(there, name), value))
+            add_difference(&differences, name, json_object_get(there, name), value);
+    }
+    json_object_foreach((json_t *)there, name, value)
+    {
+        if (!json_object_get(here, name))
+            add_difference(&differences, name, value, NULL);
+    }
+    if (image)
+        add_difference(&differences, image, NULL, NULL);
+    char *names = growing_text_end(&differences.text);
+    sonject_status status = SONJECT_OK;
+    *is_same = differences.count == 0;
+    if (!*is_same && !overwrites)
+        status = names ? report_failure(report, SONJECT_ERROR_ARGUMENT,
+                                        "%s: holds another result, which differs in %s%s: choose "
+                                        "another folder, or replace that result (--overwrite)",
+                                        folder, names,
+                                        differences.count > DIFFERENCES_NAMED ? ", ..." : "")
+                       : report_out_of_memory(report, "inputs");
+    free(names);
+    return status;
+}
+
+/* Whether a result is of the call's inputs, the image's file among them. */
+static sonject_status check_inputs(struct report *report, const struct earlier_request *request,
+                                   const json_t *document, bool *is_same)
+{
+    const json_t *image = json_object_get(document, "input_file");
+    const char *name = json_string_value(json_object_get(image, "name"));
+    const char *path = request->scene->input_path;
+    const bool is_elsewhere = !name || !path || strcmp(name, path) != 0;
+    bool holds = true;
+    if (path) {
+        CHECK(file_entry_holds(report, image, path, request->hashes_all || is_elsewhere, &holds));
+    }
+    return inputs_check(report, request->folder, json_object_get(document, "inputs"),
+                        request->inputs, holds ? NULL : path, request->overwrites, is_same);
+}
+
+sonject_status earlier_check(struct report *report, const struct earlier_request *request,
+                             bool *is_finished)
+{
+    const char *changed = NULL;
+    bool is_same = false;
+    *is_finished = false;
+    if (!has_document(request->folder, request->document))
+        return SONJECT_OK;
+    json_t *document;
+    sonject_status status = earlier_document(report, request->folder, request->document, &document);
+    THEN(status, check_inputs(report, request, document, &is_same));
+    if (status == SONJECT_OK && is_same)
+        status = file_list_check(json_object_get(document, "files"), report, request->folder,
+                                 request->hashes_all, &changed);
+    if (status == SONJECT_OK && changed)
+        report_news(report, "%s: %s is not as it was written: the result is made again",
+                    request->folder, changed);
+    *is_finished = status == SONJECT_OK && is_same && !changed &&
+                   (request->label_formats & ~labels_of_document(document)) == 0;
+    json_decref(document);
+    return status;
+}
+
+sonject_status earlier_check_merged(struct report *report, const char *folder,
+                                    uint32_t label_formats)
+{
+    const char *changed = NULL;
+    json_t *document;
+    sonject_status status = earlier_document(report, folder, RUN_DOCUMENT, &document);
+    const bool lacks_labels = (label_formats & ~labels_of_document(document)) != 0;
+    THEN(status,
+         file_list_check(json_object_get(document, "files"), report, folder, true, &changed));
+    if (status == SONJECT_OK && lacks_labels)
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "%s: is merged already, without those labels: run its scene into "
+                                "it once more with them",
+                                folder);
+    else if (status == SONJECT_OK && changed)
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "%s: is merged already, but %s is not as it was written: run its "
+                                "scene into it once more",
+                                folder, changed);
+    json_decref(document);
+    return status;
+}
+
+json_t *earlier_withdraw(const char *folder, const char *document)
+{
+    struct report ignored = {{0}, NULL, NULL};
+    json_t *earlier = NULL;
+    earlier_document(&ignored, folder, document, &earlier);
+    json_t *files = json_incref(json_object_get(earlier, "files"));
+    char *path = path_join(folder, document);
+    if (path)
+        file_discard(path);
+    json_decref(earlier);
+    free(path);
+    return files;
+}
+
+void earlier_tidy(const char *folder, json_t *earlier, const json_t *files)
+{
+    file_list_discard(earlier, files, folder);
+    folder_tidy(folder);
+    json_decref(earlier);
+}
+
+sonject_status earlier_describe(struct report *report, json_t **document, json_t *inputs,
+                                json_t *files, const struct scene *scene)
+{
+    json_t *image = NULL;
+    sonject_status status = SONJECT_OK;
+    if (scene->input_path)
+        status = file_entry(report, scene->input_path, scene->input_path, true, &image);
+    json_add(document, "inputs", json_incref(inputs));
+    json_add(document, "input_file", image ? image : json_null());
+    json_add(document, "files", json_incref(files));
+    return status;
+}

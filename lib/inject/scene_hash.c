@@ -1,0 +1,333 @@
+#include "inject/scene_hash.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include <sonject/version.h>
+
+#include "base/json_document.h"
+#include "cl/sources.h"
+#include "inject/impulse_file.h"
+#include "schema/scene_schema.h"
+
+/* Members one by one: the padding of a structure is not part of its value. */
+#define ADD(hash, member) hash_add(hash, &(member), sizeof(member))
+
+/* A digest in the making: of a section of the scene's keys, and of all sections. */
+struct digest {
+    struct hash *section, *whole;
+    json_t **inputs; /* that get each section's; NULL: they are not asked for */
+};
+
+static void end_section(struct digest *digest, const char *name)
+{
+    char text[HASH_TEXT_CAPACITY];
+    hash_restart(digest->section, text);
+    hash_add_text(digest->whole, text);
+    if (digest->inputs)
+        json_add(digest->inputs, name, json_string(text));
+}
+
+/* NaN has many patterns and one meaning: that nothing was given. */
+static void add_number(struct hash *hash, double number)
+{
+    const double told = isnan(number) ? (double)NAN : number;
+    ADD(hash, told);
+}
+
+/* A section with a structure of its own. */
+static bool is_part(const struct field *field)
+{
+    return field->kind == FIELD_SECTION && field->offset != 0;
+}
+
+static void add_rows(struct hash *hash, const struct section *section, const void *structure);
+
+static void add_entries(struct hash *hash, const struct field *field, const void *structure)
+{
+    const uint32_t count =
+        *(const uint32_t *)(const void *)((const char *)structure + field->count_offset);
+    ADD(hash, count);
+    for (uint32_t i = 0; i < count && i < field->maximum; i++)
+        add_rows(hash, field->section,
+                 (const char *)structure + field->offset + i * field->entry_bytes);
+}
+
+/* All that a section's keys set in its structure, but for parts, which have structures of their
+ * own. Files count by what is in them, which is the scene's. */
+static void add_rows(struct hash *hash, const struct section *section, const void *structure)
+{
+    for (size_t i = 0; i < section->count; i++) {
+        const struct field *field = &section->fields[i];
+        const void *member = (const char *)structure + field->offset;
+        switch (field->kind) {
+        case FIELD_QUANTITY:
+            add_number(hash, *(const double *)member);
+            break;
+        case FIELD_COUNT64:
+            hash_add(hash, member, sizeof(uint64_t));
+            break;
+        case FIELD_COUNT32:
+        case FIELD_FLAG32:
+        case FIELD_WORD:
+            hash_add(hash, member, sizeof(uint32_t));
+            break;
+        case FIELD_BOOL:
+            hash_add(hash, member, sizeof(bool));
+            break;
+        case FIELD_LABEL:
+            hash_add_text(hash, member);
+            break;
+        case FIELD_TEXT:
+            hash_add_text(hash, *(char *const *)member ? *(char *const *)member : "");
+            break;
+        case FIELD_NAMED:
+            add_rows(hash, field->section, member);
+            continue;
+        case FIELD_ENTRIES:
+            add_entries(hash, field, structure);
+            continue;
+        case FIELD_PATH:
+        case FIELD_FILE:
+        case FIELD_SECTION:
+        case FIELD_SPECIAL:
+            break;
+        }
+        if (field->section && !field->read && !is_part(field))
+            add_rows(hash, field->section, structure);
+    }
+}
+
+static void add_section(struct digest *digest, const char *name, const struct section *section,
+                        const void *structure)
+{
+    char inner[64];
+    add_rows(digest->section, section, structure);
+    end_section(digest, name);
+    for (size_t i = 0; i < section->count; i++) {
+        const struct field *field = &section->fields[i];
+        snprintf(inner, sizeof inner, "%s.%s", name, field->key);
+        if (is_part(field))
+            add_section(digest, inner, field->section, (const char *)structure + field->offset);
+    }
+}
+
+static void add_material(struct hash *hash, const sonject_material_params *material)
+{
+    ADD(hash, material->reflection_kind);
+    add_rows(hash, &material_section, material);
+}
+
+static void add_table(struct hash *hash, const double *positions, const void *values,
+                      size_t value_bytes, size_t count)
+{
+    const uint64_t told = count;
+    ADD(hash, told);
+    hash_add(hash, positions, count * sizeof *positions);
+    hash_add(hash, values, count * value_bytes);
+}
+
+static void add_response(struct digest *digest, const char *name,
+                         const struct response_table *table)
+{
+    ADD(digest->section, table->is_time);
+    add_table(digest->section, table->positions, table->values, sizeof *table->values,
+              table->count);
+    end_section(digest, name);
+}
+
+static void add_motion(struct digest *digest, const struct aperture_motion *motion)
+{
+    struct hash *hash = digest->section;
+    const struct motion_table *sway = &motion->sway_table, *yaw = &motion->yaw_table;
+    add_table(hash, sway->along_track_m, sway->values, sizeof *sway->values, sway->count);
+    add_table(hash, yaw->along_track_m, yaw->values, sizeof *yaw->values, yaw->count);
+    add_section(digest, "sonar.motion", &motion_section, &motion->params);
+}
+
+static void add_medium(struct digest *digest, const struct scene *scene)
+{
+    const uint64_t count = scene->water_layer_count;
+    ADD(digest->section, count);
+    for (size_t i = 0; i < scene->water_layer_count; i++)
+        add_rows(digest->section, &layer_section, &scene->water_layers[i]);
+    add_section(digest, "medium", &medium_section, &scene->medium);
+}
+
+static void add_relief(struct digest *digest, const struct relief_features *relief)
+{
+    struct hash *hash = digest->section;
+    for (uint32_t i = 0; i < relief->count; i++) {
+        ADD(hash, relief->features[i].kind);
+        add_rows(hash, &relief_section, &relief->features[i]);
+    }
+    if (relief->heights_m) {
+        ADD(hash, relief->grid.rows);
+        ADD(hash, relief->grid.columns);
+        ADD(hash, relief->grid.first_along_track_m);
+        ADD(hash, relief->grid.first_ground_range_m);
+        ADD(hash, relief->grid.row_spacing_m);
+        ADD(hash, relief->grid.column_spacing_m);
+        hash_add(hash, relief->heights_m,
+                 (size_t)relief->grid.rows * relief->grid.columns * sizeof *relief->heights_m);
+    }
+    end_section(digest, "seabed.relief");
+}
+
+/* What has no key, but is of one: the kinds that a key's way of writing tells, and numbers of what
+ * the scene has. */
+static void add_object(struct hash *hash, const sonject_object_params *object)
+{
+    ADD(hash, object->burial_kind);
+    add_material(hash, &object->material);
+    ADD(hash, object->mesh);
+    ADD(hash, object->user_shape);
+    add_rows(hash, &object_section, object);
+}
+
+/* Objects by their numbers, and what they are made of all together. */
+static void add_objects(struct digest *digest, const struct scene *scene)
+{
+    struct hash *hash = digest->section;
+    char name[32];
+    for (uint32_t i = 0; i < scene->object_count; i++) {
+        add_object(hash, &scene->objects[i]);
+        snprintf(name, sizeof name, "objects[%lu]", (unsigned long)i);
+        end_section(digest, name);
+    }
+    for (uint32_t i = 0; i < scene->part_count; i++) {
+        const struct scene_part *part = &scene->parts[i];
+        ADD(hash, part->object);
+        ADD(hash, part->axes);
+        ADD(hash, part->centre);
+        add_object(hash, &part->shape);
+    }
+    end_section(digest, "objects[].parts");
+}
+
+static void add_meshes(struct hash *hash, const struct scene *scene)
+{
+    for (uint32_t i = 0; i < scene->mesh_count; i++) {
+        const struct mesh *mesh = &scene->meshes[i];
+        const uint64_t counts[2] = {mesh->vertex_count, mesh->triangle_count};
+        ADD(hash, counts);
+        ADD(hash, mesh->options.smooth_angle_rad);
+        hash_add(hash, mesh->vertices, 3 * mesh->vertex_count * sizeof *mesh->vertices);
+        hash_add(hash, mesh->corners, 3 * mesh->triangle_count * sizeof *mesh->corners);
+    }
+}
+
+static void add_user_shapes(struct hash *hash, const struct user_shapes *shapes)
+{
+    for (uint32_t i = 0; i < shapes->count; i++) {
+        const struct user_shape *shape = &shapes->shapes[i];
+        hash_add_text(hash, shapes->snippets[shape->snippet].code);
+        ADD(hash, shape->is_open);
+        ADD(hash, shape->bounding_radius_m);
+        ADD(hash, shape->half_length_m);
+        ADD(hash, shape->half_width_m);
+        ADD(hash, shape->half_height_m);
+        ADD(hash, shape->parameters);
+    }
+}
+
+/* The seed is told apart from what else is said of the injection. The array of the element level
+ * is no part of an image. */
+static void add_settings(struct digest *digest, const struct scene *scene)
+{
+    sonject_injection_params injection = scene->injection;
+    ADD(digest->section, injection.seed);
+    end_section(digest, "injection.seed");
+    injection.seed = 0;
+    ADD(digest->section, injection.estimate_noise);
+    add_section(digest, "injection", &injection_section, &injection);
+    add_section(digest, "sonar", &sonar_section, &scene->sonar);
+    add_section(digest, "sonar.pulse", &pulse_section, &scene->pulse);
+    add_response(digest, "sonar.pulse.file", &scene->pulse_table);
+    add_response(digest, "sonar.measured_response", &scene->cross_range_table);
+    add_motion(digest, &scene->motion);
+    add_medium(digest, scene);
+    add_material(digest->section, &scene->seabed.forward);
+    add_section(digest, "seabed", &seabed_section, &scene->seabed);
+    add_relief(digest, &scene->relief);
+    add_material(digest->section, &scene->surface.material);
+    add_section(digest, "surface", &surface_section, &scene->surface);
+    add_section(digest, "patch", &patch_section, &scene->patch);
+    ADD(digest->section, scene->input_kind);
+    add_section(digest, "input", &input_section, scene);
+}
+
+static void add_scene(struct digest *digest, const struct scene *scene, const char *input_identity)
+{
+    hash_add_text(digest->section, sonject_version());
+    end_section(digest, "sonject");
+    add_settings(digest, scene);
+    add_objects(digest, scene);
+    add_meshes(digest->section, scene);
+    end_section(digest, "objects[].mesh");
+    add_user_shapes(digest->section, &scene->user_shapes);
+    end_section(digest, "objects[].user_shape");
+    hash_add_text(digest->section, input_identity);
+    end_section(digest, "input's pixels");
+    if (digest->inputs) { /* these say more by themselves */
+        json_add(digest->inputs, "sonject", json_string(sonject_version()));
+        json_add(digest->inputs, "injection.seed", json_seed(scene->injection.seed));
+    }
+}
+
+static sonject_status digest_scene(struct report *report, const struct scene *scene,
+                                   const char *input_identity, char text[HASH_TEXT_CAPACITY],
+                                   json_t **inputs)
+{
+    struct digest digest = {hash_begin(), hash_begin(), inputs};
+    char ignored[HASH_TEXT_CAPACITY];
+    const bool is_whole = digest.section && digest.whole;
+    if (is_whole)
+        add_scene(&digest, scene, input_identity);
+    if (digest.section)
+        hash_end(digest.section, ignored);
+    if (digest.whole)
+        hash_end(digest.whole, text);
+    return is_whole ? SONJECT_OK : report_out_of_memory(report, "a hash");
+}
+
+sonject_status scene_hash(struct report *report, const struct scene *scene,
+                          const char *input_identity, char text[HASH_TEXT_CAPACITY])
+{
+    return digest_scene(report, scene, input_identity, text, NULL);
+}
+
+sonject_status scene_inputs(struct report *report, const struct scene *scene,
+                            const char *input_identity, char text[HASH_TEXT_CAPACITY],
+                            json_t **inputs)
+{
+    *inputs = json_object();
+    const sonject_status status = digest_scene(report, scene, input_identity, text, inputs);
+    return status == SONJECT_OK && !*inputs ? report_out_of_memory(report, "a hash") : status;
+}
+
+sonject_status traced_scene_hash(struct report *report, const struct scene *scene,
+                                 const char *input_identity, char text[HASH_TEXT_CAPACITY])
+{
+    static const struct impulse_facts none;
+    struct scene traced = *scene;
+    impulse_facts_take_sonar(&none, &traced.sonar);
+    sonject_pulse_params_init(&traced.pulse);
+    memset(&traced.pulse_table, 0, sizeof traced.pulse_table);
+    memset(&traced.cross_range_table, 0, sizeof traced.cross_range_table);
+    memset(&traced.motion, 0, sizeof traced.motion);
+    return scene_hash(report, &traced, input_identity, text);
+}
+
+sonject_status code_hash(struct report *report, char hash_text[HASH_TEXT_CAPACITY])
+{
+    struct hash *hash = hash_begin();
+    if (!hash)
+        return report_out_of_memory(report, "a hash");
+    hash_add_text(hash, sonject_version());
+    for (size_t i = 0; i < PROGRAM_COUNT; i++)
+        hash_add(hash, embedded_sources[i].text, embedded_sources[i].bytes);
+    hash_end(hash, hash_text);
+    return SONJECT_OK;
+}

@@ -1,0 +1,419 @@
+#include "inject/swath.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "image/transfer.h"
+#include "inject/injection_setup.h"
+#include "swath/geometry_notes.h"
+#include "swath/raster_file.h"
+#include "swath/swath_file.h"
+
+/* The scene's patch; all zeros mean the whole swath. */
+static sonject_status choose_patch(struct report *report, const struct scene *scene,
+                                   struct swath *swath)
+{
+    const sonject_patch_params *asked = &scene->patch;
+    const struct raster_layout *layout = &swath->layout;
+    struct region *patch = &swath->patch;
+    patch->first_row = asked->first_row;
+    patch->first_column = asked->first_column;
+    patch->rows = asked->rows ? asked->rows : layout->rows - asked->first_row;
+    patch->columns = asked->columns ? asked->columns : layout->columns - asked->first_column;
+    if (asked->first_row >= layout->rows || asked->first_column >= layout->columns ||
+        !region_is_inside(layout, patch))
+        return report_failure(
+            report, SONJECT_ERROR_INPUT,
+            "the patch (row %llu, column %llu, %llu x %llu) is not inside the image of %llu x %llu "
+            "pixels: correct patch",
+            (unsigned long long)asked->first_row, (unsigned long long)asked->first_column,
+            (unsigned long long)asked->rows, (unsigned long long)asked->columns,
+            (unsigned long long)layout->rows, (unsigned long long)layout->columns);
+    if (patch->rows * patch->columns > (uint64_t)1 << 31 || patch->rows > (uint64_t)1 << 24 ||
+        patch->columns > (uint64_t)1 << 24)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the patch of %llu x %llu pixels is too large: choose one of at most "
+                              "2^31 pixels with patch",
+                              (unsigned long long)patch->rows, (unsigned long long)patch->columns);
+    return SONJECT_OK;
+}
+
+static sonject_status describe_file(struct report *report, const struct scene *scene,
+                                    const struct swath_file *file, struct swath *swath)
+{
+    const struct xtf_file *recording = swath_file_xtf(file);
+    swath_file_layout(file, &swath->layout);
+    swath->new_extension = swath_file_new_extension(file);
+    swath->is_complex = swath->layout.channels == 2;
+    swath->transfer = scene->transfer;
+    const double largest = (double)swath_file_largest(file);
+    swath->is_whole = largest > 0.0;
+    if (largest > 0.0 &&
+        !(swath->transfer.full_scale > 0.0 && swath->transfer.full_scale < largest))
+        swath->transfer.full_scale = largest;
+    if (swath_file_range_axis(file) == RANGE_GROUND)
+        return report_failure(
+            report, SONJECT_ERROR_INPUT,
+            "%s is in ground range, and runs work in slant range: convert it first "
+            "with sonject convert --range-axis slant",
+            scene->input_path);
+    if (swath->is_complex && !scene->input_is_complex)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s has 2 channels: say complex: true under input if they are real "
+                              "and imaginary part",
+                              scene->input_path);
+    if (!swath->is_complex && scene->input_is_complex)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s has 1 channel, but input says complex: true, which needs 2 (real "
+                              "and imaginary part)",
+                              scene->input_path);
+    if (swath->is_complex && swath->layout.type != PIXEL_FLOAT32)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s has integer pixels; complex images must be 32-bit float",
+                              scene->input_path);
+    if (swath->is_complex && scene->transfer.kind != SONJECT_TRANSFER_AMPLITUDE)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "a complex image cannot have a transfer function: take transfer out");
+    return recording ? track_of_recording(&swath->track, report, recording) : SONJECT_OK;
+}
+
+static sonject_status describe_made(const struct scene *scene, struct swath *swath)
+{
+    const bool is_synthetic = scene->input_kind == SONJECT_INPUT_SYNTHETIC;
+    swath->layout.rows = is_synthetic ? scene->synthetic.rows : scene->uniform_rows;
+    swath->layout.columns = is_synthetic ? scene->synthetic.columns : scene->uniform_columns;
+    swath->is_complex = is_synthetic && scene->synthetic.complex_pixels;
+    swath->layout.channels = swath->is_complex ? 2 : 1;
+    swath->layout.type = PIXEL_FLOAT32;
+    swath->is_made = true;
+    swath->new_extension = ".tif";
+    return SONJECT_OK;
+}
+
+static sonject_status open_input(struct report *report, const struct scene *scene,
+                                 struct swath_file **file)
+{
+    return swath_file_open_array(report, scene->input_path, scene->channel, scene->array, file);
+}
+
+static sonject_status open_and_describe(struct report *report, const struct scene *scene,
+                                        struct swath *swath, struct swath_file **file)
+{
+    memset(swath, 0, sizeof *swath);
+    *file = NULL;
+    sonject_status status;
+    if (scene->input_kind == SONJECT_INPUT_MEMORY)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the scene has no input image: give input.path");
+    if (scene->input_kind == SONJECT_INPUT_FILE) {
+        status = scene_locate(scene, report, open_input(report, scene, file), "input.path");
+        THEN(status,
+             scene_locate(scene, report, describe_file(report, scene, *file, swath), "input.path"));
+    } else {
+        status = describe_made(scene, swath);
+    }
+    THEN(status, scene_locate(scene, report, choose_patch(report, scene, swath), "patch"));
+    if (status != SONJECT_OK) {
+        swath_file_close(file);
+        track_clear(&swath->track);
+    }
+    return status;
+}
+
+sonject_status swath_describe(struct report *report, const struct scene *scene, struct swath *swath)
+{
+    struct swath_file *file;
+    const sonject_status status = open_and_describe(report, scene, swath, &file);
+    swath_file_close(&file);
+    track_clear(&swath->track);
+    return status;
+}
+
+static sonject_status identify(struct report *report, struct swath *swath, const void *pixels,
+                               size_t bytes)
+{
+    struct hash *hash = hash_begin();
+    CHECK_MEMORY(report, hash, "a hash");
+    hash_add(hash, &swath->layout.rows, sizeof swath->layout.rows);
+    hash_add(hash, &swath->layout.columns, sizeof swath->layout.columns);
+    hash_add(hash, pixels, bytes);
+    hash_end(hash, swath->identity);
+    return SONJECT_OK;
+}
+
+static sonject_status bad_pixel(struct report *report, const struct scene *scene,
+                                const struct swath *swath, size_t index, const char *what)
+{
+    const size_t pixel = swath->is_complex ? index / 2 : index;
+    const size_t columns = (size_t)swath->patch.columns;
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "%s: the pixel at row %llu, column %llu is %s: mend the image or choose "
+                          "another patch",
+                          scene->input_path,
+                          (unsigned long long)(swath->patch.first_row + pixel / columns),
+                          (unsigned long long)(swath->patch.first_column + pixel % columns), what);
+}
+
+static sonject_status check_signs(struct report *report, const struct scene *scene,
+                                  const struct swath *swath, size_t count)
+{
+    for (size_t i = 0; !swath->is_complex && i < count; i++)
+        if (swath->pixels[i] < 0.0f)
+            return bad_pixel(report, scene, swath, i, "a negative amplitude");
+    return SONJECT_OK;
+}
+
+/* whole: the file's pixels, if they are in memory. */
+static sonject_status read_stored(struct report *report, struct swath_file *file,
+                                  const unsigned char *whole, const struct swath *swath)
+{
+    const struct region *patch = &swath->patch;
+    const struct raster_layout *layout = &swath->layout;
+    if (!whole)
+        return swath_file_read(report, file, patch, swath->stored);
+    const size_t pixel = layout->channels * pixel_bytes(layout->type);
+    for (size_t row = 0; row < patch->rows; row++)
+        memcpy((unsigned char *)swath->stored + row * (size_t)patch->columns * pixel,
+               whole + (((size_t)patch->first_row + row) * (size_t)layout->columns +
+                        (size_t)patch->first_column) *
+                           pixel,
+               (size_t)patch->columns * pixel);
+    return SONJECT_OK;
+}
+
+static sonject_status read_patch(struct report *report, const struct scene *scene,
+                                 struct swath_file *file, const void *whole, struct swath *swath)
+{
+    size_t bytes;
+    size_t bad = 0;
+    const size_t count =
+        (size_t)swath->patch.rows * (size_t)swath->patch.columns * (swath->is_complex ? 2 : 1);
+    if (!region_bytes(&swath->layout, &swath->patch, &bytes))
+        return report_out_of_memory(report, "the patch");
+    swath->stored = allocate_array(bytes, 1);
+    swath->pixels = allocate_array(count, sizeof(float));
+    CHECK_MEMORY(report, swath->stored && swath->pixels, "the patch");
+    sonject_status status = read_stored(report, file, whole, swath);
+    if (status == SONJECT_OK) {
+        status = transfer_to_amplitude(&swath->transfer, swath->layout.type, swath->stored, count,
+                                       swath->pixels, &bad, &swath->clipped);
+        if (status != SONJECT_OK)
+            status = bad_pixel(report, scene, swath, bad, "not a finite number");
+        else
+            status = check_signs(report, scene, swath, count);
+    }
+    return status == SONJECT_OK ? identify(report, swath, swath->stored, bytes) : status;
+}
+
+/* Made swaths are made whole; the patch is cut out of them. */
+static sonject_status make_patch(struct report *report, const struct scene *scene,
+                                 struct swath *swath)
+{
+    struct injection_input whole;
+    CHECK(make_input(report, scene, &whole));
+    sonject_status status = SONJECT_OK;
+    const size_t parts = swath->is_complex ? 2 : 1;
+    const size_t row_floats = (size_t)swath->patch.columns * parts;
+    swath->pixels = allocate_array((size_t)swath->patch.rows, row_floats * sizeof(float));
+    if (!swath->pixels) {
+        status = report_out_of_memory(report, "the patch");
+    } else {
+        for (size_t row = 0; row < swath->patch.rows; row++)
+            memcpy(swath->pixels + row * row_floats,
+                   whole.pixels + (((size_t)swath->patch.first_row + row) * whole.columns +
+                                   (size_t)swath->patch.first_column) *
+                                      parts,
+                   row_floats * sizeof(float));
+        /* kept for writing the swath back around the patch */
+        swath->stored = (void *)whole.pixels;
+        status = identify(report, swath, whole.pixels,
+                          whole.rows * whole.columns * parts * sizeof(float));
+    }
+    if (status != SONJECT_OK && !swath->stored)
+        free((void *)whole.pixels);
+    return status;
+}
+
+sonject_status swath_open(struct report *report, const struct scene *scene, struct swath *swath)
+{
+    struct swath_file *file;
+    sonject_status status = open_and_describe(report, scene, swath, &file);
+    THEN(status,
+         file ? read_patch(report, scene, file, NULL, swath) : make_patch(report, scene, swath));
+    swath_file_close(&file);
+    if (status != SONJECT_OK)
+        swath_close(swath);
+    return status;
+}
+
+/* Swaths of up to so many bytes are kept in memory. */
+#define STORE_BYTES_MAX ((size_t)256 << 20)
+
+void swath_store_close(struct swath_store *store)
+{
+    swath_file_close(&store->file);
+    free(store->path);
+    free(store->array);
+    free(store->pixels);
+    memset(store, 0, sizeof *store);
+}
+
+/* Whether the scene's input is what the store holds. */
+static bool store_holds(const struct swath_store *store, const struct scene *scene)
+{
+    const bool is_same_array = store->array && scene->array
+                                   ? strcmp(store->array, scene->array) == 0
+                                   : !store->array && !scene->array;
+    return store->path && strcmp(store->path, scene->input_path) == 0 &&
+           store->channel == scene->channel && is_same_array;
+}
+
+static sonject_status store_take(struct report *report, const struct scene *scene,
+                                 struct swath_store *store)
+{
+    struct raster_layout layout;
+    size_t bytes;
+    if (store_holds(store, scene))
+        return SONJECT_OK;
+    swath_store_close(store);
+    sonject_status status = open_input(report, scene, &store->file);
+    if (status != SONJECT_OK)
+        return status;
+    store->channel = scene->channel;
+    store->path = copy_text(scene->input_path);
+    store->array = scene->array ? copy_text(scene->array) : NULL;
+    swath_file_layout(store->file, &layout);
+    const struct region all = {0, 0, layout.rows, layout.columns};
+    if (region_bytes(&layout, &all, &bytes) && bytes <= STORE_BYTES_MAX) {
+        store->pixels = allocate_array(bytes, 1);
+        if (store->pixels)
+            status = swath_file_read(report, store->file, &all, store->pixels);
+    }
+    if (status == SONJECT_OK && (!store->path || (scene->array && !store->array)))
+        status = report_out_of_memory(report, "a path");
+    if (status != SONJECT_OK)
+        swath_store_close(store);
+    return status;
+}
+
+sonject_status swath_open_stored(struct report *report, const struct scene *scene,
+                                 struct swath_store *store, struct swath *swath)
+{
+    memset(swath, 0, sizeof *swath);
+    sonject_status status = store_take(report, scene, store);
+    THEN(status, describe_file(report, scene, store->file, swath));
+    THEN(status, choose_patch(report, scene, swath));
+    THEN(status, read_patch(report, scene, store->file, store->pixels, swath));
+    if (status != SONJECT_OK)
+        swath_close(swath);
+    return status;
+}
+
+struct injection_input swath_input(const struct swath *swath)
+{
+    struct injection_input input;
+    memset(&input, 0, sizeof input);
+    input.rows = (size_t)swath->patch.rows;
+    input.columns = (size_t)swath->patch.columns;
+    input.first_row = (double)swath->patch.first_row;
+    input.first_column = (double)swath->patch.first_column;
+    input.is_complex = swath->is_complex;
+    input.is_made = swath->is_made;
+    input.pixels = swath->pixels;
+    return input;
+}
+
+void swath_close(struct swath *swath)
+{
+    free(swath->stored);
+    free(swath->pixels);
+    track_clear(&swath->track);
+    memset(swath, 0, sizeof *swath);
+}
+
+char *swath_image_name(const struct scene *scene, const struct swath *swath)
+{
+    const char *extension = swath->new_extension;
+    if (!extension) {
+        const char *dot = strrchr(scene->input_path, '.');
+        const char *slash = strrchr(scene->input_path, '/');
+        extension = dot && (!slash || dot > slash) ? dot : ".tif";
+    }
+    char *name = allocate_array(strlen("image") + strlen(extension) + 1, 1);
+    if (name) {
+        strcpy(name, "image");
+        strcat(name, extension);
+    }
+    return name;
+}
+
+void *swath_stored_result(const struct swath *swath, const struct injection_result *result,
+                          uint64_t *clipped)
+{
+    const size_t pixels = result->rows * result->columns;
+    const size_t parts = swath->is_complex ? 2 : 1;
+    const size_t bytes = pixel_bytes(swath->layout.type);
+    unsigned char *stored = allocate_array(pixels * parts, bytes);
+    unsigned char *fresh = allocate_array(pixels * parts, bytes);
+    uint32_t step = quantisation_step(swath->layout.type, swath->stored, pixels * parts);
+    if (step == 0 && swath->is_whole)
+        step = 1;
+    if (stored && fresh) {
+        memcpy(stored, swath->stored, pixels * parts * bytes);
+        if (swath->is_complex)
+            memcpy(fresh, result->image, pixels * parts * bytes);
+        else
+            for (size_t i = 0; i < pixels; i++)
+                if (result->influence[i])
+                    transfer_to_stored(&swath->transfer, swath->layout.type, step,
+                                       result->image + i, 1, fresh + i * bytes, clipped);
+        for (size_t i = 0; i < pixels; i++)
+            if (result->influence[i])
+                memcpy(stored + i * parts * bytes, fresh + i * parts * bytes, parts * bytes);
+    } else {
+        free(stored);
+        stored = NULL;
+    }
+    free(fresh);
+    return stored;
+}
+
+static sonject_status write_made(struct report *report, const struct scene *scene,
+                                 const struct swath *swath, const struct injection_result *result,
+                                 const char *path)
+{
+    const size_t parts = swath->is_complex ? 2 : 1;
+    const size_t row_floats = (size_t)swath->patch.columns * parts;
+    float *whole = swath->stored;
+    for (size_t row = 0; row < result->rows; row++)
+        memcpy(whole + (((size_t)swath->patch.first_row + row) * (size_t)swath->layout.columns +
+                        (size_t)swath->patch.first_column) *
+                           parts,
+               result->image + row * row_floats, row_floats * sizeof(float));
+    static const char *const complex_names[] = {"real", "imag"};
+    struct geometry_notes notes;
+    geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
+    return raster_file_write(report, path, &swath->layout, swath->is_complex ? complex_names : NULL,
+                             notes.attributes, notes.count, whole);
+}
+
+sonject_status swath_write(struct report *report, const struct scene *scene,
+                           const struct swath *swath, const struct injection_result *result,
+                           const char *path, sonject_progress_function progress, void *user,
+                           uint64_t *clipped)
+{
+    *clipped = 0;
+    if (scene->input_kind != SONJECT_INPUT_FILE)
+        return write_made(report, scene, swath, result, path);
+    void *stored = swath_stored_result(swath, result, clipped);
+    CHECK_MEMORY(report, stored, "the patch");
+    struct swath_file *file;
+    sonject_status status = open_input(report, scene, &file);
+    THEN(status,
+         swath_file_copy_with_patch(report, file, path, &swath->patch, stored, progress, user));
+    swath_file_close(&file);
+    free(stored);
+    return status;
+}

@@ -1,0 +1,354 @@
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "measure/contact_edges.h"
+
+#define STEPS_PER_PIXEL 4
+#define BEFORE_END      3    /* pixels: of the largest mean of the last ones, */
+#define SPREADS         3    /* shares are tried as what spreads, */
+#define SPREAD_RATIO    0.71 /* each so many times the last; the first is all of it */
+#define REACH           6 /* deviations of the point response beyond which nothing of it is left */
+#define WIDTH_RATIO     1.6 /* of penumbras' widths; the first is the point response's */
+#define SKIRT_RATIO     2.0
+#define FAINTEST        1e-9 /* of a dark level: there are means of 0 */
+
+/* share: of the places that this one stands for, in pixels. */
+static void weigh(struct edge_belief *belief, double place, double share, double cost)
+{
+    if (belief->weight == 0.0 || cost < belief->least) {
+        const double factor = belief->weight > 0.0 ? exp(cost - belief->least) : 0.0;
+        belief->weight *= factor;
+        belief->sum *= factor;
+        belief->squares *= factor;
+        belief->least = cost;
+    }
+    const double weight = share * exp(belief->least - cost);
+    belief->weight += weight;
+    belief->sum += weight * place;
+    belief->squares += weight * place * place;
+}
+
+static struct profile_edge edge_believed(const struct edge_belief *belief)
+{
+    const double place = belief->sum / belief->weight;
+    const double variance = belief->squares / belief->weight - place * place;
+    const struct profile_edge edge = {place, sqrt(fmax(0.0, variance))};
+    return edge;
+}
+
+/* Of a step's energy, the share that comes so many deviations beyond it. */
+static double spread(double deviations)
+{
+    return 0.5 * erfc(deviations / 1.4142135623730951);
+}
+
+/* Negative log likelihood of a mean > 0, a sample, where any level of a range is expected. */
+static double cost_within(double mean, double least, double most)
+{
+    const double ratio = mean / fmin(fmax(mean, least), most);
+    return ratio - 1.0 - log(ratio);
+}
+
+static double mean_at(const struct profile *profile, const struct end_levels *levels, size_t k)
+{
+    return fmax(profile->means[k], FAINTEST * levels->dark);
+}
+
+static double cost_of_lit(const struct profile *profile, const struct end_levels *levels, size_t k)
+{
+    return cost_within(mean_at(profile, levels, k), levels->lit + SKIRT_RATIO * profile->skirt[k],
+                       INFINITY);
+}
+
+/* spread_there: of what is lit. */
+static double cost_of_dark(const struct profile *profile, const struct end_levels *levels, size_t k,
+                           double spread_there)
+{
+    return cost_within(mean_at(profile, levels, k), spread_there,
+                       spread_there + levels->dark + profile->skirt[k]);
+}
+
+/* Pixels whose centres lie before a place >= -0.5. */
+static size_t pixels_before(double place, size_t count)
+{
+    const size_t before = (size_t)(place + 1.0);
+    return before < count ? before : count;
+}
+
+/* Of an end at `place`, what the spread of that share of the pixels before it adds to the cost of
+ * those behind. */
+static double cost_of_spread(const struct profile *profile, const struct end_levels *levels,
+                             double place, double share)
+{
+    const size_t first = pixels_before(place, profile->count);
+    double before = 0.0;
+    double cost = 0.0;
+    for (size_t k = first > BEFORE_END ? first - BEFORE_END : 0; k < first; k++)
+        before = fmax(before, profile->means[k]);
+    for (size_t k = first; k < profile->count; k++) {
+        const double deviations = ((double)k - place) / profile->deviation;
+        if (deviations > REACH)
+            break;
+        cost += cost_of_dark(profile, levels, k, share * before * spread(deviations)) -
+                cost_of_dark(profile, levels, k, 0.0);
+    }
+    return cost;
+}
+
+struct profile_edge find_profile_end(const struct profile *profile, const struct end_levels *levels)
+{
+    struct edge_belief belief = {0.0, 0.0, 0.0, 0.0};
+    double cost = 0.0; /* of an end behind pixel `first`, over that of one before all pixels */
+    size_t first = 0;
+    for (size_t step = 0; step <= profile->count * STEPS_PER_PIXEL; step++) {
+        const double place = (double)step / STEPS_PER_PIXEL - 0.5;
+        for (; first < pixels_before(place, profile->count); first++)
+            cost += cost_of_lit(profile, levels, first) - cost_of_dark(profile, levels, first, 0.0);
+        double share = 1.0;
+        for (int i = 0; i < SPREADS; i++, share *= SPREAD_RATIO)
+            weigh(&belief, place, 1.0,
+                  profile->samples * (cost + cost_of_spread(profile, levels, place, share)));
+    }
+    return edge_believed(&belief);
+}
+
+/* Likewise, so that profiles of other means compare: of all the pixels that a profile's mean is of,
+ * a sample. */
+static double whole_cost_of(double mean, double expected)
+{
+    return mean / expected + log(expected);
+}
+
+/* Adds the places of a step whose penumbra has that deviation; wider ones are less likely before.
+ */
+static void weigh_steps(struct edge_belief *belief, const struct profile *profile, double before,
+                        double behind, double width)
+{
+    const double stride = fmax(1.0, width) / STEPS_PER_PIXEL;
+    double all_cost = 0.0; /* of all pixels behind the step */
+    size_t settled = 0;    /* pixels well before it */
+    for (size_t k = 0; k < profile->count; k++)
+        all_cost += whole_cost_of(profile->means[k], behind);
+    for (double place = -0.5; place <= (double)profile->count - 0.5; place += stride) {
+        for (; (double)settled < place - REACH * width; settled++)
+            all_cost += whole_cost_of(profile->means[settled], before) -
+                        whole_cost_of(profile->means[settled], behind);
+        double cost = all_cost;
+        for (size_t k = settled; k < profile->count && (double)k < place + REACH * width; k++) {
+            const double share = spread(((double)k - place) / width);
+            cost += whole_cost_of(profile->means[k], behind + (before - behind) * share) -
+                    whole_cost_of(profile->means[k], behind);
+        }
+        weigh(belief, place, stride / width, profile->samples * cost);
+    }
+}
+
+void weigh_profile_step(struct step_belief *belief, const struct profile *profile, double before,
+                        double behind)
+{
+    double width = profile->deviation;
+    for (int i = 0; i < STEP_WIDTHS; i++, width *= WIDTH_RATIO)
+        weigh_steps(&belief->widths[i], profile, before, behind, width);
+}
+
+struct profile_edge mean_step_believed(const struct step_belief *parts, size_t count)
+{
+    struct edge_belief all = {0.0, 0.0, 0.0, 0.0};
+    double variance = 0.0; /* within the widths, weighted as those are */
+    double least = INFINITY;
+    double costs[STEP_WIDTHS];
+    for (int i = 0; i < STEP_WIDTHS; i++) {
+        costs[i] = 0.0;
+        for (size_t part = 0; part < count; part++)
+            costs[i] += parts[part].widths[i].least - log(parts[part].widths[i].weight);
+        least = fmin(least, costs[i]);
+    }
+    for (int i = 0; i < STEP_WIDTHS; i++) {
+        double place = 0.0;
+        double squares = 0.0;
+        for (size_t part = 0; part < count; part++) {
+            const struct profile_edge edge = edge_believed(&parts[part].widths[i]);
+            place += edge.place / (double)count;
+            squares += edge.error * edge.error;
+        }
+        weigh(&all, place, 1.0, costs[i]);
+        variance += exp(least - costs[i]) * squares / ((double)count * (double)count);
+    }
+    struct profile_edge mean = edge_believed(&all);
+    mean.error = sqrt(mean.error * mean.error + variance / all.weight);
+    return mean;
+}
+
+struct profile_edge find_profile_change(const struct profile *profile, double *gain)
+{
+    struct edge_belief belief = {0.0, 0.0, 0.0, 0.0};
+    const double count = (double)profile->count;
+    double all = 0.0;
+    double first = 0.0;
+    for (size_t k = 0; k < profile->count; k++)
+        all += profile->means[k] / (1.0 + profile->skirt[k]);
+    const double plain = count * log(fmax(all, FAINTEST) / count);
+    for (size_t k = 1; k < profile->count; k++) {
+        first += profile->means[k - 1] / (1.0 + profile->skirt[k - 1]);
+        const double before = fmax(first, FAINTEST * all) / (double)k;
+        const double behind = fmax(all - first, FAINTEST * all) / (count - (double)k);
+        if (before > behind)
+            weigh(&belief, (double)k - 0.5, 1.0,
+                  profile->samples *
+                      ((double)k * log(before) + (count - (double)k) * log(behind) - plain));
+    }
+    const struct profile_edge none = {-0.5, 0.0};
+    *gain = belief.weight > 0.0 ? -belief.least : 0.0;
+    return belief.weight > 0.0 ? edge_believed(&belief) : none;
+}
+
+#define SKIRT_REACH     32   /* rows */
+#define DEVIATION_LEAST 0.15 /* pixels, of a point response that is finer than they are */
+#define ROOT_OF_PI      1.7724538509055159
+#define PI              3.14159265358979323846
+
+sonject_status contact_lines_create(struct contact_lines *lines, struct report *report,
+                                    const struct contact_image *image)
+{
+    const size_t most = image->rows > image->columns ? image->rows : image->columns;
+    memset(lines, 0, sizeof *lines);
+    lines->image = image;
+    lines->means = allocate_array(most, sizeof *lines->means);
+    lines->skirt = allocate_array(most, sizeof *lines->skirt);
+    return lines->means && lines->skirt ? SONJECT_OK
+                                        : report_out_of_memory(report, "a contact's measures");
+}
+
+void contact_lines_clear(struct contact_lines *lines)
+{
+    free(lines->means);
+    free(lines->skirt);
+    memset(lines, 0, sizeof *lines);
+}
+
+long line_shift(const struct contact_lines *lines, size_t row)
+{
+    return lround(lines->slant * ((double)row - lines->middle_row) +
+                  lines->tilt * ((double)row - lines->tilt_row));
+}
+
+static double intensity_at(const struct contact_image *image, size_t row, size_t column)
+{
+    return (double)image->intensity[row * image->columns + column];
+}
+
+static double highlight_at(const struct contact_image *image, size_t row, size_t column)
+{
+    const bool is_marked = image->marks[row * image->columns + column] == PART_HIGHLIGHT;
+    return is_marked ? intensity_at(image, row, column) : 0.0;
+}
+
+/* What side lobes of the highlight bring to a pixel: sinc^2 falls as 1/(pi x)^2, and is half of
+ * that on average. */
+static double skirt_at(const struct contact_image *image, size_t row, size_t column)
+{
+    double sum = 0.0;
+    for (size_t away = 1; away <= SKIRT_REACH; away++) {
+        const double share = 0.5 / (PI * PI * (double)away * (double)away);
+        if (away <= row)
+            sum += share * highlight_at(image, row - away, column);
+        if (row + away < image->rows)
+            sum += share * highlight_at(image, row + away, column);
+    }
+    return sum;
+}
+
+typedef double pixel_value(const struct contact_image *image, size_t row, size_t column);
+
+static double mean_of(const struct contact_lines *lines, const struct window_box *box,
+                      pixel_value *value, double otherwise)
+{
+    const struct contact_image *image = lines->image;
+    double sum = 0.0;
+    size_t count = 0;
+    for (size_t row = box->first_row; row < box->first_row + box->rows; row++) {
+        const long first = (long)box->first_column + line_shift(lines, row);
+        for (long k = 0; k < (long)box->columns; k++) {
+            if (first + k < 0 || first + k >= (long)image->columns)
+                continue;
+            sum += value(image, row, (size_t)(first + k));
+            count++;
+        }
+    }
+    return count > 0 ? sum / (double)count : otherwise;
+}
+
+double mean_along_lines(const struct contact_lines *lines, const struct window_box *box)
+{
+    return mean_of(lines, box, intensity_at, lines->seabed);
+}
+
+/* Pixels for one that is independent: the sum of exp(-(x / length)^2) over all. */
+static double pixels_a_sample(double correlation_length)
+{
+    return fmax(1.0, ROOT_OF_PI * correlation_length);
+}
+
+/* Of the energy of a Gaussian response, whose speckle's correlation is exp(-x^2 / (2 deviation)^2):
+ * by the neighbouring pixel where that falls to 1/e between pixels, which are too far apart then to
+ * tell where. */
+static double deviation_of(const struct speckle_axis *axis)
+{
+    const double next = axis->correlation[1];
+    const double deviation = axis->length_pixels > 1.0 || next >= 1.0
+                                 ? 0.5 * axis->length_pixels
+                                 : 0.5 / sqrt(-log(fmax(next, 1e-9)));
+    return fmax(DEVIATION_LEAST, deviation);
+}
+
+/* The box's row or column that is so far along the path. */
+static struct window_box line_of(const struct profile_path *path, size_t k)
+{
+    const size_t index = path->step > 0 ? path->start + k : path->start - k;
+    struct window_box line = path->box;
+    if (path->is_along_track) {
+        line.first_row = index;
+        line.rows = 1;
+    } else {
+        line.first_column = index;
+        line.columns = 1;
+    }
+    return line;
+}
+
+struct profile profile_along(const struct contact_lines *lines, const struct profile_path *path)
+{
+    const struct speckle_statistics *speckle = &lines->image->speckle;
+    const struct speckle_axis *along =
+        path->is_along_track ? &speckle->along_track : &speckle->range;
+    const struct speckle_axis *across =
+        path->is_along_track ? &speckle->range : &speckle->along_track;
+    const size_t pixels = path->is_along_track ? path->box.columns : path->box.rows;
+    const size_t size = path->is_along_track ? lines->image->rows : lines->image->columns;
+    const size_t room = path->step > 0 ? size - path->start : path->start + 1;
+    const double looks = speckle->blocks > 0 ? speckle->looks : 1.0;
+    struct profile profile = {lines->means, lines->skirt, 0, 0.0, 0.0};
+    profile.count = room < path->most ? room : path->most;
+    profile.samples = looks * fmax(1.0, (double)pixels / pixels_a_sample(across->length_pixels)) /
+                      pixels_a_sample(along->length_pixels);
+    profile.deviation = deviation_of(along);
+    for (size_t k = 0; k < profile.count; k++) {
+        const struct window_box line = line_of(path, k);
+        lines->means[k] = mean_along_lines(lines, &line);
+        lines->skirt[k] = 0.0;
+    }
+    return profile;
+}
+
+struct profile profile_with_skirt(const struct contact_lines *lines,
+                                  const struct profile_path *path)
+{
+    const struct profile profile = profile_along(lines, path);
+    for (size_t k = 0; k < profile.count; k++) {
+        const struct window_box line = line_of(path, k);
+        lines->skirt[k] = mean_of(lines, &line, skirt_at, 0.0);
+    }
+    return profile;
+}

@@ -1,0 +1,104 @@
+/* Where profiles of mean intensity end or step, amid speckle. A mean over n independent samples of
+ * speckle has the gamma distribution of shape n: where m is expected, a mean p has the negative log
+ * likelihood n (p/m - 1 - ln p/m), over that of m = p. Places are means over that likelihood, all
+ * places alike likely before. */
+#ifndef SONJECT_MEASURE_CONTACT_EDGES_H
+#define SONJECT_MEASURE_CONTACT_EDGES_H
+
+#include <stddef.h>
+
+#include "measure/contact_parts.h"
+
+/* Mean intensities of pixels one after the other. */
+struct profile {
+    const double *means;
+    const double *skirt; /* what side lobes of what is bright may add, at most */
+    size_t count;
+    double samples;   /* independent ones, a pixel */
+    double deviation; /* of the point response's energy, taken for Gaussian; pixels, > 0 */
+};
+
+/* In pixels from the first one's centre; the error is standard, and of speckle alone. */
+struct profile_edge {
+    double place, error;
+};
+
+/* What is expected on either side of an end; both > 0. */
+struct end_levels {
+    double lit;  /* at least that before it, and SKIRT_RATIO times the skirt */
+    double dark; /* at most that and the skirt behind it, beside what the point response spreads
+                    there */
+};
+
+/* Where a profile that is lit at its first pixels becomes dark, and stays so: what is lit may have
+ * any levels. */
+struct profile_edge find_profile_end(const struct profile *profile,
+                                     const struct end_levels *levels);
+
+/* Sums over places, each weighted with its likelihood over the largest one's. */
+struct edge_belief {
+    double least; /* negative log likelihood */
+    double weight, sum, squares;
+};
+
+#define STEP_WIDTHS 7 /* of penumbras that are tried */
+
+struct step_belief {
+    struct edge_belief widths[STEP_WIDTHS];
+};
+
+/* Weighs where a profile steps from one level to another, both > 0: half way up a penumbra of any
+ * width. Several profiles through an edge, such as ones along different slants, may be weighed one
+ * after the other, the belief all zeros at first. */
+void weigh_profile_step(struct step_belief *belief, const struct profile *profile, double before,
+                        double behind);
+
+/* The mean place of parts of one edge, whose penumbra is equally wide in all of them: how wide, and
+ * with that how far out they lie, is believed for all together. */
+struct profile_edge mean_step_believed(const struct step_belief *parts, size_t count);
+
+/* Where the first part of a profile, brighter than its rest, ends; each has one level. The skirt is
+ * what side lobes may add of that level. *gain: how much more likely that is than one level for
+ * all, the logarithm; 0: no first part is brighter. */
+struct profile_edge find_profile_change(const struct profile *profile, double *gain);
+
+/* Lines through a contact, laid along its highlight, and their mean intensities. */
+
+/* How lines lie. Columns of boxes that are used with it count along row middle_row: in a row
+ * further on they lie slant more to the right, in one of a tilted edge as much more as it is
+ * tilted. */
+struct contact_lines {
+    const struct contact_image *image;
+    double seabed; /* mean intensity */
+    double slant, middle_row;
+    double tilt, tilt_row;
+    double *means, *skirt; /* room for one profile; owned */
+};
+
+/* Errors: MEMORY. To be given to contact_lines_clear, after failure as well. */
+sonject_status contact_lines_create(struct contact_lines *lines, struct report *report,
+                                    const struct contact_image *image);
+void contact_lines_clear(struct contact_lines *lines);
+
+/* How many columns further to the right lines lie in a row. */
+long line_shift(const struct contact_lines *lines, size_t row);
+
+/* Of the pixels of the box that are inside the image; the seabed's where none is. */
+double mean_along_lines(const struct contact_lines *lines, const struct window_box *box);
+
+/* Rows of a box, or columns, one after the other from `start`, backwards where step is -1. */
+struct profile_path {
+    struct window_box box;
+    bool is_along_track; /* row after row */
+    size_t start;
+    int step;
+    size_t most; /* at most so many, and none beyond the image's edge */
+};
+
+/* Their mean intensities, valid until the next call; without and with the skirt of the pixels that
+ * are marked as highlight: side lobes along the track, as of an aperture without a window. */
+struct profile profile_along(const struct contact_lines *lines, const struct profile_path *path);
+struct profile profile_with_skirt(const struct contact_lines *lines,
+                                  const struct profile_path *path);
+
+#endif

@@ -1,0 +1,346 @@
+/* Which pixels are a contact's highlight and shadow, and the seabed around them. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "measure/contact_parts.h"
+#include "measure/first_return.h"
+
+#define PART_SEEN 128 /* of an area that is not the largest */
+
+static size_t smaller(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+static size_t larger(size_t a, size_t b)
+{
+    return a > b ? a : b;
+}
+
+void mean_of_neighbours(const float *intensity, size_t rows, size_t columns, float *mean)
+{
+    for (size_t row = 0; row < rows; row++)
+        for (size_t column = 0; column < columns; column++) {
+            const size_t low_row = row > 0 ? row - 1 : 0;
+            const size_t low = column > 0 ? column - 1 : 0;
+            double sum = 0.0;
+            int count = 0;
+            for (size_t r = low_row; r <= row + 1 && r < rows; r++)
+                for (size_t c = low; c <= column + 1 && c < columns; c++) {
+                    sum += (double)intensity[r * columns + c];
+                    count++;
+                }
+            mean[row * columns + column] = (float)(sum / count);
+        }
+}
+
+struct window_box box_with_margin(const struct window_box *box, size_t margin, size_t rows,
+                                  size_t columns)
+{
+    struct window_box wide;
+    wide.first_row = box->first_row > margin ? box->first_row - margin : 0;
+    wide.first_column = box->first_column > margin ? box->first_column - margin : 0;
+    wide.rows = smaller(box->first_row + box->rows + margin, rows) - wide.first_row;
+    wide.columns = smaller(box->first_column + box->columns + margin, columns) - wide.first_column;
+    return wide;
+}
+
+/* From the first of these rows and columns to before the last of those. */
+static struct window_box box_of_limits(size_t first_row, size_t first_column, size_t last_row,
+                                       size_t last_column)
+{
+    const struct window_box box = {first_row, first_column, last_row - first_row,
+                                   last_column - first_column};
+    return box;
+}
+
+struct window_box box_around(const struct window_box *a, const struct window_box *b)
+{
+    return box_of_limits(smaller(a->first_row, b->first_row),
+                         smaller(a->first_column, b->first_column),
+                         larger(a->first_row + a->rows, b->first_row + b->rows),
+                         larger(a->first_column + a->columns, b->first_column + b->columns));
+}
+
+struct window_box box_within(const struct window_box *a, const struct window_box *b)
+{
+    return box_of_limits(larger(a->first_row, b->first_row),
+                         larger(a->first_column, b->first_column),
+                         smaller(a->first_row + a->rows, b->first_row + b->rows),
+                         smaller(a->first_column + a->columns, b->first_column + b->columns));
+}
+
+bool boxes_overlap(const struct window_box *a, const struct window_box *b)
+{
+    return a->first_row < b->first_row + b->rows && b->first_row < a->first_row + a->rows &&
+           a->first_column < b->first_column + b->columns &&
+           b->first_column < a->first_column + a->columns;
+}
+
+static bool is_wanted(const struct area_search *search, size_t i, uint8_t mark)
+{
+    const double mean = (double)search->means[i];
+    return search->marks[i] == mark &&
+           (search->part == PART_HIGHLIGHT ? mean > search->threshold : mean < search->threshold);
+}
+
+/* Turns the marks of the area around a pixel from one value to another. */
+static struct contact_area fill_area(const struct area_search *search, size_t start, uint8_t from,
+                                     uint8_t to)
+{
+    const struct window_box *box = &search->box;
+    struct contact_area area;
+    size_t last_row = 0;
+    size_t last_column = 0;
+    size_t height = 0;
+    memset(&area, 0, sizeof area);
+    area.box.first_row = start / search->columns;
+    area.box.first_column = start % search->columns;
+    search->marks[start] = to;
+    search->stack[height++] = start;
+    while (height > 0) {
+        const size_t i = search->stack[--height];
+        const size_t row = i / search->columns;
+        const size_t column = i % search->columns;
+        const size_t next[4] = {i - search->columns, i + search->columns, i - 1, i + 1};
+        const bool is_inside[4] = {row > box->first_row, row + 1 < box->first_row + box->rows,
+                                   column > box->first_column,
+                                   column + 1 < box->first_column + box->columns};
+        area.pixels++;
+        area.energy += (double)search->intensity[i];
+        area.box.first_row = row < area.box.first_row ? row : area.box.first_row;
+        area.box.first_column = column < area.box.first_column ? column : area.box.first_column;
+        last_row = row > last_row ? row : last_row;
+        last_column = column > last_column ? column : last_column;
+        for (int k = 0; k < 4; k++)
+            if (is_inside[k] && is_wanted(search, next[k], from)) {
+                search->marks[next[k]] = to;
+                search->stack[height++] = next[k];
+            }
+    }
+    area.box.rows = last_row - area.box.first_row + 1;
+    area.box.columns = last_column - area.box.first_column + 1;
+    return area;
+}
+
+struct contact_area mark_largest_area(const struct area_search *search)
+{
+    const struct window_box *box = &search->box;
+    struct contact_area best;
+    size_t best_start = 0;
+    memset(&best, 0, sizeof best);
+    for (size_t row = box->first_row; row < box->first_row + box->rows; row++)
+        for (size_t k = 0; k < smaller(search->start_columns, box->columns); k++) {
+            const size_t i = row * search->columns + box->first_column + k;
+            if (!is_wanted(search, i, PART_NONE))
+                continue;
+            const struct contact_area area = fill_area(search, i, PART_NONE, PART_SEEN);
+            if (search->part == PART_HIGHLIGHT ? area.energy > best.energy
+                                               : area.pixels > best.pixels) {
+                best = area;
+                best_start = i;
+            }
+        }
+    if (best.pixels > 0)
+        fill_area(search, best_start, PART_SEEN, (uint8_t)search->part);
+    for (size_t row = box->first_row; row < box->first_row + box->rows; row++)
+        for (size_t k = 0; k < box->columns; k++) {
+            uint8_t *mark = &search->marks[row * search->columns + box->first_column + k];
+            *mark = *mark == PART_SEEN ? PART_NONE : *mark;
+        }
+    return best;
+}
+
+#define BLOCK                                                                                      \
+    6 /* pixels on a side. A mean of 36 exponential values has its median 1 %                      \
+         below its mean */
+
+sonject_status contact_image_create(struct contact_image *image, struct report *report,
+                                    const float *intensity, size_t rows, size_t columns)
+{
+    size_t count;
+    memset(image, 0, sizeof *image);
+    image->intensity = intensity;
+    image->rows = rows;
+    image->columns = columns;
+    if (size_multiply(rows, columns, &count)) {
+        image->means = allocate_array(count, sizeof *image->means);
+        image->marks = allocate_array(count, 1);
+        image->taken = allocate_array(count, 1);
+        image->seabed_columns = allocate_array(rows, sizeof *image->seabed_columns);
+    }
+    CHECK_MEMORY(report, image->means && image->marks && image->taken && image->seabed_columns,
+                 "contacts' measures");
+    mean_of_neighbours(intensity, rows, columns, image->means);
+    const sonject_status status =
+        find_first_return(report, intensity, rows, columns, image->seabed_columns);
+    return status != SONJECT_OK
+               ? status
+               : measure_speckle(report, intensity, NULL, rows, columns, columns, &image->speckle);
+}
+
+void contact_image_clear(struct contact_image *image)
+{
+    free(image->means);
+    free(image->marks);
+    free(image->taken);
+    free(image->seabed_columns);
+    memset(image, 0, sizeof *image);
+}
+
+static int by_size(const void *a, const void *b)
+{
+    const float x = *(const float *)a;
+    const float y = *(const float *)b;
+    return (x > y) - (x < y);
+}
+
+static float mean_of_box(const struct contact_image *image, const struct window_box *box)
+{
+    double sum = 0.0;
+    for (size_t row = 0; row < box->rows; row++)
+        for (size_t column = 0; column < box->columns; column++)
+            sum += (double)image->intensity[(box->first_row + row) * image->columns +
+                                            box->first_column + column];
+    return (float)(sum / ((double)box->rows * (double)box->columns));
+}
+
+size_t seabed_blocks(const struct window_box *box)
+{
+    return (box->rows / BLOCK) * (box->columns / BLOCK) + 1;
+}
+
+/* The median of the blocks of a box that do not overlap another one or the water column; negative
+ * if there are none. */
+static double level_beside(const struct contact_image *image, const struct window_box *wide,
+                           const struct window_box *box, float *blocks)
+{
+    size_t count = 0;
+    for (size_t row = 0; row + BLOCK <= wide->rows; row += BLOCK)
+        for (size_t column = 0; column + BLOCK <= wide->columns; column += BLOCK) {
+            const struct window_box block = {wide->first_row + row, wide->first_column + column,
+                                             BLOCK, BLOCK};
+            if (block.first_column >= image->seabed_columns[block.first_row] &&
+                (!box || !boxes_overlap(&block, box)))
+                blocks[count++] = mean_of_box(image, &block);
+        }
+    qsort(blocks, count, sizeof *blocks, by_size);
+    return count > 0 ? (double)blocks[count / 2] : -1.0;
+}
+
+double level_within(const struct contact_image *image, const struct window_box *box, float *blocks)
+{
+    const double level = level_beside(image, box, NULL, blocks);
+    return level >= 0.0 ? level : (double)mean_of_box(image, box);
+}
+
+sonject_status find_seabed_level(const struct contact_image *image, struct report *report,
+                                 const struct window_box *box, double *level)
+{
+    const struct window_box wide = box_with_margin(box, SEABED_MARGIN, image->rows, image->columns);
+    float *blocks = allocate_array(seabed_blocks(&wide), sizeof *blocks);
+    CHECK_MEMORY(report, blocks, "the seabed's level");
+    *level = level_beside(image, &wide, box, blocks);
+    if (*level < 0.0)
+        *level = level_within(image, &wide, blocks);
+    free(blocks);
+    return SONJECT_OK;
+}
+
+#define ROWS_BESIDE   8 /* of a highlight, beyond half of its own, that may hold its shadow */
+#define SHADOW_PIXELS 9 /* at least: in fewer, one mean of 3 x 3 speckled pixels may be dark */
+#define COLUMNS_LEAST                                                                              \
+    32 /* behind a highlight, in which its shadow begins; twice its own if more                    \
+        */
+
+/* The brightest area, and those near it that speckle has cut off. */
+static struct contact_area mark_highlight(const struct contact_image *image,
+                                          const struct area_search *search)
+{
+    struct contact_area highlight = mark_largest_area(search);
+    for (int piece = 0; highlight.pixels > 0 && piece < PIECES_MAX; piece++) {
+        const struct window_box wide =
+            box_with_margin(&highlight.box, PIECE_GAP, image->rows, image->columns);
+        struct area_search near = *search;
+        near.box = box_within(&wide, &search->box);
+        const struct contact_area area = mark_largest_area(&near);
+        if (area.pixels == 0)
+            break;
+        highlight.box = box_around(&highlight.box, &area.box);
+        highlight.pixels += area.pixels;
+        highlight.energy += area.energy;
+    }
+    return highlight;
+}
+
+static double brightest_mean(const struct contact_image *image, const struct window_box *box)
+{
+    float brightest = 0.0f;
+    for (size_t row = box->first_row; row < box->first_row + box->rows; row++)
+        for (size_t k = 0; k < box->columns; k++)
+            brightest =
+                fmaxf(brightest, image->means[row * image->columns + box->first_column + k]);
+    return (double)brightest;
+}
+
+static struct window_box beside(const struct contact_image *image, const struct window_box *bright,
+                                const struct window_box *box)
+{
+    const struct window_box wide =
+        box_with_margin(bright, bright->rows / 2 + ROWS_BESIDE, image->rows, image->columns);
+    struct window_box beyond = box_within(&wide, box);
+    beyond.first_column = bright->first_column;
+    beyond.columns = box->first_column + box->columns - bright->first_column;
+    return beyond;
+}
+
+/* What the last contact left is cleared. */
+static void begin_marks(struct contact_image *image, const struct window_box *box)
+{
+    const struct window_box *last = &image->marked;
+    for (size_t row = last->first_row; row < last->first_row + last->rows; row++)
+        memset(image->marks + row * image->columns + last->first_column, PART_NONE, last->columns);
+    image->marked = *box;
+}
+
+static void keep_marks(struct contact_image *image, const struct window_box *box)
+{
+    for (size_t row = box->first_row; row < box->first_row + box->rows; row++)
+        for (size_t k = 0; k < box->columns; k++) {
+            const size_t i = row * image->columns + box->first_column + k;
+            image->taken[i] |= image->marks[i];
+        }
+}
+
+sonject_status find_contact_parts(struct contact_image *image, struct report *report,
+                                  const struct contact_place *place, double seabed,
+                                  struct contact_area *highlight, struct contact_area *shadow)
+{
+    struct area_search search = {image->means,  image->intensity, image->columns,
+                                 place->bright, image->columns,   PART_HIGHLIGHT,
+                                 0.0,           image->marks,     NULL};
+    search.stack = allocate_array(place->box.rows, place->box.columns * sizeof *search.stack);
+    CHECK_MEMORY(report, search.stack, "a contact's measures");
+    begin_marks(image, &place->box);
+    search.threshold = fmax(HIGHLIGHT_OVER_SEABED * seabed,
+                            HIGHLIGHT_UNDER_PEAK * brightest_mean(image, &place->bright));
+    *highlight = mark_highlight(image, &search);
+    search.box = place->box;
+    search.part = PART_SHADOW;
+    search.threshold = SHADOW_UNDER_SEABED * seabed;
+    if (highlight->pixels > 0) {
+        const size_t columns = 2 * highlight->box.columns;
+        search.box = beside(image, &highlight->box, &place->box);
+        if (place->is_near)
+            search.start_columns =
+                highlight->box.columns + (columns > COLUMNS_LEAST ? columns : COLUMNS_LEAST);
+    }
+    *shadow = mark_largest_area(&search);
+    if (shadow->pixels < SHADOW_PIXELS)
+        memset(shadow, 0, sizeof *shadow);
+    keep_marks(image, &place->box);
+    free(search.stack);
+    return SONJECT_OK;
+}

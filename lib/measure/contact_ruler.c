@@ -1,0 +1,359 @@
+#include "measure/contact_ruler.h"
+
+#include <limits.h>
+#include <math.h>
+#include <string.h>
+
+#include "measure/contact_edges.h"
+
+#define EDGE_REACH 8 /* pixels beyond a part in which its edge is looked for */
+#define END_ROWS   4 /* of a highlight, whose columns tell where its end is looked for */
+#define BANDS      3 /* of rows, in each of which a shadow's edges are taken for straight */
+#define TILTS      8 /* to either side, that a far edge may have along the highlight */
+#define TILT_STEP  0.125
+/* Of the seabed: a shadow darker than that counts as that dark, since side lobes of the seabed
+ * around it fill its edges. */
+#define SHADOW_LEAST 0.03
+/* Of a shadow's level: noise makes a shadow no brighter than that. */
+#define SHADOW_CEILING 2.0
+#define EDGE_MARGIN    3.0  /* columns of a shadow at its edges that may not be as dark as it is */
+#define DIM_GAIN       10.0 /* from which on a shadow is taken to have two levels */
+
+static size_t smaller(size_t a, size_t b)
+{
+    return a < b ? a : b;
+}
+
+static struct contact_length length_between(const struct profile_edge *a,
+                                            const struct profile_edge *b)
+{
+    const struct contact_length length = {fmax(0.0, a->place + b->place),
+                                          hypot(a->error, b->error)};
+    return length;
+}
+
+/* The middle third of a part's rows, at least one. */
+static struct window_box middle_rows(const struct window_box *part)
+{
+    struct window_box middle = *part;
+    middle.rows = (part->rows + 2) / 3;
+    middle.first_row = part->first_row + (part->rows - middle.rows) / 2;
+    return middle;
+}
+
+/* Of what is bright against the seabed and what is darker. */
+static struct end_levels levels_of_highlight(const struct contact_lines *lines)
+{
+    const struct end_levels levels = {HIGHLIGHT_OVER_SEABED * lines->seabed, lines->seabed};
+    return levels;
+}
+
+/* Lays lines along the straight line through the marked pixels of each row; *part gets the columns
+ * that they take at the middle row, as many as in the mean row. */
+static void lie_along(struct contact_lines *lines, const struct contact_area *area,
+                      struct window_box *part)
+{
+    const struct contact_image *image = lines->image;
+    const double count = (double)area->pixels;
+    double x = 0.0;
+    double y = 0.0;
+    double xx = 0.0;
+    double xy = 0.0;
+    for (size_t row = 0; row < area->box.rows; row++)
+        for (size_t column = 0; column < area->box.columns; column++) {
+            if (image->marks[(area->box.first_row + row) * image->columns + area->box.first_column +
+                             column] != PART_HIGHLIGHT)
+                continue;
+            x += (double)row / count;
+            y += (double)column / count;
+            xx += (double)row * (double)row / count;
+            xy += (double)row * (double)column / count;
+        }
+    const double width = count / (double)area->box.rows;
+    lines->slant = xx - x * x > 0.0 ? (xy - x * y) / (xx - x * x) : 0.0;
+    lines->middle_row = (double)area->box.first_row + x;
+    *part = area->box;
+    part->first_column += (size_t)fmax(0.0, floor(y - 0.5 * width + 0.5));
+    part->columns = (size_t)fmax(1.0, width + 0.5);
+}
+
+/* The columns, along the lines, of a highlight's marks in some of its rows. */
+static struct window_box columns_marked(const struct contact_lines *lines,
+                                        const struct window_box *highlight, size_t first_row,
+                                        size_t rows)
+{
+    const struct contact_image *image = lines->image;
+    long low = LONG_MAX;
+    long high = 0;
+    for (size_t row = first_row; row < first_row + rows; row++)
+        for (size_t k = 0; k < highlight->columns; k++) {
+            const size_t column = highlight->first_column + k;
+            const long place = (long)column - line_shift(lines, row);
+            if (image->marks[row * image->columns + column] != PART_HIGHLIGHT || place < 0)
+                continue;
+            low = place < low ? place : low;
+            high = place > high ? place : high;
+        }
+    const struct window_box columns = {first_row, (size_t)(low < high ? low : high), rows,
+                                       low < high ? (size_t)(high - low + 1) : 1};
+    return columns;
+}
+
+/* Where a highlight ends along the track, in rows: its last ones if step is 1, its first ones if
+ * -1. */
+static struct profile_edge end_along_track(const struct contact_lines *lines,
+                                           const struct window_box *highlight, int step)
+{
+    const struct end_levels levels = levels_of_highlight(lines);
+    const size_t rows = smaller(END_ROWS, highlight->rows);
+    const size_t inner = smaller(EDGE_REACH, (highlight->rows - 1) / 2);
+    const size_t last =
+        step > 0 ? highlight->first_row + highlight->rows - 1 : highlight->first_row;
+    const struct window_box box =
+        columns_marked(lines, highlight, step > 0 ? last + 1 - rows : last, rows);
+    const struct profile_path path = {box, true, step > 0 ? last - inner : last + inner, step,
+                                      inner + 1 + EDGE_REACH};
+    const struct profile profile = profile_with_skirt(lines, &path);
+    struct profile_edge end = find_profile_end(&profile, &levels);
+    end.place = (double)path.start + (double)step * end.place;
+    return end;
+}
+
+/* In range, across some rows. */
+static struct contact_length width_of_highlight(const struct contact_lines *lines,
+                                                const struct window_box *rows)
+{
+    const struct end_levels levels = levels_of_highlight(lines);
+    struct profile_path path = {*rows, false, rows->first_column + rows->columns / 2, 1,
+                                rows->columns / 2 + EDGE_REACH + 1};
+    struct profile profile = profile_with_skirt(lines, &path);
+    const struct profile_edge far = find_profile_end(&profile, &levels);
+    path.step = -1;
+    profile = profile_with_skirt(lines, &path);
+    const struct profile_edge near = find_profile_end(&profile, &levels);
+    return length_between(&near, &far);
+}
+
+/* Leaves the lines along the highlight; *along gets its columns there. */
+static void measure_highlight(struct contact_lines *lines, struct contact_sizes *sizes,
+                              struct window_box *along)
+{
+    lie_along(lines, &sizes->highlight, along);
+    const struct window_box middle = middle_rows(along);
+    const struct profile_edge first = end_along_track(lines, &sizes->highlight.box, -1);
+    const struct profile_edge last = end_along_track(lines, &sizes->highlight.box, 1);
+    sizes->highlight_rows.pixels = fmax(0.0, last.place - first.place);
+    sizes->highlight_rows.error = hypot(first.error, last.error);
+    sizes->highlight_columns = width_of_highlight(lines, &middle);
+    sizes->highlight_intensity = sizes->highlight.energy / (double)sizes->highlight.pixels;
+}
+
+/* The darkest third of a shadow's columns, at least three; *level gets its mean. */
+static struct window_box darkest_columns(const struct contact_lines *lines,
+                                         const struct window_box *middle, double *level)
+{
+    struct window_box darkest = *middle;
+    darkest.columns = smaller(middle->columns, middle->columns > 9 ? middle->columns / 3 : 3);
+    struct window_box tried = darkest;
+    *level = INFINITY;
+    for (; tried.first_column + tried.columns <= middle->first_column + middle->columns;
+         tried.first_column++) {
+        const double mean = mean_along_lines(lines, &tried);
+        if (mean < *level) {
+            *level = mean;
+            darkest = tried;
+        }
+    }
+    return darkest;
+}
+
+/* From `start`, in a shadow, to where the seabed begins, on an edge that may be tilted. */
+static struct step_belief weigh_edge_in_seabed(const struct contact_lines *lines,
+                                               const struct profile_path *path, double dark)
+{
+    struct step_belief belief;
+    struct contact_lines tilted = *lines;
+    const int tilts = path->box.rows > 1 && !path->is_along_track ? TILTS : 0;
+    memset(&belief, 0, sizeof belief);
+    tilted.tilt_row = (double)path->box.first_row + 0.5 * (double)(path->box.rows - 1);
+    for (int i = -tilts; i <= tilts; i++) {
+        tilted.tilt = TILT_STEP * i;
+        const struct profile profile = profile_along(&tilted, path);
+        weigh_profile_step(&belief, &profile, dark, lines->seabed);
+    }
+    return belief;
+}
+
+static struct profile_edge edge_in_seabed(const struct contact_lines *lines,
+                                          const struct profile_path *path, double dark)
+{
+    const struct step_belief belief = weigh_edge_in_seabed(lines, path, dark);
+    return mean_step_believed(&belief, 1);
+}
+
+/* A shadow as it is measured in range. */
+struct shadow_view {
+    struct window_box part;
+    size_t highlight; /* a column of it, or core if there is none */
+    size_t core;      /* a column in the dark */
+    double dark;      /* level */
+};
+
+/* Where it begins, and where what is bright ends before it: columns from its core. */
+struct shadow_edges {
+    struct profile_edge bright, near;
+};
+
+static struct step_belief weigh_far_edge(const struct contact_lines *lines,
+                                         const struct shadow_view *shadow,
+                                         const struct window_box *rows)
+{
+    struct profile_path path = {*rows, false, shadow->core, 1, 0};
+    path.most = shadow->part.first_column + shadow->part.columns - shadow->core + EDGE_REACH;
+    return weigh_edge_in_seabed(lines, &path, shadow->dark);
+}
+
+static struct shadow_edges find_near_edges(const struct contact_lines *lines,
+                                           const struct shadow_view *shadow,
+                                           const struct window_box *rows)
+{
+    struct shadow_edges edges;
+    struct profile_path path = {*rows, false, shadow->core, 1, 0};
+    if (shadow->highlight < shadow->core) {
+        const struct end_levels bright = levels_of_highlight(lines);
+        const struct end_levels lit = {sqrt(lines->seabed * shadow->dark),
+                                       SHADOW_CEILING * shadow->dark};
+        path.start = shadow->highlight;
+        path.most = shadow->core - shadow->highlight;
+        const struct profile profile = profile_with_skirt(lines, &path);
+        edges.bright = find_profile_end(&profile, &bright);
+        edges.near = find_profile_end(&profile, &lit);
+        edges.bright.place -= (double)path.most;
+        edges.near.place -= (double)path.most;
+    } else {
+        path.step = -1;
+        path.most = shadow->core - shadow->part.first_column + EDGE_REACH;
+        edges.near = edge_in_seabed(lines, &path, shadow->dark);
+        edges.near.place = -edges.near.place;
+        edges.bright.place = edges.bright.error = NAN;
+    }
+    return edges;
+}
+
+/* Whether the shadow begins with what is brighter than its rest, from its mean edges. */
+static void measure_dim_part(const struct contact_lines *lines, const struct shadow_view *shadow,
+                             const struct window_box *middle, double near,
+                             struct contact_sizes *sizes)
+{
+    const double first = (double)shadow->core + near + EDGE_MARGIN;
+    const double columns = sizes->shadow_columns.pixels - 2.0 * EDGE_MARGIN;
+    const struct contact_length none = {0.0, 0.0};
+    sizes->dim_columns = none;
+    if (!(first >= 0.0 && first < (double)lines->image->columns && columns >= 2.0))
+        return;
+    const struct profile_path path = {*middle, false, (size_t)first, 1, (size_t)columns};
+    const struct profile profile = profile_with_skirt(lines, &path);
+    const double level = sizes->shadow.energy / (double)sizes->shadow.pixels;
+    double gain;
+    for (size_t k = 0; k < profile.count; k++)
+        lines->skirt[k] /= level;
+    const struct profile_edge change = find_profile_change(&profile, &gain);
+    if (gain < DIM_GAIN)
+        return;
+    sizes->dim_columns.pixels = (double)path.start + change.place - (double)shadow->core - near;
+    sizes->dim_columns.error = change.error;
+}
+
+/* Means over bands of the rows; speckle is another in each. */
+static void measure_in_range(const struct contact_lines *lines, const struct shadow_view *shadow,
+                             const struct window_box *middle, struct contact_sizes *sizes)
+{
+    const size_t bands = smaller(BANDS, middle->rows);
+    struct step_belief far_edges[BANDS];
+    double gap = 0.0;
+    double near = 0.0;
+    double near_variance = 0.0;
+    double gap_variance = 0.0;
+    for (size_t band = 0; band < bands; band++) {
+        struct window_box rows = *middle;
+        rows.first_row += band * middle->rows / bands;
+        rows.rows = (band + 1) * middle->rows / bands - band * middle->rows / bands;
+        const struct shadow_edges edges = find_near_edges(lines, shadow, &rows);
+        far_edges[band] = weigh_far_edge(lines, shadow, &rows);
+        near += edges.near.place;
+        gap += edges.near.place - edges.bright.place;
+        near_variance += edges.near.error * edges.near.error;
+        gap_variance += edges.bright.error * edges.bright.error;
+    }
+    const double count = (double)bands;
+    const struct profile_edge far = mean_step_believed(far_edges, bands);
+    gap_variance += near_variance;
+    sizes->shadow_columns.pixels = fmax(0.0, far.place - near / count);
+    sizes->shadow_columns.error = hypot(far.error, sqrt(near_variance) / count);
+    sizes->gap_columns.pixels = shadow->highlight < shadow->core ? fmax(0.0, gap / count) : NAN;
+    sizes->gap_columns.error = sqrt(gap_variance) / count;
+    measure_dim_part(lines, shadow, middle, near / count, sizes);
+}
+
+/* highlight: a column of it along the lines; NULL: there is none. */
+static void measure_shadow(const struct contact_lines *lines, const size_t *highlight,
+                           struct contact_sizes *sizes)
+{
+    const struct window_box *part = &sizes->shadow.box;
+    const struct window_box middle = middle_rows(part);
+    double level;
+    const struct window_box darkest = darkest_columns(lines, &middle, &level);
+    struct shadow_view view = {*part, 0, darkest.first_column + darkest.columns / 2, 0.0};
+    view.highlight = highlight ? *highlight : view.core;
+    view.dark =
+        fmin(fmax(level, SHADOW_LEAST * lines->seabed), SHADOW_UNDER_SEABED * lines->seabed);
+    sizes->shadow_intensity = level;
+    measure_in_range(lines, &view, &middle, sizes);
+    struct profile_path across = {darkest, true, part->first_row + part->rows / 2, 1,
+                                  part->rows / 2 + 1 + EDGE_REACH};
+    const struct profile_edge last = edge_in_seabed(lines, &across, view.dark);
+    across.step = -1;
+    const struct profile_edge first = edge_in_seabed(lines, &across, view.dark);
+    sizes->shadow_rows = length_between(&first, &last);
+}
+
+static sonject_status measure(struct contact_lines *lines, struct contact_image *image,
+                              struct report *report, const struct contact_place *place,
+                              struct contact_sizes *sizes)
+{
+    sonject_status status = find_seabed_level(image, report, &place->box, &lines->seabed);
+    if (status == SONJECT_OK && !(lines->seabed > 0.0))
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "the image is dark around row %zu, column %zu: there is no seabed "
+                                "to measure a contact against",
+                                place->box.first_row, place->box.first_column);
+    THEN(status, find_contact_parts(image, report, place, lines->seabed, &sizes->highlight,
+                                    &sizes->shadow));
+    if (status != SONJECT_OK)
+        return status;
+    size_t bright_column = 0;
+    sizes->seabed = lines->seabed;
+    if (sizes->highlight.pixels > 0) {
+        struct window_box along;
+        measure_highlight(lines, sizes, &along);
+        bright_column = along.first_column + along.columns / 2;
+    }
+    if (sizes->shadow.pixels > 0)
+        measure_shadow(lines, sizes->highlight.pixels > 0 ? &bright_column : NULL, sizes);
+    return SONJECT_OK;
+}
+
+sonject_status measure_contact_sizes(struct contact_image *image, struct report *report,
+                                     const struct contact_place *place, struct contact_sizes *sizes)
+{
+    const struct contact_length unknown = {NAN, NAN};
+    struct contact_lines lines;
+    memset(sizes, 0, sizeof *sizes);
+    sizes->highlight_rows = sizes->highlight_columns = unknown;
+    sizes->shadow_rows = sizes->shadow_columns = sizes->gap_columns = sizes->dim_columns = unknown;
+    sizes->highlight_intensity = sizes->shadow_intensity = NAN;
+    sonject_status status = contact_lines_create(&lines, report, image);
+    THEN(status, measure(&lines, image, report, place, sizes));
+    contact_lines_clear(&lines);
+    return status;
+}

@@ -1,0 +1,370 @@
+#include "measure/seam.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "measure/seam_classifier.h"
+
+#define GUARD        1 /* pixels around highlights and shadows */
+#define GAPS         3 /* pixels, in the influence, that are closed */
+#define MARGIN       6 /* pixels around a patch that its level is compared with */
+#define SURROUNDINGS (SEAM_PATCH + 2 * MARGIN)
+#define BAND_LEAST   30  /* pixels of a patch that are in the band */
+#define STEP         3   /* pixels between the places where patches may begin */
+#define PAIRS        2   /* of untouched patches for each of the band, on opposite sides of it */
+#define FARTHEST     10  /* patches off, where those are looked for */
+#define SAMPLES_MAX  600 /* of the band; comparing goes as their square */
+
+enum pixel_kind {
+    PIXEL_UNTOUCHED,
+    PIXEL_BAND,
+    PIXEL_TARGET, /* and its surroundings, and what of the band is used: neither */
+    PIXEL_TAKEN   /* untouched, and part of a sample already */
+};
+
+struct seam_search {
+    const float *amplitudes;
+    uint8_t *kinds;
+    size_t rows, columns;
+    struct seam_sample *samples;
+    size_t count;
+};
+
+/* Outline of a sample: the pixels of a patch that are in the band, and the untouched ones around
+ * it; from MARGIN above and left of the patch on. */
+struct outline {
+    bool is_in[SURROUNDINGS * SURROUNDINGS];
+    bool is_around[SURROUNDINGS * SURROUNDINGS];
+    size_t pixels, around;
+};
+
+/* A pixel of the surroundings of a patch; false where it is not in the image. */
+static bool pixel_at(const struct seam_search *search, size_t row, size_t column, size_t i,
+                     size_t *at)
+{
+    const size_t r = row + i / SURROUNDINGS;
+    const size_t c = column + i % SURROUNDINGS;
+    if (r < MARGIN || c < MARGIN || r - MARGIN >= search->rows || c - MARGIN >= search->columns)
+        return false;
+    *at = (r - MARGIN) * search->columns + c - MARGIN;
+    return true;
+}
+
+static bool is_in_patch(size_t i)
+{
+    const size_t row = i / SURROUNDINGS;
+    const size_t column = i % SURROUNDINGS;
+    return row >= MARGIN && row < MARGIN + SEAM_PATCH && column >= MARGIN &&
+           column < MARGIN + SEAM_PATCH;
+}
+
+static void mark_around(struct seam_search *search, size_t row, size_t column)
+{
+    const size_t first_row = row > GUARD ? row - GUARD : 0;
+    const size_t first_column = column > GUARD ? column - GUARD : 0;
+    for (size_t r = first_row; r <= row + GUARD && r < search->rows; r++)
+        for (size_t c = first_column; c <= column + GUARD && c < search->columns; c++)
+            search->kinds[r * search->columns + c] = PIXEL_TARGET;
+}
+
+/* Spreads the pixels of a kind over squares of GAPS pixels around them. scratch: as kinds. */
+static void spread(const struct seam_search *search, uint8_t kind, uint8_t *scratch)
+{
+    const size_t columns = search->columns;
+    memcpy(scratch, search->kinds, search->rows * columns);
+    for (size_t i = 0; i < search->rows * columns; i++) {
+        if (scratch[i] != kind)
+            continue;
+        const size_t row = i / columns;
+        const size_t column = i % columns;
+        for (size_t r = row > GAPS ? row - GAPS : 0; r <= row + GAPS && r < search->rows; r++)
+            for (size_t c = column > GAPS ? column - GAPS : 0; c <= column + GAPS && c < columns;
+                 c++)
+                search->kinds[r * columns + c] = kind;
+    }
+}
+
+/* Where little changes, dark pixels change first: gaps in the influence are closed, or the band
+ * would be of another level than its surroundings before anything was put in. */
+static void mark_kinds(struct seam_search *search, const uint8_t *influence, const uint8_t *labels,
+                       uint8_t *scratch)
+{
+    const size_t count = search->rows * search->columns;
+    for (size_t i = 0; i < count; i++)
+        search->kinds[i] = influence[i] ? PIXEL_BAND : PIXEL_UNTOUCHED;
+    spread(search, PIXEL_BAND, scratch);
+    spread(search, PIXEL_UNTOUCHED, scratch);
+    for (size_t i = 0; i < count; i++)
+        if (influence[i])
+            search->kinds[i] = PIXEL_BAND;
+    for (size_t i = 0; labels && i < count; i++)
+        if (labels[i])
+            mark_around(search, i / search->columns, i % search->columns);
+}
+
+static void take_outline(const struct seam_search *search, size_t row, size_t column,
+                         struct outline *outline)
+{
+    memset(outline, 0, sizeof *outline);
+    for (size_t i = 0; i < SURROUNDINGS * SURROUNDINGS; i++) {
+        size_t at;
+        if (!pixel_at(search, row, column, i, &at))
+            continue;
+        const uint8_t kind = search->kinds[at];
+        outline->is_in[i] = is_in_patch(i) && kind == PIXEL_BAND;
+        outline->is_around[i] = kind == PIXEL_UNTOUCHED || kind == PIXEL_TAKEN;
+        outline->pixels += outline->is_in[i];
+        outline->around += outline->is_around[i];
+    }
+}
+
+/* All of the outline on untouched pixels, those in it not yet used. */
+static bool is_untouched(const struct seam_search *search, size_t row, size_t column,
+                         const struct outline *outline)
+{
+    for (size_t i = 0; i < SURROUNDINGS * SURROUNDINGS; i++) {
+        size_t at;
+        if (!outline->is_in[i] && !outline->is_around[i])
+            continue;
+        if (!pixel_at(search, row, column, i, &at))
+            return false;
+        const uint8_t kind = search->kinds[at];
+        if (kind != PIXEL_UNTOUCHED && (outline->is_in[i] || kind != PIXEL_TAKEN))
+            return false;
+    }
+    return true;
+}
+
+static void take(struct seam_search *search, size_t row, size_t column,
+                 const struct outline *outline, enum pixel_kind kind)
+{
+    size_t at;
+    for (size_t i = 0; i < SURROUNDINGS * SURROUNDINGS; i++)
+        if (outline->is_in[i] && pixel_at(search, row, column, i, &at))
+            search->kinds[at] = (uint8_t)kind;
+}
+
+/* Correlation and mean step of neighbours `ahead` pixels on in the order of the surroundings, both
+ * in the outline; values are over the patch's mean, spread is their variance. */
+static void compare_neighbours(const double *values, const struct outline *outline, size_t ahead,
+                               double spread, double *correlation, double *step)
+{
+    double products = 0.0;
+    double steps = 0.0;
+    double pairs = 0.0;
+    for (size_t i = 0; i + ahead < SURROUNDINGS * SURROUNDINGS; i++) {
+        if (!outline->is_in[i] || !outline->is_in[i + ahead])
+            continue;
+        products += (values[i] - 1.0) * (values[i + ahead] - 1.0);
+        steps += fabs(values[i] - values[i + ahead]);
+        pairs += 1.0;
+    }
+    *correlation = pairs > 0.0 && spread > 0.0 ? products / pairs / spread : 0.0;
+    *step = pairs > 0.0 ? steps / pairs : 0.0;
+}
+
+/* Mean amplitude of the pixels of an outline. */
+static double mean_of(const struct seam_search *search, size_t row, size_t column,
+                      const bool *is_counted, size_t count)
+{
+    double sum = 0.0;
+    size_t at;
+    for (size_t i = 0; i < SURROUNDINGS * SURROUNDINGS; i++)
+        if (is_counted[i] && pixel_at(search, row, column, i, &at))
+            sum += (double)search->amplitudes[at];
+    return count > 0 ? sum / (double)count : 0.0;
+}
+
+/* Level over the surroundings, contrast, skewness, and correlation and mean step along either axis.
+ * False for a patch of nothing. */
+static bool describe(const struct seam_search *search, size_t row, size_t column,
+                     const struct outline *outline, double features[SEAM_FEATURES])
+{
+    double values[SURROUNDINGS * SURROUNDINGS] = {0.0};
+    double variance = 0.0;
+    double third = 0.0;
+    const double count = (double)outline->pixels;
+    const double mean = mean_of(search, row, column, outline->is_in, outline->pixels);
+    const double around = mean_of(search, row, column, outline->is_around, outline->around);
+    if (!(mean > 0.0))
+        return false;
+    for (size_t i = 0; i < SURROUNDINGS * SURROUNDINGS; i++) {
+        size_t at;
+        if (!outline->is_in[i] || !pixel_at(search, row, column, i, &at))
+            continue;
+        values[i] = (double)search->amplitudes[at] / mean;
+        const double difference = values[i] - 1.0;
+        variance += difference * difference / count;
+        third += difference * difference * difference / count;
+    }
+    features[0] = outline->around >= BAND_LEAST && around > 0.0 ? log(mean / around) : 0.0;
+    features[1] = sqrt(variance);
+    features[2] = variance > 0.0 ? third / (variance * sqrt(variance)) : 0.0;
+    compare_neighbours(values, outline, SURROUNDINGS, variance, &features[3], &features[4]);
+    compare_neighbours(values, outline, 1, variance, &features[5], &features[6]);
+    return true;
+}
+
+static bool add_sample(struct seam_search *search, size_t row, size_t column,
+                       const struct outline *outline, bool is_injected)
+{
+    struct seam_sample *sample = &search->samples[search->count];
+    if (!describe(search, row, column, outline, sample->features))
+        return false;
+    sample->is_injected = is_injected;
+    search->count++;
+    return true;
+}
+
+/* The patch at an offset in whole patches; false where it is not inside or not untouched. */
+static bool find_untouched(const struct seam_search *search, size_t row, size_t column, long down,
+                           long right, const struct outline *outline, size_t *other_row,
+                           size_t *other_column)
+{
+    const long r = (long)row + down * SEAM_PATCH;
+    const long c = (long)column + right * SEAM_PATCH;
+    if (r < 0 || c < 0 || r + SEAM_PATCH > (long)search->rows ||
+        c + SEAM_PATCH > (long)search->columns)
+        return false;
+    *other_row = (size_t)r;
+    *other_column = (size_t)c;
+    return is_untouched(search, *other_row, *other_column, outline);
+}
+
+static bool add_pair(struct seam_search *search, size_t row, size_t column, long down, long right,
+                     const struct outline *outline)
+{
+    size_t rows[2], columns[2];
+    if (!find_untouched(search, row, column, down, right, outline, &rows[0], &columns[0]) ||
+        !find_untouched(search, row, column, -down, -right, outline, &rows[1], &columns[1]))
+        return false;
+    if (!add_sample(search, rows[0], columns[0], outline, false))
+        return false;
+    if (!add_sample(search, rows[1], columns[1], outline, false)) {
+        search->count--;
+        return false;
+    }
+    take(search, rows[0], columns[0], outline, PIXEL_TAKEN);
+    take(search, rows[1], columns[1], outline, PIXEL_TAKEN);
+    return true;
+}
+
+/* Untouched patches of this outline, nearest first, in pairs on opposite sides: what changes evenly
+ * across the seabed is the same in their mean as between them. */
+static size_t add_backgrounds(struct seam_search *search, size_t row, size_t column,
+                              const struct outline *outline)
+{
+    size_t found = 0;
+    for (long distance = 1; distance <= FARTHEST; distance++)
+        for (long down = 0; down <= distance; down++)
+            for (long right = down == 0 ? 1 : -distance; right <= distance; right++) {
+                if (down != distance && labs(right) != distance)
+                    continue;
+                found += add_pair(search, row, column, down, right, outline);
+                if (found == PAIRS)
+                    return found;
+            }
+    return found;
+}
+
+/* Counts the features of a sample and its backgrounds from their common mean, so that only what
+ * differs near by is left. */
+static void centre(struct seam_sample *group, size_t count)
+{
+    for (int k = 0; k < SEAM_FEATURES; k++) {
+        double mean = 0.0;
+        for (size_t i = 0; i < count; i++)
+            mean += group[i].features[k] / (double)count;
+        for (size_t i = 0; i < count; i++)
+            group[i].features[k] -= mean;
+    }
+}
+
+/* Contiguous fifths of the samples, each with its own background. */
+static void deal_folds(struct seam_search *search, size_t injected)
+{
+    size_t before = 0;
+    size_t seen = 0;
+    for (size_t i = 0; i < search->count; i++) {
+        before = seen;
+        seen += search->samples[i].is_injected;
+        const size_t number = search->samples[i].is_injected ? before : seen - 1;
+        search->samples[i].group = number;
+        search->samples[i].fold = (int)(number * SEAM_FOLDS / injected);
+    }
+}
+
+/* Takes a patch and its backgrounds; false where it has too little of the band, or nothing near to
+ * be compared with. */
+static bool add_group(struct seam_search *search, size_t row, size_t column, size_t least)
+{
+    struct outline outline;
+    const size_t first = search->count;
+    take_outline(search, row, column, &outline);
+    if (outline.pixels < least || !add_sample(search, row, column, &outline, true))
+        return false;
+    if (add_backgrounds(search, row, column, &outline) == 0) {
+        search->count = first;
+        return false;
+    }
+    take(search, row, column, &outline, PIXEL_TARGET);
+    centre(search->samples + first, search->count - first);
+    return true;
+}
+
+/* Whole patches first, then what is left of the band at its edges. */
+static size_t collect(struct seam_search *search)
+{
+    static const size_t least[] = {SEAM_PATCH * SEAM_PATCH * 9 / 10, SEAM_PATCH * SEAM_PATCH / 2,
+                                   BAND_LEAST};
+    size_t injected = 0;
+    for (size_t pass = 0; pass < sizeof least / sizeof *least; pass++)
+        for (size_t row = 0; row + SEAM_PATCH <= search->rows; row += STEP)
+            for (size_t column = 0;
+                 column + SEAM_PATCH <= search->columns && injected < SAMPLES_MAX; column += STEP)
+                injected += add_group(search, row, column, least[pass]);
+    return injected;
+}
+
+static sonject_status judge(struct report *report, struct seam_search *search, size_t injected,
+                            struct seam *seam)
+{
+    sonject_status status = SONJECT_OK;
+    seam->patches = injected;
+    seam->background = search->count - injected;
+    if (injected > 0) {
+        double auc, error;
+        deal_folds(search, injected);
+        if (classify_seam(report, search->samples, search->count, &auc, &error, &status)) {
+            seam->auc = auc;
+            seam->error = error;
+        }
+    }
+    return status;
+}
+
+sonject_status measure_seam(struct report *report, const float *amplitudes,
+                            const uint8_t *influence, const uint8_t *labels, size_t rows,
+                            size_t columns, struct seam *seam)
+{
+    struct seam_search search = {amplitudes, NULL, rows, columns, NULL, 0};
+    memset(seam, 0, sizeof *seam);
+    seam->auc = NAN;
+    seam->error = NAN;
+    search.kinds = allocate_array(rows, columns);
+    uint8_t *scratch = allocate_array(rows, columns);
+    search.samples = allocate_array((SAMPLES_MAX + 1) * (2 * PAIRS + 1), sizeof *search.samples);
+    sonject_status status = search.kinds && search.samples && scratch
+                                ? SONJECT_OK
+                                : report_out_of_memory(report, "the seam");
+    if (status == SONJECT_OK) {
+        mark_kinds(&search, influence, labels, scratch);
+        status = judge(report, &search, collect(&search), seam);
+    }
+    free(search.kinds);
+    free(search.samples);
+    free(scratch);
+    return status;
+}

@@ -1,0 +1,40 @@
+"""The rooms of lib: each calls those below it alone, as the linker sees it."""
+import os
+import pathlib
+import re
+import subprocess
+
+LIB = pathlib.Path(os.environ["SONJECT_SOURCE"]) / "lib"
+ARCHIVE = pathlib.Path(os.environ["SONJECT_LIBRARY"]).parent / "libsonject_internal.a"
+
+ROOMS = ["api", "dataset", "inject", "measure", "elements", "form", "trace", "schema", "swath",
+         "scene", "user", "mesh", "medium", "image", "cl", "base"]  # each sees what follows
+
+
+def symbols_of_rooms():
+    """What each room's objects define and what they ask for. The library's parts that are objects
+    of no room are made by the build: the kernels' text."""
+    defined, wanted = {}, []
+    listing = subprocess.run(["nm", "--print-file-name", ARCHIVE], check=True, capture_output=True,
+                             text=True).stdout
+    for line in listing.splitlines():
+        place, words = line.rsplit(":", 1)
+        room = re.search(r"([a-z-]+)_[^/:]*$", place)[1]
+        kind, symbol = words.split()[-2:]
+        if room in ROOMS and kind == "U":
+            wanted.append((room, symbol))
+        elif room in ROOMS and kind.isupper():
+            defined[symbol] = room
+    return defined, wanted
+
+
+def test_every_folder_is_a_room():
+    assert sorted(path.name for path in LIB.iterdir() if path.is_dir()) == sorted(ROOMS)
+
+
+def test_no_room_calls_one_above_it():
+    defined, wanted = symbols_of_rooms()
+    assert set(defined.values()) == set(ROOMS)
+    upwards = {f"{room} calls {symbol} of {defined[symbol]}" for room, symbol in wanted
+               if symbol in defined and ROOMS.index(defined[symbol]) < ROOMS.index(room)}
+    assert not upwards
