@@ -22,8 +22,9 @@ struct body {
     const sonject_object_params *solid;
     struct surface surfaces[12];
     int count;
-    int is_thin; /* has no inside */
-    double rim;  /* radius of a disc */
+    int is_thin;                    /* has no inside */
+    double rim;                     /* radius of a disc */
+    double half_length, half_width; /* of a plate */
     double size;
 };
 
@@ -131,13 +132,27 @@ static void body_init(struct body *body, const sonject_object_params *solid, dou
     body->solid = solid;
     body->count = 0;
     body->size = solid_size(solid);
-    body->rim = INFINITY;
-    body->is_thin = solid->shape == SONJECT_SHAPE_DISC;
+    body->rim = body->half_length = body->half_width = INFINITY;
+    body->is_thin = solid->shape == SONJECT_SHAPE_DISC || solid->shape == SONJECT_SHAPE_PLANE;
     switch (solid->shape) {
     case SONJECT_SHAPE_DISC:
         add_surface(body, PLANE, 0.0, 0.0, 1.0, 0.0);
         body->rim = radius + more;
         break;
+    case SONJECT_SHAPE_PLANE:
+        add_surface(body, PLANE, 0.0, 0.0, 1.0, 0.0);
+        body->half_length = 0.5 * solid->length_m + more;
+        body->half_width = 0.5 * solid->width_m + more;
+        break;
+    case SONJECT_SHAPE_SPHERE:
+        add_surface(body, BALL, 0.0, radius + more, 0.0, 0.0);
+        break;
+    case SONJECT_SHAPE_CAPSULE: {
+        struct surface *side = add_surface(body, TUBE, radius + more, 0.0, 0.0, 0.0);
+        add_end(body, solid, 1.0, SONJECT_END_SPHERICAL, radius, more, side);
+        add_end(body, solid, -1.0, SONJECT_END_SPHERICAL, radius, more, side);
+        break;
+    }
     case SONJECT_SHAPE_ELLIPSOID:
         add_surface(body, ELLIPSOID, 0.5 * solid->length_m + more, 0.5 * solid->width_m + more,
                     0.5 * solid->height_m + more, 0.0);
@@ -170,11 +185,18 @@ static void body_init(struct body *body, const sonject_object_params *solid, dou
     }
 }
 
+/* A straight part with two ends. */
+static int is_round(const struct body *body)
+{
+    return body->solid->shape == SONJECT_SHAPE_CYLINDER ||
+           body->solid->shape == SONJECT_SHAPE_CAPSULE;
+}
+
 /* Whether a point lies within all surfaces but one. A cylinder is the union of its straight part
  * and its ends. */
 static int is_within(const struct body *body, const struct surface *but, struct point p)
 {
-    const int is_cylinder = body->solid->shape == SONJECT_SHAPE_CYLINDER;
+    const int is_cylinder = is_round(body);
     int in_part = !is_cylinder || (but && !but->is_cut);
     for (int i = 0; i < body->count; i++) {
         const struct surface *surface = &body->surfaces[i];
@@ -199,11 +221,12 @@ static int is_on(const struct body *body, const struct surface *surface, struct 
 {
     if (surface->is_cut)
         return !body->is_thin && is_within(body, surface, p);
-    if (p.x < surface->from || p.x > surface->to || hypot(p.x, p.y) > body->rim)
+    if (p.x < surface->from || p.x > surface->to || hypot(p.x, p.y) > body->rim ||
+        fabs(p.x) > body->half_length || fabs(p.y) > body->half_width)
         return 0;
     if (surface->kind == CONE && surface->numbers[0] + surface->numbers[1] * p.z < 0.0)
         return 0;
-    if (body->solid->shape == SONJECT_SHAPE_CYLINDER) {
+    if (is_round(body)) {
         for (int i = 0; i < body->count; i++)
             if (body->surfaces[i].is_cut && value_at(&body->surfaces[i], p) > 0.0)
                 return 0;
@@ -272,7 +295,9 @@ static int crossings(const struct surface *surface, struct point middle, struct 
 
 static double edge_distance(const struct body *body, const struct surface *on, struct point p)
 {
-    double nearest = fabs(body->rim - hypot(p.x, p.y));
+    double nearest =
+        fmin(fabs(body->rim - hypot(p.x, p.y)),
+             fmin(fabs(body->half_length - fabs(p.x)), fabs(body->half_width - fabs(p.y))));
     for (int i = 0; i < body->count; i++) {
         const struct surface *surface = &body->surfaces[i];
         const struct point gradient = gradient_at(surface, p, 1e-6 * body->size);

@@ -1,6 +1,7 @@
-/* Where rays meet the shapes with more than one size, whole and cut, against polynomials solved in
- * double precision. Rays come from sonars at 50 m and 500 m, many of them grazing. */
+/* Where rays meet shapes, whole and cut, against polynomials solved in double precision. Rays come
+ * from sonars at 50 m and 500 m, many of them grazing. */
 #include "claims.h"
+#include "fan.h"
 #include "reference_solids.h"
 #include "scene/shapes/shape.h"
 #include "sixteen_lanes.h"
@@ -15,6 +16,9 @@
 #define GRAZING 0.02
 
 enum solid_kind {
+    PLATE,
+    BALL,
+    CAPSULE,
     DISC,
     ELLIPSOID,
     BOX,
@@ -27,8 +31,9 @@ enum solid_kind {
     SOLID_KINDS
 };
 
-static const char *const names[SOLID_KINDS] = {
-    "disc", "ellipsoid", "box", "wedge", "cone", "truncated cone", "torus", "cylinder", "tube"};
+static const char *const names[SOLID_KINDS] = {"plate",          "sphere", "capsule",  "disc",
+                                               "ellipsoid",      "box",    "wedge",    "cone",
+                                               "truncated cone", "torus",  "cylinder", "tube"};
 
 struct solid {
     sonject_object_params params;
@@ -46,6 +51,7 @@ static uint32_t random_end(int with_open)
 static void random_sizes(sonject_object_params *params, enum solid_kind kind)
 {
     static const uint32_t shapes[SOLID_KINDS] = {
+        SONJECT_SHAPE_PLANE, SONJECT_SHAPE_SPHERE,    SONJECT_SHAPE_CAPSULE,
         SONJECT_SHAPE_DISC,  SONJECT_SHAPE_ELLIPSOID, SONJECT_SHAPE_BOX,
         SONJECT_SHAPE_WEDGE, SONJECT_SHAPE_CONE,      SONJECT_SHAPE_TRUNCATED_CONE,
         SONJECT_SHAPE_TORUS, SONJECT_SHAPE_CYLINDER,  SONJECT_SHAPE_CYLINDER};
@@ -59,9 +65,11 @@ static void random_sizes(sonject_object_params *params, enum solid_kind kind)
     params->front_height_m = uniform(0.0, 1.0) < 0.3 ? 0.0 : uniform(0.0, params->height_m);
     if (kind == TORUS)
         params->height_m = params->diameter_m * uniform(0.04, 0.48);
-    if (kind != ROUND_CYLINDER && kind != TUBE)
+    if (kind != ROUND_CYLINDER && kind != TUBE && kind != CAPSULE)
         return;
     params->length_m = params->diameter_m * uniform(1.1, 5.0);
+    if (kind == CAPSULE)
+        return;
     params->nose_end = random_end(kind == TUBE);
     params->tail_end = kind == TUBE && params->nose_end != SONJECT_END_OPEN
                            ? (uint32_t)SONJECT_END_OPEN
@@ -278,7 +286,7 @@ static void test_beyond_the_first(void **state)
             }
         }
         print_message("%s: %d later crossings\n", names[kind], compared);
-        assert_true(kind == DISC || compared > RAYS / 50);
+        assert_true(kind == DISC || kind == PLATE || compared > RAYS / 50);
     }
 }
 
@@ -347,12 +355,138 @@ static void test_along_the_axes(void **state)
     }
 }
 
+static void test_nearest_of_several(void **state)
+{
+    struct solid solids[7];
+    struct object_record objects[7];
+    int seen[7] = {0};
+    for (int i = 0; i < RAYS; i++) {
+        if (i % 50 == 0)
+            for (int k = 0; k < 7; k++) {
+                solids[k] = random_solid((enum solid_kind)((i / 50 + k) % SOLID_KINDS), 0, 1.0);
+                objects[k] = solids[k].record;
+            }
+        const struct ray ray = ray_towards(aim(&solids[i % 7]), 60.0);
+        struct solid_hit nearest = {INFINITY, {0.0, 0.0, 0.0}, 0.0};
+        double second = INFINITY;
+        int number = -1;
+        int is_clear = 1;
+        for (int k = 0; k < 7; k++) {
+            const struct solid_hit hit =
+                reference_hit(&solids[k], ray.origin, ray.direction, -60.0, 0.0);
+            const double inner =
+                reference_hit(&solids[k], ray.origin, ray.direction, -60.0, -OUTLINE).distance;
+            const double outer =
+                reference_hit(&solids[k], ray.origin, ray.direction, -60.0, OUTLINE).distance;
+            is_clear = is_clear && isfinite(inner) == isfinite(outer);
+            if (hit.distance < nearest.distance) {
+                second = nearest.distance;
+                nearest = hit;
+                number = k;
+            } else if (hit.distance < second) {
+                second = hit.distance;
+            }
+        }
+        if (!is_clear || second - nearest.distance < 1e-4)
+            continue;
+        const struct nearest_hit found = find_nearest_hit(objects, 7, ray.p, ray.d, -60.0f);
+        if (found.object != number)
+            fail_msg("object %d is met first, not %d", number, (int)found.object);
+        if (number >= 0) {
+            seen[number]++;
+            assert_true(fabs(found.distance - nearest.distance) < 1e-3);
+        }
+    }
+    for (int k = 0; k < 7; k++)
+        assert_true(seen[k] > RAYS / 100);
+    const struct ray ray = ray_towards((struct point){0.0, 0.0, 0.0}, 60.0);
+    const struct nearest_hit none = find_nearest_hit(objects, 0, ray.p, ray.d, -60.0f);
+    assert_true(none.object == -1 && none.distance == FAR_AWAY);
+}
+
+/* What the fan's geometry promises, in double: a ray of elevation e through the neighbourhood of
+ * the origin, at 500 m as at 5 m. */
+static void test_fan(void **state)
+{
+    static const double ranges[] = {5.0, 50.0, 500.0};
+    for (size_t r = 0; r < 3; r++)
+        for (int i = 0; i < 10000; i++) {
+            const double depression = uniform(0.02, 1.4);
+            struct fan_record fan;
+            memset(&fan, 0, sizeof fan);
+            fan.reference_range = (float)ranges[r];
+            fan.cosine_depression = (float)cos(depression);
+            fan.sine_depression = (float)sin(depression);
+            const float elevation = (float)(uniform(-5.0, 5.0) / ranges[r]);
+            const struct fan_ray ray = fan_ray_at(&fan, NULL, 0.25f, elevation);
+            const double range = fan.reference_range;
+            const double d_y = fan.cosine_depression, d_z = -fan.sine_depression;
+            const double e = elevation;
+            const struct point direction = {0.0, d_y * cos(e) - d_z * sin(e),
+                                            d_z * cos(e) + d_y * sin(e)};
+            const double along = range * cos(e);
+            const struct point closest = {0.25, -range * d_y + along * direction.y,
+                                          -range * d_z + along * direction.z};
+            assert_true(ray.closest.x == 0.25f && ray.direction.x == 0.0f);
+            assert_true(fabs(ray.direction.y - direction.y) < 3e-7);
+            assert_true(fabs(ray.direction.z - direction.z) < 3e-7);
+            /* offsets of up to 5 m; the depression's own rounding turns the whole fan, which
+             * moves nothing in it, but leaves (1 - sine^2 - cosine^2) range in `closest` here */
+            const double slack = 1e-6 + 1e-7 * range;
+            assert_true(fabs(ray.closest.y - closest.y) < slack);
+            assert_true(fabs(ray.closest.z - closest.z) < slack);
+            assert_true(fabs(ray.range_at_closest - range * (cos(e) - 1.0)) < 1e-6);
+            assert_true(fabs(dot3(ray.upward, ray.direction)) < 1e-7f);
+            assert_true(fabs(dot3(ray.closest, ray.direction)) < 2e-6f);
+        }
+}
+
+/* Buried parts are not met: the seabed comes first. */
+static void test_burial(void **state)
+{
+    struct fan_record fan;
+    memset(&fan, 0, sizeof fan);
+    fan.reference_range = 50.0f;
+    int shown = 0;
+    int hidden = 0;
+    for (int i = 0; i < RAYS; i++) {
+        fan.seabed_height = (float)uniform(-0.3, 0.3);
+        struct solid solid = random_solid((enum solid_kind)(i % SOLID_KINDS), 0, 1.0);
+        solid.record.centre_z = 0.0f;
+        const struct ray ray = ray_towards(aim(&solid), 50.0);
+        const struct solid_hit hit = reference_hit(&solid, ray.origin, ray.direction, -50.0, 0.0);
+        if (!isfinite(hit.distance) || fabs(dot(hit.normal, ray.direction)) < 0.05 ||
+            hit.to_edge < 1e-4)
+            continue;
+        const double height = add(ray.origin, ray.direction, hit.distance).z - fan.seabed_height;
+        if (fabs(height) < 1e-5)
+            continue;
+        const float seabed = plane_distance(&fan, ray.p, ray.d);
+        const float object_at = object_distance(&solid.record, ray.p, ray.d, -50.0f);
+        assert_int_equal(object_at<seabed, height> 0.0);
+        shown += height > 0.0;
+        hidden += height < 0.0;
+    }
+    assert_true(shown > RAYS / 10 && hidden > RAYS / 10);
+    /* a level or rising ray never meets the seabed */
+    const struct vector3 point = {0.0f, 0.0f, 1.0f};
+    const struct vector3 level = {0.0f, 1.0f, 0.0f};
+    const struct vector3 rising = {0.0f, 0.8f, 0.6f};
+    assert_true(plane_distance(&fan, point, level) == FAR_AWAY);
+    assert_true(plane_distance(&fan, point, rising) == FAR_AWAY);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_against_the_reference), cmocka_unit_test(test_no_self_hit),
-        cmocka_unit_test(test_beyond_the_first),      cmocka_unit_test(test_sixteen_lanes),
+        cmocka_unit_test(test_against_the_reference),
+        cmocka_unit_test(test_no_self_hit),
+        cmocka_unit_test(test_beyond_the_first),
+        cmocka_unit_test(test_sixteen_lanes),
         cmocka_unit_test(test_along_the_axes),
+        cmocka_unit_test(test_nearest_of_several),
+        cmocka_unit_test(test_fan),
+        cmocka_unit_test(test_burial),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
