@@ -196,59 +196,30 @@ void form_lines_end(struct form_lines *lines)
     lines->filled_columns = NULL;
 }
 
-static sonject_status compress_complex(struct form_lines *lines, int32_t strip, int32_t count,
-                                       cl_mem real_bins, cl_mem imaginary_bins, cl_mem filled)
-{
-    const cl_int bins = lines->grid.bins.count;
-    const cl_int per_pixel = (cl_int)lines->grid.bins_per_pixel;
-    const cl_int first = lines->pulse_first + (cl_int)lines->first_column * per_pixel;
-    const cl_int taps = lines->pulse_taps;
-    const cl_int stride = (cl_int)lines->stride;
-    const cl_int out_strip = strip - lines->grid.strips.first;
-    const struct kernel_argument arguments[] = {ARGUMENT(real_bins),
-                                                ARGUMENT(imaginary_bins),
-                                                ARGUMENT(filled),
-                                                ARGUMENT(bins),
-                                                ARGUMENT(first),
-                                                ARGUMENT(per_pixel),
-                                                ARGUMENT(lines->pulse),
-                                                ARGUMENT(lines->imaginary_pulse),
-                                                ARGUMENT(taps),
-                                                ARGUMENT(stride),
-                                                ARGUMENT(out_strip),
-                                                ARGUMENT(lines->real_lines),
-                                                ARGUMENT(lines->imaginary_lines)};
-    const size_t global[2] = {lines->stride / lines->device->width, (size_t)count};
-    return kernel_run(lines->report, lines->device, lines->compress, arguments,
-                      sizeof arguments / sizeof *arguments, 2, global);
-}
-
 static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t count,
                                cl_mem real_bins, cl_mem imaginary_bins, cl_mem filled)
 {
-    if (lines->imaginary_pulse)
-        return compress_complex(lines, strip, count, real_bins, imaginary_bins, filled);
     const cl_int bins = lines->grid.bins.count;
     const cl_int per_pixel = (cl_int)lines->grid.bins_per_pixel;
     const cl_int first = lines->pulse_first + (cl_int)lines->first_column * per_pixel;
     const cl_int taps = lines->pulse_taps;
     const cl_int stride = (cl_int)lines->stride;
     const cl_int out_strip = strip - lines->grid.strips.first;
-    const struct kernel_argument arguments[] = {ARGUMENT(real_bins),
-                                                ARGUMENT(imaginary_bins),
-                                                ARGUMENT(filled),
-                                                ARGUMENT(bins),
-                                                ARGUMENT(first),
-                                                ARGUMENT(per_pixel),
-                                                ARGUMENT(lines->pulse),
-                                                ARGUMENT(taps),
-                                                ARGUMENT(stride),
-                                                ARGUMENT(out_strip),
-                                                ARGUMENT(lines->real_lines),
-                                                ARGUMENT(lines->imaginary_lines)};
+    const bool is_complex = lines->imaginary_pulse != NULL; /* else its place is the next one's */
+    struct kernel_argument arguments[13] = {
+        ARGUMENT(real_bins), ARGUMENT(imaginary_bins), ARGUMENT(filled),      ARGUMENT(bins),
+        ARGUMENT(first),     ARGUMENT(per_pixel),      ARGUMENT(lines->pulse)};
+    const struct kernel_argument rest[] = {ARGUMENT(lines->imaginary_pulse),
+                                           ARGUMENT(taps),
+                                           ARGUMENT(stride),
+                                           ARGUMENT(out_strip),
+                                           ARGUMENT(lines->real_lines),
+                                           ARGUMENT(lines->imaginary_lines)};
+    const size_t left = is_complex ? 6 : 5;
+    memcpy(&arguments[7], &rest[6 - left], left * sizeof *rest);
     const size_t global[3] = {lines->stride / lines->device->width, (size_t)count, lines->planes};
-    return kernel_run(lines->report, lines->device, lines->compress, arguments,
-                      sizeof arguments / sizeof *arguments, 3, global);
+    return kernel_run(lines->report, lines->device, lines->compress, arguments, 7 + left,
+                      is_complex ? 2 : 3, global);
 }
 
 /* Notes the columns of a strip's line that filled bins reach: column j takes the bins from

@@ -183,21 +183,21 @@ static sonject_status trace_objects(const struct tracing *tracing)
     return status;
 }
 
-/* The level seabed by the same rays. The rough trace is level from then on. */
-static sonject_status trace_level_seabed(struct tracing *tracing)
+/* What the same rays hear of a seabed that is level or even, by the rough trace as it now is. */
+static sonject_status trace_again(struct tracing *tracing, enum impulse_kind kind,
+                                  const char *stage)
 {
     struct rough_trace *trace = &tracing->rough;
     const float *const planes[] = {tracing->chunk};
     const uint64_t pings = tracing->tracer->counts.pings;
     struct span strips = {trace->grid.strips.first, 0};
     sonject_status status = SONJECT_OK;
-    rough_trace_flatten(trace);
     while (status == SONJECT_OK &&
            (strips = next_strips(&trace->grid, strips, rough_trace_chunk(trace))).count > 0) {
         status = rough_trace_strips(trace, tracing->tracer, strips, tracing->chunk);
-        THEN(status, emit(tracing, IMPULSES_LEVEL, 0, &trace->grid, strips, 1, planes));
+        THEN(status, emit(tracing, kind, 0, &trace->grid, strips, 1, planes));
         THEN(status, echo_request_tell(tracing->request, tracing->tracer->report,
-                                       ROUGH_SHARE + OBJECT_SHARE, "tracing the level seabed"));
+                                       ROUGH_SHARE + OBJECT_SHARE, stage));
     }
     tracing->tracer->counts.pings = pings; /* the same ones */
     return status;
@@ -213,25 +213,6 @@ static sonject_status allocate_chunks(struct tracing *tracing)
     return tracing->tiles && tracing->chunk && tracing->second
                ? SONJECT_OK
                : report_out_of_memory(tracing->tracer->report, "the seabed");
-}
-
-/* What the pings of a real aperture hear of an even seabed. */
-static sonject_status trace_pings(struct tracing *beam)
-{
-    struct rough_trace *trace = &beam->rough;
-    const float *const planes[] = {beam->chunk};
-    const uint64_t pings = beam->tracer->counts.pings;
-    struct span strips = {trace->grid.strips.first, 0};
-    sonject_status status = SONJECT_OK;
-    while (status == SONJECT_OK &&
-           (strips = next_strips(&trace->grid, strips, rough_trace_chunk(trace))).count > 0) {
-        status = rough_trace_strips(trace, beam->tracer, strips, beam->chunk);
-        THEN(status, emit(beam, IMPULSES_BEAM, 0, &trace->grid, strips, 1, planes));
-        THEN(status, echo_request_tell(beam->request, beam->tracer->report,
-                                       ROUGH_SHARE + OBJECT_SHARE, "tracing the beam"));
-    }
-    beam->tracer->counts.pings = pings; /* the same ones */
-    return status;
 }
 
 static sonject_status emit_hidden(const struct tracing *beam)
@@ -258,7 +239,7 @@ static sonject_status trace_beam(struct tracer *tracer, const struct echo_reques
     response_of_pings(&response, tracer);
     CHECK(rough_trace_begin_beam(&beam.rough, tracer, &response));
     sonject_status status = allocate_chunks(&beam);
-    THEN(status, trace_pings(&beam));
+    THEN(status, trace_again(&beam, IMPULSES_BEAM, "tracing the beam"));
     THEN(status, rough_trace_tiles(&beam.rough, tracer, beam.tiles));
     THEN(status, emit_hidden(&beam));
     rough_trace_end(&beam.rough);
@@ -334,8 +315,10 @@ sonject_status trace_impulses(struct tracer *tracer, const struct echo_request *
     THEN(status, trace_objects(&tracing));
     if (status == SONJECT_OK && has_beam_shadows(tracer))
         status = trace_beam(tracer, request, sink);
-    if (status == SONJECT_OK && tracer->relief)
-        status = trace_level_seabed(&tracing);
+    if (status == SONJECT_OK && tracer->relief) {
+        rough_trace_flatten(&tracing.rough);
+        status = trace_again(&tracing, IMPULSES_LEVEL, "tracing the level seabed");
+    }
     rough_trace_end(&tracing.rough);
     free(tracing.tiles);
     free(tracing.chunk);
