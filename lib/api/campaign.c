@@ -161,6 +161,7 @@ sonject_status sonject_campaign_inject(sonject_context *context, sonject_campaig
         return SONJECT_ERROR_ARGUMENT;
     *result = NULL;
     context_begin_call(context);
+    context_watch(context, &progress, &user);
     if (!campaign)
         return null_argument(&context->report, "campaign");
     struct device *device;

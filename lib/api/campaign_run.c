@@ -209,6 +209,7 @@ sonject_status sonject_campaign_run(sonject_context *context, sonject_campaign *
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
     context_begin_call(context);
+    context_watch(context, &progress, &user);
     if (!campaign)
         return null_argument(&context->report, "campaign");
     sonject_campaign_run_params taken;
@@ -237,6 +238,7 @@ sonject_status sonject_campaign_merge(sonject_context *context, const char *fold
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
     context_begin_call(context);
+    context_watch(context, &progress, &user);
     if (!folder || !folder[0])
         return null_argument(&context->report, "folder");
     memset(&set, 0, sizeof set);

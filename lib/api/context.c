@@ -1,5 +1,6 @@
 #include "api/handles.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -33,6 +34,29 @@ const char *sonject_status_name(sonject_status status)
 void context_begin_call(struct sonject_context *context)
 {
     context->report.message[0] = '\0';
+    context->host.progress = NULL;
+}
+
+static int pass_on(void *user, double fraction, const char *stage)
+{
+    struct report_host *host = user;
+    host->fraction = fraction;
+    snprintf(host->stage, sizeof host->stage, "%s", stage);
+    return host->progress(host->progress_user, fraction, stage);
+}
+
+void context_watch(struct sonject_context *context, sonject_progress_function *progress,
+                   void **user)
+{
+    struct report_host *host = &context->host;
+    host->progress = *progress;
+    host->progress_user = *user;
+    host->fraction = 0.0;
+    strcpy(host->stage, "reading");
+    if (!*progress)
+        return;
+    *progress = pass_on;
+    *user = host;
 }
 
 sonject_status null_argument(struct report *report, const char *name)

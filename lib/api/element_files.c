@@ -194,6 +194,7 @@ sonject_status sonject_elements_run(sonject_context *context, const sonject_scen
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
     context_begin_call(context);
+    context_watch(context, &progress, &user);
     struct report *report = &context->report;
     if (!scene)
         return null_argument(report, "scene");

@@ -65,6 +65,7 @@ sonject_status sonject_element_series(sonject_context *context, const sonject_sc
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
     context_begin_call(context);
+    context_watch(context, &progress, &user);
     struct report *report = &context->report;
     if (!scene || !series)
         return null_argument(report, "scene and series");

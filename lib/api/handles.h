@@ -37,6 +37,11 @@ struct sonject_result {
 /* Forgets the last message: every public call that can fail begins with it. */
 void context_begin_call(struct sonject_context *context);
 
+/* Has the caller's progress function asked while the call waits for a child process, too: it and
+ * its user become ones that pass on what they are told. */
+void context_watch(struct sonject_context *context, sonject_progress_function *progress,
+                   void **user);
+
 /* The context's device, opened on first use. Errors: DEVICE, MEMORY. */
 sonject_status context_device(struct sonject_context *context, struct device **device);
 

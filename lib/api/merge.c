@@ -117,6 +117,7 @@ sonject_status sonject_merge(sonject_context *context, const sonject_scene *scen
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
     context_begin_call(context);
+    context_watch(context, &progress, &user);
     sonject_merge_params taken;
     sonject_merge_params_init(&taken);
     CHECK(params_take(&context->report, &taken, sizeof taken, params, sizeof taken,

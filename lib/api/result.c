@@ -70,6 +70,7 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *sce
         return SONJECT_ERROR_ARGUMENT;
     *result = NULL;
     context_begin_call(context);
+    context_watch(context, &progress, &user);
     if (!scene)
         return null_argument(&context->report, "scene");
     struct injection_input input;

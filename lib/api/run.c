@@ -236,6 +236,7 @@ sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
     context_begin_call(context);
+    context_watch(context, &progress, &user);
     if (!scene)
         return null_argument(&context->report, "scene");
     sonject_run_params taken;

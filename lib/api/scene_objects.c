@@ -3,9 +3,9 @@
 
 #include <string.h>
 
-#include "schema/scene_target.h"
-#include "scene/shapes/shape.h"
 #include "scene/pose.h"
+#include "scene/shapes/shape.h"
+#include "schema/scene_target.h"
 
 sonject_status sonject_scene_add_mesh(sonject_scene *scene, const char *path,
                                       const sonject_mesh_params *params, uint32_t *mesh)

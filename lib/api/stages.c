@@ -101,6 +101,7 @@ sonject_status sonject_trace(sonject_context *context, const sonject_scene *scen
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
     context_begin_call(context);
+    context_watch(context, &progress, &user);
     if (!scene)
         return null_argument(&context->report, "scene");
     sonject_trace_params taken;
@@ -268,6 +269,7 @@ sonject_status sonject_form(sonject_context *context, const sonject_scene *scene
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
     context_begin_call(context);
+    context_watch(context, &progress, &user);
     sonject_form_params taken;
     struct impulse_file impulses;
     sonject_form_params_init(&taken);

@@ -35,6 +35,13 @@ sonject_status report_out_of_memory(struct report *report, const char *what)
     return report_failure(report, SONJECT_ERROR_MEMORY, "out of memory for %s", what);
 }
 
+bool report_is_cancelled(const struct report *report)
+{
+    const struct report_host *host = report->host;
+    return host && host->progress &&
+           host->progress(host->progress_user, host->fraction, host->stage) != 0;
+}
+
 void report_news(struct report *report, const char *format, ...)
 {
     if (!report->log)

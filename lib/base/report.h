@@ -20,6 +20,11 @@ struct decoder;
 struct report_host {
     void *log_user;
     struct decoder *decoder; /* who reads its images and HDF5 files (swath/decoder.h) */
+    /* What the caller of the call under way gave it, and was last told; progress may be NULL. */
+    sonject_progress_function progress;
+    void *progress_user;
+    double fraction;
+    char stage[64];
 };
 
 struct report {
@@ -70,6 +75,9 @@ sonject_status report_gather(struct report *report, char lines[REPORT_CAPACITY],
         if ((status) == SONJECT_OK)                                                                \
             (status) = (expression);                                                               \
     } while (0)
+
+/* Whether the caller wants the call under way to end, for those who wait for another process. */
+bool report_is_cancelled(const struct report *report);
 
 /* Sends a line to the log, if there is one. */
 void report_news(struct report *report, const char *format, ...) REPORT_FORMAT(2);

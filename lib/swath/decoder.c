@@ -17,6 +17,7 @@
 #include "base/module_path.h"
 
 #define ANNOUNCED_BYTES_MAX ((uint64_t)1 << 30)
+#define WAITS_PER_SECOND    10
 #define INFLATION_MAX       1100 /* bytes that one byte of deflated data can stand for, and some */
 
 extern char **environ;
@@ -90,11 +91,13 @@ static int spawn(struct decoder *decoder, const char *program, int end)
     return error;
 }
 
-/* A system call that waits longer than this fails. */
+/* System calls that wait for longer fail. Answers are waited for in pieces, between which the
+ * caller may end the call. */
 static int limit_waits(int descriptor)
 {
     const struct timeval limit = {DECODER_SILENCE_S, 0};
-    return setsockopt(descriptor, SOL_SOCKET, SO_RCVTIMEO, &limit, sizeof limit) == 0 &&
+    const struct timeval piece = {0, 1000000 / WAITS_PER_SECOND};
+    return setsockopt(descriptor, SOL_SOCKET, SO_RCVTIMEO, &piece, sizeof piece) == 0 &&
                    setsockopt(descriptor, SOL_SOCKET, SO_SNDTIMEO, &limit, sizeof limit) == 0
                ? 0
                : errno;
@@ -132,7 +135,10 @@ static sonject_status start(struct report *report, struct decoder *decoder, cons
 static sonject_status tell_end(struct report *report, struct decoder *decoder, const char *path)
 {
     const bool is_late = errno == EAGAIN || errno == EWOULDBLOCK;
+    const bool is_cancelled = errno == ECANCELED;
     const int ended = end_process(decoder);
+    if (is_cancelled)
+        return report_failure(report, SONJECT_CANCELLED, "cancelled");
     if (ended != -1 && WIFEXITED(ended) && WEXITSTATUS(ended) == DECODER_STRANGER)
         return report_failure(report, SONJECT_ERROR_UNSUPPORTED,
                               "%s: the program " DECODER_PROGRAM
@@ -166,17 +172,26 @@ static bool send_all(int descriptor, const void *bytes, size_t count)
     return true;
 }
 
-static bool receive_all(int descriptor, void *bytes, size_t count)
+static bool receive_all(const struct report *report, int descriptor, void *bytes, size_t count)
 {
     char *rest = bytes;
+    int waits = 0;
     while (count > 0) {
         const ssize_t got = recv(descriptor, rest, count, 0);
-        if (got < 0 && errno == EINTR)
-            continue;
+        const bool has_waited = got < 0 && (errno == EAGAIN || errno == EWOULDBLOCK);
+        if (has_waited || (got < 0 && errno == EINTR)) {
+            waits += has_waited;
+            if (report_is_cancelled(report))
+                errno = ECANCELED;
+            else if (waits < DECODER_SILENCE_S * WAITS_PER_SECOND)
+                continue;
+            return false;
+        }
         if (got <= 0) {
             errno = got == 0 ? 0 : errno;
             return false;
         }
+        waits = 0;
         rest += got;
         count -= (size_t)got;
     }
@@ -191,12 +206,12 @@ static sonject_status ask_child(struct report *report, struct decoder *decoder, 
     struct decoder_bytes told = {message, sizeof message - 1, 0};
     if (!send_all(decoder->socket, request, sizeof *request) ||
         !send_all(decoder->socket, in, (size_t)request->bytes) ||
-        !receive_all(decoder->socket, reply, sizeof *reply))
+        !receive_all(report, decoder->socket, reply, sizeof *reply))
         return tell_end(report, decoder, path);
     struct decoder_bytes *to = reply->status == SONJECT_OK ? out : &told;
     errno = 0;
     if (reply->bytes > to->capacity ||
-        !receive_all(decoder->socket, to->bytes, (size_t)reply->bytes))
+        !receive_all(report, decoder->socket, to->bytes, (size_t)reply->bytes))
         return tell_end(report, decoder, path);
     to->count = (size_t)reply->bytes;
     switch (reply->status) {

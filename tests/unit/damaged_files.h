@@ -15,7 +15,7 @@
 
 /* One for all, as a context has it. */
 static struct decoder decoder;
-static const struct report_host host = {NULL, &decoder};
+static const struct report_host host = {.decoder = &decoder};
 
 static void write_file(const char *path, const unsigned char *bytes, size_t count)
 {

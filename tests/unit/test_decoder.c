@@ -13,6 +13,9 @@
 #include <hdf5.h>
 
 #include "claims.h"
+#include <sonject/run.h>
+
+#include "api/handles.h"
 #include "swath/decoder.h"
 #include "swath/swath_file.h"
 #include "temporary_folder.h"
@@ -386,6 +389,70 @@ static void the_child_ends_with_its_host(void **state)
     close(ends[1]);
 }
 
+static int stop_now(void *user, double fraction, const char *stage)
+{
+    assert_true(fraction == 0.0 && *stage);
+    ++*(int *)user;
+    return 1;
+}
+
+/* A child that is stopped answers never; the host asks its caller meanwhile, and ends it. */
+static void a_caller_may_end_the_wait_for_the_child(void **state)
+{
+    struct host host;
+    struct swath_file *file;
+    struct region region;
+    float *samples = NULL;
+    int asked = 0;
+    host_init(&host);
+    const char *path = temporary_file(*state, "a.h5");
+    make_file(path, 0);
+    EXPECT_OK(&host.report,
+              swath_file_open_array(&host.report, path, SONJECT_CHANNEL_ONLY, NULL, &file));
+    host.lent.progress = stop_now;
+    host.lent.progress_user = &asked;
+    strcpy(host.lent.stage, "reading");
+    assert_int_equal(kill((pid_t)host.decoder.process, SIGSTOP), 0);
+    assert_int_equal(read_image(&host, file, &samples, &region), SONJECT_CANCELLED);
+    assert_int_equal(asked, 1);
+    expect_no_child();
+    free(samples);
+    swath_file_close(&file);
+    decoder_stop(&host.decoder);
+}
+
+/* Calls with a progress function lend it to those who wait. */
+static void a_run_may_be_ended_while_its_image_is_read(void **state)
+{
+    static const char text[] =
+        "sonject: 1\n"
+        "input:\n  path: a.h5\n"
+        "  geometry: {row_spacing: 1 m, column_spacing: 1 m, first_slant_range: 40 m}\n"
+        "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n";
+    sonject_context *context = NULL;
+    sonject_scene *scene = NULL;
+    sonject_run_params params;
+    char *told = NULL;
+    int asked = 0;
+    make_file(temporary_file(*state, "a.h5"), 0);
+    const char *path = temporary_file(*state, "scene.yaml");
+    FILE *file = fopen(path, "w");
+    assert_true(file && fputs(text, file) >= 0 && fclose(file) == 0);
+    assert_int_equal(sonject_context_create(NULL, &context), SONJECT_OK);
+    EXPECT_OK(&context->report, sonject_scene_read(context, path, NULL, 0, &scene));
+    EXPECT_OK(&context->report, sonject_check(context, scene, &told));
+    sonject_text_release(&told);
+    assert_int_equal(kill((pid_t)context->decoder.process, SIGSTOP), 0);
+    sonject_run_params_init(&params);
+    params.folder = temporary_file(*state, "result");
+    assert_int_equal(sonject_run(context, scene, &params, stop_now, &asked, NULL),
+                     SONJECT_CANCELLED);
+    assert_int_equal(asked, 1);
+    sonject_scene_release(&scene);
+    sonject_context_release(&context);
+    expect_no_child();
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -396,6 +463,8 @@ int main(void)
         cmocka_unit_test(the_child_has_limits),
         cmocka_unit_test(the_child_has_nothing_of_the_host),
         cmocka_unit_test(the_child_ends_with_its_host),
+        cmocka_unit_test(a_caller_may_end_the_wait_for_the_child),
+        cmocka_unit_test(a_run_may_be_ended_while_its_image_is_read),
         cmocka_unit_test_setup_teardown(damaged_files_end_no_host, make_temporary_folder,
                                         remove_temporary_folder),
     };

@@ -158,7 +158,7 @@ static sonject_status take(const char *path, const struct kind *kind, bool *is_r
 static void test_every_sample_is_read_by_the_child_and_here(void **state)
 {
     struct decoder own = {.is_in_process = true};
-    const struct report_host alone = {NULL, &own};
+    const struct report_host alone = {.decoder = &own};
     for (size_t i = 0; i < KINDS; i++) {
         struct draft draft;
         bool is_right;

@@ -23,7 +23,7 @@ static const struct region patch_region = {17, 23, 20, 31};
 
 /* One decoder for all, as a context has it. */
 static struct decoder decoder;
-static const struct report_host host = {NULL, &decoder};
+static const struct report_host host = {.decoder = &decoder};
 static struct report report = {{0}, NULL, &host};
 
 static struct region whole_of(const struct raster_layout *layout)

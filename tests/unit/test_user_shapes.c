@@ -126,7 +126,7 @@ static void count_line(void *count, const char *line)
 static void expect_explained(const char *log, long line, const char *message)
 {
     int lines = 0;
-    const struct report_host host = {&lines, NULL};
+    const struct report_host host = {.log_user = &lines};
     struct report report = {{0}, count_line, &host};
     struct user_snippet snippet;
     char text[400];
