@@ -62,8 +62,7 @@ static sonject_status read_file(struct sonject_scene *scene, const char *path,
     char *text;
     size_t bytes;
     sonject_status status = scene_file_load(scene->report, path, &text, &bytes);
-    if (status == SONJECT_OK)
-        status = source_keep(&scene->source, scene->report, path, text, overrides, count);
+    THEN(status, source_keep(&scene->source, scene->report, path, text, overrides, count));
     if (status != SONJECT_OK)
         return status;
     const struct scene_text source = {path,  text, bytes, overrides,
@@ -95,8 +94,7 @@ sonject_status sonject_scene_bands(sonject_context *context, const char *path,
     char *text;
     size_t bytes;
     sonject_status status = check_overrides(report, path, overrides, count);
-    if (status == SONJECT_OK)
-        status = scene_file_load(report, path, &text, &bytes);
+    THEN(status, scene_file_load(report, path, &text, &bytes));
     if (status != SONJECT_OK)
         return status;
     const struct scene_text source = {path, text, bytes, overrides, count, NULL, 0, false};

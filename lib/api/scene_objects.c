@@ -24,9 +24,8 @@ sonject_status sonject_scene_add_mesh(sonject_scene *scene, const char *path,
     options.smooth_angle_rad = taken.smooth_angle_rad;
     for (int axis = 0; axis < 3; axis++)
         options.axes[axis] = taken.axes[axis];
-    if (status == SONJECT_OK)
-        status =
-            scene_append_mesh(&scene->scene, scene->report, path, &options, taken.allows_open != 0);
+    THEN(status,
+         scene_append_mesh(&scene->scene, scene->report, path, &options, taken.allows_open != 0));
     if (status == SONJECT_OK && mesh)
         *mesh = scene->scene.mesh_count - 1;
     return status;
@@ -44,10 +43,8 @@ sonject_status sonject_scene_add_user_shape(sonject_scene *scene,
         params_take(scene->report, &taken, sizeof taken, shape, sizeof taken, "user shape");
     if (status == SONJECT_OK && (!taken.name || !taken.code))
         status = null_argument(scene->report, "name and code of a user shape");
-    if (status == SONJECT_OK)
-        status = check_user_shape(&taken, scene->report, NULL);
-    if (status == SONJECT_OK)
-        status = user_shapes_append(&scene->scene.user_shapes, scene->report, &taken);
+    THEN(status, check_user_shape(&taken, scene->report, NULL));
+    THEN(status, user_shapes_append(&scene->scene.user_shapes, scene->report, &taken));
     if (status == SONJECT_OK && user_shape)
         *user_shape = scene->scene.user_shapes.count - 1;
     return status;
@@ -75,12 +72,9 @@ sonject_status sonject_scene_add_object(sonject_scene *scene, const sonject_obje
     sonject_object_params_init(&taken);
     sonject_status status =
         params_take(scene->report, &taken, sizeof taken, object, sizeof taken, "object");
-    if (status == SONJECT_OK)
-        status = check_object(&taken, scene->report, NULL);
-    if (status == SONJECT_OK)
-        status = check_number(scene, &taken);
-    if (status == SONJECT_OK)
-        status = scene_append_object(&scene->scene, scene->report, &taken);
+    THEN(status, check_object(&taken, scene->report, NULL));
+    THEN(status, check_number(scene, &taken));
+    THEN(status, scene_append_object(&scene->scene, scene->report, &taken));
     if (status == SONJECT_OK && index)
         *index = scene->scene.object_count - 1;
     return status;
@@ -105,9 +99,8 @@ sonject_status sonject_scene_add_target(sonject_scene *scene, const char *path,
     if (status == SONJECT_OK && object)
         status =
             params_take(scene->report, &placing, sizeof placing, object, sizeof placing, "object");
-    if (status == SONJECT_OK)
-        status = scene_append_target(&scene->scene, scene->report, path,
-                                     reading.allows_user_shapes != 0, &placing);
+    THEN(status, scene_append_target(&scene->scene, scene->report, path,
+                                     reading.allows_user_shapes != 0, &placing));
     if (status == SONJECT_OK && index)
         *index = scene->scene.object_count - 1;
     return status;
@@ -134,17 +127,13 @@ sonject_status sonject_scene_add_part(sonject_scene *scene, uint32_t object,
     sonject_object_params_init(&taken.shape);
     sonject_status status = params_take(scene->report, &taken.shape, sizeof taken.shape, shape,
                                         sizeof taken.shape, "shape");
-    if (status == SONJECT_OK)
-        status = params_take(scene->report, &place, sizeof place, part, sizeof place, "part");
+    THEN(status, params_take(scene->report, &place, sizeof place, part, sizeof place, "part"));
     if (status == SONJECT_OK && taken.shape.shape == SONJECT_SHAPE_PARTS)
         status = report_failure(scene->report, SONJECT_ERROR_INPUT,
                                 "shape of a part must be a single one");
-    if (status == SONJECT_OK)
-        status = check_object(&taken.shape, scene->report, NULL);
-    if (status == SONJECT_OK)
-        status = check_number(scene, &taken.shape);
-    if (status == SONJECT_OK)
-        status = check_part(&place, scene->report, NULL);
+    THEN(status, check_object(&taken.shape, scene->report, NULL));
+    THEN(status, check_number(scene, &taken.shape));
+    THEN(status, check_part(&place, scene->report, NULL));
     if (status != SONJECT_OK)
         return status;
     taken.object = object;

@@ -84,9 +84,8 @@ sonject_status sonject_scene_set_sound_speed_profile(sonject_scene *scene, const
         return null_argument(scene->report, "heights_m and sound_speeds_mps");
     sonject_status status =
         check_sound_speed_profile(heights_m, sound_speeds_mps, count, scene->report, NULL);
-    if (status == SONJECT_OK)
-        status = layers_of_profile(heights_m, sound_speeds_mps, count, scene->report, &layers,
-                                   &layer_count);
+    THEN(status, layers_of_profile(heights_m, sound_speeds_mps, count, scene->report, &layers,
+                                   &layer_count));
     if (status == SONJECT_OK)
         replace_layers(&scene->scene, layers, layer_count);
     return status;
@@ -108,8 +107,7 @@ sonject_status sonject_scene_set_relief(sonject_scene *scene, const sonject_reli
         params_take(scene->report, &taken, sizeof taken, relief, sizeof taken, "relief");
     if (status == SONJECT_OK && taken.rows > 0 && !heights_m)
         status = null_argument(scene->report, "heights_m");
-    if (status == SONJECT_OK)
-        status = relief_features_set_grid(&scene->scene.relief, scene->report, &taken, heights_m);
+    THEN(status, relief_features_set_grid(&scene->scene.relief, scene->report, &taken, heights_m));
     return status;
 }
 

@@ -147,9 +147,7 @@ static sonject_status choose_device(struct report *report, const char *name,
 {
     struct found_device found[DEVICES_MAX];
     size_t count;
-    const sonject_status status = find_devices(report, found, &count);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(find_devices(report, found, &count));
     if (count == 0)
         return report_failure(report, SONJECT_ERROR_DEVICE,
                               "no OpenCL device found: install a driver, such as the package "
@@ -224,8 +222,8 @@ static sonject_status open_chosen(struct report *report, const sonject_context_p
     device->is_cpu = (chosen.type & CL_DEVICE_TYPE_CPU) != 0;
     device->width = info.vector_width;
     device->compute_units = info.compute_units;
-    const sonject_status status = check_abilities(report, device);
-    return status == SONJECT_OK ? open_queue(report, device, params->opencl_context) : status;
+    CHECK(check_abilities(report, device));
+    return open_queue(report, device, params->opencl_context);
 }
 
 sonject_status device_open(struct report *report, const sonject_context_params *params,

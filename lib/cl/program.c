@@ -176,8 +176,7 @@ sonject_status kernel_of_text(struct report *report, struct device *device,
     char key[HASH_TEXT_CAPACITY];
     *kernel = NULL;
     sonject_status status = program_key(report, text, key);
-    if (status == SONJECT_OK)
-        status = driver_enter(report);
+    THEN(status, driver_enter(report));
     if (status != SONJECT_OK)
         return status;
     cl_program program = find_or_build(device, text, key, &building);

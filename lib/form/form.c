@@ -164,10 +164,9 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
                                                   : report_out_of_memory(report, "image formation");
     THEN(status, buffer_create(report, device, bytes, NULL, &lines->real_lines));
     THEN(status, buffer_create(report, device, bytes, NULL, &lines->imaginary_lines));
-    if (status == SONJECT_OK)
-        status = kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0,
+    THEN(status, kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0,
                                lines->imaginary_pulse ? "compress_range_complex" : "compress_range",
-                               &lines->compress);
+                               &lines->compress));
     THEN(status, kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "combine_aspects",
                                &lines->combine));
     THEN(status, kernel_create(report, device, PROGRAM_IMAGE_FORMATION, 0, "draw_speckle",

@@ -40,8 +40,8 @@ sonject_status take_sums_head(struct tracing *tracing)
     tracing->head.shards = job->request->shards > 0 ? job->request->shards : 1;
     strncpy(identity->version, sonject_version(), sizeof identity->version - 1);
     strncpy(identity->scene, job->scene_hash, sizeof identity->scene - 1);
-    const sonject_status status = take_code(tracing->report, identity->code);
-    return status == SONJECT_OK ? take_device(tracing->report, job, identity->device) : status;
+    CHECK(take_code(tracing->report, identity->code));
+    return take_device(tracing->report, job, identity->device);
 }
 
 /* NULL where the tallies are of the same scene, image and version, and traced on that device; else

@@ -89,9 +89,8 @@ static sonject_status add_up(struct tracing *tracing, const struct sums_folder *
 {
     struct collection all;
     sonject_status status = collect(tracing, folder, &all);
-    if (status == SONJECT_OK)
-        status =
-            checkpoint_begin_adding(&tracing->checkpoint, tracing->report, all.files, all.count);
+    THEN(status,
+         checkpoint_begin_adding(&tracing->checkpoint, tracing->report, all.files, all.count));
     if (status == SONJECT_OK) {
         status = form_traced(tracing, result);
         checkpoint_clear(&tracing->checkpoint);

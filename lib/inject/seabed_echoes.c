@@ -53,12 +53,11 @@ static sonject_status form_field(struct seabed_former *former, struct echoes *ec
     if (impulse_lines_begin(lines))
         status = form_lines_begin(&former->field, tracer->report, tracer->device, &tracer->view,
                                   &tracer->response, FORM_SPECKLE, &lines->grid);
-    if (status == SONJECT_OK)
-        status = request->field == SEABED_FIELD_COHERENT
+    THEN(status, request->field == SEABED_FIELD_COHERENT
                      ? add_coherent(former, tracer, request, lines)
-                     : form_lines_add_speckle(&former->field, lines->strips.first,
-                                              lines->strips.count, lines->plane[1],
-                                              tracer->scene->injection.seed, STREAM_SEABED_SPECKLE);
+                     : form_lines_add_speckle(
+                           &former->field, lines->strips.first, lines->strips.count,
+                           lines->plane[1], tracer->scene->injection.seed, STREAM_SEABED_SPECKLE));
     if (status == SONJECT_OK && impulse_lines_end(lines)) {
         status = form_lines_finish(&former->field, echoes->seabed_real, echoes->seabed_imaginary);
         form_lines_end(&former->field);

@@ -100,9 +100,8 @@ static sonject_status trace_seabed(struct tracing *tracing)
         status = rough_trace_strips(trace, tracing->tracer, strips, tracing->chunk);
         if (status == SONJECT_OK && wants_field(tracing))
             status = find_in_view(tracing, strips);
-        if (status == SONJECT_OK)
-            status = emit(tracing, IMPULSES_SEABED, 0, &trace->grid, strips,
-                          wants_field(tracing) ? 2 : 1, planes);
+        THEN(status, emit(tracing, IMPULSES_SEABED, 0, &trace->grid, strips,
+                          wants_field(tracing) ? 2 : 1, planes));
         THEN(status, echo_request_tell(
                          tracing->request, tracing->tracer->report,
                          ROUGH_SHARE * (strips.first + strips.count - trace->grid.strips.first) /

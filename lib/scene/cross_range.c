@@ -169,9 +169,7 @@ sonject_status cross_range_check(const struct point_response *response, struct r
     if (response->array_length_m == 0.0)
         return SONJECT_OK;
     const bool is_turned = sonar_array_is_turned(&scene->sonar);
-    const sonject_status status = is_turned ? check_turned(report, scene, view) : SONJECT_OK;
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(is_turned ? check_turned(report, scene, view) : SONJECT_OK);
     const double most = MIGRATION_SHARE * response->range_resolution_m;
     const double ends[2] = {view_processor_range(view, (double)view->columns - 1.0),
                             view_processor_range(view, 0.0)};

@@ -145,10 +145,8 @@ sonject_status element_plan(sonject_element_layout *layout, struct report *repor
                               response->resolution_m, wavelength);
     plan_array(layout);
     sonject_status status = plan_pings(layout, report, view);
-    if (status == SONJECT_OK)
-        status = plan_rate(layout, report);
-    if (status == SONJECT_OK)
-        status = plan_times(layout, report, view, response);
+    THEN(status, plan_rate(layout, report));
+    THEN(status, plan_times(layout, report, view, response));
     return status;
 }
 

@@ -108,9 +108,7 @@ static sonject_status sample_yaw(struct motion_response *motion, struct report *
 
 static sonject_status allocate_aspects(struct motion_response *motion, struct report *report)
 {
-    const sonject_status status = count_aspects(motion, report);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(count_aspects(motion, report));
     motion->root_real = allocate_array(motion->aspects / 2, sizeof(double));
     motion->root_imaginary = allocate_array(motion->aspects / 2, sizeof(double));
     motion->real_part = allocate_array(motion->aspects, sizeof(double));
@@ -172,12 +170,9 @@ sonject_status motion_response_begin(struct motion_response *motion, struct repo
     motion->reach = reach;
     find_track(motion);
     sonject_status status = sample_sway(motion, report);
-    if (status == SONJECT_OK)
-        status = sample_yaw(motion, report);
-    if (status == SONJECT_OK)
-        status = find_heard(motion, report);
-    if (status == SONJECT_OK)
-        status = allocate_aspects(motion, report);
+    THEN(status, sample_yaw(motion, report));
+    THEN(status, find_heard(motion, report));
+    THEN(status, allocate_aspects(motion, report));
     if (status != SONJECT_OK)
         motion_response_end(motion);
     return status;

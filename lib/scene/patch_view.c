@@ -14,9 +14,7 @@ sonject_status scene_lay_water(const struct scene *scene, struct report *report,
     relief_features_bounds(&scene->relief, &lowest_seabed, &highest_seabed);
     for (uint32_t i = 0; i < scene->object_count; i++) {
         double top;
-        const sonject_status status = object_top(scene, report, i, &top);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(object_top(scene, report, i, &top));
         highest = fmax(highest, top);
     }
     return water_init(water, report, scene->water_layers, scene->water_layer_count,

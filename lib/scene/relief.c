@@ -288,8 +288,7 @@ sonject_status relief_create(struct relief **relief, struct report *report,
     if (!made)
         return report_out_of_memory(report, "the seabed's relief");
     status = lay_grid(made, report, scene, view);
-    if (status == SONJECT_OK)
-        status = fill(made, report, scene, view, first_row, first_column, footprints);
+    THEN(status, fill(made, report, scene, view, first_row, first_column, footprints));
     if (status != SONJECT_OK)
         relief_release(&made);
     *relief = made;

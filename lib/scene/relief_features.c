@@ -109,9 +109,7 @@ sonject_status relief_features_set_grid(struct relief_features *features, struct
 {
     float *copy = NULL;
     if (grid->rows > 0) {
-        const sonject_status status = check_relief_grid(grid, heights_m, report);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(check_relief_grid(grid, heights_m, report));
         const size_t count = (size_t)grid->rows * grid->columns;
         copy = allocate_array(count, sizeof *copy);
         if (!copy)

@@ -171,8 +171,7 @@ sonject_status scene_share_mesh(struct scene *scene, struct report *report, cons
         *number = i;
         return allows_open ? SONJECT_OK : mesh_require_closed(report, path, &scene->meshes[i]);
     }
-    if (status == SONJECT_OK)
-        status = scene_append_mesh(scene, report, path, options, allows_open);
+    THEN(status, scene_append_mesh(scene, report, path, options, allows_open));
     if (status == SONJECT_OK)
         *number = scene->mesh_count - 1;
     return status;

@@ -124,8 +124,8 @@ static sonject_status take_names(struct table_reader *reader, char *line)
             reader->place[i] = j;
         }
     }
-    const sonject_status status = check_names(reader);
-    return status == SONJECT_OK ? make_columns(reader) : status;
+    CHECK(check_names(reader));
+    return make_columns(reader);
 }
 
 static sonject_status take_number(struct table_reader *reader, int column,
@@ -212,10 +212,8 @@ sonject_status number_table_read(struct report *report, const char *path,
     text_excerpt(table->file, sizeof table->file, path);
     table->lines = allocate_array(format->samples_max, sizeof *table->lines);
     sonject_status status = table->lines ? SONJECT_OK : report_out_of_memory(report, "a table");
-    if (status == SONJECT_OK)
-        status = file_read_whole(report, path, format->bytes_max, &text, &bytes);
-    if (status == SONJECT_OK)
-        status = take_text(&reader, text, bytes);
+    THEN(status, file_read_whole(report, path, format->bytes_max, &text, &bytes));
+    THEN(status, take_text(&reader, text, bytes));
     if (status == SONJECT_OK && reader.column_count == 0)
         status =
             report_failure(report, SONJECT_ERROR_INPUT, "%s: there is nothing in it", table->file);

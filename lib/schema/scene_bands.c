@@ -131,8 +131,7 @@ sonject_status choose_band(struct reader *reader, struct tree *tree)
     else if (!band)
         status = refuse_word(reader, &chosen->value, name, &list, NULL);
     key_path_shorten(&reader->path, before);
-    if (status == SONJECT_OK)
-        status = keep_names(reader, &bands->value, name);
+    THEN(status, keep_names(reader, &bands->value, name));
     return status == SONJECT_OK ? lay_over(reader, tree, &tree->root, &band->value) : status;
 }
 
@@ -151,9 +150,7 @@ sonject_status list_bands(struct reader *reader, char **names)
     const bool is_open = bands && !tree_find(root, "band");
     static const struct tree_node none;
     *names = NULL;
-    const sonject_status status = is_open ? check_bands(reader, &bands->value) : SONJECT_OK;
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(is_open ? check_bands(reader, &bands->value) : SONJECT_OK);
     *names = join_names(is_open ? &bands->value : &none);
     return *names ? SONJECT_OK : report_out_of_memory(reader->report, "the names of bands");
 }

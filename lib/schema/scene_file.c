@@ -73,8 +73,7 @@ sonject_status scene_text_read(struct report *report, const struct scene_text *s
     tree.mistakes = &mistakes;
     report->message[0] = 0;
     sonject_status status = tree_parse(&tree, source->text, source->bytes);
-    if (status == SONJECT_OK)
-        status = fill_scene(&tree, source, scene);
+    THEN(status, fill_scene(&tree, source, scene));
     status = mistakes_tell(&mistakes, report, status);
     struct key_path path = {"", 0};
     THEN(status, write_down(&tree, &tree.root, &path, scene));
@@ -114,10 +113,8 @@ sonject_status scene_text_bands(struct report *report, const struct scene_text *
     struct reader reader = {.report = report, .tree = &tree};
     *names = NULL;
     sonject_status status = tree_parse(&tree, source->text, source->bytes);
-    if (status == SONJECT_OK)
-        status = apply_overrides(&tree, source);
-    if (status == SONJECT_OK)
-        status = list_bands(&reader, names);
+    THEN(status, apply_overrides(&tree, source));
+    THEN(status, list_bands(&reader, names));
     tree_clear(&tree);
     return status;
 }

@@ -151,8 +151,7 @@ sonject_status read_relief_heights(struct reader *reader, const struct tree_node
     if (reader->scene->relief.heights_m)
         return refuse_value(reader, node, "only one file of heights is possible; join them");
     sonject_status status = read_section(reader, &heights_section, node, &text);
-    if (status == SONJECT_OK)
-        status = load(reader, node, &text);
+    THEN(status, load(reader, node, &text));
     free(text.path);
     free(text.array);
     return status;

@@ -139,9 +139,8 @@ static sonject_status layers_of_table(struct reader *reader, const struct tree_n
                                                       table->count, &check, NULL);
     free(text->layers); /* that the file has beside the profile, which is refused */
     text->layers = NULL;
-    if (status == SONJECT_OK)
-        status = layers_of_profile(table->positions_m, table->speeds_mps, table->count, &check,
-                                   &text->layers, &text->layer_count);
+    THEN(status, layers_of_profile(table->positions_m, table->speeds_mps, table->count, &check,
+                                   &text->layers, &text->layer_count));
     if (status == SONJECT_ERROR_INPUT)
         return refuse_key(reader, node, key, "%s", behind_name(&check));
     return status == SONJECT_OK ? status : report_out_of_memory(reader->report, "layers of water");
@@ -159,8 +158,7 @@ static sonject_status finish_profile(struct reader *reader, const struct tree_no
     sonject_status status = text->profile_file ? table_of_file(reader, node, text, &table)
                                                : table_of_lists(reader, node, text, &table);
     const char *key = text->profile_file ? "file" : table.is_depth ? "depths" : "heights";
-    if (status == SONJECT_OK)
-        status = layers_of_table(reader, node, key, &table, text);
+    THEN(status, layers_of_table(reader, node, key, &table, text));
     profile_table_clear(&table);
     return status;
 }

@@ -147,8 +147,7 @@ sonject_status read_mesh(struct reader *reader, const struct tree_node *node, vo
                                 : read_section(reader, &mesh_section, node, &mesh);
     if (file)
         key_path_add(&reader->path, "file");
-    if (status == SONJECT_OK)
-        status = load(reader, file ? &file->value : node, &mesh, &shape->mesh);
+    THEN(status, load(reader, file ? &file->value : node, &mesh, &shape->mesh));
     key_path_shorten(&reader->path, before);
     free(mesh.path);
     return status;

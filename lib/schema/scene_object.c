@@ -118,8 +118,7 @@ static sonject_status read_object(struct reader *reader, const struct tree_node 
         const sonject_status of_parts = read_target_parts(reader, &text);
         status = of_parts == SONJECT_OK ? status : of_parts;
     }
-    if (status == SONJECT_OK)
-        status = scene_append_object(reader->scene, reader->report, &text.object);
+    THEN(status, scene_append_object(reader->scene, reader->report, &text.object));
     target_text_clear(&text);
     return status;
 }

@@ -89,9 +89,7 @@ sonject_status read_row_spacing(struct reader *reader, const struct tree_node *n
     struct ping_spacing pings = {0.0, 0.0};
     if (node->kind != TREE_SECTION)
         return read_quantity(reader, node, QUANTITY_LENGTH, &geometry->row_spacing_m);
-    const sonject_status status = read_section(reader, &ping_spacing_section, node, &pings);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(read_section(reader, &ping_spacing_section, node, &pings));
     if (!(pings.speed_mps > 0.0))
         return refuse_key(reader, node, "speed", "must be above 0 m/s, not %g", pings.speed_mps);
     if (!(pings.ping_rate_hz > 0.0))

@@ -131,8 +131,7 @@ sonject_status read_cross_range(struct reader *reader, const struct tree_node *n
     char *path = NULL;
     (void)structure;
     sonject_status status = read_existing_path(reader, node, &path);
-    if (status == SONJECT_OK)
-        status = read_response_file(reader, path, &format, &reader->scene->cross_range_table);
+    THEN(status, read_response_file(reader, path, &format, &reader->scene->cross_range_table));
     free(path);
     return status;
 }
@@ -188,8 +187,7 @@ static sonject_status read_motion_table(struct reader *reader, const struct tree
     size_t sample;
     const char *what;
     sonject_status status = read_existing_path(reader, node, &path);
-    if (status == SONJECT_OK)
-        status = number_table_read(reader->report, path, format, &table);
+    THEN(status, number_table_read(reader->report, path, format, &table));
     free(path);
     if (status != SONJECT_OK)
         return status;

@@ -70,8 +70,7 @@ static sonject_status read_target_file(struct reader *reader, struct tree_place 
     if (status == SONJECT_OK && tree_is_null(&target->tree.root))
         status = refuse_value(&inner, &target->tree.root,
                               "there is nothing in it; start with 'sonject_target: 1'");
-    if (status == SONJECT_OK)
-        status = read_section(&inner, &target_section, &target->tree.root, target);
+    THEN(status, read_section(&inner, &target_section, &target->tree.root, target));
     return status;
 }
 
@@ -138,8 +137,7 @@ static sonject_status append_target(struct reader *reader, struct target_text *t
         const sonject_status of_parts = read_target_parts(reader, target);
         status = of_parts == SONJECT_OK ? status : of_parts;
     }
-    if (status == SONJECT_OK)
-        status = scene_append_object(reader->scene, reader->report, &target->object);
+    THEN(status, scene_append_object(reader->scene, reader->report, &target->object));
     return status;
 }
 

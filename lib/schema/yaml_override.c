@@ -66,9 +66,7 @@ static sonject_status enter_key(struct walk *walk, const char *name, size_t leng
         return refuse(walk, HOW_TO_WRITE);
     memcpy(key, name, length);
     key[length] = 0;
-    sonject_status status = enter(walk, TREE_SECTION);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(enter(walk, TREE_SECTION));
     struct tree_entry *found = NULL;
     for (size_t i = 0; i < walk->node->count && !found; i++)
         if (strcmp(walk->node->entries[i].key, key) == 0)
@@ -87,9 +85,7 @@ static sonject_status enter_index(struct walk *walk, const char *digits, size_t 
     text[length] = 0;
     if (!text_to_count(text, &index))
         return refuse(walk, "not a key path; an index must be a whole number from 0");
-    const sonject_status status = enter(walk, TREE_LIST);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(enter(walk, TREE_LIST));
     if (index > walk->node->count)
         return tree_failure(walk->tree, walk->place, walk->place.override,
                             "%s has %zu entries, counted from 0; [%zu] would add one",
@@ -196,8 +192,7 @@ sonject_status tree_override(struct tree *tree, const char *override)
         status = refuse(&walk, "has no value; write key.path=value");
     else if (!text_is_printable(value) || !text_is_printable(walk.place.override))
         status = refuse(&walk, "not UTF-8 text on one line");
-    if (status == SONJECT_OK)
-        status = follow(&walk, walk.place.override);
+    THEN(status, follow(&walk, walk.place.override));
     if (status == SONJECT_OK)
         return set_value(&walk, value);
     free(value);

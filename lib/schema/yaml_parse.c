@@ -98,8 +98,7 @@ static sonject_status build_list(struct builder *builder, int depth, struct tree
         const size_t before = key_path_add_index(&builder->path, node->count);
         status = tree_append(builder->tree, node, &builder->path, NULL,
                              place_of(builder, event.start_mark), &entry);
-        if (status == SONJECT_OK)
-            status = build_node(builder, &event, depth + 1, &entry->value);
+        THEN(status, build_node(builder, &event, depth + 1, &entry->value));
         yaml_event_delete(&event);
         if (status == SONJECT_OK)
             key_path_shorten(&builder->path, before);
@@ -155,8 +154,7 @@ static sonject_status build_section(struct builder *builder, int depth, struct t
         }
         status = take_key(builder, &event, node, &entry);
         yaml_event_delete(&event);
-        if (status == SONJECT_OK)
-            status = build_value(builder, depth + 1, &entry->value);
+        THEN(status, build_value(builder, depth + 1, &entry->value));
         if (status == SONJECT_OK)
             key_path_shorten(&builder->path, before);
     }
@@ -211,12 +209,9 @@ static sonject_status expect(struct builder *builder, yaml_event_type_t type, co
 static sonject_status build_document(struct builder *builder, int depth, struct tree_node *node)
 {
     sonject_status status = expect(builder, YAML_STREAM_START_EVENT, "not YAML");
-    if (status == SONJECT_OK)
-        status = expect(builder, YAML_DOCUMENT_START_EVENT, "there is nothing in it");
-    if (status == SONJECT_OK)
-        status = build_value(builder, depth, node);
-    if (status == SONJECT_OK)
-        status = expect(builder, YAML_DOCUMENT_END_EVENT, "something follows the document");
+    THEN(status, expect(builder, YAML_DOCUMENT_START_EVENT, "there is nothing in it"));
+    THEN(status, build_value(builder, depth, node));
+    THEN(status, expect(builder, YAML_DOCUMENT_END_EVENT, "something follows the document"));
     if (status == SONJECT_OK)
         status = expect(builder, YAML_STREAM_END_EVENT,
                         "a second document starts here; keep one in a file");

@@ -60,9 +60,7 @@ sonject_status tree_append(struct tree *tree, struct tree_node *node, const stru
     if (tree->node_count >= TREE_NODES_MAX)
         return tree_failure(tree, place, path->text,
                             "is one value too many: a file may have %d; split it", TREE_NODES_MAX);
-    const sonject_status status = make_room(tree, node);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(make_room(tree, node));
     char *own_key = key ? copy_text(key) : NULL;
     if (key && !own_key)
         return report_out_of_memory(tree->report, "the scene file");

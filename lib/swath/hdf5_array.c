@@ -69,9 +69,7 @@ static sonject_status open_array(struct report *report, struct hdf5_array *array
             "%s: HDF5 cannot open it: it is damaged or cut short (copy it again), or "
             "open for writing elsewhere",
             array->path);
-    sonject_status status = hdf5_set_choose(report, array->path, array->file, name, &array->set);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(hdf5_set_choose(report, array->path, array->file, name, &array->set));
     if (!hdf5_set_is_read(&array->set))
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "%s: the array %s is of a type that sonject does not read: save it "

@@ -54,9 +54,7 @@ static sonject_status check_length(struct report *report, const char *path, cons
 sonject_status bmp_check(struct report *report, const char *path)
 {
     struct head head;
-    const sonject_status status = read_head(report, path, &head);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(read_head(report, path, &head));
     const unsigned char *bytes = (const unsigned char *)head.text;
     const int64_t columns = (int32_t)(uint32_t)number_from_bytes(bytes + 18, 4, false);
     const int64_t height = (int32_t)(uint32_t)number_from_bytes(bytes + 22, 4, false);
@@ -97,9 +95,7 @@ sonject_status pnm_check(struct report *report, const char *path)
     double columns = 0.0;
     double rows = 0.0;
     double largest = 0.0;
-    const sonject_status status = read_head(report, path, &head);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(read_head(report, path, &head));
     const char *at = head.text + 2;
     if (!take_number(&at, &columns) || !take_number(&at, &rows) || !take_number(&at, &largest) ||
         !is_blank(*at) || !(columns >= 1.0 && columns < (double)SIDE_MAX) ||

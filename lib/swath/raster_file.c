@@ -37,10 +37,7 @@ static sonject_status give_rows(void *user, uint64_t first, uint64_t end, void *
     const struct region strip = {first, 0, end - first, rows->layout.columns};
     const uint64_t region_end = region->first_row + region->rows;
     if (rows->source) {
-        const sonject_status status =
-            decoded_image_read(rows->report, rows->source, &strip, pixels);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(decoded_image_read(rows->report, rows->source, &strip, pixels));
     } else {
         memset(pixels, 0, (size_t)(end - first) * row_bytes);
     }
@@ -63,8 +60,8 @@ static sonject_status encode(struct patched_rows *rows, const char *part, const 
     const struct raster_module *module = NULL;
     const struct raster_encoding encoding = {part,        name,     kind,      rows->layout,
                                              description, is_drawn, give_rows, rows};
-    const sonject_status status = raster_module_find(rows->report, name, &module);
-    return status == SONJECT_OK ? module->encode(rows->report, &encoding) : status;
+    CHECK(raster_module_find(rows->report, name, &module));
+    return module->encode(rows->report, &encoding);
 }
 
 /* The part file becomes path, or goes. */

@@ -64,9 +64,7 @@ sonject_status raster_format_write(struct report *report, const char *path,
                                    size_t attribute_count, const void *pixels)
 {
     static const char *const complex_names[] = {"real", "imag"};
-    const sonject_status status = raster_format_check(report, path, layout);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(raster_format_check(report, path, layout));
     switch (format_of(path)) {
     case FORMAT_NPY:
         return npy_write(report, path, layout->type, layout->channels == 2,

@@ -38,9 +38,7 @@ static sonject_status take_recording(struct report *report, const struct scene *
 {
     uint64_t first, count;
     *wanted->key = "patch";
-    const sonject_status status = patch_rows(report, scene, xtf, &first, &count);
-    if (status != SONJECT_OK)
-        return status;
+    CHECK(patch_rows(report, scene, xtf, &first, &count));
     const struct xtf_geometry geometry = xtf_geometry_of(xtf, first, count);
     *wanted->key = "input.geometry";
     if (wanted->geometry && !(geometry.row_spacing_m > 0.0))
@@ -132,8 +130,7 @@ sonject_status recording_describe(struct report *report, bool takes_geometry, bo
     const struct xtf_file *xtf = swath_file_xtf(file);
     status = xtf ? take_recording(report, scene, xtf, &wanted)
                  : take_notes(report, scene, file, &wanted);
-    if (status == SONJECT_OK)
-        status = check_and_set(report, &wanted, scene);
+    THEN(status, check_and_set(report, &wanted, scene));
     swath_file_close(&file);
     return status;
 }

@@ -93,9 +93,8 @@ sonject_status swath_file_open_beside(struct report *report, const char *path, c
     sonject_status status = file_check_disk(report, path, recognise(report, path, file));
     const struct swath_format *beside = status == SONJECT_OK ? format_of(other) : NULL;
     errno = 0;
-    if (status == SONJECT_OK)
-        status =
-            file_check_disk(report, path, open_recognised(report, *file, beside, channel, array));
+    THEN(status,
+         file_check_disk(report, path, open_recognised(report, *file, beside, channel, array)));
     if (status != SONJECT_OK)
         swath_file_close(file);
     return status;

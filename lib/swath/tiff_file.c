@@ -260,10 +260,8 @@ static sonject_status check(struct tiff_blocks *blocks, uint64_t file_bytes)
 {
     look_at_blocks(blocks);
     sonject_status status = check_type(blocks);
-    if (status == SONJECT_OK)
-        status = check_colours(blocks);
-    if (status == SONJECT_OK)
-        status = check_coding(blocks);
+    THEN(status, check_colours(blocks));
+    THEN(status, check_coding(blocks));
     if (status != SONJECT_OK)
         return status;
     if (blocks->rows == 0 || blocks->block_rows == 0 || blocks->block_columns == 0 ||

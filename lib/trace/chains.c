@@ -146,10 +146,9 @@ static sonject_status make_buffers(struct chain_trace *trace, struct tracer *tra
     THEN(status, object_buffer_create(tracer, records, (struct part_list){NULL, tracer->part_count},
                                       &trace->objects));
     THEN(status, buffer_create(report, device, spheres.bytes, spheres.records, &trace->spheres));
-    if (status == SONJECT_OK)
-        status = buffer_create(report, device,
+    THEN(status, buffer_create(report, device,
                                map ? tracer->view.rows * tracer->view.columns * sizeof *map : 0,
-                               map, &trace->map);
+                               map, &trace->map));
     free(records);
     target_spheres_clear(&spheres);
     return status;

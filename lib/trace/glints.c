@@ -168,9 +168,8 @@ sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tr
     const void *mapped;
     sonject_status status = buffer_clear(tracer->report, tracer->device, trace->on_device.tallies,
                                          2 * count * sizeof(int64_t));
-    if (status == SONJECT_OK)
-        status = trace_launch(tracer, trace->on_device.kernel, &trace->fan, &trace->rays, buffers,
-                              trace->sources ? 3 : 2);
+    THEN(status, trace_launch(tracer, trace->on_device.kernel, &trace->fan, &trace->rays, buffers,
+                              trace->sources ? 3 : 2));
     THEN(status, buffer_map(tracer->report, tracer->device, trace->on_device.tallies,
                             2 * count * sizeof(int64_t), &mapped));
     if (status != SONJECT_OK)
