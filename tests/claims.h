@@ -17,6 +17,16 @@
 #define COUNT(list) (sizeof(list) / sizeof(list)[0])
 #define PI          3.14159265358979323846
 
+#define TEST(function) cmocka_unit_test(function)
+
+/* The program: tests, with what is made before all and removed after them, or NULL. */
+#define TEST_PROGRAM(before, after, ...)                                                           \
+    int main(void)                                                                                 \
+    {                                                                                              \
+        const struct CMUnitTest tests[] = {__VA_ARGS__};                                           \
+        return cmocka_run_group_tests(tests, before, after);                                       \
+    }
+
 /* The call must succeed; otherwise the test fails with the message of its report. */
 #define EXPECT_OK(report, call)                                                                    \
     do {                                                                                           \

@@ -224,13 +224,7 @@ static void test_a_hundred_contexts_hold_less_than_two(void **state)
     assert_int_equal(exit_of(hold_contexts), 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_threads_may_be_the_first_to_use_a_device),
-        cmocka_unit_test(test_a_child_of_a_process_that_used_opencl_is_refused),
-        cmocka_unit_test(test_parent_and_child_may_both_inject_where_none_did_before),
-        cmocka_unit_test(test_a_hundred_contexts_hold_less_than_two),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_threads_may_be_the_first_to_use_a_device),
+             TEST(test_a_child_of_a_process_that_used_opencl_is_refused),
+             TEST(test_parent_and_child_may_both_inject_where_none_did_before),
+             TEST(test_a_hundred_contexts_hold_less_than_two))

@@ -270,9 +270,6 @@ static void test_a_host_stays_as_it_was(void **state)
     (void)setlocale(LC_ALL, "C");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test_setup_teardown(
-        test_a_host_stays_as_it_was, make_temporary_folder, remove_temporary_folder)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL,
+             cmocka_unit_test_setup_teardown(test_a_host_stays_as_it_was, make_temporary_folder,
+                                             remove_temporary_folder))

@@ -126,8 +126,4 @@ static void test_two_threads_give_what_one_gives(void **state)
     free(workers);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_two_threads_give_what_one_gives)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_two_threads_give_what_one_gives))

@@ -345,13 +345,6 @@ static void test_far_and_small_targets_get_their_share(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_closed_sphere),
-        cmocka_unit_test(test_sea_surface_keeps_energy),
-        cmocka_unit_test(test_directions_are_weighed_as_they_are_drawn),
-        cmocka_unit_test(test_far_and_small_targets_get_their_share),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_closed_sphere), TEST(test_sea_surface_keeps_energy),
+             TEST(test_directions_are_weighed_as_they_are_drawn),
+             TEST(test_far_and_small_targets_get_their_share))

@@ -175,16 +175,6 @@ static void test_smaller_larger_magnitude(void **state)
     assert_int_equal(signbit(magnitude(-0.0f)), 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_nearest_integer),
-        cmocka_unit_test(test_sine_and_cosine),
-        cmocka_unit_test(test_sinc),
-        cmocka_unit_test(test_exponential),
-        cmocka_unit_test(test_logarithm),
-        cmocka_unit_test(test_cube_root),
-        cmocka_unit_test(test_smaller_larger_magnitude),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_nearest_integer), TEST(test_sine_and_cosine), TEST(test_sinc),
+             TEST(test_exponential), TEST(test_logarithm), TEST(test_cube_root),
+             TEST(test_smaller_larger_magnitude))

@@ -690,14 +690,6 @@ static void test_company(void **state)
     sample_clear(&sample);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_closed_meshes), cmocka_unit_test(test_strewn_triangles),
-        cmocka_unit_test(test_no_leaks),      cmocka_unit_test(test_sphere),
-        cmocka_unit_test(test_terminator),    cmocka_unit_test(test_shadows_of_facets),
-        cmocka_unit_test(test_reach),         cmocka_unit_test(test_bits),
-        cmocka_unit_test(test_company),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_closed_meshes), TEST(test_strewn_triangles), TEST(test_no_leaks),
+             TEST(test_sphere), TEST(test_terminator), TEST(test_shadows_of_facets),
+             TEST(test_reach), TEST(test_bits), TEST(test_company))

@@ -214,12 +214,6 @@ static void test_complex_normal(void **state)
     assert_true(distance < 2.27 / root);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_known_answers), cmocka_unit_test(test_uniforms_stay_inside),
-        cmocka_unit_test(test_uniformity),    cmocka_unit_test(test_streams_are_independent),
-        cmocka_unit_test(test_third_uniform), cmocka_unit_test(test_complex_normal),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_known_answers), TEST(test_uniforms_stay_inside),
+             TEST(test_uniformity), TEST(test_streams_are_independent), TEST(test_third_uniform),
+             TEST(test_complex_normal))

@@ -424,15 +424,6 @@ static void test_normals(void **state)
     sea_clear(&sea);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_primary_rays),
-        cmocka_unit_test(test_rays_from_the_surface),
-        cmocka_unit_test(test_rays_on_grid_lines),
-        cmocka_unit_test(test_level_relief),
-        cmocka_unit_test(test_level_ground_among_relief),
-        cmocka_unit_test(test_normals),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_primary_rays), TEST(test_rays_from_the_surface),
+             TEST(test_rays_on_grid_lines), TEST(test_level_relief),
+             TEST(test_level_ground_among_relief), TEST(test_normals))

@@ -476,17 +476,6 @@ static void test_burial(void **state)
     assert_true(plane_distance(&fan, point, rising) == FAR_AWAY);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_against_the_reference),
-        cmocka_unit_test(test_no_self_hit),
-        cmocka_unit_test(test_beyond_the_first),
-        cmocka_unit_test(test_sixteen_lanes),
-        cmocka_unit_test(test_along_the_axes),
-        cmocka_unit_test(test_nearest_of_several),
-        cmocka_unit_test(test_fan),
-        cmocka_unit_test(test_burial),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_against_the_reference), TEST(test_no_self_hit),
+             TEST(test_beyond_the_first), TEST(test_sixteen_lanes), TEST(test_along_the_axes),
+             TEST(test_nearest_of_several), TEST(test_fan), TEST(test_burial))

@@ -676,15 +676,7 @@ static void test_rough_part_apart(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_formulas),           cmocka_unit_test(test_directions),
-        cmocka_unit_test(test_rough_furnace),      cmocka_unit_test(test_furnace_over_smooth_part),
-        cmocka_unit_test(test_reciprocity),        cmocka_unit_test(test_weights),
-        cmocka_unit_test(test_fluid_reflection),   cmocka_unit_test(test_critical_angle),
-        cmocka_unit_test(test_intromission_angle), cmocka_unit_test(test_grazing_limit),
-        cmocka_unit_test(test_mirror_part),        cmocka_unit_test(test_rough_part_apart),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_formulas), TEST(test_directions), TEST(test_rough_furnace),
+             TEST(test_furnace_over_smooth_part), TEST(test_reciprocity), TEST(test_weights),
+             TEST(test_fluid_reflection), TEST(test_critical_angle), TEST(test_intromission_angle),
+             TEST(test_grazing_limit), TEST(test_mirror_part), TEST(test_rough_part_apart))

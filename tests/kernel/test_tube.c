@@ -41,8 +41,4 @@ static void test_each_line_turns_the_phase(void **state)
         }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_each_line_turns_the_phase)};
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_each_line_turns_the_phase))

@@ -129,14 +129,6 @@ static void test_nan_outside(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_well_known_values),
-        cmocka_unit_test(test_within_ten_percent_of_the_simplified_formula),
-        cmocka_unit_test(test_the_papers_formula),
-        cmocka_unit_test(test_no_step_at_20_degrees),
-        cmocka_unit_test(test_nan_outside),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_well_known_values),
+             TEST(test_within_ten_percent_of_the_simplified_formula), TEST(test_the_papers_formula),
+             TEST(test_no_step_at_20_degrees), TEST(test_nan_outside))

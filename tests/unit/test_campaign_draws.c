@@ -228,17 +228,8 @@ static void test_images_keep_from_edges_contacts_and_ranges(void **state)
     chip_room_clear(&swath.room);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_moments_are_those_of_the_distributions),
-        cmocka_unit_test(test_weights_are_frequencies),
-        cmocka_unit_test(test_ends_are_reached_and_not_left),
-        cmocka_unit_test(test_permutations_hit_all_once),
-        cmocka_unit_test(test_strata_hold_one_each),
-        cmocka_unit_test(test_shares_are_whole_and_add_up),
-        cmocka_unit_test(test_places_are_all_that_boxes_leave),
-        cmocka_unit_test(test_images_keep_from_edges_contacts_and_ranges),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_moments_are_those_of_the_distributions),
+             TEST(test_weights_are_frequencies), TEST(test_ends_are_reached_and_not_left),
+             TEST(test_permutations_hit_all_once), TEST(test_strata_hold_one_each),
+             TEST(test_shares_are_whole_and_add_up), TEST(test_places_are_all_that_boxes_leave),
+             TEST(test_images_keep_from_edges_contacts_and_ranges))

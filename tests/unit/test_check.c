@@ -611,24 +611,11 @@ static void test_objects_are_copied_up_to_the_limit(void **state)
     assert_null(scene.objects);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_limits),
-        cmocka_unit_test(test_only_finite_numbers),
-        cmocka_unit_test(test_speckle_may_be_rayleigh),
-        cmocka_unit_test(test_choices),
-        cmocka_unit_test(test_window_and_transfer_parameters),
-        cmocka_unit_test(test_relations),
-        cmocka_unit_test(test_interactions),
-        cmocka_unit_test(test_brute_force_traces_the_whole_patch),
-        cmocka_unit_test(test_no_surface_returns_more_than_it_receives),
-        cmocka_unit_test(test_the_seabeds_forward_material),
-        cmocka_unit_test(test_the_sea_surfaces_rough_part),
-        cmocka_unit_test(test_sizes_of_swath_and_patch),
-        cmocka_unit_test(test_names),
-        cmocka_unit_test(test_defaults),
-        cmocka_unit_test(test_objects_are_copied_up_to_the_limit),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_limits), TEST(test_only_finite_numbers),
+             TEST(test_speckle_may_be_rayleigh), TEST(test_choices),
+             TEST(test_window_and_transfer_parameters), TEST(test_relations),
+             TEST(test_interactions), TEST(test_brute_force_traces_the_whole_patch),
+             TEST(test_no_surface_returns_more_than_it_receives),
+             TEST(test_the_seabeds_forward_material), TEST(test_the_sea_surfaces_rough_part),
+             TEST(test_sizes_of_swath_and_patch), TEST(test_names), TEST(test_defaults),
+             TEST(test_objects_are_copied_up_to_the_limit))

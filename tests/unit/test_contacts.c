@@ -327,19 +327,8 @@ static void test_small_images(void **state)
             }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_ends_in_speckle),
-        cmocka_unit_test(test_steps_in_speckle),
-        cmocka_unit_test(test_changes_in_shadows),
-        cmocka_unit_test(test_profiles_without_an_edge),
-        cmocka_unit_test(test_contacts_are_found),
-        cmocka_unit_test(test_side_lobes_are_no_contacts),
-        cmocka_unit_test(test_nothing_is_found_in_speckle),
-        cmocka_unit_test(test_contacts_amid_black_are_passed_over),
-        cmocka_unit_test(test_dark_speckle_is_no_shadow),
-        cmocka_unit_test(test_small_images),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_ends_in_speckle), TEST(test_steps_in_speckle),
+             TEST(test_changes_in_shadows), TEST(test_profiles_without_an_edge),
+             TEST(test_contacts_are_found), TEST(test_side_lobes_are_no_contacts),
+             TEST(test_nothing_is_found_in_speckle), TEST(test_contacts_amid_black_are_passed_over),
+             TEST(test_dark_speckle_is_no_shadow), TEST(test_small_images))

@@ -207,13 +207,5 @@ static void test_cuts_must_leave_something(void **state)
     mesh_clear(&mesh);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_extents),
-        cmocka_unit_test(test_extents_of_user_shapes),
-        cmocka_unit_test(test_burial),
-        cmocka_unit_test(test_cuts_must_leave_something),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_extents), TEST(test_extents_of_user_shapes), TEST(test_burial),
+             TEST(test_cuts_must_leave_something))

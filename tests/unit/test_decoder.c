@@ -453,20 +453,13 @@ static void a_run_may_be_ended_while_its_image_is_read(void **state)
     expect_no_child();
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_file_that_ends_the_decoder_ends_one_call),
-        cmocka_unit_test(what_was_open_in_a_dead_decoder_is_refused),
-        cmocka_unit_test(more_samples_than_a_file_can_hold_are_refused),
-        cmocka_unit_test(both_processes_read_and_write_the_same),
-        cmocka_unit_test(the_child_has_limits),
-        cmocka_unit_test(the_child_has_nothing_of_the_host),
-        cmocka_unit_test(the_child_ends_with_its_host),
-        cmocka_unit_test(a_caller_may_end_the_wait_for_the_child),
-        cmocka_unit_test(a_run_may_be_ended_while_its_image_is_read),
-        cmocka_unit_test_setup_teardown(damaged_files_end_no_host, make_temporary_folder,
-                                        remove_temporary_folder),
-    };
-    return cmocka_run_group_tests(tests, make_temporary_folder, remove_temporary_folder);
-}
+TEST_PROGRAM(make_temporary_folder, remove_temporary_folder,
+             TEST(a_file_that_ends_the_decoder_ends_one_call),
+             TEST(what_was_open_in_a_dead_decoder_is_refused),
+             TEST(more_samples_than_a_file_can_hold_are_refused),
+             TEST(both_processes_read_and_write_the_same), TEST(the_child_has_limits),
+             TEST(the_child_has_nothing_of_the_host), TEST(the_child_ends_with_its_host),
+             TEST(a_caller_may_end_the_wait_for_the_child),
+             TEST(a_run_may_be_ended_while_its_image_is_read),
+             cmocka_unit_test_setup_teardown(damaged_files_end_no_host, make_temporary_folder,
+                                             remove_temporary_folder))

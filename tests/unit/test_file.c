@@ -330,23 +330,13 @@ static void test_folders_are_made_with_their_parents(void **state)
 #define WITH_FOLDER(test)                                                                          \
     cmocka_unit_test_setup_teardown(test, make_temporary_folder, remove_temporary_folder)
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_joining),
-        cmocka_unit_test(test_folder_part),
-        cmocka_unit_test(test_part_names_keep_the_extension),
-        cmocka_unit_test(test_part_names_differ),
-        WITH_FOLDER(test_a_file_is_written_and_read),
-        WITH_FOLDER(test_an_empty_file),
-        WITH_FOLDER(test_reading_what_cannot_be_read),
-        WITH_FOLDER(test_writing_where_nothing_can_be),
-        WITH_FOLDER(test_a_full_disk_leaves_the_old_file),
-        WITH_FOLDER(test_publishing),
-        WITH_FOLDER(test_only_parts_of_dead_processes_are_tidied_away),
-        WITH_FOLDER(test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too),
-        WITH_FOLDER(test_a_list_of_files_reaches_nothing_outside_of_its_folder),
-        WITH_FOLDER(test_folders_are_made_with_their_parents),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_joining), TEST(test_folder_part),
+             TEST(test_part_names_keep_the_extension), TEST(test_part_names_differ),
+             WITH_FOLDER(test_a_file_is_written_and_read), WITH_FOLDER(test_an_empty_file),
+             WITH_FOLDER(test_reading_what_cannot_be_read),
+             WITH_FOLDER(test_writing_where_nothing_can_be),
+             WITH_FOLDER(test_a_full_disk_leaves_the_old_file), WITH_FOLDER(test_publishing),
+             WITH_FOLDER(test_only_parts_of_dead_processes_are_tidied_away),
+             WITH_FOLDER(test_files_below_16_mb_are_known_by_hash_others_by_size_and_time_too),
+             WITH_FOLDER(test_a_list_of_files_reaches_nothing_outside_of_its_folder),
+             WITH_FOLDER(test_folders_are_made_with_their_parents))

@@ -59,11 +59,4 @@ static void test_runs_of_strips(void **state)
     assert_int_equal(next_filled_strips(filled, 0, (struct span){0, 0}).count, 0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_bins_of_a_line),
-        cmocka_unit_test(test_runs_of_strips),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_bins_of_a_line), TEST(test_runs_of_strips))

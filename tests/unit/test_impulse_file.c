@@ -417,19 +417,14 @@ static void what_is_damaged_or_of_another_format_is_refused(void **state)
     set_up_clear(&set);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(lines_come_back, make_temporary_folder,
-                                        remove_temporary_folder),
-        cmocka_unit_test_setup_teardown(facts_and_head_come_back, make_temporary_folder,
-                                        remove_temporary_folder),
-        cmocka_unit_test_setup_teardown(what_is_not_of_the_scene_is_refused, make_temporary_folder,
-                                        remove_temporary_folder),
-        cmocka_unit_test_setup_teardown(words_that_are_no_lines_are_refused, make_temporary_folder,
-                                        remove_temporary_folder),
-        cmocka_unit_test_setup_teardown(what_is_damaged_or_of_another_format_is_refused,
-                                        make_temporary_folder, remove_temporary_folder),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL,
+             cmocka_unit_test_setup_teardown(lines_come_back, make_temporary_folder,
+                                             remove_temporary_folder),
+             cmocka_unit_test_setup_teardown(facts_and_head_come_back, make_temporary_folder,
+                                             remove_temporary_folder),
+             cmocka_unit_test_setup_teardown(what_is_not_of_the_scene_is_refused,
+                                             make_temporary_folder, remove_temporary_folder),
+             cmocka_unit_test_setup_teardown(words_that_are_no_lines_are_refused,
+                                             make_temporary_folder, remove_temporary_folder),
+             cmocka_unit_test_setup_teardown(what_is_damaged_or_of_another_format_is_refused,
+                                             make_temporary_folder, remove_temporary_folder))

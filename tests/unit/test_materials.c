@@ -141,12 +141,5 @@ static void test_order_of_values(void **state)
     assert_true(take("fine sand").speed_ratio > 1.0 && take("silt").speed_ratio < 1.0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_blanks_in_names), cmocka_unit_test(test_unknown_names),
-        cmocka_unit_test(test_list_of_names),   cmocka_unit_test(test_values_are_allowed),
-        cmocka_unit_test(test_order_of_values),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_blanks_in_names), TEST(test_unknown_names),
+             TEST(test_list_of_names), TEST(test_values_are_allowed), TEST(test_order_of_values))

@@ -267,13 +267,7 @@ static void test_polygons(void **state)
     mesh_clear(&mesh);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_formats),        cmocka_unit_test(test_cut_short),
-        cmocka_unit_test(test_mutations),      cmocka_unit_test(test_wrong_counts),
-        cmocka_unit_test(test_bad_content),    cmocka_unit_test(test_not_a_number),
-        cmocka_unit_test(test_units_and_axes), cmocka_unit_test(test_polygons),
-    };
-    return cmocka_run_group_tests(tests, make_temporary_folder, remove_temporary_folder);
-}
+TEST_PROGRAM(make_temporary_folder, remove_temporary_folder, TEST(test_formats),
+             TEST(test_cut_short), TEST(test_mutations), TEST(test_wrong_counts),
+             TEST(test_bad_content), TEST(test_not_a_number), TEST(test_units_and_axes),
+             TEST(test_polygons))

@@ -229,13 +229,5 @@ static void test_repeats(void **state)
     sample_clear(&sample);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_samples),
-        cmocka_unit_test(test_same_middle),
-        cmocka_unit_test(test_ever_smaller),
-        cmocka_unit_test(test_repeats),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_samples), TEST(test_same_middle), TEST(test_ever_smaller),
+             TEST(test_repeats))

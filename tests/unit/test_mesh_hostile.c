@@ -312,12 +312,5 @@ static void test_promises(void **state)
             }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_mutated_files),
-        cmocka_unit_test(test_dense_files),
-        cmocka_unit_test(test_promises),
-    };
-    return cmocka_run_group_tests(tests, make_temporary_folder, remove_temporary_folder);
-}
+TEST_PROGRAM(make_temporary_folder, remove_temporary_folder, TEST(test_mutated_files),
+             TEST(test_dense_files), TEST(test_promises))

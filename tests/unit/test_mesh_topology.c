@@ -306,19 +306,7 @@ static void test_normals(void **state)
     sample_clear(&sample);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_orientation),
-        cmocka_unit_test(test_narrow_seams_close_in_any_order),
-        cmocka_unit_test(test_thin_walls_stay),
-        cmocka_unit_test(test_cavity),
-        cmocka_unit_test(test_open),
-        cmocka_unit_test(test_crowded),
-        cmocka_unit_test(test_twisted),
-        cmocka_unit_test(test_degenerate),
-        cmocka_unit_test(test_crowded_vertex),
-        cmocka_unit_test(test_normals),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_orientation), TEST(test_narrow_seams_close_in_any_order),
+             TEST(test_thin_walls_stay), TEST(test_cavity), TEST(test_open), TEST(test_crowded),
+             TEST(test_twisted), TEST(test_degenerate), TEST(test_crowded_vertex),
+             TEST(test_normals))

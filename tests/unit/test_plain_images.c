@@ -284,15 +284,9 @@ static void test_foreign_formats(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_sample_is_read_by_the_child_and_here),
-        cmocka_unit_test(test_a_cut_file_is_never_taken),
-        cmocka_unit_test(test_a_damaged_head_never_gives_other_samples),
-        cmocka_unit_test(test_a_copy_is_a_tiff_of_all_samples),
-        cmocka_unit_test(test_scaled_numbers_are_refused),
-        cmocka_unit_test(test_foreign_formats),
-    };
-    return cmocka_run_group_tests(tests, make_temporary_folder, remove_temporary_folder);
-}
+TEST_PROGRAM(make_temporary_folder, remove_temporary_folder,
+             TEST(test_every_sample_is_read_by_the_child_and_here),
+             TEST(test_a_cut_file_is_never_taken),
+             TEST(test_a_damaged_head_never_gives_other_samples),
+             TEST(test_a_copy_is_a_tiff_of_all_samples), TEST(test_scaled_numbers_are_refused),
+             TEST(test_foreign_formats))

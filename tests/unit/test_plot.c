@@ -422,23 +422,10 @@ static void test_text_is_cut_off(void **state)
     free(canvas.rgb);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_grey_levels),
-        cmocka_unit_test(test_scale_from_percentiles),
-        cmocka_unit_test(test_large_images_average_energy),
-        cmocka_unit_test(test_distances_are_in_proportion),
-        cmocka_unit_test(test_difference_colours),
-        cmocka_unit_test(test_panels_side_by_side),
-        cmocka_unit_test(test_ticks_are_where_they_belong),
-        cmocka_unit_test(test_tick_numbers),
-        cmocka_unit_test(test_nothing_to_draw),
-        cmocka_unit_test(test_pixels_that_are_no_levels),
-        cmocka_unit_test(test_extreme_shapes),
-        cmocka_unit_test(test_extreme_axes_and_titles),
-        cmocka_unit_test(test_font),
-        cmocka_unit_test(test_text_is_cut_off),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_grey_levels), TEST(test_scale_from_percentiles),
+             TEST(test_large_images_average_energy), TEST(test_distances_are_in_proportion),
+             TEST(test_difference_colours), TEST(test_panels_side_by_side),
+             TEST(test_ticks_are_where_they_belong), TEST(test_tick_numbers),
+             TEST(test_nothing_to_draw), TEST(test_pixels_that_are_no_levels),
+             TEST(test_extreme_shapes), TEST(test_extreme_axes_and_titles), TEST(test_font),
+             TEST(test_text_is_cut_off))

@@ -288,15 +288,7 @@ static void test_steep_profiles_keep_rising(void **state)
                               "1e-06 m, not at 999999 m");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_layers_are_copied),
-        cmocka_unit_test(test_wrong_layers_change_nothing),
-        cmocka_unit_test(test_the_number_of_layers_is_limited),
-        cmocka_unit_test(test_profiles_become_thin_layers),
-        cmocka_unit_test(test_wrong_profiles_change_nothing),
-        cmocka_unit_test(test_steep_profiles_keep_rising),
-    };
-    return cmocka_run_group_tests(tests, make_scene, remove_scene);
-}
+TEST_PROGRAM(make_scene, remove_scene, TEST(test_layers_are_copied),
+             TEST(test_wrong_layers_change_nothing), TEST(test_the_number_of_layers_is_limited),
+             TEST(test_profiles_become_thin_layers), TEST(test_wrong_profiles_change_nothing),
+             TEST(test_steep_profiles_keep_rising))

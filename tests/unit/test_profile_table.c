@@ -228,15 +228,7 @@ static void test_damaged_files_get_an_answer(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_way_to_write_a_table),
-        cmocka_unit_test(test_heights_rise_however_the_table_runs),
-        cmocka_unit_test(test_tables_that_are_wrong),
-        cmocka_unit_test(test_limits),
-        cmocka_unit_test(test_files_that_cannot_be_read),
-        cmocka_unit_test(test_damaged_files_get_an_answer),
-    };
-    return cmocka_run_group_tests(tests, make_temporary_folder, remove_temporary_folder);
-}
+TEST_PROGRAM(make_temporary_folder, remove_temporary_folder, TEST(test_every_way_to_write_a_table),
+             TEST(test_heights_rise_however_the_table_runs), TEST(test_tables_that_are_wrong),
+             TEST(test_limits), TEST(test_files_that_cannot_be_read),
+             TEST(test_damaged_files_get_an_answer))

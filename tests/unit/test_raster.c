@@ -48,13 +48,5 @@ static void test_inside(void **state)
         assert_false(region_is_inside(&swath, &outside[i]));
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_pixel_types),
-        cmocka_unit_test(test_bytes),
-        cmocka_unit_test(test_bytes_that_overflow),
-        cmocka_unit_test(test_inside),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_pixel_types), TEST(test_bytes), TEST(test_bytes_that_overflow),
+             TEST(test_inside))

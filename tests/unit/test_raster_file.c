@@ -1061,34 +1061,18 @@ static void test_a_full_disk(void **state)
 #define WITH_FOLDER(test)                                                                          \
     cmocka_unit_test_setup_teardown(test, make_temporary_folder, remove_temporary_folder)
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        WITH_FOLDER(test_what_is_written_comes_back),
-        WITH_FOLDER(test_regions_are_cut_out),
-        WITH_FOLDER(test_regions_in_any_order),
-        WITH_FOLDER(test_a_region_outside_is_refused),
-        WITH_FOLDER(test_attributes),
-        WITH_FOLDER(test_the_same_pixels_give_the_same_file),
-        WITH_FOLDER(test_what_a_format_does_not_hold),
-        WITH_FOLDER(test_placed),
-        WITH_FOLDER(test_png_and_jpeg_become_a_png_of_their_pixels),
-        WITH_FOLDER(test_tiff_of_every_build),
-        WITH_FOLDER(test_blocks_that_are_stored_once),
-        WITH_FOLDER(test_blocks_that_grow),
-        WITH_FOLDER(test_strips_of_all_rows),
-        WITH_FOLDER(test_large_blocks),
-        WITH_FOLDER(test_a_file_that_contradicts_itself),
-        WITH_FOLDER(test_tiff_that_is_not_for_sonject),
-        WITH_FOLDER(test_png_that_is_not_for_sonject),
-        WITH_FOLDER(test_absurd_dimensions),
-        WITH_FOLDER(test_more_than_4_gb),
-        WITH_FOLDER(test_files_that_are_no_images),
-        WITH_FOLDER(test_a_jpeg_that_ends_early),
-        WITH_FOLDER(test_files_that_are_cut_short),
-        WITH_FOLDER(test_files_that_are_damaged),
-        WITH_FOLDER(test_cancelling),
-        WITH_FOLDER(test_a_full_disk),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, WITH_FOLDER(test_what_is_written_comes_back),
+             WITH_FOLDER(test_regions_are_cut_out), WITH_FOLDER(test_regions_in_any_order),
+             WITH_FOLDER(test_a_region_outside_is_refused), WITH_FOLDER(test_attributes),
+             WITH_FOLDER(test_the_same_pixels_give_the_same_file),
+             WITH_FOLDER(test_what_a_format_does_not_hold), WITH_FOLDER(test_placed),
+             WITH_FOLDER(test_png_and_jpeg_become_a_png_of_their_pixels),
+             WITH_FOLDER(test_tiff_of_every_build), WITH_FOLDER(test_blocks_that_are_stored_once),
+             WITH_FOLDER(test_blocks_that_grow), WITH_FOLDER(test_strips_of_all_rows),
+             WITH_FOLDER(test_large_blocks), WITH_FOLDER(test_a_file_that_contradicts_itself),
+             WITH_FOLDER(test_tiff_that_is_not_for_sonject),
+             WITH_FOLDER(test_png_that_is_not_for_sonject), WITH_FOLDER(test_absurd_dimensions),
+             WITH_FOLDER(test_more_than_4_gb), WITH_FOLDER(test_files_that_are_no_images),
+             WITH_FOLDER(test_a_jpeg_that_ends_early), WITH_FOLDER(test_files_that_are_cut_short),
+             WITH_FOLDER(test_files_that_are_damaged), WITH_FOLDER(test_cancelling),
+             WITH_FOLDER(test_a_full_disk))

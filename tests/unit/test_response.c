@@ -249,12 +249,6 @@ static void test_public_functions(void **state)
     sonject_context_release(&context);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_hostile_tables),   cmocka_unit_test(test_hostile_keys),
-        cmocka_unit_test(test_interpolation),    cmocka_unit_test(test_normalisation),
-        cmocka_unit_test(test_public_functions),
-    };
-    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_hostile_tables),
+             TEST(test_hostile_keys), TEST(test_interpolation), TEST(test_normalisation),
+             TEST(test_public_functions))

@@ -82,13 +82,6 @@ static void test_what_is_wrong_is_told(void **state)
                          ":6:28: sonar.bandwidth: unit 'kg' is not one of Hz, kHz, MHz");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_band_changes_its_keys_alone),
-        cmocka_unit_test(test_a_band_may_stand_in_the_file),
-        cmocka_unit_test(test_bands_that_are_left_are_named),
-        cmocka_unit_test(test_what_is_wrong_is_told),
-    };
-    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_a_band_changes_its_keys_alone),
+             TEST(test_a_band_may_stand_in_the_file), TEST(test_bands_that_are_left_are_named),
+             TEST(test_what_is_wrong_is_told))

@@ -533,20 +533,9 @@ static void test_a_missing_file_is_named(void **state)
                         "/tmp/absent-scene.yaml: there is no such scene file; check its name");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_unknown_keys),
-        cmocka_unit_test(test_missing_keys),
-        cmocka_unit_test(test_wrong_values),
-        cmocka_unit_test(test_keys_that_exclude_or_need_each_other),
-        cmocka_unit_test(test_materials),
-        cmocka_unit_test(test_the_seabeds_forward_material),
-        cmocka_unit_test(test_interactions),
-        cmocka_unit_test(test_elements),
-        cmocka_unit_test(test_yaml_that_is_not_wanted),
-        cmocka_unit_test(test_overrides_that_are_wrong),
-        cmocka_unit_test(test_a_missing_file_is_named),
-    };
-    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_unknown_keys),
+             TEST(test_missing_keys), TEST(test_wrong_values),
+             TEST(test_keys_that_exclude_or_need_each_other), TEST(test_materials),
+             TEST(test_the_seabeds_forward_material), TEST(test_interactions), TEST(test_elements),
+             TEST(test_yaml_that_is_not_wanted), TEST(test_overrides_that_are_wrong),
+             TEST(test_a_missing_file_is_named))

@@ -293,21 +293,10 @@ static void test_a_decimal_comma_changes_nothing(void **state)
     setlocale(LC_ALL, "C");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_key_arrives),
-        cmocka_unit_test(test_every_key_has_a_case),
-        cmocka_unit_test(test_defaults_stay_where_nothing_is_said),
-        cmocka_unit_test(test_words_and_forms),
-        cmocka_unit_test(test_named_materials),
-        cmocka_unit_test(test_a_fluid_replaces_a_constant_reflection),
-        cmocka_unit_test(test_paths_are_meant_from_where_they_stand),
-        cmocka_unit_test(test_overrides_change_and_add),
-        cmocka_unit_test(test_sections_may_be_empty),
-        cmocka_unit_test(test_byte_order_mark_and_line_ends),
-        cmocka_unit_test(test_examples_are_good),
-        cmocka_unit_test(test_a_decimal_comma_changes_nothing),
-    };
-    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_every_key_arrives),
+             TEST(test_every_key_has_a_case), TEST(test_defaults_stay_where_nothing_is_said),
+             TEST(test_words_and_forms), TEST(test_named_materials),
+             TEST(test_a_fluid_replaces_a_constant_reflection),
+             TEST(test_paths_are_meant_from_where_they_stand), TEST(test_overrides_change_and_add),
+             TEST(test_sections_may_be_empty), TEST(test_byte_order_mark_and_line_ends),
+             TEST(test_examples_are_good), TEST(test_a_decimal_comma_changes_nothing))

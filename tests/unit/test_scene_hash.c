@@ -180,12 +180,5 @@ static void test_nan_is_one_value_and_padding_none(void **state)
     scene_clear(&scene);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_key_counts),
-        cmocka_unit_test(test_what_no_key_names_counts),
-        cmocka_unit_test(test_nan_is_one_value_and_padding_none),
-    };
-    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_every_key_counts),
+             TEST(test_what_no_key_names_counts), TEST(test_nan_is_one_value_and_padding_none))

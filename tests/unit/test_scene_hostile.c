@@ -376,21 +376,8 @@ static void test_mutated_targets(void **state)
     (void)unlink(path);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_alias_bomb),
-        cmocka_unit_test(test_deep_nesting),
-        cmocka_unit_test(test_too_many_values),
-        cmocka_unit_test(test_too_many_keys),
-        cmocka_unit_test(test_too_many_objects),
-        cmocka_unit_test(test_too_large_a_file),
-        cmocka_unit_test(test_long_words),
-        cmocka_unit_test(test_long_numbers),
-        cmocka_unit_test(test_other_encodings),
-        cmocka_unit_test(test_an_example_cut_at_every_length),
-        cmocka_unit_test(test_mutated_examples),
-        cmocka_unit_test(test_mutated_targets),
-    };
-    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_alias_bomb), TEST(test_deep_nesting),
+             TEST(test_too_many_values), TEST(test_too_many_keys), TEST(test_too_many_objects),
+             TEST(test_too_large_a_file), TEST(test_long_words), TEST(test_long_numbers),
+             TEST(test_other_encodings), TEST(test_an_example_cut_at_every_length),
+             TEST(test_mutated_examples), TEST(test_mutated_targets))

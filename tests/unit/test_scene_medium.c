@@ -283,15 +283,6 @@ static void test_too_many_of_them(void **state)
     free(text);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_layers),
-        cmocka_unit_test(test_profiles),
-        cmocka_unit_test(test_files_are_looked_for_beside_the_scene),
-        cmocka_unit_test(test_absorption),
-        cmocka_unit_test(test_what_is_wrong),
-        cmocka_unit_test(test_too_many_of_them),
-    };
-    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_layers), TEST(test_profiles),
+             TEST(test_files_are_looked_for_beside_the_scene), TEST(test_absorption),
+             TEST(test_what_is_wrong), TEST(test_too_many_of_them))

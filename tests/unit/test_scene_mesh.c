@@ -384,19 +384,9 @@ static void test_the_hash_covers_the_mesh(void **state)
     remove_file(folder, "copy.obj");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_units_and_axes),
-        cmocka_unit_test(test_axes_turn),
-        cmocka_unit_test(test_meshes_are_shared),
-        cmocka_unit_test(test_meshes_are_kept_from_scene_to_scene),
-        cmocka_unit_test(test_what_is_refused),
-        cmocka_unit_test(test_meshes_that_cannot_be_read),
-        cmocka_unit_test(test_too_many_meshes),
-        cmocka_unit_test(test_open_meshes),
-        cmocka_unit_test(test_a_size_that_no_target_has_asks_for_the_unit),
-        cmocka_unit_test(test_the_hash_covers_the_mesh),
-    };
-    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_units_and_axes),
+             TEST(test_axes_turn), TEST(test_meshes_are_shared),
+             TEST(test_meshes_are_kept_from_scene_to_scene), TEST(test_what_is_refused),
+             TEST(test_meshes_that_cannot_be_read), TEST(test_too_many_meshes),
+             TEST(test_open_meshes), TEST(test_a_size_that_no_target_has_asks_for_the_unit),
+             TEST(test_the_hash_covers_the_mesh))

@@ -196,16 +196,9 @@ static void test_campaign_files_tell_all(void **state)
     assert_string_equal(folder->report.message, expected);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_six_mistakes_are_six_lines),
-        cmocka_unit_test(test_mistakes_do_not_hide_each_other_nor_add_any),
-        cmocka_unit_test(test_overrides_come_behind_the_file),
-        cmocka_unit_test(test_a_targets_mistakes_stand_where_it_is_named),
-        cmocka_unit_test(test_lines_beyond_fifty_are_counted),
-        cmocka_unit_test(test_broken_yaml_ends_the_reading),
-        cmocka_unit_test(test_campaign_files_tell_all),
-    };
-    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_six_mistakes_are_six_lines),
+             TEST(test_mistakes_do_not_hide_each_other_nor_add_any),
+             TEST(test_overrides_come_behind_the_file),
+             TEST(test_a_targets_mistakes_stand_where_it_is_named),
+             TEST(test_lines_beyond_fifty_are_counted), TEST(test_broken_yaml_ends_the_reading),
+             TEST(test_campaign_files_tell_all))

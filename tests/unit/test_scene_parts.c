@@ -373,22 +373,10 @@ static void test_the_library_of_targets(void **state)
     scene_clear(&scene);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_parts_belong_to_their_objects),
-        cmocka_unit_test(test_groups_place_and_turn),
-        cmocka_unit_test(test_surfaces_are_inherited),
-        cmocka_unit_test(test_nesting_is_bounded),
-        cmocka_unit_test(test_overrides_reach_parts),
-        cmocka_unit_test(test_what_is_refused),
-        cmocka_unit_test(test_too_many_parts),
-        cmocka_unit_test(test_targets_are_files),
-        cmocka_unit_test(test_targets_may_have_one_shape),
-        cmocka_unit_test(test_targets_that_are_wrong),
-        cmocka_unit_test(test_scenes_that_name_targets_wrongly),
-        cmocka_unit_test(test_large_targets_are_refused),
-        cmocka_unit_test(test_the_library_of_targets),
-    };
-    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_parts_belong_to_their_objects),
+             TEST(test_groups_place_and_turn), TEST(test_surfaces_are_inherited),
+             TEST(test_nesting_is_bounded), TEST(test_overrides_reach_parts),
+             TEST(test_what_is_refused), TEST(test_too_many_parts), TEST(test_targets_are_files),
+             TEST(test_targets_may_have_one_shape), TEST(test_targets_that_are_wrong),
+             TEST(test_scenes_that_name_targets_wrongly), TEST(test_large_targets_are_refused),
+             TEST(test_the_library_of_targets))

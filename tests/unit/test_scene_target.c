@@ -204,12 +204,5 @@ static void test_what_the_caller_gives_is_checked(void **state)
     sonject_context_release(&context);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_the_scene_is_that_of_a_scene_file),
-        cmocka_unit_test(test_refused_files_leave_the_scene),
-        cmocka_unit_test(test_what_the_caller_gives_is_checked),
-    };
-    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_the_scene_is_that_of_a_scene_file),
+             TEST(test_refused_files_leave_the_scene), TEST(test_what_the_caller_gives_is_checked))

@@ -136,12 +136,4 @@ static void test_too_little(void **state)
     free(influence);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_no_seam),
-        cmocka_unit_test(test_seams_are_seen),
-        cmocka_unit_test(test_too_little),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_no_seam), TEST(test_seams_are_seen), TEST(test_too_little))

@@ -369,14 +369,6 @@ static void test_nothing_stands_prouder_than_it_is_high(void **state)
     scene_clear(&scene);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_clouds_of_points),
-        cmocka_unit_test(test_closed_forms),
-        cmocka_unit_test(test_bounding_radius),
-        cmocka_unit_test(test_objects_rest_on_the_seabed),
-        cmocka_unit_test(test_nothing_stands_prouder_than_it_is_high),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_clouds_of_points), TEST(test_closed_forms),
+             TEST(test_bounding_radius), TEST(test_objects_rest_on_the_seabed),
+             TEST(test_nothing_stands_prouder_than_it_is_high))

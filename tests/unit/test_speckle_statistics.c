@@ -170,12 +170,5 @@ static void test_saturation(void **state)
     assert_true(isinf(find_saturation(values, 1000))); /* all alike: nothing is cut */
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_looks),      cmocka_unit_test(test_correlation),
-        cmocka_unit_test(test_texture),    cmocka_unit_test(test_what_does_not_count),
-        cmocka_unit_test(test_saturation),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_looks), TEST(test_correlation), TEST(test_texture),
+             TEST(test_what_does_not_count), TEST(test_saturation))

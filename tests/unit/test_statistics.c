@@ -296,20 +296,10 @@ static void test_correlation(void **state)
     assert_true(correlation(a, up, 0) == 0.0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_a_point_spreads_with_the_deviation_asked_for),
-        cmocka_unit_test(test_a_constant_stays_so_up_to_the_edges),
-        cmocka_unit_test(test_a_wide_mean_is_the_mean_of_all),
-        cmocka_unit_test(test_edges),
-        cmocka_unit_test(test_a_bright_echo_leaves_no_trace),
-        cmocka_unit_test(test_mean_and_deviation),
-        cmocka_unit_test(test_noise_floor),
-        cmocka_unit_test(test_noise_floor_of_a_small_patch),
-        cmocka_unit_test(test_histogram_distance),
-        cmocka_unit_test(test_histogram_distance_of_known_distributions),
-        cmocka_unit_test(test_correlation),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_a_point_spreads_with_the_deviation_asked_for),
+             TEST(test_a_constant_stays_so_up_to_the_edges),
+             TEST(test_a_wide_mean_is_the_mean_of_all), TEST(test_edges),
+             TEST(test_a_bright_echo_leaves_no_trace), TEST(test_mean_and_deviation),
+             TEST(test_noise_floor), TEST(test_noise_floor_of_a_small_patch),
+             TEST(test_histogram_distance), TEST(test_histogram_distance_of_known_distributions),
+             TEST(test_correlation))

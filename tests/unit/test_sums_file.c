@@ -471,23 +471,18 @@ static void test_only_what_goes_together_is_added_up(void **state)
     sums_file_close(&file);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test_setup_teardown(test_what_is_written_is_read, make_temporary_folder,
-                                        remove_temporary_folder),
-        cmocka_unit_test_setup_teardown(test_no_damage_goes_unseen, make_temporary_folder,
-                                        remove_temporary_folder),
-        cmocka_unit_test_setup_teardown(test_what_makes_no_sense_is_refused, make_temporary_folder,
-                                        remove_temporary_folder),
-        cmocka_unit_test_setup_teardown(test_runs_stay_within_their_sums, make_temporary_folder,
-                                        remove_temporary_folder),
-        cmocka_unit_test_setup_teardown(test_chains_cover_a_shard_once, make_temporary_folder,
-                                        remove_temporary_folder),
-        cmocka_unit_test_setup_teardown(test_a_folder_gives_what_is_its_own, make_temporary_folder,
-                                        remove_temporary_folder),
-        cmocka_unit_test_setup_teardown(test_only_what_goes_together_is_added_up,
-                                        make_temporary_folder, remove_temporary_folder),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL,
+             cmocka_unit_test_setup_teardown(test_what_is_written_is_read, make_temporary_folder,
+                                             remove_temporary_folder),
+             cmocka_unit_test_setup_teardown(test_no_damage_goes_unseen, make_temporary_folder,
+                                             remove_temporary_folder),
+             cmocka_unit_test_setup_teardown(test_what_makes_no_sense_is_refused,
+                                             make_temporary_folder, remove_temporary_folder),
+             cmocka_unit_test_setup_teardown(test_runs_stay_within_their_sums,
+                                             make_temporary_folder, remove_temporary_folder),
+             cmocka_unit_test_setup_teardown(test_chains_cover_a_shard_once, make_temporary_folder,
+                                             remove_temporary_folder),
+             cmocka_unit_test_setup_teardown(test_a_folder_gives_what_is_its_own,
+                                             make_temporary_folder, remove_temporary_folder),
+             cmocka_unit_test_setup_teardown(test_only_what_goes_together_is_added_up,
+                                             make_temporary_folder, remove_temporary_folder))

@@ -124,13 +124,6 @@ static void test_headers_that_end_early(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_damaged_recordings),
-        cmocka_unit_test(test_damaged_arrays),
-        cmocka_unit_test(test_sizes_that_overflow),
-        cmocka_unit_test(test_headers_that_end_early),
-    };
-    return cmocka_run_group_tests(tests, make_temporary_folder, remove_temporary_folder);
-}
+TEST_PROGRAM(make_temporary_folder, remove_temporary_folder, TEST(test_damaged_recordings),
+             TEST(test_damaged_arrays), TEST(test_sizes_that_overflow),
+             TEST(test_headers_that_end_early))

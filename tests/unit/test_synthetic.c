@@ -416,22 +416,9 @@ static void test_extremes(void **state)
     expect_usable(&synthetic, 1.0, 1.0);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_rayleigh),
-        cmocka_unit_test(test_texture_distribution),
-        cmocka_unit_test(test_texture_moments),
-        cmocka_unit_test(test_k_distribution),
-        cmocka_unit_test(test_correlation_is_the_point_response),
-        cmocka_unit_test(test_seed_decides),
-        cmocka_unit_test(test_same_bits_everywhere),
-        cmocka_unit_test(test_amplitude_is_that_of_complex_pixels),
-        cmocka_unit_test(test_patch_step),
-        cmocka_unit_test(test_texture_length),
-        cmocka_unit_test(test_ripples),
-        cmocka_unit_test(test_opposite_heading),
-        cmocka_unit_test(test_extremes),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_rayleigh), TEST(test_texture_distribution),
+             TEST(test_texture_moments), TEST(test_k_distribution),
+             TEST(test_correlation_is_the_point_response), TEST(test_seed_decides),
+             TEST(test_same_bits_everywhere), TEST(test_amplitude_is_that_of_complex_pixels),
+             TEST(test_patch_step), TEST(test_texture_length), TEST(test_ripples),
+             TEST(test_opposite_heading), TEST(test_extremes))

@@ -255,22 +255,8 @@ static void test_excerpts(void **state)
     assert_string_equal(text_excerpt(excerpt, 4, "abcd"), "...");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_numbers),
-        cmocka_unit_test(test_infinity_is_written_as_in_yaml),
-        cmocka_unit_test(test_what_is_no_number),
-        cmocka_unit_test(test_halfway_cases),
-        cmocka_unit_test(test_a_tie_of_750_digits),
-        cmocka_unit_test(test_long_texts),
-        cmocka_unit_test(test_a_shift_rounds_once),
-        cmocka_unit_test(test_round_trips),
-        cmocka_unit_test(test_a_decimal_comma_changes_nothing),
-        cmocka_unit_test(test_counts),
-        cmocka_unit_test(test_printable),
-        cmocka_unit_test(test_what_goes_to_a_terminal_is_made_printable),
-        cmocka_unit_test(test_excerpts),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_numbers), TEST(test_infinity_is_written_as_in_yaml),
+             TEST(test_what_is_no_number), TEST(test_halfway_cases), TEST(test_a_tie_of_750_digits),
+             TEST(test_long_texts), TEST(test_a_shift_rounds_once), TEST(test_round_trips),
+             TEST(test_a_decimal_comma_changes_nothing), TEST(test_counts), TEST(test_printable),
+             TEST(test_what_goes_to_a_terminal_is_made_printable), TEST(test_excerpts))

@@ -241,17 +241,7 @@ static void test_rounding_and_limits(void **state)
     assert_int_equal(clipped, 8);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_definitions),
-        cmocka_unit_test(test_float_decibels),
-        cmocka_unit_test(test_every_value_comes_back),
-        cmocka_unit_test(test_plain_floats_keep_every_bit),
-        cmocka_unit_test(test_values_without_an_amplitude),
-        cmocka_unit_test(test_full_scale_is_counted),
-        cmocka_unit_test(test_the_recorders_full_scale),
-        cmocka_unit_test(test_rounding_and_limits),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_definitions), TEST(test_float_decibels),
+             TEST(test_every_value_comes_back), TEST(test_plain_floats_keep_every_bit),
+             TEST(test_values_without_an_amplitude), TEST(test_full_scale_is_counted),
+             TEST(test_the_recorders_full_scale), TEST(test_rounding_and_limits))

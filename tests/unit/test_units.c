@@ -127,16 +127,7 @@ static void test_a_long_unit_is_cut_in_the_message(void **state)
     expect_problem(QUANTITY_NUMBER, text, "kkk...' is not a number");
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_every_unit),
-        cmocka_unit_test(test_angles_are_radians),
-        cmocka_unit_test(test_levels_are_energy_ratios),
-        cmocka_unit_test(test_blanks_do_not_matter),
-        cmocka_unit_test(test_infinity_only_where_written),
-        cmocka_unit_test(test_problems),
-        cmocka_unit_test(test_a_long_unit_is_cut_in_the_message),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_every_unit), TEST(test_angles_are_radians),
+             TEST(test_levels_are_energy_ratios), TEST(test_blanks_do_not_matter),
+             TEST(test_infinity_only_where_written), TEST(test_problems),
+             TEST(test_a_long_unit_is_cut_in_the_message))

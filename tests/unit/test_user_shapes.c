@@ -313,18 +313,9 @@ static void test_shapes_count_as_inputs(void **state)
     assert_string_not_equal(one, other);
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_hostile_code_is_refused_with_its_line),
-        cmocka_unit_test(test_sound_code_is_taken),
-        cmocka_unit_test(test_size_and_names_are_limited),
-        cmocka_unit_test(test_build_logs_become_lines),
-        cmocka_unit_test(test_equal_codes_are_one),
-        cmocka_unit_test(test_code_in_files_needs_consent),
-        cmocka_unit_test(test_code_arrives_with_its_lines),
-        cmocka_unit_test(test_wrong_sections_are_refused),
-        cmocka_unit_test(test_shapes_count_as_inputs),
-    };
-    return cmocka_run_group_tests(tests, make_scene_folder, remove_scene_folder);
-}
+TEST_PROGRAM(make_scene_folder, remove_scene_folder,
+             TEST(test_hostile_code_is_refused_with_its_line), TEST(test_sound_code_is_taken),
+             TEST(test_size_and_names_are_limited), TEST(test_build_logs_become_lines),
+             TEST(test_equal_codes_are_one), TEST(test_code_in_files_needs_consent),
+             TEST(test_code_arrives_with_its_lines), TEST(test_wrong_sections_are_refused),
+             TEST(test_shapes_count_as_inputs))

@@ -689,25 +689,9 @@ static void test_refused_layers(void **state)
     }
 }
 
-int main(void)
-{
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_snell),
-        cmocka_unit_test(test_two_points),
-        cmocka_unit_test(test_fermat),
-        cmocka_unit_test(test_linear_profile),
-        cmocka_unit_test(test_profile_with_targets),
-        cmocka_unit_test(test_split_layer),
-        cmocka_unit_test(test_straight_water),
-        cmocka_unit_test(test_ray_tube),
-        cmocka_unit_test(test_small_contrast),
-        cmocka_unit_test(test_transmission),
-        cmocka_unit_test(test_density_alone),
-        cmocka_unit_test(test_total_reflection),
-        cmocka_unit_test(test_ground_range),
-        cmocka_unit_test(test_slope_of_time),
-        cmocka_unit_test(test_joined_layers),
-        cmocka_unit_test(test_refused_layers),
-    };
-    return cmocka_run_group_tests(tests, NULL, NULL);
-}
+TEST_PROGRAM(NULL, NULL, TEST(test_snell), TEST(test_two_points), TEST(test_fermat),
+             TEST(test_linear_profile), TEST(test_profile_with_targets), TEST(test_split_layer),
+             TEST(test_straight_water), TEST(test_ray_tube), TEST(test_small_contrast),
+             TEST(test_transmission), TEST(test_density_alone), TEST(test_total_reflection),
+             TEST(test_ground_range), TEST(test_slope_of_time), TEST(test_joined_layers),
+             TEST(test_refused_layers))
