@@ -4,6 +4,7 @@ import json
 import os
 import pathlib
 import pty
+import re
 import resource
 import shutil
 import signal
@@ -321,7 +322,8 @@ def test_a_folder_that_cannot_be_made(sonject, scene):
 
 
 def start_and_wait_for_the_bar(arguments, folder, variables):
-    """Starts the command with a terminal for its messages; returns once the bar is drawn."""
+    """Starts the command with a terminal for its messages; returns once its bar tells of tracing: one
+    of reading comes before where the image takes long to read."""
     mine, its = pty.openpty()
     process = subprocess.Popen(
         [COMMAND, *map(str, arguments)], cwd=folder, env=variables, stdout=its, stderr=its
@@ -329,12 +331,12 @@ def start_and_wait_for_the_bar(arguments, folder, variables):
     os.close(its)
     seen = b""
     end = time.monotonic() + 120
-    while b"%" not in seen and time.monotonic() < end:
+    while not re.search(rb"tracing[^\r]*%", seen) and time.monotonic() < end:
         try:
             seen += os.read(mine, 4096)
         except OSError:  # the terminal was closed: the command ended
             break
-    assert b"%" in seen, seen
+    assert re.search(rb"tracing[^\r]*%", seen), seen
     return process, mine
 
 
