@@ -224,13 +224,7 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
     struct swath swath;
     struct injection_setup setup;
     CHECK(swath_describe(report, scene, &swath));
-    const struct injection_input input = {
-        .rows = (size_t)swath.patch.rows,
-        .columns = (size_t)swath.patch.columns,
-        .first_row = (double)swath.patch.first_row,
-        .first_column = (double)swath.patch.first_column,
-        .is_complex = swath.is_complex,
-    };
+    const struct injection_input input = swath_input(&swath);
     sonject_status status = injection_setup_init_scene(&setup, report, NULL, scene, &input);
     if (status == SONJECT_OK) {
         const struct patch_view *view = &setup.tracer.view;

@@ -1,6 +1,6 @@
 /* Files read by place. */
-#ifndef SONJECT_IO_BYTE_FILE_H
-#define SONJECT_IO_BYTE_FILE_H
+#ifndef SONJECT_BASE_BYTE_FILE_H
+#define SONJECT_BASE_BYTE_FILE_H
 
 #include <stdbool.h>
 #include <stddef.h>

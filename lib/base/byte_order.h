@@ -1,6 +1,6 @@
 /* Numbers in files of either byte order. */
-#ifndef SONJECT_IO_BYTE_ORDER_H
-#define SONJECT_IO_BYTE_ORDER_H
+#ifndef SONJECT_BASE_BYTE_ORDER_H
+#define SONJECT_BASE_BYTE_ORDER_H
 
 #include <stdbool.h>
 #include <stddef.h>

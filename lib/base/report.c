@@ -19,12 +19,16 @@ sonject_status report_failure(struct report *report, sonject_status status, cons
 sonject_status report_gather(struct report *report, char lines[REPORT_CAPACITY],
                              sonject_status so_far, sonject_status step)
 {
+    static const char rest[] = "and more";
     const size_t length = strlen(lines);
+    const size_t room = REPORT_CAPACITY - length;
     if (step == SONJECT_OK)
         return so_far;
     if (step == SONJECT_ERROR_INPUT) {
-        if (length + strlen(report->message) + 2 < REPORT_CAPACITY)
-            sprintf(lines + length, "%s%s", length > 0 ? "\n" : "", report->message);
+        const bool fits = strlen(report->message) + sizeof rest + 2 < room;
+        if (fits || length < strlen(rest) || strcmp(lines + length - strlen(rest), rest) != 0)
+            snprintf(lines + length, room, "%s%s", length > 0 ? "\n" : "",
+                     fits ? report->message : rest);
         strcpy(report->message, lines);
     }
     return step;

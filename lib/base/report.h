@@ -48,8 +48,8 @@ sonject_status report_failure(struct report *report, sonject_status status, cons
 sonject_status report_out_of_memory(struct report *report, const char *what);
 
 /* The status so far of steps that are all taken though one finds bad input: starts as SONJECT_OK. A
- * step's message is added to lines, which start as "", and these become the report's, while there
- * is room. No step follows a status that is neither OK nor INPUT. */
+ * step's message is added to lines, which start as "", and these become the report's; "and more"
+ * stands for what there is no room for. No step follows a status that is neither OK nor INPUT. */
 sonject_status report_gather(struct report *report, char lines[REPORT_CAPACITY],
                              sonject_status so_far, sonject_status step);
 

@@ -39,7 +39,7 @@ static sonject_status name_image(struct report *report, uint64_t id, sonject_sta
     return report_failure(report, status, "image %llu: %s", (unsigned long long)id, message);
 }
 
-/* What the scene reader says of "--set KEY: what" is the campaign file's where that drew the key.
+/* What is said of "--set KEY: what" is the campaign file's where that drew the key.
  */
 static bool place_line(struct tree *tree, const struct image_plan *plan, const char *line)
 {
@@ -73,8 +73,10 @@ static void place_message(struct sonject_campaign *campaign, const struct image_
     for (char *line = message, *next; *line; line = next) {
         next = line + strcspn(line, "\n");
         next += *next ? (*next = 0, 1) : 0;
+        const char *key_end = strncmp(line, "--set ", 6) == 0 ? strstr(line, ": ") : NULL;
+        const char *what = key_end ? key_end + 2 : line; /* nobody wrote that --set */
         if (!place_line(tree, plan, line))
-            mistakes_add(&mistakes, tree, &behind, line, line);
+            mistakes_add(&mistakes, tree, &behind, what, what);
     }
     tree->mistakes = NULL;
     mistakes_tell(&mistakes, campaign->report, SONJECT_ERROR_INPUT);
@@ -123,12 +125,14 @@ sonject_status campaign_image_make(struct device *device, struct sonject_campaig
     sonject_status status =
         image_plan_make(campaign->report, &campaign->campaign, id, &image->plan);
     THEN(status, campaign_read_scene(campaign, &image->plan, &image->scene));
-    THEN(status,
-         swath_open_stored(campaign->report, &image->scene, &campaign->store, &image->swath));
     if (status == SONJECT_OK) {
+        status =
+            swath_open_stored(campaign->report, &image->scene, &campaign->store, &image->swath);
         const struct injection_input input = swath_input(&image->swath);
-        status = injection_run(campaign->report, device, &image->scene, &input, progress, user,
-                               &image->result);
+        THEN(status, injection_run(campaign->report, device, &image->scene, &input, progress, user,
+                                   &image->result));
+        if (status == SONJECT_ERROR_INPUT)
+            place_message(campaign, &image->plan);
     }
     if (status == SONJECT_OK)
         image->result.statistics.input_clipped = image->swath.clipped;

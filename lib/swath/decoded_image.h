@@ -1,6 +1,6 @@
 /* Images that the decoder reads and changes. */
-#ifndef SONJECT_IO_DECODED_IMAGE_H
-#define SONJECT_IO_DECODED_IMAGE_H
+#ifndef SONJECT_SWATH_DECODED_IMAGE_H
+#define SONJECT_SWATH_DECODED_IMAGE_H
 
 #include <sonject/context.h>
 

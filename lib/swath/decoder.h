@@ -4,8 +4,8 @@
  *
  * The two pass records over a socket: a request and its bytes there, a reply and its bytes back,
  * one after the other. Nothing that comes back is believed. */
-#ifndef SONJECT_IO_DECODER_H
-#define SONJECT_IO_DECODER_H
+#ifndef SONJECT_SWATH_DECODER_H
+#define SONJECT_SWATH_DECODER_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,6 +1,6 @@
 /* The geometry that an image file says of itself, in texts that sonject writes and reads. */
-#ifndef SONJECT_IO_GEOMETRY_NOTES_H
-#define SONJECT_IO_GEOMETRY_NOTES_H
+#ifndef SONJECT_SWATH_GEOMETRY_NOTES_H
+#define SONJECT_SWATH_GEOMETRY_NOTES_H
 
 #include <sonject/image.h>
 #include <sonject/sonar.h>

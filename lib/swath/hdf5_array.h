@@ -2,8 +2,8 @@
  * compound of two equal floats r and i (h5py's) or real and imag (MATLAB's). Rows are the first
  * index; in data sets of MATLAB (v7.3, told by the attribute MATLAB_class), which keeps its columns
  * together, rows are MATLAB's, the second index. */
-#ifndef SONJECT_IO_HDF5_ARRAY_H
-#define SONJECT_IO_HDF5_ARRAY_H
+#ifndef SONJECT_SWATH_HDF5_ARRAY_H
+#define SONJECT_SWATH_HDF5_ARRAY_H
 
 #include "swath/image_library.h"
 #include "swath/raster_file.h"

@@ -1,7 +1,7 @@
 /* A data set of an open HDF5 file, and its samples in the order that images have. Calls come
  * between hdf5_enter and hdf5_leave. */
-#ifndef SONJECT_IO_HDF5_SET_H
-#define SONJECT_IO_HDF5_SET_H
+#ifndef SONJECT_SWATH_HDF5_SET_H
+#define SONJECT_SWATH_HDF5_SET_H
 
 #include "base/hdf5_values.h"
 #include "image/raster.h"

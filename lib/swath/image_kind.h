@@ -1,6 +1,6 @@
 /* Which kind of image a file is. */
-#ifndef SONJECT_IO_IMAGE_KIND_H
-#define SONJECT_IO_IMAGE_KIND_H
+#ifndef SONJECT_SWATH_IMAGE_KIND_H
+#define SONJECT_SWATH_IMAGE_KIND_H
 
 #include <stdbool.h>
 #include <stddef.h>

@@ -1,7 +1,7 @@
 /* What the heads of BMP, PGM and PFM files say, beside how long the files are: these formats have
  * no checksums, and OpenImageIO takes what their heads say. */
-#ifndef SONJECT_IO_PLAIN_HEAD_H
-#define SONJECT_IO_PLAIN_HEAD_H
+#ifndef SONJECT_SWATH_PLAIN_HEAD_H
+#define SONJECT_SWATH_PLAIN_HEAD_H
 
 #include "base/report.h"
 

@@ -1,7 +1,7 @@
 /* PNG files whose pixels are numbers of a palette's colours. OpenImageIO reads the colours; sonject
  * needs the numbers, of its own files. */
-#ifndef SONJECT_IO_PNG_PALETTE_H
-#define SONJECT_IO_PNG_PALETTE_H
+#ifndef SONJECT_SWATH_PNG_PALETTE_H
+#define SONJECT_SWATH_PNG_PALETTE_H
 
 #include <stdbool.h>
 #include <stdint.h>

@@ -1,6 +1,6 @@
 /* New image files, by OpenImageIO. What reads them is the decoder (swath/decoded_image.h). */
-#ifndef SONJECT_IO_RASTER_FILE_H
-#define SONJECT_IO_RASTER_FILE_H
+#ifndef SONJECT_SWATH_RASTER_FILE_H
+#define SONJECT_SWATH_RASTER_FILE_H
 
 #include "base/report.h"
 #include "image/raster.h"

@@ -1,6 +1,6 @@
 /* New files of whole rasters, in formats that lose nothing. */
-#ifndef SONJECT_IO_RASTER_FORMATS_H
-#define SONJECT_IO_RASTER_FORMATS_H
+#ifndef SONJECT_SWATH_RASTER_FORMATS_H
+#define SONJECT_SWATH_RASTER_FORMATS_H
 
 #include "swath/raster_file.h"
 

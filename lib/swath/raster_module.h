@@ -1,8 +1,8 @@
 /* The module of image files: a shared object of its own, which is loaded when the first image needs
  * it, because OpenImageIO brings along some 250 libraries, whose loading takes longer than many a
  * run. The decoder reads by it, the library writes. Static libraries have it in them. */
-#ifndef SONJECT_IO_RASTER_MODULE_H
-#define SONJECT_IO_RASTER_MODULE_H
+#ifndef SONJECT_SWATH_RASTER_MODULE_H
+#define SONJECT_SWATH_RASTER_MODULE_H
 
 #include "swath/image_kind.h"
 #include "swath/image_library.h"

@@ -1,6 +1,6 @@
 /* What the input file says of where its pixels lie. */
-#ifndef SONJECT_IO_RECORDING_H
-#define SONJECT_IO_RECORDING_H
+#ifndef SONJECT_SWATH_RECORDING_H
+#define SONJECT_SWATH_RECORDING_H
 
 #include "base/report.h"
 #include "scene/scene.h"

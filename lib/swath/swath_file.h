@@ -1,7 +1,7 @@
 /* Files that hold a swath: images, channels of XTF files, arrays of NumPy, HDF5 and MATLAB files.
  */
-#ifndef SONJECT_IO_SWATH_FILE_H
-#define SONJECT_IO_SWATH_FILE_H
+#ifndef SONJECT_SWATH_SWATH_FILE_H
+#define SONJECT_SWATH_SWATH_FILE_H
 
 #include "base/report.h"
 #include "image/raster.h"

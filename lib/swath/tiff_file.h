@@ -1,7 +1,7 @@
 /* TIFF files by libtiff: which of them sonject reads, and pixels that are changed in place. A part
  * of the module of image files. */
-#ifndef SONJECT_IO_TIFF_FILE_H
-#define SONJECT_IO_TIFF_FILE_H
+#ifndef SONJECT_SWATH_TIFF_FILE_H
+#define SONJECT_SWATH_TIFF_FILE_H
 
 #include <tiffio.h>
 

@@ -1,6 +1,6 @@
 /* The track that a recording was made on: where the sonar was at each row of the image. */
-#ifndef SONJECT_IO_TRACK_H
-#define SONJECT_IO_TRACK_H
+#ifndef SONJECT_SWATH_TRACK_H
+#define SONJECT_SWATH_TRACK_H
 
 #include <stdbool.h>
 

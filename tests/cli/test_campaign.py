@@ -534,6 +534,15 @@ def test_mistakes_have_a_place(command, ground):
     assert_refused(answer, 3, f"typo.yaml:{line}:", "seabed.lambert")
 
 
+def test_an_object_that_does_not_fit_is_told_by_its_key(command, ground):
+    (ground / "proud.yaml").write_text(CAMPAIGN.replace(
+        "{shape: sphere, diameter: 0.3 m}", "{shape: sphere, diameter: 0.3 m, burial: {proud: 9 m}}"
+    ).replace("  objects[].burial: {uniform: [0 cm, 5 cm]}\n", ""))
+    answer = command("campaign", "proud.yaml", "-o", "hostile")
+    assert_refused(answer, 3, "objects[0].burial: ", "9.000 m proud")
+    assert "--set" not in answer.stderr
+
+
 @pytest.mark.parametrize("shard", ["0/2", "3/2", "1", "1/0", "/", "1/2/3", "-1/2"])
 def test_odd_shards_are_usage(command, shard):
     assert_refused(command("campaign", "campaign.yaml", "-o", "hostile", f"--shard={shard}"), 2,
