@@ -109,6 +109,13 @@ def test_all_objects_that_do_not_fit_are_told_with_their_places(sonject, scene):
             assert [word in line for word in words] == [True] * 3, line
 
 
+def test_more_mistakes_than_a_message_holds_are_announced(sonject, scene):
+    scene.write_text(scene.read_text() + "  - {shape: sphere, diameter: 900 m}\n" * 120)
+    lines = sonject("check", scene).stderr.splitlines()
+    assert 30 < len(lines) < 120 and lines[-1] == "sonject: and more"
+    assert all("larger than the patch" in line for line in lines[:-1])
+
+
 def test_what_the_image_refuses_has_a_place(sonject, scene):
     refuse(sonject, scene, 3, "--set patch: ", "not inside the image",
            options=["--set", "patch={rows: 1, columns: 9000}"])
