@@ -152,8 +152,7 @@ sonject_status sonject_context_create(const sonject_context_params *params,
         sonject_context_release(&made);
         return status;
     }
-    if (made->params.opencl_context && driver_claim(&made->report) == SONJECT_OK)
-        clRetainContext(made->params.opencl_context);
+    host_context_retain(&made->report, made->params.opencl_context);
     *context = made;
     return SONJECT_OK;
 }
@@ -164,8 +163,7 @@ void sonject_context_release(sonject_context **context)
         return;
     device_close(&(*context)->device);
     decoder_stop(&(*context)->decoder);
-    if ((*context)->params.opencl_context && !driver_is_inherited())
-        clReleaseContext((*context)->params.opencl_context);
+    host_context_release((*context)->params.opencl_context);
     free((char *)(*context)->params.device_name);
     free(*context);
     *context = NULL;

@@ -9,7 +9,7 @@
 #include <sonject/scene.h>
 
 #include "base/report.h"
-#include "cl/device.h"
+#include "device/device.h"
 #include "inject/injection.h"
 #include "inject/kept_scene.h"
 #include "scene/scene.h"

@@ -4,7 +4,7 @@
 
 #include <jansson.h>
 
-#include "cl/device.h"
+#include "device/device.h"
 #include "inject/swath.h"
 
 struct run_facts {

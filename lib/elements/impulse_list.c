@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cl/launch.h"
-#include "cl/program.h"
+#include "device/device.h"
 
 #define MICROPASCAL 1e-6
 
@@ -34,20 +33,20 @@ void impulse_list_set_source_level(struct impulse_list *list, const struct patch
 
 /* Buffers and the kernel of a drawing. */
 struct drawing {
-    cl_mem energy, real_part, imaginary_part;
-    cl_kernel kernel;
+    device_buffer energy, real_part, imaginary_part;
+    device_kernel kernel;
 };
 
 static sonject_status drawing_run(struct drawing *drawing, struct report *report,
                                   struct device *device, struct span bins, struct span strips,
                                   uint64_t seed, uint32_t stream)
 {
-    const cl_int bin_count = bins.count;
-    const cl_int first_bin = bins.first;
-    const cl_int first_strip = strips.first;
-    const cl_uint seed_low = (cl_uint)(seed & 0xffffffffu);
-    const cl_uint seed_high = (cl_uint)(seed >> 32);
-    const cl_uint stream_number = stream;
+    const int32_t bin_count = bins.count;
+    const int32_t first_bin = bins.first;
+    const int32_t first_strip = strips.first;
+    const uint32_t seed_low = (uint32_t)(seed & 0xffffffffu);
+    const uint32_t seed_high = (uint32_t)(seed >> 32);
+    const uint32_t stream_number = stream;
     const struct kernel_argument arguments[] = {
         ARGUMENT(drawing->energy), ARGUMENT(bin_count),          ARGUMENT(first_bin),
         ARGUMENT(first_strip),     ARGUMENT(seed_low),           ARGUMENT(seed_high),
@@ -74,8 +73,7 @@ static sonject_status speckle_draw(struct report *report, struct device *device,
     THEN(status, drawing_run(&drawing, report, device, bins, strips, seed, stream));
     THEN(status, buffer_read(report, device, drawing.real_part, 0, bytes, real_part));
     THEN(status, buffer_read(report, device, drawing.imaginary_part, 0, bytes, imaginary_part));
-    if (drawing.kernel)
-        clReleaseKernel(drawing.kernel);
+    kernel_release(&drawing.kernel);
     buffer_release(&drawing.energy);
     buffer_release(&drawing.real_part);
     buffer_release(&drawing.imaginary_part);

@@ -4,7 +4,7 @@
 #define SONJECT_ELEMENTS_IMPULSE_LIST_H
 
 #include "base/report.h"
-#include "cl/device.h"
+#include "device/device.h"
 #include "scene/line_grid.h"
 #include "scene/patch_view.h"
 

@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cl/launch.h"
-#include "cl/program.h"
+#include "device/device.h"
 
 #define PI                    3.14159265358979323846
 #define SAMPLES_PER_DEVIATION 16.0      /* sharing between two fine samples then errs by 5e-4 */
@@ -187,19 +186,18 @@ struct series_work {
     size_t pairs;          /* of all, pings x hydrophones */
     size_t chunk;          /* pairs at a time */
     uint32_t fine_samples; /* of a line */
-    cl_int line_stride, series_stride;
+    int32_t line_stride, series_stride;
     struct element_pair_record *records; /* chunk */
     float *real_part, *imaginary_part;   /* chunk x series_stride */
-    cl_mem lines_real, lines_imaginary, series_real, series_imaginary, pulse_real, pulse_imaginary;
-    cl_kernel hear, pulse_kernel;
+    device_buffer lines_real, lines_imaginary, series_real, series_imaginary, pulse_real,
+        pulse_imaginary;
+    device_kernel hear, pulse_kernel;
 };
 
 static void work_clear(struct series_work *work)
 {
-    if (work->hear)
-        clReleaseKernel(work->hear);
-    if (work->pulse_kernel)
-        clReleaseKernel(work->pulse_kernel);
+    kernel_release(&work->hear);
+    kernel_release(&work->pulse_kernel);
     buffer_release(&work->lines_real);
     buffer_release(&work->lines_imaginary);
     buffer_release(&work->series_real);
@@ -218,8 +216,8 @@ static void choose_chunk(struct series_work *work)
     const size_t padded = ((size_t)layout->samples + WIDTH_MAX - 1) / WIDTH_MAX * WIDTH_MAX;
     work->pairs = (size_t)layout->elements.pings * layout->elements.hydrophones;
     work->fine_samples = fine_pulse_samples(&work->pulse, layout);
-    work->line_stride = (cl_int)(padded * work->pulse.fine + work->pulse.taps);
-    work->series_stride = (cl_int)padded;
+    work->line_stride = (int32_t)(padded * work->pulse.fine + work->pulse.taps);
+    work->series_stride = (int32_t)padded;
     const double line_bytes = (double)work->line_stride * sizeof(float);
     const double most = fmin(LINES_BYTES, (double)work->device->allocation_limit) / line_bytes;
     work->chunk = (size_t)fmax(1.0, fmin(fmin(most, PAIRS_MAX), (double)work->pairs));
@@ -245,8 +243,8 @@ static sonject_status work_init(struct series_work *work, const struct series_re
     work->imaginary_part = allocate_array(series_cells, sizeof(float));
     if (!work->records || !work->real_part || !work->imaginary_part)
         status = report_out_of_memory(report, "time series");
-    cl_mem *const lines[] = {&work->lines_real, &work->lines_imaginary};
-    cl_mem *const series[] = {&work->series_real, &work->series_imaginary};
+    device_buffer *const lines[] = {&work->lines_real, &work->lines_imaginary};
+    device_buffer *const series[] = {&work->series_real, &work->series_imaginary};
     for (int part = 0; status == SONJECT_OK && part < 2; part++) {
         status = buffer_create(report, device, line_bytes, NULL, lines[part]);
         THEN(status,
@@ -265,7 +263,7 @@ static sonject_status work_init(struct series_work *work, const struct series_re
 
 /* A buffer of a piece's numbers with room for a group of lanes behind them. */
 static sonject_status padded_buffer(struct series_work *work, const void *numbers, size_t count,
-                                    cl_mem *buffer)
+                                    device_buffer *buffer)
 {
     CHECK(buffer_create(work->report, work->device, (count + WIDTH_MAX) * sizeof(float), NULL,
                         buffer));
@@ -283,7 +281,7 @@ static int32_t series_segments(const struct series_work *work)
 }
 
 struct piece_buffers {
-    cl_mem grid, pairs, starts, bins, real_part, imaginary_part;
+    device_buffer grid, pairs, starts, bins, real_part, imaginary_part;
 };
 
 static sonject_status piece_buffers_init(struct piece_buffers *buffers, struct series_work *work,
@@ -340,8 +338,8 @@ static sonject_status hear_piece(struct series_work *work, const struct impulse_
 
 static sonject_status pulse_chunk(struct series_work *work, size_t count)
 {
-    const cl_int fine = (cl_int)work->pulse.fine;
-    const cl_int taps = (cl_int)work->pulse.taps;
+    const int32_t fine = (int32_t)work->pulse.fine;
+    const int32_t taps = (int32_t)work->pulse.taps;
     const size_t bytes = count * (size_t)work->series_stride * sizeof(float);
     const struct kernel_argument arguments[] = {ARGUMENT(work->lines_real),
                                                 ARGUMENT(work->lines_imaginary),

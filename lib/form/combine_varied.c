@@ -3,8 +3,7 @@
 #include <stdlib.h>
 
 #include "base/memory.h"
-#include "cl/launch.h"
-#include "cl/program.h"
+#include "device/device.h"
 #include "scene/cross_range.h"
 #include "scene/motion_response.h"
 
@@ -93,12 +92,13 @@ static void fill_blocks(struct taps *taps, const struct form_lines *lines)
     }
 }
 
-static sonject_status run_rows(struct form_lines *lines, cl_kernel kernel, const struct taps *taps,
-                               size_t first_row, cl_mem real_out, cl_mem imaginary_out)
+static sonject_status run_rows(struct form_lines *lines, device_kernel kernel,
+                               const struct taps *taps, size_t first_row, device_buffer real_out,
+                               device_buffer imaginary_out)
 {
     const size_t bytes = taps->each * taps->rows * taps->blocks * sizeof(float);
-    cl_mem real_taps = NULL;
-    cl_mem imaginary_taps = NULL;
+    device_buffer real_taps = NULL;
+    device_buffer imaginary_taps = NULL;
     sonject_status status =
         buffer_create(lines->report, lines->device, bytes, taps->real_part, &real_taps);
     THEN(status,
@@ -107,16 +107,16 @@ static sonject_status run_rows(struct form_lines *lines, cl_kernel kernel, const
         const bool by_row = lines->response.motion != NULL;
         const size_t left = lines->rows - first_row;
         const size_t some = by_row && taps->rows < left ? taps->rows : left;
-        const cl_int first_strip = lines->grid.strips.first;
-        const cl_int end_strip = first_strip + lines->grid.strips.count;
-        const cl_int per_row = (cl_int)lines->grid.strips_per_row;
-        const cl_int reach = lines->reach;
-        const cl_int row = (cl_int)first_row;
-        const cl_int row_step = by_row ? (cl_int)taps->each : 0;
-        const cl_int block_columns = BLOCK_COLUMNS;
-        const cl_int block_step = taps->blocks > 1 ? (cl_int)taps->each : 0;
-        const cl_int stride = (cl_int)lines->stride;
-        const cl_int rows = (cl_int)(first_row + some);
+        const int32_t first_strip = lines->grid.strips.first;
+        const int32_t end_strip = first_strip + lines->grid.strips.count;
+        const int32_t per_row = (int32_t)lines->grid.strips_per_row;
+        const int32_t reach = lines->reach;
+        const int32_t row = (int32_t)first_row;
+        const int32_t row_step = by_row ? (int32_t)taps->each : 0;
+        const int32_t block_columns = BLOCK_COLUMNS;
+        const int32_t block_step = taps->blocks > 1 ? (int32_t)taps->each : 0;
+        const int32_t stride = (int32_t)lines->stride;
+        const int32_t rows = (int32_t)(first_row + some);
         const struct kernel_argument arguments[] = {ARGUMENT(first_strip),
                                                     ARGUMENT(end_strip),
                                                     ARGUMENT(per_row),
@@ -145,8 +145,8 @@ static sonject_status run_rows(struct form_lines *lines, cl_kernel kernel, const
 }
 
 /* Rows of their own responses, some at a time. */
-static sonject_status run_moved(struct form_lines *lines, cl_kernel kernel, struct taps *taps,
-                                cl_mem real_out, cl_mem imaginary_out)
+static sonject_status run_moved(struct form_lines *lines, device_kernel kernel, struct taps *taps,
+                                device_buffer real_out, device_buffer imaginary_out)
 {
     const double strip = lines->row_spacing_m / lines->grid.strips_per_row;
     struct motion_response motion;
@@ -166,10 +166,11 @@ static sonject_status run_moved(struct form_lines *lines, cl_kernel kernel, stru
     return status;
 }
 
-sonject_status combine_varied(struct form_lines *lines, cl_mem real_out, cl_mem imaginary_out)
+sonject_status combine_varied(struct form_lines *lines, device_buffer real_out,
+                              device_buffer imaginary_out)
 {
     struct taps taps = {0, 0, 0, NULL, NULL, NULL, NULL};
-    cl_kernel kernel = NULL;
+    device_kernel kernel = NULL;
     sonject_status status = taps_init(&taps, lines);
     THEN(status, kernel_create(lines->report, lines->device, PROGRAM_IMAGE_FORMATION, 0,
                                "combine_varied", &kernel));
@@ -179,8 +180,7 @@ sonject_status combine_varied(struct form_lines *lines, cl_mem real_out, cl_mem 
         fill_blocks(&taps, lines);
         status = run_rows(lines, kernel, &taps, 0, real_out, imaginary_out);
     }
-    if (kernel)
-        clReleaseKernel(kernel);
+    kernel_release(&kernel);
     taps_clear(&taps);
     return status;
 }

@@ -6,6 +6,7 @@
 #include "form/form.h"
 
 /* Combines all lines into two planes of rows x stride floats. Errors: DEVICE, MEMORY. */
-sonject_status combine_varied(struct form_lines *lines, cl_mem real_out, cl_mem imaginary_out);
+sonject_status combine_varied(struct form_lines *lines, device_buffer real_out,
+                              device_buffer imaginary_out);
 
 #endif

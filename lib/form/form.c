@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cl/launch.h"
-#include "cl/program.h"
+#include "device/device.h"
 #include "form/combine_varied.h"
 #include "kernels/layout.h"
 #include "scene/cross_range.h"
@@ -83,7 +82,7 @@ static void choose_window(struct form_lines *lines, const struct patch_view *vie
 }
 
 static sonject_status send_taps(struct form_lines *lines, const float *taps, size_t count,
-                                cl_mem *buffer)
+                                device_buffer *buffer)
 {
     return buffer_create(lines->report, lines->device, count * sizeof *taps, taps, buffer);
 }
@@ -178,12 +177,9 @@ sonject_status form_lines_begin(struct form_lines *lines, struct report *report,
 
 void form_lines_end(struct form_lines *lines)
 {
-    if (lines->compress)
-        clReleaseKernel(lines->compress);
-    if (lines->combine)
-        clReleaseKernel(lines->combine);
-    if (lines->speckle)
-        clReleaseKernel(lines->speckle);
+    kernel_release(&lines->compress);
+    kernel_release(&lines->combine);
+    kernel_release(&lines->speckle);
     lines->compress = NULL;
     lines->combine = NULL;
     lines->speckle = NULL;
@@ -196,14 +192,15 @@ void form_lines_end(struct form_lines *lines)
 }
 
 static sonject_status compress(struct form_lines *lines, int32_t strip, int32_t count,
-                               cl_mem real_bins, cl_mem imaginary_bins, cl_mem filled)
+                               device_buffer real_bins, device_buffer imaginary_bins,
+                               device_buffer filled)
 {
-    const cl_int bins = lines->grid.bins.count;
-    const cl_int per_pixel = (cl_int)lines->grid.bins_per_pixel;
-    const cl_int first = lines->pulse_first + (cl_int)lines->first_column * per_pixel;
-    const cl_int taps = lines->pulse_taps;
-    const cl_int stride = (cl_int)lines->stride;
-    const cl_int out_strip = strip - lines->grid.strips.first;
+    const int32_t bins = lines->grid.bins.count;
+    const int32_t per_pixel = (int32_t)lines->grid.bins_per_pixel;
+    const int32_t first = lines->pulse_first + (int32_t)lines->first_column * per_pixel;
+    const int32_t taps = lines->pulse_taps;
+    const int32_t stride = (int32_t)lines->stride;
+    const int32_t out_strip = strip - lines->grid.strips.first;
     const bool is_complex = lines->imaginary_pulse != NULL; /* else its place is the next one's */
     struct kernel_argument arguments[13] = {
         ARGUMENT(real_bins), ARGUMENT(imaginary_bins), ARGUMENT(filled),      ARGUMENT(bins),
@@ -235,10 +232,10 @@ static void note_filled(struct form_lines *lines, int32_t strip, struct filled_s
 
 /* Compresses strips of which the device has the bins. */
 static sonject_status compress_filled(struct form_lines *lines, int32_t strip, int32_t count,
-                                      cl_mem real_bins, cl_mem imaginary_bins,
+                                      device_buffer real_bins, device_buffer imaginary_bins,
                                       const struct filled_span *filled)
 {
-    cl_mem buffer = NULL;
+    device_buffer buffer = NULL;
     for (int32_t i = 0; i < count; i++)
         if (!filled_span_is_empty(filled[i]))
             note_filled(lines, strip + i, filled[i]);
@@ -254,8 +251,8 @@ static sonject_status add_run(struct form_lines *lines, int32_t strip, int32_t c
                               const struct filled_span *filled)
 {
     const size_t bytes = (size_t)count * (size_t)lines->grid.bins.count * sizeof(float);
-    cl_mem real_bins = NULL;
-    cl_mem imaginary_bins = NULL;
+    device_buffer real_bins = NULL;
+    device_buffer imaginary_bins = NULL;
     sonject_status status =
         buffer_create(lines->report, lines->device, bytes, real_part, &real_bins);
     THEN(status,
@@ -290,7 +287,7 @@ sonject_status form_lines_add(struct form_lines *lines, int32_t strip, int32_t c
 
 /* Of strips that are all taken for filled. */
 static sonject_status compress_all(struct form_lines *lines, int32_t strip, int32_t count,
-                                   cl_mem real_bins, cl_mem imaginary_bins)
+                                   device_buffer real_bins, device_buffer imaginary_bins)
 {
     struct filled_span *filled = allocate_array((size_t)count, sizeof *filled);
     CHECK_MEMORY(lines->report, filled, "image formation");
@@ -308,19 +305,19 @@ sonject_status form_lines_add_speckle(struct form_lines *lines, int32_t strip, i
     if (lines->columns == 0 || count == 0)
         return SONJECT_OK;
     const size_t bytes = (size_t)count * (size_t)lines->grid.bins.count * sizeof(float);
-    cl_mem energies = NULL;
-    cl_mem real_bins = NULL;
-    cl_mem imaginary_bins = NULL;
+    device_buffer energies = NULL;
+    device_buffer real_bins = NULL;
+    device_buffer imaginary_bins = NULL;
     sonject_status status = buffer_create(lines->report, lines->device, bytes, energy, &energies);
     THEN(status, buffer_create(lines->report, lines->device, bytes, NULL, &real_bins));
     THEN(status, buffer_create(lines->report, lines->device, bytes, NULL, &imaginary_bins));
     if (status == SONJECT_OK) {
-        const cl_int bins = lines->grid.bins.count;
-        const cl_int first_bin = lines->grid.bins.first;
-        const cl_int first_strip = strip;
-        const cl_uint seed_low = (cl_uint)(seed & 0xffffffffu);
-        const cl_uint seed_high = (cl_uint)(seed >> 32);
-        const cl_uint stream_number = stream;
+        const int32_t bins = lines->grid.bins.count;
+        const int32_t first_bin = lines->grid.bins.first;
+        const int32_t first_strip = strip;
+        const uint32_t seed_low = (uint32_t)(seed & 0xffffffffu);
+        const uint32_t seed_high = (uint32_t)(seed >> 32);
+        const uint32_t stream_number = stream;
         const struct kernel_argument arguments[] = {
             ARGUMENT(energies),      ARGUMENT(bins),      ARGUMENT(first_bin),
             ARGUMENT(first_strip),   ARGUMENT(seed_low),  ARGUMENT(seed_high),
@@ -354,17 +351,17 @@ static float *response_taps(const struct form_lines *lines, size_t *count)
     return taps;
 }
 
-static sonject_status combine(struct form_lines *lines, cl_mem taps, cl_mem real_out,
-                              cl_mem imaginary_out)
+static sonject_status combine(struct form_lines *lines, device_buffer taps, device_buffer real_out,
+                              device_buffer imaginary_out)
 {
     if (!cross_range_is_plain(&lines->response))
         return combine_varied(lines, real_out, imaginary_out);
-    const cl_int first_strip = lines->grid.strips.first;
-    const cl_int end_strip = first_strip + lines->grid.strips.count;
-    const cl_int per_row = (cl_int)lines->grid.strips_per_row;
-    const cl_int reach = lines->reach;
-    const cl_int stride = (cl_int)lines->stride;
-    const cl_int rows = (cl_int)lines->rows;
+    const int32_t first_strip = lines->grid.strips.first;
+    const int32_t end_strip = first_strip + lines->grid.strips.count;
+    const int32_t per_row = (int32_t)lines->grid.strips_per_row;
+    const int32_t reach = lines->reach;
+    const int32_t stride = (int32_t)lines->stride;
+    const int32_t rows = (int32_t)lines->rows;
     const struct kernel_argument arguments[] = {ARGUMENT(first_strip),
                                                 ARGUMENT(end_strip),
                                                 ARGUMENT(per_row),
@@ -384,7 +381,8 @@ static sonject_status combine(struct form_lines *lines, cl_mem taps, cl_mem real
 }
 
 /* Reads a plane and drops the padding of its rows. */
-static sonject_status read_plane(struct form_lines *lines, cl_mem plane, float *padded, float *out)
+static sonject_status read_plane(struct form_lines *lines, device_buffer plane, float *padded,
+                                 float *out)
 {
     const sonject_status status = buffer_read(lines->report, lines->device, plane, 0,
                                               lines->rows * lines->stride * sizeof(float), padded);
@@ -401,9 +399,9 @@ sonject_status form_lines_finish(struct form_lines *lines, float *real_part, flo
         return SONJECT_OK;
     size_t count;
     const size_t plane = lines->rows * lines->stride;
-    cl_mem tap_buffer = NULL;
-    cl_mem real_out = NULL;
-    cl_mem imaginary_out = NULL;
+    device_buffer tap_buffer = NULL;
+    device_buffer real_out = NULL;
+    device_buffer imaginary_out = NULL;
     float *taps = response_taps(lines, &count);
     float *padded = allocate_array(plane, sizeof *padded);
     sonject_status status =

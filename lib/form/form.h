@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #include "base/report.h"
-#include "cl/device.h"
+#include "device/device.h"
 #include "kernels/layout.h"
 #include "scene/line_grid.h"
 #include "scene/patch_view.h"
@@ -53,10 +53,10 @@ struct form_lines {
     struct filled_span *filled_columns; /* owned; of each strip's line */
     double row_spacing_m;
     struct point_response response;
-    cl_mem real_lines, imaginary_lines, pulse;
-    cl_mem imaginary_pulse; /* NULL where G is real */
-    cl_mem filled;          /* filled_columns, while lines are combined */
-    cl_kernel compress, combine, speckle;
+    device_buffer real_lines, imaginary_lines, pulse;
+    device_buffer imaginary_pulse; /* NULL where G is real */
+    device_buffer filled;          /* filled_columns, while lines are combined */
+    device_kernel compress, combine, speckle;
 };
 
 /* Prepares lines for the patch's rows and, of its columns, those that bins of the grid reach. On

@@ -7,7 +7,7 @@
 #include <sonject/result.h>
 
 #include "base/report.h"
-#include "cl/device.h"
+#include "device/device.h"
 #include "inject/impulses.h"
 #include "scene/placement.h"
 #include "scene/scene.h"

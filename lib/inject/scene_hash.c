@@ -7,7 +7,7 @@
 #include <sonject/version.h>
 
 #include "base/json_document.h"
-#include "cl/sources.h"
+#include "device/device.h"
 #include "inject/impulse_file.h"
 #include "schema/scene_schema.h"
 

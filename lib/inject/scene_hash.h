@@ -6,7 +6,7 @@
 
 #include "base/hash.h"
 #include "base/report.h"
-#include "cl/device.h"
+#include "device/device.h"
 #include "scene/scene.h"
 
 /* Hash of everything that the result depends on: version, scene, the input's identity, but not

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cl/launch.h"
+#include "device/device.h"
 #include "scene/surface_material.h"
 #include "trace/chain_fans.h"
 #include "trace/checkpoint.h"
@@ -197,9 +197,7 @@ sonject_status chain_trace_begin(struct chain_trace *trace, struct tracer *trace
 
 void chain_trace_end(struct chain_trace *trace)
 {
-    if (trace->kernel)
-        clReleaseKernel(trace->kernel);
-    trace->kernel = NULL;
+    kernel_release(&trace->kernel);
     ray_table_clear(&trace->rays);
     buffer_release(&trace->chains);
     buffer_release(&trace->objects);
@@ -211,8 +209,8 @@ void chain_trace_end(struct chain_trace *trace)
 sonject_status chain_trace_strips(struct chain_trace *trace, struct tracer *tracer,
                                   struct chain_fan *fan, struct span strips)
 {
-    const cl_mem buffers[] = {trace->chains, trace->objects, trace->spheres, trace->map,
-                              trace->tallies};
+    const device_buffer buffers[] = {trace->chains, trace->objects, trace->spheres, trace->map,
+                                     trace->tallies};
     fan->record.first_strip = strips.first;
     fan->record.strips = strips.count;
     fan->record.quanta = ldexpf(1.0f, trace->exponents[0]);

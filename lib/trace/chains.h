@@ -15,8 +15,8 @@ struct chain_trace {
     bool has_map, has_sea_surface;
     struct ray_table rays; /* of all fans */
     struct ray_table_record table;
-    cl_kernel kernel;
-    cl_mem chains, objects, spheres, map, tallies;
+    device_kernel kernel;
+    device_buffer chains, objects, spheres, map, tallies;
 };
 
 /* Prepares a trace; as rough_trace_begin. With one interaction (or no object, unless by brute

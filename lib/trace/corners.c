@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cl/launch.h"
+#include "device/device.h"
 #include "trace/glints.h"
 
 #define BINS_MAX           1.0e9 /* beyond any patch, within a 32-bit number */
@@ -288,8 +288,8 @@ sonject_status corner_launch_strips(struct corner_launch *launch, struct tracer 
 {
     struct report *report = tracer->report;
     struct device *device = tracer->device;
-    const cl_mem buffers[] = {launch->on_device.objects, launch->source_buffer,
-                              launch->record_buffer, launch->echoes, launch->listed};
+    const device_buffer buffers[] = {launch->on_device.objects, launch->source_buffer,
+                                     launch->record_buffer, launch->echoes, launch->listed};
     uint32_t listed = 0;
     const void *mapped;
     launch->fan.first_strip = strips.first;

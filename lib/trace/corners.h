@@ -44,7 +44,7 @@ struct corner_launch {
     struct corner_record record;
     struct image_pair_record sources;
     struct trace_device on_device; /* without tallies worth the name */
-    cl_mem source_buffer, record_buffer, echoes, listed;
+    device_buffer source_buffer, record_buffer, echoes, listed;
     size_t capacity; /* of echoes */
     int32_t chunk;   /* sub-strips whose echoes fit that */
 };

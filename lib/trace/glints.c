@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cl/launch.h"
+#include "device/device.h"
 #include "trace/checkpoint.h"
 #include "trace/fan.h"
 #include "trace/object_buffer.h"
@@ -162,7 +162,8 @@ sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tr
                                    struct span strips, float *real_part, float *imaginary_part)
 {
     const size_t count = (size_t)strips.count * (size_t)trace->grid.bins.count;
-    const cl_mem buffers[] = {trace->on_device.objects, trace->on_device.tallies, trace->sources};
+    const device_buffer buffers[] = {trace->on_device.objects, trace->on_device.tallies,
+                                     trace->sources};
     trace->fan.first_strip = strips.first;
     trace->fan.strips = strips.count;
     const void *mapped;

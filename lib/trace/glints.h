@@ -16,7 +16,7 @@ struct smooth_trace {
     struct fan_record fan;
     struct ray_table rays;
     struct trace_device on_device;
-    cl_mem sources; /* image_pair_record; NULL: straight there and back */
+    device_buffer sources; /* image_pair_record; NULL: straight there and back */
 };
 
 /* Standard deviation in m of the shortest pulse that such bins are fine enough for. */

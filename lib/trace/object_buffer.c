@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cl/launch.h"
+#include "device/device.h"
 #include "kernels/object_tree_records.h"
 #include "kernels/relief_records.h"
 #include "trace/fan.h"
@@ -309,7 +309,7 @@ static size_t lay_out(const struct tracer *tracer, const struct part_list *parts
 
 static sonject_status write_buffer(struct tracer *tracer, struct object_record *records,
                                    const struct part_list *parts, const struct object_tree *tree,
-                                   cl_mem *buffer)
+                                   device_buffer *buffer)
 {
     size_t begin[SCENE_MESHES_MAX];
     const size_t users_begin = lay_out(tracer, parts, begin);
@@ -345,7 +345,7 @@ static sonject_status write_buffer(struct tracer *tracer, struct object_record *
 }
 
 sonject_status object_buffer_create(struct tracer *tracer, struct object_record *records,
-                                    struct part_list parts, cl_mem *buffer)
+                                    struct part_list parts, device_buffer *buffer)
 {
     struct object_tree tree;
     sonject_status status = build_tree(tracer, records, &parts, &tree);

@@ -42,6 +42,6 @@ uint32_t object_buffer_relief_words(const struct tracer *tracer, uint32_t part_c
 /* records: those of the parts listed; where their meshes and the hierarchy lie is filled in.
  * Errors: INPUT (too large for the device), DEVICE, MEMORY. */
 sonject_status object_buffer_create(struct tracer *tracer, struct object_record *records,
-                                    struct part_list parts, cl_mem *buffer);
+                                    struct part_list parts, device_buffer *buffer);
 
 #endif

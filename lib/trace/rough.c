@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cl/launch.h"
+#include "device/device.h"
 #include "trace/checkpoint.h"
 #include "trace/corners.h"
 #include "trace/fan.h"
@@ -287,8 +287,8 @@ void rough_trace_flatten(struct rough_trace *trace)
     trace->object_halo = 0;
 }
 
-static sonject_status read_tallies(struct tracer *tracer, cl_mem buffer, size_t count, double unit,
-                                   float *values)
+static sonject_status read_tallies(struct tracer *tracer, device_buffer buffer, size_t count,
+                                   double unit, float *values)
 {
     const void *mapped;
     const int64_t *tallies;
@@ -325,8 +325,8 @@ sonject_status rough_trace_strips(struct rough_trace *trace, struct tracer *trac
                                   struct span strips, float *seabed)
 {
     const size_t count = (size_t)strips.count * (size_t)trace->grid.bins.count;
-    const cl_mem buffers[] = {trace->on_device.objects, trace->map, trace->on_device.tallies,
-                              trace->tile_buffer};
+    const device_buffer buffers[] = {trace->on_device.objects, trace->map, trace->on_device.tallies,
+                                     trace->tile_buffer};
     rough_trace_aim(trace, strips);
     sonject_status status = buffer_clear(tracer->report, tracer->device, trace->on_device.tallies,
                                          count * sizeof(int64_t));
@@ -361,7 +361,7 @@ static sonject_status trace_pair(struct rough_trace *trace, struct tracer *trace
     const struct rough_tile *tile = &trace->tiles[tracer->placements[part].object];
     struct image_pair_record record;
     struct fan_record fan;
-    cl_mem sources = NULL;
+    device_buffer sources = NULL;
     struct ray_table rays = {NULL, 0};
     sonject_status status = image_pair_aim(&fan, &record, &rays, tracer, part, pair, &trace->grid);
     aim_at_part(&fan, trace, tracer, part, &pair->outgoing->way);
@@ -373,7 +373,7 @@ static sonject_status trace_pair(struct rough_trace *trace, struct tracer *trace
     fan.first_strip = tile->grid.strips.first;
     fan.strips = tile->grid.strips.count;
     THEN(status, buffer_create(tracer->report, tracer->device, sizeof record, &record, &sources));
-    const cl_mem buffers[] = {on_device->objects, trace->tile_buffer, sources};
+    const device_buffer buffers[] = {on_device->objects, trace->tile_buffer, sources};
     THEN(status, trace_launch(tracer, on_device->kernel, &fan, &rays, buffers, 3));
     ray_table_clear(&rays);
     buffer_release(&sources);

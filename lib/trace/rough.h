@@ -21,7 +21,7 @@ struct rough_trace {
     struct fan_record fan;
     struct ray_table rays;
     struct trace_device on_device;
-    cl_mem map, tile_buffer;
+    device_buffer map, tile_buffer;
 };
 
 /* Prepares a trace. map: rows x columns of the view, reflectivity over mu0 (values >= 0, finite),

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "cl/launch.h"
+#include "device/device.h"
 #include "scene/shapes/shape.h"
 #include "trace/checkpoint.h"
 #include "trace/fan.h"
@@ -197,16 +197,17 @@ static int32_t stride_of(int32_t strips)
 }
 
 /* Some strips of a launch, in the order of their turns. */
-static sonject_status launch_turns(struct tracer *tracer, cl_kernel kernel, struct fan_record *fan,
-                                   const struct ray_table *rays, const cl_mem *buffers,
-                                   size_t buffer_count, struct span turns)
+static sonject_status launch_turns(struct tracer *tracer, device_kernel kernel,
+                                   struct fan_record *fan, const struct ray_table *rays,
+                                   const device_buffer *buffers, size_t buffer_count,
+                                   struct span turns)
 {
     struct report *report = tracer->report;
     struct device *device = tracer->device;
     const size_t items = (size_t)turns.count * (size_t)fan->segments;
-    cl_mem fan_buffer = NULL;
-    cl_mem piece_buffer = NULL;
-    cl_mem outcome_buffer = NULL;
+    device_buffer fan_buffer = NULL;
+    device_buffer piece_buffer = NULL;
+    device_buffer outcome_buffer = NULL;
     struct outcome_record *outcomes = allocate_array(items, sizeof *outcomes);
     sonject_status status = outcomes ? SONJECT_OK : report_out_of_memory(report, "trace counts");
     fan->first_turn = turns.first;
@@ -234,8 +235,8 @@ static sonject_status launch_turns(struct tracer *tracer, cl_kernel kernel, stru
     return status;
 }
 
-sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_record *fan,
-                            const struct ray_table *rays, const cl_mem *buffers,
+sonject_status trace_launch(struct tracer *tracer, device_kernel kernel, struct fan_record *fan,
+                            const struct ray_table *rays, const device_buffer *buffers,
                             size_t buffer_count)
 {
     struct checkpoint *checkpoint = tracer->checkpoint;
@@ -258,7 +259,8 @@ sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_
 }
 
 sonject_status trace_kernel_create(struct tracer *tracer, uint32_t variant,
-                                   enum device_program program, const char *name, cl_kernel *kernel)
+                                   enum device_program program, const char *name,
+                                   device_kernel *kernel)
 {
     *kernel = NULL;
     if (tracer->checkpoint && tracer->checkpoint->files)
@@ -293,9 +295,7 @@ sonject_status trace_device_init(struct trace_device *device, struct tracer *tra
 
 void trace_device_clear(struct trace_device *device)
 {
-    if (device->kernel)
-        clReleaseKernel(device->kernel);
-    device->kernel = NULL;
+    kernel_release(&device->kernel);
     buffer_release(&device->objects);
     buffer_release(&device->tallies);
 }

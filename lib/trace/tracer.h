@@ -5,7 +5,7 @@
 #include <stdint.h>
 
 #include "base/report.h"
-#include "cl/device.h"
+#include "device/device.h"
 #include "kernels/layout.h"
 #include "scene/line_grid.h"
 #include "scene/patch_view.h"
@@ -71,20 +71,20 @@ double brightest_scattering(const struct tracer *tracer);
  * outcomes. Sets the fan's segments and turns. Errors: DEVICE (also faults that the kernel
  * reports), MEMORY.
  */
-sonject_status trace_launch(struct tracer *tracer, cl_kernel kernel, struct fan_record *fan,
-                            const struct ray_table *rays, const cl_mem *buffers,
+sonject_status trace_launch(struct tracer *tracer, device_kernel kernel, struct fan_record *fan,
+                            const struct ray_table *rays, const device_buffer *buffers,
                             size_t buffer_count);
 
-/* A kernel of the scene, to be given to clReleaseKernel; NULL where checkpoints are added up and
+/* A kernel of the scene, to be given to kernel_release; NULL where checkpoints are added up and
  * nothing is traced. Errors: as kernel_create. */
 sonject_status trace_kernel_create(struct tracer *tracer, uint32_t variant,
                                    enum device_program program, const char *name,
-                                   cl_kernel *kernel);
+                                   device_kernel *kernel);
 
 /* What both parts keep on the device. */
 struct trace_device {
-    cl_kernel kernel;
-    cl_mem objects, tallies;
+    device_kernel kernel;
+    device_buffer objects, tallies;
     size_t tally_strips; /* that the tallies have room for */
 };
 

@@ -2,7 +2,7 @@
 #ifndef SONJECT_USER_SHAPE_CHECK_H
 #define SONJECT_USER_SHAPE_CHECK_H
 
-#include "cl/device.h"
+#include "device/device.h"
 #include "scene/user_shapes.h"
 
 #define SHAPE_CHECK_RAYS 4096 /* always the same ones, in radii of the bounding sphere */

@@ -3,7 +3,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "cl/launch.h"
+#include "device/device.h"
 #include "user/user_program.h"
 
 #define PI      3.14159265358979323846
@@ -29,9 +29,7 @@ sonject_status shape_probe_begin(struct shape_probe *probe, struct report *repor
 
 void shape_probe_end(struct shape_probe *probe)
 {
-    if (probe->kernel)
-        clReleaseKernel(probe->kernel);
-    probe->kernel = NULL;
+    kernel_release(&probe->kernel);
     buffer_release(&probe->shape);
 }
 
@@ -40,8 +38,8 @@ sonject_status shape_probe_ask(struct shape_probe *probe, const struct probe_ray
 {
     struct report *report = probe->report;
     struct device *device = probe->device;
-    cl_mem ray_buffer = NULL;
-    cl_mem hit_buffer = NULL;
+    device_buffer ray_buffer = NULL;
+    device_buffer hit_buffer = NULL;
     if (count == 0)
         return SONJECT_OK;
     sonject_status status = buffer_create(report, device, count * sizeof *rays, rays, &ray_buffer);

@@ -2,7 +2,7 @@
 #ifndef SONJECT_USER_SHAPE_TRIAL_H
 #define SONJECT_USER_SHAPE_TRIAL_H
 
-#include "cl/device.h"
+#include "device/device.h"
 #include "scene/user_shapes.h"
 #include "user/shape_check.h"
 
@@ -22,8 +22,8 @@ struct probe_hit {
 struct shape_probe {
     struct report *report;
     struct device *device;
-    cl_kernel kernel;
-    cl_mem shape;
+    device_kernel kernel;
+    device_buffer shape;
 };
 
 /* On failure nothing is held. Errors: INPUT (code that does not compile), DEVICE, MEMORY. */

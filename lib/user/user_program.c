@@ -6,7 +6,7 @@
 
 #include "base/growing_text.h"
 #include "base/text.h"
-#include "cl/sources.h"
+#include "device/device.h"
 
 #define LINE_CAPACITY    1024
 #define EXCERPT_CAPACITY 400
@@ -156,10 +156,10 @@ static sonject_status explain(struct report *report, const struct device *device
 
 sonject_status user_kernel_create(struct report *report, struct device *device,
                                   const struct user_shapes *shapes, uint32_t variant,
-                                  enum device_program number, const char *name, cl_kernel *kernel)
+                                  enum device_program number, const char *name,
+                                  device_kernel *kernel)
 {
     char *units[USER_SNIPPETS_MAX];
-    char options[PROGRAM_OPTIONS_CAPACITY];
     char *calls = text_of_calls(shapes->snippet_count);
     bool is_complete = calls != NULL;
     *kernel = NULL;
@@ -167,18 +167,10 @@ sonject_status user_kernel_create(struct report *report, struct device *device,
         units[i] = text_of_unit(&shapes->snippets[i], i);
         is_complete = is_complete && units[i];
     }
-    program_options(device, variant, " -DWITH_USER_SHAPES", options);
-    const struct program_text text = {embedded_sources[number].name,
-                                      embedded_sources[number].text,
-                                      calls,
-                                      options,
-                                      units,
-                                      shapes->snippet_count,
-                                      explain,
-                                      shapes};
-    const sonject_status status = is_complete
-                                      ? kernel_of_text(report, device, &text, name, kernel)
-                                      : report_out_of_memory(report, "the user shapes' program");
+    const struct user_code code = {calls, units, shapes->snippet_count, explain, shapes};
+    const sonject_status status =
+        is_complete ? kernel_create_with_code(report, device, number, variant, &code, name, kernel)
+                    : report_out_of_memory(report, "the user shapes' program");
     for (uint32_t i = 0; i < shapes->snippet_count; i++)
         free(units[i]);
     free(calls);
@@ -187,7 +179,8 @@ sonject_status user_kernel_create(struct report *report, struct device *device,
 
 sonject_status scene_kernel_create(struct report *report, struct device *device,
                                    const struct scene *scene, uint32_t variant,
-                                   enum device_program program, const char *name, cl_kernel *kernel)
+                                   enum device_program program, const char *name,
+                                   device_kernel *kernel)
 {
     if (scene->user_shapes.count == 0)
         return kernel_create(report, device, program, variant, name, kernel);

@@ -9,7 +9,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "benchmark_scene.h"
-#include "cl/launch.h"
+#include "device/device.h"
 #include "native_kernel.h"
 #include "trace/chains.h"
 
@@ -60,7 +60,7 @@ static double run_native(struct share work, size_t cells, unsigned threads, int6
     return taken;
 }
 
-static void *read_back(struct benchmark_scene *set, cl_mem buffer, size_t bytes)
+static void *read_back(struct benchmark_scene *set, device_buffer buffer, size_t bytes)
 {
     void *copy = malloc(bytes);
     if (!copy ||

@@ -9,7 +9,7 @@
 #include "base/clock.h"
 #include "base/memory.h"
 #include "benchmark_scene.h"
-#include "cl/launch.h"
+#include "device/device.h"
 #include "native_kernel.h"
 #include "trace/glints.h"
 #include "trace/rough.h"
@@ -63,9 +63,9 @@ static void print_rates(const char *name, const struct rates *rates)
 }
 
 /* Runs both versions REPEATS times, keeps the best times, and compares the tallies. */
-static int compare(struct benchmark_scene *set, struct fan_record *fan, cl_kernel kernel,
-                   cl_mem objects, cl_mem tallies, cl_mem tiles, size_t tally_count,
-                   size_t tile_count, int is_smooth, struct rates *rates)
+static int compare(struct benchmark_scene *set, struct fan_record *fan, device_kernel kernel,
+                   device_buffer objects, device_buffer tallies, device_buffer tiles,
+                   size_t tally_count, size_t tile_count, int is_smooth, struct rates *rates)
 {
     struct report *report = &set->report;
     struct device *device = set->tracer.device;
@@ -74,14 +74,14 @@ static int compare(struct benchmark_scene *set, struct fan_record *fan, cl_kerne
     int64_t *native_tiles = allocate_array(tile_count, sizeof *native_tiles);
     struct object_record record;
     struct outcome_record *outcomes = allocate_array((size_t)fan->strips, sizeof *outcomes);
-    cl_mem map = NULL;
+    device_buffer map = NULL;
     if (!from_device || !native || !native_tiles || !outcomes ||
         buffer_create(report, device, 0, NULL, &map) != SONJECT_OK ||
         buffer_read(report, device, objects, 0, sizeof record, &record) != SONJECT_OK)
         benchmark_fail(report, "buffers");
     const struct ray_table rays = {NULL, 0}; /* isovelocity water */
-    const cl_mem rough_buffers[] = {objects, map, tallies, tiles};
-    const cl_mem smooth_buffers[] = {objects, tallies};
+    const device_buffer rough_buffers[] = {objects, map, tallies, tiles};
+    const device_buffer smooth_buffers[] = {objects, tallies};
     rates->device_s = rates->native_s = 1e9;
     const unsigned threads = benchmark_threads(device);
     for (int i = 0; i < REPEATS; i++) {

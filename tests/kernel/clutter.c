@@ -1,7 +1,7 @@
 #include "kernel/clutter.h"
 
-#include "cl/launch.h"
 #include "claims.h"
+#include "device/opencl.h"
 #include "random.h"
 
 /* Draws in turn. */
@@ -81,7 +81,7 @@ void clutter_strew(struct bench *bench, uint32_t count, double size)
     }
 }
 
-void *clutter_read(struct bench *bench, cl_mem buffer)
+void *clutter_read(struct bench *bench, device_buffer buffer)
 {
     size_t bytes = 0;
     assert_int_equal(clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof bytes, &bytes, NULL),

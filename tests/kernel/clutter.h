@@ -10,7 +10,7 @@
 void clutter_strew(struct bench *bench, uint32_t count, double size);
 
 /* A device's buffer; to be freed. */
-void *clutter_read(struct bench *bench, cl_mem buffer);
+void *clutter_read(struct bench *bench, device_buffer buffer);
 
 enum search_question {
     SEARCH_NEAREST,  /* find_nearest_hit: distance, object */

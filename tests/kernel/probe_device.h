@@ -2,7 +2,7 @@
 #ifndef SONJECT_TESTS_PROBE_DEVICE_H
 #define SONJECT_TESTS_PROBE_DEVICE_H
 
-#include "cl/launch.h"
+#include "device/opencl.h"
 #include "mesh/mesh.h"
 
 struct probe_device {
@@ -10,7 +10,7 @@ struct probe_device {
     struct device *device;
     unsigned width;
     cl_program program;
-    cl_mem record, branches, leaves, normals;
+    device_buffer record, branches, leaves, normals;
 };
 
 /* Builds the probe for that many lanes and loads the mesh. */

@@ -5,7 +5,7 @@
 #include "trace_rough_mirrored.h"
 #include "trace_smooth_mirrored.h"
 
-#include "cl/launch.h"
+#include "device/opencl.h"
 #include "physics/bench.h"
 #include "scene/cross_range.h"
 #include "scene/motion_response.h"

@@ -4,7 +4,7 @@
 #include "claims.h"
 #include "trace_chains.h"
 
-#include "cl/launch.h"
+#include "device/device.h"
 #include "physics/bench.h"
 #include "trace/chains.h"
 
@@ -136,7 +136,7 @@ static int64_t *trace_on_device(struct bench *bench, const float *map, int32_t c
 }
 
 /* Reads the records that a device was given, so that both work from the same ones. */
-static void *copy_buffer(struct bench *bench, cl_mem buffer, size_t bytes)
+static void *copy_buffer(struct bench *bench, device_buffer buffer, size_t bytes)
 {
     void *copy = malloc(bytes);
     assert_non_null(copy);

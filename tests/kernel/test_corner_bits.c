@@ -3,7 +3,7 @@
 #include "claims.h"
 #include "trace_corners.h"
 
-#include "cl/launch.h"
+#include "device/device.h"
 #include "physics/bench.h"
 #include "trace/corners.h"
 
@@ -75,7 +75,7 @@ static void make_scene(struct bench *bench, const struct variant *variant)
 }
 
 /* Reads a record that a device was given, so that both work from the same one. */
-static void read_record(struct bench *bench, cl_mem buffer, void *record, size_t bytes)
+static void read_record(struct bench *bench, device_buffer buffer, void *record, size_t bytes)
 {
     EXPECT_OK(&bench->report,
               buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, record));

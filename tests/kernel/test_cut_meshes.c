@@ -7,7 +7,7 @@
 #include "random_rays.h"
 #include "sixteen_lanes.h"
 
-#include "cl/launch.h"
+#include "device/device.h"
 #include "trace/object_buffer.h"
 
 #define RAYS      15000
@@ -55,7 +55,7 @@ static void cut_solid_begin(struct cut_solid *solid, const struct mesh_sample *s
     const double *centre = solid->bench.placements[0].centre;
     const double origin[3] = {centre[0] + 0.3, centre[1] - 0.7, centre[2] + 0.2};
     struct object_record record;
-    cl_mem buffer = NULL;
+    device_buffer buffer = NULL;
     object_record_init(&record, &solid->bench.tracer, 0, origin);
     if (object_buffer_create(&solid->bench.tracer, &record, (struct part_list){NULL, 1}, &buffer) !=
         SONJECT_OK)

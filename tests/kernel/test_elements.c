@@ -3,8 +3,7 @@
 #include "claims.h"
 #include "element_series.h"
 
-#include "cl/launch.h"
-#include "cl/program.h"
+#include "device/device.h"
 #include "elements/series.h"
 #include "physics/bench.h"
 
@@ -95,22 +94,23 @@ static void expect_ok(struct bench *bench, sonject_status status)
     EXPECT_OK(&bench->report, status);
 }
 
-static cl_mem buffer_of(struct bench *bench, size_t bytes, const void *contents)
+static device_buffer buffer_of(struct bench *bench, size_t bytes, const void *contents)
 {
-    cl_mem buffer;
+    device_buffer buffer;
     expect_ok(bench, buffer_create(&bench->report, bench->tracer.device, bytes, contents, &buffer));
     return buffer;
 }
 
-static cl_kernel kernel_of(struct bench *bench, const char *name)
+static device_kernel kernel_of(struct bench *bench, const char *name)
 {
-    cl_kernel kernel;
+    device_kernel kernel;
     expect_ok(bench, kernel_create(&bench->report, bench->tracer.device, PROGRAM_ELEMENT_SERIES, 0,
                                    name, &kernel));
     return kernel;
 }
 
-static void read_and_release(struct bench *bench, cl_mem *buffer, size_t bytes, void *contents)
+static void read_and_release(struct bench *bench, device_buffer *buffer, size_t bytes,
+                             void *contents)
 {
     expect_ok(bench,
               buffer_read(&bench->report, bench->tracer.device, *buffer, 0, bytes, contents));
@@ -122,19 +122,21 @@ static void compute_on_device(struct bench *bench, struct workload *work, int32_
 {
     struct device *device = bench->tracer.device;
     work->grid.segments = segments;
-    cl_mem grid = buffer_of(bench, sizeof work->grid, &work->grid);
-    cl_mem pairs = buffer_of(bench, sizeof work->pairs, work->pairs);
-    cl_mem starts = buffer_of(bench, sizeof work->starts, work->starts);
-    cl_mem bins = buffer_of(bench, sizeof work->bins, work->bins);
-    cl_mem real_part = buffer_of(bench, sizeof work->impulses_real, work->impulses_real);
-    cl_mem imaginary = buffer_of(bench, sizeof work->impulses_imaginary, work->impulses_imaginary);
-    cl_mem pulse_real = buffer_of(bench, sizeof work->pulse_real, work->pulse_real);
-    cl_mem pulse_imaginary = buffer_of(bench, sizeof work->pulse_imaginary, work->pulse_imaginary);
-    cl_mem line_real = buffer_of(bench, sizeof lines->line_real, NULL);
-    cl_mem line_imaginary = buffer_of(bench, sizeof lines->line_imaginary, NULL);
-    cl_mem out_real = buffer_of(bench, sizeof lines->out_real, NULL);
-    cl_mem out_imaginary = buffer_of(bench, sizeof lines->out_imaginary, NULL);
-    const cl_int stride = SAMPLES, fine = FINE, taps = TAPS, out = OUT;
+    device_buffer grid = buffer_of(bench, sizeof work->grid, &work->grid);
+    device_buffer pairs = buffer_of(bench, sizeof work->pairs, work->pairs);
+    device_buffer starts = buffer_of(bench, sizeof work->starts, work->starts);
+    device_buffer bins = buffer_of(bench, sizeof work->bins, work->bins);
+    device_buffer real_part = buffer_of(bench, sizeof work->impulses_real, work->impulses_real);
+    device_buffer imaginary =
+        buffer_of(bench, sizeof work->impulses_imaginary, work->impulses_imaginary);
+    device_buffer pulse_real = buffer_of(bench, sizeof work->pulse_real, work->pulse_real);
+    device_buffer pulse_imaginary =
+        buffer_of(bench, sizeof work->pulse_imaginary, work->pulse_imaginary);
+    device_buffer line_real = buffer_of(bench, sizeof lines->line_real, NULL);
+    device_buffer line_imaginary = buffer_of(bench, sizeof lines->line_imaginary, NULL);
+    device_buffer out_real = buffer_of(bench, sizeof lines->out_real, NULL);
+    device_buffer out_imaginary = buffer_of(bench, sizeof lines->out_imaginary, NULL);
+    const int32_t stride = SAMPLES, fine = FINE, taps = TAPS, out = OUT;
     const struct kernel_argument hearing[] = {
         ARGUMENT(grid),   ARGUMENT(pairs),     ARGUMENT(starts),
         ARGUMENT(bins),   ARGUMENT(real_part), ARGUMENT(imaginary),
@@ -145,18 +147,18 @@ static void compute_on_device(struct bench *bench, struct workload *work, int32_
         ARGUMENT(out_real),   ARGUMENT(out_imaginary)};
     const size_t hear_global[2] = {(size_t)segments, PAIRS};
     const size_t pulse_global[2] = {OUT / device->width, PAIRS};
-    cl_kernel hear = kernel_of(bench, "hear_elements");
-    cl_kernel pulse = kernel_of(bench, "pulse_elements");
+    device_kernel hear = kernel_of(bench, "hear_elements");
+    device_kernel pulse = kernel_of(bench, "pulse_elements");
     expect_ok(bench, kernel_run(&bench->report, device, hear, hearing, 9, 2, hear_global));
     expect_ok(bench, kernel_run(&bench->report, device, pulse, pulsing, 10, 2, pulse_global));
-    clReleaseKernel(hear);
-    clReleaseKernel(pulse);
+    kernel_release(&hear);
+    kernel_release(&pulse);
     read_and_release(bench, &line_real, sizeof lines->line_real, lines->line_real);
     read_and_release(bench, &line_imaginary, sizeof lines->line_imaginary, lines->line_imaginary);
     read_and_release(bench, &out_real, sizeof lines->out_real, lines->out_real);
     read_and_release(bench, &out_imaginary, sizeof lines->out_imaginary, lines->out_imaginary);
-    cl_mem *const rest[] = {&grid,      &pairs,     &starts,     &bins,
-                            &real_part, &imaginary, &pulse_real, &pulse_imaginary};
+    device_buffer *const rest[] = {&grid,      &pairs,     &starts,     &bins,
+                                   &real_part, &imaginary, &pulse_real, &pulse_imaginary};
     for (size_t i = 0; i < COUNT(rest); i++)
         buffer_release(rest[i]);
 }

@@ -5,7 +5,7 @@
 #include "trace_rough.h"
 #include "trace_smooth.h"
 
-#include "cl/launch.h"
+#include "device/device.h"
 #include "kernel/clutter.h"
 #include "kernel/random_rays.h"
 #include "trace/fan.h"
@@ -83,7 +83,7 @@ static void searched_begin(struct searched *searched, uint32_t count)
 {
     struct tracer *tracer = &searched->bench.tracer;
     double origin[3];
-    cl_mem buffer = NULL;
+    device_buffer buffer = NULL;
     bench_open(&searched->bench, ROWS, COLUMNS, MIDDLE_M);
     clutter_strew(&searched->bench, count, 0.8);
     bench_ready(&searched->bench);
@@ -247,7 +247,7 @@ static void compare_smooth(struct bench *bench, uint32_t number)
     const size_t cells = (size_t)strips.count * (size_t)trace.grid.bins.count;
     float *field = calloc(2 * cells, sizeof *field);
     int64_t *lines = calloc(2 * cells, sizeof *lines);
-    cl_mem buffer = NULL;
+    device_buffer buffer = NULL;
     struct object_record *records = calloc(tracer->part_count, sizeof *records);
     assert_true(field && lines && records);
     object_records_init(records, tracer, tracer->placements[number].centre);

@@ -1,8 +1,8 @@
 /* A mesh, a user's shape and a sphere over relief and under a sea surface, alone and among so many
  * parts that launches know only some of them: the same bits at every width, and what is alone is
  * what it is among others that are out of its way. */
-#include "cl/launch.h"
 #include "claims.h"
+#include "device/device.h"
 #include "physics/bench.h"
 #include "physics/user_codes.h"
 #include "trace/rough.h"
@@ -74,7 +74,7 @@ struct tallies {
     int64_t sphere[TILE_PLANES]; /* sums over the sphere's tile, whose size may differ */
 };
 
-static int64_t *read_tallies(struct bench *bench, cl_mem buffer, size_t count)
+static int64_t *read_tallies(struct bench *bench, device_buffer buffer, size_t count)
 {
     int64_t *tallies = malloc(count * sizeof *tallies);
     assert_non_null(tallies);

@@ -4,7 +4,7 @@
 #include "physics/bench.h"
 #include "random_rays.h"
 
-#include "cl/launch.h"
+#include "device/opencl.h"
 
 #define SECTORS 360
 #define POINTS  400 /* of an outline, at the most */

@@ -1,7 +1,7 @@
 #include "bench.h"
 
-#include "cl/launch.h"
 #include "claims.h"
+#include "device/opencl.h"
 
 static void expect_ok(struct bench *bench, sonject_status status)
 {
@@ -139,7 +139,7 @@ void bench_add_tetrahedron(struct bench *bench)
                                       &options, &bench->scene.meshes[0]));
 }
 
-void *bench_copy_buffer(struct bench *bench, cl_mem buffer)
+void *bench_copy_buffer(struct bench *bench, device_buffer buffer)
 {
     size_t bytes = 0;
     assert_int_equal(clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof bytes, &bytes, NULL),

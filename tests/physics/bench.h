@@ -54,7 +54,7 @@ struct relief_feature *bench_add_relief(struct bench *bench, enum relief_kind ki
 void bench_add_tetrahedron(struct bench *bench);
 
 /* A copy of a whole buffer of the device, for free(). */
-void *bench_copy_buffer(struct bench *bench, cl_mem buffer);
+void *bench_copy_buffer(struct bench *bench, device_buffer buffer);
 
 /* Works out view, response and placements from the scene as it now is; before any trace. */
 void bench_ready(struct bench *bench);

@@ -1,7 +1,7 @@
 /* Many objects at a time: each is what it is alone where no other is near, and sound between seabed
  * and many targets is what plain cosine sampling finds. */
 #include "bench.h"
-#include "cl/launch.h"
+#include "device/device.h"
 #include "sea.h"
 
 #define PIXELS   400

@@ -6,7 +6,7 @@
 
 #include "../kernel/mesh_samples.h"
 #include "bench.h"
-#include "cl/launch.h"
+#include "device/opencl.h"
 #include "sea.h"
 #include "user_codes.h"
 

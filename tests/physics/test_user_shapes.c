@@ -299,7 +299,7 @@ static void several_codes_beside_a_mesh(void)
 static sonject_status compile(struct sea *sea, const char *code, enum device_program program,
                               const char *kernel_name)
 {
-    cl_kernel kernel;
+    device_kernel kernel;
     user_shapes_clear(shapes_of(sea));
     sea_add_code(sea, "sound.cl", SPHERE_CODE, 1.0, 1.0, 0.0);
     sea_add_code(sea, "my shape.cl", code, 1.0, 1.0, 0.0);
@@ -307,7 +307,7 @@ static sonject_status compile(struct sea *sea, const char *code, enum device_pro
         scene_kernel_create(&sea->bench->report, sea->bench->tracer.device, &sea->bench->scene, 0,
                             program, kernel_name, &kernel);
     if (status == SONJECT_OK)
-        clReleaseKernel(kernel);
+        kernel_release(&kernel);
     return status;
 }
 

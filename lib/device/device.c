@@ -1,13 +1,20 @@
-#include "cl/device.h"
-
+/* Finding and opening devices, and what a process has one of. */
+#define _POSIX_C_SOURCE 200809L
 #include <ctype.h>
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 #include "base/memory.h"
+#include "device/opencl.h"
 
 #define DEVICES_MAX 64
+
+static pid_t process_of_driver; /* 0: no call was made yet; atomic */
+static pthread_mutex_t one_at_a_time = PTHREAD_MUTEX_INITIALIZER;
+static struct shared_device *devices_in_use;
 
 struct found_device {
     cl_platform_id platform;
@@ -15,13 +22,105 @@ struct found_device {
     cl_device_type type;
 };
 
-sonject_status device_failure(struct report *report, const struct device *device, const char *call,
-                              cl_int error)
+const char *opencl_error_name(cl_int error)
 {
+    static const struct {
+        cl_int error;
+        const char *name;
+    } names[] = {
+#define NAME(error) {error, #error}
+        NAME(CL_DEVICE_NOT_FOUND),
+        NAME(CL_DEVICE_NOT_AVAILABLE),
+        NAME(CL_COMPILER_NOT_AVAILABLE),
+        NAME(CL_MEM_OBJECT_ALLOCATION_FAILURE),
+        NAME(CL_OUT_OF_RESOURCES),
+        NAME(CL_OUT_OF_HOST_MEMORY),
+        NAME(CL_BUILD_PROGRAM_FAILURE),
+        NAME(CL_COMPILE_PROGRAM_FAILURE),
+        NAME(CL_LINKER_NOT_AVAILABLE),
+        NAME(CL_LINK_PROGRAM_FAILURE),
+        NAME(CL_MAP_FAILURE),
+        NAME(CL_INVALID_VALUE),
+        NAME(CL_INVALID_DEVICE),
+        NAME(CL_INVALID_CONTEXT),
+        NAME(CL_INVALID_COMMAND_QUEUE),
+        NAME(CL_INVALID_MEM_OBJECT),
+        NAME(CL_INVALID_BINARY),
+        NAME(CL_INVALID_BUILD_OPTIONS),
+        NAME(CL_INVALID_PROGRAM),
+        NAME(CL_INVALID_PROGRAM_EXECUTABLE),
+        NAME(CL_INVALID_KERNEL_NAME),
+        NAME(CL_INVALID_KERNEL),
+        NAME(CL_INVALID_ARG_INDEX),
+        NAME(CL_INVALID_ARG_VALUE),
+        NAME(CL_INVALID_ARG_SIZE),
+        NAME(CL_INVALID_KERNEL_ARGS),
+        NAME(CL_INVALID_WORK_DIMENSION),
+        NAME(CL_INVALID_WORK_GROUP_SIZE),
+        NAME(CL_INVALID_WORK_ITEM_SIZE),
+        NAME(CL_INVALID_OPERATION),
+        NAME(CL_INVALID_BUFFER_SIZE),
+        NAME(CL_INVALID_GLOBAL_WORK_SIZE)
+#undef NAME
+    };
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++)
+        if (names[i].error == error)
+            return names[i].name;
+    return "unknown OpenCL error";
+}
+
+sonject_status opencl_answer(struct report *report, const struct device *device, const char *call,
+                             cl_int error)
+{
+    if (error == CL_SUCCESS)
+        return SONJECT_OK;
     return report_failure(
         report, error == CL_OUT_OF_HOST_MEMORY ? SONJECT_ERROR_MEMORY : SONJECT_ERROR_DEVICE,
-        "device '%s': %s failed with %s (%d)", device->name, call, cl_error_name(error),
+        "device '%s': %s failed with %s (%d)", device->name, call, opencl_error_name(error),
         (int)error);
+}
+
+/* The process is noted before the lock is taken, so that no child waits for one that a thread of
+ * its parent held. */
+sonject_status driver_claim(struct report *report)
+{
+    pid_t first = 0;
+    const pid_t process = getpid();
+    if (__atomic_compare_exchange_n(&process_of_driver, &first, process, false, __ATOMIC_SEQ_CST,
+                                    __ATOMIC_SEQ_CST) ||
+        first == process)
+        return SONJECT_OK;
+    return report_failure(report, SONJECT_ERROR_DEVICE,
+                          "OpenCL was in use when this process was forked, and its calls would "
+                          "wait for ever: start a new process instead (in Python, spawn it), or "
+                          "fork before OpenCL is used");
+}
+
+sonject_status driver_enter(struct report *report)
+{
+    const sonject_status status = driver_claim(report);
+    if (status == SONJECT_OK)
+        pthread_mutex_lock(&one_at_a_time);
+    return status;
+}
+
+void driver_leave(void)
+{
+    pthread_mutex_unlock(&one_at_a_time);
+}
+
+void host_context_retain(struct report *report, void *opencl_context)
+{
+    if (opencl_context && driver_claim(report) == SONJECT_OK)
+        clRetainContext(opencl_context);
+}
+
+void host_context_release(void *opencl_context)
+{
+    const pid_t first = __atomic_load_n(&process_of_driver, __ATOMIC_SEQ_CST);
+    const bool is_inherited = first != 0 && first != getpid(); /* then nothing may be released */
+    if (opencl_context && !is_inherited)
+        clReleaseContext(opencl_context);
 }
 
 /* None may be for want of memory: the loader passes over drivers that cannot be loaded. */
@@ -34,7 +133,7 @@ static sonject_status explain_no_device(struct report *report, cl_int error)
     if (error == CL_SUCCESS)
         return SONJECT_OK;
     return report_failure(report, SONJECT_ERROR_DEVICE, "no OpenCL device answers: %s (%d)",
-                          cl_error_name(error), (int)error);
+                          opencl_error_name(error), (int)error);
 }
 
 /* A platform that fails is passed over where another has a device. */
@@ -117,10 +216,8 @@ sonject_status device_list(struct report *report, sonject_device_info *devices, 
 {
     struct found_device found[DEVICES_MAX];
     *count = 0;
-    sonject_status status = driver_enter(report);
-    if (status != SONJECT_OK)
-        return status;
-    status = find_devices(report, found, count);
+    CHECK(driver_enter(report));
+    const sonject_status status = find_devices(report, found, count);
     const size_t chosen = default_device(found, *count);
     for (size_t i = 0; i < *count && i < capacity; i++) {
         describe(found[i].id, found[i].type, found[i].platform, &devices[i]);
@@ -169,19 +266,61 @@ static sonject_status choose_device(struct report *report, const char *name,
                           name);
 }
 
+/* The device's record, made for its first user and released by its last. */
+static struct shared_device *find_shared(cl_device_id id, cl_context host_context, cl_int *error)
+{
+    *error = CL_SUCCESS;
+    struct shared_device *device = devices_in_use;
+    while (device && (device->id != id || device->host_context != host_context))
+        device = device->next;
+    if (!device) {
+        device = allocate_array(1, sizeof *device);
+        if (!device) {
+            *error = CL_OUT_OF_HOST_MEMORY;
+            return NULL;
+        }
+        if (host_context)
+            *error = clRetainContext(host_context);
+        else
+            device->context = clCreateContext(NULL, 1, &id, NULL, NULL, error);
+        if (*error != CL_SUCCESS) {
+            free(device);
+            return NULL;
+        }
+        device->id = id;
+        if (host_context)
+            device->context = device->host_context = host_context;
+        device->next = devices_in_use;
+        devices_in_use = device;
+    }
+    device->users++;
+    return device;
+}
+
+static void release_shared(struct shared_device *device)
+{
+    if (--device->users > 0)
+        return;
+    struct shared_device **link = &devices_in_use;
+    while (*link != device)
+        link = &(*link)->next;
+    *link = device->next;
+    for (size_t i = 0; i < device->program_count; i++)
+        clReleaseProgram(device->programs[i].program);
+    clReleaseContext(device->context);
+    free(device);
+}
+
 static sonject_status open_queue(struct report *report, struct device *device,
                                  cl_context host_context)
 {
     cl_int error;
-    device->shared = shared_device_find(device->id, host_context, &error);
-    if (!device->shared)
-        return device_failure(report, device, "clCreateContext", error);
+    device->shared = find_shared(device->id, host_context, &error);
+    CHECK(opencl_answer(report, device, "clCreateContext", error));
     device->context = device->shared->context;
-    device->queue = clCreateCommandQueue(device->context, device->id, 0, &error);
-    if (error != CL_SUCCESS) {
-        device->queue = NULL;
-        return device_failure(report, device, "clCreateCommandQueue", error);
-    }
+    cl_command_queue queue = clCreateCommandQueue(device->context, device->id, 0, &error);
+    CHECK(opencl_answer(report, device, "clCreateCommandQueue", error));
+    device->queue = queue;
     return SONJECT_OK;
 }
 
@@ -209,9 +348,7 @@ static sonject_status open_chosen(struct report *report, const sonject_context_p
         clGetDeviceInfo(chosen.id, CL_DEVICE_PLATFORM, sizeof chosen.platform, &chosen.platform,
                         NULL);
     } else {
-        const sonject_status status = choose_device(report, params->device_name, &chosen);
-        if (status != SONJECT_OK)
-            return status;
+        CHECK(choose_device(report, params->device_name, &chosen));
     }
     sonject_device_info info;
     describe(chosen.id, chosen.type, chosen.platform, &info);
@@ -231,8 +368,7 @@ sonject_status device_open(struct report *report, const sonject_context_params *
 {
     *out = NULL;
     struct device *device = allocate_array(1, sizeof *device);
-    if (!device)
-        return report_out_of_memory(report, "the device");
+    CHECK_MEMORY(report, device, "the device");
     sonject_status status = driver_enter(report);
     if (status == SONJECT_OK) {
         status = open_chosen(report, params, device);
@@ -256,7 +392,7 @@ void device_close(struct device **device)
     if ((*device)->shared && driver_enter(&ignored) == SONJECT_OK) {
         if ((*device)->queue)
             clReleaseCommandQueue((*device)->queue);
-        shared_device_release((*device)->shared);
+        release_shared((*device)->shared);
         driver_leave();
     }
     free(*device);

@@ -23,7 +23,7 @@ def flatten(folder, name, seen, lines):
 
 def main():
     output, folder, entries = sys.argv[1], pathlib.Path(sys.argv[2]), sys.argv[3:]
-    parts = ['#include "cl/sources.h"', ""]
+    parts = ['#include "device/device.h"', ""]
     table = []
     for index, entry in enumerate(entries):
         lines = []

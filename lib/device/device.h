@@ -1,0 +1,153 @@
+/* Devices: which there are, one that is open, its buffers, and kernels that run on it. OpenCL runs
+ * them all; its own names stay in this folder (opencl.h). */
+#ifndef SONJECT_DEVICE_DEVICE_H
+#define SONJECT_DEVICE_DEVICE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <sonject/context.h>
+
+#include "base/report.h"
+
+typedef struct _cl_mem *device_buffer;
+typedef struct _cl_kernel *device_kernel;
+
+struct device {
+    bool is_cpu;
+    uint32_t width; /* lanes that the kernels are compiled for */
+    uint32_t compute_units;
+    size_t allocation_limit; /* bytes of one buffer */
+    char name[128];
+    char platform[128];
+    char driver[128];
+
+    /* OpenCL's. */
+    struct _cl_device_id *id;
+    struct shared_device *shared; /* with all contexts of the device */
+    struct _cl_context *context;  /* its */
+    struct _cl_command_queue *queue;
+};
+
+/* Names of all devices, the default one first marked: see sonject_devices. Errors: DEVICE, MEMORY.
+ */
+sonject_status device_list(struct report *report, sonject_device_info *devices, size_t capacity,
+                           size_t *count);
+
+/* Opens the device that the parameters name. Default: the first GPU, else the first CPU, else the
+ * first of any kind. Errors: DEVICE, MEMORY. On failure *device is NULL. */
+sonject_status device_open(struct report *report, const sonject_context_params *params,
+                           struct device **device);
+void device_close(struct device **device);
+
+/* A driver's threads do not come along into a forked child, whose calls would wait for them for
+ * ever: refuses in a child of a process that used the driver. Errors: DEVICE. */
+sonject_status driver_claim(struct report *report);
+
+/* Keeps a host's OpenCL context, NULL: none, alive until it is released. */
+void host_context_retain(struct report *report, void *opencl_context);
+void host_context_release(void *opencl_context);
+
+/* A buffer of bytes (at least 1), filled from contents, or with zeros if contents is NULL. To be
+ * given to buffer_release. Errors: DEVICE, MEMORY. */
+sonject_status buffer_create(struct report *report, struct device *device, size_t bytes,
+                             const void *contents, device_buffer *buffer);
+
+/* Nothing where it is NULL, which it becomes. */
+void buffer_release(device_buffer *buffer);
+
+/* Copies between host and buffer; both wait until it is done. Errors: DEVICE, MEMORY. */
+sonject_status buffer_read(struct report *report, struct device *device, device_buffer buffer,
+                           size_t offset, size_t bytes, void *contents);
+sonject_status buffer_write(struct report *report, struct device *device, device_buffer buffer,
+                            size_t offset, size_t bytes, const void *contents);
+
+/* Makes a buffer's first bytes readable where they lie (on a CPU without a copy); *contents is
+ * valid until buffer_unmap. Errors: DEVICE, MEMORY. */
+sonject_status buffer_map(struct report *report, struct device *device, device_buffer buffer,
+                          size_t bytes, const void **contents);
+void buffer_unmap(struct device *device, device_buffer buffer, const void *contents);
+
+sonject_status buffer_clear(struct report *report, struct device *device, device_buffer buffer,
+                            size_t bytes);
+
+struct kernel_argument {
+    size_t bytes;
+    const void *value;
+};
+
+#define ARGUMENT(variable)                                                                         \
+    {                                                                                              \
+        sizeof(variable), &(variable)                                                              \
+    }
+
+/* Runs the kernel over global[0] x global[1] x global[2] work-items (1...3 dimensions), after all
+ * that was asked of the device before, and waits for it. Errors: DEVICE, MEMORY. */
+sonject_status kernel_run(struct report *report, struct device *device, device_kernel kernel,
+                          const struct kernel_argument *arguments, size_t argument_count,
+                          uint32_t dimensions, const size_t *global);
+
+/* Nothing where it is NULL, which it becomes. */
+void kernel_release(device_kernel *kernel);
+
+enum device_program {
+    PROGRAM_TRACE_ROUGH,
+    PROGRAM_TRACE_ROUGH_MIRRORED,
+    PROGRAM_TRACE_SMOOTH,
+    PROGRAM_TRACE_SMOOTH_MIRRORED,
+    PROGRAM_TRACE_CHAINS,
+    PROGRAM_TRACE_CORNERS,
+    PROGRAM_IMAGE_FORMATION,
+    PROGRAM_ELEMENT_SERIES,
+    PROGRAM_PROBE_USER_SHAPE, /* only with code of users */
+    PROGRAM_COUNT
+};
+
+/* What a program is built with, bits: each takes its time to build, so most scenes do without. */
+enum program_variant {
+    PROGRAM_WITH_MESHES = 1,
+    PROGRAM_WITH_RELIEF = 2,
+    PROGRAM_WITH_ASPECTS = 4 /* the rough part's */
+};
+
+/* The kernels' sources, flattened at build time (embed.py) so that no file is needed at run time.
+ */
+struct embedded_source {
+    const char *name;
+    const char *text; /* terminated */
+    size_t bytes;     /* without the terminator */
+};
+
+/* In the order of enum device_program. */
+extern const struct embedded_source embedded_sources[];
+
+#define PROGRAM_UNITS_MAX 64
+
+/* Code of users that is linked to a program, each unit a translation unit of its own. */
+struct user_code {
+    const char *calls; /* what stands behind the program's source: what it calls of the units */
+    char *const *units;
+    size_t unit_count; /* 1...PROGRAM_UNITS_MAX */
+    /* Makes the message of a unit that does not compile from the compiler's log. */
+    sonject_status (*explain)(struct report *report, const struct device *device, const void *user,
+                              size_t unit, const char *log);
+    const void *user; /* for explain */
+};
+
+/* A kernel of a program, to be given to kernel_release; NULL on failure. The program is built once
+ * a device for all contexts of a process; what of it is kept between processes is the driver's to
+ * say. variant: bits of enum program_variant. Errors: DEVICE (with the first line of the build
+ * log), MEMORY. */
+sonject_status kernel_create(struct report *report, struct device *device,
+                             enum device_program program, uint32_t variant, const char *name,
+                             device_kernel *kernel);
+
+/* The same of a program that users' code is linked to; NULL: none is. Errors: also those of
+ * code->explain. */
+sonject_status kernel_create_with_code(struct report *report, struct device *device,
+                                       enum device_program program, uint32_t variant,
+                                       const struct user_code *code, const char *name,
+                                       device_kernel *kernel);
+
+#endif

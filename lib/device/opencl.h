@@ -1,0 +1,45 @@
+/* What lib/device's files share: OpenCL, and what a process has one of: its driver, and of each
+ * device in use the context and the programs. */
+#ifndef SONJECT_DEVICE_OPENCL_H
+#define SONJECT_DEVICE_OPENCL_H
+
+#define CL_TARGET_OPENCL_VERSION 120
+#include <CL/cl.h>
+#include <CL/cl_ext.h>
+
+#include "base/hash.h"
+#include "device/device.h"
+
+/* All the library's own programs for a device, and those with code of users used last. */
+#define PROGRAMS_KEPT 64
+
+struct kept_program {
+    cl_program program;
+    char key[HASH_TEXT_CAPACITY];
+};
+
+/* What contexts share of a device. Only for use between driver_enter and driver_leave. */
+struct shared_device {
+    struct shared_device *next;
+    size_t users;
+    cl_device_id id;
+    cl_context host_context; /* NULL: `context` is the library's own */
+    cl_context context;
+    size_t program_count;
+    struct kept_program programs[PROGRAMS_KEPT]; /* the one used last first */
+};
+
+/* Claims the driver and locks it, until driver_leave: drivers find their devices anew in each
+ * thread that asks first. Nothing of the caller's is to be called within. Errors: DEVICE. */
+sonject_status driver_enter(struct report *report);
+void driver_leave(void);
+
+/* "CL_OUT_OF_RESOURCES" and the like. */
+const char *opencl_error_name(cl_int error);
+
+/* SONJECT_OK, or where the OpenCL call failed SONJECT_ERROR_DEVICE (MEMORY where the host is out of
+ * memory) with a message that names it and the error. */
+sonject_status opencl_answer(struct report *report, const struct device *device, const char *call,
+                             cl_int error);
+
+#endif

@@ -1,0 +1,221 @@
+/* Kernels: embedded sources, with or without code of users linked to them. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/clock.h"
+#include "base/memory.h"
+#include "device/opencl.h"
+
+#define OPTIONS_CAPACITY 192
+
+/* No fast-math of any kind; correctly rounded division where the compiler has to be told. */
+static size_t language_options(const struct device *device, char options[OPTIONS_CAPACITY])
+{
+    cl_device_fp_config precision = 0;
+    clGetDeviceInfo(device->id, CL_DEVICE_SINGLE_FP_CONFIG, sizeof precision, &precision, NULL);
+    return (size_t)snprintf(options, OPTIONS_CAPACITY, "-cl-std=CL1.2%s",
+                            precision & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT
+                                ? " -cl-fp32-correctly-rounded-divide-sqrt"
+                                : "");
+}
+
+/* A CPU's work-items own their tallies; a GPU's share them. */
+static void program_options(const struct device *device, uint32_t variant, bool has_user_code,
+                            char options[OPTIONS_CAPACITY])
+{
+    const size_t length = language_options(device, options);
+    snprintf(options + length, OPTIONS_CAPACITY - length, " -DWIDTH=%u%s%s%s%s%s",
+             (unsigned)device->width, variant & PROGRAM_WITH_MESHES ? " -DWITH_MESHES" : "",
+             variant & PROGRAM_WITH_RELIEF ? " -DWITH_RELIEF" : "",
+             variant & PROGRAM_WITH_ASPECTS ? " -DWITH_ASPECTS" : "",
+             device->is_cpu ? "" : " -DTALLY_IS_SHARED",
+             has_user_code ? " -DWITH_USER_SHAPES" : "");
+}
+
+/* A program to be built, and what came of it, to be told when the driver is left. */
+struct building {
+    struct device *device;
+    const struct embedded_source *source;
+    const struct user_code *code; /* unit_count 0: none */
+    char options[OPTIONS_CAPACITY];
+    char key[HASH_TEXT_CAPACITY];
+    const char *call; /* that failed */
+    cl_int error;
+    cl_program failed; /* has the log; NULL: none */
+    size_t unit;       /* that did not compile; unit_count: the library's own source */
+    double seconds;    /* 0: it was there */
+};
+
+/* Digits that stand for what a program is made of, on its device; the source is its name's. */
+static sonject_status make_key(struct report *report, struct building *building)
+{
+    struct hash *hash = hash_begin();
+    CHECK_MEMORY(report, hash, "the name of a program");
+    hash_add_text(hash, building->source->name);
+    hash_add_text(hash, building->options);
+    for (size_t i = 0; i < building->code->unit_count; i++)
+        hash_add_text(hash, building->code->units[i]);
+    hash_end(hash, building->key);
+    return SONJECT_OK;
+}
+
+static sonject_status tell_failure(struct report *report, const struct building *building)
+{
+    const struct device *device = building->device;
+    size_t bytes = 0;
+    clGetProgramBuildInfo(building->failed, device->id, CL_PROGRAM_BUILD_LOG, 0, NULL, &bytes);
+    char *log = allocate_array(bytes + 1, 1);
+    CHECK_MEMORY(report, log, "the build log");
+    if (clGetProgramBuildInfo(building->failed, device->id, CL_PROGRAM_BUILD_LOG, bytes, log,
+                              NULL) != CL_SUCCESS)
+        log[0] = '\0';
+    sonject_status status;
+    if (building->unit < building->code->unit_count &&
+        building->error == CL_COMPILE_PROGRAM_FAILURE) {
+        status = building->code->explain(report, device, building->code->user, building->unit, log);
+    } else {
+        /* the first error says what is wrong, warnings before it do not */
+        const char *error = strstr(log, "error:");
+        const char *first = error ? error : log;
+        const size_t length = strcspn(first, "\n");
+        status = report_failure(
+            report, SONJECT_ERROR_DEVICE, "device '%s' cannot build %s: %s: %.*s%s", device->name,
+            building->source->name, opencl_error_name(building->error),
+            (int)(length < 511 ? length : 511), first,
+            error ? "" : ": has its cache, such as ~/.cache/pocl, room on the disk?");
+    }
+    free(log);
+    return status;
+}
+
+/* One translation unit, to be linked or not; NULL: see `building`. */
+static cl_program compile(struct building *building, const char *text, const char *more,
+                          const char *options, bool is_linked)
+{
+    /* LLVM removes its files at a signal, and so fails in what it was about. Kernels that are known
+     * to be right are built again, for the caller to stop as it does elsewhere. */
+    int tries = is_linked ? 1 : 3;
+    const struct device *device = building->device;
+    const char *pieces[] = {text, more};
+    building->call = "clCreateProgramWithSource";
+    cl_program program =
+        clCreateProgramWithSource(device->context, more ? 2 : 1, pieces, NULL, &building->error);
+    if (building->error != CL_SUCCESS)
+        return NULL;
+    do
+        building->error = is_linked ? clCompileProgram(program, 1, &device->id, options, 0, NULL,
+                                                       NULL, NULL, NULL)
+                                    : clBuildProgram(program, 1, &device->id, options, NULL, NULL);
+    while (building->error == CL_BUILD_PROGRAM_FAILURE && --tries > 0);
+    if (building->error == CL_SUCCESS)
+        return program;
+    building->failed = program;
+    return NULL;
+}
+
+/* The source with all units; NULL: see `building`. */
+static cl_program compile_and_link(struct building *building)
+{
+    const struct user_code *code = building->code;
+    cl_program programs[PROGRAM_UNITS_MAX + 1];
+    cl_program linked = NULL;
+    char options[OPTIONS_CAPACITY];
+    cl_uint count = 0;
+    bool compiles = true;
+    language_options(building->device, options);
+    for (building->unit = 0; compiles && building->unit <= code->unit_count; building->unit++) {
+        programs[count] =
+            building->unit < code->unit_count
+                ? compile(building, code->units[count], NULL, options, true)
+                : compile(building, building->source->text, code->calls, building->options, true);
+        compiles = programs[count] != NULL;
+        if (!compiles)
+            break;
+        count++;
+    }
+    if (compiles) {
+        building->call = "clLinkProgram, which users' shapes need,";
+        linked = clLinkProgram(building->device->context, 1, &building->device->id, "", count,
+                               programs, NULL, NULL, &building->error);
+        if (building->error != CL_SUCCESS) {
+            building->failed = linked;
+            linked = NULL;
+        }
+    }
+    while (count > 0)
+        clReleaseProgram(programs[--count]);
+    return linked;
+}
+
+/* Makes a program the first of those kept, from the place where it was. */
+static void put_first(struct shared_device *shared, size_t place, struct kept_program kept)
+{
+    memmove(shared->programs + 1, shared->programs, place * sizeof *shared->programs);
+    shared->programs[0] = kept;
+}
+
+/* The program stays the device's, where the one that was not used for longest may go; NULL: see
+ * `building`. */
+static cl_program find_or_build(struct building *building)
+{
+    struct shared_device *shared = building->device->shared;
+    for (size_t i = 0; i < shared->program_count; i++) {
+        if (strcmp(shared->programs[i].key, building->key) == 0) {
+            put_first(shared, i, shared->programs[i]);
+            return shared->programs[0].program;
+        }
+    }
+    const double start = clock_seconds();
+    struct kept_program kept;
+    kept.program = building->code->unit_count > 0
+                       ? compile_and_link(building)
+                       : compile(building, building->source->text, NULL, building->options, false);
+    if (!kept.program)
+        return NULL;
+    building->seconds = clock_seconds() - start;
+    memcpy(kept.key, building->key, sizeof kept.key);
+    if (shared->program_count == PROGRAMS_KEPT)
+        clReleaseProgram(shared->programs[--shared->program_count].program);
+    put_first(shared, shared->program_count++, kept);
+    return kept.program;
+}
+
+sonject_status kernel_create(struct report *report, struct device *device,
+                             enum device_program program, uint32_t variant, const char *name,
+                             device_kernel *kernel)
+{
+    return kernel_create_with_code(report, device, program, variant, NULL, name, kernel);
+}
+
+sonject_status kernel_create_with_code(struct report *report, struct device *device,
+                                       enum device_program program, uint32_t variant,
+                                       const struct user_code *code, const char *name,
+                                       device_kernel *kernel)
+{
+    static const struct user_code none = {0};
+    struct building building = {.device = device,
+                                .source = &embedded_sources[program],
+                                .code = code ? code : &none,
+                                .error = CL_SUCCESS};
+    *kernel = NULL;
+    program_options(device, variant, code != NULL, building.options);
+    CHECK(make_key(report, &building));
+    CHECK(driver_enter(report));
+    cl_program built = find_or_build(&building);
+    if (built) {
+        building.call = "clCreateKernel";
+        *kernel = clCreateKernel(built, name, &building.error);
+    }
+    driver_leave();
+    if (building.seconds > 0.0)
+        report_news(report, "%s built in %.1f s", building.source->name, building.seconds);
+    if (building.failed) {
+        const sonject_status status = tell_failure(report, &building);
+        clReleaseProgram(building.failed);
+        return status;
+    }
+    if (building.error != CL_SUCCESS)
+        *kernel = NULL;
+    return opencl_answer(report, device, building.call, building.error);
+}
