@@ -12,7 +12,6 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "image/canvas.h"
-#include "image/font.h"
 #include "measure/sample_comparison.h"
 #include "swath/raster_file.h"
 

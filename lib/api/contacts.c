@@ -7,7 +7,7 @@
 
 #include "api/handles.h"
 #include "base/memory.h"
-#include "image/speckle_statistics.h"
+#include "image/statistics.h"
 #include "measure/contact_ruler.h"
 
 #define NUMBER(name)                                                                               \

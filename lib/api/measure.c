@@ -7,8 +7,8 @@
 #include "api/contacts.h"
 #include "api/handles.h"
 #include "base/memory.h"
-#include "image/speckle_statistics.h"
-#include "image/transfer.h"
+#include "image/statistics.h"
+#include "image/raster.h"
 #include "measure/seam.h"
 #include "swath/swath_file.h"
 

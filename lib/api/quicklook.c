@@ -8,7 +8,7 @@
 
 #include "base/memory.h"
 #include "image/plot.h"
-#include "image/transfer.h"
+#include "image/raster.h"
 #include "swath/geometry_notes.h"
 #include "swath/raster_file.h"
 #include "swath/swath_file.h"

@@ -7,7 +7,6 @@
 #include "base/memory.h"
 #include "dataset/campaign_documents.h"
 #include "image/canvas.h"
-#include "image/font.h"
 #include "swath/raster_file.h"
 
 #define CELLS_ACROSS 8

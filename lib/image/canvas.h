@@ -1,8 +1,10 @@
-/* A picture to draw on: RGB bytes, row 0 at the top. Everything outside is cut off. */
+/* A picture to draw on, RGB bytes, row 0 at the top; everything outside is cut off. And a plain
+ * stroke font for ASCII text on it, with smooth edges. */
 #ifndef SONJECT_IMAGE_CANVAS_H
 #define SONJECT_IMAGE_CANVAS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 struct canvas {
@@ -19,15 +21,28 @@ struct colour {
 bool canvas_create(struct canvas *canvas, uint32_t height, uint32_t width,
                    struct colour background);
 
-/* coverage 0...1: how much of the pixel takes the colour. */
-void canvas_blend(struct canvas *canvas, int64_t x, int64_t y, struct colour colour,
-                  double coverage);
-
 void canvas_fill(struct canvas *canvas, int64_t x, int64_t y, int64_t width, int64_t height,
                  struct colour colour);
 
 /* A line one pixel wide around the rectangle, outside it. */
 void canvas_frame(struct canvas *canvas, int64_t x, int64_t y, int64_t width, int64_t height,
                   struct colour colour);
+
+#define FONT_CAPITAL_HEIGHT 12 /* pixels */
+#define FONT_ASCENT         14 /* of the highest stroke above the baseline */
+#define FONT_DESCENT        5
+
+enum text_direction {
+    TEXT_RIGHTWARDS,
+    TEXT_UPWARDS
+};
+
+/* Length of the first `count` characters, or of the whole text if that is shorter, in pixels. */
+int64_t text_length(const char *text, size_t count);
+
+/* Draws at most `count` characters; x, y: where the baseline begins. Other than printable ASCII
+ * characters become boxes. */
+void draw_text(struct canvas *canvas, int64_t x, int64_t y, const char *text, size_t count,
+               enum text_direction direction, struct colour colour);
 
 #endif

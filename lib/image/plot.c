@@ -6,9 +6,6 @@
 
 #include "base/memory.h"
 #include "image/canvas.h"
-#include "image/font.h"
-#include "image/plot_cells.h"
-#include "image/plot_ticks.h"
 
 /* All lengths are in pixels. */
 #define SINGLE_PANEL      800.0 /* longer side of a panel that stands alone */
@@ -23,6 +20,201 @@
 #define BAR_WIDTH         14
 #define TICK_EVERY_ROW    60.0 /* no closer than this */
 #define TICK_EVERY_COLUMN 80.0
+
+#define LONGEST_SHAPE 5.0 /* length to width: longer images are drawn wider than they are */
+
+/* The energies of all float amplitudes lie between these. */
+#define LOWEST_DB      -900.0
+#define HIGHEST_DB     780.0
+#define BINS_PER_DB    100
+#define PERCENTILE_LOW 0.03
+#define PERCENTILE_TOP 0.998
+
+#define LARGEST_EXPONENT 12
+#define LARGEST_NUMBER   1e6  /* ticks from 0: more digits than anyone reads */
+#define SLACK            1e-9 /* of a step, so that an end that is a tick counts as one */
+
+static double power_of_ten(int exponent)
+{
+    double power = 1.0;
+    for (int i = 0; i < exponent; i++)
+        power *= 10.0;
+    return power;
+}
+
+static double step_of(const struct plot_ticks *ticks)
+{
+    return ticks->exponent < 0 ? ticks->multiple / power_of_ten(-ticks->exponent)
+                               : ticks->multiple * power_of_ten(ticks->exponent);
+}
+
+/* The next larger step: 1, 2, 5, 10, ... */
+static void widen(struct plot_ticks *ticks)
+{
+    if (ticks->multiple == 1) {
+        ticks->multiple = 2;
+    } else if (ticks->multiple == 2) {
+        ticks->multiple = 5;
+    } else {
+        ticks->multiple = 1;
+        ticks->exponent++;
+    }
+}
+
+struct plot_ticks plot_ticks_between(double low, double high, double most)
+{
+    const struct plot_ticks none = {0, -1, 1, 0};
+    struct plot_ticks ticks = {0, -1, 1, -LARGEST_EXPONENT};
+    if (!(isfinite(low) && isfinite(high) && high - low >= step_of(&ticks) && most >= 1.0))
+        return none;
+    while (ticks.exponent <= LARGEST_EXPONENT && step_of(&ticks) * (most + SLACK) < high - low)
+        widen(&ticks);
+    const double first = ceil(low / step_of(&ticks) - SLACK);
+    const double last = floor(high / step_of(&ticks) + SLACK);
+    if (ticks.exponent > LARGEST_EXPONENT || fabs(first) > LARGEST_NUMBER ||
+        fabs(last) > LARGEST_NUMBER)
+        return none;
+    ticks.first = (int64_t)first;
+    ticks.last = (int64_t)last;
+    return ticks;
+}
+
+double plot_tick_value(const struct plot_ticks *ticks, int64_t number)
+{
+    return (double)number * step_of(ticks);
+}
+
+const char *plot_tick_label(const struct plot_ticks *ticks, int64_t number,
+                            char label[TICK_LABEL_CAPACITY])
+{
+    /* written backwards from the end: at most 8 digits, 12 decimals or zeros, point and sign */
+    char *at = label + TICK_LABEL_CAPACITY;
+    uint64_t digits = (uint64_t)(number < 0 ? -number : number) * (uint64_t)ticks->multiple;
+    *--at = '\0';
+    for (int i = 0; number != 0 && i < ticks->exponent; i++)
+        *--at = '0';
+    for (int i = ticks->exponent; i < 0; i++, digits /= 10)
+        *--at = (char)('0' + digits % 10);
+    if (ticks->exponent < 0)
+        *--at = '.';
+    do {
+        *--at = (char)('0' + digits % 10);
+        digits /= 10;
+    } while (digits > 0);
+    if (number < 0)
+        *--at = '-';
+    return at;
+}
+
+/* One axis of a panel: `down` image pixels are averaged to a cell, which is drawn `up` pixels wide;
+ * one of the two is 1. */
+struct plot_scale {
+    uint64_t pixels;
+    uint32_t up, down;
+    uint32_t cells;
+};
+
+/* The scale that draws `pixels` pixels about `length` picture pixels long. */
+static struct plot_scale scale_of(uint64_t pixels, double length)
+{
+    struct plot_scale scale = {pixels, 1, 1, 0};
+    const double size = length / (double)pixels;
+    if (size >= 1.0)
+        scale.up = (uint32_t)floor(size + 0.5);
+    else
+        scale.down = (uint32_t)floor(fmin(1.0 / size, 4e9) + 0.5);
+    scale.cells = (uint32_t)((pixels - 1) / scale.down + 1);
+    return scale;
+}
+
+/* Scales that make the longer side of a panel about `target` pixels long and keep distances on
+ * both axes in proportion, as far as whole factors can. */
+static void choose_scales(const struct plot_frame *frame, double target,
+                          struct plot_scale *along_track, struct plot_scale *range)
+{
+    const double ratio = frame->row_spacing_m / frame->column_spacing_m;
+    const double row_size = isfinite(ratio) && ratio > 0.0 ? ratio : 1.0;
+    const double height = row_size * (double)frame->rows;
+    const double width = (double)frame->columns;
+    const double longest = fmax(height, width);
+    const double shortest = longest / LONGEST_SHAPE;
+    *along_track = scale_of(frame->rows, fmax(height, shortest) / longest * target);
+    *range = scale_of(frame->columns, fmax(width, shortest) / longest * target);
+}
+
+/* Mean energies in dB (-infinity where there is none) or mean differences of each cell. Pixels that
+ * are no numbers count for nothing; a cell of nothing else is NaN. */
+static sonject_status fill_cells(struct report *report, const struct plot_panel *panel,
+                                 const struct plot_scale *along_track,
+                                 const struct plot_scale *range, float *values)
+{
+    double *sums = allocate_array(range->cells, sizeof *sums);
+    uint64_t *counts = allocate_array(range->cells, sizeof *counts);
+    const bool is_complete = sums && counts;
+    for (uint64_t row = 0; is_complete && row < along_track->pixels; row++) {
+        const float *pixels = panel->amplitude + row * range->pixels;
+        for (uint64_t i = 0; i < range->pixels; i++) {
+            const double value = (double)pixels[i];
+            if (isnan(value))
+                continue;
+            sums[i / range->down] += panel->is_difference ? value : value * value;
+            counts[i / range->down]++;
+        }
+        if ((row + 1) % along_track->down != 0 && row + 1 != along_track->pixels)
+            continue;
+        for (size_t cell = 0; cell < range->cells; cell++) {
+            const double mean = sums[cell] / (double)counts[cell]; /* NaN if there is none */
+            *values++ = (float)(panel->is_difference ? mean : 10.0 * log10(mean));
+            sums[cell] = 0.0;
+            counts[cell] = 0;
+        }
+    }
+    free(sums);
+    free(counts);
+    CHECK_MEMORY(report, is_complete, "a picture");
+    return SONJECT_OK;
+}
+
+/* The middle of the bin below whose end at least `share` of all values lie. */
+static double percentile(const uint32_t *bins, uint64_t total, double share)
+{
+    uint64_t passed = 0;
+    size_t bin = 0;
+    while ((double)(passed += bins[bin]) < share * (double)total)
+        bin++;
+    return LOWEST_DB + ((double)bin + 0.5) / BINS_PER_DB;
+}
+
+/* The 3rd and 99.8th percentile of the finite values, at least 1 dB apart. */
+static sonject_status find_limits(struct report *report, const float *decibels, size_t count,
+                                  double *minimum, double *maximum)
+{
+    const size_t bin_count = (size_t)(HIGHEST_DB - LOWEST_DB) * BINS_PER_DB;
+    uint32_t *bins = allocate_array(bin_count, sizeof *bins);
+    CHECK_MEMORY(report, bins, "a picture");
+    uint64_t total = 0;
+    for (size_t i = 0; i < count; i++) {
+        const double value = (double)decibels[i];
+        if (value > LOWEST_DB && value < HIGHEST_DB) {
+            bins[(size_t)((value - LOWEST_DB) * BINS_PER_DB)]++;
+            total++;
+        }
+    }
+    if (total > 0) {
+        *minimum = percentile(bins, total, PERCENTILE_LOW);
+        *maximum = percentile(bins, total, PERCENTILE_TOP);
+    }
+    free(bins);
+    if (total == 0)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "nothing to draw: no pixel of the image is above 0");
+    if (*maximum - *minimum < 1.0) {
+        const double middle = 0.5 * (*minimum + *maximum);
+        *minimum = middle - 10.0;
+        *maximum = middle + 10.0;
+    }
+    return SONJECT_OK;
+}
 
 static const struct colour background = {250, 250, 250};
 static const struct colour ink = {40, 40, 40};
@@ -219,7 +411,7 @@ static sonject_status draw_panel(struct report *report, struct plot *plot, uint3
     const struct plot_panel *panel = &plot->panels[number];
     const struct colour_scale scale = scale_of_panel(plot, number);
     const char *title = panel->title ? panel->title : "";
-    CHECK(plot_cells(report, panel, &plot->along_track, &plot->range, plot->values));
+    CHECK(fill_cells(report, panel, &plot->along_track, &plot->range, plot->values));
     const int64_t cell_height = plot->along_track.up;
     const int64_t cell_width = plot->range.up;
     for (uint32_t row = 0; row < plot->along_track.cells; row++)
@@ -251,9 +443,9 @@ static sonject_status choose_limits(struct report *report, struct plot *plot)
     if (first == plot->count)
         return SONJECT_OK; /* no panel needs the grey scale */
     const sonject_status status =
-        plot_cells(report, &plot->panels[first], &plot->along_track, &plot->range, plot->values);
+        fill_cells(report, &plot->panels[first], &plot->along_track, &plot->range, plot->values);
     return status != SONJECT_OK ? status
-                                : plot_limits(report, plot->values,
+                                : find_limits(report, plot->values,
                                               (size_t)plot->along_track.cells * plot->range.cells,
                                               &plot->minimum_db, &plot->maximum_db);
 }
@@ -291,7 +483,7 @@ sonject_status plot_panels(struct report *report, const struct plot_frame *frame
     plot.panels = panels;
     plot.count = count;
     plot.range_label = frame->range_label ? frame->range_label : "";
-    plot_scales(frame, count > 1 ? SIDE_BY_SIDE : SINGLE_PANEL, &plot.along_track, &plot.range);
+    choose_scales(frame, count > 1 ? SIDE_BY_SIDE : SINGLE_PANEL, &plot.along_track, &plot.range);
     plot.panel_height = (int64_t)plot.along_track.cells * plot.along_track.up;
     plot.panel_width = (int64_t)plot.range.cells * plot.range.up;
     plot.row_ticks = axis_ticks(frame->first_along_track_m, frame->row_spacing_m, &plot.along_track,

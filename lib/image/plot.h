@@ -35,4 +35,23 @@ sonject_status plot_panels(struct report *report, const struct plot_frame *frame
                            const struct plot_panel *panels, uint32_t count, uint8_t **picture,
                            uint32_t *height, uint32_t *width);
 
+/* Ticks of an axis: multiples of 1, 2 or 5 times a power of ten. */
+#define TICK_LABEL_CAPACITY 40
+
+struct plot_ticks {
+    int64_t first, last; /* a tick is number * multiple * 10^exponent; none if last < first */
+    int multiple;        /* 1, 2 or 5 */
+    int exponent;
+};
+
+/* The closest ticks within low...high of which there are at most about `most`; none where the axis
+ * has no use for them (not finite, or so narrow that labels would not differ). */
+struct plot_ticks plot_ticks_between(double low, double high, double most);
+
+double plot_tick_value(const struct plot_ticks *ticks, int64_t number);
+
+/* The tick as a decimal number, the same under every locale. Returns label. */
+const char *plot_tick_label(const struct plot_ticks *ticks, int64_t number,
+                            char label[TICK_LABEL_CAPACITY]);
+
 #endif

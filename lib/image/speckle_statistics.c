@@ -1,4 +1,4 @@
-#include "image/speckle_statistics.h"
+#include "image/statistics.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,28 +1,15 @@
-#include "image/speckle_texture.h"
-
 #include <math.h>
 #include <stdbool.h>
+
+#include "image/synthetic.h"
 
 #define CONSTANT_SHAPE  1e6
 #define HALF_STEPS      (TEXTURE_REACH * TEXTURE_STEPS_PER_UNIT)
 #define DENSITY_STEPS   16384
 #define LOWEST_EXPONENT -36.0 /* e^-36 = 2e-16 of the peak: nothing of the density is left */
 
-#define EXPONENTIAL_TERMS 14
-static const double inverse_factorials[EXPONENTIAL_TERMS] = {1.0,
-                                                             1.0,
-                                                             1.0 / 2.0,
-                                                             1.0 / 6.0,
-                                                             1.0 / 24.0,
-                                                             1.0 / 120.0,
-                                                             1.0 / 720.0,
-                                                             1.0 / 5040.0,
-                                                             1.0 / 40320.0,
-                                                             1.0 / 362880.0,
-                                                             1.0 / 3628800.0,
-                                                             1.0 / 39916800.0,
-                                                             1.0 / 479001600.0,
-                                                             1.0 / 6227020800.0};
+static const double factorials[] = {1,    1,     2,      6,       24,       120,       720,
+                                    5040, 40320, 362880, 3628800, 39916800, 479001600, 6227020800};
 
 /* e^value for value < 700, to 1e-15: by + - * / alone, unlike the mathematics library's. */
 static double exponential(double value)
@@ -33,8 +20,8 @@ static double exponential(double value)
     /* ln 2 in two parts, the first with few bits, so that the remainder keeps its digits */
     const double rest = (value - power * 0.693145751953125) - power * 1.42860682030941723e-6;
     double sum = 0.0;
-    for (int term = EXPONENTIAL_TERMS - 1; term >= 0; term--)
-        sum = sum * rest + inverse_factorials[term];
+    for (int term = 13; term >= 0; term--)
+        sum = sum * rest + 1.0 / factorials[term];
     return ldexp(sum, (int)power);
 }
 

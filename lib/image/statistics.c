@@ -7,8 +7,8 @@
 
 #include "base/memory.h"
 
-#define PASSES          3
-#define COLUMNS_AT_ONCE 16 /* of float: a cache line */
+#define PASSES        3
+#define LINES_AT_ONCE 16 /* of float: a cache line */
 
 #define SIGN_BIT  UINT32_C(0x80000000)
 #define SORT_BITS 11 /* at a time: three times are enough for all 32 */
@@ -53,13 +53,6 @@ static sonject_status line_mean_init(struct line_mean *mean, struct report *repo
     mean->after = allocate_array(padded_length(mean), sizeof(double));
     return mean->line && mean->before && mean->after ? SONJECT_OK
                                                      : report_out_of_memory(report, "a local mean");
-}
-
-static void line_mean_clear(struct line_mean *mean)
-{
-    free(mean->line);
-    free(mean->before);
-    free(mean->after);
 }
 
 /* Sums within blocks of the window's width: any window is the end of one block and the start of the
@@ -114,61 +107,38 @@ static void smooth_line(struct line_mean *mean, double *scratch)
     }
 }
 
-static sonject_status smooth_rows(struct report *report, const float *values, size_t rows,
-                                  size_t columns, double deviation, float *result)
+/* Smooths lines of `length` values, which lie `apart` values from one another as the values of one
+ * lie `step`, some together, as memory is laid out by rows. `from` and `to` may be the same. */
+static sonject_status smooth_lines(struct report *report, const float *from, float *to,
+                                   size_t lines, size_t apart, size_t length, size_t step,
+                                   double deviation)
 {
     struct line_mean mean;
-    sonject_status status = line_mean_init(&mean, report, columns, deviation);
-    double *scratch = allocate_array(columns, sizeof *scratch);
-    if (status == SONJECT_OK && !scratch)
-        status = report_out_of_memory(report, "a local mean");
-    for (size_t row = 0; status == SONJECT_OK && row < rows; row++) {
-        double *line = mean.line + mean.radius;
-        for (size_t i = 0; i < columns; i++)
-            line[i] = (double)values[row * columns + i];
-        smooth_line(&mean, scratch);
-        for (size_t i = 0; i < columns; i++)
-            result[row * columns + i] = (float)line[i];
-    }
-    free(scratch);
-    line_mean_clear(&mean);
-    return status;
-}
-
-/* A few columns together, as memory is laid out by rows. gathered: COLUMNS_AT_ONCE x rows. */
-static void smooth_some_columns(struct line_mean *mean, float *map, size_t columns, size_t first,
-                                size_t count, double *gathered, double *scratch)
-{
-    const size_t rows = mean->length;
-    double *line = mean->line + mean->radius;
-    for (size_t row = 0; row < rows; row++)
-        for (size_t i = 0; i < count; i++)
-            gathered[i * rows + row] = (double)map[row * columns + first + i];
-    for (size_t i = 0; i < count; i++) {
-        memcpy(line, gathered + i * rows, rows * sizeof *line);
-        smooth_line(mean, scratch);
-        memcpy(gathered + i * rows, line, rows * sizeof *line);
-    }
-    for (size_t row = 0; row < rows; row++)
-        for (size_t i = 0; i < count; i++)
-            map[row * columns + first + i] = (float)gathered[i * rows + row];
-}
-
-static sonject_status smooth_columns(struct report *report, float *map, size_t rows, size_t columns,
-                                     double deviation)
-{
-    struct line_mean mean;
-    sonject_status status = line_mean_init(&mean, report, rows, deviation);
-    double *scratch = allocate_array(rows, sizeof *scratch);
-    double *gathered = allocate_array(rows, COLUMNS_AT_ONCE * sizeof *gathered);
+    sonject_status status = line_mean_init(&mean, report, length, deviation);
+    double *scratch = allocate_array(length, sizeof *scratch);
+    double *gathered = allocate_array(length, LINES_AT_ONCE * sizeof *gathered);
     if (status == SONJECT_OK && !(scratch && gathered))
         status = report_out_of_memory(report, "a local mean");
-    for (size_t first = 0; status == SONJECT_OK && first < columns; first += COLUMNS_AT_ONCE)
-        smooth_some_columns(&mean, map, columns, first, smaller(COLUMNS_AT_ONCE, columns - first),
-                            gathered, scratch);
+    for (size_t first = 0; status == SONJECT_OK && first < lines; first += LINES_AT_ONCE) {
+        const size_t count = smaller(LINES_AT_ONCE, lines - first);
+        double *line = mean.line + mean.radius;
+        for (size_t i = 0; i < length; i++)
+            for (size_t k = 0; k < count; k++)
+                gathered[k * length + i] = (double)from[(first + k) * apart + i * step];
+        for (size_t k = 0; k < count; k++) {
+            memcpy(line, gathered + k * length, length * sizeof *line);
+            smooth_line(&mean, scratch);
+            memcpy(gathered + k * length, line, length * sizeof *line);
+        }
+        for (size_t i = 0; i < length; i++)
+            for (size_t k = 0; k < count; k++)
+                to[(first + k) * apart + i * step] = (float)gathered[k * length + i];
+    }
     free(gathered);
     free(scratch);
-    line_mean_clear(&mean);
+    free(mean.line);
+    free(mean.before);
+    free(mean.after);
     return status;
 }
 
@@ -177,8 +147,8 @@ sonject_status local_mean(struct report *report, const float *values, size_t row
 {
     if (rows == 0 || columns == 0)
         return SONJECT_OK;
-    CHECK(smooth_rows(report, values, rows, columns, column_deviation, mean));
-    return smooth_columns(report, mean, rows, columns, row_deviation);
+    CHECK(smooth_lines(report, values, mean, rows, columns, columns, 1, column_deviation));
+    return smooth_lines(report, mean, mean, columns, 1, rows, columns, row_deviation);
 }
 
 static double mean_of(const float *values, size_t count)
@@ -200,16 +170,6 @@ void mean_and_deviation(const float *values, size_t count, double *mean, double 
     *deviation = sqrt(sum / (double)count);
 }
 
-static double block_ratio(const float *intensity, const float *level, size_t columns,
-                          size_t block_rows, size_t block_columns)
-{
-    double sum = 0.0;
-    for (size_t row = 0; row < block_rows; row++)
-        for (size_t i = 0; i < block_columns; i++)
-            sum += (double)intensity[row * columns + i] / (double)level[row * columns + i];
-    return sum / (double)(block_rows * block_columns);
-}
-
 /* What is left in the deepest shadow of the patch is noise: ambient and receiver noise, and the
  * sidelobes and echoes by other ways that fill real shadows. The darkest block of 7 x 7 pixels
  * finds it: large enough to average speckle (some twenty looks, so the smallest of many is perhaps
@@ -221,23 +181,23 @@ static double block_ratio(const float *intensity, const float *level, size_t col
  * noise is not above -20 dB; where nothing is as dark as that, -22.5 dB is taken. And a picture
  * that was clipped at its dark end says less than is there, so it is not below -30 dB. Blocks of
  * nothing but 0 are blank corners, not water. */
-sonject_status estimate_noise_floor(struct report *report, const float *intensity,
-                                    const float *level, size_t rows, size_t columns, double *ratio)
+double estimate_noise_floor(const float *intensity, const float *level, size_t rows, size_t columns)
 {
-    (void)report;
-    const size_t block_rows = smaller(NOISE_BLOCK, rows);
-    const size_t block_columns = smaller(NOISE_BLOCK, columns);
+    const size_t high = smaller(NOISE_BLOCK, rows);
+    const size_t wide = smaller(NOISE_BLOCK, columns);
     double darkest = INFINITY;
-    for (size_t row = 0; rows - row >= block_rows && row < rows; row += block_rows)
-        for (size_t i = 0; columns - i >= block_columns && i < columns; i += block_columns) {
-            const size_t corner = row * columns + i;
-            const double here =
-                block_ratio(intensity + corner, level + corner, columns, block_rows, block_columns);
-            if (here > 0.0 && here < darkest)
-                darkest = here;
+    for (size_t row = 0; row + high <= rows && row < rows; row += high)
+        for (size_t column = 0; column + wide <= columns && column < columns; column += wide) {
+            double sum = 0.0;
+            for (size_t i = 0; i < high * wide; i++) {
+                const size_t at = (row + i / wide) * columns + column + i % wide;
+                sum += (double)intensity[at] / (double)level[at];
+            }
+            sum /= (double)(high * wide);
+            if (sum > 0.0 && sum < darkest)
+                darkest = sum;
         }
-    *ratio = darkest > NOISE_HIGHEST ? NOISE_UNKNOWN : fmax(NOISE_LOWEST, darkest);
-    return SONJECT_OK;
+    return darkest > NOISE_HIGHEST ? NOISE_UNKNOWN : fmax(NOISE_LOWEST, darkest);
 }
 
 /* A whole number that is larger the larger the float is. */
@@ -267,14 +227,14 @@ static uint32_t *sorted_over_mean(const float *values, size_t count)
     const double mean = mean_of(values, count);
     uint32_t *sorted = allocate_array(count, sizeof *sorted);
     uint32_t *scratch = allocate_array(count, sizeof *scratch);
+    for (size_t i = 0; sorted && scratch && i < count; i++)
+        scratch[i] = order_of(0.0f + (mean != 0.0 ? (float)((double)values[i] / mean) : values[i]));
     if (sorted && scratch) {
-        for (size_t i = 0; i < count; i++)
-            scratch[i] =
-                order_of(0.0f + (mean != 0.0 ? (float)((double)values[i] / mean) : values[i]));
         sort_by_bits(scratch, count, 0, sorted);
         sort_by_bits(sorted, count, SORT_BITS, scratch);
         sort_by_bits(scratch, count, 2 * SORT_BITS, sorted);
-    } else {
+    }
+    if (!scratch) {
         free(sorted);
         sorted = NULL;
     }
@@ -308,14 +268,13 @@ sonject_status histogram_distance(struct report *report, const float *a, const f
         return SONJECT_OK;
     uint32_t *sorted_a = sorted_over_mean(a, count);
     uint32_t *sorted_b = sorted_over_mean(b, count);
-    sonject_status status = SONJECT_OK;
-    if (sorted_a && sorted_b)
+    const bool is_complete = sorted_a && sorted_b;
+    if (is_complete)
         *distance = largest_distance(sorted_a, sorted_b, count);
-    else
-        status = report_out_of_memory(report, "a histogram");
     free(sorted_a);
     free(sorted_b);
-    return status;
+    CHECK_MEMORY(report, is_complete, "a histogram");
+    return SONJECT_OK;
 }
 
 double correlation(const float *a, const float *b, size_t count)

@@ -1,8 +1,9 @@
-/* Statistics of image patches. */
+/* Statistics of image patches, and of their speckle. */
 #ifndef SONJECT_IMAGE_STATISTICS_H
 #define SONJECT_IMAGE_STATISTICS_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 #include "base/report.h"
 
@@ -20,10 +21,9 @@ void mean_and_deviation(const float *values, size_t count, double *mean, double 
 /* Noise floor over the local mean, as an energy ratio, from the darkest block of about 7 x 7 pixels
  * of the patch; at least 0.001 (-30 dB). Where it is above 0.01 (-20 dB) there is no shadow in the
  * patch and the darkest block is merely seabed: then 0.0056 (-22.5 dB). intensity and level: rows x
- * columns, level > 0. Errors: MEMORY.
- */
-sonject_status estimate_noise_floor(struct report *report, const float *intensity,
-                                    const float *level, size_t rows, size_t columns, double *ratio);
+ * columns, level > 0. */
+double estimate_noise_floor(const float *intensity, const float *level, size_t rows,
+                            size_t columns);
 
 /* Largest distance between the cumulative distributions of two samples (Kolmogorov-Smirnov), each
  * first divided by its own mean: 0...1. Errors: MEMORY. */
@@ -32,5 +32,41 @@ sonject_status histogram_distance(struct report *report, const float *a, const f
 
 /* Pearson correlation of two samples; 0 where one of them is constant. */
 double correlation(const float *a, const float *b, size_t count);
+
+/* What a measured magnitude image says about its own speckle: contrast, looks, texture,
+ * correlation. Formulas: kernels/MATH.md, "Blending". */
+
+#define SPECKLE_LAGS  8  /* 0...7 pixels */
+#define SPECKLE_BLOCK 32 /* pixels on a side */
+
+struct speckle_axis {
+    double correlation[SPECKLE_LAGS]; /* of the intensity, texture taken off; 1 at lag 0 */
+    double lag_one_error;             /* standard error of correlation[1] */
+    double length_pixels;             /* where the intensity's own correlation falls to 1/e, at most
+                                         SPECKLE_LAGS - 1 */
+};
+
+/* Medians over blocks, each over its own linear trend, so that a stone or a shadow in the region
+ * does not count. */
+struct speckle_statistics {
+    size_t blocks;             /* that were used; 0: the region is too small or has no speckle, and
+                                  nothing else is filled in */
+    double amplitude_contrast; /* standard deviation over mean; Rayleigh: 0.523 */
+    double intensity_contrast; /* likewise; Rayleigh: 1 */
+    double looks;              /* >= 1, independent samples averaged in a pixel */
+    double looks_error;        /* standard error */
+    double shape;              /* of the K distribution of intensity; INFINITY: no texture */
+    struct speckle_axis along_track, range;
+};
+
+/* Of the region rows x columns of an image of intensities >= 0, whose rows lie stride floats apart.
+ * excluded: the same layout, not 0 for pixels that do not count; may be NULL. Errors: MEMORY. */
+sonject_status measure_speckle(struct report *report, const float *intensity,
+                               const uint8_t *excluded, size_t rows, size_t columns, size_t stride,
+                               struct speckle_statistics *statistics);
+
+/* The amplitude at which an image is cut off: its largest one, if that piles up there; else
+ * INFINITY. amplitudes: count values >= 0. */
+double find_saturation(const float *amplitudes, size_t count);
 
 #endif

@@ -3,7 +3,7 @@
 #ifndef SONJECT_INJECT_MATCH_H
 #define SONJECT_INJECT_MATCH_H
 
-#include "image/speckle_statistics.h"
+#include "image/statistics.h"
 #include "inject/injection.h"
 #include "trace/tracer.h"
 

@@ -147,8 +147,8 @@ sonject_status patch_level_init(struct patch_level *level, struct report *report
     }
     level->noise_ratio = pow(10.0, scene->injection.noise_floor_db / 10.0);
     if (status == SONJECT_OK && scene->injection.estimate_noise)
-        status = estimate_noise_floor(report, level->intensity, level->level, view->rows,
-                                      view->columns, &level->noise_ratio);
+        level->noise_ratio =
+            estimate_noise_floor(level->intensity, level->level, view->rows, view->columns);
     if (status != SONJECT_OK)
         patch_level_clear(level);
     return status;

@@ -5,7 +5,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "image/transfer.h"
+#include "image/raster.h"
 #include "inject/injection_setup.h"
 #include "swath/geometry_notes.h"
 #include "swath/raster_file.h"

@@ -2,7 +2,7 @@
 #ifndef SONJECT_INJECT_TRUTH_H
 #define SONJECT_INJECT_TRUTH_H
 
-#include "image/speckle_statistics.h"
+#include "image/statistics.h"
 #include "inject/echoes.h"
 #include "inject/injection.h"
 #include "inject/patch_level.h"

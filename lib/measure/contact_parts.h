@@ -8,7 +8,7 @@
 #include <stdint.h>
 
 #include "base/report.h"
-#include "image/speckle_statistics.h"
+#include "image/statistics.h"
 
 #define HIGHLIGHT_OVER_SEABED 4.0  /* mean of 3 x 3 pixels: 6 dB over the seabed */
 #define HIGHLIGHT_UNDER_PEAK  0.01 /* side lobes of bright echoes are not the contact */

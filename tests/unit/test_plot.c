@@ -1,9 +1,8 @@
 /* Pictures: size, grey levels, colours, ticks and text. The drawn panels are found by their frames,
  * so that margins may change. */
 #include "claims.h"
-#include "image/font.h"
+#include "image/canvas.h"
 #include "image/plot.h"
-#include "image/plot_ticks.h"
 
 #define FRAME_GREY 110
 

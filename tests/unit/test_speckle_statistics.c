@@ -3,7 +3,7 @@
 
 #include <sonject/image.h>
 
-#include "image/speckle_statistics.h"
+#include "image/statistics.h"
 #include "image/synthetic.h"
 
 #define ROWS    512

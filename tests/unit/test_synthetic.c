@@ -2,7 +2,6 @@
  * with N independent cells an average of the intensity has the relative standard error 1 / sqrt(N),
  * a correlation 1 / sqrt(N). Seeds are fixed, so that a pass stays a pass. */
 #include "claims.h"
-#include "image/speckle_texture.h"
 #include "image/synthetic.h"
 
 #define SPACING 0.025

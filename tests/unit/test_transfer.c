@@ -3,7 +3,7 @@
 
 #include <float.h>
 
-#include "image/transfer.h"
+#include "image/raster.h"
 
 static sonject_transfer_params make(sonject_transfer kind, double parameter, double offset)
 {
