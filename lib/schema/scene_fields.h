@@ -6,15 +6,17 @@
 
 #define COUNT(fields) (sizeof(fields) / sizeof(fields)[0])
 
+#define MEMBER_OF(structure, its) .member = #its, .offset = offsetof(structure, its)
+
 #define QUANTITY(structure, member, kind_of_quantity)                                              \
-    .kind = FIELD_QUANTITY, .quantity = kind_of_quantity, .offset = offsetof(structure, member)
+    .kind = FIELD_QUANTITY, .quantity = kind_of_quantity, MEMBER_OF(structure, member)
 #define COUNT32(structure, member, limit)                                                          \
-    .kind = FIELD_COUNT32, .offset = offsetof(structure, member), .maximum = limit
+    .kind = FIELD_COUNT32, MEMBER_OF(structure, member), .maximum = limit
 #define COUNT64(structure, member, limit)                                                          \
-    .kind = FIELD_COUNT64, .offset = offsetof(structure, member), .maximum = limit
-#define WORD(structure, member)  .kind = FIELD_WORD, .offset = offsetof(structure, member), .words
-#define LABEL(structure, member) .kind = FIELD_LABEL, .offset = offsetof(structure, member)
-#define TEXT(structure, member)  .kind = FIELD_TEXT, .offset = offsetof(structure, member)
+    .kind = FIELD_COUNT64, MEMBER_OF(structure, member), .maximum = limit
+#define WORD(structure, member)  .kind = FIELD_WORD, MEMBER_OF(structure, member), .words
+#define LABEL(structure, member) .kind = FIELD_LABEL, MEMBER_OF(structure, member)
+#define TEXT(structure, member)  .kind = FIELD_TEXT, MEMBER_OF(structure, member)
 
 /* A section that fills a structure of its own, and one that fills its parent's. */
 #define PART(structure, member, table)                                                             \

@@ -56,4 +56,11 @@ struct scene_file_key {
  * 0). Returns the number of keys, which may exceed capacity. */
 size_t scene_file_keys(struct scene_file_key *keys, size_t capacity);
 
+/* All keys as a JSON array, in the tables' order, for free(): objects with path
+ * ("objects[].heading"), section (the path of the section that it is in, "" at the top), meaning,
+ * kind (quantity, count, flag, word, text, file, section, list or special), unit (as users are told
+ * it), is_required, words (null or an array), member (of the C structure; null: none), and preset,
+ * least and most in the SI unit, null where there is none. Errors: MEMORY. */
+sonject_status scene_keys_json(struct report *report, char **text);
+
 #endif

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "base/json_document.h"
 #include "schema/scene_file.h"
 #include "schema/scene_key.h"
 
@@ -86,6 +87,49 @@ size_t scene_file_keys(struct scene_file_key *keys, size_t capacity)
     struct listing listing = {keys, capacity, 0};
     list_section(&listing, "", &scene_section);
     return listing.count;
+}
+
+static const char *const kinds[] = {
+    [FIELD_QUANTITY] = "quantity", [FIELD_COUNT32] = "count",   [FIELD_COUNT64] = "count",
+    [FIELD_BOOL] = "flag",         [FIELD_FLAG32] = "flag",     [FIELD_WORD] = "word",
+    [FIELD_LABEL] = "text",        [FIELD_TEXT] = "text",       [FIELD_PATH] = "file",
+    [FIELD_FILE] = "file",         [FIELD_SECTION] = "section", [FIELD_NAMED] = "word",
+    [FIELD_ENTRIES] = "list",      [FIELD_SPECIAL] = "special",
+};
+
+static json_t *json_of_field(const char *prefix, const struct field *field)
+{
+    const int prefix_length = (int)strlen(prefix) - (*prefix != 0);
+    json_t *words = field->kind == FIELD_WORD ? json_array() : NULL;
+    for (size_t i = 0; words && i < FIELD_WORDS_MAX && field->words[i]; i++)
+        json_append(&words, json_string(field->words[i]));
+    return json_pack("{s:o, s:o, s:s, s:s, s:s, s:b, s:o?, s:s?, s:n, s:n, s:n}", "path",
+                     json_sprintf("%s%s", prefix, field->key), "section",
+                     json_sprintf("%.*s", prefix_length, prefix), "meaning", field->meaning, "kind",
+                     kinds[field->kind], "unit", unit_of(field), "is_required",
+                     (int)field->is_required, "words", words, "member", field->member, "preset",
+                     "least", "most");
+}
+
+static void add_json(json_t **keys, const char *prefix, const struct section *section)
+{
+    for (size_t i = 0; i < section->count; i++) {
+        const struct field *field = &section->fields[i];
+        char below[80];
+        json_append(keys, json_of_field(prefix, field));
+        snprintf(below, sizeof below, "%s%s%s", prefix, field->key, field->is_list ? "[]." : ".");
+        if (field->section)
+            add_json(keys, below, field->section);
+    }
+}
+
+sonject_status scene_keys_json(struct report *report, char **text)
+{
+    json_t *keys = json_array();
+    add_json(&keys, "", &scene_section);
+    *text = json_document_text(keys, JSON_INDENT(1));
+    json_decref(keys);
+    return *text ? SONJECT_OK : report_out_of_memory(report, "the keys of scenes");
 }
 
 #define KEYS_COMPARED 32

@@ -8,8 +8,8 @@
 #include <stdint.h>
 
 #include "base/units.h"
-#include "schema/yaml_tree.h"
 #include "scene/scene.h"
+#include "schema/yaml_tree.h"
 
 #define FIELD_WORDS_MAX 15
 
@@ -40,6 +40,7 @@ struct field {
     bool is_required;
     bool is_list; /* the section is that of each entry */
     enum quantity quantity;
+    const char *member;                 /* of the section's structure, as C writes it */
     size_t offset;                      /* of the destination in the section's structure */
     uint64_t maximum;                   /* of a count, or entries */
     size_t count_offset, entry_bytes;   /* of entries: where a uint32_t counts them, size of one */
