@@ -11,7 +11,7 @@
 #include "base/report.h"
 #include "device/device.h"
 #include "inject/injection.h"
-#include "inject/kept_scene.h"
+#include "trace/sums_file.h"
 #include "scene/scene.h"
 #include "swath/decoder.h"
 

@@ -10,8 +10,7 @@
 #include "dataset/earlier_result.h"
 #include "dataset/merged_bands.h"
 #include "inject/checkpoints.h"
-#include "inject/kept_scene.h"
-#include "trace/sums_folder.h"
+#include "trace/sums_file.h"
 
 void sonject_merge_params_init(sonject_merge_params *params)
 {
@@ -23,17 +22,13 @@ void sonject_merge_params_init(sonject_merge_params *params)
 static sonject_status read_kept_scene(struct report *report, const struct sums_file *file,
                                       bool allows_user_shapes, struct scene *scene)
 {
-    struct kept_scene kept;
     sonject_form_params params;
     sonject_form_params_init(&params);
     params.file = file->path;
     params.allows_user_shapes = allows_user_shapes;
-    sonject_status status = kept_scene_find(&kept, report, file);
-    if (status == SONJECT_OK && strcmp(file->head.identity.version, sonject_version()) != 0)
-        status = refuse_foreign_sums(report, file->path, "another version of sonject");
-    THEN(status, read_traced_scene(report, &kept, &params, scene));
-    free(kept.overrides);
-    return status;
+    if (strcmp(file->head.identity.version, sonject_version()) != 0)
+        return refuse_foreign_sums(report, file->path, "another version of sonject");
+    return read_traced_scene(report, &file->scene, &params, scene);
 }
 
 /* A run whose scene its shards keep. */
@@ -48,7 +43,7 @@ static sonject_status merge_kept(struct sonject_context *context, const struct r
     scene_init(&scene);
     char *work = checkpoints_folder(request->folder);
     CHECK_MEMORY(report, work, "a file name");
-    sonject_status status = sums_folder_read(&folder, report, work, 0, false);
+    sonject_status status = sums_folder_read(&folder, report, work, 0, SIZE_MAX, false);
     const bool is_merged =
         status == SONJECT_OK && folder.count == 0 && folder_has_result(request->folder);
     if (status == SONJECT_OK && folder.count == 0 && !is_merged)

@@ -27,22 +27,19 @@ void sonject_form_params_init(sonject_form_params *params)
 
 static sonject_status describe(struct report *report, const struct sonject_scene *scene,
                                const struct swath *swath, struct sums_head *head,
-                               struct sums_source *source, struct impulse_facts *facts)
+                               struct impulse_facts *facts)
 {
     char hash[HASH_TEXT_CAPACITY];
     memset(head, 0, sizeof *head);
     memset(facts, 0, sizeof *facts);
-    head->shard = head->shards = 1;
     strncpy(head->identity.version, sonject_version(), sizeof head->identity.version - 1);
     facts->image_rows = swath->layout.rows;
     facts->image_columns = swath->layout.columns;
     strncpy(facts->image_hash, swath->identity, sizeof facts->image_hash - 1);
     impulse_facts_note_sonar(facts, &scene->scene.sonar);
-    sonject_status status = kept_scene_join(source, report, &scene->source);
-    THEN(status, traced_scene_hash(report, &scene->scene, swath->identity, hash));
-    if (status == SONJECT_OK)
-        memcpy(head->identity.scene, hash, sizeof hash);
-    return status;
+    CHECK(traced_scene_hash(report, &scene->scene, swath->identity, hash));
+    memcpy(head->identity.scene, hash, sizeof hash);
+    return SONJECT_OK;
 }
 
 /* The lines go to the file and, where one is wanted, to its export. */
@@ -71,14 +68,13 @@ static sonject_status trace_swath(struct sonject_context *context,
     const struct injection_input input = swath_input(swath);
     struct device *device;
     struct sums_head head;
-    struct sums_source source;
     struct impulse_facts facts;
     struct sums_writer writer;
     struct two_files files = {&writer, NULL};
     const struct impulse_sink sink = {write_lines, &files};
     memset(&writer, 0, sizeof writer);
-    sonject_status status = describe(report, scene, swath, &head, &source, &facts);
-    THEN(status, sums_writer_begin_file(&writer, report, params->file, &head, source));
+    sonject_status status = describe(report, scene, swath, &head, &facts);
+    THEN(status, sums_writer_begin(&writer, report, params->file, NULL));
     if (status == SONJECT_OK && export_file)
         status = impulse_export_begin(report, export_file, &files.export);
     THEN(status, context_device(context, &device));
@@ -87,10 +83,9 @@ static sonject_status trace_swath(struct sonject_context *context,
     if (status == SONJECT_OK && files.export)
         status = impulse_export_publish(files.export, &scene->scene, &input, &facts,
                                         head.identity.scene, image_path);
-    THEN(status, impulse_file_publish(&writer, &facts, image_path));
+    THEN(status, impulse_file_publish(&writer, &head, &scene->source, &facts, image_path));
     impulse_export_release(&files.export);
     sums_writer_clear(&writer);
-    free((void *)source.texts);
     return status;
 }
 
@@ -238,10 +233,8 @@ static sonject_status form_file(struct sonject_context *context, const sonject_s
 {
     struct report *report = &context->report;
     const struct sums_file *sums = &impulses->sums;
-    struct kept_scene kept;
     struct run_request request;
     struct scene read;
-    memset(&kept, 0, sizeof kept);
     memset(&request, 0, sizeof request);
     request.impulses = impulses;
     request.folder = params->folder;
@@ -251,14 +244,12 @@ static sonject_status form_file(struct sonject_context *context, const sonject_s
     request.user = user;
     scene_init(&read);
     sonject_status status = check_version(report, params->file, &sums->head.identity);
-    THEN(status, kept_scene_find(&kept, report, sums));
     if (status == SONJECT_OK && !scene)
-        status = read_traced_scene(report, &kept, params, &read);
+        status = read_traced_scene(report, &sums->scene, params, &read);
     request.scene = scene ? &scene->scene : &read;
     THEN(status, run_scene(context, &request, was_finished));
     if (!scene)
         scene_clear(&read);
-    free(kept.overrides);
     return status;
 }
 

@@ -9,10 +9,9 @@
 #include "base/memory.h"
 #include "dataset/earlier_result.h"
 #include "inject/checkpoints.h"
-#include "inject/kept_scene.h"
 #include "schema/scene_bands.h"
 #include "schema/scene_file.h"
-#include "trace/sums_folder.h"
+#include "trace/sums_file.h"
 
 #define CHOICE "band=" /* the override that chooses a band */
 
@@ -57,18 +56,13 @@ static sonject_status list_kept(struct report *report, const struct kept_scene *
 static sonject_status find_in_shards(struct report *report, const char *folder, const char *band,
                                      char **names)
 {
-    struct sums_file file;
-    bool is_there = false;
+    struct sums_folder first;
     char *work = checkpoints_folder(folder);
-    sonject_status status = work ? sums_folder_first(&file, report, work, &is_there)
-                                 : report_out_of_memory(report, "a file name");
-    if (status == SONJECT_OK && is_there) {
-        struct kept_scene kept;
-        status = kept_scene_find(&kept, report, &file);
-        THEN(status, list_kept(report, &kept, band, names));
-        free(kept.overrides);
-        sums_file_close(&file);
-    }
+    CHECK_MEMORY(report, work, "a file name");
+    sonject_status status = sums_folder_read(&first, report, work, 0, 1, false);
+    if (status == SONJECT_OK && first.count > 0)
+        status = list_kept(report, &first.files[0].scene, band, names);
+    sums_folder_clear(&first);
     free(work);
     return status;
 }

@@ -4,13 +4,30 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include <sonject/version.h>
+
+#include "base/clock.h"
 #include "base/file.h"
 #include "base/growing_text.h"
 #include "base/memory.h"
-#include "inject/checkpoint_tracing.h"
-#include "inject/kept_scene.h"
+#include "inject/scene_hash.h"
+#include "trace/checkpoint.h"
 
-#define NAMES_MOST 12 /* shards that a message names */
+#define CHECKPOINT_S 60.0
+#define NAMES_MOST   12 /* shards that a message names */
+
+/* One call's tracing. */
+struct tracing {
+    const struct checkpoint_job *job;
+    struct report *report;
+    char *folder;          /* work; owned */
+    struct sums_head head; /* of what the call traces, or merges */
+    struct checkpoint checkpoint;
+    double checkpoint_start_s;
+    double fraction; /* that was told last */
+    const char *stage;
+    bool is_cancelled, is_over; /* by the caller; its time */
+};
 
 char *checkpoints_folder(const char *folder)
 {
@@ -25,61 +42,232 @@ void checkpoints_remove(const char *folder)
     free(work);
 }
 
-/* Which shards a merge lacks; "" is none. */
-static void note_shard(struct growing_text *text, uint32_t *count, uint64_t shard, bool is_begun)
+sonject_status refuse_foreign_sums(struct report *report, const char *path, const char *what)
 {
-    if (*count < NAMES_MOST)
-        growing_text_add(text, "%s%llu%s", *count > 0 ? ", " : "", (unsigned long long)shard,
-                         is_begun ? " (not finished)" : "");
-    ++*count;
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "%s: traced by %s: choose another folder, or delete the work in this one",
+                          path, what);
 }
 
-static sonject_status refuse_incomplete(struct tracing *tracing, struct growing_text *text,
-                                        uint32_t count, uint64_t shards)
+/* Whose tallies this call's are. */
+static sonject_status identify(struct tracing *tracing)
 {
-    char *names = growing_text_end(text);
-    CHECK_MEMORY(tracing->report, names, "shards");
-    char more[32] = "";
-    if (count > NAMES_MOST)
-        snprintf(more, sizeof more, " and %u more", (unsigned)(count - NAMES_MOST));
-    report_failure(tracing->report, SONJECT_ERROR_INPUT,
-                   "%s: missing of %llu shards: %s%s; run each with --shard and merge again",
-                   tracing->folder, (unsigned long long)shards, names, more);
-    free(names);
-    return SONJECT_ERROR_INPUT;
+    const struct checkpoint_job *job = tracing->job;
+    struct sums_identity *identity = &tracing->head.identity;
+    tracing->head.shard = job->request->shards > 0 ? job->request->shard : 1;
+    tracing->head.shards = job->request->shards > 0 ? job->request->shards : 1;
+    strncpy(identity->version, sonject_version(), sizeof identity->version - 1);
+    strncpy(identity->scene, job->scene_hash, sizeof identity->scene - 1);
+    CHECK(code_hash(tracing->report, identity->code));
+    if (job->request->scene->user_shapes.count == 0)
+        return SONJECT_OK;
+    /* code of users may answer differently on another device */
+    struct hash *hash = hash_begin();
+    CHECK_MEMORY(tracing->report, hash, "a hash");
+    hash_add_text(hash, job->device->name);
+    hash_add_text(hash, job->device->platform);
+    hash_add_text(hash, job->device->driver);
+    hash_end(hash, identity->device);
+    return SONJECT_OK;
 }
 
-/* All that all shards traced, in the order of shards. */
-struct collection {
-    const struct sums_file **files; /* owned */
-    size_t count;
-};
+/* NULL where the tallies are of the same scene, image and version, and traced on that device; else
+ * what differs. */
+static const char *difference(const struct sums_identity *found, const struct sums_identity *mine,
+                              const char *device)
+{
+    if (strcmp(found->version, mine->version) != 0 || strcmp(found->code, mine->code) != 0)
+        return "another version of sonject";
+    if (strcmp(found->scene, mine->scene) != 0)
+        return "another scene or image";
+    return strcmp(found->device, device) == 0
+               ? NULL
+               : "another device, on which code of shapes may answer differently";
+}
 
-static sonject_status collect(struct tracing *tracing, const struct sums_folder *folder,
-                              struct collection *all)
+/* Work of shards of another number, or of a whole run and of shards, does not go together. */
+static sonject_status check_shards(const struct tracing *tracing)
+{
+    uint64_t others;
+    const uint64_t mine = tracing->head.shards;
+    CHECK(sums_folder_shards(tracing->report, tracing->folder, mine, &others));
+    if (others == 0)
+        return SONJECT_OK;
+    return report_failure(tracing->report, SONJECT_ERROR_INPUT,
+                          "%s: holds work of a run in %llu shard%s, this is one in %llu: choose "
+                          "another folder, or delete that work",
+                          tracing->folder, (unsigned long long)others, others == 1 ? "" : "s",
+                          (unsigned long long)mine);
+}
+
+/* What is in the folder must be this scene's; what an earlier whole run left of another is dropped.
+ * Shards that are merged must be of one device. */
+static sonject_status check_folder(struct tracing *tracing, struct sums_folder *folder)
+{
+    struct report *report = tracing->report;
+    const struct run_request *request = tracing->job->request;
+    const struct sums_identity *mine = &tracing->head.identity;
+    const char *device = request->merges ? folder->files[0].head.identity.device : mine->device;
+    for (size_t i = 0; i < folder->count; i++) {
+        const struct sums_file *file = &folder->files[i];
+        const char *what = difference(&file->head.identity, mine, device);
+        if (what && (request->shards > 0 || request->merges))
+            return refuse_foreign_sums(report, file->path, what);
+        if (what) {
+            report_news(report, "%s was traced by %s and is dropped", tracing->folder, what);
+            sums_folder_clear(folder);
+            sums_folder_remove(tracing->folder);
+        }
+    }
+    return SONJECT_OK;
+}
+
+/* Progress of a trace: a wish to stop is noted, and the rest of the trace gone through without
+ * tracing. */
+static int tell(void *user, double fraction, const char *stage)
+{
+    struct tracing *tracing = user;
+    const struct checkpoint_job *job = tracing->job;
+    tracing->fraction = fraction;
+    tracing->stage = stage;
+    if (!tracing->is_cancelled && job->progress && job->progress(job->user, fraction, stage))
+        tracing->is_cancelled = true;
+    if (!tracing->is_cancelled || !tracing->checkpoint.launches || tracing->checkpoint.files)
+        return tracing->is_cancelled;
+    tracing->checkpoint.is_stopping = true;
+    return 0;
+}
+
+static int ask(void *user)
+{
+    struct tracing *tracing = user;
+    const struct run_request *request = tracing->job->request;
+    const double now = clock_seconds();
+    const double checkpoint = request->checkpoint_s > 0.0 ? request->checkpoint_s : CHECKPOINT_S;
+    if (tracing->stage)
+        tell(tracing, tracing->fraction, tracing->stage);
+    if (request->exit_after_s > 0.0 && now - tracing->job->start_s >= request->exit_after_s)
+        tracing->is_over = true;
+    return tracing->is_cancelled || tracing->is_over ||
+           now - tracing->checkpoint_start_s >= checkpoint;
+}
+
+static sonject_status begin_checkpoint(struct tracing *tracing, uint64_t first)
+{
+    tracing->head.first = first;
+    CHECK(checkpoint_begin(&tracing->checkpoint, tracing->report, tracing->folder, &tracing->head));
+    tracing->checkpoint.ask = ask;
+    tracing->checkpoint.user = tracing;
+    tracing->checkpoint_start_s = clock_seconds();
+    return SONJECT_OK;
+}
+
+/* After a checkpoint: keeps what it traced, to the end or not; CANCELLED where the call is to end.
+ */
+static sonject_status end_checkpoint(struct tracing *tracing, sonject_status traced, uint64_t *next,
+                                     bool *is_complete)
+{
+    struct checkpoint *checkpoint = &tracing->checkpoint;
+    const struct run_request *request = tracing->job->request;
+    sonject_status status = traced;
+    const bool is_through = !checkpoint->launches; /* all launches were gone through */
+    *next = checkpoint->next;
+    *is_complete = is_through && checkpoint->next >= checkpoint->strips;
+    if (is_through && (traced == SONJECT_OK || traced == SONJECT_CANCELLED))
+        status = *is_complete || checkpoint->next > checkpoint->head.first
+                     ? checkpoint_publish(checkpoint, request->source)
+                     : SONJECT_OK;
+    if (status == SONJECT_OK && tracing->is_cancelled)
+        status = report_failure(tracing->report, SONJECT_CANCELLED, "cancelled while tracing");
+    else if (status == SONJECT_OK && tracing->is_over && !*is_complete)
+        status = report_failure(tracing->report, SONJECT_CANCELLED, "stopped after %g s",
+                                request->exit_after_s);
+    checkpoint_clear(checkpoint);
+    return status;
+}
+
+static sonject_status take_nothing(void *taker, const struct impulse_lines *lines)
+{
+    (void)taker;
+    (void)lines;
+    return SONJECT_OK;
+}
+
+/* Traces from a strip of the shard on, checkpoint by checkpoint, to its end. */
+static sonject_status trace_rest(struct tracing *tracing, uint64_t next, bool is_complete)
+{
+    const struct checkpoint_job *job = tracing->job;
+    const struct impulse_sink nobody = {take_nothing, NULL};
+    struct injection_input input = *job->input;
+    input.checkpoint = &tracing->checkpoint;
+    while (!is_complete) {
+        struct trace_counts counts;
+        CHECK(begin_checkpoint(tracing, next));
+        const sonject_status status =
+            injection_trace(tracing->report, job->device, job->request->scene, &input, &nobody,
+                            tell, tracing, &counts);
+        CHECK(end_checkpoint(tracing, status, &next, &is_complete));
+    }
+    return SONJECT_OK;
+}
+
+/* Forms the result from tracing->checkpoint. */
+static sonject_status form_traced(struct tracing *tracing, struct injection_result *result)
+{
+    const struct checkpoint_job *job = tracing->job;
+    struct injection_input input = *job->input;
+    input.checkpoint = &tracing->checkpoint;
+    return injection_run(tracing->report, job->device, job->request->scene, &input, tell, tracing,
+                         result);
+}
+
+/* Traces all in one go and forms the result as it does, or, where it is stopped between, keeps what
+ * was traced and traces the rest. */
+static sonject_status trace_and_form(struct tracing *tracing, struct injection_result *result,
+                                     bool *is_formed)
+{
+    uint64_t next;
+    bool is_complete;
+    CHECK(begin_checkpoint(tracing, 0));
+    const sonject_status status = form_traced(tracing, result);
+    *is_formed = status == SONJECT_OK;
+    if (*is_formed) {
+        checkpoint_clear(&tracing->checkpoint);
+        return SONJECT_OK;
+    }
+    CHECK(end_checkpoint(tracing, status, &next, &is_complete));
+    return trace_rest(tracing, next, is_complete);
+}
+
+/* All that all shards traced, in the order of shards; files: room for all of the folder. */
+static sonject_status collect(const struct tracing *tracing, const struct sums_folder *folder,
+                              const struct sums_file **files, size_t *count)
 {
     const uint64_t shards = tracing->head.shards;
-    struct growing_text missing;
+    struct growing_text missing = {NULL, 0, 0, false};
     uint32_t missing_count = 0;
     sonject_status status = SONJECT_OK;
-    memset(&missing, 0, sizeof missing);
-    all->count = 0;
-    all->files = allocate_array(folder->count, sizeof *all->files);
-    CHECK_MEMORY(tracing->report, all->files, "shards");
     for (uint64_t shard = 1; status == SONJECT_OK && shard <= shards; shard++) {
         struct sums_chain chain;
         status = sums_chain_find(&chain, tracing->report, folder, shard);
-        if (status != SONJECT_OK)
-            break;
-        if (!chain.is_complete)
-            note_shard(&missing, &missing_count, shard, chain.count > 0);
+        if (status == SONJECT_OK && !chain.is_complete && missing_count++ < NAMES_MOST)
+            growing_text_add(&missing, "%s%llu%s", missing_count > 1 ? ", " : "",
+                             (unsigned long long)shard, chain.count > 0 ? " (not finished)" : "");
         for (size_t i = 0; i < chain.count; i++)
-            all->files[all->count++] = chain.files[i];
-        sums_chain_clear(&chain);
+            files[(*count)++] = chain.files[i];
+        free(chain.files);
     }
+    if (status == SONJECT_OK && missing_count > NAMES_MOST)
+        growing_text_add(&missing, " and %u more", (unsigned)(missing_count - NAMES_MOST));
+    char *names = growing_text_end(&missing);
+    if (status == SONJECT_OK && !names)
+        status = report_out_of_memory(tracing->report, "shards");
     if (status == SONJECT_OK && missing_count > 0)
-        return refuse_incomplete(tracing, &missing, missing_count, shards);
-    free(missing.characters);
+        status =
+            report_failure(tracing->report, SONJECT_ERROR_INPUT,
+                           "%s: missing of %llu shards: %s; run each with --shard and merge again",
+                           tracing->folder, (unsigned long long)shards, names);
+    free(names);
     return status;
 }
 
@@ -87,15 +275,36 @@ static sonject_status collect(struct tracing *tracing, const struct sums_folder 
 static sonject_status add_up(struct tracing *tracing, const struct sums_folder *folder,
                              struct injection_result *result)
 {
-    struct collection all;
-    sonject_status status = collect(tracing, folder, &all);
-    THEN(status,
-         checkpoint_begin_adding(&tracing->checkpoint, tracing->report, all.files, all.count));
+    size_t count = 0;
+    const struct sums_file **files = allocate_array(folder->count, sizeof *files);
+    CHECK_MEMORY(tracing->report, files, "shards");
+    sonject_status status = collect(tracing, folder, files, &count);
+    THEN(status, checkpoint_begin_adding(&tracing->checkpoint, tracing->report, files, count));
+    THEN(status, form_traced(tracing, result));
+    checkpoint_clear(&tracing->checkpoint);
+    free(files);
+    return status;
+}
+
+static sonject_status merge(struct tracing *tracing, struct injection_result *result)
+{
+    struct sums_folder folder;
+    sonject_status status =
+        sums_folder_read(&folder, tracing->report, tracing->folder, 0, SIZE_MAX, false);
+    if (status == SONJECT_OK && folder.count == 0)
+        status =
+            report_failure(tracing->report, SONJECT_ERROR_INPUT,
+                           "%s: holds no shards: run them with --shard I/K first", tracing->folder);
+    THEN(status, check_folder(tracing, &folder));
     if (status == SONJECT_OK) {
-        status = form_traced(tracing, result);
-        checkpoint_clear(&tracing->checkpoint);
+        tracing->head.shards = folder.files[0].head.shards;
+        status = tracing->head.shards <= SHARDS_MAX
+                     ? check_shards(tracing)
+                     : report_failure(tracing->report, SONJECT_ERROR_INPUT,
+                                      "%s: more shards than %d", folder.files[0].path, SHARDS_MAX);
     }
-    free(all.files);
+    THEN(status, add_up(tracing, &folder, result));
+    sums_folder_clear(&folder);
     return status;
 }
 
@@ -107,37 +316,19 @@ static sonject_status run_shard(struct tracing *tracing, struct injection_result
     struct sums_chain chain = {NULL, 0, 0, false};
     const bool is_whole = tracing->job->request->shards == 0;
     CHECK(check_shards(tracing));
-    sonject_status status =
-        sums_folder_read(&folder, tracing->report, tracing->folder, tracing->head.shard, true);
+    sonject_status status = sums_folder_read(&folder, tracing->report, tracing->folder,
+                                             tracing->head.shard, SIZE_MAX, true);
     THEN(status, check_folder(tracing, &folder));
     THEN(status, sums_chain_find(&chain, tracing->report, &folder, tracing->head.shard));
+    free(chain.files);
+    sums_folder_clear(&folder);
     if (status == SONJECT_OK && chain.count > 0)
         report_news(tracing->report, "goes on with what is in %s", tracing->folder);
-    if (status == SONJECT_OK && is_whole && chain.count == 0)
-        status = trace_and_form(tracing, result, is_formed);
-    else if (status == SONJECT_OK)
-        status = trace_rest(tracing, chain.next, chain.is_complete);
-    sums_chain_clear(&chain);
-    sums_folder_clear(&folder);
+    THEN(status, is_whole && chain.count == 0 ? trace_and_form(tracing, result, is_formed)
+                                              : trace_rest(tracing, chain.next, chain.is_complete));
     if (status != SONJECT_OK || !is_whole || *is_formed)
         return status;
-    status = sums_folder_read(&folder, tracing->report, tracing->folder, 1, false);
-    THEN(status, add_up(tracing, &folder, result));
-    *is_formed = status == SONJECT_OK;
-    sums_folder_clear(&folder);
-    return status;
-}
-
-static sonject_status merge(struct tracing *tracing, struct injection_result *result,
-                            bool *is_formed)
-{
-    struct sums_folder folder;
-    sonject_status status = sums_folder_read(&folder, tracing->report, tracing->folder, 0, false);
-    if (status == SONJECT_OK && folder.count == 0)
-        status =
-            report_failure(tracing->report, SONJECT_ERROR_INPUT,
-                           "%s: holds no shards: run them with --shard I/K first", tracing->folder);
-    THEN(status, check_merged(tracing, &folder));
+    status = sums_folder_read(&folder, tracing->report, tracing->folder, 1, SIZE_MAX, false);
     THEN(status, add_up(tracing, &folder, result));
     *is_formed = status == SONJECT_OK;
     sums_folder_clear(&folder);
@@ -152,13 +343,11 @@ sonject_status inject_by_checkpoints(const struct checkpoint_job *job,
     tracing.job = job;
     tracing.report = job->report;
     tracing.folder = checkpoints_folder(job->request->folder);
-    *is_formed = false;
-    sonject_status status = tracing.folder ? take_sums_head(&tracing)
-                                           : report_out_of_memory(tracing.report, "a file name");
-    THEN(status, kept_scene_join(&tracing.source, tracing.report, job->request->source));
-    THEN(status, job->request->merges ? merge(&tracing, result, is_formed)
-                                      : run_shard(&tracing, result, is_formed));
+    CHECK_MEMORY(job->report, tracing.folder, "a file name");
+    sonject_status status = identify(&tracing);
+    *is_formed = status == SONJECT_OK && job->request->merges;
+    THEN(status,
+         job->request->merges ? merge(&tracing, result) : run_shard(&tracing, result, is_formed));
     free(tracing.folder);
-    free((void *)tracing.source.texts);
     return status;
 }

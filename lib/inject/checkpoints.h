@@ -7,7 +7,7 @@
 
 #include "inject/impulse_file.h"
 #include "inject/injection.h"
-#include "inject/kept_scene.h"
+#include "trace/sums_file.h"
 
 #define SHARDS_MAX 9999
 

@@ -54,10 +54,11 @@ sonject_status impulse_lines_write(void *taker, const struct impulse_lines *line
     return status;
 }
 
-sonject_status impulse_file_publish(struct sums_writer *writer, const struct impulse_facts *facts,
-                                    const char *image_path)
+sonject_status impulse_file_publish(struct sums_writer *writer, const struct sums_head *head,
+                                    const struct scene_source *source,
+                                    const struct impulse_facts *facts, const char *image_path)
 {
-    struct sums_end end;
+    struct sums_head whole = *head;
     const size_t count = sizeof *facts / sizeof(int64_t) + strlen(image_path) / sizeof(int64_t) + 1;
     int64_t *words = allocate_array(count, sizeof *words);
     CHECK_MEMORY(writer->report, words, "impulses");
@@ -65,12 +66,11 @@ sonject_status impulse_file_publish(struct sums_writer *writer, const struct imp
     memcpy((char *)words + sizeof *facts, image_path, strlen(image_path));
     sonject_status status = sums_writer_sums(writer, words, count);
     free(words);
-    memset(&end, 0, sizeof end);
-    end.is_last = 1;
-    end.rays = facts->counts.rays;
-    end.queries = facts->counts.queries;
-    end.impulses = facts->counts.impulses;
-    return status == SONJECT_OK ? sums_writer_publish(writer, &end) : status;
+    whole.shard = whole.shards = whole.is_last = 1;
+    whole.rays = facts->counts.rays;
+    whole.queries = facts->counts.queries;
+    whole.impulses = facts->counts.impulses;
+    return status == SONJECT_OK ? sums_writer_publish(writer, &whole, source) : status;
 }
 
 static sonject_status read_facts(struct impulse_file *file)
@@ -78,12 +78,12 @@ static sonject_status read_facts(struct impulse_file *file)
     const struct sums_file *sums = &file->sums;
     int64_t *words;
     uint64_t count;
-    if (sums->end.launches[0] != '\0' || sums->head.shards != 1)
+    if (sums->head.launches[0] != '\0' || sums->head.shards != 1)
         return report_failure(file->report, SONJECT_ERROR_INPUT,
                               "%s: a shard's sums, not what sonject trace leaves: sonject merge "
                               "forms it",
                               sums->path);
-    CHECK(sums_file_record(sums, file->report, sums->end.records - 1, &words, &count));
+    CHECK(sums_file_record(sums, file->report, sums->head.records - 1, &words, &count));
     file->last = words;
     file->image_path = (const char *)words + sizeof file->facts;
     if (count * sizeof *words > sizeof file->facts)
@@ -178,7 +178,7 @@ static sonject_status read_next(struct delivery *delivery)
     uint64_t count;
     free(delivery->words);
     delivery->words = NULL;
-    if (delivery->next + 1 >= delivery->file->sums.end.records)
+    if (delivery->next + 1 >= delivery->file->sums.head.records)
         return SONJECT_OK;
     CHECK(sums_file_record(&delivery->file->sums, delivery->tracer->report, delivery->next++,
                            &delivery->words, &count));

@@ -1,6 +1,6 @@
 /* What tracing leaves for image formation, in a file of sums (trace/sums_file.h), so that images
  * can be formed later, with another pulse or cross-range response too. Its head has shard 1 of 1,
- * the hash of what tracing depends on and the scene's text; its end has no digest of launches. Its
+ * the hash of what tracing depends on and the scene's text, and no digest of launches. Its
  * records, 64-bit words each:
  *
  *   lines  LINES_HEAD_WORDS numbers: kind, number, strips_per_row, bins_per_pixel, the grid's first
@@ -32,10 +32,11 @@ void impulse_facts_take_sonar(const struct impulse_facts *facts, sonject_sonar_p
  * MEMORY. */
 sonject_status impulse_lines_write(void *writer, const struct impulse_lines *lines);
 
-/* Appends the last record and gives the file its name. image_path: "" if the image is made. Errors:
- * STORAGE, MEMORY. */
-sonject_status impulse_file_publish(struct sums_writer *writer, const struct impulse_facts *facts,
-                                    const char *image_path);
+/* Appends the last record and gives the file its name. head: whose the impulses are; source may be
+ * NULL; image_path: "" if the image is made. Errors: STORAGE, MEMORY. */
+sonject_status impulse_file_publish(struct sums_writer *writer, const struct sums_head *head,
+                                    const struct scene_source *source,
+                                    const struct impulse_facts *facts, const char *image_path);
 
 struct impulse_file {
     struct report *report;

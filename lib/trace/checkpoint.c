@@ -13,35 +13,32 @@ static sonject_status begin(struct checkpoint *checkpoint, struct report *report
 {
     memset(checkpoint, 0, sizeof *checkpoint);
     checkpoint->report = report;
-    checkpoint->shard = checkpoint->shards = 1;
     checkpoint->launches = hash_begin();
-    return checkpoint->launches ? SONJECT_OK : report_out_of_memory(report, "a hash");
+    CHECK_MEMORY(report, checkpoint->launches, "a hash");
+    return SONJECT_OK;
 }
 
 sonject_status checkpoint_begin(struct checkpoint *checkpoint, struct report *report,
-                                const char *folder, const struct sums_head *head,
-                                struct sums_source source, uint64_t first)
+                                const char *folder, const struct sums_head *head)
 {
     sonject_status status = begin(checkpoint, report);
-    THEN(status, sums_writer_begin(&checkpoint->writer, report, folder, head, source));
-    if (status != SONJECT_OK) {
+    THEN(status, sums_writer_begin(&checkpoint->writer, report, NULL, folder));
+    checkpoint->head = *head;
+    checkpoint->next = head->first;
+    if (status != SONJECT_OK)
         checkpoint_clear(checkpoint);
-        return status;
-    }
-    checkpoint->shard = head->shard;
-    checkpoint->shards = head->shards;
-    checkpoint->first = checkpoint->next = first;
-    return SONJECT_OK;
+    return status;
 }
 
 sonject_status checkpoint_begin_adding(struct checkpoint *checkpoint, struct report *report,
                                        const struct sums_file *const *files, size_t count)
 {
-    const sonject_status status = begin(checkpoint, report);
+    CHECK(begin(checkpoint, report));
+    checkpoint->head.shard = checkpoint->head.shards = 1;
     checkpoint->files = files;
     checkpoint->file_count = count;
     checkpoint->is_stopping = true; /* nothing is traced */
-    return status;
+    return SONJECT_OK;
 }
 
 void checkpoint_clear(struct checkpoint *checkpoint)
@@ -59,9 +56,10 @@ void checkpoint_launch(struct checkpoint *checkpoint, const struct fan_record *f
 {
     const uint64_t strips = (uint64_t)fan->strips;
     const uint64_t most = SLICE_RAYS / ((uint64_t)fan->rays * fan->strata + 1);
-    checkpoint->turn = strips * (checkpoint->shard - 1) / checkpoint->shards;
+    checkpoint->turn = strips * (checkpoint->head.shard - 1) / checkpoint->head.shards;
     checkpoint->before = checkpoint->strips;
-    checkpoint->strips += strips * checkpoint->shard / checkpoint->shards - checkpoint->turn;
+    checkpoint->strips +=
+        strips * checkpoint->head.shard / checkpoint->head.shards - checkpoint->turn;
     checkpoint->slice = (int32_t)(most < SLICE_STRIPS ? SLICE_STRIPS : most);
     hash_add(checkpoint->launches, fan, sizeof *fan);
     if (rays->count > 0)
@@ -109,13 +107,9 @@ bool add_without_overflow(int64_t *sum, int64_t value)
     return true;
 }
 
-struct sums {
-    int64_t *values;
-};
-
 static bool add_run(void *user, uint64_t first, const int64_t *values, size_t count)
 {
-    int64_t *sums = ((struct sums *)user)->values + first;
+    int64_t *sums = (int64_t *)user + first;
     for (size_t i = 0; i < count; i++)
         if (!add_without_overflow(&sums[i], values[i]))
             return false;
@@ -133,25 +127,31 @@ sonject_status checkpoint_sums(struct checkpoint *checkpoint, const int64_t *tra
     free(checkpoint->sums);
     checkpoint->sums = allocate_array(count, sizeof *checkpoint->sums);
     CHECK_MEMORY(checkpoint->report, checkpoint->sums, "tallies");
-    struct sums all = {checkpoint->sums};
     *sums = checkpoint->sums;
-    return checkpoint_add_up(checkpoint, count, add_run, &all);
+    return checkpoint_add_up(checkpoint, count, add_run, checkpoint->sums);
 }
 
-static void end_launches(struct checkpoint *checkpoint)
+sonject_status checkpoint_finish(struct checkpoint *checkpoint, struct trace_counts *counts)
 {
-    char digest[HASH_TEXT_CAPACITY];
-    hash_end(checkpoint->launches, digest);
+    struct sums_head *head = &checkpoint->head;
+    hash_end(checkpoint->launches, head->launches);
     checkpoint->launches = NULL;
-    memcpy(checkpoint->end.launches, digest, sizeof digest);
-}
-
-static sonject_status compare_launches(const struct checkpoint *checkpoint)
-{
+    head->rays = counts->rays;
+    head->queries = counts->queries;
+    head->impulses = counts->impulses;
+    if (!checkpoint->files)
+        return checkpoint->next >= checkpoint->strips
+                   ? SONJECT_OK
+                   : report_failure(checkpoint->report, SONJECT_CANCELLED,
+                                    "cancelled while tracing");
+    counts->rays = counts->queries = counts->impulses = 0;
     for (size_t i = 0; i < checkpoint->file_count; i++) {
         const struct sums_file *file = checkpoint->files[i];
-        if (strcmp(file->end.launches, checkpoint->end.launches) != 0 ||
-            file->end.records != checkpoint->record)
+        counts->rays += file->head.rays;
+        counts->queries += file->head.queries;
+        counts->impulses += file->head.impulses;
+        if (strcmp(file->head.launches, head->launches) != 0 ||
+            file->head.records != checkpoint->record)
             return report_failure(checkpoint->report, SONJECT_ERROR_INPUT,
                                   "%s: traced other rays than this machine would, whose "
                                   "mathematics may differ: run all shards and merge on machines "
@@ -161,30 +161,9 @@ static sonject_status compare_launches(const struct checkpoint *checkpoint)
     return SONJECT_OK;
 }
 
-sonject_status checkpoint_finish(struct checkpoint *checkpoint, struct trace_counts *counts)
+sonject_status checkpoint_publish(struct checkpoint *checkpoint, const struct scene_source *source)
 {
-    end_launches(checkpoint);
-    checkpoint->end.rays = counts->rays;
-    checkpoint->end.queries = counts->queries;
-    checkpoint->end.impulses = counts->impulses;
-    if (!checkpoint->files)
-        return checkpoint->next >= checkpoint->strips
-                   ? SONJECT_OK
-                   : report_failure(checkpoint->report, SONJECT_CANCELLED,
-                                    "cancelled while tracing");
-    counts->rays = counts->queries = counts->impulses = 0;
-    for (size_t i = 0; i < checkpoint->file_count; i++) {
-        counts->rays += checkpoint->files[i]->end.rays;
-        counts->queries += checkpoint->files[i]->end.queries;
-        counts->impulses += checkpoint->files[i]->end.impulses;
-    }
-    return compare_launches(checkpoint);
-}
-
-sonject_status checkpoint_publish(struct checkpoint *checkpoint)
-{
-    checkpoint->end.first = checkpoint->first;
-    checkpoint->end.last = checkpoint->next;
-    checkpoint->end.is_last = checkpoint->next >= checkpoint->strips;
-    return sums_writer_publish(&checkpoint->writer, &checkpoint->end);
+    checkpoint->head.last = checkpoint->next;
+    checkpoint->head.is_last = checkpoint->next >= checkpoint->strips;
+    return sums_writer_publish(&checkpoint->writer, &checkpoint->head, source);
 }

@@ -14,10 +14,8 @@
 
 struct checkpoint {
     struct report *report;
-    uint64_t shard, shards; /* 1...shards */
-    uint64_t first;         /* of the shard's strips, counted over all launches: those before it
-                               are in other checkpoints */
-    uint64_t next;          /* strip to trace next */
+    struct sums_head head;  /* of what is traced: shard, first... */
+    uint64_t next;          /* of the shard's strips, counted over all launches: to trace next */
     bool is_stopping;       /* nothing more is traced; the rest is only gone through */
     int (*ask)(void *user); /* after each slice of a launch: nonzero stops; NULL: never */
     void *user;
@@ -35,14 +33,13 @@ struct checkpoint {
     int32_t slice;         /* strips of this launch that are traced at a time */
     uint64_t record;       /* number of the next sums */
     int64_t *sums;         /* added up; owned */
-    struct sums_end end;
 };
 
-/* Begins to trace a shard from a strip on. Borrows report. On success to be given to
- * checkpoint_clear. Errors: MEMORY. */
+/* Begins to trace the shard of a head from head->first on: strips before it are in other
+ * checkpoints. Borrows report and folder. On success to be given to checkpoint_clear. Errors:
+ * MEMORY. */
 sonject_status checkpoint_begin(struct checkpoint *checkpoint, struct report *report,
-                                const char *folder, const struct sums_head *head,
-                                struct sums_source source, uint64_t first);
+                                const char *folder, const struct sums_head *head);
 
 /* Begins to add up checkpoints, all of one identity, which together are everything. */
 sonject_status checkpoint_begin_adding(struct checkpoint *checkpoint, struct report *report,
@@ -78,7 +75,7 @@ bool add_without_overflow(int64_t *sum, int64_t value);
 sonject_status checkpoint_finish(struct checkpoint *checkpoint, struct trace_counts *counts);
 
 /* Gives what was traced, up to the end or less, its name in the folder; after checkpoint_finish.
- * Errors: STORAGE, MEMORY. */
-sonject_status checkpoint_publish(struct checkpoint *checkpoint);
+ * source may be NULL. Errors: STORAGE, MEMORY. */
+sonject_status checkpoint_publish(struct checkpoint *checkpoint, const struct scene_source *source);
 
 #endif

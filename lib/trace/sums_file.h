@@ -1,14 +1,13 @@
 /* Files of sums: what tracing leaves. A checkpoint, which is what one process traced of a shard in
- * one go, or all that a trace found (inject/impulse_file.h says what its sums are).
+ * one go, or all that a trace found (inject/impulses.h says what its sums are).
  *
- *   "sonject sums 03\n"
+ *   "sonject sums 04\n"
  *   blocks: kind, bytes (64 bits each), digest (XXH3 of kind, bytes and content, 32 digits in 40
  *   bytes), content
- *     head  struct sums_head, then the scene's source (texts, each terminated; nothing where the
- *           scene came from no file)
  *     sums  how many sums there are; then runs of those that are not all 0: number of the first,
  *           how many, 64-bit integers. A block for each time that tracing hands sums on.
- *     end   struct sums_end; nothing follows it
+ *     head  the last block: struct sums_head, then where the scene came from, terminated texts:
+ *           its file, the working folder, the file's text, overrides; none where it was in no file
  *
  * Integers are those of the machine; one of the other byte order finds the file damaged. Nothing in
  * it depends on the device or the time, so two processes that traced the same write the same. */
@@ -36,46 +35,46 @@ struct sums_identity {
 
 struct sums_head {
     struct sums_identity identity;
-    uint64_t shard, shards; /* shard: from 1 */
-};
-
-struct sums_end {
+    char launches[SUMS_DIGEST_CAPACITY]; /* of what was launched, by whichever shard */
+    uint64_t shard, shards;              /* shard: from 1 */
     uint64_t first, last; /* the shard's strips that it traced, over all launches: last is the next
                              checkpoint's first */
     uint64_t is_last;     /* 1: to the shard's end */
     uint64_t records;     /* blocks of sums */
     uint64_t rays, queries, impulses;
-    char launches[SUMS_DIGEST_CAPACITY]; /* of what was launched, by whichever shard */
 };
 
-/* The scene's text and where it came from: texts one after the other. */
-struct sums_source {
-    const char *texts;
-    size_t bytes;
+/* The file that a scene was read from, as it was then; owned. */
+struct scene_source {
+    char *path, *text; /* NULL: it was not read from a file */
+    char **overrides;
+    size_t override_count;
+};
+
+/* The same as a file of sums keeps it, lying in that; all NULL: it came from no file. */
+struct kept_scene {
+    const char *path, *folder, *text;
+    const char **overrides;
+    size_t override_count;
 };
 
 /* A file in the making. */
 struct sums_writer {
     struct report *report;
-    const char *path;            /* of the file; NULL: a shard's, named by what it holds */
-    char *folder, *private_name; /* owned; private_name: NULL while all is in memory */
+    const char *path;   /* of the file; NULL: a shard's, named by what it holds */
+    const char *folder; /* of that */
+    char *private_name; /* owned; NULL while all is in memory */
     FILE *file;
     unsigned char *bytes; /* that are not in the file yet; owned */
     size_t count, capacity, block;
-    struct sums_head head;
     uint64_t records;
 };
 
-/* Begins a file of tallies for a folder, which must exist once it is published. On success to be
- * given to sums_writer_clear, which drops what was not published. Errors: MEMORY. */
+/* Begins the file `path`; or where that is NULL a file of tallies for a folder, which is made when
+ * there is much to write. Borrows both. On success to be given to sums_writer_clear, which drops
+ * what was not published; on failure nothing is held. Errors: STORAGE, MEMORY. */
 sonject_status sums_writer_begin(struct sums_writer *writer, struct report *report,
-                                 const char *folder, const struct sums_head *head,
-                                 struct sums_source source);
-
-/* The same for a file of that name, which is borrowed. Errors: STORAGE, MEMORY. */
-sonject_status sums_writer_begin_file(struct sums_writer *writer, struct report *report,
-                                      const char *path, const struct sums_head *head,
-                                      struct sums_source source);
+                                 const char *path, const char *folder);
 void sums_writer_clear(struct sums_writer *writer);
 
 /* A block of sums: begin, runs in any order, end. Errors: STORAGE, MEMORY. */
@@ -87,8 +86,10 @@ sonject_status sums_writer_end_sums(struct sums_writer *writer);
 /* The same of all sums at once. */
 sonject_status sums_writer_sums(struct sums_writer *writer, const int64_t *values, size_t count);
 
-/* Gives the file its name. end->records is filled in. Errors: STORAGE, MEMORY. */
-sonject_status sums_writer_publish(struct sums_writer *writer, struct sums_end *end);
+/* Gives the file its head, but for head->records, which is counted, and its name. source may be
+ * NULL. Errors: STORAGE, MEMORY. */
+sonject_status sums_writer_publish(struct sums_writer *writer, const struct sums_head *head,
+                                   const struct scene_source *source);
 
 struct sums_block {
     uint64_t at, bytes; /* of its content in the file */
@@ -99,9 +100,9 @@ struct sums_block {
 struct sums_file {
     char *path;
     struct sums_head head;
-    struct sums_source source; /* owned */
-    struct sums_end end;
-    struct sums_block *sums; /* end.records */
+    struct kept_scene scene;
+    struct sums_block *sums; /* head.records */
+    char *content;           /* of the head's block; owned */
 };
 
 /* Reads a file from end to end. On success to be given to sums_file_close; on failure nothing is
@@ -121,24 +122,55 @@ sonject_status sums_file_runs(const struct sums_file *file, struct report *repor
 sonject_status sums_file_record(const struct sums_file *file, struct report *report,
                                 uint64_t record, int64_t **values, uint64_t *count);
 
-/* What reader and writer share. */
-#define SUMS_MAGIC       "sonject sums 03\n"
+/* A run's folder of checkpoints: files named shard-I-of-K-FIRST-LAST.sums. */
+struct sums_folder {
+    struct sums_file *files; /* owned */
+    size_t count;
+};
+
+/* Opens the checkpoints in a folder that may be missing, in the order of their names: of one shard
+ * or of all (shard 0), at most so many. drops_damaged: files that are damaged are removed, with
+ * news of it, so that they are traced anew; one under another shard's name is refused all the same.
+ * To be given to sums_folder_clear, also on failure. Errors: as sums_file_open. */
+sonject_status sums_folder_read(struct sums_folder *folder, struct report *report, const char *path,
+                                uint64_t shard, size_t most, bool drops_damaged);
+void sums_folder_clear(struct sums_folder *folder);
+
+/* How many shards the names in the folder speak of, the first that is not `but`; 0: no such name.
+ * Errors: STORAGE, MEMORY. */
+sonject_status sums_folder_shards(struct report *report, const char *path, uint64_t but,
+                                  uint64_t *shards);
+
+/* Removes checkpoints, parts of them that dead processes left, and the folder if nothing else is in
+ * it. Never fails. */
+void sums_folder_remove(const char *path);
+
+/* How far a shard got: the checkpoints that follow one another from its first strip on, as far as
+ * they go. Old processes may have left others, of which some overlap. */
+struct sums_chain {
+    const struct sums_file **files; /* owned; count of them, the last one first */
+    size_t count;
+    uint64_t next; /* strip to trace next */
+    bool is_complete;
+};
+
+/* chain->files is the caller's for free(), also on failure. Errors: MEMORY. */
+sonject_status sums_chain_find(struct sums_chain *chain, struct report *report,
+                               const struct sums_folder *folder, uint64_t shard);
+
+/* Blocks, as tests make them, too. */
+#define SUMS_MAGIC       "sonject sums 04\n"
 #define SUMS_MAGIC_BYTES 16
 
 enum block_kind {
-    BLOCK_HEAD = 1,
-    BLOCK_SUMS = 2,
-    BLOCK_END = 3
+    BLOCK_SUMS = 1,
+    BLOCK_HEAD = 2
 };
 
 struct block_head {
     uint64_t kind, bytes;
     char digest[SUMS_DIGEST_CAPACITY];
 };
-
-typedef char block_head_is_packed[sizeof(struct block_head) == 56 ? 1 : -1];
-typedef char sums_head_is_packed[sizeof(struct sums_head) == 176 ? 1 : -1];
-typedef char sums_end_is_packed[sizeof(struct sums_end) == 96 ? 1 : -1];
 
 /* Fills in the digest of a block whose kind and number of bytes are there. False where memory
  * lacks. */

@@ -37,16 +37,14 @@ static void trace_to_file(struct bench *bench, const struct injection_input *inp
     struct sums_writer writer;
     struct sums_head head;
     struct impulse_facts facts;
-    const struct sums_source none = {NULL, 0};
     const struct impulse_sink sink = {impulse_lines_write, &writer};
     memset(&head, 0, sizeof head);
     memset(&facts, 0, sizeof facts);
-    head.shard = head.shards = 1;
     impulse_facts_note_sonar(&facts, &bench->scene.sonar);
-    if (sums_writer_begin_file(&writer, &bench->report, path, &head, none) != SONJECT_OK ||
+    if (sums_writer_begin(&writer, &bench->report, path, NULL) != SONJECT_OK ||
         injection_trace(&bench->report, bench->tracer.device, &bench->scene, input, &sink, NULL,
                         NULL, &facts.counts) != SONJECT_OK ||
-        impulse_file_publish(&writer, &facts, "") != SONJECT_OK)
+        impulse_file_publish(&writer, &head, NULL, &facts, "") != SONJECT_OK)
         fail_msg("%s", bench->report.message);
     sums_writer_clear(&writer);
 }

@@ -102,7 +102,8 @@ struct draft {
     struct impulse_facts facts;
 };
 
-static const char texts[] = "scene.yaml\0/data\0sonject: 1\n\0injection.seed=7";
+static char *overrides[] = {"injection.seed=7"};
+static const struct scene_source kept = {"scene.yaml", "sonject: 1\n", overrides, 1};
 
 static struct draft draft_of(const struct set_up *set)
 {
@@ -120,7 +121,6 @@ static struct draft draft_of(const struct set_up *set)
         .kind = IMPULSES_CHAINS, .number = 2, .grid = set->patch, .planes = 1};
     strcpy(draft.head.identity.version, "1.2");
     strcpy(draft.head.identity.scene, "0123456789abcdef0123456789abcdef");
-    draft.head.shard = draft.head.shards = 1;
     strcpy(draft.facts.image_hash, "fedcba9876543210fedcba9876543210");
     draft.facts.image_rows = ROWS;
     draft.facts.image_columns = COLUMNS;
@@ -132,12 +132,11 @@ static struct draft draft_of(const struct set_up *set)
 static void write_draft(struct set_up *set, const char *path, const struct draft *draft)
 {
     struct sums_writer writer;
-    const struct sums_source source = {texts, sizeof texts};
-    assert_int_equal(sums_writer_begin_file(&writer, &set->report, path, &draft->head, source),
-                     SONJECT_OK);
+    assert_int_equal(sums_writer_begin(&writer, &set->report, path, NULL), SONJECT_OK);
     for (size_t i = 0; i < draft->count; i++)
         write_set(&writer, draft->sets[i]);
-    assert_int_equal(impulse_file_publish(&writer, &draft->facts, "line.tif"), SONJECT_OK);
+    assert_int_equal(impulse_file_publish(&writer, &draft->head, &kept, &draft->facts, "line.tif"),
+                     SONJECT_OK);
     sums_writer_clear(&writer);
 }
 
@@ -213,9 +212,8 @@ static void facts_and_head_come_back(void **state)
     write_draft(&set, path, &draft);
     assert_int_equal(impulse_file_open(&set.report, path, &file), SONJECT_OK);
     assert_memory_equal(&file.facts, &draft.facts, sizeof draft.facts);
-    assert_memory_equal(&file.sums.head, &draft.head, sizeof draft.head);
-    assert_int_equal(file.sums.source.bytes, sizeof texts);
-    assert_memory_equal(file.sums.source.texts, texts, sizeof texts);
+    assert_memory_equal(&file.sums.head.identity, &draft.head.identity, sizeof draft.head.identity);
+    assert_string_equal(file.sums.scene.overrides[0], overrides[0]);
     assert_string_equal(file.image_path, "line.tif");
     memset(&sonar, 0, sizeof sonar);
     impulse_facts_take_sonar(&file.facts, &sonar);
@@ -303,7 +301,7 @@ static void seabed_is_smaller_than_the_patch(struct draft *draft)
 
 static void it_is_a_shard(struct draft *draft)
 {
-    draft->head.shards = 2;
+    strcpy(draft->head.launches, "course");
 }
 
 static const struct {
@@ -372,9 +370,7 @@ static void words_that_are_no_lines_are_refused(void **state)
     for (size_t i = 0; i < count + 2; i++) {
         const char *path = temporary_file(folder, "traced.sums");
         struct sums_writer writer;
-        const struct sums_source none = {NULL, 0};
-        assert_int_equal(sums_writer_begin_file(&writer, &set.report, path, &draft.head, none),
-                         SONJECT_OK);
+        assert_int_equal(sums_writer_begin(&writer, &set.report, path, NULL), SONJECT_OK);
         if (i < count)
             assert_int_equal(sums_writer_sums(&writer, records[i], LINES_HEAD_WORDS + 1),
                              SONJECT_OK);
@@ -383,7 +379,8 @@ static void words_that_are_no_lines_are_refused(void **state)
         else
             assert_true(sums_writer_begin_sums(&writer, (uint64_t)1 << 40) == SONJECT_OK &&
                         sums_writer_end_sums(&writer) == SONJECT_OK);
-        assert_int_equal(impulse_file_publish(&writer, &draft.facts, ""), SONJECT_OK);
+        assert_int_equal(impulse_file_publish(&writer, &draft.head, NULL, &draft.facts, ""),
+                         SONJECT_OK);
         sums_writer_clear(&writer);
         assert_int_equal(read_file(&set, path, &taken), SONJECT_ERROR_INPUT);
         assert_int_equal(taken.cells[IMPULSES_SEABED], 0);
@@ -417,14 +414,10 @@ static void what_is_damaged_or_of_another_format_is_refused(void **state)
     set_up_clear(&set);
 }
 
-TEST_PROGRAM(NULL, NULL,
-             cmocka_unit_test_setup_teardown(lines_come_back, make_temporary_folder,
-                                             remove_temporary_folder),
-             cmocka_unit_test_setup_teardown(facts_and_head_come_back, make_temporary_folder,
-                                             remove_temporary_folder),
-             cmocka_unit_test_setup_teardown(what_is_not_of_the_scene_is_refused,
-                                             make_temporary_folder, remove_temporary_folder),
-             cmocka_unit_test_setup_teardown(words_that_are_no_lines_are_refused,
-                                             make_temporary_folder, remove_temporary_folder),
-             cmocka_unit_test_setup_teardown(what_is_damaged_or_of_another_format_is_refused,
-                                             make_temporary_folder, remove_temporary_folder))
+#define IN_FOLDER(test)                                                                            \
+    cmocka_unit_test_setup_teardown(test, make_temporary_folder, remove_temporary_folder)
+
+TEST_PROGRAM(NULL, NULL, IN_FOLDER(lines_come_back), IN_FOLDER(facts_and_head_come_back),
+             IN_FOLDER(what_is_not_of_the_scene_is_refused),
+             IN_FOLDER(words_that_are_no_lines_are_refused),
+             IN_FOLDER(what_is_damaged_or_of_another_format_is_refused))

@@ -6,51 +6,43 @@
 #include "claims.h"
 #include "temporary_folder.h"
 #include "trace/checkpoint.h"
-#include "trace/sums_file.h"
-#include "trace/sums_folder.h"
 
 #define SUMS 18
 
-static const char texts[] = "scene.yaml\0/home\0sonject: 1\n";
+static char *overrides[] = {"injection.seed=7", ""};
+static const struct scene_source source = {"scene.yaml", "sonject: 1\n", overrides, 2};
 static const int64_t sums[SUMS] = {0, 0, 5, 0,         0,         0, 0, -7, 0,
                                    0, 0, 0, INT64_MAX, INT64_MIN, 1, 0, 0,  3};
 
 static struct report report;
 
-static struct sums_head head_of(uint64_t shard, uint64_t shards)
+/* What one process traced of a shard. */
+static struct sums_head head_of(uint64_t shard, uint64_t shards, uint64_t first, uint64_t last,
+                                uint64_t is_last)
 {
     struct sums_head head;
     memset(&head, 0, sizeof head);
     strcpy(head.identity.version, "1.2");
     strcpy(head.identity.code, "code");
     strcpy(head.identity.scene, "scene");
+    strcpy(head.launches, "course");
     head.shard = shard;
     head.shards = shards;
+    head.first = first;
+    head.last = last;
+    head.is_last = is_last;
+    head.rays = 100 + first;
     return head;
 }
 
-static struct sums_end end_of(uint64_t first, uint64_t last, uint64_t is_last)
-{
-    struct sums_end end;
-    memset(&end, 0, sizeof end);
-    end.first = first;
-    end.last = last;
-    end.is_last = is_last;
-    end.rays = 100 + first;
-    strcpy(end.launches, "course");
-    return end;
-}
-
-static void write_sums(const char *folder, struct sums_head head, struct sums_end end,
-                       const int64_t *values, size_t count)
+static void write_sums(const char *folder, struct sums_head head, const int64_t *values,
+                       size_t count)
 {
     struct sums_writer writer;
-    const struct sums_source source = {texts, sizeof texts};
-    assert_int_equal(sums_writer_begin(&writer, &report, folder, &head, source), SONJECT_OK);
+    assert_int_equal(sums_writer_begin(&writer, &report, NULL, folder), SONJECT_OK);
     assert_int_equal(sums_writer_sums(&writer, values, count), SONJECT_OK);
     assert_int_equal(sums_writer_sums(&writer, sums, SUMS), SONJECT_OK);
-    assert_int_equal(sums_writer_publish(&writer, &end), SONJECT_OK);
-    assert_int_equal(end.records, 2);
+    assert_int_equal(sums_writer_publish(&writer, &head, &source), SONJECT_OK);
     sums_writer_clear(&writer);
 }
 
@@ -91,27 +83,25 @@ static void test_what_is_written_is_read(void **state)
 {
     struct temporary_folder *folder = *state;
     struct sums_file file;
-    const struct sums_head head = head_of(2, 3);
-    const struct sums_end end = end_of(4, 9, 1);
+    struct sums_head head = head_of(2, 3, 4, 9, 1);
     /* so many that they do not stay in memory */
     const size_t many = ((size_t)33 << 20) / sizeof(int64_t);
     int64_t *values = calloc(many, sizeof *values);
     assert_non_null(values);
     for (size_t i = 0; i < many; i++)
         values[i] = (int64_t)i * 7 - 5;
-    write_sums(folder->path, head, end, values, many);
+    write_sums(folder->path, head, values, many);
     assert_int_equal(count_entries(folder->path), 1);
     const char *path = temporary_file(folder, "shard-2-of-3-4-9.sums");
     assert_int_equal(sums_file_open(&file, &report, path), SONJECT_OK);
+    head.records = 2;
     assert_memory_equal(&file.head, &head, sizeof head);
-    assert_int_equal(file.source.bytes, sizeof texts);
-    assert_memory_equal(file.source.texts, texts, sizeof texts);
-    assert_int_equal(file.end.first, 4);
-    assert_int_equal(file.end.last, 9);
-    assert_int_equal(file.end.is_last, 1);
-    assert_int_equal(file.end.rays, 104);
-    assert_string_equal(file.end.launches, "course");
-    assert_int_equal(file.end.records, 2);
+    assert_string_equal(file.scene.path, source.path);
+    assert_string_equal(file.scene.text, source.text);
+    assert_int_equal(file.scene.folder[0], '/');
+    assert_int_equal(file.scene.override_count, 2);
+    for (size_t i = 0; i < 2; i++)
+        assert_string_equal(file.scene.overrides[i], overrides[i]);
     expect_sums(&file, 0, values, many, 1);
     /* 5; -7; the three at the limits with the 3 behind two zeros */
     expect_sums(&file, 1, sums, SUMS, 3);
@@ -147,7 +137,7 @@ static void test_no_damage_goes_unseen(void **state)
     struct sums_file file;
     size_t count;
     char written[TEMPORARY_CAPACITY + 300];
-    write_sums(folder->path, head_of(1, 1), end_of(0, 9, 1), sums, SUMS);
+    write_sums(folder->path, head_of(1, 1, 0, 9, 1), sums, SUMS);
     strcpy(written, temporary_file(folder, "shard-1-of-1-0-9.sums"));
     unsigned char *bytes = bytes_of_file(written, &count);
     const char *path = temporary_file(folder, "damaged.sums");
@@ -193,78 +183,67 @@ static void add_block(struct draft *draft, uint64_t kind, const void *content, s
     draft->count += sizeof head + count;
 }
 
-static void add_head(struct draft *draft, struct sums_head head)
+static void expect_draft_refused(const char *path, const struct draft *draft)
 {
-    add_block(draft, BLOCK_HEAD, &head, sizeof head);
+    expect_refused(path, draft->bytes, draft->count);
 }
 
-static void add_end(struct draft *draft, struct sums_end end, uint64_t records)
-{
-    end.records = records;
-    add_block(draft, BLOCK_END, &end, sizeof end);
-}
-
-/* Head and end alone, either changed. */
-static void expect_head_refused(const char *path, struct sums_head head, struct sums_end end,
-                                uint64_t records)
+/* A head of no sums, as it is. */
+static struct draft draft_of(struct sums_head head)
 {
     struct draft draft;
     begin_draft(&draft);
-    add_head(&draft, head);
-    add_end(&draft, end, records);
-    expect_refused(path, draft.bytes, draft.count);
+    add_block(&draft, BLOCK_HEAD, &head, sizeof head);
+    return draft;
 }
 
 static void test_what_makes_no_sense_is_refused(void **state)
 {
     struct temporary_folder *folder = *state;
     const char *path = temporary_file(folder, "draft.sums");
-    struct sums_head head = head_of(1, 1);
-    struct sums_end end = end_of(0, 9, 1);
+    const struct sums_head sound = head_of(1, 1, 0, 9, 1);
+    struct sums_head heads[] = {head_of(0, 1, 0, 9, 1),
+                                head_of(2, 1, 0, 9, 1),
+                                head_of(1, 1, 9, 0, 1),
+                                head_of(1, 1, 0, 9, 2),
+                                sound,
+                                sound,
+                                sound};
     struct sums_file file;
-    struct draft draft;
-    begin_draft(&draft);
-    add_head(&draft, head);
-    add_end(&draft, end, 0);
+    struct draft draft = draft_of(sound);
     write_bytes(path, draft.bytes, draft.count);
     assert_int_equal(sums_file_open(&file, &report, path), SONJECT_OK);
+    assert_null(file.scene.text);
     sums_file_close(&file);
 
-    expect_head_refused(path, head_of(0, 1), end, 0);
-    expect_head_refused(path, head_of(2, 1), end, 0);
-    memset(head.identity.scene, 'x', sizeof head.identity.scene);
-    expect_head_refused(path, head, end, 0);
-    head = head_of(1, 1);
-    expect_head_refused(path, head, end_of(9, 0, 1), 0);
-    expect_head_refused(path, head, end_of(0, 9, 2), 0);
-    expect_head_refused(path, head, end, 1);
-    memset(end.launches, 'x', sizeof end.launches);
-    expect_head_refused(path, head, end, 0);
-    end = end_of(0, 9, 1);
-
-    begin_draft(&draft); /* two heads */
-    add_head(&draft, head);
-    add_head(&draft, head);
-    add_end(&draft, end, 0);
-    expect_refused(path, draft.bytes, draft.count);
-    begin_draft(&draft); /* nothing before the end */
-    add_end(&draft, end, 0);
-    expect_refused(path, draft.bytes, draft.count);
+    memset(heads[4].identity.scene, 'x', sizeof heads[4].identity.scene);
+    memset(heads[5].launches, 'x', sizeof heads[5].launches);
+    heads[6].records = 1;
+    for (size_t i = 0; i < COUNT(heads); i++) {
+        draft = draft_of(heads[i]);
+        expect_draft_refused(path, &draft);
+    }
+    draft = draft_of(sound); /* two heads */
+    add_block(&draft, BLOCK_HEAD, &sound, sizeof sound);
+    expect_draft_refused(path, &draft);
     begin_draft(&draft); /* an unknown block */
-    add_head(&draft, head);
     add_block(&draft, 4, sums, sizeof sums);
-    add_end(&draft, end, 0);
-    expect_refused(path, draft.bytes, draft.count);
-    begin_draft(&draft); /* no end */
-    add_head(&draft, head);
-    expect_refused(path, draft.bytes, draft.count);
-    begin_draft(&draft); /* a source that does not end */
-    unsigned char open_source[sizeof head + 1];
-    memcpy(open_source, &head, sizeof head);
-    open_source[sizeof head] = 'x';
-    add_block(&draft, BLOCK_HEAD, open_source, sizeof open_source);
-    add_end(&draft, end, 0);
-    expect_refused(path, draft.bytes, draft.count);
+    add_block(&draft, BLOCK_HEAD, &sound, sizeof sound);
+    expect_draft_refused(path, &draft);
+    begin_draft(&draft); /* no head */
+    add_block(&draft, BLOCK_SUMS, sums, sizeof sums);
+    expect_draft_refused(path, &draft);
+    /* a source that does not end, and one that is not whole */
+    static const char *const sources[] = {"x", "scene.yaml\0/home\0"};
+    static const size_t sizes[] = {1, 17};
+    for (size_t i = 0; i < COUNT(sources); i++) {
+        unsigned char content[sizeof sound + 17];
+        memcpy(content, &sound, sizeof sound);
+        memcpy(content + sizeof sound, sources[i], sizes[i]);
+        begin_draft(&draft);
+        add_block(&draft, BLOCK_HEAD, content, sizeof sound + sizes[i]);
+        expect_draft_refused(path, &draft);
+    }
 }
 
 static void test_runs_stay_within_their_sums(void **state)
@@ -275,15 +254,16 @@ static void test_runs_stay_within_their_sums(void **state)
     static const uint64_t blocks[][5] = {{4, 2, 2, 8, 9},          {4, 3, 2, 8, 9},
                                          {4, 5, 0, 8, 9},          {4, 0, 3, 8, 9},
                                          {4, UINT64_MAX, 2, 8, 9}, {4, 1, UINT64_MAX, 8, 9}};
+    struct sums_head head = head_of(1, 1, 0, 9, 1);
+    head.records = 1;
     for (size_t i = 0; i < COUNT(blocks); i++) {
         int64_t found[4] = {0, 0, 0, 0};
         struct collected all = {found, 0};
         struct sums_file file;
         struct draft draft;
         begin_draft(&draft);
-        add_head(&draft, head_of(1, 1));
         add_block(&draft, BLOCK_SUMS, blocks[i], sizeof blocks[i]);
-        add_end(&draft, end_of(0, 9, 1), 1);
+        add_block(&draft, BLOCK_HEAD, &head, sizeof head);
         write_bytes(path, draft.bytes, draft.count);
         assert_int_equal(sums_file_open(&file, &report, path), SONJECT_OK);
         assert_int_equal(sums_file_runs(&file, &report, 0, 4, collect, &all),
@@ -332,69 +312,64 @@ static void test_chains_cover_a_shard_once(void **state)
         assert_int_equal(folder_make(&report, path), SONJECT_OK);
         for (size_t k = 0; k < cases[i].count; k++) {
             const struct span_of_file *file = &cases[i].files[k];
-            write_sums(path, head_of(2, 3), end_of(file->first, file->last, file->is_last), sums,
-                       SUMS);
+            write_sums(path, head_of(2, 3, file->first, file->last, file->is_last), sums, SUMS);
         }
-        write_sums(path, head_of(1, 3), end_of(0, 99, true), sums, SUMS); /* another's */
-        assert_int_equal(sums_folder_read(&all, &report, path, 0, false), SONJECT_OK);
+        write_sums(path, head_of(1, 3, 0, 99, true), sums, SUMS); /* another's */
+        assert_int_equal(sums_folder_read(&all, &report, path, 0, SIZE_MAX, false), SONJECT_OK);
         assert_int_equal(all.count, cases[i].count + 1);
         assert_int_equal(sums_chain_find(&chain, &report, &all, 2), SONJECT_OK);
         assert_int_equal(chain.next, cases[i].next);
         assert_int_equal(chain.count, cases[i].in_chain);
         assert_int_equal(chain.is_complete, cases[i].is_complete);
         for (size_t k = 0; k < chain.count; k++)
-            assert_int_equal(chain.files[k]->end.first,
-                             k + 1 < chain.count ? chain.files[k + 1]->end.last : 0);
-        sums_chain_clear(&chain);
+            assert_int_equal(chain.files[k]->head.first,
+                             k + 1 < chain.count ? chain.files[k + 1]->head.last : 0);
+        free(chain.files);
         sums_folder_clear(&all);
         sums_folder_remove(path);
         assert_false(file_exists(path));
     }
 }
 
+static void expect_folder(const char *path, uint64_t shard, size_t most, bool drops_damaged,
+                          sonject_status status, size_t count)
+{
+    struct sums_folder all;
+    assert_int_equal(sums_folder_read(&all, &report, path, shard, most, drops_damaged), status);
+    assert_int_equal(all.count, count);
+    if (shard > 0 && status == SONJECT_OK)
+        assert_int_equal(all.files[0].head.shard, shard);
+    sums_folder_clear(&all);
+}
+
 static void test_a_folder_gives_what_is_its_own(void **state)
 {
     struct temporary_folder *folder = *state;
-    struct sums_folder all;
-    struct sums_file file;
     uint64_t shards = 7;
-    bool is_there = true;
-    char damaged[TEMPORARY_CAPACITY + 300];
-    assert_int_equal(sums_folder_first(&file, &report, temporary_file(folder, "none"), &is_there),
-                     SONJECT_OK);
-    assert_false(is_there);
-    write_sums(folder->path, head_of(2, 3), end_of(0, 4, false), sums, SUMS);
-    write_sums(folder->path, head_of(1, 3), end_of(0, 4, false), sums, SUMS);
+    char damaged[TEMPORARY_CAPACITY + 300], other[TEMPORARY_CAPACITY + 300];
+    expect_folder(temporary_file(folder, "none"), 0, SIZE_MAX, false, SONJECT_OK, 0);
+    write_sums(folder->path, head_of(2, 3, 0, 4, false), sums, SUMS);
+    write_sums(folder->path, head_of(1, 3, 0, 4, false), sums, SUMS);
     strcpy(damaged, temporary_file(folder, "shard-1-of-3-4-5.sums"));
     write_bytes(damaged, sums, sizeof sums);
-    write_bytes(temporary_file(folder, "shard-1-of-3.sums.7-00.part.sums"), sums, sizeof sums);
-    assert_int_equal(sums_folder_first(&file, &report, folder->path, &is_there), SONJECT_OK);
-    assert_true(is_there);
-    assert_int_equal(file.head.shard, 1);
-    sums_file_close(&file);
+    write_bytes(temporary_file(folder, "shard.sums.7-00.part.sums"), sums, sizeof sums);
+    expect_folder(folder->path, 0, 1, false, SONJECT_OK, 1);
     assert_int_equal(sums_folder_shards(&report, folder->path, 3, &shards), SONJECT_OK);
     assert_int_equal(shards, 0);
     assert_int_equal(sums_folder_shards(&report, folder->path, 1, &shards), SONJECT_OK);
     assert_int_equal(shards, 3);
     /* what is damaged is refused; its own shard may drop it */
-    assert_int_equal(sums_folder_read(&all, &report, folder->path, 0, false), SONJECT_ERROR_INPUT);
-    sums_folder_clear(&all);
-    assert_int_equal(sums_folder_read(&all, &report, folder->path, 2, true), SONJECT_OK);
-    assert_int_equal(all.count, 1);
-    sums_folder_clear(&all);
+    expect_folder(folder->path, 0, SIZE_MAX, false, SONJECT_ERROR_INPUT, 1);
+    expect_folder(folder->path, 2, SIZE_MAX, true, SONJECT_OK, 1);
     assert_true(file_exists(damaged));
-    assert_int_equal(sums_folder_read(&all, &report, folder->path, 1, true), SONJECT_OK);
-    assert_int_equal(all.count, 1);
-    sums_folder_clear(&all);
+    expect_folder(folder->path, 1, SIZE_MAX, true, SONJECT_OK, 1);
     assert_false(file_exists(damaged));
     /* what another shard traced is sound, and stays */
-    write_sums(folder->path, head_of(2, 3), end_of(4, 5, true), sums, SUMS);
-    char other[TEMPORARY_CAPACITY + 300];
+    write_sums(folder->path, head_of(2, 3, 4, 5, true), sums, SUMS);
     strcpy(other, temporary_file(folder, "shard-2-of-3-4-5.sums"));
     assert_int_equal(rename(other, damaged), 0);
-    assert_int_equal(sums_folder_read(&all, &report, folder->path, 1, true), SONJECT_ERROR_INPUT);
+    expect_folder(folder->path, 1, SIZE_MAX, true, SONJECT_ERROR_INPUT, 2);
     assert_non_null(strstr(report.message, "another shard's"));
-    sums_folder_clear(&all);
     assert_true(file_exists(damaged));
 }
 
@@ -406,7 +381,7 @@ static sonject_status add_both(const char *folder, int64_t *total)
     struct trace_counts counts;
     const int64_t *added;
     memset(&counts, 0, sizeof counts);
-    assert_int_equal(sums_folder_read(&all, &report, folder, 0, false), SONJECT_OK);
+    assert_int_equal(sums_folder_read(&all, &report, folder, 0, SIZE_MAX, false), SONJECT_OK);
     assert_int_equal(all.count, 2);
     const struct sums_file *files[] = {&all.files[0], &all.files[1]};
     assert_int_equal(checkpoint_begin_adding(&checkpoint, &report, files, 2), SONJECT_OK);
@@ -429,14 +404,13 @@ static void test_only_what_goes_together_is_added_up(void **state)
     static const int64_t second[] = {-8, 5};
     static const int64_t overflows[] = {-8, 6};
     int64_t total[2] = {0, 0};
-    struct sums_end end = end_of(0, 9, true);
     /* both also hold `sums`, whose limits go beyond 64 bits when doubled */
-    write_sums(folder->path, head_of(1, 2), end, first, 2);
-    write_sums(folder->path, head_of(2, 2), end, second, 2);
+    write_sums(folder->path, head_of(1, 2, 0, 9, true), first, 2);
+    write_sums(folder->path, head_of(2, 2, 0, 9, true), second, 2);
     assert_int_equal(add_both(folder->path, total), SONJECT_ERROR_INPUT);
     assert_int_equal(total[0], -5);
     assert_int_equal(total[1], INT64_MAX);
-    write_sums(folder->path, head_of(2, 2), end, overflows, 2);
+    write_sums(folder->path, head_of(2, 2, 0, 9, true), overflows, 2);
     total[0] = 0;
     assert_int_equal(add_both(folder->path, total), SONJECT_ERROR_INPUT);
     assert_int_equal(total[0], 0);
@@ -459,7 +433,7 @@ static void test_only_what_goes_together_is_added_up(void **state)
     char nothing[HASH_TEXT_CAPACITY];
     assert_non_null(hash);
     hash_end(hash, nothing);
-    strcpy(file.end.launches, nothing);
+    strcpy(file.head.launches, nothing);
     assert_int_equal(checkpoint_begin_adding(&checkpoint, &report, files, 1), SONJECT_OK);
     assert_int_equal(checkpoint_finish(&checkpoint, &counts), SONJECT_ERROR_INPUT);
     checkpoint_clear(&checkpoint);
@@ -471,18 +445,11 @@ static void test_only_what_goes_together_is_added_up(void **state)
     sums_file_close(&file);
 }
 
-TEST_PROGRAM(NULL, NULL,
-             cmocka_unit_test_setup_teardown(test_what_is_written_is_read, make_temporary_folder,
-                                             remove_temporary_folder),
-             cmocka_unit_test_setup_teardown(test_no_damage_goes_unseen, make_temporary_folder,
-                                             remove_temporary_folder),
-             cmocka_unit_test_setup_teardown(test_what_makes_no_sense_is_refused,
-                                             make_temporary_folder, remove_temporary_folder),
-             cmocka_unit_test_setup_teardown(test_runs_stay_within_their_sums,
-                                             make_temporary_folder, remove_temporary_folder),
-             cmocka_unit_test_setup_teardown(test_chains_cover_a_shard_once, make_temporary_folder,
-                                             remove_temporary_folder),
-             cmocka_unit_test_setup_teardown(test_a_folder_gives_what_is_its_own,
-                                             make_temporary_folder, remove_temporary_folder),
-             cmocka_unit_test_setup_teardown(test_only_what_goes_together_is_added_up,
-                                             make_temporary_folder, remove_temporary_folder))
+#define IN_FOLDER(test)                                                                            \
+    cmocka_unit_test_setup_teardown(test, make_temporary_folder, remove_temporary_folder)
+
+TEST_PROGRAM(NULL, NULL, IN_FOLDER(test_what_is_written_is_read),
+             IN_FOLDER(test_no_damage_goes_unseen), IN_FOLDER(test_what_makes_no_sense_is_refused),
+             IN_FOLDER(test_runs_stay_within_their_sums), IN_FOLDER(test_chains_cover_a_shard_once),
+             IN_FOLDER(test_a_folder_gives_what_is_its_own),
+             IN_FOLDER(test_only_what_goes_together_is_added_up))
