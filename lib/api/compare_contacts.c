@@ -12,7 +12,7 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "image/canvas.h"
-#include "measure/sample_comparison.h"
+#include "measure/contacts.h"
 #include "swath/raster_file.h"
 
 #define MEASURES_BYTES_MAX ((size_t)1 << 28)

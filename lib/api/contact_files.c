@@ -10,7 +10,7 @@
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "dataset/labels.h"
-#include "measure/contact_search.h"
+#include "measure/contacts.h"
 
 #define TRUTH_BYTES_MAX ((size_t)1 << 26)
 #define BOXES_MAX       100000

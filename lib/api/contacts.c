@@ -8,7 +8,6 @@
 #include "api/handles.h"
 #include "base/memory.h"
 #include "image/statistics.h"
-#include "measure/contact_ruler.h"
 
 #define NUMBER(name)                                                                               \
     {                                                                                              \

@@ -5,7 +5,7 @@
 #include <sonject/measure.h>
 
 #include "base/report.h"
-#include "measure/contact_parts.h"
+#include "measure/contacts.h"
 
 /* All but the seabed's speckle. Errors: INPUT, MEMORY. */
 sonject_status contact_measure(struct report *report, struct contact_image *image,

@@ -5,8 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "measure/contact_ruler.h"
-#include "measure/contact_search.h"
+#include "measure/contacts.h"
 
 struct box_search {
     size_t first_row, last_row, first_column, last_column;

@@ -1,16 +1,35 @@
-#include "measure/contact_ruler.h"
-
+/* How long and wide a contact's highlight and shadow are.
+ *
+ * Where the formulas come from:
+ * - Speckle is circular Gaussian: a mean of n independent intensities has the gamma distribution of
+ *   shape n (Goodman, Speckle Phenomena in Optics, section 3.3). n are the looks and pixels of a
+ *   line over the correlation's sum, sqrt(pi) lengths where that falls to 1/e as a Gaussian.
+ * - Edges are the mean of their likelihood, and its deviation is their error (contact_edges.h).
+ * - The point response: speckle's correlation is that of its amplitude with itself, squared; a
+ *   Gaussian's energy then has half the deviation of the length at which it falls to 1/e. Other
+ *   responses are taken for one. 1/(2 pi^2 x^2) is the mean of sinc^2 over one of its side lobes.
+ * - A shadow has two levels if those are e^10 times as likely as one: by chance once in some 200
+ *   shadows of 100 pixels.
+ * Thresholds are conventions, not physics: those of contact_mask.h, and of a shadow's near edge the
+ * geometric mean of its own level and the seabed's. */
 #include <limits.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/memory.h"
 #include "measure/contact_edges.h"
+#include "measure/contacts.h"
 
-#define EDGE_REACH 8 /* pixels beyond a part in which its edge is looked for */
-#define END_ROWS   4 /* of a highlight, whose columns tell where its end is looked for */
-#define BANDS      3 /* of rows, in each of which a shadow's edges are taken for straight */
-#define TILTS      8 /* to either side, that a far edge may have along the highlight */
-#define TILT_STEP  0.125
+#define SKIRT_REACH     32   /* rows */
+#define DEVIATION_LEAST 0.15 /* pixels, of a point response that is finer than they are */
+#define ROOT_OF_PI      1.7724538509055159
+#define PI              3.14159265358979323846
+#define EDGE_REACH      8 /* pixels beyond a part in which its edge is looked for */
+#define END_ROWS        4 /* of a highlight, whose columns tell where its end is looked for */
+#define BANDS           3 /* of rows, in each of which a shadow's edges are taken for straight */
+#define TILTS           8 /* to either side, that a far edge may have along the highlight */
+#define TILT_STEP       0.125
 /* Of the seabed: a shadow darker than that counts as that dark, since side lobes of the seabed
  * around it fill its edges. */
 #define SHADOW_LEAST 0.03
@@ -18,6 +37,152 @@
 #define SHADOW_CEILING 2.0
 #define EDGE_MARGIN    3.0  /* columns of a shadow at its edges that may not be as dark as it is */
 #define DIM_GAIN       10.0 /* from which on a shadow is taken to have two levels */
+
+/* Lines through a contact, laid along its highlight, and their mean intensities. Columns of boxes
+ * that are used with them count along row middle_row: in a row further on they lie slant more to
+ * the right, in one of a tilted edge as much more as it is tilted. */
+struct contact_lines {
+    const struct contact_image *image;
+    double seabed; /* mean intensity */
+    double slant, middle_row;
+    double tilt, tilt_row;
+    double *means, *skirt; /* room for one profile */
+};
+
+/* Rows of a box, or columns, one after the other from `start`, backwards where step is -1. */
+struct profile_path {
+    struct window_box box;
+    bool is_along_track; /* row after row */
+    size_t start;
+    int step;
+    size_t most; /* at most so many, and none beyond the image's edge */
+};
+
+/* How many columns further to the right lines lie in a row. */
+static long line_shift(const struct contact_lines *lines, size_t row)
+{
+    return lround(lines->slant * ((double)row - lines->middle_row) +
+                  lines->tilt * ((double)row - lines->tilt_row));
+}
+
+static double intensity_at(const struct contact_image *image, size_t row, size_t column)
+{
+    return (double)image->intensity[row * image->columns + column];
+}
+
+static double highlight_at(const struct contact_image *image, size_t row, size_t column)
+{
+    const bool is_marked = image->marks[row * image->columns + column] == PART_HIGHLIGHT;
+    return is_marked ? intensity_at(image, row, column) : 0.0;
+}
+
+/* What side lobes of the highlight bring to a pixel: sinc^2 falls as 1/(pi x)^2, and is half of
+ * that on average. */
+static double skirt_at(const struct contact_image *image, size_t row, size_t column)
+{
+    double sum = 0.0;
+    for (size_t away = 1; away <= SKIRT_REACH; away++) {
+        const double share = 0.5 / (PI * PI * (double)away * (double)away);
+        if (away <= row)
+            sum += share * highlight_at(image, row - away, column);
+        if (row + away < image->rows)
+            sum += share * highlight_at(image, row + away, column);
+    }
+    return sum;
+}
+
+typedef double pixel_value(const struct contact_image *image, size_t row, size_t column);
+
+static double mean_of(const struct contact_lines *lines, const struct window_box *box,
+                      pixel_value *value, double otherwise)
+{
+    const struct contact_image *image = lines->image;
+    double sum = 0.0;
+    size_t count = 0;
+    for (size_t row = box->first_row; row < box->first_row + box->rows; row++) {
+        const long first = (long)box->first_column + line_shift(lines, row);
+        for (long k = 0; k < (long)box->columns; k++) {
+            if (first + k < 0 || first + k >= (long)image->columns)
+                continue;
+            sum += value(image, row, (size_t)(first + k));
+            count++;
+        }
+    }
+    return count > 0 ? sum / (double)count : otherwise;
+}
+
+/* Of the pixels of the box that are inside the image; the seabed's where none is. */
+static double mean_along_lines(const struct contact_lines *lines, const struct window_box *box)
+{
+    return mean_of(lines, box, intensity_at, lines->seabed);
+}
+
+/* Pixels for one that is independent: the sum of exp(-(x / length)^2) over all. */
+static double pixels_a_sample(double correlation_length)
+{
+    return fmax(1.0, ROOT_OF_PI * correlation_length);
+}
+
+/* Of the energy of a Gaussian response, whose speckle's correlation is exp(-x^2 / (2 deviation)^2):
+ * by the neighbouring pixel where that falls to 1/e between pixels, which are too far apart then to
+ * tell where. */
+static double deviation_of(const struct speckle_axis *axis)
+{
+    const double next = axis->correlation[1];
+    const double deviation = axis->length_pixels > 1.0 || next >= 1.0
+                                 ? 0.5 * axis->length_pixels
+                                 : 0.5 / sqrt(-log(fmax(next, 1e-9)));
+    return fmax(DEVIATION_LEAST, deviation);
+}
+
+/* The box's row or column that is so far along the path. */
+static struct window_box line_of(const struct profile_path *path, size_t k)
+{
+    const size_t index = path->step > 0 ? path->start + k : path->start - k;
+    const struct window_box *box = &path->box;
+    const struct window_box row = {index, box->first_column, 1, box->columns};
+    const struct window_box column = {box->first_row, index, box->rows, 1};
+    return path->is_along_track ? row : column;
+}
+
+/* Mean intensities along a path, valid until the next call. */
+static struct profile profile_along(const struct contact_lines *lines,
+                                    const struct profile_path *path)
+{
+    const struct speckle_statistics *speckle = &lines->image->speckle;
+    const struct speckle_axis *along =
+        path->is_along_track ? &speckle->along_track : &speckle->range;
+    const struct speckle_axis *across =
+        path->is_along_track ? &speckle->range : &speckle->along_track;
+    const size_t pixels = path->is_along_track ? path->box.columns : path->box.rows;
+    const size_t size = path->is_along_track ? lines->image->rows : lines->image->columns;
+    const size_t room = path->step > 0 ? size - path->start : path->start + 1;
+    const double looks = speckle->blocks > 0 ? speckle->looks : 1.0;
+    struct profile profile = {lines->means, lines->skirt, 0, 0.0, 0.0};
+    profile.count = room < path->most ? room : path->most;
+    profile.samples = looks * fmax(1.0, (double)pixels / pixels_a_sample(across->length_pixels)) /
+                      pixels_a_sample(along->length_pixels);
+    profile.deviation = deviation_of(along);
+    for (size_t k = 0; k < profile.count; k++) {
+        const struct window_box line = line_of(path, k);
+        lines->means[k] = mean_along_lines(lines, &line);
+        lines->skirt[k] = 0.0;
+    }
+    return profile;
+}
+
+/* The same with the skirt of the pixels that are marked as highlight: side lobes along the track,
+ * as of an aperture without a window. */
+static struct profile profile_with_skirt(const struct contact_lines *lines,
+                                         const struct profile_path *path)
+{
+    const struct profile profile = profile_along(lines, path);
+    for (size_t k = 0; k < profile.count; k++) {
+        const struct window_box line = line_of(path, k);
+        lines->skirt[k] = mean_of(lines, &line, skirt_at, 0.0);
+    }
+    return profile;
+}
 
 static size_t smaller(size_t a, size_t b)
 {
@@ -134,18 +299,19 @@ static struct contact_length width_of_highlight(const struct contact_lines *line
     return length_between(&near, &far);
 }
 
-/* Leaves the lines along the highlight; *along gets its columns there. */
-static void measure_highlight(struct contact_lines *lines, struct contact_sizes *sizes,
-                              struct window_box *along)
+/* Leaves the lines along the highlight, and returns its middle column there. */
+static size_t measure_highlight(struct contact_lines *lines, struct contact_sizes *sizes)
 {
-    lie_along(lines, &sizes->highlight, along);
-    const struct window_box middle = middle_rows(along);
+    struct window_box along;
+    lie_along(lines, &sizes->highlight, &along);
+    const struct window_box middle = middle_rows(&along);
     const struct profile_edge first = end_along_track(lines, &sizes->highlight.box, -1);
     const struct profile_edge last = end_along_track(lines, &sizes->highlight.box, 1);
     sizes->highlight_rows.pixels = fmax(0.0, last.place - first.place);
     sizes->highlight_rows.error = hypot(first.error, last.error);
     sizes->highlight_columns = width_of_highlight(lines, &middle);
     sizes->highlight_intensity = sizes->highlight.energy / (double)sizes->highlight.pixels;
+    return along.first_column + along.columns / 2;
 }
 
 /* The darkest third of a shadow's columns, at least three; *level gets its mean. */
@@ -317,43 +483,35 @@ static void measure_shadow(const struct contact_lines *lines, const size_t *high
     sizes->shadow_rows = length_between(&first, &last);
 }
 
-static sonject_status measure(struct contact_lines *lines, struct contact_image *image,
-                              struct report *report, const struct contact_place *place,
-                              struct contact_sizes *sizes)
-{
-    sonject_status status = find_seabed_level(image, report, &place->box, &lines->seabed);
-    if (status == SONJECT_OK && !(lines->seabed > 0.0))
-        status = report_failure(report, SONJECT_ERROR_INPUT,
-                                "the image is dark around row %zu, column %zu: there is no seabed "
-                                "to measure a contact against",
-                                place->box.first_row, place->box.first_column);
-    THEN(status, find_contact_parts(image, report, place, lines->seabed, &sizes->highlight,
-                                    &sizes->shadow));
-    if (status != SONJECT_OK)
-        return status;
-    size_t bright_column = 0;
-    sizes->seabed = lines->seabed;
-    if (sizes->highlight.pixels > 0) {
-        struct window_box along;
-        measure_highlight(lines, sizes, &along);
-        bright_column = along.first_column + along.columns / 2;
-    }
-    if (sizes->shadow.pixels > 0)
-        measure_shadow(lines, sizes->highlight.pixels > 0 ? &bright_column : NULL, sizes);
-    return SONJECT_OK;
-}
-
 sonject_status measure_contact_sizes(struct contact_image *image, struct report *report,
                                      const struct contact_place *place, struct contact_sizes *sizes)
 {
     const struct contact_length unknown = {NAN, NAN};
+    const size_t most = image->rows > image->columns ? image->rows : image->columns;
     struct contact_lines lines;
+    size_t bright_column = 0;
+    memset(&lines, 0, sizeof lines);
     memset(sizes, 0, sizeof *sizes);
     sizes->highlight_rows = sizes->highlight_columns = unknown;
     sizes->shadow_rows = sizes->shadow_columns = sizes->gap_columns = sizes->dim_columns = unknown;
     sizes->highlight_intensity = sizes->shadow_intensity = NAN;
-    sonject_status status = contact_lines_create(&lines, report, image);
-    THEN(status, measure(&lines, image, report, place, sizes));
-    contact_lines_clear(&lines);
-    return status;
+    CHECK(find_seabed_level(image, report, &place->box, &sizes->seabed));
+    if (!(sizes->seabed > 0.0))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the image is dark around row %zu, column %zu: there is no seabed to "
+                              "measure a contact against",
+                              place->box.first_row, place->box.first_column);
+    CHECK(
+        find_contact_parts(image, report, place, sizes->seabed, &sizes->highlight, &sizes->shadow));
+    lines.image = image;
+    lines.seabed = sizes->seabed;
+    lines.means = allocate_array(most, 2 * sizeof *lines.means);
+    CHECK_MEMORY(report, lines.means, "a contact's measures");
+    lines.skirt = lines.means + most;
+    if (sizes->highlight.pixels > 0)
+        bright_column = measure_highlight(&lines, sizes);
+    if (sizes->shadow.pixels > 0)
+        measure_shadow(&lines, sizes->highlight.pixels > 0 ? &bright_column : NULL, sizes);
+    free(lines.means);
+    return SONJECT_OK;
 }

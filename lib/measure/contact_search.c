@@ -3,7 +3,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "measure/contact_search.h"
+#include "measure/contacts.h"
 
 #define CELL        64 /* pixels on a side, for each of which the seabed's level is found */
 #define CELL_MARGIN 32 /* around a cell, that counts too */

@@ -1,7 +1,8 @@
-#include "measure/sample_comparison.h"
-
+/* Whether two sets of numbers come from one distribution. */
 #include <math.h>
 #include <stdlib.h>
+
+#include "measure/contacts.h"
 
 static int by_size(const void *a, const void *b)
 {

@@ -5,17 +5,29 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "measure/seam_classifier.h"
 
-#define GUARD        1 /* pixels around highlights and shadows */
-#define GAPS         3 /* pixels, in the influence, that are closed */
-#define MARGIN       6 /* pixels around a patch that its level is compared with */
+#define SEAM_PATCH   12 /* pixels on a side */
+#define GUARD        1  /* pixels around highlights and shadows */
+#define GAPS         3  /* pixels, in the influence, that are closed */
+#define MARGIN       6  /* pixels around a patch that its level is compared with */
 #define SURROUNDINGS (SEAM_PATCH + 2 * MARGIN)
 #define BAND_LEAST   30  /* pixels of a patch that are in the band */
 #define STEP         3   /* pixels between the places where patches may begin */
 #define PAIRS        2   /* of untouched patches for each of the band, on opposite sides of it */
 #define FARTHEST     10  /* patches off, where those are looked for */
 #define SAMPLES_MAX  600 /* of the band; comparing goes as their square */
+
+#define SEAM_FEATURES 7
+#define SEAM_FOLDS    5
+
+/* A patch by its local statistics. */
+struct seam_sample {
+    double features[SEAM_FEATURES];
+    int fold;         /* 0...SEAM_FOLDS - 1: part of the image, judged by what the others taught */
+    size_t group;     /* number of the injected sample that it belongs to; groups follow each other,
+                         each begins with its injected sample */
+    bool is_injected; /* or untouched seabed */
+};
 
 enum pixel_kind {
     PIXEL_UNTOUCHED,
@@ -60,30 +72,24 @@ static bool is_in_patch(size_t i)
            column < MARGIN + SEAM_PATCH;
 }
 
-static void mark_around(struct seam_search *search, size_t row, size_t column)
+/* Makes a square of so many pixels around one of a kind. */
+static void fill_square(const struct seam_search *search, size_t at, size_t radius, uint8_t kind)
 {
-    const size_t first_row = row > GUARD ? row - GUARD : 0;
-    const size_t first_column = column > GUARD ? column - GUARD : 0;
-    for (size_t r = first_row; r <= row + GUARD && r < search->rows; r++)
-        for (size_t c = first_column; c <= column + GUARD && c < search->columns; c++)
-            search->kinds[r * search->columns + c] = PIXEL_TARGET;
+    const size_t row = at / search->columns;
+    const size_t column = at % search->columns;
+    for (size_t r = row > radius ? row - radius : 0; r <= row + radius && r < search->rows; r++)
+        for (size_t c = column > radius ? column - radius : 0;
+             c <= column + radius && c < search->columns; c++)
+            search->kinds[r * search->columns + c] = kind;
 }
 
 /* Spreads the pixels of a kind over squares of GAPS pixels around them. scratch: as kinds. */
 static void spread(const struct seam_search *search, uint8_t kind, uint8_t *scratch)
 {
-    const size_t columns = search->columns;
-    memcpy(scratch, search->kinds, search->rows * columns);
-    for (size_t i = 0; i < search->rows * columns; i++) {
-        if (scratch[i] != kind)
-            continue;
-        const size_t row = i / columns;
-        const size_t column = i % columns;
-        for (size_t r = row > GAPS ? row - GAPS : 0; r <= row + GAPS && r < search->rows; r++)
-            for (size_t c = column > GAPS ? column - GAPS : 0; c <= column + GAPS && c < columns;
-                 c++)
-                search->kinds[r * columns + c] = kind;
-    }
+    memcpy(scratch, search->kinds, search->rows * search->columns);
+    for (size_t i = 0; i < search->rows * search->columns; i++)
+        if (scratch[i] == kind)
+            fill_square(search, i, GAPS, kind);
 }
 
 /* Where little changes, dark pixels change first: gaps in the influence are closed, or the band
@@ -101,7 +107,7 @@ static void mark_kinds(struct seam_search *search, const uint8_t *influence, con
             search->kinds[i] = PIXEL_BAND;
     for (size_t i = 0; labels && i < count; i++)
         if (labels[i])
-            mark_around(search, i / search->columns, i % search->columns);
+            fill_square(search, i, GUARD, PIXEL_TARGET);
 }
 
 static void take_outline(const struct seam_search *search, size_t row, size_t column,
@@ -218,36 +224,31 @@ static bool add_sample(struct seam_search *search, size_t row, size_t column,
     return true;
 }
 
-/* The patch at an offset in whole patches; false where it is not inside or not untouched. */
-static bool find_untouched(const struct seam_search *search, size_t row, size_t column, long down,
-                           long right, const struct outline *outline, size_t *other_row,
-                           size_t *other_column)
-{
-    const long r = (long)row + down * SEAM_PATCH;
-    const long c = (long)column + right * SEAM_PATCH;
-    if (r < 0 || c < 0 || r + SEAM_PATCH > (long)search->rows ||
-        c + SEAM_PATCH > (long)search->columns)
-        return false;
-    *other_row = (size_t)r;
-    *other_column = (size_t)c;
-    return is_untouched(search, *other_row, *other_column, outline);
-}
-
+/* Adds the patches at an offset in whole patches and at the opposite one; false, and none, where
+ * one is not inside, not untouched or of nothing. */
 static bool add_pair(struct seam_search *search, size_t row, size_t column, long down, long right,
                      const struct outline *outline)
 {
+    const size_t before = search->count;
     size_t rows[2], columns[2];
-    if (!find_untouched(search, row, column, down, right, outline, &rows[0], &columns[0]) ||
-        !find_untouched(search, row, column, -down, -right, outline, &rows[1], &columns[1]))
-        return false;
-    if (!add_sample(search, rows[0], columns[0], outline, false))
-        return false;
-    if (!add_sample(search, rows[1], columns[1], outline, false)) {
-        search->count--;
-        return false;
+    for (int i = 0; i < 2; i++) {
+        const long r = (long)row + (i == 0 ? down : -down) * SEAM_PATCH;
+        const long c = (long)column + (i == 0 ? right : -right) * SEAM_PATCH;
+        if (r < 0 || c < 0 || r + SEAM_PATCH > (long)search->rows ||
+            c + SEAM_PATCH > (long)search->columns)
+            return false;
+        rows[i] = (size_t)r;
+        columns[i] = (size_t)c;
+        if (!is_untouched(search, rows[i], columns[i], outline))
+            return false;
     }
-    take(search, rows[0], columns[0], outline, PIXEL_TAKEN);
-    take(search, rows[1], columns[1], outline, PIXEL_TAKEN);
+    for (int i = 0; i < 2; i++)
+        if (!add_sample(search, rows[i], columns[i], outline, false)) {
+            search->count = before;
+            return false;
+        }
+    for (int i = 0; i < 2; i++)
+        take(search, rows[i], columns[i], outline, PIXEL_TAKEN);
     return true;
 }
 
@@ -328,21 +329,193 @@ static size_t collect(struct seam_search *search)
     return injected;
 }
 
-static sonject_status judge(struct report *report, struct seam_search *search, size_t injected,
-                            struct seam *seam)
+#define SHRINKAGE 0.1 /* of the covariance towards its diagonal */
+#define LEAST     2   /* samples of a kind in a fold */
+#define SHUFFLES  30
+
+/* Means and spread of the samples that a discriminant learns from. */
+struct training {
+    double mean[2][SEAM_FEATURES];
+    double covariance[SEAM_FEATURES][SEAM_FEATURES];
+};
+
+/* From the samples that are not of a fold. */
+static void learn(const struct seam_sample *samples, size_t count, int left_out,
+                  struct training *training)
 {
-    sonject_status status = SONJECT_OK;
-    seam->patches = injected;
-    seam->background = search->count - injected;
-    if (injected > 0) {
-        double auc, error;
-        deal_folds(search, injected);
-        if (classify_seam(report, search->samples, search->count, &auc, &error, &status)) {
-            seam->auc = auc;
-            seam->error = error;
+    double counts[2] = {0.0, 0.0};
+    memset(training, 0, sizeof *training);
+    for (size_t i = 0; i < count; i++) {
+        const int kind = samples[i].is_injected;
+        counts[kind] += samples[i].fold != left_out;
+        for (int k = 0; k < SEAM_FEATURES && samples[i].fold != left_out; k++)
+            training->mean[kind][k] += samples[i].features[k];
+    }
+    for (int kind = 0; kind < 2; kind++)
+        for (int k = 0; k < SEAM_FEATURES; k++)
+            training->mean[kind][k] /= fmax(counts[kind], 1.0);
+    for (size_t i = 0; i < count; i++) {
+        const double *mean = training->mean[samples[i].is_injected];
+        for (int k = 0; k < SEAM_FEATURES && samples[i].fold != left_out; k++)
+            for (int l = 0; l < SEAM_FEATURES; l++)
+                training->covariance[k][l] +=
+                    (samples[i].features[k] - mean[k]) * (samples[i].features[l] - mean[l]);
+    }
+    for (int k = 0; k < SEAM_FEATURES; k++)
+        for (int l = 0; l < SEAM_FEATURES; l++)
+            if (k != l)
+                training->covariance[k][l] *= 1.0 - SHRINKAGE;
+            else
+                training->covariance[k][k] += 1e-12; /* a feature that never changes */
+}
+
+/* weights = covariance^-1 (injected mean - background mean), by Cholesky; the shrunk covariance is
+ * positive definite. */
+static void find_weights(struct training *training, double weights[SEAM_FEATURES])
+{
+    double(*a)[SEAM_FEATURES] = training->covariance;
+    for (int k = 0; k < SEAM_FEATURES; k++) {
+        weights[k] = training->mean[1][k] - training->mean[0][k];
+        for (int l = 0; l <= k; l++) {
+            double sum = a[k][l];
+            for (int m = 0; m < l; m++)
+                sum -= a[k][m] * a[l][m];
+            a[k][l] = k == l ? sqrt(fmax(sum, 1e-300)) : sum / a[l][l];
         }
     }
-    return status;
+    for (int k = 0; k < SEAM_FEATURES; k++) {
+        for (int m = 0; m < k; m++)
+            weights[k] -= a[k][m] * weights[m];
+        weights[k] /= a[k][k];
+    }
+    for (int k = SEAM_FEATURES - 1; k >= 0; k--) {
+        for (int m = k + 1; m < SEAM_FEATURES; m++)
+            weights[k] -= a[m][k] * weights[m];
+        weights[k] /= a[k][k];
+    }
+}
+
+static void score_fold(const struct seam_sample *samples, size_t count, int fold, double *scores)
+{
+    struct training training;
+    double weights[SEAM_FEATURES];
+    learn(samples, count, fold, &training);
+    find_weights(&training, weights);
+    for (size_t i = 0; i < count; i++) {
+        if (samples[i].fold != fold)
+            continue;
+        scores[i] = 0.0;
+        for (int k = 0; k < SEAM_FEATURES; k++)
+            scores[i] += weights[k] * samples[i].features[k];
+    }
+}
+
+/* Share of the fold's samples of the other kind that this one is on the right side of. */
+static double right_share(const struct seam_sample *samples, size_t count, const double *scores,
+                          size_t i)
+{
+    double right = 0.0;
+    size_t others = 0;
+    for (size_t j = 0; j < count; j++) {
+        if (samples[j].fold != samples[i].fold || samples[j].is_injected == samples[i].is_injected)
+            continue;
+        const double ahead = samples[i].is_injected ? scores[i] - scores[j] : scores[j] - scores[i];
+        right += ahead > 0.0 ? 1.0 : ahead == 0.0 ? 0.5 : 0.0;
+        others++;
+    }
+    return others > 0 ? right / (double)others : 0.5;
+}
+
+static bool has_enough(const struct seam_sample *samples, size_t count)
+{
+    size_t counts[SEAM_FOLDS][2] = {{0}};
+    for (size_t i = 0; i < count; i++)
+        counts[samples[i].fold][samples[i].is_injected]++;
+    for (int fold = 0; fold < SEAM_FOLDS; fold++)
+        if (counts[fold][0] < LEAST || counts[fold][1] < LEAST)
+            return false;
+    return true;
+}
+
+/* The area under the curve and its error by DeLong and others. scores: room for count numbers. */
+static double cross_validate(const struct seam_sample *samples, size_t count, double *scores,
+                             double *error)
+{
+    double sums[2] = {0.0, 0.0};
+    double squares[2] = {0.0, 0.0};
+    double counts[2] = {0.0, 0.0};
+    double variance = 0.0;
+    for (int fold = 0; fold < SEAM_FOLDS; fold++)
+        score_fold(samples, count, fold, scores);
+    for (size_t i = 0; i < count; i++) {
+        const int kind = samples[i].is_injected;
+        const double share = right_share(samples, count, scores, i);
+        sums[kind] += share;
+        squares[kind] += share * share;
+        counts[kind] += 1.0;
+    }
+    for (int kind = 0; kind < 2; kind++) {
+        const double mean = sums[kind] / counts[kind];
+        variance += (squares[kind] / counts[kind] - mean * mean) / (counts[kind] - 1.0);
+    }
+    *error = sqrt(fmax(0.0, variance));
+    return sums[1] / counts[1];
+}
+
+/* A whole number below `limit`, by a linear congruential generator (Knuth's MMIX). */
+static size_t draw_below(uint64_t *state, size_t limit)
+{
+    *state = *state * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
+    return (size_t)((*state >> 33) % limit);
+}
+
+/* Calls one sample of each group the injected one: the first, or any. */
+static void choose_injected(struct seam_sample *samples, size_t count, uint64_t *state)
+{
+    size_t first = 0;
+    while (first < count) {
+        size_t end = first;
+        while (end < count && samples[end].group == samples[first].group)
+            samples[end++].is_injected = false;
+        samples[state ? first + draw_below(state, end - first) : first].is_injected = true;
+        first = end;
+    }
+}
+
+static double scatter_by_chance(struct seam_sample *samples, size_t count, double *scores)
+{
+    uint64_t state = 1;
+    double squares = 0.0;
+    double unused;
+    for (int i = 0; i < SHUFFLES; i++) {
+        choose_injected(samples, count, &state);
+        const double auc = cross_validate(samples, count, scores, &unused);
+        squares += (auc - 0.5) * (auc - 0.5);
+    }
+    choose_injected(samples, count, NULL);
+    return sqrt(squares / SHUFFLES);
+}
+
+/* Area under the curve of Fisher's discriminant, cross-validated over the folds, each compared
+ * within itself; not known unless every fold has two samples of either kind. The standard error is
+ * the larger one of that by DeLong, DeLong and Clarke-Pearson, "Comparing the areas under two or
+ * more correlated receiver operating characteristic curves", Biometrics 44 (1988), and the scatter
+ * of the area when in each group another sample is taken for the injected one, which holds what the
+ * classifier learns by chance. */
+static sonject_status classify(struct report *report, struct seam_search *search, size_t injected,
+                               struct seam *seam)
+{
+    seam->patches = injected;
+    seam->background = search->count - injected;
+    deal_folds(search, injected);
+    if (!has_enough(search->samples, search->count))
+        return SONJECT_OK;
+    double *scores = allocate_array(search->count, sizeof *scores);
+    CHECK_MEMORY(report, scores, "the seam's classifier");
+    seam->auc = cross_validate(search->samples, search->count, scores, &seam->error);
+    seam->error = fmax(seam->error, scatter_by_chance(search->samples, search->count, scores));
+    free(scores);
+    return SONJECT_OK;
 }
 
 sonject_status measure_seam(struct report *report, const float *amplitudes,
@@ -361,7 +534,7 @@ sonject_status measure_seam(struct report *report, const float *amplitudes,
                                 : report_out_of_memory(report, "the seam");
     if (status == SONJECT_OK) {
         mark_kinds(&search, influence, labels, scratch);
-        status = judge(report, &search, collect(&search), seam);
+        status = classify(report, &search, collect(&search), seam);
     }
     free(search.kinds);
     free(search.samples);

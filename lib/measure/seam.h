@@ -7,8 +7,6 @@
 
 #include "base/report.h"
 
-#define SEAM_PATCH 12 /* pixels on a side */
-
 struct seam {
     double auc;                 /* area under the classifier's curve: 0.5 chance, 1 certain */
     double error;               /* standard error */

@@ -1,8 +1,7 @@
 /* Edges in speckle against what drew them, and contacts that are looked for in an image. */
 #include "claims.h"
 #include "measure/contact_edges.h"
-#include "measure/contact_ruler.h"
-#include "measure/contact_search.h"
+#include "measure/contacts.h"
 
 #define PIXELS  60
 #define DRAWS   400
@@ -108,7 +107,7 @@ static void test_steps_in_speckle(void **state)
 }
 
 /* Twice the level in the first third: told where 6 samples a pixel tell it, but not where one level
- * is all there is: e^10 times as likely is one in some 200 (see contact_ruler.h). */
+ * is all there is: e^10 times as likely is one in some 200 (see contact_ruler.c). */
 static void test_changes_in_shadows(void **state)
 {
     double means[PIXELS];

@@ -1,11 +1,91 @@
-/* Which pixels are a contact's highlight and shadow, and the seabed around them. */
+/* The image's seabed: where its water column ends and how bright it is; and which pixels are a
+ * contact's highlight and shadow. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "measure/contact_parts.h"
-#include "measure/first_return.h"
+#include "measure/contacts.h"
+
+#define WINDOW        24   /* columns on either side of the step */
+#define ROWS_AVERAGED 2    /* of a row, that count too: 120 samples of speckle know 0.5 dB */
+#define PULSE         16   /* first columns, which may hold the transmitted pulse */
+#define STEP_DB       10.0 /* from water to seabed */
+#define FAINTEST_DB   (-300.0)
+#define ROWS_SHARE    0.9 /* of the rows, that must have one: shadows begin with seabed in some */
+
+/* sums[j]: of the levels before column j, dB, in a row and those beside it. Levels are averaged and
+ * not intensities, since fish and spikes are bright. */
+static void sum_levels(const float *intensity, size_t rows, size_t columns, size_t row,
+                       double *sums)
+{
+    const size_t first = row > ROWS_AVERAGED ? row - ROWS_AVERAGED : 0;
+    const size_t end = row + ROWS_AVERAGED < rows ? row + ROWS_AVERAGED + 1 : rows;
+    sums[0] = 0.0;
+    for (size_t column = 0; column < columns; column++) {
+        double level = 0.0;
+        for (size_t r = first; r < end; r++)
+            level += fmax(FAINTEST_DB, 10.0 * log10((double)intensity[r * columns + column]));
+        sums[column + 1] = sums[column] + level / (double)(end - first);
+    }
+}
+
+static double mean_level(const double *sums, size_t first, size_t columns)
+{
+    return (sums[first + columns] - sums[first]) / (double)columns;
+}
+
+static double step_at(const double *sums, size_t column)
+{
+    return mean_level(sums, column, WINDOW) - mean_level(sums, column - WINDOW, WINDOW);
+}
+
+/* The largest step near the first one that is high enough; 0: all before it is not dark. */
+static size_t first_step(const double *sums, size_t columns)
+{
+    size_t found = 0;
+    double largest = STEP_DB;
+    double brightest = FAINTEST_DB; /* of the water */
+    for (size_t column = PULSE + WINDOW; column + WINDOW <= columns; column++) {
+        const double step = step_at(sums, column);
+        if (step >= largest) {
+            largest = step;
+            found = column;
+        } else if (found > 0 && column > found + WINDOW) {
+            break;
+        }
+    }
+    for (size_t column = PULSE; found > 0 && column + WINDOW <= found; column++)
+        brightest = fmax(brightest, mean_level(sums, column, WINDOW));
+    return found > 0 && mean_level(sums, found, WINDOW) > brightest + 0.5 * STEP_DB ? found : 0;
+}
+
+/* The first column of the seabed, for each row; all 0 where not nearly all rows begin with a water
+ * column: darker than the seabed by 10 dB from where the transmitted pulse has died down. Errors:
+ * MEMORY. */
+static sonject_status find_first_return(struct report *report, const float *intensity, size_t rows,
+                                        size_t columns, size_t *first_columns)
+{
+    double *sums = allocate_array(columns + 1, sizeof *sums);
+    size_t last = 0;
+    size_t missing = 0;
+    CHECK_MEMORY(report, sums, "the water column");
+    for (size_t row = 0; row < rows; row++) {
+        sum_levels(intensity, rows, columns, row, sums);
+        const size_t column = first_step(sums, columns);
+        missing += column == 0;
+        for (size_t above = 0; last == 0 && above < row; above++)
+            first_columns[above] = column;
+        last = column > 0 ? column : last;
+        first_columns[row] = last;
+    }
+    if ((double)missing > (1.0 - ROWS_SHARE) * (double)rows)
+        memset(first_columns, 0, rows * sizeof *first_columns);
+    free(sums);
+    return SONJECT_OK;
+}
+
+/* Which pixels are a contact's highlight and shadow, and the seabed around them. */
 
 #define PART_SEEN 128 /* of an area that is not the largest */
 
@@ -19,7 +99,8 @@ static size_t larger(size_t a, size_t b)
     return a > b ? a : b;
 }
 
-void mean_of_neighbours(const float *intensity, size_t rows, size_t columns, float *mean)
+/* Mean over 3 x 3 pixels, fewer at the image's edges. */
+static void mean_of_neighbours(const float *intensity, size_t rows, size_t columns, float *mean)
 {
     for (size_t row = 0; row < rows; row++)
         for (size_t column = 0; column < columns; column++) {
@@ -64,7 +145,8 @@ struct window_box box_around(const struct window_box *a, const struct window_box
                          larger(a->first_column + a->columns, b->first_column + b->columns));
 }
 
-struct window_box box_within(const struct window_box *a, const struct window_box *b)
+/* What both have in common; they must overlap. */
+static struct window_box box_within(const struct window_box *a, const struct window_box *b)
 {
     return box_of_limits(larger(a->first_row, b->first_row),
                          larger(a->first_column, b->first_column),
@@ -78,6 +160,19 @@ bool boxes_overlap(const struct window_box *a, const struct window_box *b)
            a->first_column < b->first_column + b->columns &&
            b->first_column < a->first_column + a->columns;
 }
+
+/* Areas of pixels of `box` for which means lie beyond the threshold: above it for a highlight,
+ * below it for a shadow. */
+struct area_search {
+    const float *means, *intensity; /* of the image */
+    size_t columns;                 /* of the image */
+    struct window_box box;
+    size_t start_columns; /* of the box, its first ones: an area must have a pixel in them */
+    enum contact_part part;
+    double threshold;
+    uint8_t *marks; /* of the image: where one is not 0 no area is */
+    size_t *stack;  /* box.rows * box.columns places */
+};
 
 static bool is_wanted(const struct area_search *search, size_t i, uint8_t mark)
 {
@@ -125,7 +220,8 @@ static struct contact_area fill_area(const struct area_search *search, size_t st
     return area;
 }
 
-struct contact_area mark_largest_area(const struct area_search *search)
+/* Marks with the part that area which has the most energy, or for a shadow the most pixels. */
+static struct contact_area mark_largest_area(const struct area_search *search)
 {
     const struct window_box *box = &search->box;
     struct contact_area best;
