@@ -502,8 +502,8 @@ static double scatter_by_chance(struct seam_sample *samples, size_t count, doubl
  * more correlated receiver operating characteristic curves", Biometrics 44 (1988), and the scatter
  * of the area when in each group another sample is taken for the injected one, which holds what the
  * classifier learns by chance. */
-static sonject_status classify(struct report *report, struct seam_search *search, size_t injected,
-                               struct seam *seam)
+static sonject_status classify_seam(struct report *report, struct seam_search *search,
+                                    size_t injected, struct seam *seam)
 {
     seam->patches = injected;
     seam->background = search->count - injected;
@@ -534,7 +534,7 @@ sonject_status measure_seam(struct report *report, const float *amplitudes,
                                 : report_out_of_memory(report, "the seam");
     if (status == SONJECT_OK) {
         mark_kinds(&search, influence, labels, scratch);
-        status = classify(report, &search, collect(&search), seam);
+        status = classify_seam(report, &search, collect(&search), seam);
     }
     free(search.kinds);
     free(search.samples);
