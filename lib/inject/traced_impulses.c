@@ -96,7 +96,7 @@ static sonject_status trace_seabed(struct tracing *tracing)
     struct span strips = {trace->grid.strips.first, 0};
     sonject_status status = SONJECT_OK;
     while (status == SONJECT_OK &&
-           (strips = next_strips(&trace->grid, strips, rough_trace_chunk(trace))).count > 0) {
+           (strips = next_strips(&trace->grid, strips, trace->chunk)).count > 0) {
         status = rough_trace_strips(trace, tracing->tracer, strips, tracing->chunk);
         if (status == SONJECT_OK && wants_field(tracing))
             status = find_in_view(tracing, strips);
@@ -128,7 +128,7 @@ static sonject_status emit_tile(const struct tracing *tracing, uint32_t number)
  * are not all known where another process traces some of them. */
 static struct span next_glint_strips(const struct glints *glints, struct span before)
 {
-    const int32_t chunk = glints_chunk(glints);
+    const int32_t chunk = glints->chunk;
     const int32_t off = before.first + before.count - glints->traces[0].grid.strips.first;
     const int32_t rest = off % chunk < 0 ? off % chunk + chunk : off % chunk;
     return next_strips(&glints->grid, before, chunk - rest);
@@ -137,7 +137,7 @@ static struct span next_glint_strips(const struct glints *glints, struct span be
 static sonject_status trace_glint_strips(const struct tracing *tracing, struct glints *glints,
                                          uint32_t part)
 {
-    const size_t chunk = (size_t)glints_chunk(glints) * (size_t)glints->grid.bins.count;
+    const size_t chunk = (size_t)glints->chunk * (size_t)glints->grid.bins.count;
     float *real_part = allocate_array(chunk, sizeof(float));
     float *imaginary_part = allocate_array(chunk, sizeof(float));
     const float *const planes[] = {real_part, imaginary_part};
@@ -192,7 +192,7 @@ static sonject_status trace_again(struct tracing *tracing, enum impulse_kind kin
     struct span strips = {trace->grid.strips.first, 0};
     sonject_status status = SONJECT_OK;
     while (status == SONJECT_OK &&
-           (strips = next_strips(&trace->grid, strips, rough_trace_chunk(trace))).count > 0) {
+           (strips = next_strips(&trace->grid, strips, trace->chunk)).count > 0) {
         status = rough_trace_strips(trace, tracing->tracer, strips, tracing->chunk);
         THEN(status, emit(tracing, kind, 0, &trace->grid, strips, 1, planes));
         THEN(status, echo_request_tell(tracing->request, tracing->tracer->report,
@@ -205,7 +205,7 @@ static sonject_status trace_again(struct tracing *tracing, enum impulse_kind kin
 static sonject_status allocate_chunks(struct tracing *tracing)
 {
     const struct rough_trace *trace = &tracing->rough;
-    const size_t chunk = (size_t)rough_trace_chunk(trace) * (size_t)trace->grid.bins.count;
+    const size_t chunk = (size_t)trace->chunk * (size_t)trace->grid.bins.count;
     tracing->tiles = allocate_array(trace->tile_elements, sizeof(float));
     tracing->chunk = allocate_array(chunk, sizeof(float));
     tracing->second = allocate_array(wants_field(tracing) ? chunk : 0, sizeof(float));

@@ -5,20 +5,197 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "device/device.h"
 #include "scene/surface_material.h"
-#include "trace/chain_fans.h"
-#include "trace/checkpoint.h"
 #include "trace/fan.h"
-#include "trace/image_sources.h"
 #include "trace/object_buffer.h"
-#include "trace/target_spheres.h"
 
 #define PI              3.14159265358979323846
 #define SEABED_SHARE    8.0f /* then all within about four widths of a target are followed */
 #define TALLY_BYTES_MAX ((size_t)1 << 30)
 
 typedef char orders_have_room[CHAIN_ORDERS_MAX == SCENE_INTERACTIONS_MAX ? 1 : -1];
+
+/* A mirror alone lengthens chains of two interactions to three; what it adds to a single one is the
+ * pairs of sources'. */
+static bool adds_to_chains(const struct scene *scene)
+{
+    const sonject_material_params material = surface_material(&scene->surface);
+    const uint32_t interactions = scene->injection.interactions;
+    return interactions > 1 &&
+           (material_is_rough(&material) || (material_is_smooth(&material) && interactions > 2));
+}
+
+static double earliest_half_path(const struct tracer *tracer)
+{
+    const double sonar = tracer->view.altitude_m;
+    const double image = 2.0 * tracer->scene->surface.water_depth_m - sonar;
+    double earliest = INFINITY;
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
+        const struct placement *placement = &tracer->placements[i];
+        const double *centre = placement->centre;
+        const double by_centre =
+            0.5 * (hypot(centre[1], sonar - centre[2]) + hypot(centre[1], image - centre[2]));
+        earliest = fmin(earliest, by_centre - placement->bounding_radius_m);
+    }
+    return earliest;
+}
+
+bool sea_surface_is_in_chains(const struct tracer *tracer, const struct line_grid *grid)
+{
+    const struct patch_view *view = &tracer->view;
+    const struct water *water = view->water.water;
+    const double depth = tracer->scene->surface.water_depth_m;
+    if (!(depth > 0.0) || !adds_to_chains(tracer->scene) ||
+        (water->count > 1 && water->layers[1].bottom_m < depth))
+        return false;
+    const double side = tracer->scene->sonar.transducer_side_m;
+    return (earliest_half_path(tracer) - side) * view->range_ratio < line_grid_far_end(grid, view);
+}
+
+/* In sizes of the part, or in its heights if that is more. */
+#define REACH_AROUND 16.0
+
+/* In ways from below the part to the seabed's mirror point, which lies nearer to the sonar the
+ * flatter sound comes: what goes by there comes first. */
+#define REACH_TO_MIRROR 6.5
+
+/* Half the sum of the heights of the top and of the lowest point that is not buried. */
+static double mean_height(const struct tracer *tracer, const struct placement *placement)
+{
+    static const double upward[3] = {0.0, 0.0, 1.0};
+    const double half_extent = placement_half_extent(placement, upward);
+    const double height = placement->centre[2] - tracer_lowest_seabed(tracer);
+    return 0.5 * (fmax(height + half_extent, 0.0) + fmax(height - half_extent, 0.0));
+}
+
+/* What is further from the part is heard after the patch's last range, r_B + d + r over 2, even
+ * straight below the sonar; a little more, for the point response. */
+static double heard_reach(const struct tracer *tracer, const struct placement *placement)
+{
+    const struct patch_view *view = &tracer->view;
+    const double last = 1.02 * view_processor_range(view, (double)view->columns);
+    return 2.0 * last - placement_range(placement, view) - view->altitude_m;
+}
+
+struct chain_reach chain_reach_of(const struct tracer *tracer, const struct placement *placement)
+{
+    const double radius = placement->bounding_radius_m;
+    const double height = mean_height(tracer, placement);
+    const double ground = placement->centre[1];
+    const double altitude = tracer->view.altitude_m;
+    struct chain_reach reach;
+    reach.around_m = radius + fmax(REACH_AROUND * radius,
+                                   fmin(REACH_AROUND * height, heard_reach(tracer, placement)));
+    /* seabed that sees the sonar steeper than 45 degrees fills many rays, and matters little */
+    const double wanted = radius + REACH_TO_MIRROR * height * ground / altitude;
+    reach.towards_sonar_m = fmax(reach.around_m, fmin(wanted, ground - altitude));
+    return reach;
+}
+
+#define PATCH_RAYS_PER_BIN  1.0 /* brute force */
+#define SEABED_RAYS_PER_BIN 4.0 /* near the objects; fewer with distance, by Russian roulette */
+/* An object is small, and what it mirrors, or sends to the sea surface, spreads far; else its rough
+ * part matters between objects. */
+#define OBJECT_RAYS_PER_BIN 16.0
+#define ROUGH_RAYS_PER_BIN  2.0 /* where the seabed's rays stand for its own */
+
+static struct span strips_between(const struct tracer *tracer, const struct line_grid *grid,
+                                  double first_x, double last_x)
+{
+    const double per_row = grid->strips_per_row;
+    const double first = floor((view_row_of_x(&tracer->view, first_x) + 0.5) * per_row) - 1.0;
+    const double last = floor((view_row_of_x(&tracer->view, last_x) + 0.5) * per_row) + 1.0;
+    const struct span strips = {(int32_t)first, (int32_t)(last - first) + 1};
+    return strips;
+}
+
+/* Where seabed can be that exchanges sound with some object. */
+struct surroundings {
+    double first_x, last_x;         /* along-track, m */
+    double near_ground, far_ground; /* range, m */
+};
+
+static struct surroundings surroundings_of_objects(const struct tracer *tracer)
+{
+    struct surroundings around = {INFINITY, -INFINITY, INFINITY, -INFINITY};
+    for (uint32_t i = 0; i < tracer->part_count; i++) {
+        const struct placement *placement = &tracer->placements[i];
+        const struct chain_reach reach = chain_reach_of(tracer, placement);
+        const double ground = placement->centre[1];
+        around.first_x = fmin(around.first_x, placement->centre[0] - reach.around_m);
+        around.last_x = fmax(around.last_x, placement->centre[0] + reach.around_m);
+        around.near_ground = fmin(around.near_ground, ground - reach.towards_sonar_m);
+        around.far_ground = fmax(around.far_ground, ground + reach.around_m);
+    }
+    return around;
+}
+
+static sonject_status init_seabed_fan(struct chain_fan *fan, struct tracer *tracer,
+                                      const struct line_grid *grid, double central)
+{
+    const struct patch_view *view = &tracer->view;
+    const struct surroundings around = surroundings_of_objects(tracer);
+    /* an echo never comes before that of its first hit, so seabed beyond the patch has none in it
+     */
+    const double patch_end = view_ground_range(view, line_grid_far_end(grid, view));
+    const double far = water_way_grazing(&view->water, fmin(around.far_ground, patch_end), 0.0);
+    const double near = around.near_ground > 0.0
+                            ? water_way_grazing(&view->water, around.near_ground, 0.0)
+                            : 0.5 * PI;
+    struct grazing_angles edges = {near, far};
+    if (tracer->relief)
+        edges = grazing_over_relief(tracer, edges);
+    fan->strips = strips_between(tracer, grid, around.first_x, around.last_x);
+    fan->record.only_object = -1;
+    return fan_set_rays(&fan->record, tracer->report, central - edges.near, central - edges.far,
+                        fan_elevation_step(tracer, grid, far, SEABED_RAYS_PER_BIN));
+}
+
+static sonject_status init_object_fan(struct chain_fan *fan, struct tracer *tracer,
+                                      const struct line_grid *grid, double central, uint32_t object)
+{
+    static const double along[3] = {1.0, 0.0, 0.0};
+    const struct placement *placement = &tracer->placements[object];
+    const double grazing = placement_grazing(placement, &tracer->view);
+    const struct elevations edges = elevations_of_object(tracer, object, &tracer->view.water);
+    const double half_length = placement_half_extent(placement, along);
+    const double middle = central - grazing;
+    const bool is_mirror = material_is_smooth(placement->material);
+    const bool has_reverse = tracer->scene->injection.column_rule == SONJECT_COLUMNS_FOCUSED &&
+                             tracer->scene->sonar.transducer_side_m == 0.0;
+    const bool finds_surface = sea_surface_is_in_chains(tracer, grid);
+    const double rays_per_bin =
+        is_mirror || !has_reverse || finds_surface ? OBJECT_RAYS_PER_BIN : ROUGH_RAYS_PER_BIN;
+    fan->strips = strips_between(tracer, grid, placement->centre[0] - half_length,
+                                 placement->centre[0] + half_length);
+    fan->record.only_object = (int32_t)object;
+    return fan_set_rays(&fan->record, tracer->report, middle + edges.lowest, middle + edges.highest,
+                        fan_elevation_step(tracer, grid, grazing, rays_per_bin));
+}
+
+uint32_t chain_fan_count(const struct tracer *tracer)
+{
+    return tracer->scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE
+               ? 1
+               : 1 + tracer->part_count;
+}
+
+sonject_status chain_fan_init(struct chain_fan *fan, struct tracer *tracer,
+                              const struct line_grid *grid, bool has_map, uint32_t i)
+{
+    const struct patch_view *view = &tracer->view;
+    double origin[3];
+    patch_fan_origin(origin, view);
+    const double central = water_way_grazing(&view->water, origin[1], 0.0);
+    sonject_status status = patch_fan_init(&fan->record, tracer, grid, has_map, PATCH_RAYS_PER_BIN);
+    fan->strips = grid->strips;
+    fan->record.only_object = -2;
+    if (status == SONJECT_OK && chain_fan_count(tracer) > 1)
+        status = i == 0 ? init_seabed_fan(fan, tracer, grid, central)
+                        : init_object_fan(fan, tracer, grid, central, i - 1);
+    fan->record.stream = (uint32_t)(STREAM_CHAIN_RAYS + fan->record.only_object);
+    return status;
+}
 
 static sonject_material_params seabed_material(const struct scene *scene)
 {
@@ -124,50 +301,37 @@ static sonject_status choose_quanta(struct chain_trace *trace, struct tracer *tr
     return SONJECT_OK;
 }
 
-static sonject_status make_buffers(struct chain_trace *trace, struct tracer *tracer,
+static sonject_status begin_launch(struct chain_trace *trace, struct tracer *tracer,
                                    const float *map)
 {
-    struct report *report = tracer->report;
-    struct device *device = tracer->device;
-    const uint32_t objects = tracer->part_count;
-    struct object_record *records = allocate_array(objects, sizeof *records);
+    const size_t map_bytes = map ? tracer->view.rows * tracer->view.columns * sizeof *map : 0;
+    const size_t cells = line_grid_cells(&trace->grid);
+    const size_t tally_bytes = trace->planes * cells * sizeof(int64_t);
+    const struct part_list parts = all_parts(tracer);
+    struct launch *launch = &trace->launch;
+    struct object_record *records = NULL;
     struct target_spheres spheres;
     struct chain_record chains;
     double origin[3];
-    patch_fan_origin(origin, &tracer->view);
-    sonject_status status = target_spheres_init(&spheres, tracer, origin);
-    if (status == SONJECT_OK && !records)
-        status = report_out_of_memory(report, "objects");
-    if (status == SONJECT_OK) {
-        object_records_init(records, tracer, origin);
-        chain_record_init(&chains, trace, tracer, &spheres);
-        status = buffer_create(report, device, sizeof chains, &chains, &trace->chains);
-    }
-    THEN(status, object_buffer_create(tracer, records, (struct part_list){NULL, tracer->part_count},
-                                      &trace->objects));
-    THEN(status, buffer_create(report, device, spheres.bytes, spheres.records, &trace->spheres));
-    THEN(status, buffer_create(report, device,
-                               map ? tracer->view.rows * tracer->view.columns * sizeof *map : 0,
-                               map, &trace->map));
-    free(records);
-    target_spheres_clear(&spheres);
-    return status;
-}
-
-static sonject_status make_tallies(struct chain_trace *trace, struct tracer *tracer)
-{
-    const size_t cells = line_grid_cells(&trace->grid);
-    const size_t bytes = trace->planes * cells * sizeof(int64_t);
     if (cells > TALLY_BYTES_MAX / sizeof(int64_t) / trace->planes ||
-        bytes > tracer->device->allocation_limit)
+        tally_bytes > tracer->device->allocation_limit)
         return report_failure(tracer->report, SONJECT_ERROR_INPUT,
                               "the patch of %zu x %zu pixels is too large for %u interactions: use "
                               "a smaller patch",
                               tracer->view.rows, tracer->view.columns,
                               (unsigned)tracer->scene->injection.interactions);
-    sonject_status status =
-        buffer_create(tracer->report, tracer->device, bytes, NULL, &trace->tallies);
-    THEN(status, buffer_clear(tracer->report, tracer->device, trace->tallies, bytes));
+    patch_fan_origin(origin, &tracer->view);
+    CHECK(target_spheres_init(&spheres, tracer, origin));
+    chain_record_init(&chains, trace, tracer, &spheres);
+    sonject_status status = object_records_create(&records, tracer, &parts, origin);
+    THEN(status, launch_begin(launch, tracer, PROGRAM_TRACE_CHAINS, "trace_chains"));
+    THEN(status, launch_add(launch, tracer, sizeof chains, &chains));
+    THEN(status, launch_add_objects(launch, tracer, records, &parts));
+    THEN(status, launch_add(launch, tracer, spheres.bytes, spheres.records));
+    THEN(status, launch_add(launch, tracer, map_bytes, map));
+    THEN(status, launch_add(launch, tracer, tally_bytes, NULL));
+    free(records);
+    free(spheres.records);
     return status;
 }
 
@@ -185,11 +349,8 @@ sonject_status chain_trace_begin(struct chain_trace *trace, struct tracer *trace
     trace->has_map = map != NULL;
     trace->has_sea_surface = sea_surface_is_in_chains(tracer, &trace->grid);
     sonject_status status = choose_quanta(trace, tracer, map);
-    THEN(status, patch_rays_init(&trace->rays, &trace->table, tracer, &trace->grid));
-    THEN(status, make_buffers(trace, tracer, map));
-    THEN(status, make_tallies(trace, tracer));
-    THEN(status, trace_kernel_create(tracer, tracer_variant(tracer), PROGRAM_TRACE_CHAINS,
-                                     "trace_chains", &trace->kernel));
+    THEN(status, patch_rays_init(&trace->launch.rays, &trace->table, tracer, &trace->grid));
+    THEN(status, begin_launch(trace, tracer, map));
     if (status != SONJECT_OK)
         chain_trace_end(trace);
     return status;
@@ -197,41 +358,27 @@ sonject_status chain_trace_begin(struct chain_trace *trace, struct tracer *trace
 
 void chain_trace_end(struct chain_trace *trace)
 {
-    kernel_release(&trace->kernel);
-    ray_table_clear(&trace->rays);
-    buffer_release(&trace->chains);
-    buffer_release(&trace->objects);
-    buffer_release(&trace->spheres);
-    buffer_release(&trace->map);
-    buffer_release(&trace->tallies);
+    launch_end(&trace->launch);
 }
 
 sonject_status chain_trace_strips(struct chain_trace *trace, struct tracer *tracer,
-                                  struct chain_fan *fan, struct span strips)
+                                  const struct chain_fan *fan, struct span strips)
 {
-    const device_buffer buffers[] = {trace->chains, trace->objects, trace->spheres, trace->map,
-                                     trace->tallies};
-    fan->record.first_strip = strips.first;
-    fan->record.strips = strips.count;
-    fan->record.quanta = ldexpf(1.0f, trace->exponents[0]);
-    fan->record.table = trace->table;
-    return trace_launch(tracer, trace->kernel, &fan->record, &trace->rays, buffers, 5);
+    struct fan_record *record = &trace->launch.fan;
+    *record = fan->record;
+    record->first_strip = strips.first;
+    record->strips = strips.count;
+    record->quanta = ldexpf(1.0f, trace->exponents[0]);
+    record->table = trace->table;
+    return launch_run(&trace->launch, tracer);
 }
 
 sonject_status chain_trace_read(struct chain_trace *trace, struct tracer *tracer, uint32_t plane,
                                 float *energy)
 {
     const size_t cells = line_grid_cells(&trace->grid);
-    const void *mapped;
-    const int64_t *tallies;
     const double energy_of_quantum =
         ldexp(view_energy_scale(&tracer->view), -trace->exponents[trace->first_order - 1 + plane]);
-    CHECK(buffer_map(tracer->report, tracer->device, trace->tallies,
-                     trace->planes * cells * sizeof(int64_t), &mapped));
-    sonject_status status = checkpoint_sums(
-        tracer->checkpoint, (const int64_t *)mapped + plane * cells, cells, &tallies);
-    for (size_t i = 0; status == SONJECT_OK && i < cells; i++)
-        energy[i] = (float)((double)tallies[i] * energy_of_quantum);
-    buffer_unmap(tracer->device, trace->tallies, mapped);
-    return status;
+    return tallies_read(tracer, trace->launch.buffers[CHAIN_TALLIES], plane * cells, cells,
+                        energy_of_quantum, 1, &energy);
 }

@@ -1,9 +1,50 @@
 /* The incoherent part beyond the first interaction: energies of chains between seabed, objects and
- * sea surface. */
+ * sea surface. Chains begin with fans of rays: one over the seabed around the objects, one over
+ * each object. */
 #ifndef SONJECT_TRACE_CHAINS_H
 #define SONJECT_TRACE_CHAINS_H
 
-#include "trace/chain_fans.h"
+#include "trace/tracer.h"
+
+/* Whether chains meet the sea surface: there is one, it returns sound in a way that chains count,
+ * no layer bends the sound below it, and the patch holds some of its echoes. The earliest of these
+ * has half a path of (|OC| + |O'C|)/2 less the radius around a target's centre C, O' the sonar's
+ * image in the surface: no path by way of target and surface is shorter. grid: that echoes are
+ * tallied on. */
+bool sea_surface_is_in_chains(const struct tracer *tracer, const struct line_grid *grid);
+
+/* From the part's centre, m: along-track and away from the sonar, and towards the sonar. */
+struct chain_reach {
+    double around_m, towards_sonar_m;
+};
+
+/* Seabed outside the rectangle of these exchanges less than 1 % of the sound that comes with at
+ * most the part's mean height of detour (kernels/MATH.md, "Chains"). */
+struct chain_reach chain_reach_of(const struct tracer *tracer, const struct placement *placement);
+
+/* A fan and the strips that it is to be traced on, which may lie beyond the patch: sound goes aside
+ * between seabed and object. */
+struct chain_fan {
+    struct fan_record record;
+    struct span strips;
+};
+
+/* 1 + number of objects; 1 by brute force, whose fan is the patch's. */
+uint32_t chain_fan_count(const struct tracer *tracer);
+
+/* Fan number i: 0 the seabed's, then the objects'. grid: that echoes are tallied on. Errors: INPUT
+ * (too many rays). */
+sonject_status chain_fan_init(struct chain_fan *fan, struct tracer *tracer,
+                              const struct line_grid *grid, bool has_map, uint32_t i);
+
+/* The launch's buffers. */
+enum chain_buffer {
+    CHAIN_RECORD,
+    CHAIN_OBJECTS,
+    CHAIN_SPHERES,
+    CHAIN_MAP,
+    CHAIN_TALLIES
+};
 
 struct chain_trace {
     struct line_grid grid; /* of the patch with its margins */
@@ -13,10 +54,8 @@ struct chain_trace {
     uint32_t planes;       /* orders if they are kept apart, else 1 */
     int exponents[CHAIN_ORDERS_MAX]; /* of two: quanta per m^2 of the device's, by order */
     bool has_map, has_sea_surface;
-    struct ray_table rays; /* of all fans */
-    struct ray_table_record table;
-    device_kernel kernel;
-    device_buffer chains, objects, spheres, map, tallies;
+    struct ray_table_record table; /* of the rays of all fans */
+    struct launch launch;
 };
 
 /* Prepares a trace; as rough_trace_begin. With one interaction (or no object, unless by brute
@@ -29,7 +68,7 @@ void chain_trace_end(struct chain_trace *trace);
 /* Follows the rays of a fan (chain_fan_init) that start at some of its strips. Echoes add up on the
  * device. */
 sonject_status chain_trace_strips(struct chain_trace *trace, struct tracer *tracer,
-                                  struct chain_fan *fan, struct span strips);
+                                  const struct chain_fan *fan, struct span strips);
 
 /* Reads a plane: energies in m^2, line_grid_cells(&trace->grid) of them. */
 sonject_status chain_trace_read(struct chain_trace *trace, struct tracer *tracer, uint32_t plane,

@@ -8,7 +8,7 @@
 
 #include "kernels/layout.h"
 #include "scene/line_grid.h"
-#include "trace/ray_table.h"
+#include "trace/fan.h"
 #include "trace/sums_file.h"
 #include "trace/tracer.h"
 

@@ -1,16 +1,18 @@
-#include "trace/corners.h"
+#include "trace/glints.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "device/device.h"
-#include "trace/glints.h"
+#include "kernels/tally.h"
+#include "trace/checkpoint.h"
+#include "trace/object_buffer.h"
 
 #define BINS_MAX           1.0e9 /* beyond any patch, within a 32-bit number */
 #define FINER_MAX          2.0   /* 4 times the rays */
 #define WIDEST_WAVELENGTHS 0.5   /* of a cell where it meets the next face */
+#define PAIRS_MAX          (SOURCES_MAX * (SOURCES_MAX + 1) / 2)
 #define ECHOES_A_LAUNCH    ((size_t)1 << 20)
 
 static bool is_smooth(const struct tracer *tracer, uint32_t part)
@@ -26,29 +28,6 @@ bool corners_may_echo(const struct tracer *tracer, uint32_t part)
         smooth_parts += is_smooth(tracer, i);
     return tracer->scene->injection.interactions >= 2 && is_smooth(tracer, part) &&
            (smooth_parts > 1 || !shape_is_convex(&placement->size, placement->shape));
-}
-
-void corner_pairs_begin(struct corner_pairs *pairs, const struct tracer *tracer, uint32_t part)
-{
-    const struct sound_source sonar = {tracer->view.water, 0, MIRROR_SEABED};
-    pairs->sonar = sonar;
-    pairs->has_begun = false;
-    image_pairs_begin(&pairs->others, tracer, part);
-}
-
-const struct image_pair *corner_pairs_next(struct corner_pairs *pairs)
-{
-    const uint32_t interactions = pairs->others.tracer->scene->injection.interactions;
-    if (!pairs->has_begun) {
-        pairs->has_begun = true;
-        pairs->pair.outgoing = pairs->pair.returning = &pairs->sonar;
-        pairs->pair.number = 0;
-        return &pairs->pair;
-    }
-    while (image_pairs_next(&pairs->others, &pairs->pair))
-        if (2 + pairs->pair.outgoing->bounces + pairs->pair.returning->bounces <= interactions)
-            return &pairs->pair;
-    return NULL;
 }
 
 /* No less than what each further interaction may add to a path between the first and last hit: the
@@ -133,14 +112,14 @@ static struct span corner_pair_bins(const struct tracer *tracer, uint32_t part,
 
 struct span corner_bins(const struct tracer *tracer, uint32_t part, const struct line_grid *grid)
 {
-    struct corner_pairs pairs;
-    const struct image_pair *pair;
+    struct image_pairs pairs;
+    struct image_pair pair;
     struct span bins = {0, 0};
     if (!corners_may_echo(tracer, part))
         return bins;
-    corner_pairs_begin(&pairs, tracer, part);
-    while ((pair = corner_pairs_next(&pairs)) != NULL)
-        bins = span_join(bins, corner_pair_bins(tracer, part, pair, grid));
+    image_pairs_begin(&pairs, tracer, part, true, 2);
+    while (image_pairs_next(&pairs, &pair))
+        bins = span_join(bins, corner_pair_bins(tracer, part, &pair, grid));
     return bins;
 }
 
@@ -217,131 +196,236 @@ static void corner_record_init(struct corner_record *record, const struct tracer
         surface_record_init(&record->seabed, seabed, tracer->view.wavelength_m);
 }
 
-static sonject_status begin_on_device(struct corner_launch *launch, struct tracer *tracer,
-                                      const double origin[3])
+static sonject_status begin_launch(struct corner_launch *corner, struct tracer *tracer,
+                                   uint32_t part)
 {
-    struct report *report = tracer->report;
-    struct device *device = tracer->device;
-    struct object_record *records = allocate_array(tracer->part_count, sizeof *records);
-    CHECK_MEMORY(report, records, "objects");
-    object_records_init(records, tracer, origin);
-    sonject_status status =
-        trace_device_init(&launch->on_device, tracer, PROGRAM_TRACE_CORNERS, "trace_corners",
-                          records, (struct part_list){NULL, tracer->part_count}, 1, 1);
+    const struct part_list parts = all_parts(tracer);
+    struct launch *launch = &corner->launch;
+    struct object_record *records;
+    CHECK(object_records_create(&records, tracer, &parts, tracer->placements[part].centre));
+    sonject_status status = launch_begin(launch, tracer, PROGRAM_TRACE_CORNERS, "trace_corners");
+    THEN(status, launch_add_objects(launch, tracer, records, &parts));
+    THEN(status, launch_add(launch, tracer, sizeof corner->sources, &corner->sources));
+    THEN(status, launch_add(launch, tracer, sizeof corner->record, &corner->record));
+    THEN(status,
+         launch_add(launch, tracer, corner->capacity * sizeof(struct corner_echo_record), NULL));
+    THEN(status, launch_add(launch, tracer, sizeof(uint32_t), NULL));
     free(records);
-    THEN(status, buffer_create(report, device, sizeof launch->sources, &launch->sources,
-                               &launch->source_buffer));
-    THEN(status, buffer_create(report, device, sizeof launch->record, &launch->record,
-                               &launch->record_buffer));
-    THEN(status, buffer_create(report, device, sizeof(uint32_t), NULL, &launch->listed));
-    THEN(status, buffer_create(report, device, launch->capacity * sizeof(struct corner_echo_record),
-                               NULL, &launch->echoes));
     return status;
 }
 
 /* So many sub-strips that all their rays may echo at every hit. */
-static void choose_chunk(struct corner_launch *launch, const struct corners *corners)
+static void choose_chunk(struct corner_launch *corner, const struct corners *corners)
 {
+    const struct fan_record *fan = &corner->launch.fan;
     const size_t a_strip =
-        (size_t)launch->fan.rays * launch->fan.strata * (size_t)(launch->record.interactions - 1);
+        (size_t)fan->rays * fan->strata * (size_t)(corner->record.interactions - 1);
     const size_t strips = (size_t)corners->first_hits.count;
     const size_t fitting = ECHOES_A_LAUNCH / a_strip;
-    launch->chunk = (int32_t)(fitting < 1 ? 1 : fitting < strips ? fitting : strips);
-    launch->capacity = (size_t)launch->chunk * a_strip;
+    corner->chunk = (int32_t)(fitting < 1 ? 1 : fitting < strips ? fitting : strips);
+    corner->capacity = (size_t)corner->chunk * a_strip;
 }
 
-sonject_status corner_launch_begin(struct corner_launch *launch, struct line_grid *grid,
+sonject_status corner_launch_begin(struct corner_launch *corner, struct line_grid *grid,
                                    const struct corners *corners, struct tracer *tracer,
                                    uint32_t part, const struct image_pair *pair)
 {
-    memset(launch, 0, sizeof *launch);
+    struct fan_record *fan = &corner->launch.fan;
+    memset(corner, 0, sizeof *corner);
     *grid = corners->grid;
     grid->bins = corner_pair_bins(tracer, part, pair, grid);
     if (grid->bins.count == 0)
         return SONJECT_OK;
-    corner_record_init(&launch->record, tracer, pair);
+    corner_record_init(&corner->record, tracer, pair);
     sonject_status status =
-        image_pair_aim(&launch->fan, &launch->sources, &launch->rays, tracer, part, pair, grid);
-    launch->fan.stream = STREAM_CORNER_RAYS + STREAMS_OF_PAIR * pair->number + part;
-    glint_fan_init(&launch->fan, tracer, part, &pair->outgoing->way,
-                   corner_rays_finer(tracer, part));
-    choose_quanta(&launch->fan);
-    choose_chunk(launch, corners);
-    THEN(status, begin_on_device(launch, tracer, tracer->placements[part].centre));
+        image_pair_aim(fan, &corner->sources, &corner->launch.rays, tracer, part, pair, grid);
+    fan->stream = STREAM_CORNER_RAYS + STREAMS_OF_PAIR * pair->number + part;
+    glint_fan_init(fan, tracer, part, &pair->outgoing->way, corner_rays_finer(tracer, part));
+    choose_quanta(fan);
+    choose_chunk(corner, corners);
+    THEN(status, begin_launch(corner, tracer, part));
     if (status != SONJECT_OK)
-        corner_launch_end(launch);
+        corner_launch_end(corner);
     return status;
 }
 
-void corner_launch_end(struct corner_launch *launch)
+void corner_launch_end(struct corner_launch *corner)
 {
-    trace_device_clear(&launch->on_device);
-    ray_table_clear(&launch->rays);
-    buffer_release(&launch->source_buffer);
-    buffer_release(&launch->record_buffer);
-    buffer_release(&launch->listed);
-    buffer_release(&launch->echoes);
+    launch_end(&corner->launch);
 }
 
-sonject_status corner_launch_strips(struct corner_launch *launch, struct tracer *tracer,
+sonject_status corner_launch_strips(struct corner_launch *corner, struct tracer *tracer,
                                     struct span strips, struct corner_sums *sums)
 {
     struct report *report = tracer->report;
     struct device *device = tracer->device;
-    const device_buffer buffers[] = {launch->on_device.objects, launch->source_buffer,
-                                     launch->record_buffer, launch->echoes, launch->listed};
+    const device_buffer *buffers = corner->launch.buffers;
     uint32_t listed = 0;
     const void *mapped;
-    launch->fan.first_strip = strips.first;
-    launch->fan.strips = strips.count;
-    sonject_status status = buffer_clear(report, device, launch->listed, sizeof listed);
-    THEN(status,
-         trace_launch(tracer, launch->on_device.kernel, &launch->fan, &launch->rays, buffers, 5));
-    THEN(status, buffer_read(report, device, launch->listed, 0, sizeof listed, &listed));
-    if (status != SONJECT_OK || listed == 0)
-        return status;
-    CHECK(buffer_map(report, device, launch->echoes, listed * sizeof(struct corner_echo_record),
-                     &mapped));
-    if (!corner_sums_add(sums, mapped, listed))
-        status = report_out_of_memory(report, "echoes of corners");
-    buffer_unmap(device, launch->echoes, mapped);
-    return status;
+    corner->launch.fan.first_strip = strips.first;
+    corner->launch.fan.strips = strips.count;
+    CHECK(buffer_clear(report, device, buffers[CORNER_LISTED], sizeof listed));
+    CHECK(launch_run(&corner->launch, tracer));
+    CHECK(buffer_read(report, device, buffers[CORNER_LISTED], 0, sizeof listed, &listed));
+    if (listed == 0)
+        return SONJECT_OK;
+    CHECK(buffer_map(report, device, buffers[CORNER_ECHOES],
+                     listed * sizeof(struct corner_echo_record), &mapped));
+    const bool is_added = corner_sums_add(sums, mapped, listed);
+    buffer_unmap(device, buffers[CORNER_ECHOES], mapped);
+    CHECK_MEMORY(report, is_added, "echoes of corners");
+    return SONJECT_OK;
 }
 
-static sonject_status trace_pair(struct corner_trace *trace, struct corner_launch *launch,
+bool corner_sums_init(struct corner_sums *sums, const struct line_grid *grid)
+{
+    sums->grid = *grid;
+    sums->rows = ((size_t)grid->strips.count + TILE_STRIPS - 1) / TILE_STRIPS;
+    sums->columns = ((size_t)grid->bins.count + TILE_BINS - 1) / TILE_BINS;
+    sums->tiles = allocate_array(sums->rows * sums->columns, sizeof *sums->tiles);
+    return sums->tiles != NULL;
+}
+
+void corner_sums_clear(struct corner_sums *sums)
+{
+    for (size_t i = 0; sums->tiles && i < sums->rows * sums->columns; i++)
+        free(sums->tiles[i]);
+    free(sums->tiles);
+    memset(sums, 0, sizeof *sums);
+}
+
+/* Both parts of a cell, whose tile is made if need be; NULL where memory lacks. */
+static int64_t *cell_at(struct corner_sums *sums, size_t strip, size_t bin)
+{
+    int64_t **tile = &sums->tiles[strip / TILE_STRIPS * sums->columns + bin / TILE_BINS];
+    if (!*tile)
+        *tile = allocate_array(TILE_SUMS, sizeof **tile);
+    return *tile ? *tile + 2 * (strip % TILE_STRIPS * TILE_BINS + bin % TILE_BINS) : NULL;
+}
+
+bool corner_sums_add(struct corner_sums *sums, const struct corner_echo_record *echoes,
+                     size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const struct corner_echo_record *echo = &echoes[i];
+        const int32_t strip = echo->strip - sums->grid.strips.first;
+        if (strip < 0 || strip >= sums->grid.strips.count || echo->bin < 0 ||
+            echo->bin + 1 >= sums->grid.bins.count)
+            continue;
+        const float later = echo->fraction;
+        const float sooner = 1.0f - later;
+        int64_t *first = cell_at(sums, (size_t)strip, (size_t)echo->bin);
+        int64_t *second = cell_at(sums, (size_t)strip, (size_t)echo->bin + 1);
+        if (!first || !second)
+            return false;
+        first[0] += whole_quanta(echo->real_part * sooner, echo->chance);
+        first[1] += whole_quanta(echo->imaginary_part * sooner, echo->chance);
+        second[0] += whole_quanta(echo->real_part * later, echo->chance);
+        second[1] += whole_quanta(echo->imaginary_part * later, echo->chance);
+    }
+    return true;
+}
+
+static bool add_tile(void *user, uint64_t first, const int64_t *values, size_t count)
+{
+    struct corner_sums *sums = user;
+    if (first % TILE_SUMS != 0 || count != TILE_SUMS)
+        return false;
+    int64_t **tile = &sums->tiles[first / TILE_SUMS];
+    if (!*tile)
+        *tile = allocate_array(TILE_SUMS, sizeof **tile);
+    for (size_t i = 0; i < count; i++)
+        if (!*tile || !add_without_overflow(&(*tile)[i], values[i]))
+            return false;
+    return true;
+}
+
+/* Sums of a checkpoint: keeps the tiles that were traced, or adds up those of all checkpoints. */
+static sonject_status share_sums(struct corner_sums *sums, struct checkpoint *checkpoint)
+{
+    const size_t tiles = sums->rows * sums->columns;
+    if (!checkpoint)
+        return SONJECT_OK;
+    if (checkpoint->files)
+        return checkpoint_add_up(checkpoint, (uint64_t)tiles * TILE_SUMS, add_tile, sums);
+    sonject_status status =
+        sums_writer_begin_sums(&checkpoint->writer, (uint64_t)tiles * TILE_SUMS);
+    for (size_t i = 0; status == SONJECT_OK && i < tiles; i++)
+        if (sums->tiles[i])
+            status = sums_writer_run(&checkpoint->writer, (uint64_t)i * TILE_SUMS, sums->tiles[i],
+                                     TILE_SUMS);
+    return status == SONJECT_OK ? sums_writer_end_sums(&checkpoint->writer) : status;
+}
+
+/* Strips or bins of one tile. */
+static struct span span_of_tile(size_t number, int32_t size, struct span all)
+{
+    const int32_t first = (int32_t)number * size;
+    const struct span tile = {all.first + first, size};
+    return span_overlap(tile, all);
+}
+
+/* The strips and bins of the tiles that there are; counts 0 where there is none. */
+static void find_extent(const struct corner_sums *sums, struct span *strips, struct span *bins)
+{
+    strips->first = strips->count = bins->first = bins->count = 0;
+    for (size_t i = 0; i < sums->rows * sums->columns; i++)
+        if (sums->tiles[i]) {
+            *strips =
+                span_join(*strips, span_of_tile(i / sums->columns, TILE_STRIPS, sums->grid.strips));
+            *bins = span_join(*bins, span_of_tile(i % sums->columns, TILE_BINS, sums->grid.bins));
+        }
+}
+
+static void add_tile_to_planes(const int64_t *tile, struct span rows, struct span tile_strips,
+                               struct span tile_bins, double quantum, struct span strips,
+                               const struct line_grid *grid, float *real_part,
+                               float *imaginary_part)
+{
+    for (int32_t strip = rows.first; strip < rows.first + rows.count; strip++) {
+        const size_t from = (size_t)(strip - tile_strips.first) * TILE_BINS;
+        const size_t to = (size_t)(strip - strips.first) * (size_t)grid->bins.count +
+                          (size_t)(tile_bins.first - grid->bins.first);
+        for (size_t bin = 0; bin < (size_t)tile_bins.count; bin++) {
+            real_part[to + bin] += (float)((double)tile[2 * (from + bin)] * quantum);
+            imaginary_part[to + bin] += (float)((double)tile[2 * (from + bin) + 1] * quantum);
+        }
+    }
+}
+
+static sonject_status trace_pair(struct corner_sums *sums, struct corner_launch *launch,
                                  const struct corners *corners, struct tracer *tracer,
                                  const struct line_grid *grid)
 {
     const double ratio = tracer->view.range_ratio;
     const struct span all = corners->first_hits;
-    sonject_status status = SONJECT_OK;
-    trace->amplitude_of_quantum = ratio * ratio / launch->fan.quanta;
-    if (!corner_sums_init(&trace->sums, grid))
-        return report_out_of_memory(tracer->report, "echoes of corners");
-    for (int32_t done = 0; status == SONJECT_OK && done < all.count; done += launch->chunk) {
+    CHECK_MEMORY(tracer->report, corner_sums_init(sums, grid), "echoes of corners");
+    sums->amplitude_of_quantum = ratio * ratio / launch->launch.fan.quanta;
+    for (int32_t done = 0; done < all.count; done += launch->chunk) {
         const int32_t left = all.count - done;
         const struct span strips = {all.first + done, left < launch->chunk ? left : launch->chunk};
-        status = corner_launch_strips(launch, tracer, strips, &trace->sums);
+        CHECK(corner_launch_strips(launch, tracer, strips, sums));
     }
-    return status == SONJECT_OK ? corner_sums_share(&trace->sums, tracer->checkpoint) : status;
+    return share_sums(sums, tracer->checkpoint);
 }
 
 static sonject_status trace_pairs(struct corners *corners, struct tracer *tracer, uint32_t part)
 {
-    struct corner_pairs pairs;
-    const struct image_pair *pair;
+    struct image_pairs pairs;
+    struct image_pair pair;
     struct corner_launch launch;
     struct line_grid grid;
-    sonject_status status = SONJECT_OK;
-    corner_pairs_begin(&pairs, tracer, part);
-    while (status == SONJECT_OK && (pair = corner_pairs_next(&pairs)) != NULL) {
-        status = corner_launch_begin(&launch, &grid, corners, tracer, part, pair);
-        if (status != SONJECT_OK || grid.bins.count == 0)
+    image_pairs_begin(&pairs, tracer, part, true, 2);
+    while (image_pairs_next(&pairs, &pair)) {
+        CHECK(corner_launch_begin(&launch, &grid, corners, tracer, part, &pair));
+        if (grid.bins.count == 0)
             continue;
-        status = trace_pair(&corners->traces[corners->count++], &launch, corners, tracer, &grid);
+        const sonject_status status =
+            trace_pair(&corners->sums[corners->count++], &launch, corners, tracer, &grid);
         corner_launch_end(&launch);
+        CHECK(status);
     }
-    return status;
+    return SONJECT_OK;
 }
 
 sonject_status corners_begin(struct corners *corners, struct tracer *tracer, uint32_t part)
@@ -349,8 +433,8 @@ sonject_status corners_begin(struct corners *corners, struct tracer *tracer, uin
     memset(corners, 0, sizeof *corners);
     if (!corners_may_echo(tracer, part))
         return SONJECT_OK;
-    corners->traces = allocate_array(CORNER_PAIRS_MAX, sizeof *corners->traces);
-    CHECK_MEMORY(tracer->report, corners->traces, "echoes of corners");
+    corners->sums = allocate_array(PAIRS_MAX, sizeof *corners->sums);
+    CHECK_MEMORY(tracer->report, corners->sums, "echoes of corners");
     corners_init(corners, tracer, part);
     const sonject_status status = trace_pairs(corners, tracer, part);
     if (status != SONJECT_OK) {
@@ -360,7 +444,7 @@ sonject_status corners_begin(struct corners *corners, struct tracer *tracer, uin
     corners->grid.strips.count = 0;
     for (size_t i = 0; i < corners->count; i++) {
         struct span strips, bins;
-        corner_sums_extent(&corners->traces[i].sums, &strips, &bins);
+        find_extent(&corners->sums[i], &strips, &bins);
         corners->grid.strips = span_join(corners->grid.strips, strips);
         corners->grid.bins = span_join(corners->grid.bins, bins);
     }
@@ -370,15 +454,25 @@ sonject_status corners_begin(struct corners *corners, struct tracer *tracer, uin
 void corners_end(struct corners *corners)
 {
     for (size_t i = 0; i < corners->count; i++)
-        corner_sums_clear(&corners->traces[i].sums);
-    free(corners->traces);
+        corner_sums_clear(&corners->sums[i]);
+    free(corners->sums);
     memset(corners, 0, sizeof *corners);
 }
 
 void corners_add(const struct corners *corners, struct span strips, const struct line_grid *grid,
                  float *real_part, float *imaginary_part)
 {
-    for (size_t i = 0; i < corners->count; i++)
-        corner_sums_read(&corners->traces[i].sums, corners->traces[i].amplitude_of_quantum, strips,
-                         grid, real_part, imaginary_part);
+    for (size_t k = 0; k < corners->count; k++) {
+        const struct corner_sums *sums = &corners->sums[k];
+        for (size_t i = 0; i < sums->rows * sums->columns; i++) {
+            const struct span tile_strips =
+                span_of_tile(i / sums->columns, TILE_STRIPS, sums->grid.strips);
+            const struct span rows = span_overlap(tile_strips, strips);
+            if (sums->tiles[i] && rows.count > 0)
+                add_tile_to_planes(sums->tiles[i], rows, tile_strips,
+                                   span_of_tile(i % sums->columns, TILE_BINS, sums->grid.bins),
+                                   sums->amplitude_of_quantum, strips, grid, real_part,
+                                   imaginary_part);
+        }
+    }
 }

@@ -1,12 +1,20 @@
 /* Fans of rays: over a whole patch, seabed and objects, and what they need to know of objects, of
  * the aspects that a synthetic aperture integrates over and of a real aperture's two-way beam (both
- * in kernels/aspects.h). */
+ * in kernels/aspects.h); and rays that layers of water bend, worked out for the kernels
+ * (kernels/ray_table.h; kernels/MATH.md, "Layers"). */
 #ifndef SONJECT_TRACE_FAN_H
 #define SONJECT_TRACE_FAN_H
 
 #include <stdbool.h>
 
 #include "trace/tracer.h"
+
+void ray_table_clear(struct ray_table *table);
+
+/* Elevations in rad over the direction in which sound comes to a frame's origin. */
+struct elevations {
+    double lowest, highest;
+};
 
 /* The middle of the patch on the seabed: origin of the frame that the patch is traced in. */
 void patch_fan_origin(double origin[3], const struct patch_view *view);
@@ -29,8 +37,8 @@ struct grazing_angles {
 struct grazing_angles grazing_over_relief(const struct tracer *tracer, struct grazing_angles plane);
 
 /* Works out the rays of all fans in the patch's frame: from the sonar to the patch and to whatever
- * is near the objects. The table is the caller's for ray_table_clear, also on failure. Errors: as
- * ray_table_add. */
+ * is near the objects. The table is the caller's for ray_table_clear, also on failure. Errors:
+ * INPUT (rays so near to total reflection that no cubic follows them), MEMORY. */
 sonject_status patch_rays_init(struct ray_table *rays, struct ray_table_record *record,
                                const struct tracer *tracer, const struct line_grid *grid);
 
@@ -49,7 +57,7 @@ sonject_status fan_set_rays(struct fan_record *fan, struct report *report, doubl
 struct elevations elevations_of_object(const struct tracer *tracer, uint32_t object,
                                        const struct water_way *way);
 
-/* Appends the rays of a way to an object in the object's frame. Errors: as ray_table_add. */
+/* Appends the rays of a way to an object in the object's frame. Errors: as patch_rays_init. */
 sonject_status object_rays_add(struct ray_table *rays, const struct tracer *tracer, uint32_t object,
                                const struct water_way *way, struct ray_table_record *record);
 

@@ -5,24 +5,12 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "device/device.h"
-#include "trace/checkpoint.h"
 #include "trace/fan.h"
 #include "trace/object_buffer.h"
 
 #define STRIP_WAVELENGTHS  0.25 /* widest sub-strip: wider ones alias glints (physics.md 2) */
 #define BINS_PER_DEVIATION 16.0 /* linear sharing between bins then errs by 5e-4 */
 #define MIRRORED_STRIPS    64   /* of a launch: there may be dozens of pairs at a time */
-
-/* Sizes of the strips and bins of all glints: strips_per_row and bins_per_pixel of the grid. */
-static void glint_cells_init(struct line_grid *grid, const struct tracer *tracer)
-{
-    const struct patch_view *view = &tracer->view;
-    grid->strips_per_row =
-        (uint32_t)ceil(view->row_spacing_m / (STRIP_WAVELENGTHS * view->wavelength_m) - 1e-9);
-    grid->bins_per_pixel = (uint32_t)ceil(
-        BINS_PER_DEVIATION * view->column_spacing_m / tracer->response.range_deviation_m - 1e-9);
-}
 
 double glint_shortest_deviation(const struct line_grid *grid, double column_spacing_m)
 {
@@ -34,7 +22,10 @@ void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint
     static const double along[3] = {1.0, 0.0, 0.0};
     const struct patch_view *view = &tracer->view;
     const struct placement *placement = &tracer->placements[number];
-    glint_cells_init(grid, tracer);
+    grid->strips_per_row =
+        (uint32_t)ceil(view->row_spacing_m / (STRIP_WAVELENGTHS * view->wavelength_m) - 1e-9);
+    grid->bins_per_pixel = (uint32_t)ceil(
+        BINS_PER_DEVIATION * view->column_spacing_m / tracer->response.range_deviation_m - 1e-9);
     const double extent = placement_half_extent(placement, along);
     const double per_row = grid->strips_per_row;
     grid->strips.first =
@@ -65,82 +56,71 @@ void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_
 
 static void choose_quanta(struct smooth_trace *trace, const struct tracer *tracer)
 {
+    struct fan_record *fan = &trace->launch.fan;
     const double ratio = tracer->view.range_ratio;
-    const double cell = (double)trace->fan.strip_width / trace->fan.strata *
-                        trace->fan.elevation_step * 2.0 * trace->fan.reference_range;
-    const double most = cell * trace->fan.inverse_wavelength;
-    trace->fan.quanta = power_of_two_below(ldexp(1.0, 36) / most);
-    trace->amplitude_of_quantum = ratio * ratio / trace->fan.quanta;
+    const double cell =
+        (double)fan->strip_width / fan->strata * fan->elevation_step * 2.0 * fan->reference_range;
+    const double most = cell * fan->inverse_wavelength;
+    fan->quanta = power_of_two_below(ldexp(1.0, 36) / most);
+    trace->amplitude_of_quantum = ratio * ratio / fan->quanta;
 }
 
-/* Of the parts, those in the way go to the device; the frame is centred on the one aimed at. */
-static sonject_status begin_on_device(struct smooth_trace *trace, struct tracer *tracer,
-                                      uint32_t number, bool is_straight, int32_t strips)
+/* Of the parts, those in the way go to the device; the frame is centred on the one aimed at.
+ * sources: NULL for the straight pair. */
+static sonject_status begin_launch(struct smooth_trace *trace, struct tracer *tracer,
+                                   uint32_t number, const struct image_pair_record *sources)
 {
-    struct launch_parts parts;
+    const int32_t most = sources ? MIRRORED_STRIPS : INT32_MAX;
+    const int32_t strips = trace->grid.strips.count < most ? trace->grid.strips.count : most;
+    struct launch *launch = &trace->launch;
+    struct part_list parts;
     struct object_record *records = NULL;
-    sonject_status status = launch_parts_init(&parts, tracer, number, &trace->grid, is_straight);
+    sonject_status status = parts_in_way(&parts, tracer, number, &trace->grid, !sources);
     THEN(status,
-         launch_records_create(&records, tracer, &parts, tracer->placements[number].centre));
-    if (status == SONJECT_OK) {
-        trace->fan.objects = (int32_t)parts.count;
-        trace->fan.relief_words = object_buffer_relief_words(tracer, parts.count);
-        trace->fan.only_object = (int32_t)parts.target;
-        status =
-            trace_device_init(&trace->on_device, tracer,
-                              is_straight ? PROGRAM_TRACE_SMOOTH : PROGRAM_TRACE_SMOOTH_MIRRORED,
-                              is_straight ? "trace_smooth" : "trace_smooth_mirrored", records,
-                              (struct part_list){parts.numbers, parts.count}, (size_t)strips,
-                              2 * (size_t)trace->grid.bins.count);
-    }
+         object_records_create(&records, tracer, &parts, tracer->placements[number].centre));
+    THEN(status, launch_begin(launch, tracer,
+                              sources ? PROGRAM_TRACE_SMOOTH_MIRRORED : PROGRAM_TRACE_SMOOTH,
+                              sources ? "trace_smooth_mirrored" : "trace_smooth"));
+    THEN(status, launch_add_objects(launch, tracer, records, &parts));
+    THEN(status, launch_add_tallies(launch, tracer, strips, 2 * (size_t)trace->grid.bins.count,
+                                    &trace->chunk));
+    if (sources)
+        THEN(status, launch_add(launch, tracer, sizeof *sources, sources));
+    fan_set_parts(&launch->fan, tracer, &parts);
     free(records);
-    launch_parts_clear(&parts);
+    part_list_clear(&parts);
     return status;
 }
 
 sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tracer,
-                                  uint32_t number)
+                                  uint32_t number, const struct image_pair *pair)
 {
     const struct sound_source sonar = {tracer->view.water, 0, MIRROR_SEABED};
     const struct image_pair straight = {&sonar, &sonar, 0};
+    struct fan_record *fan = &trace->launch.fan;
+    struct image_pair_record sources;
+    sonject_status status = SONJECT_OK;
     memset(trace, 0, sizeof *trace);
     if (!material_is_smooth(tracer->placements[number].material))
         return SONJECT_OK;
-    /* the frame is centred on the object: phases then keep their digits */
-    const double *origin = tracer->placements[number].centre;
     glint_strips_init(&trace->grid, tracer, number);
-    trace->grid.bins = image_pair_bins(tracer, number, &straight, &trace->grid);
-    fan_record_init(&trace->fan, tracer, origin, &trace->grid);
-    trace->fan.stream = STREAM_SMOOTH_RAYS + number;
-    glint_fan_init(&trace->fan, tracer, number, &sonar.way, 1.0);
-    choose_quanta(trace, tracer);
-    sonject_status status =
-        object_rays_add(&trace->rays, tracer, number, &sonar.way, &trace->fan.table);
-    THEN(status, begin_on_device(trace, tracer, number, true, trace->grid.strips.count));
-    if (status != SONJECT_OK)
-        smooth_trace_end(trace);
-    return status;
-}
-
-sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tracer *tracer,
-                                           uint32_t number, const struct image_pair *pair)
-{
-    struct image_pair_record sources;
-    memset(trace, 0, sizeof *trace);
-    glint_strips_init(&trace->grid, tracer, number);
-    trace->grid.bins = image_pair_bins_in_patch(tracer, number, pair, &trace->grid);
+    trace->grid.bins = pair ? image_pair_bins_in_patch(tracer, number, pair, &trace->grid)
+                            : image_pair_bins(tracer, number, &straight, &trace->grid);
     if (trace->grid.bins.count == 0)
         return SONJECT_OK;
-    sonject_status status =
-        image_pair_aim(&trace->fan, &sources, &trace->rays, tracer, number, pair, &trace->grid);
-    trace->fan.stream = STREAM_MIRRORED_RAYS + STREAMS_OF_PAIR * pair->number + number;
-    glint_fan_init(&trace->fan, tracer, number, &pair->outgoing->way, 1.0);
+    if (pair) {
+        status =
+            image_pair_aim(fan, &sources, &trace->launch.rays, tracer, number, pair, &trace->grid);
+        fan->stream = STREAM_MIRRORED_RAYS + STREAMS_OF_PAIR * pair->number + number;
+    } else {
+        /* the frame is centred on the object: phases then keep their digits */
+        fan_record_init(fan, tracer, tracer->placements[number].centre, &trace->grid);
+        fan->stream = STREAM_SMOOTH_RAYS + number;
+        status = object_rays_add(&trace->launch.rays, tracer, number, &sonar.way, &fan->table);
+    }
+    glint_fan_init(fan, tracer, number, pair ? &pair->outgoing->way : &sonar.way, 1.0);
     choose_quanta(trace, tracer);
-    const int32_t strips =
-        trace->grid.strips.count < MIRRORED_STRIPS ? trace->grid.strips.count : MIRRORED_STRIPS;
-    THEN(status, begin_on_device(trace, tracer, number, false, strips));
-    THEN(status,
-         buffer_create(tracer->report, tracer->device, sizeof sources, &sources, &trace->sources));
+    THEN(status, begin_launch(trace, tracer, number, pair ? &sources : NULL));
     if (status != SONJECT_OK)
         smooth_trace_end(trace);
     return status;
@@ -148,63 +128,34 @@ sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tr
 
 void smooth_trace_end(struct smooth_trace *trace)
 {
-    trace_device_clear(&trace->on_device);
-    ray_table_clear(&trace->rays);
-    buffer_release(&trace->sources);
-}
-
-int32_t smooth_trace_chunk(const struct smooth_trace *trace)
-{
-    return (int32_t)trace->on_device.tally_strips;
+    launch_end(&trace->launch);
 }
 
 sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tracer,
                                    struct span strips, float *real_part, float *imaginary_part)
 {
     const size_t count = (size_t)strips.count * (size_t)trace->grid.bins.count;
-    const device_buffer buffers[] = {trace->on_device.objects, trace->on_device.tallies,
-                                     trace->sources};
-    trace->fan.first_strip = strips.first;
-    trace->fan.strips = strips.count;
-    const void *mapped;
-    sonject_status status = buffer_clear(tracer->report, tracer->device, trace->on_device.tallies,
-                                         2 * count * sizeof(int64_t));
-    THEN(status, trace_launch(tracer, trace->on_device.kernel, &trace->fan, &trace->rays, buffers,
-                              trace->sources ? 3 : 2));
-    THEN(status, buffer_map(tracer->report, tracer->device, trace->on_device.tallies,
-                            2 * count * sizeof(int64_t), &mapped));
-    if (status != SONJECT_OK)
-        return status;
-    const int64_t *tallies;
-    status = checkpoint_sums(tracer->checkpoint, mapped, 2 * count, &tallies);
-    for (size_t i = 0; status == SONJECT_OK && i < count; i++) {
-        real_part[i] = (float)((double)tallies[2 * i] * trace->amplitude_of_quantum);
-        imaginary_part[i] = (float)((double)tallies[2 * i + 1] * trace->amplitude_of_quantum);
-    }
-    buffer_unmap(tracer->device, trace->on_device.tallies, mapped);
-    return status;
+    device_buffer tallies = trace->launch.buffers[SMOOTH_TALLIES];
+    trace->launch.fan.first_strip = strips.first;
+    trace->launch.fan.strips = strips.count;
+    CHECK(buffer_clear(tracer->report, tracer->device, tallies, 2 * count * sizeof(int64_t)));
+    CHECK(launch_run(&trace->launch, tracer));
+    return tallies_read(tracer, tallies, 0, count, trace->amplitude_of_quantum, 2,
+                        (float *const[]){real_part, imaginary_part});
 }
 
 static sonject_status begin_mirrored(struct glints *glints, struct tracer *tracer, uint32_t object)
 {
     struct image_pairs pairs;
     struct image_pair pair;
-    image_pairs_begin(&pairs, tracer, object);
+    image_pairs_begin(&pairs, tracer, object, false, 1);
     while (image_pairs_next(&pairs, &pair)) {
         struct smooth_trace *trace = &glints->traces[glints->count];
-        CHECK(smooth_trace_begin_mirrored(trace, tracer, object, &pair));
+        CHECK(smooth_trace_begin(trace, tracer, object, &pair));
         glints->grid.bins = span_join(glints->grid.bins, trace->grid.bins);
         glints->count += trace->grid.bins.count > 0;
     }
     return SONJECT_OK;
-}
-
-static sonject_status begin_corners(struct glints *glints, struct tracer *tracer, uint32_t object)
-{
-    const sonject_status status = corners_begin(&glints->corners, tracer, object);
-    glints->grid.strips = span_join(glints->grid.strips, glints->corners.grid.strips);
-    glints->grid.bins = span_join(glints->grid.bins, glints->corners.grid.bins);
-    return status;
 }
 
 sonject_status glints_begin(struct glints *glints, struct tracer *tracer, uint32_t object)
@@ -213,18 +164,24 @@ sonject_status glints_begin(struct glints *glints, struct tracer *tracer, uint32
     glints->traces =
         allocate_array(1 + (size_t)SOURCES_MAX * (SOURCES_MAX + 1) / 2, sizeof *glints->traces);
     CHECK_MEMORY(tracer->report, glints->traces, "glints");
-    sonject_status status = smooth_trace_begin(&glints->traces[0], tracer, object);
+    sonject_status status = smooth_trace_begin(&glints->traces[0], tracer, object, NULL);
     if (status == SONJECT_OK) {
         glints->count = 1;
         glints->grid = glints->traces[0].grid;
         if (glints->grid.strips.count > 0)
             status = begin_mirrored(glints, tracer, object);
     }
-    THEN(status, begin_corners(glints, tracer, object));
+    THEN(status, corners_begin(&glints->corners, tracer, object));
     if (status == SONJECT_OK) {
-        const size_t chunk = (size_t)glints_chunk(glints) * (size_t)glints->grid.bins.count;
-        glints->real_part = allocate_array(chunk, sizeof(float));
-        glints->imaginary_part = allocate_array(chunk, sizeof(float));
+        glints->grid.strips = span_join(glints->grid.strips, glints->corners.grid.strips);
+        glints->grid.bins = span_join(glints->grid.bins, glints->corners.grid.bins);
+        glints->chunk = glints->traces[0].chunk;
+        for (size_t i = 1; i < glints->count; i++)
+            if (glints->traces[i].chunk < glints->chunk)
+                glints->chunk = glints->traces[i].chunk;
+        const size_t cells = (size_t)glints->chunk * (size_t)glints->grid.bins.count;
+        glints->real_part = allocate_array(cells, sizeof(float));
+        glints->imaginary_part = allocate_array(cells, sizeof(float));
         if (!glints->real_part || !glints->imaginary_part)
             status = report_out_of_memory(tracer->report, "glints");
     }
@@ -242,16 +199,6 @@ void glints_end(struct glints *glints)
     free(glints->real_part);
     free(glints->imaginary_part);
     memset(glints, 0, sizeof *glints);
-}
-
-int32_t glints_chunk(const struct glints *glints)
-{
-    int32_t chunk = smooth_trace_chunk(&glints->traces[0]);
-    for (size_t i = 1; i < glints->count; i++) {
-        const int32_t one = smooth_trace_chunk(&glints->traces[i]);
-        chunk = one < chunk ? one : chunk;
-    }
-    return chunk;
 }
 
 /* Adds one trace's bins to those of the common grid, from a line of the planes on. */

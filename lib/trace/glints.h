@@ -4,19 +4,23 @@
 #ifndef SONJECT_TRACE_GLINTS_H
 #define SONJECT_TRACE_GLINTS_H
 
-#include "trace/corners.h"
 #include "trace/image_sources.h"
 #include "trace/tracer.h"
 
 #define GLINT_CELL_WAVELENGTHS 0.125 /* spacing of rays on the wavefront */
 
+/* The launch's buffers. */
+enum smooth_buffer {
+    SMOOTH_OBJECTS,
+    SMOOTH_TALLIES,
+    SMOOTH_SOURCES /* image_pair_record; by way of mirrors alone */
+};
+
 struct smooth_trace {
     struct line_grid grid;       /* that the object covers */
     double amplitude_of_quantum; /* m */
-    struct fan_record fan;
-    struct ray_table rays;
-    struct trace_device on_device;
-    device_buffer sources; /* image_pair_record; NULL: straight there and back */
+    int32_t chunk;               /* sub-strips that a call of smooth_trace_strips may take */
+    struct launch launch;
 };
 
 /* Standard deviation in m of the shortest pulse that such bins are fine enough for. */
@@ -30,28 +34,103 @@ void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint
 void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t part,
                     const struct water_way *way, double finer);
 
-/* Prepares a trace of one object's glints; as rough_trace_begin. An object without a smooth part
- * has grid.strips.count 0 and nothing to trace. */
+/* Prepares a trace of one object's glints, straight there and back (pair NULL) or by way of
+ * mirrors; as rough_trace_begin. An object without a smooth part has grid.strips.count 0 and
+ * nothing to trace; grid.bins.count is 0, and there is nothing to trace, where no echo of a pair
+ * can reach the patch. */
 sonject_status smooth_trace_begin(struct smooth_trace *trace, struct tracer *tracer,
-                                  uint32_t object);
-
-/* The same by way of mirrors. grid.bins.count is 0, and there is nothing to trace, where no such
- * echo can reach the patch. */
-sonject_status smooth_trace_begin_mirrored(struct smooth_trace *trace, struct tracer *tracer,
-                                           uint32_t object, const struct image_pair *pair);
+                                  uint32_t object, const struct image_pair *pair);
 void smooth_trace_end(struct smooth_trace *trace);
-
-int32_t smooth_trace_chunk(const struct smooth_trace *trace);
 
 /* Traces strips.count <= chunk sub-strips: complex amplitudes in m, strips.count x bins, in two
  * planes. |sum|^2 is a cross-section in m^2. */
 sonject_status smooth_trace_strips(struct smooth_trace *trace, struct tracer *tracer,
                                    struct span strips, float *real_part, float *imaginary_part);
 
+/* Multi-bounce specular paths: echoes of several smooth faces one after the other, the first of
+ * which is a given part. Their sums lie in few places of a large grid: tiles are made where the
+ * first echo comes. Integers, so the order of echoes does not matter. */
+#define TILE_STRIPS 16
+#define TILE_BINS   256
+#define TILE_SUMS   ((size_t)2 * TILE_STRIPS * TILE_BINS)
+
+struct corner_sums {
+    struct line_grid grid;
+    size_t rows, columns; /* of tiles */
+    int64_t **tiles;      /* owned; NULL: nothing there; else TILE_STRIPS x TILE_BINS x (real,
+                             imaginary), in quanta */
+    double amplitude_of_quantum; /* m */
+};
+
+/* False, and nothing held, where memory lacks; else to be given to corner_sums_clear. */
+bool corner_sums_init(struct corner_sums *sums, const struct line_grid *grid);
+void corner_sums_clear(struct corner_sums *sums);
+
+/* Adds echoes, each shared by the two bins about it as glints' are; bins count from the grid's
+ * first. False where memory lacks. */
+bool corner_sums_add(struct corner_sums *sums, const struct corner_echo_record *echoes,
+                     size_t count);
+
+struct corners {
+    struct line_grid grid;    /* that holds all echoes; as glints' are; no strips: no echoes */
+    struct span first_hits;   /* sub-strips that the part covers */
+    struct corner_sums *sums; /* of each pair of sources; owned */
+    size_t count;
+};
+
+/* Whether sound from the part may meet a smooth face after it: the scene has two smooth parts, or
+ * this one is smooth and not convex, and paths may have two interactions. */
+bool corners_may_echo(const struct tracer *tracer, uint32_t part);
+
+/* Bins of the patch where such echoes may lie, of the given size; count 0 if there are none. */
+struct span corner_bins(const struct tracer *tracer, uint32_t part, const struct line_grid *grid);
+
+/* Traces all echoes that a part is the first to meet. On success to be given to corners_end; on
+ * failure nothing is held. Errors: DEVICE, MEMORY. */
+sonject_status corners_begin(struct corners *corners, struct tracer *tracer, uint32_t part);
+void corners_end(struct corners *corners);
+
+/* Adds the echoes of strips, complex amplitudes in m, to planes of strips.count x grid->bins.count.
+ */
+void corners_add(const struct corners *corners, struct span strips, const struct line_grid *grid,
+                 float *real_part, float *imaginary_part);
+
+/* The launch's buffers. */
+enum corner_buffer {
+    CORNER_OBJECTS,
+    CORNER_SOURCES,
+    CORNER_RECORD,
+    CORNER_ECHOES,
+    CORNER_LISTED
+};
+
+/* The echoes of one pair of sources. */
+struct corner_launch {
+    struct launch launch;
+    struct corner_record record;
+    struct image_pair_record sources;
+    size_t capacity; /* of echoes */
+    int32_t chunk;   /* sub-strips whose echoes fit that */
+};
+
+/* The steps of corners_begin: the grid of one pair's echoes and its launch, whose echoes are listed
+ * chunk by chunk of first hits. The grid's bins.count is 0, and nothing is held, where there can be
+ * none; else to be given to corner_launch_end. */
+void corners_init(struct corners *corners, const struct tracer *tracer, uint32_t part);
+sonject_status corner_launch_begin(struct corner_launch *launch, struct line_grid *grid,
+                                   const struct corners *corners, struct tracer *tracer,
+                                   uint32_t part, const struct image_pair *pair);
+void corner_launch_end(struct corner_launch *launch);
+
+/* Adds the echoes of first hits in strips.count <= chunk sub-strips to the sums. */
+sonject_status corner_launch_strips(struct corner_launch *launch, struct tracer *tracer,
+                                    struct span strips, struct corner_sums *sums);
+
 struct glints {
     struct line_grid grid;       /* that holds every trace's strips and bins */
     struct smooth_trace *traces; /* owned; the straight one is the first */
     size_t count;
+    int32_t chunk;                     /* sub-strips that a call of glints_trace may take */
     struct corners corners;            /* owned */
     float *real_part, *imaginary_part; /* owned; a chunk of one trace */
 };
@@ -61,9 +140,6 @@ struct glints {
  * nothing to trace. Errors: DEVICE, MEMORY. */
 sonject_status glints_begin(struct glints *glints, struct tracer *tracer, uint32_t object);
 void glints_end(struct glints *glints);
-
-/* How many sub-strips a call of glints_trace may take. */
-int32_t glints_chunk(const struct glints *glints);
 
 /* Traces strips.count <= chunk sub-strips: complex amplitudes in m, strips.count x grid.bins.count,
  * in two planes. |sum|^2 is a cross-section in m^2. */

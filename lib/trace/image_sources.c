@@ -10,17 +10,6 @@
 #define BINS_MAX          1.0e9 /* beyond any patch, within a 32-bit number */
 #define LOSS_EXPONENT_MAX 30.0  /* mirrors that keep less than exp(-30) return nothing */
 
-bool material_is_smooth(const sonject_material_params *material)
-{
-    return material->reflection_kind == SONJECT_REFLECTION_FLUID || material->reflection != 0.0;
-}
-
-bool material_is_rough(const sonject_material_params *material)
-{
-    return (material->lambert > 0.0 || material->glossy_albedo > 0.0) &&
-           (!material_is_smooth(material) || material->roughness_m > 0.0);
-}
-
 bool scene_mirror(const struct scene *scene, enum mirror_kind kind, double *height_m,
                   const sonject_material_params **material)
 {
@@ -169,41 +158,38 @@ static double roughness_exponent(const struct tracer *tracer, const struct sound
     return exponent;
 }
 
-void image_pairs_begin(struct image_pairs *pairs, const struct tracer *tracer, uint32_t object)
+void image_pairs_begin(struct image_pairs *pairs, const struct tracer *tracer, uint32_t object,
+                       bool has_straight, uint32_t object_hits)
 {
     pairs->tracer = tracer;
     pairs->placement = &tracer->placements[object];
     pairs->count = sources_list(tracer->scene, tracer->view.water.water,
                                 tracer->scene->injection.interactions - 1, pairs->sources);
+    pairs->object_hits = object_hits;
     pairs->outgoing = 0;
-    pairs->returning = 0;
+    pairs->returning = has_straight ? 0 : 1;
 }
 
-static bool is_heard(const struct image_pairs *pairs)
+static bool is_heard(const struct image_pairs *pairs, const struct image_pair *pair)
 {
-    const struct sound_source *outgoing = &pairs->sources[pairs->outgoing];
-    const struct sound_source *returning = &pairs->sources[pairs->returning];
-    return 1 + outgoing->bounces + returning->bounces <=
+    return pairs->object_hits + pair->outgoing->bounces + pair->returning->bounces <=
                pairs->tracer->scene->injection.interactions &&
-           roughness_exponent(pairs->tracer, outgoing, pairs->placement) +
-                   roughness_exponent(pairs->tracer, returning, pairs->placement) <
+           roughness_exponent(pairs->tracer, pair->outgoing, pairs->placement) +
+                   roughness_exponent(pairs->tracer, pair->returning, pairs->placement) <
                LOSS_EXPONENT_MAX;
 }
 
 bool image_pairs_next(struct image_pairs *pairs, struct image_pair *pair)
 {
-    do {
-        if (++pairs->returning >= pairs->count) {
-            pairs->outgoing++;
-            pairs->returning = pairs->outgoing;
+    for (; pairs->outgoing < pairs->count; pairs->returning = ++pairs->outgoing)
+        while (pairs->returning < pairs->count) {
+            pair->number = (uint32_t)(pairs->outgoing * SOURCES_MAX + pairs->returning);
+            pair->outgoing = &pairs->sources[pairs->outgoing];
+            pair->returning = &pairs->sources[pairs->returning++];
+            if (is_heard(pairs, pair))
+                return true;
         }
-        if (pairs->outgoing >= pairs->count)
-            return false;
-    } while (!is_heard(pairs));
-    pair->outgoing = &pairs->sources[pairs->outgoing];
-    pair->returning = &pairs->sources[pairs->returning];
-    pair->number = (uint32_t)(pairs->outgoing * SOURCES_MAX + pairs->returning);
-    return true;
+    return false;
 }
 
 struct span span_join(struct span one, struct span other)
@@ -235,7 +221,7 @@ struct span mirrored_bins(const struct tracer *tracer, uint32_t object,
     struct image_pairs pairs;
     struct image_pair pair;
     struct span bins = {0, 0};
-    image_pairs_begin(&pairs, tracer, object);
+    image_pairs_begin(&pairs, tracer, object, false, 1);
     while (image_pairs_next(&pairs, &pair))
         bins = span_join(bins, image_pair_bins_in_patch(tracer, object, &pair, grid));
     return bins;

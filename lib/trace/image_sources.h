@@ -3,13 +3,6 @@
 #ifndef SONJECT_TRACE_IMAGE_SOURCES_H
 #define SONJECT_TRACE_IMAGE_SOURCES_H
 
-#include <stdbool.h>
-#include <stddef.h>
-#include <stdint.h>
-
-#include "kernels/layout.h"
-#include "medium/water.h"
-#include "scene/scene.h"
 #include "trace/tracer.h"
 
 #define SOURCES_MAX 15 /* the sonar, and two images for each of 1...7 bounces */
@@ -21,11 +14,6 @@ struct sound_source {
     uint32_t bounces;
     enum mirror_kind last_mirror; /* of no meaning without bounces */
 };
-
-/* Whether the material has a mirror-like part, and one that scatters: of what mirrors, that is what
- * roughness takes from it. */
-bool material_is_smooth(const sonject_material_params *material);
-bool material_is_rough(const sonject_material_params *material);
 
 /* Whether the scene has the mirror, and its height over the mean seabed and its material. */
 bool scene_mirror(const struct scene *scene, enum mirror_kind kind, double *height_m,
@@ -42,17 +30,20 @@ struct image_pair {
     uint32_t number; /* among all pairs of the scene, for the random numbers */
 };
 
-/* All pairs of one object but the straight one, in turn. */
+/* Pairs of one object, in turn. */
 struct image_pairs {
     const struct tracer *tracer;
     const struct placement *placement;
     struct sound_source sources[SOURCES_MAX];
     size_t count;
-    size_t outgoing, returning; /* the pair found last */
+    uint32_t object_hits;       /* interactions that a pair leaves to objects, at least */
+    size_t outgoing, returning; /* the pair to look at next */
 };
 
-/* The tracer is borrowed. */
-void image_pairs_begin(struct image_pairs *pairs, const struct tracer *tracer, uint32_t object);
+/* All pairs by way of mirrors, or (has_straight) the straight one before them. The tracer is
+ * borrowed. */
+void image_pairs_begin(struct image_pairs *pairs, const struct tracer *tracer, uint32_t object,
+                       bool has_straight, uint32_t object_hits);
 
 /* Finds the next pair (which points into *pairs) within the limit of interactions whose mirrors
  * return anything; false when there is none. */
@@ -84,7 +75,7 @@ struct span span_overlap(struct span one, struct span other);
 
 /* Fills in the pair's record, and a fan from the outgoing source, in a frame centred on the
  * object. The fan as fan_record_init, its bins and phases those of half the path. Appends the rays
- * of both ways. Errors: as ray_table_add. */
+ * of both ways. Errors: as patch_rays_init. */
 sonject_status image_pair_aim(struct fan_record *fan, struct image_pair_record *record,
                               struct ray_table *rays, const struct tracer *tracer, uint32_t object,
                               const struct image_pair *pair, const struct line_grid *grid);

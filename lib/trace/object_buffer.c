@@ -5,11 +5,9 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "device/device.h"
-#include "kernels/object_tree_records.h"
 #include "kernels/relief_records.h"
+#include "scene/shapes/shape.h"
 #include "trace/fan.h"
-#include "trace/object_tree.h"
 #include "user/user_program.h"
 
 #define MARGIN_M    1.0e-3 /* beyond the heights, so that rays cross them all between the bounds */
@@ -141,8 +139,14 @@ static bool is_in_corridor(const struct tracer *tracer, const struct corridor *c
            angle - half <= corridor->most_angle;
 }
 
-sonject_status launch_parts_init(struct launch_parts *parts, const struct tracer *tracer,
-                                 uint32_t target, const struct line_grid *grid, bool is_straight)
+struct part_list all_parts(const struct tracer *tracer)
+{
+    const struct part_list parts = {NULL, tracer->part_count, 0};
+    return parts;
+}
+
+sonject_status parts_in_way(struct part_list *parts, const struct tracer *tracer, uint32_t target,
+                            const struct line_grid *grid, bool is_straight)
 {
     const struct corridor corridor = corridor_to(tracer, target, grid, is_straight);
     memset(parts, 0, sizeof *parts);
@@ -159,20 +163,34 @@ sonject_status launch_parts_init(struct launch_parts *parts, const struct tracer
     return SONJECT_OK;
 }
 
-void launch_parts_clear(struct launch_parts *parts)
+void part_list_clear(struct part_list *parts)
 {
     free(parts->numbers);
     memset(parts, 0, sizeof *parts);
 }
 
-sonject_status launch_records_create(struct object_record **records, const struct tracer *tracer,
-                                     const struct launch_parts *parts, const double origin[3])
+void object_record_init(struct object_record *record, const struct tracer *tracer, uint32_t part,
+                        const double origin[3])
+{
+    const struct placement *placement = &tracer->placements[part];
+    memset(record, 0, sizeof *record);
+    record->centre_x = (float)(placement->centre[0] - origin[0]);
+    record->centre_y = (float)(placement->centre[1] - origin[1]);
+    record->centre_z = (float)(placement->centre[2] - origin[2]);
+    for (int axis = 0; axis < 3; axis++)
+        for (int k = 0; k < 3; k++)
+            record->axes[3 * axis + k] = (float)placement->axes[axis][k];
+    shape_record_init(record, &placement->size, placement->shape);
+    surface_record_init(&record->surface, placement->material, tracer->view.wavelength_m);
+}
+
+sonject_status object_records_create(struct object_record **records, const struct tracer *tracer,
+                                     const struct part_list *parts, const double origin[3])
 {
     *records = allocate_array(parts->count, sizeof **records);
-    if (!*records)
-        return report_out_of_memory(tracer->report, "objects");
+    CHECK_MEMORY(tracer->report, *records, "objects");
     for (uint32_t i = 0; i < parts->count; i++)
-        object_record_init(&(*records)[i], tracer, parts->numbers[i], origin);
+        object_record_init(&(*records)[i], tracer, parts->numbers ? parts->numbers[i] : i, origin);
     return SONJECT_OK;
 }
 
@@ -208,12 +226,6 @@ static void write_mesh(uint32_t *words, const struct mesh *mesh)
         write_words(words, &at, mesh->normals, normal_words(mesh));
 }
 
-static const struct placement *placement_of(const struct tracer *tracer,
-                                            const struct part_list *parts, uint32_t i)
-{
-    return &tracer->placements[parts->numbers ? parts->numbers[i] : i];
-}
-
 /* The records of users' shapes follow, one for each part that shows one. */
 static size_t user_words(const struct tracer *tracer, const struct part_list *parts)
 {
@@ -236,43 +248,6 @@ static void write_users(const struct tracer *tracer, const struct part_list *par
         memcpy(words + at, &record, sizeof record);
         at += ALIGNED(WORDS_OF(record));
     }
-}
-
-/* A mesh within the box that its own axes give, anything else by its extents. */
-static struct object_reach reach_of(const struct placement *placement)
-{
-    const struct shape_size *size = &placement->size;
-    struct object_reach reach;
-    for (int k = 0; k < 3; k++) {
-        double forward[3] = {0.0, 0.0, 0.0};
-        double back[3] = {0.0, 0.0, 0.0};
-        forward[k] = 1.0;
-        back[k] = -1.0;
-        const double turned = fabs(placement->axes[0][k]) * size->half_length_m +
-                              fabs(placement->axes[1][k]) * size->half_width_m +
-                              fabs(placement->axes[2][k]) * size->half_height_m;
-        const double upper = size->mesh ? turned : placement_extent(placement, forward);
-        const double lower = size->mesh ? turned : placement_extent(placement, back);
-        reach.upper[k] = fmax(0.0, fmin(upper, placement->bounding_radius_m));
-        reach.lower[k] = -fmax(0.0, fmin(lower, placement->bounding_radius_m));
-    }
-    return reach;
-}
-
-static sonject_status build_tree(const struct tracer *tracer, const struct object_record *records,
-                                 const struct part_list *parts, struct object_tree *tree)
-{
-    memset(tree, 0, sizeof *tree);
-    if (parts->count <= OBJECTS_IN_LOOP)
-        return SONJECT_OK;
-    struct object_reach *reaches = allocate_array(parts->count, sizeof *reaches);
-    CHECK_MEMORY(tracer->report, reaches, "the hierarchy of objects");
-    for (uint32_t i = 0; i < parts->count; i++)
-        reaches[i] = reach_of(placement_of(tracer, parts, i));
-    const sonject_status status =
-        object_tree_build(tracer->report, records, reaches, parts->count, tree);
-    free(reaches);
-    return status;
 }
 
 static size_t record_words(uint32_t part_count)
@@ -345,11 +320,26 @@ static sonject_status write_buffer(struct tracer *tracer, struct object_record *
 }
 
 sonject_status object_buffer_create(struct tracer *tracer, struct object_record *records,
-                                    struct part_list parts, device_buffer *buffer)
+                                    const struct part_list *parts, device_buffer *buffer)
 {
     struct object_tree tree;
-    sonject_status status = build_tree(tracer, records, &parts, &tree);
-    THEN(status, write_buffer(tracer, records, &parts, &tree, buffer));
-    object_tree_clear(&tree);
+    *buffer = NULL;
+    CHECK(object_tree_build(tracer, records, parts, &tree));
+    const sonject_status status = write_buffer(tracer, records, parts, &tree, buffer);
+    free(tree.words);
     return status;
+}
+
+sonject_status launch_add_objects(struct launch *launch, struct tracer *tracer,
+                                  struct object_record *records, const struct part_list *parts)
+{
+    return object_buffer_create(tracer, records, parts, &launch->buffers[launch->buffer_count++]);
+}
+
+void fan_set_parts(struct fan_record *fan, const struct tracer *tracer,
+                   const struct part_list *parts)
+{
+    fan->objects = (int32_t)parts->count;
+    fan->relief_words = object_buffer_relief_words(tracer, parts->count);
+    fan->only_object = (int32_t)parts->target;
 }

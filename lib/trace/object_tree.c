@@ -1,11 +1,12 @@
-#include "trace/object_tree.h"
+/* Hierarchies over many targets: the tree over objects, and groups of spheres around them. */
+#include "trace/object_buffer.h"
 
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "kernels/target_numbers.h"
 #include "mesh/split.h"
 
 typedef char branch_is_packed[sizeof(struct object_branch) == 112 * 4 ? 1 : -1];
@@ -20,6 +21,11 @@ typedef char tree_is_packed[sizeof(struct object_tree_record) == 8 * 4 ? 1 : -1]
 #define REACH_SLACK 0.01
 
 #define GRAIN 0.5 /* of the objects' mean size: rays that lie so close meet the same ones */
+
+/* A box about an object, m from its centre, in axes of the frame: it reaches so far each way. */
+struct reach {
+    double lower[3], upper[3]; /* lower <= 0 <= upper */
+};
 
 /* A branch that is still to be filled. */
 struct pending {
@@ -127,12 +133,33 @@ static void fill_tree(struct builder *builder, uint32_t count)
     }
 }
 
+/* A mesh within the box that its own axes give, anything else by its extents. */
+static struct reach reach_of(const struct placement *placement)
+{
+    const struct shape_size *size = &placement->size;
+    struct reach reach;
+    for (int k = 0; k < 3; k++) {
+        double forward[3] = {0.0, 0.0, 0.0};
+        double back[3] = {0.0, 0.0, 0.0};
+        forward[k] = 1.0;
+        back[k] = -1.0;
+        const double turned = fabs(placement->axes[0][k]) * size->half_length_m +
+                              fabs(placement->axes[1][k]) * size->half_width_m +
+                              fabs(placement->axes[2][k]) * size->half_height_m;
+        const double upper = size->mesh ? turned : placement_extent(placement, forward);
+        const double lower = size->mesh ? turned : placement_extent(placement, back);
+        reach.upper[k] = fmax(0.0, fmin(upper, placement->bounding_radius_m));
+        reach.lower[k] = -fmax(0.0, fmin(lower, placement->bounding_radius_m));
+    }
+    return reach;
+}
+
 static double centre_of(const struct object_record *record, int axis)
 {
     return axis == 0 ? record->centre_x : axis == 1 ? record->centre_y : record->centre_z;
 }
 
-static void set_middle(const struct object_record *records, const struct object_reach *reaches,
+static void set_middle(const struct object_record *records, const struct reach *reaches,
                        uint32_t count, double middle[3], double *radius)
 {
     double half[3];
@@ -151,7 +178,7 @@ static void set_middle(const struct object_record *records, const struct object_
 
 /* Boxes about the middle; the mean of their longest sides. */
 static double set_boxes(struct split_triangle *objects, const struct object_record *records,
-                        const struct object_reach *reaches, uint32_t count, const double middle[3])
+                        const struct reach *reaches, uint32_t count, const double middle[3])
 {
     double sum = 0.0;
     for (uint32_t i = 0; i < count; i++) {
@@ -173,10 +200,10 @@ static double set_boxes(struct split_triangle *objects, const struct object_reco
     return sum / count;
 }
 
-sonject_status object_tree_build(struct report *report, const struct object_record *records,
-                                 const struct object_reach *reaches, uint32_t count,
-                                 struct object_tree *tree)
+sonject_status object_tree_build(const struct tracer *tracer, const struct object_record *records,
+                                 const struct part_list *parts, struct object_tree *tree)
 {
+    const uint32_t count = parts->count;
     struct object_tree_record record;
     struct builder builder;
     double middle[3], radius;
@@ -184,11 +211,13 @@ sonject_status object_tree_build(struct report *report, const struct object_reco
     memset(&builder, 0, sizeof builder);
     if (count <= OBJECTS_IN_LOOP)
         return SONJECT_OK;
+    struct reach *reaches = allocate_array(count, sizeof *reaches);
     builder.objects = allocate_array(count, sizeof *builder.objects);
     builder.branches = allocate_array(count, sizeof *builder.branches);
     builder.pending = allocate_array(count, sizeof *builder.pending);
-    const bool has_room = builder.objects && builder.branches && builder.pending;
-    if (has_room) {
+    if (reaches && builder.objects && builder.branches && builder.pending) {
+        for (uint32_t i = 0; i < count; i++)
+            reaches[i] = reach_of(placement_of(tracer, parts, i));
         set_middle(records, reaches, count, middle, &radius);
         record.middle_x = (float)middle[0];
         record.middle_y = (float)middle[1];
@@ -208,17 +237,173 @@ sonject_status object_tree_build(struct report *report, const struct object_reco
         memcpy(tree->words + sizeof record / 4, builder.branches,
                builder.branch_count * sizeof *builder.branches);
     }
+    free(reaches);
     free(builder.objects);
     free(builder.branches);
     free(builder.pending);
-    if (tree->words)
-        return SONJECT_OK;
-    tree->count = 0;
-    return report_out_of_memory(report, "the hierarchy of objects");
+    CHECK_MEMORY(tracer->report, tree->words, "the hierarchy of objects");
+    return SONJECT_OK;
 }
 
-void object_tree_clear(struct object_tree *tree)
+#define FEW_SPHERES_WANTED  32
+#define MANY_SPHERES_WANTED 1024
+
+typedef char every_part_has_room[TARGET_SPHERES_MAX >= SCENE_SHAPES_MAX ? 1 : -1];
+
+/* Size of the object along its nose, and of the circle around its section across it. */
+static void overall_size(const struct placement *placement, double *half_length, double *radius)
 {
-    free(tree->words);
-    memset(tree, 0, sizeof *tree);
+    static const double nose[3] = {1.0, 0.0, 0.0};
+    static const double tail[3] = {-1.0, 0.0, 0.0};
+    struct shape_size uncut = placement->size;
+    uncut.cut_count = 0;
+    *half_length = fmax(shape_extent(&uncut, placement->shape, nose),
+                        shape_extent(&uncut, placement->shape, tail));
+    *radius = uncut.radius_about_nose_m;
+    if (placement->shape == SONJECT_SHAPE_SPHERE)
+        *half_length = 0.0;
+    /* unless it is slender, a user's shape has its own sphere */
+    if (placement->shape == SONJECT_SHAPE_USER && *half_length <= 2.0 * *radius) {
+        *half_length = 0.0;
+        *radius = placement->bounding_radius_m;
+    }
+}
+
+/* Few spheres are all gone through at each hit, so more of them cost more than they save; where
+ * there are more parts than that anyway, they are chosen from by groups. */
+static uint32_t spheres_for(double half_length, double radius, uint32_t parts)
+{
+    const double all = parts <= FEW_SPHERES_MAX ? FEW_SPHERES_WANTED : MANY_SPHERES_WANTED;
+    const double wanted = ceil(half_length / fmax(radius, 1e-9) - 1e-6);
+    const double allowed = fmax(1.0, floor(all / (double)parts));
+    return (uint32_t)fmax(1.0, fmin(wanted, allowed));
+}
+
+static void cover_part(struct target_spheres *spheres, const struct tracer *tracer, uint32_t number,
+                       const double origin[3])
+{
+    const struct placement *placement = &tracer->placements[number];
+    double half_length, radius;
+    overall_size(placement, &half_length, &radius);
+    const uint32_t count = spheres_for(half_length, radius, tracer->part_count);
+    const double half_part = half_length / count;
+    const double sphere_radius = hypot(radius, half_part) * (1.0 + 1e-5);
+    for (uint32_t i = 0; i < count; i++) {
+        const double along = (2.0 * i + 1.0) * half_part - half_length;
+        double centre[3];
+        for (int k = 0; k < 3; k++)
+            centre[k] = placement->centre[k] + along * placement->axes[0][k];
+        if (centre[2] + sphere_radius <= tracer_lowest_seabed(tracer))
+            continue;
+        struct sphere_record *record = &spheres->records[spheres->count++];
+        record->centre_x = (float)(centre[0] - origin[0]);
+        record->centre_y = (float)(centre[1] - origin[1]);
+        record->centre_z = (float)(centre[2] - origin[2]);
+        record->radius = (float)sphere_radius;
+    }
+}
+
+static struct split_box box_of_sphere(const struct sphere_record *sphere)
+{
+    const float r = sphere->radius;
+    const struct split_box box = {{sphere->centre_x - r, sphere->centre_y - r, sphere->centre_z - r,
+                                   0.0f, -sphere->centre_x - r, -sphere->centre_y - r,
+                                   -sphere->centre_z - r, 0.0f}};
+    return box;
+}
+
+/* Brings spheres that lie together into the same group; all groups but the last are full. */
+static void sort_into_groups(struct split_triangle *spheres, const struct split_range *range)
+{
+    const size_t groups = (range->last - range->first + SPHERES_OF_GROUP - 1) / SPHERES_OF_GROUP;
+    struct split_range lower, upper;
+    if (groups < 2)
+        return;
+    /* halves of whole groups of groups, so that those lie together too */
+    const size_t super = (groups + SPHERES_OF_GROUP - 1) / SPHERES_OF_GROUP;
+    const size_t lower_groups = super < 2 ? (groups + 1) / 2 : (super + 1) / 2 * SPHERES_OF_GROUP;
+    split_cut_at(spheres, range, SPHERES_OF_GROUP * lower_groups, &lower, &upper);
+    sort_into_groups(spheres, &lower); /* at most seven times */
+    sort_into_groups(spheres, &upper);
+}
+
+static void set_sphere(struct sphere_group *group, size_t slot, const struct sphere_record *sphere)
+{
+    group->centre_x[slot] = sphere->centre_x;
+    group->centre_y[slot] = sphere->centre_y;
+    group->centre_z[slot] = sphere->centre_z;
+    group->radius[slot] = sphere->radius;
+}
+
+/* A sphere around spheres [first, last). */
+static struct sphere_record sphere_around(const struct sphere_record *spheres,
+                                          const struct split_triangle *sorted, size_t first,
+                                          size_t last)
+{
+    const struct split_box box = split_box_of(sorted, first, last);
+    struct sphere_record around;
+    around.centre_x = 0.5f * (box.edges[0] - box.edges[4]);
+    around.centre_y = 0.5f * (box.edges[1] - box.edges[5]);
+    around.centre_z = 0.5f * (box.edges[2] - box.edges[6]);
+    around.radius = 0.0f;
+    for (size_t i = first; i < last; i++) {
+        const struct sphere_record *sphere = &spheres[sorted[i].number];
+        const double distance = hypot(hypot((double)sphere->centre_x - around.centre_x,
+                                            (double)sphere->centre_y - around.centre_y),
+                                      (double)sphere->centre_z - around.centre_z);
+        around.radius = (float)fmax(around.radius, 1.0001 * (distance + sphere->radius));
+    }
+    return around;
+}
+
+static void init_groups(struct target_spheres *spheres, struct split_triangle *sorted)
+{
+    struct sphere_group *groups =
+        (struct sphere_group *)(void *)(spheres->records + spheres->count);
+    struct sphere_group *bounds = groups + spheres->groups;
+    for (uint32_t i = 0; i < spheres->count; i++) {
+        sorted[i].box = box_of_sphere(&spheres->records[i]);
+        sorted[i].number = i;
+    }
+    const struct split_range all = {0, spheres->count, split_box_of(sorted, 0, spheres->count)};
+    sort_into_groups(sorted, &all);
+    for (size_t i = 0; i < spheres->count; i++)
+        set_sphere(&groups[i / SPHERES_OF_GROUP], i % SPHERES_OF_GROUP,
+                   &spheres->records[sorted[i].number]);
+    for (size_t i = 0; i < spheres->groups; i++) {
+        const size_t last = (i + 1) * SPHERES_OF_GROUP;
+        const struct sphere_record around =
+            sphere_around(spheres->records, sorted, i * SPHERES_OF_GROUP,
+                          last < spheres->count ? last : spheres->count);
+        set_sphere(&bounds[i / SPHERES_OF_GROUP], i % SPHERES_OF_GROUP, &around);
+    }
+}
+
+sonject_status target_spheres_init(struct target_spheres *spheres, const struct tracer *tracer,
+                                   const double origin[3])
+{
+    const size_t most = tracer->part_count > FEW_SPHERES_MAX ? TARGET_SPHERES_MAX : FEW_SPHERES_MAX;
+    const size_t bounds = (TARGET_GROUPS_MAX + SPHERES_OF_GROUP - 1) / SPHERES_OF_GROUP;
+    const size_t room = most * sizeof *spheres->records +
+                        (TARGET_GROUPS_MAX + bounds) * sizeof(struct sphere_group);
+    memset(spheres, 0, sizeof *spheres);
+    spheres->records = allocate_array(room, 1);
+    struct split_triangle *sorted = allocate_array(most, sizeof *sorted);
+    if (!spheres->records || !sorted) {
+        free(sorted);
+        free(spheres->records);
+        spheres->records = NULL;
+        return report_out_of_memory(tracer->report, "objects");
+    }
+    for (uint32_t i = 0; i < tracer->part_count; i++)
+        cover_part(spheres, tracer, i, origin);
+    spheres->bytes = spheres->count * sizeof *spheres->records;
+    if (spheres->count > FEW_SPHERES_MAX) {
+        spheres->groups = (spheres->count + SPHERES_OF_GROUP - 1) / SPHERES_OF_GROUP;
+        const size_t around = (spheres->groups + SPHERES_OF_GROUP - 1) / SPHERES_OF_GROUP;
+        init_groups(spheres, sorted);
+        spheres->bytes += (spheres->groups + around) * sizeof(struct sphere_group);
+    }
+    free(sorted);
+    return SONJECT_OK;
 }

@@ -5,17 +5,15 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "device/device.h"
-#include "trace/checkpoint.h"
-#include "trace/corners.h"
 #include "trace/fan.h"
-#include "trace/image_sources.h"
+#include "trace/glints.h"
 #include "trace/object_buffer.h"
 
+#define PI           3.14159265358979323846
 #define RAYS_PER_BIN 1.0
 
-#define RAYS_PER_BIN_OF_BEAM                                                                       \
-    3.0 /* a pixel is one ping's alone, and a beam's rays weigh unequally */
+/* A pixel is one ping's alone, and a beam's rays weigh unequally. */
+#define RAYS_PER_BIN_OF_BEAM 3.0
 
 static double bin_of_processor_range(const struct rough_trace *trace, const struct tracer *tracer,
                                      double range)
@@ -25,7 +23,7 @@ static double bin_of_processor_range(const struct rough_trace *trace, const stru
 
 static bool has_beam(const struct rough_trace *trace)
 {
-    return trace->fan.beam.reach > 0.0f;
+    return trace->launch.fan.beam.reach > 0.0f;
 }
 
 /* Ranges, m, from a part's nearest point to where the ray over its top meets the seabed. */
@@ -163,34 +161,38 @@ static sonject_status init_tiles(struct rough_trace *trace, struct tracer *trace
 }
 
 /* Quanta so fine that the weakest seabed still counts in millions, and so coarse that the
- * brightest surface (an object's, or the map's brightest seabed) stays below the limit. */
+ * brightest surface (an object's, at least Lambert's 1/pi, or the map's brightest seabed) stays
+ * below the limit. */
 static void choose_quanta(struct rough_trace *trace, const struct tracer *tracer, const float *map)
 {
-    double brightest = 1.0;
+    struct fan_record *fan = &trace->launch.fan;
+    double seabed = 1.0;
     if (map)
         for (size_t i = 0; i < tracer->view.rows * tracer->view.columns; i++)
-            brightest = fmax(brightest, map[i]);
-    const double wavefront = (double)trace->fan.strip_width * trace->fan.elevation_step * 2.0 *
-                             trace->fan.reference_range;
-    const double beam = has_beam(trace) ? beam_largest_weight(tracer, &trace->fan) : 1.0;
-    const double most =
-        beam * wavefront *
-        fmax(brightest_scattering(tracer), tracer->scene->seabed.lambert * brightest);
-    trace->fan.quanta = power_of_two_below(ldexp(1.0, 44) / most);
-    trace->energy_of_quantum = view_energy_scale(&tracer->view) / trace->fan.quanta;
+            seabed = fmax(seabed, map[i]);
+    double brightest = 1.0 / PI;
+    for (uint32_t i = 0; i < tracer->part_count; i++)
+        brightest = fmax(brightest, material_brightness(tracer->placements[i].material));
+    const double wavefront =
+        (double)fan->strip_width * fan->elevation_step * 2.0 * fan->reference_range;
+    const double beam = has_beam(trace) ? beam_largest_weight(tracer, fan) : 1.0;
+    const double most = beam * wavefront * fmax(brightest, tracer->scene->seabed.lambert * seabed);
+    fan->quanta = power_of_two_below(ldexp(1.0, 44) / most);
+    trace->energy_of_quantum = view_energy_scale(&tracer->view) / fan->quanta;
 }
 
-static sonject_status make_buffers(struct rough_trace *trace, struct tracer *tracer,
+static sonject_status begin_launch(struct rough_trace *trace, struct tracer *tracer,
                                    struct object_record *records, const float *map)
 {
     const size_t map_bytes = map ? tracer->view.rows * tracer->view.columns * sizeof *map : 0;
-    sonject_status status =
-        trace_device_init(&trace->on_device, tracer, PROGRAM_TRACE_ROUGH, "trace_rough", records,
-                          (struct part_list){NULL, tracer->part_count},
-                          (size_t)trace->grid.strips.count, (size_t)trace->grid.bins.count);
-    THEN(status, buffer_create(tracer->report, tracer->device, map_bytes, map, &trace->map));
-    THEN(status, buffer_create(tracer->report, tracer->device,
-                               trace->tile_elements * sizeof(int64_t), NULL, &trace->tile_buffer));
+    const struct part_list parts = all_parts(tracer);
+    struct launch *launch = &trace->launch;
+    sonject_status status = launch_begin(launch, tracer, PROGRAM_TRACE_ROUGH, "trace_rough");
+    THEN(status, launch_add_objects(launch, tracer, records, &parts));
+    THEN(status, launch_add(launch, tracer, map_bytes, map));
+    THEN(status, launch_add_tallies(launch, tracer, trace->grid.strips.count,
+                                    (size_t)trace->grid.bins.count, &trace->chunk));
+    THEN(status, launch_add(launch, tracer, trace->tile_elements * sizeof(int64_t), NULL));
     return status;
 }
 
@@ -200,13 +202,14 @@ static sonject_status init_fan(struct rough_trace *trace, struct tracer *tracer,
 {
     const double rays_per_bin = is_beam ? RAYS_PER_BIN_OF_BEAM : RAYS_PER_BIN;
     sonject_status status =
-        patch_fan_init(&trace->fan, tracer, &trace->grid, has_map, rays_per_bin);
+        patch_fan_init(&trace->launch.fan, tracer, &trace->grid, has_map, rays_per_bin);
     if (status == SONJECT_OK && is_beam)
-        status = beam_record_init(&trace->fan, tracer, &trace->grid);
-    THEN(status, patch_rays_init(&trace->rays, &trace->fan.table, tracer, &trace->grid));
-    trace->fan.stream = STREAM_ROUGH_RAYS;
-    aspects_record_init(&trace->fan, tracer, &trace->grid);
-    trace->fan.seabed_lambert = (float)tracer->scene->seabed.lambert;
+        status = beam_record_init(&trace->launch.fan, tracer, &trace->grid);
+    THEN(status,
+         patch_rays_init(&trace->launch.rays, &trace->launch.fan.table, tracer, &trace->grid));
+    trace->launch.fan.stream = STREAM_ROUGH_RAYS;
+    aspects_record_init(&trace->launch.fan, tracer, &trace->grid);
+    trace->launch.fan.seabed_lambert = (float)tracer->scene->seabed.lambert;
     return status;
 }
 
@@ -232,14 +235,13 @@ static void aim_at_part(struct fan_record *fan, const struct rough_trace *trace,
 static sonject_status begin(struct rough_trace *trace, struct tracer *tracer, const float *map,
                             const struct point_response *response, bool is_beam)
 {
-    memset(trace, 0, sizeof *trace);
-    const struct patch_view *view = &tracer->view;
-    line_grid_for_patch(&trace->grid, view, response);
+    const struct part_list parts = all_parts(tracer);
+    struct object_record *records;
     double origin[3];
-    patch_fan_origin(origin, view);
-    struct object_record *records = allocate_array(tracer->part_count, sizeof *records);
-    CHECK_MEMORY(tracer->report, records, "objects");
-    object_records_init(records, tracer, origin);
+    memset(trace, 0, sizeof *trace);
+    line_grid_for_patch(&trace->grid, &tracer->view, response);
+    patch_fan_origin(origin, &tracer->view);
+    CHECK(object_records_create(&records, tracer, &parts, origin));
     sonject_status status = init_fan(trace, tracer, map != NULL, is_beam);
     trace->relief_halo = aspects_relief_halo(tracer, &trace->grid);
     trace->object_halo = object_halo(trace, tracer);
@@ -247,7 +249,7 @@ static sonject_status begin(struct rough_trace *trace, struct tracer *tracer, co
     THEN(status, init_tiles(trace, tracer, records));
     if (status == SONJECT_OK) {
         choose_quanta(trace, tracer, map);
-        status = make_buffers(trace, tracer, records, map);
+        status = begin_launch(trace, tracer, records, map);
     }
     free(records);
     if (status != SONJECT_OK)
@@ -268,41 +270,20 @@ sonject_status rough_trace_begin_beam(struct rough_trace *trace, struct tracer *
 
 void rough_trace_end(struct rough_trace *trace)
 {
-    trace_device_clear(&trace->on_device);
-    ray_table_clear(&trace->rays);
-    buffer_release(&trace->map);
-    buffer_release(&trace->tile_buffer);
-}
-
-int32_t rough_trace_chunk(const struct rough_trace *trace)
-{
-    return (int32_t)trace->on_device.tally_strips;
+    launch_end(&trace->launch);
 }
 
 void rough_trace_flatten(struct rough_trace *trace)
 {
-    trace->fan.relief_words = 0;
-    trace->fan.objects = 0;
+    trace->launch.fan.relief_words = 0;
+    trace->launch.fan.objects = 0;
     trace->relief_halo = 0;
     trace->object_halo = 0;
 }
 
-static sonject_status read_tallies(struct tracer *tracer, device_buffer buffer, size_t count,
-                                   double unit, float *values)
-{
-    const void *mapped;
-    const int64_t *tallies;
-    CHECK(buffer_map(tracer->report, tracer->device, buffer, count * sizeof(int64_t), &mapped));
-    sonject_status status = checkpoint_sums(tracer->checkpoint, mapped, count, &tallies);
-    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
-        values[i] = (float)((double)tallies[i] * unit);
-    buffer_unmap(tracer->device, buffer, mapped);
-    return status;
-}
-
 void rough_trace_aim(struct rough_trace *trace, struct span strips)
 {
-    struct fan_record *fan = &trace->fan;
+    struct fan_record *fan = &trace->launch.fan;
     const struct span patch = trace->grid.strips;
     const bool is_first = strips.first == patch.first;
     const bool is_last = strips.first + strips.count == patch.first + patch.count;
@@ -325,24 +306,19 @@ sonject_status rough_trace_strips(struct rough_trace *trace, struct tracer *trac
                                   struct span strips, float *seabed)
 {
     const size_t count = (size_t)strips.count * (size_t)trace->grid.bins.count;
-    const device_buffer buffers[] = {trace->on_device.objects, trace->map, trace->on_device.tallies,
-                                     trace->tile_buffer};
+    device_buffer tallies = trace->launch.buffers[ROUGH_TALLIES];
     rough_trace_aim(trace, strips);
-    sonject_status status = buffer_clear(tracer->report, tracer->device, trace->on_device.tallies,
-                                         count * sizeof(int64_t));
-    THEN(status,
-         trace_launch(tracer, trace->on_device.kernel, &trace->fan, &trace->rays, buffers, 4));
-    THEN(status,
-         read_tallies(tracer, trace->on_device.tallies, count, trace->energy_of_quantum, seabed));
-    if (status == SONJECT_OK)
-        tracer->counts.pings += (uint64_t)strips.count;
-    return status;
+    CHECK(buffer_clear(tracer->report, tracer->device, tallies, count * sizeof(int64_t)));
+    CHECK(launch_run(&trace->launch, tracer));
+    CHECK(tallies_read(tracer, tallies, 0, count, trace->energy_of_quantum, 1, &seabed));
+    tracer->counts.pings += (uint64_t)strips.count;
+    return SONJECT_OK;
 }
 
 sonject_status rough_trace_tiles(struct rough_trace *trace, struct tracer *tracer, float *tiles)
 {
-    CHECK(read_tallies(tracer, trace->tile_buffer, trace->tile_elements, trace->energy_of_quantum,
-                       tiles));
+    CHECK(tallies_read(tracer, trace->launch.buffers[ROUGH_TILES], 0, trace->tile_elements,
+                       trace->energy_of_quantum, 1, &tiles));
     for (uint32_t i = 0; i < tracer->scene->object_count; i++) {
         const struct rough_tile *tile = &trace->tiles[i];
         const size_t plane = line_grid_cells(&tile->grid);
@@ -353,68 +329,63 @@ sonject_status rough_trace_tiles(struct rough_trace *trace, struct tracer *trace
     return SONJECT_OK;
 }
 
+/* The launch's buffers; the tiles are the trace's. */
+enum mirrored_buffer {
+    MIRRORED_OBJECTS,
+    MIRRORED_TILES,
+    MIRRORED_SOURCES
+};
+
 static sonject_status trace_pair(struct rough_trace *trace, struct tracer *tracer,
-                                 const struct trace_device *on_device,
-                                 const struct launch_parts *parts, const struct image_pair *pair)
+                                 struct launch *launch, const struct part_list *parts,
+                                 const struct image_pair *pair)
 {
     const uint32_t part = parts->numbers[parts->target];
     const struct rough_tile *tile = &trace->tiles[tracer->placements[part].object];
+    struct fan_record *fan = &launch->fan;
     struct image_pair_record record;
-    struct fan_record fan;
-    device_buffer sources = NULL;
-    struct ray_table rays = {NULL, 0};
-    sonject_status status = image_pair_aim(&fan, &record, &rays, tracer, part, pair, &trace->grid);
-    aim_at_part(&fan, trace, tracer, part, &pair->outgoing->way);
-    fan.objects = (int32_t)parts->count;
-    fan.relief_words = object_buffer_relief_words(tracer, parts->count);
-    fan.only_object = (int32_t)parts->target;
-    fan.stream = STREAM_MIRRORED_ROUGH_RAYS + STREAMS_OF_PAIR * pair->number + part;
-    fan.quanta = trace->fan.quanta;
-    fan.first_strip = tile->grid.strips.first;
-    fan.strips = tile->grid.strips.count;
-    THEN(status, buffer_create(tracer->report, tracer->device, sizeof record, &record, &sources));
-    const device_buffer buffers[] = {on_device->objects, trace->tile_buffer, sources};
-    THEN(status, trace_launch(tracer, on_device->kernel, &fan, &rays, buffers, 3));
-    ray_table_clear(&rays);
-    buffer_release(&sources);
-    return status;
-}
-
-static sonject_status trace_pairs(struct rough_trace *trace, struct tracer *tracer,
-                                  const struct trace_device *on_device,
-                                  const struct launch_parts *parts)
-{
-    const uint32_t part = parts->numbers[parts->target];
-    struct image_pairs pairs;
-    struct image_pair pair;
-    sonject_status status = SONJECT_OK;
-    image_pairs_begin(&pairs, tracer, part);
-    while (status == SONJECT_OK && image_pairs_next(&pairs, &pair))
-        if (image_pair_bins_in_patch(tracer, part, &pair, &trace->grid).count > 0)
-            status = trace_pair(trace, tracer, on_device, parts, &pair);
+    sonject_status status =
+        image_pair_aim(fan, &record, &launch->rays, tracer, part, pair, &trace->grid);
+    aim_at_part(fan, trace, tracer, part, &pair->outgoing->way);
+    fan_set_parts(fan, tracer, parts);
+    fan->stream = STREAM_MIRRORED_ROUGH_RAYS + STREAMS_OF_PAIR * pair->number + part;
+    fan->quanta = trace->launch.fan.quanta;
+    fan->first_strip = tile->grid.strips.first;
+    fan->strips = tile->grid.strips.count;
+    launch->buffers[MIRRORED_TILES] = trace->launch.buffers[ROUGH_TILES];
+    launch->buffer_count = MIRRORED_SOURCES;
+    THEN(status, launch_add(launch, tracer, sizeof record, &record));
+    THEN(status, launch_run(launch, tracer));
+    launch->buffers[MIRRORED_TILES] = NULL;
+    buffer_release(&launch->buffers[MIRRORED_SOURCES]);
+    ray_table_clear(&launch->rays);
     return status;
 }
 
 static sonject_status trace_part(struct rough_trace *trace, struct tracer *tracer, uint32_t part)
 {
     const uint32_t object = tracer->placements[part].object;
-    struct trace_device on_device;
-    struct launch_parts parts;
+    struct launch launch;
+    struct part_list parts;
+    struct image_pairs pairs;
+    struct image_pair pair;
     struct object_record *records = NULL;
-    memset(&on_device, 0, sizeof on_device);
-    sonject_status status =
-        launch_parts_init(&parts, tracer, part, &trace->tiles[object].grid, false);
-    THEN(status, launch_records_create(&records, tracer, &parts, tracer->placements[part].centre));
+    memset(&launch, 0, sizeof launch);
+    sonject_status status = parts_in_way(&parts, tracer, part, &trace->tiles[object].grid, false);
+    THEN(status, object_records_create(&records, tracer, &parts, tracer->placements[part].centre));
     if (status == SONJECT_OK) {
         rough_tile_describe(trace, object, &records[parts.target]);
-        status = trace_device_init(&on_device, tracer, PROGRAM_TRACE_ROUGH_MIRRORED,
-                                   "trace_rough_mirrored", records,
-                                   (struct part_list){parts.numbers, parts.count}, 1, 1);
+        status =
+            launch_begin(&launch, tracer, PROGRAM_TRACE_ROUGH_MIRRORED, "trace_rough_mirrored");
     }
-    THEN(status, trace_pairs(trace, tracer, &on_device, &parts));
-    trace_device_clear(&on_device);
+    THEN(status, launch_add_objects(&launch, tracer, records, &parts));
+    image_pairs_begin(&pairs, tracer, part, false, 1);
+    while (status == SONJECT_OK && image_pairs_next(&pairs, &pair))
+        if (image_pair_bins_in_patch(tracer, part, &pair, &trace->grid).count > 0)
+            status = trace_pair(trace, tracer, &launch, &parts, &pair);
+    launch_end(&launch);
     free(records);
-    launch_parts_clear(&parts);
+    part_list_clear(&parts);
     return status;
 }
 

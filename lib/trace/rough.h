@@ -10,6 +10,14 @@ struct rough_tile {
     size_t offset; /* of the tile's first plane in the tiles */
 };
 
+/* The launch's buffers. */
+enum rough_buffer {
+    ROUGH_OBJECTS,
+    ROUGH_MAP,
+    ROUGH_TALLIES,
+    ROUGH_TILES
+};
+
 struct rough_trace {
     struct line_grid grid; /* of the patch with its margins */
     struct rough_tile tiles[SCENE_OBJECTS_MAX];
@@ -18,10 +26,8 @@ struct rough_trace {
     /* Strips traced besides those whose seabed is wanted, for rays that come from there: on both
      * sides of a chunk, and beyond the patch's ends. */
     int32_t relief_halo, object_halo;
-    struct fan_record fan;
-    struct ray_table rays;
-    struct trace_device on_device;
-    device_buffer map, tile_buffer;
+    int32_t chunk; /* strips that a call of rough_trace_strips may take */
+    struct launch launch;
 };
 
 /* Prepares a trace. map: rows x columns of the view, reflectivity over mu0 (values >= 0, finite),
@@ -36,9 +42,6 @@ void rough_trace_end(struct rough_trace *trace);
  * whose grid the trace has, as narrow as a row. */
 sonject_status rough_trace_begin_beam(struct rough_trace *trace, struct tracer *tracer,
                                       const struct point_response *response);
-
-/* How many strips a call of rough_trace_strips may take. */
-int32_t rough_trace_chunk(const struct rough_trace *trace);
 
 /* Lays the fan for those strips, of which the patch's are a union: rough_trace_strips does so. */
 void rough_trace_aim(struct rough_trace *trace, struct span strips);

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "device/device.h"
 #include "scene/shapes/shape.h"
 #include "trace/checkpoint.h"
 #include "trace/fan.h"
@@ -86,12 +85,6 @@ double tracer_highest_seabed(const struct tracer *tracer)
     return tracer->relief ? tracer->relief->highest_m : 0.0;
 }
 
-uint32_t tracer_variant(const struct tracer *tracer)
-{
-    return (tracer->scene->mesh_count > 0 ? PROGRAM_WITH_MESHES : 0u) |
-           (tracer->relief ? PROGRAM_WITH_RELIEF : 0u);
-}
-
 void surface_record_init(struct surface_record *record, const sonject_material_params *material,
                          double wavelength_m)
 {
@@ -120,34 +113,15 @@ double material_brightness(const sonject_material_params *material)
     return 0.5 * material->lambert * (material->lambert_exponent + 1.0) + cone;
 }
 
-double brightest_scattering(const struct tracer *tracer)
+bool material_is_smooth(const sonject_material_params *material)
 {
-    double brightest = 1.0 / PI;
-    for (uint32_t i = 0; i < tracer->part_count; i++)
-        brightest = fmax(brightest, material_brightness(tracer->placements[i].material));
-    return brightest;
+    return material->reflection_kind == SONJECT_REFLECTION_FLUID || material->reflection != 0.0;
 }
 
-void object_record_init(struct object_record *record, const struct tracer *tracer, uint32_t part,
-                        const double origin[3])
+bool material_is_rough(const sonject_material_params *material)
 {
-    const struct placement *placement = &tracer->placements[part];
-    memset(record, 0, sizeof *record);
-    record->centre_x = (float)(placement->centre[0] - origin[0]);
-    record->centre_y = (float)(placement->centre[1] - origin[1]);
-    record->centre_z = (float)(placement->centre[2] - origin[2]);
-    for (int axis = 0; axis < 3; axis++)
-        for (int k = 0; k < 3; k++)
-            record->axes[3 * axis + k] = (float)placement->axes[axis][k];
-    shape_record_init(record, &placement->size, placement->shape);
-    surface_record_init(&record->surface, placement->material, tracer->view.wavelength_m);
-}
-
-void object_records_init(struct object_record *records, const struct tracer *tracer,
-                         const double origin[3])
-{
-    for (uint32_t i = 0; i < tracer->part_count; i++)
-        object_record_init(&records[i], tracer, i, origin);
+    return (material->lambert > 0.0 || material->glossy_albedo > 0.0) &&
+           (!material_is_smooth(material) || material->roughness_m > 0.0);
 }
 
 /* Adds up the reports. A fault fails the run: a number that cannot be trusted must not be drawn. */
@@ -197,105 +171,108 @@ static int32_t stride_of(int32_t strips)
 }
 
 /* Some strips of a launch, in the order of their turns. */
-static sonject_status launch_turns(struct tracer *tracer, device_kernel kernel,
-                                   struct fan_record *fan, const struct ray_table *rays,
-                                   const device_buffer *buffers, size_t buffer_count,
-                                   struct span turns)
+static sonject_status run_turns(struct launch *launch, struct tracer *tracer, struct span turns)
 {
     struct report *report = tracer->report;
     struct device *device = tracer->device;
+    struct fan_record *fan = &launch->fan;
     const size_t items = (size_t)turns.count * (size_t)fan->segments;
-    device_buffer fan_buffer = NULL;
-    device_buffer piece_buffer = NULL;
-    device_buffer outcome_buffer = NULL;
+    const size_t last = launch->buffer_count + 2;
+    device_buffer buffers[LAUNCH_BUFFERS_MAX + 3] = {NULL};
+    struct kernel_argument arguments[LAUNCH_BUFFERS_MAX + 3];
     struct outcome_record *outcomes = allocate_array(items, sizeof *outcomes);
-    sonject_status status = outcomes ? SONJECT_OK : report_out_of_memory(report, "trace counts");
+    CHECK_MEMORY(report, outcomes, "trace counts");
     fan->first_turn = turns.first;
-    THEN(status, buffer_create(report, device, sizeof *fan, fan, &fan_buffer));
-    THEN(status, buffer_create(report, device, rays->count * sizeof *rays->pieces, rays->pieces,
-                               &piece_buffer));
-    THEN(status, buffer_create(report, device, items * sizeof *outcomes, NULL, &outcome_buffer));
-    if (status == SONJECT_OK) {
-        struct kernel_argument arguments[8];
-        arguments[0] = (struct kernel_argument){sizeof fan_buffer, &fan_buffer};
-        arguments[1] = (struct kernel_argument){sizeof piece_buffer, &piece_buffer};
-        for (size_t i = 0; i < buffer_count; i++)
-            arguments[2 + i] = (struct kernel_argument){sizeof buffers[i], &buffers[i]};
-        arguments[2 + buffer_count] =
-            (struct kernel_argument){sizeof outcome_buffer, &outcome_buffer};
-        status = kernel_run(report, device, kernel, arguments, buffer_count + 3, 1, &items);
-    }
-    THEN(status,
-         buffer_read(report, device, outcome_buffer, 0, items * sizeof *outcomes, outcomes));
+    memcpy(buffers + 2, launch->buffers, launch->buffer_count * sizeof *buffers);
+    for (size_t i = 0; i <= last; i++)
+        arguments[i] = (struct kernel_argument){sizeof buffers[i], &buffers[i]};
+    sonject_status status = buffer_create(report, device, sizeof *fan, fan, &buffers[0]);
+    THEN(status, buffer_create(report, device, launch->rays.count * sizeof *launch->rays.pieces,
+                               launch->rays.pieces, &buffers[1]));
+    THEN(status, buffer_create(report, device, items * sizeof *outcomes, NULL, &buffers[last]));
+    THEN(status, kernel_run(report, device, launch->kernel, arguments, last + 1, 1, &items));
+    THEN(status, buffer_read(report, device, buffers[last], 0, items * sizeof *outcomes, outcomes));
     THEN(status, add_outcomes(tracer, outcomes, items));
-    buffer_release(&fan_buffer);
-    buffer_release(&piece_buffer);
-    buffer_release(&outcome_buffer);
+    buffer_release(&buffers[0]);
+    buffer_release(&buffers[1]);
+    buffer_release(&buffers[last]);
     free(outcomes);
     return status;
 }
 
-sonject_status trace_launch(struct tracer *tracer, device_kernel kernel, struct fan_record *fan,
-                            const struct ray_table *rays, const device_buffer *buffers,
-                            size_t buffer_count)
+sonject_status launch_run(struct launch *launch, struct tracer *tracer)
 {
     struct checkpoint *checkpoint = tracer->checkpoint;
+    struct fan_record *fan = &launch->fan;
     struct span turns = {0, fan->strips};
     fan->segments = 1;
     fan->first_turn = 0;
     fan->strip_stride = stride_of(fan->strips);
     if (checkpoint)
-        checkpoint_launch(checkpoint, fan, rays);
+        checkpoint_launch(checkpoint, fan, &launch->rays);
     fan->segments = segments_for(tracer, fan);
     if (!checkpoint)
-        return launch_turns(tracer, kernel, fan, rays, buffers, buffer_count, turns);
-    sonject_status status = SONJECT_OK;
-    while (status == SONJECT_OK && checkpoint_next(checkpoint, &turns)) {
-        status = launch_turns(tracer, kernel, fan, rays, buffers, buffer_count, turns);
-        if (status == SONJECT_OK)
-            checkpoint_advance(checkpoint, turns);
+        return run_turns(launch, tracer, turns);
+    while (checkpoint_next(checkpoint, &turns)) {
+        CHECK(run_turns(launch, tracer, turns));
+        checkpoint_advance(checkpoint, turns);
     }
-    return status;
+    return SONJECT_OK;
 }
 
-sonject_status trace_kernel_create(struct tracer *tracer, uint32_t variant,
-                                   enum device_program program, const char *name,
-                                   device_kernel *kernel)
+sonject_status launch_begin(struct launch *launch, struct tracer *tracer,
+                            enum device_program program, const char *kernel_name)
 {
-    *kernel = NULL;
-    if (tracer->checkpoint && tracer->checkpoint->files)
-        return SONJECT_OK;
-    return scene_kernel_create(tracer->report, tracer->device, tracer->scene, variant, program,
-                               name, kernel);
-}
-
-sonject_status trace_device_init(struct trace_device *device, struct tracer *tracer,
-                                 enum device_program program, const char *kernel_name,
-                                 struct object_record *records, struct part_list parts,
-                                 size_t strips, size_t elements)
-{
-    struct report *report = tracer->report;
-    const size_t line_bytes = elements * sizeof(int64_t);
-    const size_t fitting = TALLY_BYTES / line_bytes;
-    memset(device, 0, sizeof *device);
-    device->tally_strips = fitting < 1 ? 1 : fitting < strips ? fitting : strips;
     const bool has_aspects =
         program == PROGRAM_TRACE_ROUGH &&
         (aspects_sine(tracer) > 0.0 || tracer->scene->sonar.kind == SONJECT_SONAR_REAL);
-    const uint32_t variant = tracer_variant(tracer) | (has_aspects ? PROGRAM_WITH_ASPECTS : 0u);
-    sonject_status status =
-        trace_kernel_create(tracer, variant, program, kernel_name, &device->kernel);
-    THEN(status, object_buffer_create(tracer, records, parts, &device->objects));
-    THEN(status, buffer_create(report, tracer->device, device->tally_strips * line_bytes, NULL,
-                               &device->tallies));
-    if (status != SONJECT_OK)
-        trace_device_clear(device);
-    return status;
+    const uint32_t variant = (tracer->scene->mesh_count > 0 ? PROGRAM_WITH_MESHES : 0u) |
+                             (tracer->relief ? PROGRAM_WITH_RELIEF : 0u) |
+                             (has_aspects ? PROGRAM_WITH_ASPECTS : 0u);
+    if (tracer->checkpoint && tracer->checkpoint->files)
+        return SONJECT_OK;
+    return scene_kernel_create(tracer->report, tracer->device, tracer->scene, variant, program,
+                               kernel_name, &launch->kernel);
 }
 
-void trace_device_clear(struct trace_device *device)
+void launch_end(struct launch *launch)
 {
-    kernel_release(&device->kernel);
-    buffer_release(&device->objects);
-    buffer_release(&device->tallies);
+    kernel_release(&launch->kernel);
+    for (size_t i = 0; i < launch->buffer_count; i++)
+        buffer_release(&launch->buffers[i]);
+    launch->buffer_count = 0;
+    ray_table_clear(&launch->rays);
+}
+
+sonject_status launch_add(struct launch *launch, struct tracer *tracer, size_t bytes,
+                          const void *contents)
+{
+    return buffer_create(tracer->report, tracer->device, bytes, contents,
+                         &launch->buffers[launch->buffer_count++]);
+}
+
+sonject_status launch_add_tallies(struct launch *launch, struct tracer *tracer, int32_t strips,
+                                  size_t elements, int32_t *chunk)
+{
+    const size_t strip_bytes = elements * sizeof(int64_t);
+    const size_t fitting = TALLY_BYTES / strip_bytes;
+    *chunk = fitting < 1 ? 1 : fitting < (size_t)strips ? (int32_t)fitting : strips;
+    return launch_add(launch, tracer, (size_t)*chunk * strip_bytes, NULL);
+}
+
+sonject_status tallies_read(struct tracer *tracer, device_buffer tallies, size_t first,
+                            size_t count, double unit, size_t plane_count, float *const *planes)
+{
+    const size_t total = count * plane_count;
+    const void *mapped;
+    const int64_t *sums;
+    CHECK(buffer_map(tracer->report, tracer->device, tallies, (first + total) * sizeof *sums,
+                     &mapped));
+    const sonject_status status =
+        checkpoint_sums(tracer->checkpoint, (const int64_t *)mapped + first, total, &sums);
+    for (size_t p = 0; status == SONJECT_OK && p < plane_count; p++)
+        for (size_t i = 0; i < count; i++)
+            planes[p][i] = (float)((double)sums[i * plane_count + p] * unit);
+    buffer_unmap(tracer->device, tallies, mapped);
+    return status;
 }

@@ -80,8 +80,8 @@ static void trace_both(struct benchmark_scene *set, struct chain_trace *trace,
 {
     struct tracer *tracer = &set->tracer;
     memset(timing, 0, sizeof *timing);
-    if (buffer_clear(&set->report, tracer->device, trace->tallies, cells * sizeof(int64_t)) !=
-        SONJECT_OK)
+    if (buffer_clear(&set->report, tracer->device, trace->launch.buffers[CHAIN_TALLIES],
+                     cells * sizeof(int64_t)) != SONJECT_OK)
         benchmark_fail(&set->report, "clear");
     for (uint32_t i = 0; i < chain_fan_count(tracer); i++) {
         struct chain_fan fan;
@@ -94,7 +94,7 @@ static void trace_both(struct benchmark_scene *set, struct chain_trace *trace,
         timing->device_s += clock_seconds() - start;
         timing->paths += (double)(tracer->counts.rays - rays);
         struct share native_work = *work;
-        native_work.fan = &fan.record;
+        native_work.fan = &trace->launch.fan;
         native_work.outcomes =
             allocate_array((size_t)fan.strips.count, sizeof(struct outcome_record));
         if (!native_work.outcomes)
@@ -112,12 +112,14 @@ static int compare_rates(struct benchmark_scene *set, uint32_t interactions)
     if (chain_trace_begin(&trace, &set->tracer, NULL) != SONJECT_OK)
         benchmark_fail(&set->report, "chains");
     const size_t cells = line_grid_cells(&trace.grid);
-    struct chain_record *chains = read_back(set, trace.chains, sizeof *chains);
+    struct chain_record *chains =
+        read_back(set, trace.launch.buffers[CHAIN_RECORD], sizeof *chains);
     struct share work;
     memset(&work, 0, sizeof work);
     work.chains = chains;
-    work.objects = read_back(set, trace.objects, sizeof *work.objects);
-    work.spheres = read_back(set, trace.spheres, (size_t)chains->spheres * sizeof *work.spheres);
+    work.objects = read_back(set, trace.launch.buffers[CHAIN_OBJECTS], sizeof *work.objects);
+    work.spheres = read_back(set, trace.launch.buffers[CHAIN_SPHERES],
+                             (size_t)chains->spheres * sizeof *work.spheres);
     int64_t *native = allocate_array(cells, sizeof *native);
     struct timing best = {1e9, 1e9, 0.0};
     for (int i = 0; native && i < REPEATS; i++) {
@@ -128,7 +130,7 @@ static int compare_rates(struct benchmark_scene *set, uint32_t interactions)
         best.native_s = fmin(best.native_s, timing.native_s);
         best.paths = timing.paths;
     }
-    int64_t *device = read_back(set, trace.tallies, cells * sizeof *device);
+    int64_t *device = read_back(set, trace.launch.buffers[CHAIN_TALLIES], cells * sizeof *device);
     const int differs = !native || memcmp(device, native, cells * sizeof *device) != 0;
     printf("%u interactions: %.1f Mpath/s on the device, %.1f Mpath/s native C, ratio %.2f; same "
            "bits: %s\n",
@@ -159,13 +161,14 @@ struct noise {
 /* Turns what the library would do into plain cosine sampling. */
 static void make_plain(struct benchmark_scene *set, struct chain_trace *trace)
 {
-    struct chain_record *chains = read_back(set, trace->chains, sizeof *chains);
+    struct chain_record *chains =
+        read_back(set, trace->launch.buffers[CHAIN_RECORD], sizeof *chains);
     chains->spheres = 0;
     chains->is_reciprocal = 0;
     chains->seabed_share = 0.0f;
-    buffer_release(&trace->chains);
-    if (buffer_create(&set->report, set->tracer.device, sizeof *chains, chains, &trace->chains) !=
-        SONJECT_OK)
+    buffer_release(&trace->launch.buffers[CHAIN_RECORD]);
+    if (buffer_create(&set->report, set->tracer.device, sizeof *chains, chains,
+                      &trace->launch.buffers[CHAIN_RECORD]) != SONJECT_OK)
         benchmark_fail(&set->report, "chains");
     free(chains);
 }

@@ -119,10 +119,10 @@ static void trace_glints_of(struct benchmark_scene *set, uint32_t part)
     struct glints glints;
     if (glints_begin(&glints, &set->tracer, part) != SONJECT_OK)
         benchmark_fail(&set->report, "glints");
-    const size_t chunk = (size_t)glints_chunk(&glints) * (size_t)glints.grid.bins.count;
+    const size_t chunk = (size_t)glints.chunk * (size_t)glints.grid.bins.count;
     float *field = allocate_array(2 * chunk, sizeof *field);
     const int32_t end = glints.grid.strips.first + glints.grid.strips.count;
-    struct span strips = {glints.grid.strips.first, glints_chunk(&glints)};
+    struct span strips = {glints.grid.strips.first, glints.chunk};
     for (; strips.first < end; strips.first += strips.count) {
         if (strips.count > end - strips.first)
             strips.count = end - strips.first;

@@ -63,10 +63,10 @@ static void print_rates(const char *name, const struct rates *rates)
 }
 
 /* Runs both versions REPEATS times, keeps the best times, and compares the tallies. */
-static int compare(struct benchmark_scene *set, struct fan_record *fan, device_kernel kernel,
-                   device_buffer objects, device_buffer tallies, device_buffer tiles,
+static int compare(struct benchmark_scene *set, struct launch *launch, device_buffer tallies,
                    size_t tally_count, size_t tile_count, int is_smooth, struct rates *rates)
 {
+    struct fan_record *fan = &launch->fan;
     struct report *report = &set->report;
     struct device *device = set->tracer.device;
     int64_t *from_device = allocate_array(tally_count, sizeof *from_device);
@@ -74,23 +74,16 @@ static int compare(struct benchmark_scene *set, struct fan_record *fan, device_k
     int64_t *native_tiles = allocate_array(tile_count, sizeof *native_tiles);
     struct object_record record;
     struct outcome_record *outcomes = allocate_array((size_t)fan->strips, sizeof *outcomes);
-    device_buffer map = NULL;
     if (!from_device || !native || !native_tiles || !outcomes ||
-        buffer_create(report, device, 0, NULL, &map) != SONJECT_OK ||
-        buffer_read(report, device, objects, 0, sizeof record, &record) != SONJECT_OK)
+        buffer_read(report, device, launch->buffers[0], 0, sizeof record, &record) != SONJECT_OK)
         benchmark_fail(report, "buffers");
-    const struct ray_table rays = {NULL, 0}; /* isovelocity water */
-    const device_buffer rough_buffers[] = {objects, map, tallies, tiles};
-    const device_buffer smooth_buffers[] = {objects, tallies};
     rates->device_s = rates->native_s = 1e9;
     const unsigned threads = benchmark_threads(device);
     for (int i = 0; i < REPEATS; i++) {
         if (buffer_clear(report, device, tallies, tally_count * sizeof(int64_t)) != SONJECT_OK)
             benchmark_fail(report, "clear");
         double start = clock_seconds();
-        if (trace_launch(&set->tracer, kernel, fan, &rays,
-                         is_smooth ? smooth_buffers : rough_buffers,
-                         is_smooth ? 2 : 4) != SONJECT_OK)
+        if (launch_run(launch, &set->tracer) != SONJECT_OK)
             benchmark_fail(report, "launch");
         double taken = clock_seconds() - start;
         rates->device_s = taken < rates->device_s ? taken : rates->device_s;
@@ -106,7 +99,6 @@ static int compare(struct benchmark_scene *set, struct fan_record *fan, device_k
         SONJECT_OK)
         benchmark_fail(report, "read");
     const int differs = memcmp(native, from_device, tally_count * sizeof *native) != 0;
-    buffer_release(&map);
     free(from_device);
     free(native);
     free(native_tiles);
@@ -126,20 +118,17 @@ int main(void)
            (unsigned)set.tracer.device->width, (unsigned)set.tracer.device->compute_units);
     if (rough_trace_begin(&rough, &set.tracer, NULL) != SONJECT_OK)
         benchmark_fail(&set.report, "rough part");
-    rough.fan.first_strip = rough.grid.strips.first;
-    rough.fan.strips = rough.grid.strips.count;
-    int differs = compare(&set, &rough.fan, rough.on_device.kernel, rough.on_device.objects,
-                          rough.on_device.tallies, rough.tile_buffer, line_grid_cells(&rough.grid),
-                          rough.tile_elements, 0, &rates);
+    rough.launch.fan.first_strip = rough.grid.strips.first;
+    rough.launch.fan.strips = rough.grid.strips.count;
+    int differs = compare(&set, &rough.launch, rough.launch.buffers[ROUGH_TALLIES],
+                          line_grid_cells(&rough.grid), rough.tile_elements, 0, &rates);
     print_rates("seabed and rough surfaces", &rates);
-    if (smooth_trace_begin(&smooth, &set.tracer, 0) != SONJECT_OK)
+    if (smooth_trace_begin(&smooth, &set.tracer, 0, NULL) != SONJECT_OK)
         benchmark_fail(&set.report, "smooth part");
-    smooth.fan.first_strip = smooth.grid.strips.first;
-    smooth.fan.strips = smooth_trace_chunk(&smooth);
-    differs |=
-        compare(&set, &smooth.fan, smooth.on_device.kernel, smooth.on_device.objects,
-                smooth.on_device.tallies, NULL,
-                2 * (size_t)smooth.fan.strips * (size_t)smooth.grid.bins.count, 0, 1, &rates);
+    smooth.launch.fan.first_strip = smooth.grid.strips.first;
+    smooth.launch.fan.strips = smooth.chunk;
+    differs |= compare(&set, &smooth.launch, smooth.launch.buffers[SMOOTH_TALLIES],
+                       2 * (size_t)smooth.chunk * (size_t)smooth.grid.bins.count, 0, 1, &rates);
     print_rates("glints", &rates);
     printf("device and native C agree in every bit: %s\n", differs ? "NO" : "yes");
     rough_trace_end(&rough);

@@ -1,7 +1,6 @@
 #include "kernel/clutter.h"
 
 #include "claims.h"
-#include "device/opencl.h"
 #include "random.h"
 
 /* Draws in turn. */
@@ -79,16 +78,4 @@ void clutter_strew(struct bench *bench, uint32_t count, double size)
         }
         EXPECT_OK(&bench->report, scene_append_object(&bench->scene, &bench->report, &object));
     }
-}
-
-void *clutter_read(struct bench *bench, device_buffer buffer)
-{
-    size_t bytes = 0;
-    assert_int_equal(clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof bytes, &bytes, NULL),
-                     CL_SUCCESS);
-    void *copy = malloc(bytes);
-    assert_non_null(copy);
-    EXPECT_OK(&bench->report,
-              buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, copy));
-    return copy;
 }

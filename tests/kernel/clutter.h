@@ -4,13 +4,10 @@
 #define SONJECT_TESTS_CLUTTER_H
 
 #include "physics/bench.h"
-#include "trace/object_tree.h"
+#include "trace/object_buffer.h"
 
 /* Fills the scene of a bench; before bench_ready. count <= 250. size: largest, m. */
 void clutter_strew(struct bench *bench, uint32_t count, double size);
-
-/* A device's buffer; to be freed. */
-void *clutter_read(struct bench *bench, device_buffer buffer);
 
 enum search_question {
     SEARCH_NEAREST,  /* find_nearest_hit: distance, object */

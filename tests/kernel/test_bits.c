@@ -227,21 +227,22 @@ static struct tallies trace_rough_on_device(struct bench *bench, const float *ma
     tallies.tile = calloc(tallies.tiles + 1, sizeof(int64_t));
     float *energy = calloc(tallies.lines, sizeof *energy);
     assert_true(tallies.line && tallies.tile && energy);
-    assert_true(rough_trace_chunk(&trace) >= count);
+    assert_true(trace.chunk >= count);
     for (int32_t done = 0; done < count; done += chunk) {
         const int32_t left = count - done;
         const struct span strips = {trace.grid.strips.first + done, left < chunk ? left : chunk};
         EXPECT_OK(&bench->report, rough_trace_strips(&trace, &bench->tracer, strips, energy));
-        EXPECT_OK(&bench->report,
-                  buffer_read(&bench->report, bench->tracer.device, trace.on_device.tallies, 0,
-                              (size_t)strips.count * bins * sizeof(int64_t),
-                              tallies.line + (size_t)done * bins));
+        EXPECT_OK(&bench->report, buffer_read(&bench->report, bench->tracer.device,
+                                              trace.launch.buffers[ROUGH_TALLIES], 0,
+                                              (size_t)strips.count * bins * sizeof(int64_t),
+                                              tallies.line + (size_t)done * bins));
         for (size_t i = 0; i < (size_t)strips.count * bins; i++)
             assert_true(energy[i] == (float)((double)tallies.line[(size_t)done * bins + i] *
                                              trace.energy_of_quantum));
     }
     if (tallies.tiles > 0)
-        assert_int_equal(buffer_read(&bench->report, bench->tracer.device, trace.tile_buffer, 0,
+        assert_int_equal(buffer_read(&bench->report, bench->tracer.device,
+                                     trace.launch.buffers[ROUGH_TILES], 0,
                                      tallies.tiles * sizeof(int64_t), tallies.tile),
                          SONJECT_OK);
     tallies.counts = bench->tracer.counts;
@@ -262,18 +263,19 @@ static struct tallies trace_rough_as_c(struct bench *bench, const float *map)
     struct rough_trace trace;
     struct tallies tallies = {0, 0, NULL, NULL, {0, 0, 0, 0}};
     begin_rough(&trace, bench, map);
-    struct object_record *objects = bench_copy_buffer(bench, trace.on_device.objects);
+    struct object_record *objects = bench_copy_buffer(bench, trace.launch.buffers[0]);
     tallies.lines = line_grid_cells(&trace.grid);
     tallies.tiles = trace.tile_elements;
     tallies.line = calloc(tallies.lines, sizeof(int64_t));
     tallies.tile = calloc(tallies.tiles + 1, sizeof(int64_t));
     assert_true(tallies.line && tallies.tile);
     rough_trace_aim(&trace, trace.grid.strips);
-    trace.fan.segments = 1;
-    for (int strip = 0; strip < trace.fan.strips; strip++)
-        count_outcome(&tallies, trace_rough_strip(&trace.fan, trace.rays.pieces, objects, map,
-                                                  tallies.line, tallies.tile, strip, 0));
-    tallies.counts.rays = (uint64_t)trace.fan.rays * (uint64_t)trace.fan.strips;
+    trace.launch.fan.segments = 1;
+    for (int strip = 0; strip < trace.launch.fan.strips; strip++)
+        count_outcome(&tallies,
+                      trace_rough_strip(&trace.launch.fan, trace.launch.rays.pieces, objects, map,
+                                        tallies.line, tallies.tile, strip, 0));
+    tallies.counts.rays = (uint64_t)trace.launch.fan.rays * (uint64_t)trace.launch.fan.strips;
     free(objects);
     rough_trace_end(&trace);
     return tallies;
@@ -283,10 +285,7 @@ static struct tallies trace_rough_as_c(struct bench *bench, const float *map)
 static void begin_smooth(struct smooth_trace *trace, struct bench *bench, uint32_t object,
                          const struct image_pair *pair)
 {
-    const sonject_status status =
-        pair ? smooth_trace_begin_mirrored(trace, &bench->tracer, object, pair)
-             : smooth_trace_begin(trace, &bench->tracer, object);
-    EXPECT_OK(&bench->report, status);
+    EXPECT_OK(&bench->report, smooth_trace_begin(trace, &bench->tracer, object, pair));
 }
 
 static struct tallies trace_smooth_on_device(struct bench *bench, uint32_t object,
@@ -298,7 +297,7 @@ static struct tallies trace_smooth_on_device(struct bench *bench, uint32_t objec
     begin_smooth(&trace, bench, object, pair);
     const size_t bins = (size_t)trace.grid.bins.count;
     const int32_t count = trace.grid.strips.count;
-    const int32_t most = smooth_trace_chunk(&trace);
+    const int32_t most = trace.chunk;
     const int32_t chunk = wanted_chunk < most ? wanted_chunk : most;
     tallies.lines = 2 * line_grid_cells(&trace.grid);
     tallies.line = calloc(tallies.lines, sizeof(int64_t));
@@ -309,10 +308,10 @@ static struct tallies trace_smooth_on_device(struct bench *bench, uint32_t objec
         const int32_t left = count - done;
         const struct span strips = {trace.grid.strips.first + done, left < chunk ? left : chunk};
         EXPECT_OK(&bench->report, smooth_trace_strips(&trace, &bench->tracer, strips, a, b));
-        EXPECT_OK(&bench->report,
-                  buffer_read(&bench->report, bench->tracer.device, trace.on_device.tallies, 0,
-                              2 * (size_t)strips.count * bins * sizeof(int64_t),
-                              tallies.line + 2 * (size_t)done * bins));
+        EXPECT_OK(&bench->report, buffer_read(&bench->report, bench->tracer.device,
+                                              trace.launch.buffers[SMOOTH_TALLIES], 0,
+                                              2 * (size_t)strips.count * bins * sizeof(int64_t),
+                                              tallies.line + 2 * (size_t)done * bins));
     }
     tallies.counts = bench->tracer.counts;
     free(a);
@@ -329,24 +328,27 @@ static struct tallies trace_smooth_as_c(struct bench *bench, uint32_t object,
     struct tallies tallies = {0, 0, NULL, NULL, {0, 0, 0, 0}};
     begin_smooth(&trace, bench, object, pair);
     assert_true(trace.grid.bins.count > 0);
-    struct object_record *objects = bench_copy_buffer(bench, trace.on_device.objects);
+    struct object_record *objects = bench_copy_buffer(bench, trace.launch.buffers[0]);
     if (pair)
-        assert_int_equal(buffer_read(&bench->report, bench->tracer.device, trace.sources, 0,
-                                     sizeof sources, &sources),
+        assert_int_equal(buffer_read(&bench->report, bench->tracer.device,
+                                     trace.launch.buffers[SMOOTH_SOURCES], 0, sizeof sources,
+                                     &sources),
                          SONJECT_OK);
     tallies.lines = 2 * line_grid_cells(&trace.grid);
     tallies.line = calloc(tallies.lines, sizeof(int64_t));
     assert_non_null(tallies.line);
-    trace.fan.first_strip = trace.grid.strips.first;
-    trace.fan.strips = trace.grid.strips.count;
-    trace.fan.segments = 1;
-    for (int strip = 0; strip < trace.fan.strips; strip++)
+    trace.launch.fan.first_strip = trace.grid.strips.first;
+    trace.launch.fan.strips = trace.grid.strips.count;
+    trace.launch.fan.segments = 1;
+    for (int strip = 0; strip < trace.launch.fan.strips; strip++)
         count_outcome(&tallies,
-                      pair ? trace_smooth_mirrored_strip(&trace.fan, trace.rays.pieces, &sources,
-                                                         objects, tallies.line, strip, 0)
-                           : trace_smooth_strip(&trace.fan, trace.rays.pieces, objects,
-                                                tallies.line, strip, 0));
-    tallies.counts.rays = (uint64_t)trace.fan.rays * trace.fan.strata * (uint64_t)trace.fan.strips;
+                      pair
+                          ? trace_smooth_mirrored_strip(&trace.launch.fan, trace.launch.rays.pieces,
+                                                        &sources, objects, tallies.line, strip, 0)
+                          : trace_smooth_strip(&trace.launch.fan, trace.launch.rays.pieces, objects,
+                                               tallies.line, strip, 0));
+    tallies.counts.rays = (uint64_t)trace.launch.fan.rays * trace.launch.fan.strata *
+                          (uint64_t)trace.launch.fan.strips;
     free(objects);
     smooth_trace_end(&trace);
     return tallies;
@@ -543,8 +545,9 @@ static int64_t *mirrored_tiles(struct bench *bench, size_t *elements)
     *elements = trace.tile_elements;
     int64_t *tiles = calloc(*elements, sizeof *tiles);
     assert_non_null(tiles);
-    assert_int_equal(buffer_read(&bench->report, bench->tracer.device, trace.tile_buffer, 0,
-                                 *elements * sizeof *tiles, tiles),
+    assert_int_equal(buffer_read(&bench->report, bench->tracer.device,
+                                 trace.launch.buffers[ROUGH_TILES], 0, *elements * sizeof *tiles,
+                                 tiles),
                      SONJECT_OK);
     rough_trace_end(&trace);
     return tiles;

@@ -127,7 +127,7 @@ static int64_t *trace_on_device(struct bench *bench, const float *map, int32_t c
         }
     }
     if (status == SONJECT_OK)
-        status = buffer_read(&bench->report, tracer->device, trace.tallies, 0,
+        status = buffer_read(&bench->report, tracer->device, trace.launch.buffers[CHAIN_TALLIES], 0,
                              *count * sizeof *tallies, tallies);
     EXPECT_OK(&bench->report, status);
     chain_trace_end(&trace);
@@ -149,10 +149,11 @@ static int64_t *trace_as_c(struct bench *bench, const float *map, struct trace_c
 {
     struct chain_trace trace;
     EXPECT_OK(&bench->report, chain_trace_begin(&trace, &bench->tracer, map));
-    struct chain_record *chains = copy_buffer(bench, trace.chains, sizeof *chains);
-    struct object_record *objects = bench_copy_buffer(bench, trace.objects);
-    struct sphere_record *spheres =
-        copy_buffer(bench, trace.spheres, (size_t)chains->spheres * sizeof *spheres);
+    struct chain_record *chains =
+        copy_buffer(bench, trace.launch.buffers[CHAIN_RECORD], sizeof *chains);
+    struct object_record *objects = bench_copy_buffer(bench, trace.launch.buffers[CHAIN_OBJECTS]);
+    struct sphere_record *spheres = copy_buffer(bench, trace.launch.buffers[CHAIN_SPHERES],
+                                                (size_t)chains->spheres * sizeof *spheres);
     int64_t *tallies = calloc(trace.planes * line_grid_cells(&trace.grid), sizeof *tallies);
     assert_non_null(tallies);
     memset(counts, 0, sizeof *counts);
@@ -165,8 +166,9 @@ static int64_t *trace_as_c(struct bench *bench, const float *map, struct trace_c
         fan.record.first_strip = fan.strips.first;
         fan.record.strips = fan.strips.count;
         for (int strip = 0; strip < fan.strips.count; strip++) {
-            const struct outcome_record outcome = trace_chains_strip(
-                &fan.record, trace.rays.pieces, chains, objects, spheres, map, tallies, strip, 0);
+            const struct outcome_record outcome =
+                trace_chains_strip(&fan.record, trace.launch.rays.pieces, chains, objects, spheres,
+                                   map, tallies, strip, 0);
             assert_int_equal(outcome.faults, 0);
             counts->rays += outcome.rays;
             counts->queries += outcome.queries;

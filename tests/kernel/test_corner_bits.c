@@ -5,7 +5,7 @@
 
 #include "device/device.h"
 #include "physics/bench.h"
-#include "trace/corners.h"
+#include "trace/glints.h"
 
 #define ROWS    64
 #define COLUMNS 160
@@ -103,15 +103,15 @@ static uint64_t add_as_c(struct bench *bench, const struct corners *corners,
     struct corner_echo_record *echoes = calloc(launch->capacity, sizeof *echoes);
     uint64_t impulses = 0;
     assert_non_null(echoes);
-    read_record(bench, launch->on_device.objects, objects,
+    read_record(bench, launch->launch.buffers[CORNER_OBJECTS], objects,
                 bench->scene.object_count * sizeof *objects);
-    launch->fan.strips = 1;
-    launch->fan.segments = 1;
+    launch->launch.fan.strips = 1;
+    launch->launch.fan.segments = 1;
     for (int32_t strip = 0; strip < corners->first_hits.count; strip++) {
         uint32_t listed = 0;
-        launch->fan.first_strip = corners->first_hits.first + strip;
+        launch->launch.fan.first_strip = corners->first_hits.first + strip;
         const struct outcome_record outcome =
-            trace_corners_strip(&launch->fan, launch->rays.pieces, &launch->sources,
+            trace_corners_strip(&launch->launch.fan, launch->launch.rays.pieces, &launch->sources,
                                 &launch->record, objects, echoes, &listed, 0, 0);
         assert_int_equal(outcome.faults, 0);
         assert_int_equal(outcome.impulses, listed);
@@ -164,13 +164,13 @@ static void compare_variant(struct bench *bench, const struct variant *variant)
     size_t pairs = 0;
     for (uint32_t part = 0; part < bench->scene.object_count; part++) {
         struct corners corners;
-        struct corner_pairs all;
-        const struct image_pair *pair;
+        struct image_pairs all;
+        struct image_pair pair;
         assert_true(corners_may_echo(&bench->tracer, part));
         corners_init(&corners, &bench->tracer, part);
-        corner_pairs_begin(&all, &bench->tracer, part);
-        for (; (pair = corner_pairs_next(&all)) != NULL; pairs++)
-            impulses += compare_pair(bench, &corners, part, pair);
+        image_pairs_begin(&all, &bench->tracer, part, true, 2);
+        for (; image_pairs_next(&all, &pair); pairs++)
+            impulses += compare_pair(bench, &corners, part, &pair);
     }
     print_message("%s: %zu pairs, %llu echoes\n", variant->name, pairs,
                   (unsigned long long)impulses);

@@ -57,8 +57,8 @@ static void cut_solid_begin(struct cut_solid *solid, const struct mesh_sample *s
     struct object_record record;
     device_buffer buffer = NULL;
     object_record_init(&record, &solid->bench.tracer, 0, origin);
-    if (object_buffer_create(&solid->bench.tracer, &record, (struct part_list){NULL, 1}, &buffer) !=
-        SONJECT_OK)
+    if (object_buffer_create(&solid->bench.tracer, &record, &(struct part_list){NULL, 1, 0},
+                             &buffer) != SONJECT_OK)
         fail_msg("%s", solid->bench.report.message);
     solid->record = bench_copy_buffer(&solid->bench, buffer);
     buffer_release(&buffer);

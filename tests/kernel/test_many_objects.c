@@ -5,7 +5,6 @@
 #include "trace_rough.h"
 #include "trace_smooth.h"
 
-#include "device/device.h"
 #include "kernel/clutter.h"
 #include "kernel/random_rays.h"
 #include "trace/fan.h"
@@ -88,15 +87,13 @@ static void searched_begin(struct searched *searched, uint32_t count)
     clutter_strew(&searched->bench, count, 0.8);
     bench_ready(&searched->bench);
     searched->count = (int)count;
-    struct object_record *records = calloc(count, sizeof *records);
-    assert_non_null(records);
+    const struct part_list all = all_parts(tracer);
+    struct object_record *records;
     patch_fan_origin(origin, &tracer->view);
-    object_records_init(records, tracer, origin);
-    if (object_buffer_create(tracer, records, (struct part_list){NULL, tracer->part_count},
-                             &buffer) != SONJECT_OK)
-        fail_msg("%s", searched->bench.report.message);
-    searched->with_tree = clutter_read(&searched->bench, buffer);
-    searched->looped = clutter_read(&searched->bench, buffer);
+    EXPECT_OK(tracer->report, object_records_create(&records, tracer, &all, origin));
+    EXPECT_OK(tracer->report, object_buffer_create(tracer, records, &all, &buffer));
+    searched->with_tree = bench_copy_buffer(&searched->bench, buffer);
+    searched->looped = bench_copy_buffer(&searched->bench, buffer);
     assert_true(searched->with_tree[0].tree_words != 0);
     searched->looped[0].tree_words = 0;
     free(records);
@@ -218,14 +215,16 @@ static void compare_rough(struct bench *bench)
     assert_true(energy && lines && tiles);
     EXPECT_OK(&bench->report,
               rough_trace_strips(&trace, &bench->tracer, trace.grid.strips, energy));
-    struct object_record *objects = clutter_read(bench, trace.on_device.objects);
-    int64_t *from_device = clutter_read(bench, trace.on_device.tallies);
-    int64_t *device_tiles = clutter_read(bench, trace.tile_buffer);
+    struct object_record *objects = bench_copy_buffer(bench, trace.launch.buffers[ROUGH_OBJECTS]);
+    int64_t *from_device = bench_copy_buffer(bench, trace.launch.buffers[ROUGH_TALLIES]);
+    int64_t *device_tiles = bench_copy_buffer(bench, trace.launch.buffers[ROUGH_TILES]);
     objects[0].tree_words = 0;
-    trace.fan.segments = 1;
-    for (int strip = 0; strip < trace.fan.strips; strip++)
+    trace.launch.fan.segments = 1;
+    for (int strip = 0; strip < trace.launch.fan.strips; strip++)
         assert_int_equal(
-            trace_rough_strip(&trace.fan, NULL, objects, NULL, lines, tiles, strip, 0).faults, 0);
+            trace_rough_strip(&trace.launch.fan, NULL, objects, NULL, lines, tiles, strip, 0)
+                .faults,
+            0);
     expect_same("seabed", from_device, lines, cells);
     expect_same("tiles", device_tiles, tiles, trace.tile_elements);
     free(energy);
@@ -242,28 +241,29 @@ static void compare_smooth(struct bench *bench, uint32_t number)
 {
     struct smooth_trace trace;
     struct tracer *tracer = &bench->tracer;
-    EXPECT_OK(&bench->report, smooth_trace_begin(&trace, tracer, number));
-    const struct span strips = {trace.grid.strips.first, smooth_trace_chunk(&trace)};
+    EXPECT_OK(&bench->report, smooth_trace_begin(&trace, tracer, number, NULL));
+    const struct span strips = {trace.grid.strips.first, trace.chunk};
     const size_t cells = (size_t)strips.count * (size_t)trace.grid.bins.count;
     float *field = calloc(2 * cells, sizeof *field);
     int64_t *lines = calloc(2 * cells, sizeof *lines);
     device_buffer buffer = NULL;
-    struct object_record *records = calloc(tracer->part_count, sizeof *records);
-    assert_true(field && lines && records);
-    object_records_init(records, tracer, tracer->placements[number].centre);
-    if (smooth_trace_strips(&trace, tracer, strips, field, field + cells) != SONJECT_OK ||
-        object_buffer_create(tracer, records, (struct part_list){NULL, tracer->part_count},
-                             &buffer) != SONJECT_OK)
-        fail_msg("%s", bench->report.message);
-    struct object_record *objects = clutter_read(bench, buffer);
-    int64_t *from_device = clutter_read(bench, trace.on_device.tallies);
-    assert_true(trace.fan.objects < (int)tracer->part_count / 2);
+    const struct part_list all = all_parts(tracer);
+    struct object_record *records;
+    assert_true(field && lines);
+    EXPECT_OK(&bench->report,
+              object_records_create(&records, tracer, &all, tracer->placements[number].centre));
+    EXPECT_OK(&bench->report, smooth_trace_strips(&trace, tracer, strips, field, field + cells));
+    EXPECT_OK(&bench->report, object_buffer_create(tracer, records, &all, &buffer));
+    struct object_record *objects = bench_copy_buffer(bench, buffer);
+    int64_t *from_device = bench_copy_buffer(bench, trace.launch.buffers[SMOOTH_TALLIES]);
+    assert_true(trace.launch.fan.objects < (int)tracer->part_count / 2);
     objects[0].tree_words = 0;
-    trace.fan.segments = 1;
-    trace.fan.objects = (int)tracer->part_count;
-    trace.fan.only_object = (int)number;
-    for (int strip = 0; strip < trace.fan.strips; strip++)
-        assert_int_equal(trace_smooth_strip(&trace.fan, NULL, objects, lines, strip, 0).faults, 0);
+    trace.launch.fan.segments = 1;
+    trace.launch.fan.objects = (int)tracer->part_count;
+    trace.launch.fan.only_object = (int)number;
+    for (int strip = 0; strip < trace.launch.fan.strips; strip++)
+        assert_int_equal(
+            trace_smooth_strip(&trace.launch.fan, NULL, objects, lines, strip, 0).faults, 0);
     for (size_t i = 0; i < 2 * cells; i++)
         if (from_device[i] != lines[i])
             fail_msg("glints of object %u: element %zu is %lld, not %lld", (unsigned)number, i,
@@ -283,9 +283,9 @@ static void compare_chains(struct bench *bench)
     struct tracer *tracer = &bench->tracer;
     EXPECT_OK(&bench->report, chain_trace_begin(&trace, tracer, NULL));
     const size_t cells = trace.planes * line_grid_cells(&trace.grid);
-    struct chain_record *chains = clutter_read(bench, trace.chains);
-    struct object_record *objects = clutter_read(bench, trace.objects);
-    struct sphere_record *spheres = clutter_read(bench, trace.spheres);
+    struct chain_record *chains = bench_copy_buffer(bench, trace.launch.buffers[CHAIN_RECORD]);
+    struct object_record *objects = bench_copy_buffer(bench, trace.launch.buffers[CHAIN_OBJECTS]);
+    struct sphere_record *spheres = bench_copy_buffer(bench, trace.launch.buffers[CHAIN_SPHERES]);
     int64_t *expected = calloc(cells, sizeof *expected);
     assert_non_null(expected);
     assert_true(chains->groups > 0);
@@ -297,14 +297,14 @@ static void compare_chains(struct bench *bench)
         const struct span strips = {fan.strips.first + fan.strips.count / 3,
                                     fan.strips.count < 24 ? fan.strips.count / 3 : 8};
         EXPECT_OK(&bench->report, chain_trace_strips(&trace, tracer, &fan, strips));
-        fan.record.segments = 1;
+        trace.launch.fan.segments = 1;
         for (int strip = 0; strip < strips.count; strip++)
-            assert_int_equal(trace_chains_strip(&fan.record, NULL, chains, objects, spheres, NULL,
-                                                expected, strip, 0)
+            assert_int_equal(trace_chains_strip(&trace.launch.fan, NULL, chains, objects, spheres,
+                                                NULL, expected, strip, 0)
                                  .faults,
                              0);
     }
-    int64_t *measured = clutter_read(bench, trace.tallies);
+    int64_t *measured = bench_copy_buffer(bench, trace.launch.buffers[CHAIN_TALLIES]);
     expect_same("chains", measured, expected, cells);
     free(measured);
     free(expected);

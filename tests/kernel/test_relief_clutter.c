@@ -86,15 +86,15 @@ static int64_t *read_tallies(struct bench *bench, device_buffer buffer, size_t c
 static void trace_glint(struct bench *bench, struct tallies *tallies)
 {
     struct smooth_trace trace;
-    EXPECT_OK(&bench->report, smooth_trace_begin(&trace, &bench->tracer, 0));
-    const struct span strips = {trace.grid.strips.first, smooth_trace_chunk(&trace)};
+    EXPECT_OK(&bench->report, smooth_trace_begin(&trace, &bench->tracer, 0, NULL));
+    const struct span strips = {trace.grid.strips.first, trace.chunk};
     const size_t cells = (size_t)strips.count * (size_t)trace.grid.bins.count;
     float *field = calloc(2 * cells, sizeof *field);
     assert_non_null(field);
     EXPECT_OK(&bench->report,
               smooth_trace_strips(&trace, &bench->tracer, strips, field, field + cells));
     tallies->glint_elements = 2 * cells;
-    tallies->glint = read_tallies(bench, trace.on_device.tallies, 2 * cells);
+    tallies->glint = read_tallies(bench, trace.launch.buffers[SMOOTH_TALLIES], 2 * cells);
     free(field);
     smooth_trace_end(&trace);
 }
@@ -115,7 +115,7 @@ static struct tallies trace_scene(uint32_t width, bool is_crowded)
     free(energy);
     assert_int_equal(trace.tiles[0].offset, 0);
     tallies.tile_elements = trace.tile_elements;
-    tallies.tiles = read_tallies(&bench, trace.tile_buffer, trace.tile_elements);
+    tallies.tiles = read_tallies(&bench, trace.launch.buffers[ROUGH_TILES], trace.tile_elements);
     const size_t cells = line_grid_cells(&trace.tiles[0].grid);
     for (size_t plane = 0; plane < TILE_PLANES; plane++) {
         tallies.sphere[plane] = 0;

@@ -238,13 +238,13 @@ static struct object_record *records_of(struct bench *bench, const sonject_objec
     /* their lowest points, on which they rest, differ by the facets' sagitta */
     bench->placements[1].centre[2] = bench->placements[0].centre[2];
     EXPECT_OK(&bench->report, rough_trace_begin(&trace, &bench->tracer, NULL));
-    assert_int_equal(
-        clGetMemObjectInfo(trace.on_device.objects, CL_MEM_SIZE, sizeof bytes, &bytes, NULL),
-        CL_SUCCESS);
+    assert_int_equal(clGetMemObjectInfo(trace.launch.buffers[ROUGH_OBJECTS], CL_MEM_SIZE,
+                                        sizeof bytes, &bytes, NULL),
+                     CL_SUCCESS);
     struct object_record *records = malloc(bytes);
     assert_non_null(records);
     EXPECT_OK(&bench->report, buffer_read(&bench->report, bench->tracer.device,
-                                          trace.on_device.objects, 0, bytes, records));
+                                          trace.launch.buffers[ROUGH_OBJECTS], 0, bytes, records));
     rough_trace_end(&trace);
     return records;
 }

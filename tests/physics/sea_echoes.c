@@ -13,7 +13,7 @@ struct line sea_line(struct sea *sea, uint32_t object)
     line.spacing_m = tracer->view.column_spacing_m / glints.grid.bins_per_pixel;
     line.first_range_m = tracer->view.first_range_m + glints.grid.bins.first * line.spacing_m;
     line.values = claim_memory(line.bins, sizeof *line.values);
-    const int32_t chunk = glints_chunk(&glints);
+    const int32_t chunk = glints.chunk;
     float *real_part = calloc((size_t)chunk * line.bins, sizeof *real_part);
     float *imaginary_part = calloc((size_t)chunk * line.bins, sizeof *imaginary_part);
     assert_true(real_part && imaginary_part);

@@ -74,15 +74,15 @@ static void each_is_what_it_is_alone(void)
 /* Plain cosine sampling: nobody is led anywhere. */
 static void make_plain(struct bench *bench, struct chain_trace *trace)
 {
-    struct chain_record *chains = bench_copy_buffer(bench, trace->chains);
+    struct chain_record *chains = bench_copy_buffer(bench, trace->launch.buffers[CHAIN_RECORD]);
     assert_true(chains->groups > 8);
     chains->spheres = 0;
     chains->groups = 0;
     chains->seabed_share = 0.0f;
-    buffer_release(&trace->chains);
-    assert_int_equal(
-        buffer_create(&bench->report, bench->tracer.device, sizeof *chains, chains, &trace->chains),
-        SONJECT_OK);
+    buffer_release(&trace->launch.buffers[CHAIN_RECORD]);
+    assert_int_equal(buffer_create(&bench->report, bench->tracer.device, sizeof *chains, chains,
+                                   &trace->launch.buffers[CHAIN_RECORD]),
+                     SONJECT_OK);
     free(chains);
 }
 

@@ -593,9 +593,9 @@ static size_t lay_rings(struct sea *sea, bool is_shared)
     }
     sea_ready(sea);
     assert_int_equal(rough_trace_begin(&trace, &sea->bench->tracer, NULL), SONJECT_OK);
-    assert_int_equal(
-        clGetMemObjectInfo(trace.on_device.objects, CL_MEM_SIZE, sizeof bytes, &bytes, NULL),
-        CL_SUCCESS);
+    assert_int_equal(clGetMemObjectInfo(trace.launch.buffers[ROUGH_OBJECTS], CL_MEM_SIZE,
+                                        sizeof bytes, &bytes, NULL),
+                     CL_SUCCESS);
     rough_trace_end(&trace);
     return bytes;
 }
@@ -635,17 +635,19 @@ static void tallies_have_the_bits_of_plain_c(void)
         sea->sonar->transducer_side_m = 0.1;
         sea_ready(sea);
         assert_int_equal(rough_trace_begin(&trace, &bench->tracer, NULL), SONJECT_OK);
-        struct object_record *objects = bench_copy_buffer(bench, trace.on_device.objects);
+        struct object_record *objects =
+            bench_copy_buffer(bench, trace.launch.buffers[ROUGH_OBJECTS]);
         const size_t lines = line_grid_cells(&trace.grid);
         float *seabed = claim_memory(lines, sizeof *seabed);
         int64_t *line = claim_memory(lines, sizeof *line);
         int64_t *tile = claim_memory(trace.tile_elements, sizeof *tile);
         assert_int_equal(rough_trace_strips(&trace, &bench->tracer, trace.grid.strips, seabed),
                          SONJECT_OK);
-        int64_t *from_device = bench_copy_buffer(bench, trace.tile_buffer);
-        trace.fan.segments = 1;
-        for (int strip = 0; strip < trace.fan.strips; strip++)
-            trace_rough_strip(&trace.fan, trace.rays.pieces, objects, NULL, line, tile, strip, 0);
+        int64_t *from_device = bench_copy_buffer(bench, trace.launch.buffers[ROUGH_TILES]);
+        trace.launch.fan.segments = 1;
+        for (int strip = 0; strip < trace.launch.fan.strips; strip++)
+            trace_rough_strip(&trace.launch.fan, trace.launch.rays.pieces, objects, NULL, line,
+                              tile, strip, 0);
         size_t filled = 0;
         for (size_t i = 0; i < trace.tile_elements; i++)
             filled += from_device[i] != 0;

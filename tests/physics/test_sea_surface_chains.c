@@ -3,7 +3,7 @@
 #include "bench.h"
 #include "reference_slab.h"
 #include "sea.h"
-#include "trace/chain_fans.h"
+#include "trace/chains.h"
 
 #define ORDERS   2 /* of two and three interactions */
 #define RANGES   10
