@@ -8,7 +8,7 @@
 #include "layout.h"
 #include "user_records.h"
 
-/* They call the snippet of a number; lib/user/user_program.c writes them. */
+/* They call the snippet of a number; lib/user/snippet.c writes them. */
 float user_distance(int snippet, float3 point, float3 direction, float nearest,
                     const float *parameters);
 float3 user_normal(int snippet, float3 point, const float *parameters);

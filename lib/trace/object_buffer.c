@@ -8,7 +8,7 @@
 #include "kernels/relief_records.h"
 #include "scene/shapes/shape.h"
 #include "trace/fan.h"
-#include "user/user_program.h"
+#include "user/snippet.h"
 
 #define MARGIN_M    1.0e-3 /* beyond the heights, so that rays cross them all between the bounds */
 #define WORD        4

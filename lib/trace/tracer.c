@@ -9,7 +9,7 @@
 #include "trace/checkpoint.h"
 #include "trace/fan.h"
 #include "trace/object_buffer.h"
-#include "user/user_program.h"
+#include "user/snippet.h"
 
 #define PI          3.14159265358979323846
 #define TALLY_BYTES ((size_t)64 << 20)

@@ -1,5 +1,5 @@
 /* Code of a shape that a user wrote in OpenCL C, a translation unit of its own: what it must be
- * before a compiler sees it. */
+ * before a compiler sees it, the kernels that it is linked to, and what compilers say about it. */
 #ifndef SONJECT_USER_SNIPPET_H
 #define SONJECT_USER_SNIPPET_H
 
@@ -7,6 +7,12 @@
 #include <stdint.h>
 
 #include "base/report.h"
+#include "device/device.h"
+#include "kernels/user_records.h"
+
+struct scene;
+struct user_shape;
+struct user_shapes;
 
 #define SNIPPET_BYTES_MAX ((size_t)64 * 1024)
 #define SNIPPET_NAME_MAX  255 /* bytes */
@@ -47,5 +53,30 @@ struct user_snippet {
 sonject_status snippet_make(struct report *report, const char *name, uint32_t first_line,
                             const char *code, struct user_snippet *snippet);
 void snippet_clear(struct user_snippet *snippet);
+
+/* Makes "name:line: what" of the first error in the log of a snippet's unit. Known are the forms
+ * "error: file:line:column: what" and "file:line:column: error: what"; else the error itself is
+ * told. The log's lines go to report's log. Returns INPUT. */
+sonject_status explain_build_log(struct report *report, const struct user_snippet *snippet,
+                                 const char *device_name, const char *log);
+
+/* What the kernels know of a shape. */
+struct user_record user_record_of(const struct user_shape *shape);
+
+/* A kernel of a program for the scene, to be given to kernel_release: the library's own programs
+ * where no shape is a user's, else with the code of all its users' shapes linked to them. variant:
+ * bits of enum program_variant. The first error of a user's code becomes the message "file:line:
+ * what"; the compiler's whole log goes to the report's log. Errors: INPUT (code that does not
+ * compile), DEVICE, MEMORY. */
+sonject_status scene_kernel_create(struct report *report, struct device *device,
+                                   const struct scene *scene, uint32_t variant,
+                                   enum device_program program, const char *name,
+                                   device_kernel *kernel);
+
+/* The same with these users' code. */
+sonject_status user_kernel_create(struct report *report, struct device *device,
+                                  const struct user_shapes *shapes, uint32_t variant,
+                                  enum device_program program, const char *name,
+                                  device_kernel *kernel);
 
 #endif

@@ -3,9 +3,7 @@
 #include "claims.h"
 #include "trace_corners.h"
 
-#include "device/device.h"
 #include "physics/bench.h"
-#include "trace/glints.h"
 
 #define ROWS    64
 #define COLUMNS 160
@@ -74,13 +72,6 @@ static void make_scene(struct bench *bench, const struct variant *variant)
     bench_ready(bench);
 }
 
-/* Reads a record that a device was given, so that both work from the same one. */
-static void read_record(struct bench *bench, device_buffer buffer, void *record, size_t bytes)
-{
-    EXPECT_OK(&bench->report,
-              buffer_read(&bench->report, bench->tracer.device, buffer, 0, bytes, record));
-}
-
 static uint64_t add_on_device(struct bench *bench, const struct corners *corners,
                               struct corner_launch *launch, int32_t wanted_chunk,
                               struct corner_sums *sums)
@@ -99,12 +90,11 @@ static uint64_t add_on_device(struct bench *bench, const struct corners *corners
 static uint64_t add_as_c(struct bench *bench, const struct corners *corners,
                          struct corner_launch *launch, struct corner_sums *sums)
 {
-    struct object_record objects[BENCH_OBJECTS];
+    struct object_record *objects =
+        bench_copy_buffer(bench, launch->launch.buffers[CORNER_OBJECTS]);
     struct corner_echo_record *echoes = calloc(launch->capacity, sizeof *echoes);
     uint64_t impulses = 0;
     assert_non_null(echoes);
-    read_record(bench, launch->launch.buffers[CORNER_OBJECTS], objects,
-                bench->scene.object_count * sizeof *objects);
     launch->launch.fan.strips = 1;
     launch->launch.fan.segments = 1;
     for (int32_t strip = 0; strip < corners->first_hits.count; strip++) {
@@ -119,6 +109,7 @@ static uint64_t add_as_c(struct bench *bench, const struct corners *corners,
         assert_true(corner_sums_add(sums, echoes, listed));
     }
     free(echoes);
+    free(objects);
     return impulses;
 }
 

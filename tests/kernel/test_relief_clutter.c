@@ -2,10 +2,8 @@
  * parts that launches know only some of them: the same bits at every width, and what is alone is
  * what it is among others that are out of its way. */
 #include "claims.h"
-#include "device/device.h"
 #include "physics/bench.h"
 #include "physics/user_codes.h"
-#include "trace/rough.h"
 
 #define ROWS    160
 #define COLUMNS 96
@@ -74,15 +72,6 @@ struct tallies {
     int64_t sphere[TILE_PLANES]; /* sums over the sphere's tile, whose size may differ */
 };
 
-static int64_t *read_tallies(struct bench *bench, device_buffer buffer, size_t count)
-{
-    int64_t *tallies = malloc(count * sizeof *tallies);
-    assert_non_null(tallies);
-    EXPECT_OK(&bench->report, buffer_read(&bench->report, bench->tracer.device, buffer, 0,
-                                          count * sizeof *tallies, tallies));
-    return tallies;
-}
-
 static void trace_glint(struct bench *bench, struct tallies *tallies)
 {
     struct smooth_trace trace;
@@ -94,7 +83,7 @@ static void trace_glint(struct bench *bench, struct tallies *tallies)
     EXPECT_OK(&bench->report,
               smooth_trace_strips(&trace, &bench->tracer, strips, field, field + cells));
     tallies->glint_elements = 2 * cells;
-    tallies->glint = read_tallies(bench, trace.launch.buffers[SMOOTH_TALLIES], 2 * cells);
+    tallies->glint = bench_copy_buffer(bench, trace.launch.buffers[SMOOTH_TALLIES]);
     free(field);
     smooth_trace_end(&trace);
 }
@@ -115,7 +104,7 @@ static struct tallies trace_scene(uint32_t width, bool is_crowded)
     free(energy);
     assert_int_equal(trace.tiles[0].offset, 0);
     tallies.tile_elements = trace.tile_elements;
-    tallies.tiles = read_tallies(&bench, trace.launch.buffers[ROUGH_TILES], trace.tile_elements);
+    tallies.tiles = bench_copy_buffer(&bench, trace.launch.buffers[ROUGH_TILES]);
     const size_t cells = line_grid_cells(&trace.tiles[0].grid);
     for (size_t plane = 0; plane < TILE_PLANES; plane++) {
         tallies.sphere[plane] = 0;

@@ -6,8 +6,7 @@
 #include "bench.h"
 #include "sea.h"
 #include "user/shape_check.h"
-#include "user/shape_trial.h"
-#include "user/user_program.h"
+#include "user/snippet.h"
 #include "user_codes.h"
 
 #define ROWS    121

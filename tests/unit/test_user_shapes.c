@@ -6,7 +6,7 @@
 #include "claims.h"
 #include "inject/scene_hash.h"
 #include "scene_folder.h"
-#include "user/user_program.h"
+#include "user/snippet.h"
 
 #define DISTANCE "float shape_distance(float3 p, float3 d, float t, const float *a) { return t; }\n"
 #define NORMAL   "float3 shape_normal(float3 p, const float *a) { return p; }\n"
