@@ -45,26 +45,67 @@ typedef struct sonject_patch_params {
  * on failure NULL. Errors: ARGUMENT, MEMORY. */
 SONJECT_API sonject_status sonject_scene_create(sonject_context *context, sonject_scene **scene);
 
-/* Reads a scene file. path: YAML file. overrides: count strings "key.path=value" that replace or
- * add keys, such as "input.path=swath.tif" or "objects[0].heading=30 deg". Relative file names are
- * resolved against the scene file's folder, those of overrides against the working directory.
- * Message on failure: file:line:column, the key, what is wrong. On failure *scene is NULL.
- * Errors: ARGUMENT, INPUT, STORAGE, UNSUPPORTED (a mesh's format), MEMORY. */
-SONJECT_API sonject_status sonject_scene_read(sonject_context *context, const char *path,
-                                              const char *const *overrides, size_t count,
-                                              sonject_scene **scene);
-
-/* What a scene file may do. */
+/* How a scene is read. All 0: the file as it is, without code. */
 typedef struct sonject_scene_read_params {
     uint32_t struct_size;
-    uint32_t allows_user_shapes; /* 1: take shapes that the file, or a target's file that it names,
+    uint32_t allows_user_shapes; /* 1: take shapes that the scene, or a target's file that it names,
                                     describes by code; see sonject_user_shape_params. 0: refuse
                                     them, for such a file is a program */
+    const char *text;            /* the scene instead of a file, YAML (which JSON is); copied */
+    const char *const *overrides; /* override_count strings "key.path=value" that replace or add
+                                     keys, such as "input.path=swath.tif" or
+                                     "objects[0].heading=30 deg" */
+    uint32_t override_count;
+    uint32_t reserved; /* 0 */
 } sonject_scene_read_params;
 
 SONJECT_API void sonject_scene_read_params_init(sonject_scene_read_params *params);
 
-/* sonject_scene_read with choices; that one refuses code. Errors: as there. */
+/* Reads a scene file, or params->text. path: YAML file; of a text the name in messages, NULL for
+ * "scene". Relative file names are resolved against path's folder, those of overrides against the
+ * working directory. params may be NULL (all 0). A text may leave out where the image comes from,
+ * for sonject_inject. Message on failure: file:line:column, the key, what is wrong. On success
+ * *scene is the caller's, for sonject_scene_release; on failure NULL. Errors: ARGUMENT, INPUT,
+ * STORAGE, UNSUPPORTED (a mesh's format), MEMORY. */
+SONJECT_API sonject_status sonject_scene_read(sonject_context *context, const char *path,
+                                              const sonject_scene_read_params *params,
+                                              sonject_scene **scene);
+
+/* Sets a key of the scene, one of tools/scenes/KEYS.md: key "sonar.altitude", value "10 m". A value
+ * that begins with { [ " or ' is YAML (which JSON is): whole sections, lists and texts, such as
+ * "objects[0]", "{shape: sphere, diameter: 1 m}", which replace what was there; the index behind a
+ * list's last adds an entry. A number keeps all its digits ("%.17g"). Both are copied. Unknown keys
+ * and what is no value are refused at once; values are checked by the first call that uses the
+ * scene, with the same messages as a file's ("set sonar.altitude: what"). Relative file names are
+ * resolved then, against the working directory. On failure the scene is unchanged. Errors:
+ * ARGUMENT, INPUT, MEMORY. */
+SONJECT_API sonject_status sonject_scene_set(sonject_scene *scene, const char *key,
+                                             const char *value);
+
+/* Sets a key whose value is the name of a table's file to numbers in memory, copied: values has
+ * row_count rows of column_count numbers, which columns names as the file's first line would, such
+ * as "along_track_m, sway_m". Keys: sonar.pulse.file, sonar.measured_response, sonar.motion.file,
+ * sonar.motion.yaw.file, medium.profile.file; and seabed.relief[N].heights.file, whose numbers are
+ * those of an image's pixels, columns NULL. Keys beside it, such as sonar.pulse.kind, are set by
+ * themselves. On failure the scene is unchanged. Errors: ARGUMENT, INPUT, MEMORY. */
+SONJECT_API sonject_status sonject_scene_set_table(sonject_scene *scene, const char *key,
+                                                   const char *columns, const double *values,
+                                                   size_t row_count, size_t column_count);
+
+/* The scene as text, with all that was set in its place: one that sonject_scene_read takes. Names
+ * of files stand as they were given; a table in memory is not in it. *text is the caller's, for
+ * sonject_text_release; on failure NULL. Errors: ARGUMENT (also a campaign's scene), MEMORY. */
+SONJECT_API sonject_status sonject_scene_text(const sonject_scene *scene, char **text);
+
+/* All keys that scenes have, as a JSON list of objects: path ("objects[].heading"), meaning, kind
+ * (quantity, count, flag, word, text, file, section, list or special), unit, is_required, words
+ * (null, or an array of them), and preset, least and most in the SI unit (null where there is
+ * none). *json is the caller's, for sonject_text_release; on failure NULL. Errors: ARGUMENT,
+ * MEMORY.
+ */
+SONJECT_API sonject_status sonject_keys(sonject_context *context, char **json);
+
+/* sonject_scene_read with overrides apart. Errors: as there. */
 SONJECT_API sonject_status sonject_scene_read_with(sonject_context *context, const char *path,
                                                    const char *const *overrides, size_t count,
                                                    const sonject_scene_read_params *params,

@@ -145,6 +145,7 @@ sonject_status sonject_campaign_scene(sonject_context *context, sonject_campaign
     if (status != SONJECT_OK)
         return status;
     status = image_plan_make(campaign->report, &campaign->campaign, id, &plan);
+    (*scene)->source.takes_pixels = false;
     THEN(status, campaign_read_scene(campaign, &plan, &(*scene)->scene));
     image_plan_clear(&plan);
     if (status != SONJECT_OK)

@@ -218,9 +218,8 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
     *out = NULL;
     context_begin_call(context);
     struct report *report = &context->report;
-    if (!handle)
-        return null_argument(report, "scene");
-    const struct scene *scene = &handle->scene;
+    const struct scene *scene;
+    CHECK(scene_use(report, handle, &scene));
     struct swath swath;
     struct injection_setup setup;
     CHECK(swath_describe(report, scene, &swath));

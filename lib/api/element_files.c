@@ -187,7 +187,7 @@ static sonject_status run_elements(struct sonject_context *context, const struct
     return status;
 }
 
-sonject_status sonject_elements_run(sonject_context *context, const sonject_scene *scene,
+sonject_status sonject_elements_run(sonject_context *context, const sonject_scene *handle,
                                     const sonject_run_params *params,
                                     sonject_progress_function progress, void *user)
 {
@@ -196,8 +196,6 @@ sonject_status sonject_elements_run(sonject_context *context, const sonject_scen
     context_begin_call(context);
     context_watch(context, &progress, &user);
     struct report *report = &context->report;
-    if (!scene)
-        return null_argument(report, "scene");
     sonject_run_params taken;
     sonject_run_params_init(&taken);
     CHECK(params_take(report, &taken, sizeof taken, params,
@@ -208,9 +206,11 @@ sonject_status sonject_elements_run(sonject_context *context, const sonject_scen
         taken.checkpoint_s != 0.0)
         return report_failure(report, SONJECT_ERROR_ARGUMENT,
                               "element data have no shards or checkpoints");
+    const struct scene *scene;
     struct swath swath;
-    CHECK(swath_open(report, &scene->scene, &swath));
-    sonject_status status = run_elements(context, &scene->scene, &swath, &taken, progress, user);
+    CHECK(scene_use(report, handle, &scene));
+    CHECK(swath_open(report, scene, &swath));
+    sonject_status status = run_elements(context, scene, &swath, &taken, progress, user);
     swath_close(&swath);
     return status;
 }

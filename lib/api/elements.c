@@ -20,7 +20,7 @@ static void made_size(const struct scene *scene, struct injection_input *input)
     }
 }
 
-sonject_status sonject_elements_describe(sonject_context *context, const sonject_scene *scene,
+sonject_status sonject_elements_describe(sonject_context *context, const sonject_scene *handle,
                                          uint64_t rows, uint64_t columns,
                                          sonject_element_layout *layout)
 {
@@ -28,8 +28,8 @@ sonject_status sonject_elements_describe(sonject_context *context, const sonject
         return SONJECT_ERROR_ARGUMENT;
     context_begin_call(context);
     struct report *report = &context->report;
-    if (!scene)
-        return null_argument(report, "scene");
+    const struct scene *scene;
+    CHECK(scene_use(report, handle, &scene));
     const uint64_t limit = (uint64_t)1 << 31;
     if (rows > limit || columns > limit || rows * columns > limit)
         return report_failure(report, SONJECT_ERROR_INPUT, "a patch has at most 2^31 pixels");
@@ -38,11 +38,11 @@ sonject_status sonject_elements_describe(sonject_context *context, const sonject
     input.rows = (size_t)rows;
     input.columns = (size_t)columns;
     if (rows == 0 && columns == 0)
-        made_size(&scene->scene, &input);
+        made_size(scene, &input);
     input.is_complex = true; /* whatever the pixels are, the geometry is the same */
     sonject_element_layout made;
     memset(&made, 0, sizeof made);
-    CHECK(element_echoes_describe(report, &scene->scene, &input, &made));
+    CHECK(element_echoes_describe(report, scene, &input, &made));
     return params_give(report, layout, &made, sizeof made, sizeof made, "element layout");
 }
 
@@ -57,7 +57,7 @@ static sonject_status check_bytes(struct report *report, const sonject_element_l
                           "the series take %zu bytes, the buffer has %zu", wanted, bytes);
 }
 
-sonject_status sonject_element_series(sonject_context *context, const sonject_scene *scene,
+sonject_status sonject_element_series(sonject_context *context, const sonject_scene *handle,
                                       const sonject_pixels *pixels,
                                       sonject_progress_function progress, void *user, float *series,
                                       size_t bytes)
@@ -67,18 +67,20 @@ sonject_status sonject_element_series(sonject_context *context, const sonject_sc
     context_begin_call(context);
     context_watch(context, &progress, &user);
     struct report *report = &context->report;
-    if (!scene || !series)
-        return null_argument(report, "scene and series");
+    const struct scene *scene;
+    CHECK(scene_use(report, handle, &scene));
+    if (!series)
+        return null_argument(report, "series");
     struct injection_input input;
     float *owned = NULL;
     struct device *device = NULL;
     sonject_element_layout layout;
-    sonject_status status = find_input(report, &scene->scene, pixels, &input, &owned);
-    THEN(status, element_echoes_describe(report, &scene->scene, &input, &layout));
+    sonject_status status = find_input(report, scene, pixels, &input, &owned);
+    THEN(status, element_echoes_describe(report, scene, &input, &layout));
     THEN(status, check_bytes(report, &layout, bytes));
     THEN(status, context_device(context, &device));
-    THEN(status, element_echoes_compute(report, device, &scene->scene, &input, progress, user,
-                                        &layout, series));
+    THEN(status,
+         element_echoes_compute(report, device, scene, &input, progress, user, &layout, series));
     free(owned);
     return status;
 }

@@ -25,8 +25,9 @@ struct sonject_context {
 
 struct sonject_scene {
     struct report *report; /* the context's */
-    struct scene scene;
     struct scene_source source;
+    struct scene scene; /* what the source says, while is_read */
+    bool is_read;
 };
 
 struct sonject_result {
@@ -44,6 +45,11 @@ void context_watch(struct sonject_context *context, sonject_progress_function *p
 
 /* The context's device, opened on first use. Errors: DEVICE, MEMORY. */
 sonject_status context_device(struct sonject_context *context, struct device **device);
+
+/* What a scene's text says, read if something was set since. NULL is refused. Errors: as
+ * sonject_scene_read. */
+sonject_status scene_use(struct report *report, const sonject_scene *handle,
+                         const struct scene **scene);
 
 /* Copies a caller's parameter structure (which starts with its size) over the library's defaults in
  * `to`, so that programs built against older headers go on working: a shorter one leaves the rest

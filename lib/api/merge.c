@@ -134,6 +134,6 @@ sonject_status sonject_merge(sonject_context *context, const sonject_scene *scen
         *was_finished = 0;
     if (!scene)
         return merge_folder(context, &request, taken.allows_user_shapes != 0, was_finished);
-    request.scene = &scene->scene;
+    CHECK(scene_use(&context->report, scene, &request.scene));
     return run_scene(context, &request, was_finished);
 }

@@ -62,7 +62,7 @@ void tell_noise_floor(struct report *report, const struct scene *scene,
                     statistics->noise_floor_db);
 }
 
-sonject_status sonject_inject(sonject_context *context, const sonject_scene *scene,
+sonject_status sonject_inject(sonject_context *context, const sonject_scene *handle,
                               const sonject_pixels *pixels, sonject_progress_function progress,
                               void *user, sonject_result **result)
 {
@@ -71,11 +71,11 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *sce
     *result = NULL;
     context_begin_call(context);
     context_watch(context, &progress, &user);
-    if (!scene)
-        return null_argument(&context->report, "scene");
+    const struct scene *scene;
+    CHECK(scene_use(&context->report, handle, &scene));
     struct injection_input input;
     float *owned = NULL;
-    sonject_status status = find_input(&context->report, &scene->scene, pixels, &input, &owned);
+    sonject_status status = find_input(&context->report, scene, pixels, &input, &owned);
     struct device *device = NULL;
     THEN(status, context_device(context, &device));
     sonject_result *made = NULL;
@@ -85,15 +85,15 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *sce
     }
     if (status == SONJECT_OK) {
         made->report = &context->report;
-        status = injection_run(&context->report, device, &scene->scene, &input, progress, user,
-                               &made->result);
+        status =
+            injection_run(&context->report, device, scene, &input, progress, user, &made->result);
     }
     free(owned);
     if (status != SONJECT_OK) {
         free(made);
         return status;
     }
-    tell_noise_floor(&context->report, &scene->scene, &made->result.statistics);
+    tell_noise_floor(&context->report, scene, &made->result.statistics);
     *result = made;
     return SONJECT_OK;
 }

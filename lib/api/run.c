@@ -237,8 +237,6 @@ sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
         return SONJECT_ERROR_ARGUMENT;
     context_begin_call(context);
     context_watch(context, &progress, &user);
-    if (!scene)
-        return null_argument(&context->report, "scene");
     sonject_run_params taken;
     sonject_run_params_init(&taken);
     CHECK(params_take(&context->report, &taken, sizeof taken, params,
@@ -259,9 +257,11 @@ sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
     if (!is_time(taken.exit_after_s) || !is_time(taken.checkpoint_s))
         return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
                               "times are seconds, not below 0");
+    const struct scene *used;
+    CHECK(scene_use(&context->report, scene, &used));
     struct run_request request;
     memset(&request, 0, sizeof request);
-    request.scene = &scene->scene;
+    request.scene = used;
     request.source = &scene->source;
     request.folder = taken.folder;
     request.shard = taken.shard_index;

@@ -148,6 +148,8 @@ sonject_status sonject_scene_object_count(const sonject_scene *scene, uint32_t *
 {
     if (!scene || !count)
         return SONJECT_ERROR_ARGUMENT;
-    *count = scene->scene.object_count;
+    const struct scene *used;
+    CHECK(scene_use(scene->report, scene, &used));
+    *count = used->object_count;
     return SONJECT_OK;
 }

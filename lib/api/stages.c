@@ -97,16 +97,16 @@ sonject_status sonject_trace(sonject_context *context, const sonject_scene *scen
         return SONJECT_ERROR_ARGUMENT;
     context_begin_call(context);
     context_watch(context, &progress, &user);
-    if (!scene)
-        return null_argument(&context->report, "scene");
     sonject_trace_params taken;
+    const struct scene *used;
     struct swath swath;
     sonject_trace_params_init(&taken);
     CHECK(params_take(&context->report, &taken, sizeof taken, params,
                       offsetof(sonject_trace_params, export_file), "trace parameters"));
     if (!taken.file || !taken.file[0])
         return null_argument(&context->report, "file");
-    CHECK(swath_open(&context->report, &scene->scene, &swath));
+    CHECK(scene_use(&context->report, scene, &used));
+    CHECK(swath_open(&context->report, used, &swath));
     sonject_status status = trace_swath(context, scene, &swath, &taken, progress, user);
     swath_close(&swath);
     return status;
@@ -271,6 +271,9 @@ sonject_status sonject_form(sonject_context *context, const sonject_scene *scene
     if (taken.labels & ~LABEL_FORMATS)
         return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
                               "labels must be a sum of sonject_labels");
+    const struct scene *used;
+    if (scene)
+        CHECK(scene_use(&context->report, scene, &used));
     sonject_status status = check_overrides(&context->report, scene, &taken);
     THEN(status, impulse_file_open(&context->report, taken.file, &impulses));
     if (status != SONJECT_OK)

@@ -223,6 +223,36 @@ sonject_status number_table_read(struct report *report, const char *path,
     return status;
 }
 
+sonject_status number_table_take(struct report *report, const struct number_array *array,
+                                 const struct table_format *format, struct number_table *table)
+{
+    struct table_reader reader = {report, table, ' ', 0, {0}};
+    char *names = copy_text(array->columns);
+    memset(table, 0, sizeof *table);
+    table->format = format;
+    text_excerpt(table->file, sizeof table->file, array->name);
+    table->lines = allocate_array(format->samples_max, sizeof *table->lines);
+    sonject_status status =
+        names && table->lines ? SONJECT_OK : report_out_of_memory(report, "a table");
+    THEN(status, take_names(&reader, trim(names)));
+    if (status == SONJECT_OK && reader.column_count != array->column_count)
+        status = refuse_line(&reader, "", "as many names as columns are needed");
+    else if (status == SONJECT_OK && array->rows > format->samples_max)
+        status = refuse_line(&reader, "", "too many samples; thin them out");
+    for (size_t row = 0; status == SONJECT_OK && row < array->rows; row++) {
+        const double *values = array->values + row * array->column_count;
+        for (int i = 0; i < TABLE_COLUMNS_MAX; i++)
+            if (table->values[i])
+                table->values[i][row] = values[reader.place[i]];
+        table->lines[row] = table->last_line = row + 1;
+        table->count = row + 1;
+    }
+    free(names);
+    if (status != SONJECT_OK)
+        number_table_clear(table);
+    return status;
+}
+
 sonject_status number_table_refuse(const struct number_table *table, struct report *report,
                                    size_t sample, size_t column, const char *what)
 {

@@ -17,6 +17,16 @@ struct table_format {
     size_t samples_max, bytes_max;
 };
 
+#define ARRAY_VALUES_MAX ((size_t)1 << 24)
+
+/* Numbers in memory, in place of a file. */
+struct number_array {
+    char *name;     /* for messages */
+    char *columns;  /* names of its columns, separated as in a file's first line; NULL: none */
+    double *values; /* rows x column_count */
+    size_t rows, column_count;
+};
+
 /* Samples in the order in which they were written. */
 struct number_table {
     const struct table_format *format; /* borrowed */
@@ -33,6 +43,10 @@ struct number_table {
  * the caller's for number_table_clear. Message: "file:line: column: what". Errors: STORAGE, INPUT,
  * MEMORY. */
 sonject_status number_table_read(struct report *report, const char *path,
+                                 const struct table_format *format, struct number_table *table);
+
+/* The same of an array, whose rows are the samples, counted from 1 in messages. */
+sonject_status number_table_take(struct report *report, const struct number_array *array,
                                  const struct table_format *format, struct number_table *table);
 
 /* The message about a sample's value; sample: count for the table as a whole. Returns INPUT. */

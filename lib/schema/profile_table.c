@@ -7,7 +7,6 @@
 
 #include "base/ranges.h"
 #include "medium/water.h"
-#include "schema/number_table.h"
 
 enum {
     HEIGHT,
@@ -18,28 +17,42 @@ enum {
 static const struct table_format format = {
     {"height_m", "depth_m", "sound_speed_mps", NULL}, 1, PROFILE_SAMPLES_MAX, PROFILE_BYTES_MAX};
 
+/* Takes the columns over and checks them. */
+static sonject_status take_columns(struct report *report, struct number_table *numbers,
+                                   struct profile_table *table)
+{
+    struct profile_fault fault;
+    const int position = numbers->values[DEPTH] ? DEPTH : HEIGHT;
+    sonject_status status = SONJECT_OK;
+    table->is_depth = position == DEPTH;
+    table->positions_m = numbers->values[position];
+    table->speeds_mps = numbers->values[SPEED];
+    table->count = numbers->count;
+    numbers->values[position] = NULL;
+    numbers->values[SPEED] = NULL;
+    if (!profile_table_is_good(table, &fault))
+        status = number_table_refuse(numbers, report, fault.sample,
+                                     (size_t)(fault.is_speed ? SPEED : position), fault.what);
+    number_table_clear(numbers);
+    if (status != SONJECT_OK)
+        profile_table_clear(table);
+    return status;
+}
+
 sonject_status profile_table_read(struct report *report, const char *path,
                                   struct profile_table *table)
 {
     struct number_table numbers;
-    struct profile_fault fault;
-    sonject_status status = number_table_read(report, path, &format, &numbers);
-    if (status != SONJECT_OK)
-        return status;
-    const int position = numbers.values[DEPTH] ? DEPTH : HEIGHT;
-    table->is_depth = position == DEPTH;
-    table->positions_m = numbers.values[position];
-    table->speeds_mps = numbers.values[SPEED];
-    table->count = numbers.count;
-    numbers.values[position] = NULL;
-    numbers.values[SPEED] = NULL;
-    if (!profile_table_is_good(table, &fault))
-        status = number_table_refuse(&numbers, report, fault.sample,
-                                     (size_t)(fault.is_speed ? SPEED : position), fault.what);
-    number_table_clear(&numbers);
-    if (status != SONJECT_OK)
-        profile_table_clear(table);
-    return status;
+    CHECK(number_table_read(report, path, &format, &numbers));
+    return take_columns(report, &numbers, table);
+}
+
+sonject_status profile_table_take(struct report *report, const struct number_array *array,
+                                  struct profile_table *table)
+{
+    struct number_table numbers;
+    CHECK(number_table_take(report, array, &format, &numbers));
+    return take_columns(report, &numbers, table);
 }
 
 /* What a range check says, without the value's name. */

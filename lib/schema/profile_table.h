@@ -7,6 +7,7 @@
 
 #include "base/report.h"
 #include "medium/water.h"
+#include "schema/number_table.h"
 
 #define PROFILE_SAMPLES_MAX WATER_LAYERS_MAX /* more of them give more layers */
 #define PROFILE_BYTES_MAX   (1024 * 1024)
@@ -32,6 +33,10 @@ struct profile_fault {
  * samples are checked. table: zeroed; on success the caller's for profile_table_clear. Message:
  * "file:line: column: what". Errors: STORAGE, INPUT, MEMORY. */
 sonject_status profile_table_read(struct report *report, const char *path,
+                                  struct profile_table *table);
+
+/* The same of an array. */
+sonject_status profile_table_take(struct report *report, const struct number_array *array,
                                   struct profile_table *table);
 
 /* Whether there are at least two samples, positions rise or fall all the way, and all numbers are

@@ -10,6 +10,7 @@
 static sonject_status apply_overrides(struct tree *tree, const struct scene_text *source)
 {
     sonject_status status = SONJECT_OK;
+    tree->given_overrides = source->override_count - source->call_overrides;
     for (size_t i = 0; !reading_ends(status) && i < source->override_count; i++) {
         const sonject_status of_one = tree_override(tree, source->overrides[i]);
         status = of_one == SONJECT_OK ? status : of_one;
@@ -25,7 +26,10 @@ static sonject_status fill_scene(struct tree *tree, const struct scene_text *sou
                             .scene = scene,
                             .allows_user_shapes = source->allows_user_shapes,
                             .moved_folder = source->moved_folder,
-                            .moved_overrides = source->moved_overrides};
+                            .moved_overrides = source->moved_overrides,
+                            .arrays = source->arrays,
+                            .array_count = source->array_count,
+                            .takes_pixels = source->takes_pixels};
     sonject_status status = apply_overrides(tree, source);
     if (reading_ends(status))
         return status;
@@ -98,11 +102,21 @@ sonject_status scene_file_read_with(struct report *report, const char *path,
     sonject_status status = scene_file_load(report, path, &text, &bytes);
     if (status != SONJECT_OK)
         return status;
-    const struct scene_text source = {path,  text, bytes, overrides,
-                                      count, NULL, 0,     allows_user_shapes};
+    const struct scene_text source = {.path = path,
+                                      .text = text,
+                                      .bytes = bytes,
+                                      .overrides = overrides,
+                                      .override_count = count,
+                                      .allows_user_shapes = allows_user_shapes};
     status = scene_text_read(report, &source, scene);
     free(text);
     return status;
+}
+
+sonject_status scene_text_tree(const struct scene_text *source, struct tree *tree)
+{
+    CHECK(tree_parse(tree, source->text, source->bytes));
+    return apply_overrides(tree, source);
 }
 
 sonject_status scene_text_bands(struct report *report, const struct scene_text *source,
@@ -112,8 +126,7 @@ sonject_status scene_text_bands(struct report *report, const struct scene_text *
     tree_init(&tree, report, source->path);
     struct reader reader = {.report = report, .tree = &tree};
     *names = NULL;
-    sonject_status status = tree_parse(&tree, source->text, source->bytes);
-    THEN(status, apply_overrides(&tree, source));
+    sonject_status status = scene_text_tree(source, &tree);
     THEN(status, list_bands(&reader, names));
     tree_clear(&tree);
     return status;

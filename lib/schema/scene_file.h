@@ -7,6 +7,8 @@
 
 #include "base/report.h"
 #include "scene/scene.h"
+#include "schema/number_table.h"
+#include "schema/yaml_tree.h"
 
 /* Reads path, applies count overrides "key.path=value" and fills scene, which must be initialised
  * and empty; on failure it is left empty. Contract and errors as of sonject_scene_read. */
@@ -34,9 +36,17 @@ struct scene_text {
     const char *moved_folder;
     size_t moved_overrides;
     bool allows_user_shapes;
+    size_t call_overrides; /* of the overrides, the last ones: set by calls, not with the text */
+    const struct number_array *arrays; /* in place of files that are named so */
+    size_t array_count;
+    bool takes_pixels; /* the input may be pixels that a call is given: none of path, uniform and
+                          synthetic */
 };
 sonject_status scene_text_read(struct report *report, const struct scene_text *source,
                                struct scene *scene);
+
+/* The text with its overrides as a tree, which is initialised. Errors: INPUT, MEMORY. */
+sonject_status scene_text_tree(const struct scene_text *source, struct tree *tree);
 
 /* The names of the bands that the text leaves to be chosen, in its order, one a line; for free().
  * Errors: INPUT, MEMORY. */

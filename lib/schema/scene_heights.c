@@ -71,15 +71,19 @@ static double number_at(const void *pixels, enum pixel_type type, size_t i)
                                   : (double)((const float *)pixels)[i];
 }
 
+static float height_of(const struct heights_text *text, double number)
+{
+    const double unit_m = text->positive == POSITIVE_DOWN ? -text->unit_m : text->unit_m;
+    const double height = text->offset_m + unit_m * number;
+    return (float)(fabs(height) > (double)FLT_MAX ? copysign(INFINITY, height) : height);
+}
+
 /* What is not a number stays so, and is refused with the place where it stands. */
 static void heights_of_pixels(const struct heights_text *text, const void *pixels,
                               enum pixel_type type, float *heights, size_t count)
 {
-    const double scale = text->positive == POSITIVE_DOWN ? -text->unit_m : text->unit_m;
-    for (size_t i = 0; i < count; i++) {
-        const double height = text->offset_m + scale * number_at(pixels, type, i);
-        heights[i] = (float)(fabs(height) > (double)FLT_MAX ? copysign(INFINITY, height) : height);
-    }
+    for (size_t i = 0; i < count; i++)
+        heights[i] = height_of(text, number_at(pixels, type, i));
 }
 
 static sonject_status set_heights(struct scene *scene, struct report *report,
@@ -93,6 +97,33 @@ static sonject_status set_heights(struct scene *scene, struct report *report,
                : report_failure(report, status, "%s: %s", text->path, check.message);
 }
 
+static sonject_status refuse_sides(struct report *report, const struct heights_text *text,
+                                   uint64_t rows, uint64_t columns)
+{
+    return report_failure(report, SONJECT_ERROR_INPUT,
+                          "%s: has %llu rows and %llu columns; heights need 2...%u each, at "
+                          "most 2^24 points: cut out or thin out",
+                          text->path, (unsigned long long)rows, (unsigned long long)columns,
+                          RELIEF_GRID_SIDE_MAX);
+}
+
+static sonject_status take_array(struct reader *reader, struct report *report,
+                                 struct heights_text *text, const struct number_array *array)
+{
+    if (!relief_grid_fits(array->rows, array->column_count))
+        return refuse_sides(report, text, array->rows, array->column_count);
+    const size_t count = array->rows * array->column_count;
+    float *heights = allocate_array(count, sizeof *heights);
+    CHECK_MEMORY(report, heights, text->path);
+    for (size_t i = 0; i < count; i++)
+        heights[i] = height_of(text, array->values[i]);
+    text->grid.rows = (uint32_t)array->rows;
+    text->grid.columns = (uint32_t)array->column_count;
+    const sonject_status status = set_heights(reader->scene, report, text, heights);
+    free(heights);
+    return status;
+}
+
 /* Sizes that no relief may have are refused before anything is held in memory. */
 static sonject_status take_pixels(struct reader *reader, struct report *report,
                                   struct heights_text *text, struct swath_file *file)
@@ -103,11 +134,7 @@ static sonject_status take_pixels(struct reader *reader, struct report *report,
         return report_failure(report, SONJECT_ERROR_INPUT, "%s: has %lu channels; heights need one",
                               text->path, (unsigned long)layout.channels);
     if (!relief_grid_fits(layout.rows, layout.columns))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "%s: has %llu rows and %llu columns; heights need 2...%u each, at "
-                              "most 2^24 points: cut out or thin out",
-                              text->path, (unsigned long long)layout.rows,
-                              (unsigned long long)layout.columns, RELIEF_GRID_SIDE_MAX);
+        return refuse_sides(report, text, layout.rows, layout.columns);
     const struct region all = {0, 0, layout.rows, layout.columns};
     const size_t count = (size_t)(layout.rows * layout.columns);
     void *pixels = allocate_array(count, pixel_bytes(layout.type));
@@ -131,9 +158,11 @@ static sonject_status load(struct reader *reader, const struct tree_node *node,
 {
     struct report report = {{0}, NULL, reader->report->host};
     struct swath_file *file;
-    sonject_status status =
-        swath_file_open_array(&report, text->path, SONJECT_CHANNEL_ONLY, text->array, &file);
-    if (status == SONJECT_OK) {
+    const struct number_array *array = find_array(reader, text->path);
+    sonject_status status = array ? take_array(reader, &report, text, array)
+                                  : swath_file_open_array(&report, text->path, SONJECT_CHANNEL_ONLY,
+                                                          text->array, &file);
+    if (status == SONJECT_OK && !array) {
         status = take_pixels(reader, &report, text, file);
         swath_file_close(&file);
     }

@@ -120,7 +120,9 @@ static sonject_status table_of_file(struct reader *reader, const struct tree_nod
     if (is_given(node, "sound_speeds"))
         return refuse_key(reader, node, "sound_speeds",
                           "the file tells them; remove one of the two");
-    return profile_table_read(reader->report, text->profile_file, table);
+    const struct number_array *array = find_array(reader, text->profile_file);
+    return array ? profile_table_take(reader->report, array, table)
+                 : profile_table_read(reader->report, text->profile_file, table);
 }
 
 static sonject_status layers_of_table(struct reader *reader, const struct tree_node *node,

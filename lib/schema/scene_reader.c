@@ -165,9 +165,21 @@ sonject_status read_path(struct reader *reader, const struct tree_node *node, ch
     return *path ? SONJECT_OK : report_out_of_memory(reader->report, "a file name");
 }
 
+const struct number_array *find_array(const struct reader *reader, const char *path)
+{
+    for (size_t i = 0; i < reader->array_count; i++)
+        if (strcmp(reader->arrays[i].name, path) == 0)
+            return &reader->arrays[i];
+    return NULL;
+}
+
 sonject_status read_existing_path(struct reader *reader, const struct tree_node *node, char **path)
 {
     char excerpt[400];
+    if (node->kind == TREE_TEXT && node->text && find_array(reader, node->text)) {
+        *path = copy_text(node->text);
+        return *path ? SONJECT_OK : report_out_of_memory(reader->report, "a file name");
+    }
     const sonject_status status = read_path(reader, node, path);
     if (status != SONJECT_OK || file_exists(*path))
         return status;

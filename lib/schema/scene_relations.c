@@ -2,8 +2,8 @@
  * of their own. */
 #include <string.h>
 
-#include "schema/scene_schema.h"
 #include "scene/element_plan.h"
+#include "schema/scene_schema.h"
 
 #define RIGHT_ANGLE 1.5707963267948966
 
@@ -74,7 +74,8 @@ sonject_status finish_scene(struct reader *reader, const struct tree_node *node,
     const bool is_complex = scene->input_kind == SONJECT_INPUT_SYNTHETIC
                                 ? scene->synthetic.complex_pixels
                                 : scene->input_is_complex;
-    if (scene->seabed.map == SONJECT_MAP_COHERENT && !is_complex)
+    if (scene->seabed.map == SONJECT_MAP_COHERENT && !is_complex &&
+        scene->input_kind != SONJECT_INPUT_MEMORY)
         refuse_relation(reader, node, "seabed.map",
                         "input.complex input.synthetic input.uniform input.path",
                         "coherent needs complex pixels; set complex: true in input if they are");
@@ -103,6 +104,10 @@ sonject_status finish_input(struct reader *reader, const struct tree_node *node,
     struct scene *scene = structure;
     const bool is_file = is_given(node, "path");
     const bool is_uniform = is_given(node, "uniform");
+    if (reader->takes_pixels && count_given(node, "path uniform synthetic") == 0) {
+        scene->input_kind = SONJECT_INPUT_MEMORY;
+        return SONJECT_OK;
+    }
     if (check_one_given(reader, node, "path uniform synthetic", "path, uniform and synthetic") !=
         SONJECT_OK)
         return SONJECT_ERROR_INPUT;

@@ -15,6 +15,14 @@ enum {
     IMAGINARY_PART
 };
 
+static sonject_status read_table(const struct reader *reader, const char *path,
+                                 const struct table_format *format, struct number_table *table)
+{
+    const struct number_array *array = find_array(reader, path);
+    return array ? number_table_take(reader->report, array, format, table)
+                 : number_table_read(reader->report, path, format, table);
+}
+
 /* Samples of a response, checked, into the scene. */
 static sonject_status take_response(struct reader *reader, struct number_table *table,
                                     struct response_table *response)
@@ -35,7 +43,7 @@ static sonject_status read_response_file(struct reader *reader, const char *path
                                          struct response_table *response)
 {
     struct number_table table;
-    sonject_status status = number_table_read(reader->report, path, format, &table);
+    sonject_status status = read_table(reader, path, format, &table);
     if (status != SONJECT_OK)
         return status;
     status = take_response(reader, &table, response);
@@ -187,7 +195,7 @@ static sonject_status read_motion_table(struct reader *reader, const struct tree
     size_t sample;
     const char *what;
     sonject_status status = read_existing_path(reader, node, &path);
-    THEN(status, number_table_read(reader->report, path, format, &table));
+    THEN(status, read_table(reader, path, format, &table));
     free(path);
     if (status != SONJECT_OK)
         return status;

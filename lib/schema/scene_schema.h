@@ -9,6 +9,7 @@
 
 #include "base/units.h"
 #include "scene/scene.h"
+#include "schema/number_table.h"
 #include "schema/yaml_tree.h"
 
 #define FIELD_WORDS_MAX 15
@@ -71,6 +72,9 @@ struct reader {
     bool takes_altitude;
     const char *moved_folder; /* as in struct scene_text */
     size_t moved_overrides;
+    const struct number_array *arrays; /* in place of files */
+    size_t array_count;
+    bool takes_pixels;    /* the input may be pixels that a call is given */
     struct key_path path; /* of the section or key that is read */
 };
 
@@ -115,7 +119,10 @@ const char *read_text(struct reader *reader, const struct tree_node *node);
  * override from where the user is. On success *path is the caller's, for free(). */
 sonject_status read_path(struct reader *reader, const struct tree_node *node, char **path);
 
-/* The same for a file that must be there. */
+/* The array that stands for a file; NULL: it is a file. */
+const struct number_array *find_array(const struct reader *reader, const char *path);
+
+/* The same for a file that must be there, or an array in its place. */
 sonject_status read_existing_path(struct reader *reader, const struct tree_node *node, char **path);
 
 /* Words in a message, "a, b, c". */

@@ -1,6 +1,7 @@
 #include "schema/yaml_tree.h"
 
 #include <stdarg.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,6 +14,7 @@ void tree_init(struct tree *tree, struct report *report, const char *file)
     memset(tree, 0, sizeof *tree);
     tree->report = report;
     tree->file = file;
+    tree->given_overrides = SIZE_MAX;
 }
 
 void tree_clear(struct tree *tree)
@@ -93,8 +95,11 @@ bool tree_is_null(const struct tree_node *node)
 void tree_place_text(const struct tree *tree, struct tree_place place, char text[TREE_PLACE_TEXT])
 {
     char name[240];
+    size_t number = 0; /* of the override */
+    while (number < tree->override_count && tree->override_paths[number] != place.override)
+        number++;
     if (place.override)
-        snprintf(text, TREE_PLACE_TEXT, "--set %s",
+        snprintf(text, TREE_PLACE_TEXT, "%s %s", number < tree->given_overrides ? "--set" : "set",
                  text_excerpt(name, sizeof name, place.override));
     else
         snprintf(text, TREE_PLACE_TEXT, "%s:%zu:%zu", text_excerpt(name, sizeof name, tree->file),

@@ -57,6 +57,7 @@ struct tree {
     size_t node_count;
     char **override_paths;
     size_t override_count;
+    size_t given_overrides; /* the first so many come with the text, the others from calls */
 };
 
 /* The path of a key, such as "objects[0].heading", as it is built on the way down. */
@@ -93,7 +94,7 @@ bool tree_is_null(const struct tree_node *node);
 
 void tree_node_clear(struct tree_node *node);
 
-/* "file:line:column" or "--set path". */
+/* "file:line:column", "--set path", or "set path" where a call has set it. */
 void tree_place_text(const struct tree *tree, struct tree_place place, char text[TREE_PLACE_TEXT]);
 
 /* The message "file:line:column: path: ..." or "--set path: ...", to the tree's mistakes or, where

@@ -205,7 +205,7 @@ sonject_status sums_writer_publish(struct sums_writer *writer, const struct sums
     sonject_status status = path ? SONJECT_OK : report_out_of_memory(writer->report, "a file name");
     THEN(status, begin_block(writer));
     THEN(status, add(writer, &counted, sizeof counted));
-    if (status == SONJECT_OK && source && source->text)
+    if (status == SONJECT_OK && source && source->text && source->array_count == 0)
         status = add_source(writer, source);
     THEN(status, end_block(writer, BLOCK_HEAD));
     THEN(status, publish_part(writer, path));

@@ -21,6 +21,7 @@
 
 #include "base/hash.h"
 #include "base/report.h"
+#include "schema/scene_source.h"
 
 #define SUMS_DIGEST_CAPACITY 40
 
@@ -44,14 +45,8 @@ struct sums_head {
     uint64_t rays, queries, impulses;
 };
 
-/* The file that a scene was read from, as it was then; owned. */
-struct scene_source {
-    char *path, *text; /* NULL: it was not read from a file */
-    char **overrides;
-    size_t override_count;
-};
-
-/* The same as a file of sums keeps it, lying in that; all NULL: it came from no file. */
+/* What a scene was read from as a file of sums keeps it, lying in that; all NULL: it had no text, or
+ * arrays beside it. */
 struct kept_scene {
     const char *path, *folder, *text;
     const char **overrides;

@@ -78,7 +78,7 @@ SIZES = {
     "sonject_part_params": 56,
     "sonject_mesh_params": 40,
     "sonject_user_shape_params": 192,
-    "sonject_scene_read_params": 8,
+    "sonject_scene_read_params": 32,
     "sonject_geometry_params": 40,
     "sonject_transfer_params": 32,
     "sonject_synthetic_params": 88,

@@ -175,7 +175,7 @@ static void work(const struct opencl *opencl, const char *folder)
     params.opencl_context = opencl->context;
     params.opencl_device = opencl->device;
     assert_int_equal(sonject_context_create(&params, &context), SONJECT_OK);
-    assert_int_equal(sonject_scene_read(context, "there is none.yaml", NULL, 0, &none),
+    assert_int_equal(sonject_scene_read(context, "there is none.yaml", NULL, &none),
                      SONJECT_ERROR_INPUT);
     sonject_scene *scene = make_scene(context);
     sonject_run_params_init(&run);

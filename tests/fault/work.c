@@ -90,7 +90,7 @@ static sonject_status begin_scene(struct work *work, sonject_context **context,
 {
     *scene = NULL;
     const sonject_status status = begin(work, context);
-    return status == SONJECT_OK ? sonject_scene_read(*context, work->scene, NULL, 0, scene)
+    return status == SONJECT_OK ? sonject_scene_read(*context, work->scene, NULL, scene)
                                 : status;
 }
 

@@ -439,7 +439,7 @@ static void a_run_may_be_ended_while_its_image_is_read(void **state)
     FILE *file = fopen(path, "w");
     assert_true(file && fputs(text, file) >= 0 && fclose(file) == 0);
     assert_int_equal(sonject_context_create(NULL, &context), SONJECT_OK);
-    EXPECT_OK(&context->report, sonject_scene_read(context, path, NULL, 0, &scene));
+    EXPECT_OK(&context->report, sonject_scene_read(context, path, NULL, &scene));
     EXPECT_OK(&context->report, sonject_check(context, scene, &told));
     sonject_text_release(&told);
     assert_int_equal(kill((pid_t)context->decoder.process, SIGSTOP), 0);

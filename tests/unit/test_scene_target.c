@@ -34,7 +34,7 @@ static sonject_scene *make_scene(sonject_context *context, struct scene_folder *
 {
     sonject_scene *scene = NULL;
     write_scene(folder, IMAGE, strlen(IMAGE));
-    assert_int_equal(sonject_scene_read(context, folder->file, NULL, 0, &scene), SONJECT_OK);
+    assert_int_equal(sonject_scene_read(context, folder->file, NULL, &scene), SONJECT_OK);
     return scene;
 }
 

@@ -55,6 +55,14 @@ class scene : public scene_content
         return description.copy();
     }
 
+    /* The scene as text, with all that was set. */
+    std::string text() const
+    {
+        detail::text text;
+        check(sonject_scene_text(handle_, text.out()));
+        return text.copy();
+    }
+
     /* Does the run on files that the parameters tell, or a shard of it; true if the folder held its
      * finished result already. */
     bool run(const sonject_run_params &params, const progress &callback = progress()) const
@@ -134,6 +142,14 @@ class scene : public scene_content
   private:
     using scene_content::check;
 };
+
+/* All keys that scenes have, as JSON; see sonject_keys. */
+inline std::string keys(const context &context)
+{
+    detail::text text;
+    context.check(sonject_keys(context.get(), text.out()));
+    return text.copy();
+}
 
 /* The bands of a scene file that are to be chosen by an override such as "band=low". */
 inline std::vector<std::string> bands(

@@ -2,6 +2,7 @@
 #ifndef SONJECT_SCENE_CONTENT_HPP
 #define SONJECT_SCENE_CONTENT_HPP
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -41,6 +42,26 @@ class scene_content
     sonject_context *context_handle() const noexcept
     {
         return context_;
+    }
+
+    /* Sets a key of the scene: "sonar.altitude", "10 m"; see sonject_scene_set. */
+    void set(const std::string &key, const std::string &value)
+    {
+        check(sonject_scene_set(handle_, key.c_str(), value.c_str()));
+    }
+    /* Numbers in place of a table's file: rows of as many columns as are named, separated by
+     * commas; of heights, without names, column_count. See sonject_scene_set_table. */
+    void set_table(const std::string &key, const std::string &columns, span<const double> values,
+                   std::size_t column_count = 0)
+    {
+        if (!columns.empty())
+            column_count =
+                1 + static_cast<std::size_t>(std::count(columns.begin(), columns.end(), ','));
+        require(column_count > 0 && values.size() % column_count == 0,
+                "a table needs whole rows of its columns");
+        check(sonject_scene_set_table(handle_, key.c_str(),
+                                      columns.empty() ? nullptr : columns.c_str(), values.data(),
+                                      values.size() / column_count, column_count));
     }
 
     void set(const sonject_sonar_params &sonar)

@@ -1,0 +1,303 @@
+#include "schema/scene_source.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/growing_text.h"
+#include "base/memory.h"
+#include "base/text.h"
+#include "schema/scene_file.h"
+#include "schema/scene_key.h"
+
+sonject_status scene_source_keep(struct scene_source *source, struct report *report,
+                                 const char *path, char *text, const char *const *overrides,
+                                 size_t count)
+{
+    source->text = text;
+    source->path = copy_text(path);
+    source->overrides = allocate_array(count, sizeof *source->overrides);
+    CHECK_MEMORY(report, text && source->path && source->overrides, "a scene");
+    for (size_t i = 0; i < count; i++) {
+        source->overrides[i] = copy_text(overrides[i]);
+        CHECK_MEMORY(report, source->overrides[i], "a scene");
+        source->override_count = source->given_count = i + 1;
+    }
+    return SONJECT_OK;
+}
+
+static void array_clear(struct number_array *array)
+{
+    free(array->name);
+    free(array->columns);
+    free(array->values);
+}
+
+void scene_source_clear(struct scene_source *source)
+{
+    for (size_t i = 0; i < source->override_count; i++)
+        free(source->overrides[i]);
+    for (size_t i = 0; i < source->array_count; i++)
+        array_clear(&source->arrays[i]);
+    tree_clear(&source->tree);
+    free(source->overrides);
+    free(source->arrays);
+    free(source->path);
+    free(source->text);
+    memset(source, 0, sizeof *source);
+}
+
+static struct scene_text whole_text(const struct scene_source *source)
+{
+    return (struct scene_text){.path = source->path,
+                               .text = source->text,
+                               .bytes = strlen(source->text),
+                               .overrides = (const char *const *)source->overrides,
+                               .override_count = source->override_count,
+                               .call_overrides = source->override_count - source->given_count,
+                               .arrays = source->arrays,
+                               .array_count = source->array_count,
+                               .allows_user_shapes = source->allows_user_shapes,
+                               .takes_pixels = source->takes_pixels};
+}
+
+sonject_status scene_source_read(const struct scene_source *source, struct report *report,
+                                 struct scene *scene)
+{
+    const struct scene_text text = whole_text(source);
+    return scene_text_read(report, &text, scene);
+}
+
+static void forget_tree(struct scene_source *source)
+{
+    tree_clear(&source->tree);
+    source->tree.file = NULL;
+}
+
+/* The tree of text and overrides, made where it is not there. */
+static sonject_status make_tree(struct scene_source *source, struct report *report)
+{
+    struct tree *tree = &source->tree;
+    const struct scene_text text = whole_text(source);
+    if (tree->file)
+        return SONJECT_OK;
+    tree_init(tree, report, source->path);
+    const sonject_status status = scene_text_tree(&text, tree);
+    if (status != SONJECT_OK)
+        forget_tree(source);
+    return status;
+}
+
+/* What lies at a path that is there. */
+static const struct tree_node *node_at(const struct tree_node *node, const char *path)
+{
+    while (*path) {
+        char key[64] = "";
+        if (*path == '[') {
+            node = &node->entries[strtoul(path + 1, NULL, 10)].value;
+            path += strcspn(path, "]") + 1;
+            continue;
+        }
+        path += *path == '.';
+        memcpy(key, path, strcspn(path, ".["));
+        path += strlen(key);
+        node = &tree_find(node, key)->value;
+    }
+    return node;
+}
+
+/* Every key of a value, below the path that it is set at. */
+static sonject_status check_keys(const struct tree *tree, const struct tree_node *node,
+                                 struct key_path *path)
+{
+    for (size_t i = 0; i < node->count; i++) {
+        const struct tree_entry *entry = &node->entries[i];
+        const struct section *section;
+        const char *near;
+        const size_t before =
+            entry->key ? key_path_add(path, entry->key) : key_path_add_index(path, i);
+        if (entry->key && !scene_key_find(&scene_section, path->text, &near, &section))
+            return tree_failure(tree, entry->place, path->text, "unknown key%s%s%s",
+                                near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+        CHECK(check_keys(tree, &entry->value, path));
+        key_path_shorten(path, before);
+    }
+    return SONJECT_OK;
+}
+
+/* Whether an override is of the key, or of one below it. */
+static bool is_below(const char *override, const char *key, size_t length)
+{
+    return strncmp(override, key, length) == 0 && strchr("=.[", override[length]);
+}
+
+/* Keeps what is set: at the place of an earlier value of the key, so that a list's entries stay in
+ * order, and without what was set below it. No later override is of a section around it, whose
+ * setting would have removed it. Takes the override over; there is room for one more. */
+static void keep_override(struct scene_source *source, char *override)
+{
+    const char *key = override;
+    const size_t length = strcspn(key, "=");
+    const size_t count = source->override_count;
+    size_t kept = 0;
+    size_t given = 0;
+    for (size_t i = 0; i < count; i++) {
+        char *old = source->overrides[i];
+        if (is_below(old, key, length)) {
+            free(old);
+            old = override;
+            override = NULL;
+        }
+        if (old)
+            source->overrides[kept++] = old;
+        if (i < source->given_count)
+            given = kept;
+    }
+    if (override)
+        source->overrides[kept++] = override;
+    source->override_count = kept;
+    source->given_count = given;
+}
+
+/* "key=value", for free(). */
+static char *join_override(const char *key, const char *value)
+{
+    const size_t key_bytes = strlen(key);
+    char *override = malloc(key_bytes + strlen(value) + 2);
+    if (!override)
+        return NULL;
+    memcpy(override, key, key_bytes);
+    override[key_bytes] = '=';
+    strcpy(override + key_bytes + 1, value);
+    return override;
+}
+
+/* That the key is one, and the value's keys are; the tree has it then. */
+static sonject_status check_override(struct scene_source *source, struct report *report,
+                                     const char *override)
+{
+    struct tree *tree = &source->tree;
+    const struct section *section;
+    const char *near;
+    CHECK(make_tree(source, report));
+    CHECK(tree_override(tree, override));
+    const char *key = tree->override_paths[tree->override_count - 1];
+    const struct tree_place place = {key, 1, 1};
+    if (!scene_key_find(&scene_section, key, &near, &section))
+        return tree_failure(tree, place, key, "there is no such key%s%s%s",
+                            near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
+    struct key_path path = {"", 0};
+    path.length = (size_t)snprintf(path.text, sizeof path.text, "%.200s", key);
+    return check_keys(tree, node_at(&tree->root, key), &path);
+}
+
+sonject_status scene_source_set(struct scene_source *source, struct report *report, const char *key,
+                                const char *value)
+{
+    char **overrides = realloc(source->overrides, (source->override_count + 1) * sizeof *overrides);
+    char *override = join_override(key, value);
+    if (overrides)
+        source->overrides = overrides;
+    sonject_status status = !overrides || !override ? report_out_of_memory(report, "a scene")
+                            : strchr(key, '=')
+                                ? report_failure(report, SONJECT_ERROR_INPUT,
+                                                 "%s: not a key; its value goes by itself", key)
+                                : check_override(source, report, override);
+    if (status == SONJECT_OK) {
+        keep_override(source, override);
+        return SONJECT_OK;
+    }
+    forget_tree(source); /* it may hold a part of the value */
+    free(override);
+    return status;
+}
+
+/* A key whose value names a table, or a grid of heights, that may be given as an array. */
+static bool takes_array(const char *key, bool *is_grid)
+{
+    static const char *const of_tables[] = {"sonar.pulse.file", "sonar.measured_response",
+                                            "sonar.motion.file", "sonar.motion.yaw.file",
+                                            "medium.profile.file"};
+    static const char of_heights[] = "].heights.file";
+    const char *index_end = strchr(key, ']');
+    *is_grid =
+        strncmp(key, "seabed.relief[", 14) == 0 && index_end && strcmp(index_end, of_heights) == 0;
+    for (size_t i = 0; i < sizeof of_tables / sizeof *of_tables; i++)
+        if (strcmp(key, of_tables[i]) == 0)
+            return true;
+    return *is_grid;
+}
+
+static bool copy_array(struct number_array *copy, const struct number_array *array)
+{
+    memset(copy, 0, sizeof *copy);
+    copy->rows = array->rows;
+    copy->column_count = array->column_count;
+    copy->columns = array->columns ? copy_text(array->columns) : NULL;
+    copy->name = malloc(strlen(array->name) + sizeof ", given as an array");
+    copy->values = allocate_array(array->rows, array->column_count * sizeof *copy->values);
+    if (!copy->name || !copy->values || (array->columns && !copy->columns)) {
+        array_clear(copy);
+        return false;
+    }
+    strcat(strcpy(copy->name, array->name), ", given as an array");
+    memcpy(copy->values, array->values, array->rows * array->column_count * sizeof *copy->values);
+    return true;
+}
+
+sonject_status scene_source_set_array(struct scene_source *source, struct report *report,
+                                      const struct number_array *array)
+{
+    bool is_grid;
+    const char *key = array->name;
+    if (!takes_array(key, &is_grid))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: takes no array; sonar.pulse.file, sonar.measured_response, "
+                              "sonar.motion.file, sonar.motion.yaw.file, medium.profile.file and "
+                              "seabed.relief[0].heights.file do",
+                              key);
+    if (is_grid != (array->columns == NULL))
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: %s", key,
+                              is_grid ? "heights have no names of columns" : "name the columns");
+    if (array->rows == 0 || array->column_count == 0 || array->rows > ARRAY_VALUES_MAX ||
+        array->column_count > ARRAY_VALUES_MAX / array->rows)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: an array has 1 to 2^24 numbers, not %zu x %zu", key, array->rows,
+                              array->column_count);
+    struct number_array copy;
+    struct number_array *arrays =
+        realloc(source->arrays, (source->array_count + 1) * sizeof *arrays);
+    if (arrays)
+        source->arrays = arrays;
+    if (!arrays || !copy_array(&copy, array))
+        return report_out_of_memory(report, "an array");
+    const sonject_status status = scene_source_set(source, report, key, copy.name);
+    size_t i = 0;
+    while (i < source->array_count && strcmp(arrays[i].name, copy.name) != 0)
+        i++;
+    if (status != SONJECT_OK) {
+        array_clear(&copy);
+    } else if (i < source->array_count) {
+        array_clear(&arrays[i]);
+        arrays[i] = copy;
+    } else {
+        arrays[source->array_count++] = copy;
+    }
+    return status;
+}
+
+sonject_status scene_source_text(struct scene_source *source, struct report *report, char **text)
+{
+    struct growing_text lines = {NULL, 0, 0, false};
+    *text = NULL;
+    CHECK(make_tree(source, report));
+    const struct tree_node *root = &source->tree.root;
+    growing_text_add(&lines, "%s", "");
+    for (size_t i = 0; i < root->count; i++) {
+        growing_text_add(&lines, "%s: ", root->entries[i].key);
+        tree_write_flow(&root->entries[i].value, &lines);
+        growing_text_add(&lines, "\n");
+    }
+    *text = growing_text_end(&lines);
+    return *text ? SONJECT_OK : report_out_of_memory(report, "the scene's text");
+}

@@ -1,0 +1,284 @@
+/* Keys that calls set: the same scene as a file that says so, and one that stays as it was where a
+ * key is refused. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <sonject/sonject.h>
+
+#include "api/handles.h"
+#include "claims.h"
+#include "inject/scene_hash.h"
+
+#define CODE                                                                                       \
+    "float shape_distance(float3 p, float3 d, float n, const float *k) {return INFINITY;}\\n"      \
+    "float3 shape_normal(float3 p, const float *k) {return p;}\\n"
+#define HEAD                                                                                       \
+    "sonject: 1\n"                                                                                 \
+    "input: {geometry: {row_spacing: 0.1, column_spacing: 0.1, first_slant_range: 40}}\n"          \
+    "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
+
+static int make_context(void **state)
+{
+    sonject_context *context = NULL;
+    const sonject_status status = sonject_context_create(NULL, &context);
+    *state = context;
+    return status != SONJECT_OK;
+}
+
+static int release_context(void **state)
+{
+    sonject_context *context = *state;
+    sonject_context_release(&context);
+    return 0;
+}
+
+static sonject_scene *read_text(sonject_context *context, const char *text)
+{
+    sonject_scene *scene = NULL;
+    sonject_scene_read_params params = {.struct_size = sizeof params, .text = text};
+    params.allows_user_shapes = 1;
+    EXPECT_OK(&context->report, sonject_scene_read(context, NULL, &params, &scene));
+    return scene;
+}
+
+static void set(sonject_context *context, sonject_scene *scene, const char *key, const char *value)
+{
+    EXPECT_OK(&context->report, sonject_scene_set(scene, key, value));
+}
+
+static const struct scene *use(sonject_context *context, const sonject_scene *scene)
+{
+    const struct scene *used = NULL;
+    EXPECT_OK(&context->report, scene_use(&context->report, scene, &used));
+    return used;
+}
+
+static void hash_of(sonject_context *context, const sonject_scene *scene,
+                    char text[HASH_TEXT_CAPACITY])
+{
+    EXPECT_OK(&context->report, scene_hash(&context->report, use(context, scene), "", text));
+}
+
+/* Releases both. */
+static void expect_same(sonject_context *context, sonject_scene *first, sonject_scene *second)
+{
+    char hashes[2][HASH_TEXT_CAPACITY];
+    hash_of(context, first, hashes[0]);
+    hash_of(context, second, hashes[1]);
+    assert_string_equal(hashes[0], hashes[1]);
+    sonject_scene_release(&first);
+    sonject_scene_release(&second);
+}
+
+static void a_scene_that_is_set_is_that_of_a_text_that_says_so(void **state)
+{
+    sonject_scene *scene = NULL;
+    EXPECT_OK(&((sonject_context *)*state)->report, sonject_scene_create(*state, &scene));
+    set(*state, scene, "input.geometry",
+        "{row_spacing: 0.1, column_spacing: 0.1, first_slant_range: 40}");
+    set(*state, scene, "sonar.frequency", "1 kHz");
+    set(*state, scene, "sonar", "{frequency: 100e3, bandwidth: 30e3, altitude: 1}");
+    set(*state, scene, "sonar.altitude", "11");
+    set(*state, scene, "sonar.altitude", "10");
+    set(*state, scene, "objects[0]", "{shape: box}");
+    set(*state, scene, "objects[0].length", "2");
+    set(*state, scene, "objects[1]", "{shape: sphere, diameter: 1}");
+    set(*state, scene, "objects[0]", "{\"shape\": \"sphere\", \"diameter\": 0.5}");
+    set(*state, scene, "objects[0].heading", "0.1 rad");
+    expect_same(*state, scene,
+                read_text(*state, HEAD "objects:\n  - {shape: sphere, diameter: 0.5, heading: 0.1 "
+                                       "rad}\n  - {shape: sphere, diameter: 1}\n"));
+}
+
+static void what_is_set_replaces_what_was_used_before(void **state)
+{
+    sonject_scene *scene = read_text(*state, HEAD);
+    assert_true(use(*state, scene)->input_kind == SONJECT_INPUT_MEMORY);
+    set(*state, scene, "sonar.altitude", "0.1000000000000000055511151231257827");
+    assert_true(use(*state, scene)->sonar.altitude_m == 0.1);
+    set(*state, scene, "sonar.aperture", "0.12345678901234568 rad");
+    assert_true(use(*state, scene)->sonar.aperture_rad == 0.12345678901234568);
+    set(*state, scene, "input.uniform", "{rows: 4, columns: 5}");
+    assert_true(use(*state, scene)->input_kind == SONJECT_INPUT_UNIFORM);
+    sonject_scene_release(&scene);
+}
+
+static void keys_that_are_none_are_refused_at_once(void **state)
+{
+    static const struct {
+        const char *key, *value, *message;
+    } cases[] = {
+        {"sonar.altitud", "3", "set sonar.altitud: there is no such key; did you mean 'altitude'?"},
+        {"altitude", "3", "set altitude: there is no such key"},
+        {"sonar", "{altitud: 3}",
+         "set sonar: sonar.altitud: unknown key; did you mean 'altitude'?"},
+        {"objects[0]", "{shape: sphere, parts: [{shap: box}]}",
+         "set objects[0]: objects[0].parts[0].shap: unknown key; did you mean 'shape'?"},
+        {"objects[3]", "{shape: sphere}",
+         "set objects[3]: objects has 1 entries, counted from 0; [1] would add one"},
+        {"objects[0", "{}", "set objects[0: not a key path; ']' is missing"},
+        {"sonar.altitude.high", "3",
+         "set sonar.altitude.high: sonar.altitude is a value in the file, not a section; give the "
+         "whole of it"},
+        {"sonar.altitude", "", "set sonar.altitude: has no value; write key.path=value"},
+        {"sonar.altitude=", "3", "sonar.altitude=: not a key; its value goes by itself"},
+        {"", "3", NULL},
+        {"objects[0]", "{shape: ", NULL},
+    };
+    sonject_context *context = *state;
+    sonject_scene *scene = read_text(context, HEAD "objects: [{shape: sphere, diameter: 1}]\n");
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        assert_int_equal(sonject_scene_set(scene, cases[i].key, cases[i].value),
+                         SONJECT_ERROR_INPUT);
+        if (cases[i].message)
+            assert_string_equal(sonject_context_message(context), cases[i].message);
+    }
+    assert_int_equal(sonject_scene_set(scene, NULL, "3"), SONJECT_ERROR_ARGUMENT);
+    set(context, scene, "objects[1]", "{shape: sphere, diameter: 2}");
+    expect_same(context, scene,
+                read_text(context, HEAD "objects: [{shape: sphere, diameter: 1}, {shape: sphere, "
+                                        "diameter: 2}]\n"));
+}
+
+static void values_are_checked_by_the_call_that_uses_the_scene(void **state)
+{
+    sonject_context *context = *state;
+    sonject_scene *scene = read_text(context, HEAD);
+    uint32_t count;
+    set(context, scene, "sonar.altitude", "-3 m");
+    set(context, scene, "surface.depth", "ten");
+    for (int uses = 0; uses < 2; uses++) {
+        assert_int_equal(sonject_scene_object_count(scene, &count), SONJECT_ERROR_INPUT);
+        assert_string_equal(sonject_context_message(context),
+                            "set sonar.altitude: must be 1e-06...1e+06 m, not -3\n"
+                            "set surface.depth: 'ten' is not a number with a unit of m, km, cm, "
+                            "mm");
+    }
+    set(context, scene, "sonar.altitude", "3 m");
+    set(context, scene, "surface.depth", "10 m");
+    assert_int_equal(sonject_scene_object_count(scene, &count), SONJECT_OK);
+    sonject_scene_release(&scene);
+}
+
+static void the_text_of_a_scene_is_the_scene(void **state)
+{
+    sonject_context *context = *state;
+    char *text = NULL;
+    sonject_scene *scene = read_text(context, HEAD);
+    set(context, scene, "objects[0]",
+        "{name: \"a \\\"b\\\"\", shape: user, user: {bounding_radius: 1, code: \"" CODE "\"}}");
+    set(context, scene, "objects[0].position", "{row: 3, column: 4}");
+    EXPECT_OK(&context->report, sonject_scene_text(scene, &text));
+    expect_same(context, scene, read_text(context, text));
+    sonject_text_release(&text);
+}
+
+static void a_table_in_memory_is_that_of_a_file(void **state)
+{
+    static const double response[] = {-0.2, 0, 0.1, -0.1, 0.5, 0.2, 0, 1, 0, 0.2, 0.1, 0};
+    static const double motion[] = {0, 1e-4, 1, 2e-4};
+    static const double profile[] = {0, 1500, 10, 1501};
+    static const struct {
+        const char *key, *columns;
+        const double *values;
+        size_t count, columns_count;
+        const char *beside, *value; /* another key that is needed */
+    } cases[] = {
+        {"sonar.pulse.file", "range_m, real, imaginary", response, 12, 3, "sonar.pulse.kind",
+         "table"},
+        {"sonar.measured_response", "along_track_m real imaginary", response, 12, 3, NULL, NULL},
+        {"sonar.motion.file", "along_track_m;sway_m", motion, 4, 2, NULL, NULL},
+        {"sonar.motion.yaw.file", "along_track_m, yaw_rad", motion, 4, 2,
+         "sonar.motion.yaw.advance", "1 m"},
+        {"medium.profile.file", "height_m, sound_speed_mps", profile, 4, 2, NULL, NULL},
+    };
+    sonject_context *context = *state;
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        char path[] = "/tmp/sonject-table-XXXXXX";
+        const int descriptor = mkstemp(path);
+        FILE *file = fdopen(descriptor, "w");
+        assert_non_null(file);
+        fprintf(file, "%s\n", cases[i].columns);
+        for (size_t j = 0; j < cases[i].count; j++)
+            fprintf(file, "%.17g%c", cases[i].values[j],
+                    (j + 1) % cases[i].columns_count ? strchr(cases[i].columns, ';')   ? ';'
+                                                       : strchr(cases[i].columns, ',') ? ','
+                                                                                       : ' '
+                                                     : '\n');
+        assert_int_equal(fclose(file), 0);
+        sonject_scene *scenes[2];
+        for (int k = 0; k < 2; k++) {
+            scenes[k] = read_text(context, HEAD);
+            if (cases[i].beside)
+                set(context, scenes[k], cases[i].beside, cases[i].value);
+        }
+        set(context, scenes[0], cases[i].key, path);
+        EXPECT_OK(&context->report,
+                  sonject_scene_set_table(scenes[1], cases[i].key, cases[i].columns,
+                                          cases[i].values, cases[i].count / cases[i].columns_count,
+                                          cases[i].columns_count));
+        expect_same(context, scenes[0], scenes[1]);
+        assert_int_equal(remove(path), 0);
+    }
+}
+
+static void heights_in_memory_are_a_relief(void **state)
+{
+    static const double heights[] = {0.1f, 0.2f, 0.3f, 0, 0, 0.25};
+    sonject_context *context = *state;
+    sonject_scene *scene = read_text(context, HEAD);
+    set(context, scene, "seabed.relief[0].heights",
+        "{unit: m, row_spacing: 2, column_spacing: 3, first_ground_range: 40}");
+    EXPECT_OK(&context->report,
+              sonject_scene_set_table(scene, "seabed.relief[0].heights.file", NULL, heights, 2, 3));
+    const struct scene *used = use(context, scene);
+    assert_int_equal(used->relief.grid.rows, 2);
+    assert_int_equal(used->relief.grid.columns, 3);
+    for (size_t i = 0; i < COUNT(heights); i++)
+        assert_true(used->relief.heights_m[i] == (float)heights[i]);
+    sonject_scene_release(&scene);
+}
+
+static void tables_that_are_none_are_refused(void **state)
+{
+    static const double values[8] = {0, 1, 2, 3, 4, 5, 6, 7};
+    static const struct {
+        const char *key, *columns, *message; /* of the call; else of the use: */
+        const char *used;
+    } cases[] = {
+        {"sonar.altitude", "a, b", "sonar.altitude: takes no array", NULL},
+        {"sonar.motion.file", NULL, "sonar.motion.file: name the columns", NULL},
+        {"seabed.relief[0].heights.file", "a, b", "heights have no names", NULL},
+        {"seabed.relief[2].heights.file", NULL, "[0] would add one", NULL},
+        {"sonar.motion.file", "along_track_m, sway", NULL, "among them along_track_m, and sway_m"},
+        {"sonar.motion.file", "along_track_m, sway_m, x", NULL, "as many names as columns"},
+        {"sonar.motion.file", "sway_m, along_track_m", NULL, NULL},
+        {"medium.profile.file", "height_m, sound_speed_mps", NULL,
+         "medium.profile.file, given as an array:1: sound_speed_mps: must be 100...10000"},
+    };
+    sonject_context *context = *state;
+    for (size_t i = 0; i < COUNT(cases); i++) {
+        sonject_scene *scene = read_text(context, HEAD);
+        uint32_t count;
+        const sonject_status status =
+            sonject_scene_set_table(scene, cases[i].key, cases[i].columns, values, 4, 2);
+        const char *expected = cases[i].message ? cases[i].message : cases[i].used;
+        assert_int_equal(status, cases[i].message ? SONJECT_ERROR_INPUT : SONJECT_OK);
+        assert_int_equal(sonject_scene_object_count(scene, &count),
+                         cases[i].used ? SONJECT_ERROR_INPUT : SONJECT_OK);
+        if (cases[i].message)
+            assert_int_equal(
+                sonject_scene_set_table(scene, cases[i].key, cases[i].columns, values, 4, 2),
+                SONJECT_ERROR_INPUT);
+        if (expected && !strstr(sonject_context_message(context), expected))
+            fail_msg("'%s' is not in '%s'", expected, sonject_context_message(context));
+        sonject_scene_release(&scene);
+    }
+}
+
+TEST_PROGRAM(make_context, release_context,
+             TEST(a_scene_that_is_set_is_that_of_a_text_that_says_so),
+             TEST(what_is_set_replaces_what_was_used_before),
+             TEST(keys_that_are_none_are_refused_at_once),
+             TEST(values_are_checked_by_the_call_that_uses_the_scene),
+             TEST(the_text_of_a_scene_is_the_scene), TEST(a_table_in_memory_is_that_of_a_file),
+             TEST(heights_in_memory_are_a_relief), TEST(tables_that_are_none_are_refused))
