@@ -1,4 +1,6 @@
 /* Campaigns as the public interface has them: read, described, made image by image. */
+#include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -54,11 +56,7 @@ sonject_status sonject_campaign_read(sonject_context *context, const char *path,
     if (params)
         CHECK(params_take(&context->report, &taken, sizeof taken, params, sizeof taken,
                           "campaign read parameters"));
-    if (!path || (count > 0 && !overrides))
-        return null_argument(&context->report, "path and overrides");
-    for (size_t i = 0; i < count; i++)
-        if (!overrides[i])
-            return null_argument(&context->report, "an override");
+    CHECK(check_overrides(&context->report, path, overrides, count));
     struct sonject_campaign *made = allocate_array(1, sizeof *made);
     CHECK_MEMORY(&context->report, made, "a campaign");
     made->report = &context->report;
@@ -167,7 +165,7 @@ sonject_status sonject_campaign_inject(sonject_context *context, sonject_campaig
         return null_argument(&context->report, "campaign");
     struct device *device;
     CHECK(campaign_check_id(campaign, id));
-    CHECK(context_device(context, &device));
+    CHECK(device_slot_open(&context->report, &context->device, &device));
     struct sonject_result *made = allocate_array(1, sizeof *made);
     CHECK_MEMORY(&context->report, made, "a result");
     memset(&image, 0, sizeof image);
@@ -182,4 +180,65 @@ sonject_status sonject_campaign_inject(sonject_context *context, sonject_campaig
     }
     campaign_image_clear(&image);
     return status;
+}
+
+void sonject_campaign_run_params_init(sonject_campaign_run_params *params)
+{
+    memset(params, 0, sizeof *params);
+    params->struct_size = sizeof *params;
+    params->shard_index = 1;
+    params->shard_count = 1;
+}
+
+static sonject_status check_run_params(const struct sonject_campaign *campaign,
+                                       sonject_campaign_run_params *params)
+{
+    if (!params->folder || !params->folder[0])
+        return null_argument(campaign->report, "folder");
+    if (params->shard_count == 0)
+        params->shard_count = 1;
+    if (params->shard_index == 0 || params->shard_index > params->shard_count)
+        return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
+                              "shard_index must be from 1 to shard_count, %u",
+                              (unsigned)params->shard_count);
+    if (params->overwrites && params->shard_count > 1)
+        return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
+                              "shards overwrite no other campaign, since they would remove each "
+                              "other's images: make image 0 alone so first (--only 0 --overwrite)");
+    if (!(params->exit_after_s >= 0.0) || !isfinite(params->exit_after_s))
+        return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
+                              "times are seconds, not below 0");
+    return params->only_one ? campaign_check_id(campaign, params->only) : SONJECT_OK;
+}
+
+sonject_status sonject_campaign_run(sonject_context *context, sonject_campaign *campaign,
+                                    const sonject_campaign_run_params *params,
+                                    sonject_progress_function progress, void *user,
+                                    int *was_finished)
+{
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    context_watch(context, &progress, &user);
+    if (!campaign)
+        return null_argument(&context->report, "campaign");
+    sonject_campaign_run_params taken;
+    sonject_campaign_run_params_init(&taken);
+    CHECK(params_take(&context->report, &taken, sizeof taken, params,
+                      offsetof(sonject_campaign_run_params, exit_after_s),
+                      "campaign run parameters"));
+    CHECK(check_run_params(campaign, &taken));
+    return campaign_run(campaign, &context->device, &taken, progress, user, was_finished);
+}
+
+sonject_status sonject_campaign_merge(sonject_context *context, const char *folder,
+                                      sonject_progress_function progress, void *user)
+{
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    context_watch(context, &progress, &user);
+    if (!folder || !folder[0])
+        return null_argument(&context->report, "folder");
+    return campaign_merge(&context->report, folder, progress, user);
 }

@@ -117,7 +117,7 @@ void sonject_context_params_init(sonject_context_params *params)
 static sonject_status copy_params(struct sonject_context *context,
                                   const sonject_context_params *params)
 {
-    sonject_context_params_init(&context->params);
+    sonject_context_params_init(&context->device.params);
     if (!params)
         return SONJECT_OK;
     sonject_context_params taken;
@@ -129,9 +129,9 @@ static sonject_status copy_params(struct sonject_context *context,
     context->report.log = taken.log;
     context->host.log_user = taken.log_user;
     context->decoder.is_in_process = taken.decodes_in_process != 0;
-    context->params = taken;
-    context->params.device_name = taken.device_name ? copy_text(taken.device_name) : NULL;
-    if (taken.device_name && !context->params.device_name)
+    context->device.params = taken;
+    context->device.params.device_name = taken.device_name ? copy_text(taken.device_name) : NULL;
+    if (taken.device_name && !context->device.params.device_name)
         return SONJECT_ERROR_MEMORY;
     return SONJECT_OK;
 }
@@ -152,7 +152,7 @@ sonject_status sonject_context_create(const sonject_context_params *params,
         sonject_context_release(&made);
         return status;
     }
-    host_context_retain(&made->report, made->params.opencl_context);
+    host_context_retain(&made->report, made->device.params.opencl_context);
     *context = made;
     return SONJECT_OK;
 }
@@ -161,10 +161,10 @@ void sonject_context_release(sonject_context **context)
 {
     if (!context || !*context)
         return;
-    device_close(&(*context)->device);
+    device_close(&(*context)->device.device);
     decoder_stop(&(*context)->decoder);
-    host_context_release((*context)->params.opencl_context);
-    free((char *)(*context)->params.device_name);
+    host_context_release((*context)->device.params.opencl_context);
+    free((char *)(*context)->device.params.device_name);
     free(*context);
     *context = NULL;
 }
@@ -172,15 +172,6 @@ void sonject_context_release(sonject_context **context)
 const char *sonject_context_message(const sonject_context *context)
 {
     return context ? context->report.message : "";
-}
-
-sonject_status context_device(struct sonject_context *context, struct device **device)
-{
-    const sonject_status status =
-        context->device ? driver_claim(&context->report)
-                        : device_open(&context->report, &context->params, &context->device);
-    *device = context->device;
-    return status;
 }
 
 sonject_status sonject_devices(sonject_context *context, sonject_device_info *devices,

@@ -19,8 +19,7 @@ struct sonject_context {
     struct report report; /* its host is the next member */
     struct report_host host;
     struct decoder decoder;
-    sonject_context_params params; /* its strings are owned */
-    struct device *device;         /* NULL until first needed */
+    struct device_slot device; /* the strings of its parameters are owned */
 };
 
 struct sonject_scene {
@@ -43,13 +42,14 @@ void context_begin_call(struct sonject_context *context);
 void context_watch(struct sonject_context *context, sonject_progress_function *progress,
                    void **user);
 
-/* The context's device, opened on first use. Errors: DEVICE, MEMORY. */
-sonject_status context_device(struct sonject_context *context, struct device **device);
-
 /* What a scene's text says, read if something was set since. NULL is refused. Errors: as
  * sonject_scene_read. */
 sonject_status scene_use(struct report *report, const sonject_scene *handle,
                          const struct scene **scene);
+
+/* That neither the path nor one of count overrides is NULL. Errors: ARGUMENT. */
+sonject_status check_overrides(struct report *report, const char *path,
+                               const char *const *overrides, size_t count);
 
 /* Copies a caller's parameter structure (which starts with its size) over the library's defaults in
  * `to`, so that programs built against older headers go on working: a shorter one leaves the rest
@@ -68,10 +68,6 @@ sonject_status params_give(struct report *report, void *to, const void *from, si
 sonject_status find_input(struct report *report, const struct scene *scene,
                           const sonject_pixels *pixels, struct injection_input *input,
                           float **owned);
-
-/* News of the noise floor, where it was estimated. */
-void tell_noise_floor(struct report *report, const struct scene *scene,
-                      const sonject_statistics *statistics);
 
 /* Packs a caller's rows; *packed is for free(), after failure as well. */
 sonject_status take_pixels(struct report *report, const sonject_pixels *pixels,

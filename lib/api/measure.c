@@ -1,18 +1,14 @@
-#include <sonject/measure.h>
-
+/* What images and contacts measure. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "api/contacts.h"
 #include "api/handles.h"
 #include "base/memory.h"
-#include "image/statistics.h"
-#include "image/raster.h"
-#include "measure/seam.h"
-#include "swath/swath_file.h"
+#include "measure/measures.h"
 
-#define NEAR 2 /* pixels around changed ones: rounding hides small changes */
+#define FIND_MOST     100
+#define FIND_CONTRAST 12.0 /* dB */
 
 void sonject_measure_params_init(sonject_measure_params *params)
 {
@@ -22,210 +18,28 @@ void sonject_measure_params_init(sonject_measure_params *params)
     sonject_transfer_params_init(&params->transfer);
 }
 
-/* Planes of rows x columns; owned. */
-struct measured {
-    size_t rows, columns;
-    float *amplitudes;
-    float *before;               /* amplitudes; NULL: not told */
-    uint8_t *influence, *labels; /* NULL: not told */
-};
-
-static void measured_clear(struct measured *measured)
+void sonject_contact_params_init(sonject_contact_params *params)
 {
-    free(measured->amplitudes);
-    free(measured->before);
-    free(measured->influence);
-    free(measured->labels);
+    memset(params, 0, sizeof *params);
+    params->struct_size = sizeof *params;
 }
 
-static void fill_seabed(const struct speckle_statistics *seabed, sonject_measurement *measurement)
+void sonject_contact_file_params_init(sonject_contact_file_params *params)
 {
-    const bool is_known = seabed->blocks > 0;
-    measurement->amplitude_contrast = is_known ? seabed->amplitude_contrast : NAN;
-    measurement->intensity_contrast = is_known ? seabed->intensity_contrast : NAN;
-    measurement->looks = is_known ? seabed->looks : NAN;
-    measurement->shape = is_known ? seabed->shape : NAN;
-    measurement->row_correlation = is_known ? seabed->along_track.correlation[1] : NAN;
-    measurement->column_correlation = is_known ? seabed->range.correlation[1] : NAN;
-    measurement->row_length_pixels = is_known ? seabed->along_track.length_pixels : NAN;
-    measurement->column_length_pixels = is_known ? seabed->range.length_pixels : NAN;
+    memset(params, 0, sizeof *params);
+    params->struct_size = sizeof *params;
+    sonject_transfer_params_init(&params->transfer);
+    params->find_most = FIND_MOST;
+    params->find_contrast_db = FIND_CONTRAST;
+    params->channel = SONJECT_CHANNEL_ONLY;
 }
 
-/* Changes the amplitudes to intensities. Errors: INPUT. */
-static sonject_status square(struct report *report, struct measured *measured)
+static sonject_status take_transfer(struct report *report, bool is_given,
+                                    sonject_transfer_params *transfer)
 {
-    for (size_t i = 0; i < measured->rows * measured->columns; i++) {
-        measured->amplitudes[i] *= measured->amplitudes[i];
-        if (!isfinite(measured->amplitudes[i]))
-            return report_failure(report, SONJECT_ERROR_INPUT,
-                                  "the pixel at row %zu, column %zu is too large to be squared: "
-                                  "scale the image down",
-                                  i / measured->columns, i % measured->columns);
-    }
-    return SONJECT_OK;
-}
-
-/* Changes the amplitudes to intensities. */
-static sonject_status measure(struct report *report, struct measured *measured,
-                              sonject_measurement *to)
-{
-    struct speckle_statistics seabed;
-    struct seam seam = {NAN, NAN, 0, 0};
-    struct seam before = {NAN, NAN, 0, 0};
-    sonject_measurement measurement;
-    memset(&measurement, 0, sizeof measurement);
-    measurement.struct_size = sizeof measurement;
-    sonject_status status = SONJECT_OK;
-    if (measured->influence)
-        status = measure_seam(report, measured->amplitudes, measured->influence, measured->labels,
-                              measured->rows, measured->columns, &seam);
-    if (status == SONJECT_OK && measured->influence && measured->before)
-        status = measure_seam(report, measured->before, measured->influence, measured->labels,
-                              measured->rows, measured->columns, &before);
-    for (size_t i = 0; i < measured->rows * measured->columns; i++)
-        if (measured->influence && measured->labels && measured->labels[i])
-            measured->influence[i] = 255;
-    THEN(status, square(report, measured));
-    THEN(status, measure_speckle(report, measured->amplitudes,
-                                 measured->influence ? measured->influence : measured->labels,
-                                 measured->rows, measured->columns, measured->columns, &seabed));
-    if (status != SONJECT_OK)
-        return status;
-    fill_seabed(&seabed, &measurement);
-    measurement.seam = seam.auc;
-    measurement.seam_error = seam.error;
-    measurement.seam_before = before.auc;
-    measurement.seam_patches = seam.patches;
-    measurement.background_patches = seam.background;
-    return params_give(report, to, &measurement, sizeof measurement, sizeof measurement,
-                       "measurement");
-}
-
-/* All of an image; *stored is for free(). */
-static sonject_status read_stored(struct report *report, const struct measured_image *image,
-                                  struct raster_layout *layout, void **stored)
-{
-    struct swath_file *file = NULL;
-    size_t bytes = 0;
-    *stored = NULL;
-    CHECK(swath_file_open_beside(report, image->path, image->other, image->channel, image->array,
-                                 &file));
-    swath_file_layout(file, layout);
-    const struct region whole = {0, 0, layout->rows, layout->columns};
-    if (layout->rows * layout->columns <= (uint64_t)1 << 31 && region_bytes(layout, &whole, &bytes))
-        *stored = allocate_array(bytes, 1);
-    sonject_status status = *stored ? swath_file_read(report, file, &whole, *stored)
-                                    : report_out_of_memory(report, image->path);
-    swath_file_close(&file);
-    return status;
-}
-
-static sonject_status read_image(struct report *report, const struct measured_image *image,
-                                 const sonject_transfer_params *transfer, struct measured *measured)
-{
-    struct raster_layout layout;
-    void *stored = NULL;
-    size_t bad = 0;
-    uint64_t clipped = 0;
-    sonject_status status = read_stored(report, image, &layout, &stored);
-    if (status != SONJECT_OK) {
-        free(stored);
-        return status;
-    }
-    measured->rows = (size_t)layout.rows;
-    measured->columns = (size_t)layout.columns;
-    const size_t count = measured->rows * measured->columns;
-    float *linear = allocate_array(count, layout.channels * sizeof *linear);
-    if (!linear)
-        status = report_out_of_memory(report, image->path);
-    else if (transfer_to_amplitude(transfer, layout.type, stored, count * layout.channels, linear,
-                                   &bad, &clipped) != SONJECT_OK)
-        status = report_failure(report, SONJECT_ERROR_INPUT,
-                                "%s: the pixel at row %zu, column %zu is not a finite number",
-                                image->path, bad / layout.channels / measured->columns,
-                                bad / layout.channels % measured->columns);
-    free(stored);
-    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
-        linear[i] =
-            layout.channels == 2 ? hypotf(linear[2 * i], linear[2 * i + 1]) : fabsf(linear[i]);
-    measured->amplitudes = linear;
-    return status;
-}
-
-static sonject_status refuse_size(struct report *report, const char *path,
-                                  const struct raster_layout *layout,
-                                  const struct measured *measured)
-{
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s has %llu x %llu pixels, the image %zu x %zu: give masks of its size",
-                          path, (unsigned long long)layout->rows,
-                          (unsigned long long)layout->columns, measured->rows, measured->columns);
-}
-
-/* path NULL: no mask. */
-static sonject_status read_mask(struct report *report, const char *path,
-                                const struct measured *measured, uint8_t **mask)
-{
-    struct raster_layout layout;
-    void *stored = NULL;
-    if (!path)
-        return SONJECT_OK;
-    const struct measured_image image = {path, NULL, SONJECT_CHANNEL_ONLY, NULL};
-    sonject_status status = read_stored(report, &image, &layout, &stored);
-    if (status == SONJECT_OK &&
-        (layout.rows != measured->rows || layout.columns != measured->columns))
-        status = refuse_size(report, path, &layout, measured);
-    if (status == SONJECT_OK) {
-        const size_t bytes = layout.channels * pixel_bytes(layout.type);
-        const size_t count = measured->rows * measured->columns;
-        *mask = allocate_array(count, 1);
-        if (!*mask)
-            status = report_out_of_memory(report, path);
-        for (size_t i = 0; *mask && i < count * bytes; i++)
-            if (((const uint8_t *)stored)[i])
-                (*mask)[i / bytes] = 255;
-    }
-    free(stored);
-    return status;
-}
-
-static void mark_near(struct measured *measured, size_t i)
-{
-    const size_t row = i / measured->columns;
-    const size_t column = i % measured->columns;
-    for (size_t r = row > NEAR ? row - NEAR : 0; r <= row + NEAR && r < measured->rows; r++)
-        for (size_t c = column > NEAR ? column - NEAR : 0;
-             c <= column + NEAR && c < measured->columns; c++)
-            measured->influence[r * measured->columns + c] = 255;
-}
-
-/* The image before, and where no mask tells it, what changed since. */
-static sonject_status read_before(struct report *report, const sonject_measure_params *params,
-                                  struct measured *measured)
-{
-    const char *path = params->before;
-    struct measured before;
-    if (!path)
-        return SONJECT_OK;
-    const struct measured_image image = {path, params->image, params->channel, params->array};
-    memset(&before, 0, sizeof before);
-    sonject_status status = read_image(report, &image, &params->transfer, &before);
-    measured->before = before.amplitudes;
-    if (status == SONJECT_OK &&
-        (before.rows != measured->rows || before.columns != measured->columns)) {
-        const struct raster_layout layout = {before.rows, before.columns, 1, PIXEL_UINT8};
-        status = refuse_size(report, path, &layout, measured);
-    }
-    if (status != SONJECT_OK || measured->influence)
-        return status;
-    const size_t count = measured->rows * measured->columns;
-    measured->influence = allocate_array(count, 1);
-    CHECK_MEMORY(report, measured->influence, path);
-    for (size_t i = 0; i < count; i++)
-        if (measured->before[i] < measured->amplitudes[i] ||
-            measured->before[i] > measured->amplitudes[i])
-            mark_near(measured, i);
-    return SONJECT_OK;
+    if (!is_given)
+        sonject_transfer_params_init(transfer);
+    return check_transfer(transfer, report, NULL);
 }
 
 sonject_status sonject_measure(sonject_context *context, const sonject_measure_params *params,
@@ -236,36 +50,14 @@ sonject_status sonject_measure(sonject_context *context, const sonject_measure_p
     context_begin_call(context);
     struct report *report = &context->report;
     sonject_measure_params taken;
-    struct measured measured;
-    memset(&measured, 0, sizeof measured);
+    sonject_measurement made;
     sonject_measure_params_init(&taken);
     CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "measure parameters"));
     if (!taken.image || !measurement)
         return null_argument(report, "image and measurement");
-    sonject_status status = SONJECT_OK;
-    if (taken.has_transfer)
-        status = check_transfer(&taken.transfer, report, NULL);
-    else
-        sonject_transfer_params_init(&taken.transfer);
-    const struct measured_image image = {taken.image, taken.before, taken.channel, taken.array};
-    THEN(status, read_image(report, &image, &taken.transfer, &measured));
-    THEN(status, read_mask(report, taken.labels, &measured, &measured.labels));
-    THEN(status, read_mask(report, taken.influence, &measured, &measured.influence));
-    THEN(status, read_before(report, &taken, &measured));
-    THEN(status, measure(report, &measured, measurement));
-    measured_clear(&measured);
-    return status;
-}
-
-static sonject_status copy_mask(struct report *report, const uint8_t *mask, size_t count,
-                                uint8_t **copy)
-{
-    if (!mask)
-        return SONJECT_OK;
-    *copy = allocate_array(count, 1);
-    CHECK_MEMORY(report, *copy, "a mask");
-    memcpy(*copy, mask, count);
-    return SONJECT_OK;
+    CHECK(take_transfer(report, taken.has_transfer != 0, &taken.transfer));
+    CHECK(measure_file(report, &taken, &made));
+    return params_give(report, measurement, &made, sizeof made, sizeof made, "measurement");
 }
 
 /* Amplitudes of a caller's pixels. */
@@ -289,29 +81,15 @@ static sonject_status take_amplitudes(struct report *report, const sonject_pixel
     return SONJECT_OK;
 }
 
-sonject_status take_intensities(struct report *report, const sonject_pixels *pixels, size_t *rows,
-                                size_t *columns, float **intensity)
+static sonject_status copy_mask(struct report *report, const uint8_t *mask, size_t count,
+                                uint8_t **copy)
 {
-    struct measured measured;
-    memset(&measured, 0, sizeof measured);
-    const sonject_status status = take_amplitudes(report, pixels, &measured);
-    *rows = measured.rows;
-    *columns = measured.columns;
-    *intensity = measured.amplitudes;
-    return status == SONJECT_OK ? square(report, &measured) : status;
-}
-
-sonject_status read_intensities(struct report *report, const struct measured_image *image,
-                                const sonject_transfer_params *transfer, size_t *rows,
-                                size_t *columns, float **intensity)
-{
-    struct measured measured;
-    memset(&measured, 0, sizeof measured);
-    const sonject_status status = read_image(report, image, transfer, &measured);
-    *rows = measured.rows;
-    *columns = measured.columns;
-    *intensity = measured.amplitudes;
-    return status == SONJECT_OK ? square(report, &measured) : status;
+    if (!mask)
+        return SONJECT_OK;
+    *copy = allocate_array(count, 1);
+    CHECK_MEMORY(report, *copy, "a mask");
+    memcpy(*copy, mask, count);
+    return SONJECT_OK;
 }
 
 sonject_status sonject_measure_pixels(sonject_context *context, const sonject_pixels *pixels,
@@ -323,6 +101,7 @@ sonject_status sonject_measure_pixels(sonject_context *context, const sonject_pi
     context_begin_call(context);
     struct report *report = &context->report;
     struct measured measured;
+    sonject_measurement made;
     memset(&measured, 0, sizeof measured);
     if (!pixels || !measurement)
         return null_argument(report, "pixels and measurement");
@@ -330,7 +109,81 @@ sonject_status sonject_measure_pixels(sonject_context *context, const sonject_pi
     const size_t count = measured.rows * measured.columns;
     THEN(status, copy_mask(report, influence, count, &measured.influence));
     THEN(status, copy_mask(report, labels, count, &measured.labels));
-    THEN(status, measure(report, &measured, measurement));
+    THEN(status, measure_amplitudes(report, &measured, &made));
+    THEN(status, params_give(report, measurement, &made, sizeof made, sizeof made, "measurement"));
     measured_clear(&measured);
     return status;
+}
+
+sonject_status sonject_measure_contact(sonject_context *context, const sonject_pixels *pixels,
+                                       const sonject_contact_params *params,
+                                       sonject_contact_measures *measures)
+{
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    context_begin_call(context);
+    struct report *report = &context->report;
+    sonject_contact_params taken;
+    sonject_contact_measures found;
+    struct measured measured;
+    memset(&measured, 0, sizeof measured);
+    CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "contact parameters"));
+    if (!pixels || !measures)
+        return null_argument(report, "pixels and measures");
+    sonject_status status = check_spacings(report, taken.row_spacing_m, taken.column_spacing_m);
+    THEN(status, take_amplitudes(report, pixels, &measured));
+    THEN(status, measured_square(report, &measured));
+    THEN(status, measure_one_contact(report, measured.amplitudes, measured.rows, measured.columns,
+                                     &taken, &found));
+    THEN(status,
+         params_give(report, measures, &found, sizeof found, sizeof found, "contact measures"));
+    measured_clear(&measured);
+    return status;
+}
+
+/* Fills in what 0 stands for. */
+static sonject_status check_contacts(struct report *report, sonject_contact_file_params *params)
+{
+    if (params->find_most == 0)
+        params->find_most = FIND_MOST;
+    if (params->find_contrast_db == 0.0)
+        params->find_contrast_db = FIND_CONTRAST;
+    if (params->box_count > BOXES_MAX || params->find_most > BOXES_MAX)
+        return report_failure(report, SONJECT_ERROR_INPUT, "at most %d contacts are measured",
+                              BOXES_MAX);
+    if (!(params->find_contrast_db >= 6.0 && params->find_contrast_db <= 100.0))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "contacts are looked for by contrasts of 6...100 dB, not %g dB",
+                              params->find_contrast_db);
+    CHECK(take_transfer(report, params->has_transfer != 0, &params->transfer));
+    return check_spacings(report, params->row_spacing_m, params->column_spacing_m);
+}
+
+sonject_status sonject_measure_contacts(sonject_context *context,
+                                        const sonject_contact_file_params *params, char **text)
+{
+    if (!context || !text)
+        return SONJECT_ERROR_ARGUMENT;
+    *text = NULL;
+    context_begin_call(context);
+    struct report *report = &context->report;
+    sonject_contact_file_params taken;
+    sonject_contact_file_params_init(&taken);
+    CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "contact parameters"));
+    if (!taken.image || (taken.box_count > 0 && !taken.boxes))
+        return null_argument(report, "image and boxes");
+    CHECK(check_contacts(report, &taken));
+    return measure_contact_file(report, &taken, text);
+}
+
+sonject_status sonject_compare_contacts(sonject_context *context, const char *first,
+                                        const char *second, const char *picture, char **text)
+{
+    if (!context || !text)
+        return SONJECT_ERROR_ARGUMENT;
+    *text = NULL;
+    context_begin_call(context);
+    if (!first || !second)
+        return null_argument(&context->report, "first and second");
+    return compare_contact_files(&context->report, first, second, picture, text);
 }

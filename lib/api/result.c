@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "base/memory.h"
+#include "dataset/run.h"
 #include "inject/injection_setup.h"
 
 sonject_status take_pixels(struct report *report, const sonject_pixels *pixels,
@@ -54,14 +55,6 @@ sonject_status find_input(struct report *report, const struct scene *scene,
     return status;
 }
 
-void tell_noise_floor(struct report *report, const struct scene *scene,
-                      const sonject_statistics *statistics)
-{
-    if (scene->injection.estimate_noise)
-        report_news(report, "noise floor estimated from the patch: %.1f dB over the mean seabed",
-                    statistics->noise_floor_db);
-}
-
 sonject_status sonject_inject(sonject_context *context, const sonject_scene *handle,
                               const sonject_pixels *pixels, sonject_progress_function progress,
                               void *user, sonject_result **result)
@@ -77,7 +70,7 @@ sonject_status sonject_inject(sonject_context *context, const sonject_scene *han
     float *owned = NULL;
     sonject_status status = find_input(&context->report, scene, pixels, &input, &owned);
     struct device *device = NULL;
-    THEN(status, context_device(context, &device));
+    THEN(status, device_slot_open(&context->report, &context->device, &device));
     sonject_result *made = NULL;
     if (status == SONJECT_OK) {
         made = allocate_array(1, sizeof *made);

@@ -1,42 +1,13 @@
-#include "api/handles.h"
-
+/* Runs on files: a scene's checks, its results, shards and stages. */
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <sonject/run.h>
+#include <sonject/elements.h>
 
-#include "api/run_scene.h"
-#include "base/clock.h"
-#include "base/file.h"
-#include "base/file_list.h"
-#include "base/json_document.h"
-#include "dataset/documents.h"
-#include "dataset/earlier_result.h"
-#include "dataset/label_files.h"
-#include "dataset/layers.h"
-#include "inject/checkpoints.h"
-#include "inject/scene_hash.h"
-#include "inject/swath.h"
-
-/* Shares of a run's progress. */
-#define TRACE_START 0.1
-#define WRITE_START 0.8
-
-/* Maps a stage's own fraction into the run's. */
-struct stage_progress {
-    sonject_progress_function progress;
-    void *user;
-    double start, share;
-};
-
-static int tell_stage(void *user, double fraction, const char *stage)
-{
-    const struct stage_progress *outer = user;
-    return outer->progress
-               ? outer->progress(outer->user, outer->start + outer->share * fraction, stage)
-               : 0;
-}
+#include "api/handles.h"
+#include "dataset/run.h"
 
 void sonject_run_params_init(sonject_run_params *params)
 {
@@ -44,184 +15,49 @@ void sonject_run_params_init(sonject_run_params *params)
     params->struct_size = sizeof *params;
 }
 
-static void tell_clipped(struct report *report, const sonject_statistics *statistics)
+void sonject_merge_params_init(sonject_merge_params *params)
 {
-    if (statistics->input_clipped > 0)
-        report_news(report,
-                    "%llu pixels of the patch are at the image's full scale, so their true "
-                    "amplitude may be larger",
-                    (unsigned long long)statistics->input_clipped);
-    if (statistics->output_clipped > 0)
-        report_news(report, "%llu changed pixels are cut at the image's full scale",
-                    (unsigned long long)statistics->output_clipped);
+    memset(params, 0, sizeof *params);
+    params->struct_size = sizeof *params;
 }
 
-static sonject_status write_documents(struct report *report, struct run_facts *facts,
-                                      const char *folder, double run_start, double write_start)
+void sonject_trace_params_init(sonject_trace_params *params)
 {
-    char *truth = path_join(folder, "truth.json");
-    char *run = path_join(folder, RUN_DOCUMENT);
-    sonject_status status = truth && run ? SONJECT_OK : report_out_of_memory(report, "a path");
-    THEN(status, write_truth(report, facts, truth));
-    THEN(status, file_list_add(&facts->files, report, folder, "truth.json", true));
-    THEN(status, write_labels(report, facts, folder));
-    if (status == SONJECT_OK) {
-        const double now = clock_seconds();
-        facts->write_s = now - write_start;
-        facts->total_s = now - run_start;
-        status = write_run(report, facts, run);
-    }
-    free(truth);
-    free(run);
-    return status;
+    memset(params, 0, sizeof *params);
+    params->struct_size = sizeof *params;
 }
 
-/* An earlier result stays whole until this one is there to be written. A folder with run.json is
- * always complete. */
-static sonject_status write_results(struct report *report, struct run_facts *facts,
-                                    struct injection_result *result, const char *folder,
-                                    double run_start, sonject_progress_function progress,
-                                    void *user)
+void sonject_form_params_init(sonject_form_params *params)
 {
-    const double start = clock_seconds();
-    struct stage_progress writing = {progress, user, WRITE_START, 1.0 - WRITE_START};
-    char *path = path_join(folder, facts->image_name);
-    CHECK_MEMORY(report, path, "a path");
-    json_t *earlier = earlier_withdraw(folder, RUN_DOCUMENT);
-    facts->files = json_array();
-    sonject_status status = write_layers(report, facts, folder);
-    THEN(status, swath_write(report, facts->scene, facts->swath, result, path, tell_stage, &writing,
-                             &result->statistics.output_clipped));
-    free(path);
-    if (status == SONJECT_OK && facts->scene->input_kind == SONJECT_INPUT_FILE &&
-        facts->swath->new_extension)
-        report_news(report,
-                    "note: %s is written anew: of the input's metadata it keeps the description",
-                    facts->image_name);
-    THEN(status, file_list_add(&facts->files, report, folder, facts->image_name, true));
-    THEN(status, write_documents(report, facts, folder, run_start, start));
-    earlier_tidy(folder, earlier, facts->files);
-    json_decref(facts->files);
-    facts->files = NULL;
-    return status;
+    memset(params, 0, sizeof *params);
+    params->struct_size = sizeof *params;
 }
 
-/* Traces and writes. */
-static sonject_status run_swath(struct sonject_context *context, const struct run_request *request,
-                                const struct swath *swath, struct run_facts *facts, double start)
+/* A call that works on files, and what is told of it. */
+static void begin(sonject_context *context, struct run_request *request,
+                  sonject_progress_function progress, void *user, int *was_finished)
 {
-    struct device *device;
-    struct injection_result result;
-    const struct scene *scene = request->scene;
-    struct stage_progress stage = {request->progress, request->user, TRACE_START,
-                                   WRITE_START - TRACE_START};
-    const struct injection_input input = swath_input(swath);
-    bool is_formed = true;
-    sonject_status status = context_device(context, &device);
-    if (status == SONJECT_OK && request->impulses) {
-        const struct impulse_source source = impulse_file_source(request->impulses);
-        status = injection_form(&context->report, device, scene, &input, &source, tell_stage,
-                                &stage, &result);
-    } else if (status == SONJECT_OK) {
-        const struct checkpoint_job job = {&context->report, device, request,    facts->scene_hash,
-                                           &input,           start,  tell_stage, &stage};
-        status = inject_by_checkpoints(&job, &result, &is_formed);
-    }
-    if (status != SONJECT_OK || !is_formed)
-        return status;
-    tell_noise_floor(&context->report, scene, &result.statistics);
-    result.statistics.input_clipped = swath->clipped;
-    facts->result = &result;
-    facts->device = device;
-    status = write_results(&context->report, facts, &result, request->folder, start,
-                           request->progress, request->user);
-    if (status == SONJECT_OK && !request->impulses)
-        checkpoints_remove(request->folder);
-    if (status == SONJECT_OK)
-        tell_clipped(&context->report, &result.statistics);
-    injection_result_clear(&result);
-    return status;
-}
-
-/* The image that the scene's targets go into. Where impulses are formed with another response it
- * stays the one that they were traced for, also a made one. */
-static sonject_status open_swath(struct report *report, const struct run_request *request,
-                                 struct swath *swath)
-{
-    struct scene traced = *request->scene;
-    if (request->impulses)
-        impulse_facts_take_sonar(&request->impulses->facts, &traced.sonar);
-    const sonject_status status = swath_open(report, &traced, swath);
-    if (status != SONJECT_OK || !request->impulses)
-        return status;
-    const sonject_status same = check_traced(report, request->impulses, request->scene, swath);
-    if (same != SONJECT_OK)
-        swath_close(swath);
-    return same;
-}
-
-/* What the result is made of, and whether the folder holds it. facts->inputs is the caller's. */
-static sonject_status check_earlier(struct sonject_context *context,
-                                    const struct run_request *request, const struct swath *swath,
-                                    struct run_facts *facts, char hash[HASH_TEXT_CAPACITY],
-                                    bool *is_finished)
-{
-    struct report *report = &context->report;
-    struct device *device = NULL;
-    CHECK(scene_inputs(report, request->scene, swath->identity, hash, &facts->inputs));
-    if (request->scene->user_shapes.count > 0)
-        CHECK(context_device(context, &device));
-    json_add(&facts->inputs, "image", json_text(facts->image_name));
-    if (device)
-        json_add(&facts->inputs, "device", device_document(device));
-    const struct earlier_request earlier = {
-        request->folder,        RUN_DOCUMENT,        facts->inputs,  request->scene,
-        request->label_formats, request->overwrites, request->merges};
-    return facts->inputs ? earlier_check(report, &earlier, is_finished)
-                         : report_out_of_memory(report, "a run's inputs");
-}
-
-sonject_status run_scene(struct sonject_context *context, const struct run_request *request,
-                         int *was_finished)
-{
-    struct report *report = &context->report;
-    const double start = clock_seconds();
-    struct swath swath;
-    struct run_facts facts;
-    char hash[HASH_TEXT_CAPACITY];
-    bool is_finished = false;
-    memset(&facts, 0, sizeof facts);
-    CHECK(open_swath(report, request, &swath));
-    char *image_name = swath_image_name(request->scene, &swath);
-    facts.scene = request->scene;
-    facts.swath = &swath;
-    facts.scene_hash = hash;
-    facts.image_name = image_name;
-    facts.label_formats = request->label_formats;
-    sonject_status status =
-        image_name ? check_earlier(context, request, &swath, &facts, hash, &is_finished)
-                   : report_out_of_memory(report, "a path");
-    if (status == SONJECT_OK && !is_finished)
-        status = folder_make(report, request->folder);
-    if (status == SONJECT_OK && !is_finished) {
-        facts.read_s = clock_seconds() - start;
-        status = run_swath(context, request, &swath, &facts, start);
-    }
+    context_begin_call(context);
+    context_watch(context, &progress, &user);
+    memset(request, 0, sizeof *request);
+    request->progress = progress;
+    request->user = user;
     if (was_finished)
-        *was_finished = is_finished;
-    json_decref(facts.inputs);
-    free(image_name);
-    swath_close(&swath);
-    return status;
+        *was_finished = 0;
 }
 
-/* Of the shards that are asked for, or of none. */
-static bool is_shard(const sonject_run_params *params)
+/* The folder of the results, and which labels there are to be. */
+static sonject_status take_folder(struct report *report, struct run_request *request,
+                                  const char *folder, uint32_t labels)
 {
-    return params->shard_count == 0
-               ? params->shard_index == 0
-               : params->shard_index >= 1 && params->shard_index <= params->shard_count &&
-                     params->shard_count <= SHARDS_MAX;
+    if (!folder || !folder[0])
+        return null_argument(report, "folder");
+    if (labels & ~LABEL_FORMATS)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                              "labels must be a sum of sonject_labels");
+    request->folder = folder;
+    request->label_formats = labels;
+    return SONJECT_OK;
 }
 
 static bool is_time(double seconds)
@@ -229,48 +65,153 @@ static bool is_time(double seconds)
     return seconds >= 0.0 && isfinite(seconds);
 }
 
+static sonject_status check_shard(struct report *report, const sonject_run_params *params)
+{
+    const bool is_whole = params->shard_count == 0 && params->shard_index == 0;
+    if (!is_whole && (params->shard_index < 1 || params->shard_index > params->shard_count ||
+                      params->shard_count > SHARDS_MAX))
+        return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                              "there is no shard %lu of %lu: shards are 1 to K, K at most %d",
+                              (unsigned long)params->shard_index,
+                              (unsigned long)params->shard_count, SHARDS_MAX);
+    if (!is_whole && params->labels != 0)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                              "shards have no labels: ask sonject_merge for them");
+    if (!is_time(params->exit_after_s) || !is_time(params->checkpoint_s))
+        return report_failure(report, SONJECT_ERROR_ARGUMENT, "times are seconds, not below 0");
+    return SONJECT_OK;
+}
+
 sonject_status sonject_run(sonject_context *context, const sonject_scene *scene,
                            const sonject_run_params *params, sonject_progress_function progress,
                            void *user, int *was_finished)
 {
+    struct run_request request;
+    sonject_run_params taken = {0};
     if (!context)
         return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
-    context_watch(context, &progress, &user);
-    sonject_run_params taken;
-    sonject_run_params_init(&taken);
-    CHECK(params_take(&context->report, &taken, sizeof taken, params,
+    begin(context, &request, progress, user, was_finished);
+    struct report *report = &context->report;
+    if (!scene)
+        return null_argument(report, "scene");
+    CHECK(params_take(report, &taken, sizeof taken, params,
                       offsetof(sonject_run_params, shard_index), "run parameters"));
-    if (!taken.folder || !taken.folder[0])
-        return null_argument(&context->report, "folder");
-    if (taken.labels & ~LABEL_FORMATS)
-        return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
-                              "labels must be a sum of sonject_labels");
-    if (!is_shard(&taken))
-        return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
-                              "there is no shard %lu of %lu: shards are 1 to K, K at most %d",
-                              (unsigned long)taken.shard_index, (unsigned long)taken.shard_count,
-                              SHARDS_MAX);
-    if (taken.shard_count > 0 && taken.labels != 0)
-        return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
-                              "shards have no labels: ask sonject_merge for them");
-    if (!is_time(taken.exit_after_s) || !is_time(taken.checkpoint_s))
-        return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
-                              "times are seconds, not below 0");
-    const struct scene *used;
-    CHECK(scene_use(&context->report, scene, &used));
-    struct run_request request;
-    memset(&request, 0, sizeof request);
-    request.scene = used;
+    CHECK(take_folder(report, &request, taken.folder, taken.labels));
+    CHECK(check_shard(report, &taken));
+    CHECK(scene_use(report, scene, &request.scene));
     request.source = &scene->source;
-    request.folder = taken.folder;
     request.shard = taken.shard_index;
     request.shards = taken.shard_count;
     request.exit_after_s = taken.exit_after_s;
     request.checkpoint_s = taken.checkpoint_s;
-    request.label_formats = taken.labels;
     request.overwrites = taken.overwrites != 0;
-    request.progress = progress;
-    request.user = user;
-    return run_scene(context, &request, was_finished);
+    return run_scene(report, &context->device, &request, was_finished);
+}
+
+sonject_status sonject_merge(sonject_context *context, const sonject_scene *scene,
+                             const sonject_merge_params *params, sonject_progress_function progress,
+                             void *user, int *was_finished)
+{
+    struct run_request request;
+    sonject_merge_params taken = {0};
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    begin(context, &request, progress, user, was_finished);
+    struct report *report = &context->report;
+    CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "merge parameters"));
+    CHECK(take_folder(report, &request, taken.folder, taken.labels));
+    request.merges = true;
+    request.overwrites = true; /* the shards were asked whether they may */
+    if (!scene)
+        return merge_folder(report, &context->device, &request, taken.allows_user_shapes != 0,
+                            was_finished);
+    CHECK(scene_use(report, scene, &request.scene));
+    return run_scene(report, &context->device, &request, was_finished);
+}
+
+sonject_status sonject_trace(sonject_context *context, const sonject_scene *scene,
+                             const sonject_trace_params *params, sonject_progress_function progress,
+                             void *user)
+{
+    struct run_request request;
+    sonject_trace_params taken = {0};
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    begin(context, &request, progress, user, NULL);
+    struct report *report = &context->report;
+    if (!scene)
+        return null_argument(report, "scene");
+    CHECK(params_take(report, &taken, sizeof taken, params,
+                      offsetof(sonject_trace_params, export_file), "trace parameters"));
+    if (!taken.file || !taken.file[0])
+        return null_argument(report, "file");
+    CHECK(scene_use(report, scene, &request.scene));
+    return trace_scene(report, &context->device, request.scene, &scene->source, &taken,
+                       request.progress, request.user);
+}
+
+sonject_status sonject_form(sonject_context *context, const sonject_scene *scene,
+                            const sonject_form_params *params, sonject_progress_function progress,
+                            void *user, int *was_finished)
+{
+    struct run_request request;
+    sonject_form_params taken = {0};
+    const struct scene *used = NULL;
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    begin(context, &request, progress, user, was_finished);
+    struct report *report = &context->report;
+    CHECK(params_take(report, &taken, sizeof taken, params,
+                      offsetof(sonject_form_params, allows_user_shapes), "form parameters"));
+    if (!taken.file || !taken.file[0])
+        return null_argument(report, "file and folder");
+    CHECK(check_overrides(report, taken.file, taken.overrides, taken.override_count));
+    CHECK(take_folder(report, &request, taken.folder, taken.labels));
+    request.overwrites = taken.overwrites != 0;
+    if (scene)
+        CHECK(scene_use(report, scene, &used));
+    return form_scene(report, &context->device, used, &taken, &request, was_finished);
+}
+
+sonject_status sonject_elements_run(sonject_context *context, const sonject_scene *scene,
+                                    const sonject_run_params *params,
+                                    sonject_progress_function progress, void *user)
+{
+    struct run_request request;
+    sonject_run_params taken = {0};
+    if (!context)
+        return SONJECT_ERROR_ARGUMENT;
+    begin(context, &request, progress, user, NULL);
+    struct report *report = &context->report;
+    if (!scene)
+        return null_argument(report, "scene");
+    CHECK(params_take(report, &taken, sizeof taken, params,
+                      offsetof(sonject_run_params, shard_index), "run parameters"));
+    CHECK(take_folder(report, &request, taken.folder, 0));
+    if (taken.shard_index > 0 || taken.shard_count > 0 || taken.exit_after_s != 0.0 ||
+        taken.checkpoint_s != 0.0)
+        return report_failure(report, SONJECT_ERROR_ARGUMENT,
+                              "element data have no shards or checkpoints");
+    CHECK(scene_use(report, scene, &request.scene));
+    return run_elements(report, &context->device, request.scene, &taken, request.progress,
+                        request.user);
+}
+
+sonject_status sonject_check(sonject_context *context, const sonject_scene *scene, char **text)
+{
+    const struct scene *used;
+    if (!context || !text)
+        return SONJECT_ERROR_ARGUMENT;
+    *text = NULL;
+    context_begin_call(context);
+    CHECK(scene_use(&context->report, scene, &used));
+    return describe_scene(&context->report, &context->device, used, text);
+}
+
+void sonject_text_release(char **text)
+{
+    if (!text)
+        return;
+    free(*text);
+    *text = NULL;
 }

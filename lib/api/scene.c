@@ -32,8 +32,8 @@ void sonject_scene_release(sonject_scene **scene)
     *scene = NULL;
 }
 
-static sonject_status check_overrides(struct report *report, const char *path,
-                                      const char *const *overrides, size_t count)
+sonject_status check_overrides(struct report *report, const char *path,
+                               const char *const *overrides, size_t count)
 {
     if (!path || (count > 0 && !overrides))
         return null_argument(report, "path and overrides");

@@ -60,4 +60,14 @@ void campaign_image_clear(struct campaign_image *image);
 sonject_status campaign_image_write(struct sonject_campaign *campaign, struct campaign_image *image,
                                     const char *folder);
 
+/* The images that the folder lacks, of those that params asks for, and the documents of the whole:
+ * sonject_campaign_run. */
+sonject_status campaign_run(struct sonject_campaign *campaign, struct device_slot *slot,
+                            const sonject_campaign_run_params *params,
+                            sonject_progress_function progress, void *user, int *was_finished);
+
+/* Those documents, once all images are there: sonject_campaign_merge. */
+sonject_status campaign_merge(struct report *report, const char *folder,
+                              sonject_progress_function progress, void *user);
+
 #endif

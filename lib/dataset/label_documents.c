@@ -9,6 +9,7 @@
 #include "base/json_document.h"
 #include "base/text.h"
 #include "dataset/labels.h"
+#include "measure/measures.h"
 
 /* Twelve digits with a point; nothing for NaN and infinity. */
 static void add_number(struct growing_text *text, double value)
@@ -62,15 +63,6 @@ json_t *place_document(bool is_geographic, const struct place *place)
 {
     return JSON_OBJECT({is_geographic ? "longitude_deg" : "easting_m", json_number(place->x)},
                        {is_geographic ? "latitude_deg" : "northing_m", json_number(place->y)});
-}
-
-json_t *box_document(const sonject_box *box)
-{
-    if (box->rows == 0)
-        return json_null();
-    return JSON_OBJECT({"row", json_count(box->first_row)},
-                       {"column", json_count(box->first_column)}, {"rows", json_count(box->rows)},
-                       {"columns", json_count(box->columns)});
 }
 
 static json_t *contact_document(const struct image_labels *labels, const struct contact *contact)

@@ -93,7 +93,4 @@ json_t *coco_category(uint64_t id, const char *name);
 /* A place on the track's map: longitude_deg and latitude_deg, or easting_m and northing_m. */
 json_t *place_document(bool is_geographic, const struct place *place);
 
-/* Rows and columns; null where it has no rows. */
-json_t *box_document(const sonject_box *box);
-
 #endif

@@ -384,6 +384,15 @@ sonject_status device_open(struct report *report, const sonject_context_params *
     return SONJECT_OK;
 }
 
+sonject_status device_slot_open(struct report *report, struct device_slot *slot,
+                                struct device **device)
+{
+    const sonject_status status =
+        slot->device ? driver_claim(report) : device_open(report, &slot->params, &slot->device);
+    *device = slot->device;
+    return status;
+}
+
 void device_close(struct device **device)
 {
     struct report ignored = {{0}, NULL, NULL};

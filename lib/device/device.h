@@ -41,6 +41,15 @@ sonject_status device_open(struct report *report, const sonject_context_params *
                            struct device **device);
 void device_close(struct device **device);
 
+/* A device that is opened when it is first needed: all zeros but for the parameters, whose strings
+ * must outlive it. */
+struct device_slot {
+    sonject_context_params params;
+    struct device *device; /* NULL until then; for device_close */
+};
+sonject_status device_slot_open(struct report *report, struct device_slot *slot,
+                                struct device **device);
+
 /* A driver's threads do not come along into a forked child, whose calls would wait for them for
  * ever: refuses in a child of a process that used the driver. Errors: DEVICE. */
 sonject_status driver_claim(struct report *report);

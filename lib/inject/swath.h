@@ -73,4 +73,8 @@ sonject_status swath_write(struct report *report, const struct scene *scene,
                            const char *path, sonject_progress_function progress, void *user,
                            uint64_t *clipped);
 
+/* Writes the synthetic seabed that is the scene's input with its geometry as metadata:
+ * sonject_seabed_write. */
+sonject_status write_seabed(struct report *report, const struct scene *scene, const char *path);
+
 #endif

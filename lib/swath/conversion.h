@@ -7,6 +7,9 @@
 #include "base/report.h"
 #include "swath/geometry_notes.h"
 
+/* sonject_convert, whose choices are checked. */
+sonject_status convert_file(struct report *report, const sonject_convert_params *params);
+
 struct conversion {
     struct raster_layout layout;
     void *pixels; /* owned */

@@ -103,7 +103,8 @@ struct draft {
 };
 
 static char *overrides[] = {"injection.seed=7"};
-static const struct scene_source kept = {"scene.yaml", "sonject: 1\n", overrides, 1};
+static const struct scene_source kept = {
+    .path = "scene.yaml", .text = "sonject: 1\n", .overrides = overrides, .override_count = 1};
 
 static struct draft draft_of(const struct set_up *set)
 {

@@ -10,7 +10,8 @@
 #define SUMS 18
 
 static char *overrides[] = {"injection.seed=7", ""};
-static const struct scene_source source = {"scene.yaml", "sonject: 1\n", overrides, 2};
+static const struct scene_source source = {
+    .path = "scene.yaml", .text = "sonject: 1\n", .overrides = overrides, .override_count = 2};
 static const int64_t sums[SUMS] = {0, 0, 5, 0,         0,         0, 0, -7, 0,
                                    0, 0, 0, INT64_MAX, INT64_MIN, 1, 0, 0,  3};
 

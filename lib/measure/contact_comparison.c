@@ -5,14 +5,13 @@
 
 #include <jansson.h>
 
-#include "api/contacts.h"
-#include "api/handles.h"
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "base/text.h"
 #include "image/canvas.h"
 #include "measure/contacts.h"
+#include "measure/measures.h"
 #include "swath/raster_file.h"
 
 #define MEASURES_BYTES_MAX ((size_t)1 << 28)
@@ -188,16 +187,9 @@ static sonject_status draw(struct report *report, const struct contact_set sets[
     return status;
 }
 
-sonject_status sonject_compare_contacts(sonject_context *context, const char *first,
-                                        const char *second, const char *picture, char **text)
+sonject_status compare_contact_files(struct report *report, const char *first, const char *second,
+                                     const char *picture, char **text)
 {
-    if (!context || !text)
-        return SONJECT_ERROR_ARGUMENT;
-    *text = NULL;
-    context_begin_call(context);
-    struct report *report = &context->report;
-    if (!first || !second)
-        return null_argument(report, "first and second");
     struct contact_set sets[2];
     struct sample_comparison comparisons[COMPARED_NUMBERS];
     memset(sets, 0, sizeof sets);

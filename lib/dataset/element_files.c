@@ -1,5 +1,5 @@
 /* The element level of a scene's own input, as files. */
-#include "api/handles.h"
+#include "dataset/run.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -140,14 +140,13 @@ static sonject_status write_files(struct report *report, const struct scene *sce
     return status;
 }
 
-static sonject_status compute(struct sonject_context *context, const struct scene *scene,
-                              const struct injection_input *input,
+static sonject_status compute(struct report *report, struct device_slot *slot,
+                              const struct scene *scene, const struct injection_input *input,
                               sonject_progress_function progress, void *user,
                               sonject_element_layout *layout, float **series)
 {
-    struct report *report = &context->report;
     struct device *device = NULL;
-    CHECK(context_device(context, &device));
+    CHECK(device_slot_open(report, slot, &device));
     *series = allocate_array(element_plan_samples(layout), 2 * sizeof **series);
     CHECK_MEMORY(report, *series,
                  "the time series: narrow the window of times, or "
@@ -155,11 +154,11 @@ static sonject_status compute(struct sonject_context *context, const struct scen
     return element_echoes_compute(report, device, scene, input, progress, user, layout, *series);
 }
 
-static sonject_status run_elements(struct sonject_context *context, const struct scene *scene,
-                                   const struct swath *swath, const sonject_run_params *params,
-                                   sonject_progress_function progress, void *user)
+static sonject_status run_swath_elements(struct report *report, struct device_slot *slot,
+                                         const struct scene *scene, const struct swath *swath,
+                                         const sonject_run_params *params,
+                                         sonject_progress_function progress, void *user)
 {
-    struct report *report = &context->report;
     const struct injection_input input = swath_input(swath);
     sonject_element_layout layout;
     json_t *inputs = NULL;
@@ -177,7 +176,7 @@ static sonject_status run_elements(struct sonject_context *context, const struct
         status = earlier_check(report, &earlier, &is_finished);
     }
     if (status == SONJECT_OK && !is_finished)
-        status = compute(context, scene, &input, progress, user, &layout, &series);
+        status = compute(report, slot, scene, &input, progress, user, &layout, &series);
     if (status == SONJECT_OK && !is_finished)
         status = write_files(report, scene, &layout, inputs, json_incref(document), series,
                              params->folder);
@@ -187,30 +186,14 @@ static sonject_status run_elements(struct sonject_context *context, const struct
     return status;
 }
 
-sonject_status sonject_elements_run(sonject_context *context, const sonject_scene *handle,
-                                    const sonject_run_params *params,
-                                    sonject_progress_function progress, void *user)
+sonject_status run_elements(struct report *report, struct device_slot *slot,
+                            const struct scene *scene, const sonject_run_params *params,
+                            sonject_progress_function progress, void *user)
 {
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
-    context_watch(context, &progress, &user);
-    struct report *report = &context->report;
-    sonject_run_params taken;
-    sonject_run_params_init(&taken);
-    CHECK(params_take(report, &taken, sizeof taken, params,
-                      offsetof(sonject_run_params, shard_index), "run parameters"));
-    if (!taken.folder || !taken.folder[0])
-        return null_argument(report, "folder");
-    if (taken.shard_index > 0 || taken.shard_count > 0 || taken.exit_after_s != 0.0 ||
-        taken.checkpoint_s != 0.0)
-        return report_failure(report, SONJECT_ERROR_ARGUMENT,
-                              "element data have no shards or checkpoints");
-    const struct scene *scene;
     struct swath swath;
-    CHECK(scene_use(report, handle, &scene));
     CHECK(swath_open(report, scene, &swath));
-    sonject_status status = run_elements(context, scene, &swath, &taken, progress, user);
+    const sonject_status status =
+        run_swath_elements(report, slot, scene, &swath, params, progress, user);
     swath_close(&swath);
     return status;
 }

@@ -1,11 +1,9 @@
-#include "api/handles.h"
+#include "dataset/run.h"
 
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <sonject/run.h>
 
 #include "base/growing_text.h"
 #include "base/text.h"
@@ -188,16 +186,16 @@ static void draw_plan(struct growing_text *text, const struct patch_view *view,
 }
 
 /* Only scenes with users' shapes need a device to be checked. */
-static sonject_status try_user_shapes(struct growing_text *text, sonject_context *context,
-                                      const struct user_shapes *shapes)
+static sonject_status try_user_shapes(struct growing_text *text, struct report *report,
+                                      struct device_slot *slot, const struct user_shapes *shapes)
 {
     struct device *device = NULL;
     sonject_status status = SONJECT_OK;
     if (shapes->count > 0)
-        status = context_device(context, &device);
+        status = device_slot_open(report, slot, &device);
     for (uint32_t i = 0; status == SONJECT_OK && i < shapes->count; i++) {
         struct shape_check check;
-        status = shape_check_run(&context->report, device, shapes, i, &check);
+        status = shape_check_run(report, device, shapes, i, &check);
         if (status == SONJECT_OK)
             growing_text_add(
                 text,
@@ -211,15 +209,9 @@ static sonject_status try_user_shapes(struct growing_text *text, sonject_context
     return status;
 }
 
-sonject_status sonject_check(sonject_context *context, const sonject_scene *handle, char **out)
+sonject_status describe_scene(struct report *report, struct device_slot *slot,
+                              const struct scene *scene, char **out)
 {
-    if (!context || !out)
-        return SONJECT_ERROR_ARGUMENT;
-    *out = NULL;
-    context_begin_call(context);
-    struct report *report = &context->report;
-    const struct scene *scene;
-    CHECK(scene_use(report, handle, &scene));
     struct swath swath;
     struct injection_setup setup;
     CHECK(swath_describe(report, scene, &swath));
@@ -233,7 +225,7 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
         describe_relief(&text, placements->relief);
         describe_objects(&text, scene, view, placements);
         describe_meshes(&text, scene, placements);
-        status = try_user_shapes(&text, context, &scene->user_shapes);
+        status = try_user_shapes(&text, report, slot, &scene->user_shapes);
         draw_plan(&text, view, placements);
         char *characters = growing_text_end(&text);
         if (!characters)
@@ -245,12 +237,4 @@ sonject_status sonject_check(sonject_context *context, const sonject_scene *hand
     }
     injection_setup_clear(&setup);
     return status;
-}
-
-void sonject_text_release(char **text)
-{
-    if (!text)
-        return;
-    free(*text);
-    *text = NULL;
 }

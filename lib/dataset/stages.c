@@ -1,31 +1,19 @@
 #define _POSIX_C_SOURCE 200809L
+#include "dataset/run.h"
+
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include <sonject/stages.h>
 #include <sonject/version.h>
 
-#include "api/run_scene.h"
 #include "base/file.h"
 #include "base/memory.h"
 #include "inject/impulse_export.h"
 #include "inject/scene_hash.h"
 #include "schema/scene_file.h"
 
-void sonject_trace_params_init(sonject_trace_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-}
-
-void sonject_form_params_init(sonject_form_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-}
-
-static sonject_status describe(struct report *report, const struct sonject_scene *scene,
+static sonject_status describe(struct report *report, const struct scene *scene,
                                const struct swath *swath, struct sums_head *head,
                                struct impulse_facts *facts)
 {
@@ -36,8 +24,8 @@ static sonject_status describe(struct report *report, const struct sonject_scene
     facts->image_rows = swath->layout.rows;
     facts->image_columns = swath->layout.columns;
     strncpy(facts->image_hash, swath->identity, sizeof facts->image_hash - 1);
-    impulse_facts_note_sonar(facts, &scene->scene.sonar);
-    CHECK(traced_scene_hash(report, &scene->scene, swath->identity, hash));
+    impulse_facts_note_sonar(facts, &scene->sonar);
+    CHECK(traced_scene_hash(report, scene, swath->identity, hash));
     memcpy(head->identity.scene, hash, sizeof hash);
     return SONJECT_OK;
 }
@@ -56,13 +44,12 @@ static sonject_status write_lines(void *taker, const struct impulse_lines *lines
                                                  : status;
 }
 
-static sonject_status trace_swath(struct sonject_context *context,
-                                  const struct sonject_scene *scene, const struct swath *swath,
-                                  const sonject_trace_params *params,
+static sonject_status trace_swath(struct report *report, struct device_slot *slot,
+                                  const struct scene *scene, const struct scene_source *kept,
+                                  const struct swath *swath, const sonject_trace_params *params,
                                   sonject_progress_function progress, void *user)
 {
-    struct report *report = &context->report;
-    const char *image_path = scene->scene.input_path ? scene->scene.input_path : "";
+    const char *image_path = scene->input_path ? scene->input_path : "";
     const char *export_file =
         params->export_file && *params->export_file ? params->export_file : NULL;
     const struct injection_input input = swath_input(swath);
@@ -77,37 +64,27 @@ static sonject_status trace_swath(struct sonject_context *context,
     THEN(status, sums_writer_begin(&writer, report, params->file, NULL));
     if (status == SONJECT_OK && export_file)
         status = impulse_export_begin(report, export_file, &files.export);
-    THEN(status, context_device(context, &device));
-    THEN(status, injection_trace(report, device, &scene->scene, &input, &sink, progress, user,
-                                 &facts.counts));
+    THEN(status, device_slot_open(report, slot, &device));
+    THEN(status,
+         injection_trace(report, device, scene, &input, &sink, progress, user, &facts.counts));
     if (status == SONJECT_OK && files.export)
-        status = impulse_export_publish(files.export, &scene->scene, &input, &facts,
-                                        head.identity.scene, image_path);
-    THEN(status, impulse_file_publish(&writer, &head, &scene->source, &facts, image_path));
+        status = impulse_export_publish(files.export, scene, &input, &facts, head.identity.scene,
+                                        image_path);
+    THEN(status, impulse_file_publish(&writer, &head, kept, &facts, image_path));
     impulse_export_release(&files.export);
     sums_writer_clear(&writer);
     return status;
 }
 
-sonject_status sonject_trace(sonject_context *context, const sonject_scene *scene,
-                             const sonject_trace_params *params, sonject_progress_function progress,
-                             void *user)
+sonject_status trace_scene(struct report *report, struct device_slot *slot,
+                           const struct scene *scene, const struct scene_source *source,
+                           const sonject_trace_params *params, sonject_progress_function progress,
+                           void *user)
 {
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
-    context_watch(context, &progress, &user);
-    sonject_trace_params taken;
-    const struct scene *used;
     struct swath swath;
-    sonject_trace_params_init(&taken);
-    CHECK(params_take(&context->report, &taken, sizeof taken, params,
-                      offsetof(sonject_trace_params, export_file), "trace parameters"));
-    if (!taken.file || !taken.file[0])
-        return null_argument(&context->report, "file");
-    CHECK(scene_use(&context->report, scene, &used));
-    CHECK(swath_open(&context->report, used, &swath));
-    sonject_status status = trace_swath(context, scene, &swath, &taken, progress, user);
+    CHECK(swath_open(report, scene, &swath));
+    const sonject_status status =
+        trace_swath(report, slot, scene, source, &swath, params, progress, user);
     swath_close(&swath);
     return status;
 }
@@ -129,18 +106,14 @@ static bool names_formed_key(const char *override)
     return false;
 }
 
-static sonject_status check_overrides(struct report *report, const sonject_scene *scene,
+static sonject_status check_overrides(struct report *report, const struct scene *scene,
                                       const sonject_form_params *params)
 {
-    if (params->override_count > 0 && !params->overrides)
-        return null_argument(report, "overrides");
     if (params->override_count > 0 && scene)
         return report_failure(report, SONJECT_ERROR_ARGUMENT,
                               "a scene that is given takes no overrides");
     for (uint32_t i = 0; i < params->override_count; i++) {
         const char *override = params->overrides[i];
-        if (!override)
-            return null_argument(report, "an override");
         if (!names_formed_key(override))
             return report_failure(
                 report, SONJECT_ERROR_INPUT,
@@ -227,58 +200,32 @@ sonject_status read_traced_scene(struct report *report, const struct kept_scene 
     return status;
 }
 
-static sonject_status form_file(struct sonject_context *context, const sonject_scene *scene,
-                                const sonject_form_params *params, struct impulse_file *impulses,
-                                sonject_progress_function progress, void *user, int *was_finished)
+static sonject_status form_file(struct report *report, struct device_slot *slot,
+                                const struct scene *scene, const sonject_form_params *params,
+                                struct run_request *request, int *was_finished)
 {
-    struct report *report = &context->report;
-    const struct sums_file *sums = &impulses->sums;
-    struct run_request request;
+    const struct sums_file *sums = &request->impulses->sums;
     struct scene read;
-    memset(&request, 0, sizeof request);
-    request.impulses = impulses;
-    request.folder = params->folder;
-    request.label_formats = params->labels;
-    request.overwrites = params->overwrites != 0;
-    request.progress = progress;
-    request.user = user;
     scene_init(&read);
     sonject_status status = check_version(report, params->file, &sums->head.identity);
     if (status == SONJECT_OK && !scene)
         status = read_traced_scene(report, &sums->scene, params, &read);
-    request.scene = scene ? &scene->scene : &read;
-    THEN(status, run_scene(context, &request, was_finished));
-    if (!scene)
-        scene_clear(&read);
+    request->scene = scene ? scene : &read;
+    THEN(status, run_scene(report, slot, request, was_finished));
+    scene_clear(&read);
     return status;
 }
 
-sonject_status sonject_form(sonject_context *context, const sonject_scene *scene,
-                            const sonject_form_params *params, sonject_progress_function progress,
-                            void *user, int *was_finished)
+sonject_status form_scene(struct report *report, struct device_slot *slot,
+                          const struct scene *scene, const sonject_form_params *params,
+                          const struct run_request *request, int *was_finished)
 {
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
-    context_watch(context, &progress, &user);
-    sonject_form_params taken;
     struct impulse_file impulses;
-    sonject_form_params_init(&taken);
-    CHECK(params_take(&context->report, &taken, sizeof taken, params,
-                      offsetof(sonject_form_params, allows_user_shapes), "form parameters"));
-    if (!taken.file || !taken.file[0] || !taken.folder || !taken.folder[0])
-        return null_argument(&context->report, "file and folder");
-    if (taken.labels & ~LABEL_FORMATS)
-        return report_failure(&context->report, SONJECT_ERROR_ARGUMENT,
-                              "labels must be a sum of sonject_labels");
-    const struct scene *used;
-    if (scene)
-        CHECK(scene_use(&context->report, scene, &used));
-    sonject_status status = check_overrides(&context->report, scene, &taken);
-    THEN(status, impulse_file_open(&context->report, taken.file, &impulses));
-    if (status != SONJECT_OK)
-        return status;
-    status = form_file(context, scene, &taken, &impulses, progress, user, was_finished);
+    struct run_request forming = *request;
+    forming.impulses = &impulses;
+    CHECK(check_overrides(report, scene, params));
+    CHECK(impulse_file_open(report, params->file, &impulses));
+    const sonject_status status = form_file(report, slot, scene, params, &forming, was_finished);
     impulse_file_close(&impulses);
     return status;
 }

@@ -1,11 +1,10 @@
-#include "api/contacts.h"
+#include "measure/measures.h"
 
 #include <math.h>
 #include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "api/handles.h"
 #include "base/memory.h"
 #include "image/statistics.h"
 
@@ -46,12 +45,6 @@ const struct contact_number contact_numbers[CONTACT_NUMBERS] = {
     NUMBER(gap_range_error_pixels),
     NUMBER(dim_range_error_pixels),
 };
-
-void sonject_contact_params_init(sonject_contact_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-}
 
 static sonject_box public_box(const struct window_box *box)
 {
@@ -215,9 +208,9 @@ sonject_status contacts_add_seabed(struct report *report, const struct contact_i
     return status;
 }
 
-static sonject_status measure_asked(struct report *report, const float *intensity, size_t rows,
-                                    size_t columns, const sonject_contact_params *params,
-                                    sonject_contact_measures *found)
+sonject_status measure_one_contact(struct report *report, const float *intensity, size_t rows,
+                                   size_t columns, const sonject_contact_params *params,
+                                   sonject_contact_measures *found)
 {
     const sonject_box whole = {0, 0, rows, columns};
     struct contact_place place;
@@ -231,29 +224,4 @@ static sonject_status measure_asked(struct report *report, const float *intensit
     THEN(status, contacts_add_seabed(report, &image, found, 1));
     contact_image_clear(&image);
     return status;
-}
-
-sonject_status sonject_measure_contact(sonject_context *context, const sonject_pixels *pixels,
-                                       const sonject_contact_params *params,
-                                       sonject_contact_measures *measures)
-{
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
-    struct report *report = &context->report;
-    sonject_contact_params taken;
-    sonject_contact_measures found;
-    float *intensity = NULL;
-    size_t rows, columns;
-    sonject_contact_params_init(&taken);
-    CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "contact parameters"));
-    if (!pixels || !measures)
-        return null_argument(report, "pixels and measures");
-    sonject_status status = check_spacings(report, taken.row_spacing_m, taken.column_spacing_m);
-    THEN(status, take_intensities(report, pixels, &rows, &columns, &intensity));
-    THEN(status, measure_asked(report, intensity, rows, columns, &taken, &found));
-    free(intensity);
-    return status == SONJECT_OK ? params_give(report, measures, &found, sizeof found, sizeof found,
-                                              "contact measures")
-                                : status;
 }

@@ -1,10 +1,8 @@
-#include "api/handles.h"
+#include "swath/quicklook.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <sonject/run.h>
 
 #include "base/memory.h"
 #include "image/plot.h"
@@ -14,15 +12,6 @@
 #include "swath/swath_file.h"
 
 #define SIDE_LIMIT 4096 /* pixels that are drawn a side; larger images are averaged down to it */
-
-void sonject_quicklook_params_init(sonject_quicklook_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-    sonject_geometry_params_init(&params->geometry);
-    sonject_transfer_params_init(&params->transfer);
-    params->channel = SONJECT_CHANNEL_ONLY;
-}
 
 /* An image as it is drawn: amplitudes of blocks of pixels. */
 struct view_image {
@@ -191,55 +180,20 @@ static enum range_axis fill_frame(struct plot_frame *frame, const sonject_quickl
     return is_ground ? RANGE_GROUND : has_metres ? RANGE_SLANT : RANGE_UNKNOWN;
 }
 
-/* Fills in what is not given. */
-static sonject_status check_params(struct report *report, sonject_quicklook_params *params)
+sonject_status draw_quicklook(struct report *report, const sonject_quicklook_params *params)
 {
-    const bool has_scale = params->minimum_db != 0.0 || params->maximum_db != 0.0;
-    sonject_status status = SONJECT_OK;
-    if (!params->image || !params->picture)
-        return null_argument(report, "image and picture");
-    if (params->range_axis > SONJECT_AXIS_GROUND)
-        return report_failure(report, SONJECT_ERROR_ARGUMENT, "range_axis: no such choice");
-    if (has_scale && !(isfinite(params->minimum_db) && isfinite(params->maximum_db) &&
-                       params->minimum_db < params->maximum_db))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "minimum_db must be a number below maximum_db, not %g and %g",
-                              params->minimum_db, params->maximum_db);
-    if (!(params->altitude_m >= 0.0) || !isfinite(params->altitude_m))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "altitude must be a number of m above 0, not %g", params->altitude_m);
-    if (params->has_geometry)
-        status = check_geometry(&params->geometry, report, NULL);
-    if (status == SONJECT_OK && params->has_transfer)
-        status = check_transfer(&params->transfer, report, NULL);
-    if (!params->has_transfer)
-        sonject_transfer_params_init(&params->transfer);
-    return status;
-}
-
-sonject_status sonject_quicklook(sonject_context *context, const sonject_quicklook_params *params)
-{
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
-    struct report *report = &context->report;
-    sonject_quicklook_params taken;
-    sonject_quicklook_params_init(&taken);
-    sonject_status status =
-        params_take(report, &taken, sizeof taken, params, sizeof taken, "quicklook parameters");
-    THEN(status, check_params(report, &taken));
     struct swath_file *file = NULL;
     struct view_image image = {0, 0, 1, NULL};
     struct plot_frame frame;
     double altitude = 0.0;
-    THEN(status, swath_file_open_array(report, taken.image, taken.channel, taken.array, &file));
-    THEN(status, read_reduced(report, taken.image, file, &taken.transfer, &image));
+    CHECK(swath_file_open_array(report, params->image, params->channel, params->array, &file));
+    sonject_status status = read_reduced(report, params->image, file, &params->transfer, &image);
     if (status == SONJECT_OK) {
-        const enum range_axis axis = fill_frame(&frame, &taken, file, &image, &altitude);
-        if (taken.range_axis == SONJECT_AXIS_GROUND)
-            status = to_ground_range(report, taken.image, axis, &image, &frame, altitude);
+        const enum range_axis axis = fill_frame(&frame, params, file, &image, &altitude);
+        if (params->range_axis == SONJECT_AXIS_GROUND)
+            status = to_ground_range(report, params->image, axis, &image, &frame, altitude);
     }
-    THEN(status, draw(report, &frame, &image, taken.picture));
+    THEN(status, draw(report, &frame, &image, params->picture));
     swath_file_close(&file);
     free(image.amplitude);
     return status;

@@ -1,45 +1,11 @@
-#include "api/handles.h"
-
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <sonject/convert.h>
 
 #include "base/memory.h"
 #include "swath/conversion.h"
 #include "swath/raster_formats.h"
 
 #define PIXELS_MAX ((uint64_t)1 << 31)
-
-void sonject_convert_params_init(sonject_convert_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-    params->channel = SONJECT_CHANNEL_ONLY;
-    params->scale = 1.0;
-    sonject_geometry_params_init(&params->geometry);
-}
-
-static sonject_status check_choices(struct report *report, const sonject_convert_params *params)
-{
-    if (!params->input || !params->output)
-        return null_argument(report, "input and output");
-    if (params->samples > SONJECT_SAMPLES_FLOAT32 ||
-        params->range_axis > SONJECT_CONVERT_AXIS_GROUND)
-        return report_failure(report, SONJECT_ERROR_ARGUMENT,
-                              "samples or range_axis: no such choice");
-    if (!(params->scale > 0.0) || !isfinite(params->scale))
-        return report_failure(report, SONJECT_ERROR_INPUT, "scale must be a number above 0, not %g",
-                              params->scale);
-    if (!(params->altitude_m >= 0.0) || !isfinite(params->altitude_m))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "altitude must be a number of m above 0, not %g", params->altitude_m);
-    if (params->samples == SONJECT_SAMPLES_KEPT && params->scale != 1.0)
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "a scale belongs to a type of samples: say which");
-    return params->has_geometry ? check_geometry(&params->geometry, report, NULL) : SONJECT_OK;
-}
 
 /* What is asked for but has nothing to do. */
 static sonject_status check_uses(struct report *report, const sonject_convert_params *params)
@@ -127,35 +93,20 @@ static sonject_status write_new(struct report *report, const sonject_convert_par
     return status;
 }
 
-static sonject_status convert(struct report *report, const sonject_convert_params *params,
-                              struct conversion *conversion)
-{
-    CHECK(read_input(report, params, conversion));
-    if (params->magnitude)
-        CHECK(conversion_to_magnitude(report, conversion, params->input));
-    if (params->range_axis != SONJECT_CONVERT_AXIS_KEPT)
-        CHECK(conversion_resample(report, conversion, params));
-    if (params->samples != SONJECT_SAMPLES_KEPT)
-        CHECK(conversion_to_type(report, conversion, params));
-    return params->into ? write_into(report, params, conversion)
-                        : write_new(report, params, conversion);
-}
-
-sonject_status sonject_convert(sonject_context *context, const sonject_convert_params *params)
+sonject_status convert_file(struct report *report, const sonject_convert_params *params)
 {
     struct conversion conversion;
-    sonject_convert_params taken;
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
-    struct report *report = &context->report;
     memset(&conversion, 0, sizeof conversion);
-    sonject_convert_params_init(&taken);
-    sonject_status status =
-        params_take(report, &taken, sizeof taken, params, sizeof taken, "convert parameters");
-    THEN(status, check_choices(report, &taken));
-    THEN(status, check_uses(report, &taken));
-    THEN(status, convert(report, &taken, &conversion));
+    sonject_status status = check_uses(report, params);
+    THEN(status, read_input(report, params, &conversion));
+    if (params->magnitude)
+        THEN(status, conversion_to_magnitude(report, &conversion, params->input));
+    if (params->range_axis != SONJECT_CONVERT_AXIS_KEPT)
+        THEN(status, conversion_resample(report, &conversion, params));
+    if (params->samples != SONJECT_SAMPLES_KEPT)
+        THEN(status, conversion_to_type(report, &conversion, params));
+    THEN(status, params->into ? write_into(report, params, &conversion)
+                              : write_new(report, params, &conversion));
     free(conversion.pixels);
     return status;
 }

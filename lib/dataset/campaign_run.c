@@ -1,28 +1,17 @@
 /* The loop over a campaign's images. */
-#include <math.h>
-#include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "api/handles.h"
 #include "base/clock.h"
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "dataset/campaign_documents.h"
 
-void sonject_campaign_run_params_init(sonject_campaign_run_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-    params->shard_index = 1;
-    params->shard_count = 1;
-}
-
 /* A run over images, and how far it is. */
 struct sweep {
-    struct sonject_context *context;
+    struct device_slot *slot;
     struct sonject_campaign *campaign;
     const sonject_campaign_run_params *params;
     sonject_progress_function progress;
@@ -55,7 +44,7 @@ static sonject_status make_image(struct sweep *sweep, uint64_t id)
     struct campaign_image image;
     struct device *device;
     memset(&image, 0, sizeof image);
-    sonject_status status = context_device(sweep->context, &device);
+    sonject_status status = device_slot_open(sweep->campaign->report, sweep->slot, &device);
     THEN(status, campaign_image_make(device, sweep->campaign, id, tell_image, sweep, &image));
     THEN(status, campaign_image_write(sweep->campaign, &image, sweep->params->folder));
     campaign_image_clear(&image);
@@ -123,7 +112,7 @@ static sonject_status make_folders(struct sweep *sweep)
     struct device *device = NULL;
     sonject_status status = SONJECT_OK;
     if (campaign->has_user_shapes)
-        status = context_device(sweep->context, &device);
+        status = device_slot_open(sweep->campaign->report, sweep->slot, &device);
     THEN(status, folder_make(campaign->report, folder));
     THEN(status, data_set_begin(campaign, device, folder, sweep->params->overwrites != 0));
     THEN(status, data_set_open(&sweep->set, campaign->report, folder));
@@ -162,7 +151,7 @@ static sonject_status finish_whole(struct sweep *sweep, int *was_finished)
     return status;
 }
 
-static sonject_status run_campaign(struct sweep *sweep, int *was_finished)
+static sonject_status run_sweep(struct sweep *sweep, int *was_finished)
 {
     const bool is_whole = sweep->params->shard_count == 1 && !sweep->params->only_one;
     sonject_status status = make_folders(sweep);
@@ -180,69 +169,27 @@ static sonject_status run_campaign(struct sweep *sweep, int *was_finished)
     return status;
 }
 
-static sonject_status check_params(const struct sonject_campaign *campaign,
-                                   sonject_campaign_run_params *params)
+sonject_status campaign_run(struct sonject_campaign *campaign, struct device_slot *slot,
+                            const sonject_campaign_run_params *params,
+                            sonject_progress_function progress, void *user, int *was_finished)
 {
-    if (!params->folder || !params->folder[0])
-        return null_argument(campaign->report, "folder");
-    if (params->shard_count == 0)
-        params->shard_count = 1;
-    if (params->shard_index == 0 || params->shard_index > params->shard_count)
-        return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
-                              "shard_index must be from 1 to shard_count, %u",
-                              (unsigned)params->shard_count);
-    if (params->overwrites && params->shard_count > 1)
-        return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
-                              "shards overwrite no other campaign, since they would remove each "
-                              "other's images: make image 0 alone so first (--only 0 --overwrite)");
-    if (!(params->exit_after_s >= 0.0) || !isfinite(params->exit_after_s))
-        return report_failure(campaign->report, SONJECT_ERROR_ARGUMENT,
-                              "times are seconds, not below 0");
-    return params->only_one ? campaign_check_id(campaign, params->only) : SONJECT_OK;
-}
-
-sonject_status sonject_campaign_run(sonject_context *context, sonject_campaign *campaign,
-                                    const sonject_campaign_run_params *params,
-                                    sonject_progress_function progress, void *user,
-                                    int *was_finished)
-{
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
-    context_watch(context, &progress, &user);
-    if (!campaign)
-        return null_argument(&context->report, "campaign");
-    sonject_campaign_run_params taken;
-    sonject_campaign_run_params_init(&taken);
-    sonject_status status =
-        params_take(&context->report, &taken, sizeof taken, params,
-                    offsetof(sonject_campaign_run_params, exit_after_s), "campaign run parameters");
-    THEN(status, check_params(campaign, &taken));
-    if (status != SONJECT_OK)
-        return status;
     const double begin_s = clock_seconds();
-    struct sweep sweep = {.context = context,
+    struct sweep sweep = {.slot = slot,
                           .campaign = campaign,
-                          .params = &taken,
+                          .params = params,
                           .progress = progress,
                           .user = user,
                           .start_s = begin_s,
                           .begin_s = begin_s};
-    return run_campaign(&sweep, was_finished);
+    return run_sweep(&sweep, was_finished);
 }
 
-sonject_status sonject_campaign_merge(sonject_context *context, const char *folder,
-                                      sonject_progress_function progress, void *user)
+sonject_status campaign_merge(struct report *report, const char *folder,
+                              sonject_progress_function progress, void *user)
 {
     struct data_set set;
-    if (!context)
-        return SONJECT_ERROR_ARGUMENT;
-    context_begin_call(context);
-    context_watch(context, &progress, &user);
-    if (!folder || !folder[0])
-        return null_argument(&context->report, "folder");
     memset(&set, 0, sizeof set);
-    sonject_status status = data_set_open(&set, &context->report, folder);
+    sonject_status status = data_set_open(&set, report, folder);
     set.progress = progress;
     set.user = user;
     THEN(status, data_set_finish(&set));

@@ -4,29 +4,14 @@
 
 #include <jansson.h>
 
-#include "api/contacts.h"
-#include "api/handles.h"
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
-#include "dataset/labels.h"
 #include "measure/contacts.h"
+#include "measure/measures.h"
 
 #define TRUTH_BYTES_MAX ((size_t)1 << 26)
-#define BOXES_MAX       100000
 #define LENGTH_MOST     1e6 /* m */
-#define FIND_MOST       100
-#define FIND_CONTRAST   12.0 /* dB */
-
-void sonject_contact_file_params_init(sonject_contact_file_params *params)
-{
-    memset(params, 0, sizeof *params);
-    params->struct_size = sizeof *params;
-    sonject_transfer_params_init(&params->transfer);
-    params->find_most = FIND_MOST;
-    params->find_contrast_db = FIND_CONTRAST;
-    params->channel = SONJECT_CHANNEL_ONLY;
-}
 
 /* The contacts to measure. */
 struct contact_list {
@@ -104,6 +89,15 @@ static sonject_status take_truth(struct contact_list *list, struct report *repor
     }
     json_decref(truth);
     return status;
+}
+
+json_t *box_document(const sonject_box *box)
+{
+    return box->rows == 0 ? json_null()
+                          : JSON_OBJECT({"row", json_count(box->first_row)},
+                                        {"column", json_count(box->first_column)},
+                                        {"rows", json_count(box->rows)},
+                                        {"columns", json_count(box->columns)});
 }
 
 static json_t *measures_document(const char *image, const sonject_contact_measures *measures)
@@ -209,47 +203,17 @@ static sonject_status take_boxes(struct contact_list *list, struct report *repor
     return params->truth ? take_truth(list, report, params->truth, rows, columns) : SONJECT_OK;
 }
 
-/* Fills in what 0 stands for. */
-static sonject_status check_params(struct report *report, sonject_contact_file_params *params)
+sonject_status measure_contact_file(struct report *report,
+                                    const sonject_contact_file_params *params, char **text)
 {
-    if (params->find_most == 0)
-        params->find_most = FIND_MOST;
-    if (params->find_contrast_db == 0.0)
-        params->find_contrast_db = FIND_CONTRAST;
-    if (params->box_count > BOXES_MAX || params->find_most > BOXES_MAX)
-        return report_failure(report, SONJECT_ERROR_INPUT, "at most %d contacts are measured",
-                              BOXES_MAX);
-    if (!(params->find_contrast_db >= 6.0 && params->find_contrast_db <= 100.0))
-        return report_failure(report, SONJECT_ERROR_INPUT,
-                              "contacts are looked for by contrasts of 6...100 dB, not %g dB",
-                              params->find_contrast_db);
-    if (!params->has_transfer)
-        sonject_transfer_params_init(&params->transfer);
-    CHECK(check_transfer(&params->transfer, report, NULL));
-    return check_spacings(report, params->row_spacing_m, params->column_spacing_m);
-}
-
-sonject_status sonject_measure_contacts(sonject_context *context,
-                                        const sonject_contact_file_params *params, char **text)
-{
-    if (!context || !text)
-        return SONJECT_ERROR_ARGUMENT;
-    *text = NULL;
-    context_begin_call(context);
-    struct report *report = &context->report;
-    sonject_contact_file_params taken;
+    const struct measured_image image = {params->image, NULL, params->channel, params->array};
     struct contact_list list = {NULL, 0, 0.0, 0.0};
     float *intensity = NULL;
     size_t rows, columns;
-    sonject_contact_file_params_init(&taken);
-    CHECK(params_take(report, &taken, sizeof taken, params, sizeof taken, "contact parameters"));
-    if (!taken.image || (taken.box_count > 0 && !taken.boxes))
-        return null_argument(report, "image and boxes");
-    sonject_status status = check_params(report, &taken);
-    const struct measured_image image = {taken.image, NULL, taken.channel, taken.array};
-    THEN(status, read_intensities(report, &image, &taken.transfer, &rows, &columns, &intensity));
-    THEN(status, take_boxes(&list, report, &taken, rows, columns));
-    THEN(status, measure_all(report, &list, &taken, intensity, rows, columns, text));
+    sonject_status status =
+        read_intensities(report, &image, &params->transfer, &rows, &columns, &intensity);
+    THEN(status, take_boxes(&list, report, params, rows, columns));
+    THEN(status, measure_all(report, &list, params, intensity, rows, columns, text));
     free(intensity);
     free(list.boxes);
     return status;

@@ -1,0 +1,93 @@
+/* What images and their contacts measure, as callers are told it. */
+#ifndef SONJECT_MEASURE_MEASURES_H
+#define SONJECT_MEASURE_MEASURES_H
+
+#include <jansson.h>
+
+#include <sonject/measure.h>
+
+#include "base/report.h"
+#include "measure/contacts.h"
+
+#define BOXES_MAX 100000 /* contacts that are measured at once */
+
+/* All but the seabed's speckle. Errors: INPUT, MEMORY. */
+sonject_status contact_measure(struct report *report, struct contact_image *image,
+                               const struct contact_place *place, double row_spacing_m,
+                               double column_spacing_m, sonject_contact_measures *measures);
+
+/* The seabed's speckle in all that no contact was found in so far, for so many contacts. Errors:
+ * MEMORY. */
+sonject_status contacts_add_seabed(struct report *report, const struct contact_image *image,
+                                   sonject_contact_measures *measures, size_t count);
+
+/* A box of the image, in which all of a contact is. Errors: INPUT (it is not inside). */
+sonject_status place_in_box(struct report *report, const sonject_box *box, size_t rows,
+                            size_t columns, struct contact_place *place);
+
+/* Errors: INPUT: not 0...1000 km. */
+sonject_status check_spacings(struct report *report, double row_spacing_m, double column_spacing_m);
+
+/* An image that is measured: planes of rows x columns; owned. */
+struct measured {
+    size_t rows, columns;
+    float *amplitudes;
+    float *before;               /* amplitudes; NULL: not told */
+    uint8_t *influence, *labels; /* NULL: not told */
+};
+void measured_clear(struct measured *measured);
+
+/* Changes the amplitudes to intensities. Errors: INPUT. */
+sonject_status measured_square(struct report *report, struct measured *measured);
+
+/* The image's seabed and its seam; its amplitudes become intensities. Errors: INPUT, MEMORY. */
+sonject_status measure_amplitudes(struct report *report, struct measured *measured,
+                                  sonject_measurement *measurement);
+
+/* The same of a file: sonject_measure, whose parameters are checked. */
+sonject_status measure_file(struct report *report, const sonject_measure_params *params,
+                            sonject_measurement *measurement);
+
+/* Contacts of a file as JSON: sonject_measure_contacts. Parameters have no zeros left that stand
+ * for something else. */
+sonject_status measure_contact_file(struct report *report,
+                                    const sonject_contact_file_params *params, char **text);
+
+/* One contact of intensities: sonject_measure_contact. */
+sonject_status measure_one_contact(struct report *report, const float *intensity, size_t rows,
+                                   size_t columns, const sonject_contact_params *params,
+                                   sonject_contact_measures *found);
+
+/* {row, column, rows, columns}; null where it is empty. */
+json_t *box_document(const sonject_box *box);
+
+/* Two files of contacts: sonject_compare_contacts. */
+sonject_status compare_contact_files(struct report *report, const char *first, const char *second,
+                                     const char *picture, char **text);
+
+/* What of a file is measured, as of swath_file_open_beside. */
+struct measured_image {
+    const char *path;
+    const char *other; /* NULL: none */
+    int32_t channel;
+    const char *array;
+};
+
+/* Those of a whole image. transfer: how amplitudes became stored numbers. Errors: INPUT, STORAGE,
+ * MEMORY, UNSUPPORTED. */
+sonject_status read_intensities(struct report *report, const struct measured_image *image,
+                                const sonject_transfer_params *transfer, size_t *rows,
+                                size_t *columns, float **intensity);
+
+/* A member of sonject_contact_measures that is a number. */
+struct contact_number {
+    const char *name;
+    size_t offset;
+};
+
+#define CONTACT_NUMBERS  30
+#define COMPARED_NUMBERS 24 /* the first ones: the others are standard errors */
+
+extern const struct contact_number contact_numbers[CONTACT_NUMBERS];
+
+#endif
