@@ -1,18 +1,233 @@
 #include "mesh/hierarchy.h"
 
+#include <float.h>
 #include <math.h>
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
-#include "mesh/split.h"
+
+#define BINS_MOST 16
 
 /* The records that devices read, as C lays them out. */
 typedef char branch_is_packed[sizeof(struct mesh_branch) == 144 * 4 ? 1 : -1];
 typedef char leaf_is_packed[sizeof(struct mesh_leaf) == 176 * 4 ? 1 : -1];
 typedef char normals_are_packed[sizeof(struct mesh_corner_normals) == 9 * 4 ? 1 : -1];
 typedef char mesh_is_packed[sizeof(struct mesh_record) == 8 * 4 ? 1 : -1];
+
+void split_box_unite(struct split_box *box, const struct split_box *other)
+{
+    for (int i = 0; i < 8; i++)
+        box->edges[i] = other->edges[i] < box->edges[i] ? other->edges[i] : box->edges[i];
+}
+
+struct split_box split_box_empty(void)
+{
+    const struct split_box empty = {
+        {FLT_MAX, FLT_MAX, FLT_MAX, 0.0f, FLT_MAX, FLT_MAX, FLT_MAX, 0.0f}};
+    return empty;
+}
+
+static float extent(const struct split_box *box, int axis)
+{
+    return -box->edges[4 + axis] - box->edges[axis];
+}
+
+float split_box_area(const struct split_box *box)
+{
+    if (box->edges[0] > -box->edges[4])
+        return 0.0f;
+    const float x = extent(box, 0);
+    const float y = extent(box, 1);
+    const float z = extent(box, 2);
+    return x * y + y * z + z * x;
+}
+
+struct split_box split_box_of(const struct split_triangle *triangles, size_t first, size_t last)
+{
+    struct split_box box = split_box_empty();
+    for (size_t i = first; i < last; i++)
+        split_box_unite(&box, &triangles[i].box);
+    return box;
+}
+
+/* Twice the middle of a triangle's box. */
+static float middle(const struct split_triangle *triangle, int axis)
+{
+    return triangle->box.edges[axis] - triangle->box.edges[4 + axis];
+}
+
+/* The range's middles, sorted into equal bins along each axis. */
+struct bins {
+    int count;
+    float lower[3], scale[3]; /* scale 0: all middles are the same along the axis */
+    struct split_box boxes[3][BINS_MOST];
+    uint32_t triangles[3][BINS_MOST];
+};
+
+static int bin_of(const struct bins *bins, const struct split_triangle *triangle, int axis)
+{
+    const int bin = (int)((middle(triangle, axis) - bins->lower[axis]) * bins->scale[axis]);
+    return bin < bins->count ? bin : bins->count - 1;
+}
+
+static void fill_bins(struct bins *bins, const struct split_triangle *triangles,
+                      const struct split_range *range)
+{
+    const size_t count = range->last - range->first;
+    float lower[3] = {FLT_MAX, FLT_MAX, FLT_MAX};
+    float upper[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
+    for (size_t i = range->first; i < range->last; i++)
+        for (int axis = 0; axis < 3; axis++) {
+            const float value = middle(&triangles[i], axis);
+            lower[axis] = value < lower[axis] ? value : lower[axis];
+            upper[axis] = value > upper[axis] ? value : upper[axis];
+        }
+    bins->count = count >= 64 ? BINS_MOST : count >= 16 ? 8 : 4; /* most ranges are small */
+    for (int axis = 0; axis < 3; axis++) {
+        const float width = upper[axis] - lower[axis];
+        bins->lower[axis] = lower[axis];
+        bins->scale[axis] = width > FLT_MIN * 64.0f ? 0.9999f * (float)bins->count / width : 0.0f;
+        for (int bin = 0; bin < bins->count; bin++) {
+            bins->boxes[axis][bin] = split_box_empty();
+            bins->triangles[axis][bin] = 0;
+        }
+        for (size_t i = range->first; i < range->last; i++) {
+            const int bin = bin_of(bins, &triangles[i], axis);
+            split_box_unite(&bins->boxes[axis][bin], &triangles[i].box);
+            bins->triangles[axis][bin]++;
+        }
+    }
+}
+
+struct cut {
+    int axis, bin; /* the lower half is bins below `bin` */
+    float cost;    /* triangles times area, of both halves */
+    size_t lower_count;
+};
+
+/* The best cut along one axis, if better than *best. */
+static void try_axis(const struct bins *bins, int axis, struct cut *best)
+{
+    float upper_cost[BINS_MOST];
+    struct split_box box = split_box_empty();
+    size_t count = 0;
+    for (int bin = bins->count - 1; bin > 0; bin--) {
+        split_box_unite(&box, &bins->boxes[axis][bin]);
+        count += bins->triangles[axis][bin];
+        upper_cost[bin] = split_box_area(&box) * (float)count;
+    }
+    const size_t all = count + bins->triangles[axis][0];
+    box = split_box_empty();
+    count = 0;
+    for (int bin = 1; bin < bins->count; bin++) {
+        split_box_unite(&box, &bins->boxes[axis][bin - 1]);
+        count += bins->triangles[axis][bin - 1];
+        const float cost = split_box_area(&box) * (float)count + upper_cost[bin];
+        if (count > 0 && count < all && cost < best->cost) {
+            best->axis = axis;
+            best->bin = bin;
+            best->cost = cost;
+            best->lower_count = count;
+        }
+    }
+}
+
+static void swap(struct split_triangle *a, struct split_triangle *b)
+{
+    const struct split_triangle kept = *a;
+    *a = *b;
+    *b = kept;
+}
+
+/* Rearranges the range so that the lower half comes first; returns where the upper begins. */
+static size_t part_at(struct split_triangle *triangles, const struct split_range *range,
+                      const struct bins *bins, const struct cut *cut)
+{
+    size_t low = range->first;
+    size_t high = range->last;
+    for (;;) {
+        while (low < high && bin_of(bins, &triangles[low], cut->axis) < cut->bin)
+            low++;
+        while (low < high && bin_of(bins, &triangles[high - 1], cut->axis) >= cut->bin)
+            high--;
+        if (low >= high)
+            return low;
+        swap(&triangles[low++], &triangles[--high]);
+    }
+}
+
+/* Of equal middles the lower number comes first. */
+static bool lies_before(const struct split_triangle *a, const struct split_triangle *b, int axis)
+{
+    const float at_a = middle(a, axis);
+    const float at_b = middle(b, axis);
+    return at_a < at_b || (at_a == at_b && a->number < b->number);
+}
+
+/* Rearranges the range so that the triangles before `begin` have the lower middles (Hoare's
+ * selection). */
+static void part_by_order(struct split_triangle *triangles, const struct split_range *range,
+                          int axis, size_t begin)
+{
+    size_t first = range->first;
+    size_t last = range->last - 1;
+    while (first < last) {
+        const struct split_triangle pivot = triangles[first + (last - first) / 2];
+        size_t low = first;
+        size_t high = last;
+        for (;;) {
+            while (lies_before(&triangles[low], &pivot, axis))
+                low++;
+            while (lies_before(&pivot, &triangles[high], axis))
+                high--;
+            if (low >= high)
+                break;
+            swap(&triangles[low++], &triangles[high--]);
+        }
+        if (begin <= high)
+            last = high;
+        else
+            first = high + 1;
+    }
+}
+
+static void set_halves(const struct split_triangle *triangles, const struct split_range *range,
+                       size_t begin, struct split_range *lower, struct split_range *upper)
+{
+    const size_t last = range->last;
+    *lower =
+        (struct split_range){range->first, begin, split_box_of(triangles, range->first, begin)};
+    *upper = (struct split_range){begin, last, split_box_of(triangles, begin, last)};
+}
+
+void split_cut_at(struct split_triangle *triangles, const struct split_range *range,
+                  size_t lower_count, struct split_range *lower, struct split_range *upper)
+{
+    const size_t begin = range->first + lower_count;
+    int longest = 0;
+    for (int axis = 1; axis < 3; axis++)
+        if (extent(&range->box, axis) > extent(&range->box, longest))
+            longest = axis;
+    part_by_order(triangles, range, longest, begin);
+    set_halves(triangles, range, begin, lower, upper);
+}
+
+void split_cut(struct split_triangle *triangles, const struct split_range *range, size_t half_limit,
+               struct split_range *lower, struct split_range *upper)
+{
+    const size_t count = range->last - range->first;
+    struct bins bins;
+    struct cut best = {-1, 0, FLT_MAX, 0};
+    fill_bins(&bins, triangles, range);
+    for (int axis = 0; axis < 3; axis++)
+        if (bins.scale[axis] > 0.0f)
+            try_axis(&bins, axis, &best);
+    if (best.axis < 0 || best.lower_count > half_limit || count - best.lower_count > half_limit)
+        split_cut_at(triangles, range, count / 2, lower, upper);
+    else
+        set_halves(triangles, range, part_at(triangles, range, &bins, &best), lower, upper);
+}
 
 /* A branch that is still to be filled. */
 struct pending {
@@ -37,16 +252,13 @@ static size_t triangles_in(const struct split_range *range)
     return range->last - range->first;
 }
 
-/* Makes room for one element more. */
-static bool reserve(void **array, size_t count, size_t *capacity, size_t size)
+bool mesh_reserve(void **array, size_t count, size_t *capacity, size_t size)
 {
     size_t bytes;
+    const size_t larger = *capacity + *capacity / 2 + 64;
     if (count < *capacity)
         return true;
-    const size_t larger = *capacity + *capacity / 2 + 64;
-    if (!size_multiply(larger, size, &bytes))
-        return false;
-    void *moved = realloc(*array, bytes);
+    void *moved = size_multiply(larger, size, &bytes) ? realloc(*array, bytes) : NULL;
     if (!moved)
         return false;
     *array = moved;
@@ -127,20 +339,17 @@ static int sort_ranges(struct split_range *ranges, int count)
     return widest;
 }
 
-static void set_corner(const float *vertex, int slot, float *x, float *y, float *z)
-{
-    x[slot] = vertex[0];
-    y[slot] = vertex[1];
-    z[slot] = vertex[2];
-}
-
 static void fill_slot(const struct builder *builder, struct mesh_leaf *leaf, int slot,
                       uint32_t triangle)
 {
-    const uint32_t *corners = &builder->corners[3 * (size_t)triangle];
-    set_corner(&builder->vertices[3 * (size_t)corners[0]], slot, leaf->a_x, leaf->a_y, leaf->a_z);
-    set_corner(&builder->vertices[3 * (size_t)corners[1]], slot, leaf->b_x, leaf->b_y, leaf->b_z);
-    set_corner(&builder->vertices[3 * (size_t)corners[2]], slot, leaf->c_x, leaf->c_y, leaf->c_z);
+    float *const slots[3][3] = {{leaf->a_x, leaf->a_y, leaf->a_z},
+                                {leaf->b_x, leaf->b_y, leaf->b_z},
+                                {leaf->c_x, leaf->c_y, leaf->c_z}};
+    for (size_t corner = 0; corner < 3; corner++)
+        for (size_t axis = 0; axis < 3; axis++)
+            slots[corner][axis][slot] =
+                builder
+                    ->vertices[3 * (size_t)builder->corners[3 * (size_t)triangle + corner] + axis];
 }
 
 /* Brings triangles that lie together into the same group of four; all groups but the last are
@@ -161,10 +370,10 @@ static bool add_leaf(struct builder *builder, const struct split_range *range, i
 {
     struct mesh_hierarchy *hierarchy = builder->hierarchy;
     const size_t number = hierarchy->leaf_count;
-    if (!reserve((void **)&hierarchy->leaves, number, &builder->leaf_capacity,
-                 sizeof *hierarchy->leaves) ||
-        !reserve((void **)&hierarchy->triangles, number, &builder->triangle_capacity,
-                 MESH_SLOTS * sizeof *hierarchy->triangles))
+    if (!mesh_reserve((void **)&hierarchy->leaves, number, &builder->leaf_capacity,
+                      sizeof *hierarchy->leaves) ||
+        !mesh_reserve((void **)&hierarchy->triangles, number, &builder->triangle_capacity,
+                      MESH_SLOTS * sizeof *hierarchy->triangles))
         return false;
     hierarchy->leaf_count++;
     struct mesh_leaf *leaf = &hierarchy->leaves[number];
@@ -193,10 +402,10 @@ static bool add_branch(struct builder *builder, const struct split_range *range,
                        int32_t *child)
 {
     struct mesh_hierarchy *hierarchy = builder->hierarchy;
-    if (!reserve((void **)&hierarchy->branches, hierarchy->branch_count, &builder->branch_capacity,
-                 sizeof *hierarchy->branches) ||
-        !reserve((void **)&builder->pending, builder->pending_count, &builder->pending_capacity,
-                 sizeof *builder->pending))
+    if (!mesh_reserve((void **)&hierarchy->branches, hierarchy->branch_count,
+                      &builder->branch_capacity, sizeof *hierarchy->branches) ||
+        !mesh_reserve((void **)&builder->pending, builder->pending_count,
+                      &builder->pending_capacity, sizeof *builder->pending))
         return false;
     struct pending *pending = &builder->pending[builder->pending_count++];
     pending->range = *range;
@@ -264,41 +473,34 @@ static void set_triangles(struct builder *builder, size_t count)
 
 static bool build(struct builder *builder, size_t count)
 {
-    struct split_range all;
     int32_t root;
     set_triangles(builder, count);
-    all.first = 0;
-    all.last = count;
-    all.box = split_box_of(builder->triangles, 0, count);
-    if (!add_branch(builder, &all, 1, &root))
-        return false;
-    while (builder->pending_count > 0) {
+    const struct split_range all = {0, count, split_box_of(builder->triangles, 0, count)};
+    bool has_memory = add_branch(builder, &all, 1, &root);
+    while (has_memory && builder->pending_count > 0) {
         const struct pending pending = builder->pending[--builder->pending_count];
-        if (!fill_branch(builder, &pending))
-            return false;
+        has_memory = fill_branch(builder, &pending);
     }
-    return true;
+    return has_memory;
 }
 
 sonject_status mesh_hierarchy_build(struct report *report, const float *vertices,
                                     const uint32_t *corners, size_t count, float radius,
                                     struct mesh_hierarchy *hierarchy)
 {
-    struct builder builder;
-    memset(&builder, 0, sizeof builder);
+    struct builder builder = {.vertices = vertices,
+                              .corners = corners,
+                              .triangles = allocate_array(count, sizeof *builder.triangles),
+                              .hierarchy = hierarchy,
+                              .padding = MESH_PADDING * radius};
     memset(hierarchy, 0, sizeof *hierarchy);
-    builder.vertices = vertices;
-    builder.corners = corners;
-    builder.hierarchy = hierarchy;
-    builder.padding = MESH_PADDING * radius;
-    builder.triangles = allocate_array(count, sizeof *builder.triangles);
     const bool is_built = builder.triangles && build(&builder, count);
     free(builder.triangles);
     free(builder.pending);
-    if (is_built)
-        return SONJECT_OK;
-    mesh_hierarchy_clear(hierarchy);
-    return report_out_of_memory(report, "the hierarchy of a mesh");
+    if (!is_built)
+        mesh_hierarchy_clear(hierarchy);
+    CHECK_MEMORY(report, is_built, "the hierarchy of a mesh");
+    return SONJECT_OK;
 }
 
 void mesh_hierarchy_clear(struct mesh_hierarchy *hierarchy)

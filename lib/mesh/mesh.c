@@ -7,11 +7,12 @@
 
 #include "base/memory.h"
 #include "mesh/mesh_reader.h"
-#include "mesh/topology.h"
 
 /* Sizes that single precision holds with room for squares and products. */
 #define RADIUS_LEAST_M 1e-6
 #define RADIUS_MOST_M  1e6
+
+#define STORE_BYTES_MOST ((uint64_t)512 << 20)
 
 /* How far apart the sides of a seam may be, of the bounding box's diagonal: what single precision
  * makes of one point is within a tenth of it. */
@@ -88,81 +89,68 @@ static double coordinate(const struct mesh_soup *soup, size_t vertex, int axis,
     return (source < 0 ? -value : value) * options->unit_m;
 }
 
-/* The bounding box of all vertices that triangles use, and its middle. */
-static sonject_status find_centre(struct report *report, const char *name,
-                                  const struct mesh_soup *soup, const struct mesh_options *options,
-                                  struct mesh *mesh)
+/* The middle of the bounding box of all vertices that triangles use. */
+static sonject_status find_centre(const struct mesh_soup *soup, struct mesh *mesh)
 {
-    double lower[3] = {DBL_MAX, DBL_MAX, DBL_MAX};
-    double upper[3] = {-DBL_MAX, -DBL_MAX, -DBL_MAX};
-    for (size_t i = 0; i < 3 * soup->triangles; i++) {
-        for (int axis = 0; axis < 3; axis++) {
-            const double value = coordinate(soup, soup->corners[i], axis, options);
-            lower[axis] = value < lower[axis] ? value : lower[axis];
-            upper[axis] = value > upper[axis] ? value : upper[axis];
-        }
-    }
     double square = 0.0;
     for (int axis = 0; axis < 3; axis++) {
-        const double half = 0.5 * upper[axis] - 0.5 * lower[axis];
-        mesh->centre_m[axis] = lower[axis] + half;
+        double lower = DBL_MAX;
+        double upper = -DBL_MAX;
+        for (size_t i = 0; i < 3 * soup->triangles; i++) {
+            const double value = coordinate(soup, soup->corners[i], axis, &mesh->options);
+            lower = value < lower ? value : lower;
+            upper = value > upper ? value : upper;
+        }
+        const double half = 0.5 * upper - 0.5 * lower;
+        mesh->centre_m[axis] = lower + half;
         square += half * half;
     }
     if (sqrt(square) >= RADIUS_LEAST_M && sqrt(square) <= RADIUS_MOST_M)
         return SONJECT_OK;
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "%s: the mesh is %g m across: check its unit", name, 2.0 * sqrt(square));
+    return report_failure(soup->report, SONJECT_ERROR_INPUT,
+                          "%s: the mesh is %g m across: check its unit", soup->path,
+                          2.0 * sqrt(square));
 }
 
 /* Brings the soup's vertices into the mesh's frame, welds those that are equal, or closer than the
  * tolerance, and keeps the triangles that have three corners left. */
-static sonject_status weld_all(struct report *report, const char *name,
-                               const struct mesh_soup *soup, const struct mesh_options *options,
-                               double tolerance, struct mesh *mesh, struct mesh_soup *welded)
+static sonject_status weld_all(const struct mesh_soup *soup, struct mesh *mesh, struct weld *weld,
+                               uint32_t *numbers) /* + 1; 0: not yet met */
 {
-    struct weld weld = {NULL, 0, tolerance};
-    uint32_t *numbers = allocate_array(soup->vertices, sizeof *numbers); /* + 1; 0: not yet met */
-    bool has_memory = numbers != NULL;
-    mesh->degenerate = 0;
-    for (size_t i = 0; i < soup->triangles && has_memory; i++) {
+    for (size_t i = 0; i < soup->triangles; i++) {
         uint32_t corners[3];
-        for (size_t k = 0; k < 3 && has_memory; k++) {
+        for (size_t k = 0; k < 3; k++) {
             const uint32_t vertex = soup->corners[3 * i + k];
             if (numbers[vertex] == 0) {
                 double position[3];
                 uint32_t number = 0;
                 for (int axis = 0; axis < 3; axis++)
-                    position[axis] = (double)(float)(coordinate(soup, vertex, axis, options) -
-                                                     mesh->centre_m[axis]);
-                has_memory = weld_vertex(&weld, welded, position, &number);
+                    position[axis] =
+                        (double)(float)(coordinate(soup, vertex, axis, &mesh->options) -
+                                        mesh->centre_m[axis]);
+                CHECK(weld_vertex(weld, position, &number));
                 numbers[vertex] = number + 1;
             }
             corners[k] = numbers[vertex] - 1;
         }
-        if (!has_memory)
-            break;
         if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
             mesh->degenerate++;
         else
-            has_memory = mesh_soup_add_triangle(welded, corners[0], corners[1], corners[2]);
+            CHECK(mesh_soup_add_triangle(weld->soup, corners[0], corners[1], corners[2]));
     }
-    weld_clear(&weld);
-    free(numbers);
-    CHECK_MEMORY(report, has_memory, name);
-    if (welded->triangles == 0)
-        return report_failure(report, SONJECT_ERROR_INPUT,
+    if (weld->soup->triangles == 0)
+        return report_failure(soup->report, SONJECT_ERROR_INPUT,
                               "%s: none of its %zu triangles has an area: export the mesh again",
-                              name, soup->triangles);
+                              soup->path, soup->triangles);
     return SONJECT_OK;
 }
 
 /* Takes over what was welded. */
-static sonject_status copy_welded(struct report *report, const char *name, struct mesh_soup *welded,
-                                  struct mesh *mesh)
+static sonject_status copy_welded(struct mesh_soup *welded, struct mesh *mesh)
 {
     double square = 0.0;
     mesh->vertices = allocate_array(welded->vertices, 3 * sizeof *mesh->vertices);
-    CHECK_MEMORY(report, mesh->vertices, name);
+    CHECK_MEMORY(welded->report, mesh->vertices, welded->path);
     mesh->vertex_count = welded->vertices;
     for (int axis = 0; axis < 3; axis++) {
         mesh->lower_m[axis] = FLT_MAX;
@@ -186,122 +174,109 @@ static sonject_status copy_welded(struct report *report, const char *name, struc
     return SONJECT_OK;
 }
 
+/* Vertices and triangles, and how they hang together. */
+static sonject_status weld_and_orient(const struct mesh_soup *soup, struct mesh *mesh,
+                                      double tolerance)
+{
+    struct mesh_soup welded = {.report = soup->report, .path = soup->path};
+    struct weld weld = {.soup = &welded, .tolerance = tolerance};
+    uint32_t *numbers = allocate_array(soup->vertices, sizeof *numbers);
+    free(mesh->vertices);
+    free(mesh->corners);
+    mesh->vertices = NULL;
+    mesh->corners = NULL;
+    mesh->degenerate = 0;
+    sonject_status status = numbers ? weld_all(soup, mesh, &weld, numbers)
+                                    : report_out_of_memory(soup->report, soup->path);
+    THEN(status, copy_welded(&welded, mesh));
+    free(numbers);
+    weld_clear(&weld);
+    mesh_soup_clear(&welded);
+    THEN(status, mesh_topology_find(soup->report, mesh->vertices, mesh->vertex_count, mesh->corners,
+                                    mesh->triangle_count, &mesh->topology));
+    return status;
+}
+
 /* Smooth normals in the order of the leaves' slots. */
 static sonject_status set_normals(struct report *report, double angle, struct mesh *mesh)
 {
     float *normals;
     const size_t slots = mesh->hierarchy.leaf_count * MESH_SLOTS;
-    sonject_status status =
-        mesh_smooth_normals(report, mesh->vertices, mesh->vertex_count, mesh->corners,
-                            mesh->triangle_count, angle, &normals);
-    if (status != SONJECT_OK)
-        return status;
     mesh->normals = allocate_array(slots, sizeof *mesh->normals);
-    if (!mesh->normals)
-        status = report_out_of_memory(report, "the normals of a mesh");
-    for (size_t slot = 0; mesh->normals && slot < slots; slot++) {
+    CHECK_MEMORY(report, mesh->normals, "the normals of a mesh");
+    CHECK(mesh_smooth_normals(report, mesh->vertices, mesh->vertex_count, mesh->corners,
+                              mesh->triangle_count, angle, &normals));
+    for (size_t slot = 0; slot < slots; slot++) {
         const uint32_t triangle = mesh->hierarchy.triangles[slot];
         if (triangle != MESH_NO_TRIANGLE)
             memcpy(&mesh->normals[slot], &normals[9 * (size_t)triangle], sizeof *mesh->normals);
     }
     free(normals);
-    return status;
+    return SONJECT_OK;
 }
 
-/* Vertices and triangles, and how they hang together. */
-static sonject_status weld_and_orient(struct report *report, const char *name,
-                                      const struct mesh_soup *soup,
-                                      const struct mesh_options *options, double tolerance,
-                                      struct mesh *mesh)
+static sonject_status prepare(const struct mesh_soup *soup, struct mesh *mesh)
 {
-    struct mesh_soup welded;
-    memset(&welded, 0, sizeof welded);
-    free(mesh->vertices);
-    free(mesh->corners);
-    mesh->vertices = NULL;
-    mesh->corners = NULL;
-    sonject_status status = weld_all(report, name, soup, options, tolerance, mesh, &welded);
-    THEN(status, copy_welded(report, name, &welded, mesh));
-    mesh_soup_clear(&welded);
-    return status == SONJECT_OK
-               ? mesh_topology_find(report, mesh->vertices, mesh->vertex_count, mesh->corners,
-                                    mesh->triangle_count, &mesh->topology)
-               : status;
-}
-
-/* Only a mesh that is open is looked at for a seam, so that no thin wall of another is touched. */
-static sonject_status close_seams(struct report *report, const char *name,
-                                  const struct mesh_soup *soup, const struct mesh_options *options,
-                                  struct mesh *mesh)
-{
-    double square = 0.0;
-    const size_t vertices = mesh->vertex_count;
-    for (int axis = 0; axis < 3; axis++) {
-        const double side = (double)mesh->upper_m[axis] - (double)mesh->lower_m[axis];
-        square += side * side;
-    }
-    const sonject_status status =
-        weld_and_orient(report, name, soup, options, SEAM_SHARE * sqrt(square), mesh);
-    mesh->welded = vertices - mesh->vertex_count;
-    return status;
-}
-
-static sonject_status prepare(struct report *report, const char *name, const struct mesh_soup *soup,
-                              const struct mesh_options *options, struct mesh *mesh)
-{
-    mesh->options = *options;
-    mesh->name = copy_text(name);
-    CHECK_MEMORY(report, mesh->name, name);
+    struct report *report = soup->report;
+    mesh->name = copy_text(soup->path);
+    CHECK_MEMORY(report, mesh->name, soup->path);
     if (soup->triangles == 0)
-        return report_failure(report, SONJECT_ERROR_INPUT, "%s: the mesh has no triangles", name);
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: the mesh has no triangles",
+                              soup->path);
     if (soup->triangles > MESH_TRIANGLES_MAX)
-        return report_failure(
-            report, SONJECT_ERROR_INPUT,
-            "%s: %zu triangles are more than the %zu that a mesh may have: simplify "
-            "it",
-            name, soup->triangles, MESH_TRIANGLES_MAX);
-    sonject_status status = find_centre(report, name, soup, options, mesh);
-    THEN(status, weld_and_orient(report, name, soup, options, 0.0, mesh));
-    if (status == SONJECT_OK && !mesh->topology.is_closed)
-        status = close_seams(report, name, soup, options, mesh);
-    if (status == SONJECT_OK) {
-        mesh->volume_m3 = mesh->topology.volume;
-        status = mesh_hierarchy_build(report, mesh->vertices, mesh->corners, mesh->triangle_count,
-                                      mesh->radius_m, &mesh->hierarchy);
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: %zu triangles are more than the %zu that a mesh may have: "
+                              "simplify it",
+                              soup->path, soup->triangles, MESH_TRIANGLES_MAX);
+    CHECK(find_centre(soup, mesh));
+    CHECK(weld_and_orient(soup, mesh, 0.0));
+    /* only a mesh that is open is looked at for a seam, so that no thin wall of another is touched
+     */
+    if (!mesh->topology.is_closed) {
+        const size_t vertices = mesh->vertex_count;
+        double square = 0.0;
+        for (int axis = 0; axis < 3; axis++) {
+            const double side = (double)mesh->upper_m[axis] - (double)mesh->lower_m[axis];
+            square += side * side;
+        }
+        CHECK(weld_and_orient(soup, mesh, SEAM_SHARE * sqrt(square)));
+        mesh->welded = vertices - mesh->vertex_count;
     }
-    if (status == SONJECT_OK && options->smooth_angle_rad > 0.0)
-        status = set_normals(report, options->smooth_angle_rad, mesh);
-    return status;
+    mesh->volume_m3 = mesh->topology.volume;
+    CHECK(mesh_hierarchy_build(report, mesh->vertices, mesh->corners, mesh->triangle_count,
+                               mesh->radius_m, &mesh->hierarchy));
+    return mesh->options.smooth_angle_rad > 0.0
+               ? set_normals(report, mesh->options.smooth_angle_rad, mesh)
+               : SONJECT_OK;
 }
 
 sonject_status mesh_load(struct report *report, const char *path,
                          const struct mesh_options *options, struct mesh *mesh)
 {
-    struct mesh_soup soup;
-    memset(&soup, 0, sizeof soup);
+    struct mesh_soup soup = {.report = report, .path = path};
     memset(mesh, 0, sizeof *mesh);
+    mesh->options = *options;
     sonject_status status = check_options(report, path, options);
     THEN(status, file_identify(report, path, &mesh->file));
-    THEN(status, mesh_file_read(report, path, &soup));
-    THEN(status, prepare(report, path, &soup, options, mesh));
+    THEN(status, mesh_file_read(&soup));
+    THEN(status, prepare(&soup, mesh));
     mesh_soup_clear(&soup);
     if (status != SONJECT_OK)
         mesh_clear(mesh);
     return status;
 }
 
-static sonject_status check_arrays(struct report *report, const char *name,
-                                   const struct mesh_soup *soup)
+static sonject_status check_arrays(const struct mesh_soup *soup)
 {
     for (size_t i = 0; i < 3 * soup->vertices; i++)
         if (!isfinite(soup->positions[i]))
-            return report_failure(report, SONJECT_ERROR_INPUT,
-                                  "%s: a coordinate of vertex %zu is not a finite number", name,
-                                  i / 3);
+            return report_failure(soup->report, SONJECT_ERROR_INPUT,
+                                  "%s: a coordinate of vertex %zu is not a finite number",
+                                  soup->path, i / 3);
     for (size_t i = 0; i < 3 * soup->triangles; i++)
         if (soup->corners[i] >= soup->vertices)
-            return report_failure(report, SONJECT_ERROR_INPUT,
-                                  "%s: triangle %zu has vertex %lu of %zu", name, i / 3,
+            return report_failure(soup->report, SONJECT_ERROR_INPUT,
+                                  "%s: triangle %zu has vertex %lu of %zu", soup->path, i / 3,
                                   (unsigned long)soup->corners[i], soup->vertices);
     return SONJECT_OK;
 }
@@ -310,17 +285,18 @@ sonject_status mesh_from_arrays(struct report *report, const char *name, const d
                                 size_t vertex_count, const uint32_t *corners, size_t triangle_count,
                                 const struct mesh_options *options, struct mesh *mesh)
 {
-    struct mesh_soup soup;
-    memset(&soup, 0, sizeof soup);
-    memset(mesh, 0, sizeof *mesh);
     /* read only */
-    soup.positions = (double *)(uintptr_t)positions;
-    soup.corners = (uint32_t *)(uintptr_t)corners;
-    soup.vertices = vertex_count;
-    soup.triangles = triangle_count;
+    const struct mesh_soup soup = {.report = report,
+                                   .path = name,
+                                   .positions = (double *)(uintptr_t)positions,
+                                   .corners = (uint32_t *)(uintptr_t)corners,
+                                   .vertices = vertex_count,
+                                   .triangles = triangle_count};
+    memset(mesh, 0, sizeof *mesh);
+    mesh->options = *options;
     sonject_status status = check_options(report, name, options);
-    THEN(status, check_arrays(report, name, &soup));
-    THEN(status, prepare(report, name, &soup, options, mesh));
+    THEN(status, check_arrays(&soup));
+    THEN(status, prepare(&soup, mesh));
     if (status != SONJECT_OK)
         mesh_clear(mesh);
     return status;
@@ -345,15 +321,66 @@ sonject_status mesh_require_closed(struct report *report, const char *name, cons
 struct mesh_record mesh_record_of(const struct mesh *mesh, uint32_t first_branch,
                                   uint32_t first_leaf, uint32_t first_normals)
 {
-    struct mesh_record record;
-    memset(&record, 0, sizeof record);
-    record.first_branch = first_branch;
-    record.branches = (uint32_t)mesh->hierarchy.branch_count;
-    record.first_leaf = first_leaf;
-    record.leaves = (uint32_t)mesh->hierarchy.leaf_count;
-    record.first_normals = first_normals;
-    record.is_smooth = mesh->normals != NULL;
-    record.radius = mesh->radius_m;
-    record.is_sheet = !mesh->topology.is_closed;
-    return record;
+    return (struct mesh_record){.first_branch = first_branch,
+                                .branches = (uint32_t)mesh->hierarchy.branch_count,
+                                .first_leaf = first_leaf,
+                                .leaves = (uint32_t)mesh->hierarchy.leaf_count,
+                                .first_normals = first_normals,
+                                .is_smooth = mesh->normals != NULL,
+                                .radius = mesh->radius_m,
+                                .is_sheet = !mesh->topology.is_closed};
+}
+
+static uint64_t bytes_of(const struct mesh *mesh)
+{
+    const struct mesh_hierarchy *hierarchy = &mesh->hierarchy;
+    const uint64_t slots = (uint64_t)hierarchy->leaf_count * MESH_SLOTS;
+    return 3 * (mesh->vertex_count * sizeof *mesh->vertices +
+                mesh->triangle_count * sizeof *mesh->corners) +
+           hierarchy->branch_count * sizeof *hierarchy->branches +
+           hierarchy->leaf_count * sizeof *hierarchy->leaves +
+           slots * sizeof *hierarchy->triangles +
+           (mesh->normals ? slots * sizeof *mesh->normals : 0);
+}
+
+/* Moves one out of the store. */
+static void remove_mesh(struct mesh_store *store, size_t number, struct mesh *mesh)
+{
+    *mesh = store->meshes[number];
+    store->bytes -= bytes_of(mesh);
+    store->count--;
+    memmove(&store->meshes[number], &store->meshes[number + 1],
+            (store->count - number) * sizeof *store->meshes);
+}
+
+bool mesh_store_take(struct mesh_store *store, const struct file_identity *file,
+                     const struct mesh_options *options, struct mesh *mesh)
+{
+    for (size_t i = 0; i < store->count; i++)
+        if (mesh_is_of(&store->meshes[i], file, options)) {
+            remove_mesh(store, i, mesh);
+            return true;
+        }
+    return false;
+}
+
+void mesh_store_give(struct mesh_store *store, struct mesh *mesh)
+{
+    const uint64_t bytes = bytes_of(mesh);
+    while (store->count > 0 &&
+           (store->count == MESH_STORE_MESHES || store->bytes + bytes > STORE_BYTES_MOST)) {
+        struct mesh oldest;
+        remove_mesh(store, 0, &oldest);
+        mesh_clear(&oldest);
+    }
+    store->bytes += bytes;
+    store->meshes[store->count++] = *mesh;
+    memset(mesh, 0, sizeof *mesh);
+}
+
+void mesh_store_clear(struct mesh_store *store)
+{
+    for (size_t i = 0; i < store->count; i++)
+        mesh_clear(&store->meshes[i]);
+    memset(store, 0, sizeof *store);
 }

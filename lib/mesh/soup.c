@@ -1,10 +1,14 @@
-#include "mesh/soup.h"
-
+/* Triangles as they come from a file, and the vertices among them that are one. */
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "mesh/hierarchy.h"
+#include "mesh/mesh_reader.h"
+
+/* Most of them: what a mesh may have, and as many vertices as files without shared ones need. */
+#define VERTICES_MAX ((size_t)1 << 28)
 
 #define CELL_TOLERANCES 64.0 /* a cell of space, in which vertices are looked for */
 
@@ -15,63 +19,45 @@ void mesh_soup_clear(struct mesh_soup *soup)
     memset(soup, 0, sizeof *soup);
 }
 
-/* Makes room for one triple more. */
-static bool reserve(void **array, size_t count, size_t most, size_t *capacity, size_t size)
+static sonject_status check_count(const struct mesh_soup *soup, size_t count, size_t most)
 {
-    size_t bytes;
-    if (count < *capacity && count < most)
-        return true;
-    const size_t larger = *capacity + *capacity / 2 + 64;
-    if (count >= most || !size_multiply(larger, 3 * size, &bytes))
-        return false;
-    void *moved = realloc(*array, bytes);
-    if (!moved)
-        return false;
-    *array = moved;
-    *capacity = larger;
-    return true;
+    if (count < most)
+        return SONJECT_OK;
+    return report_failure(soup->report, SONJECT_ERROR_INPUT,
+                          "%s: a mesh may have %zu triangles and %zu vertices, and this one has "
+                          "more: simplify it",
+                          soup->path, MESH_TRIANGLES_MAX, VERTICES_MAX);
 }
 
-bool mesh_soup_add_vertex(struct mesh_soup *soup, const double position[3])
+sonject_status mesh_soup_add_vertex(struct mesh_soup *soup, const double position[3])
 {
-    if (!reserve((void **)&soup->positions, soup->vertices, SOUP_VERTICES_MAX,
-                 &soup->vertex_capacity, sizeof *soup->positions))
-        return false;
-    memcpy(&soup->positions[3 * soup->vertices], position, 3 * sizeof *position);
-    soup->vertices++;
-    return true;
+    CHECK(check_count(soup, soup->vertices, VERTICES_MAX));
+    CHECK_MEMORY(soup->report,
+                 mesh_reserve((void **)&soup->positions, soup->vertices, &soup->vertex_capacity,
+                              3 * sizeof *soup->positions),
+                 soup->path);
+    memcpy(&soup->positions[3 * soup->vertices++], position, 3 * sizeof *position);
+    return SONJECT_OK;
 }
 
-bool mesh_soup_add_triangle(struct mesh_soup *soup, uint32_t a, uint32_t b, uint32_t c)
+sonject_status mesh_soup_add_triangle(struct mesh_soup *soup, uint32_t a, uint32_t b, uint32_t c)
 {
     const uint32_t triangle[3] = {a, b, c};
-    if (!reserve((void **)&soup->corners, soup->triangles, SOUP_TRIANGLES_MAX,
-                 &soup->triangle_capacity, sizeof *soup->corners))
-        return false;
-    memcpy(&soup->corners[3 * soup->triangles], triangle, sizeof triangle);
-    soup->triangles++;
-    return true;
+    CHECK(check_count(soup, soup->triangles, MESH_TRIANGLES_MAX));
+    CHECK_MEMORY(soup->report,
+                 mesh_reserve((void **)&soup->corners, soup->triangles, &soup->triangle_capacity,
+                              3 * sizeof *soup->corners),
+                 soup->path);
+    memcpy(&soup->corners[3 * soup->triangles++], triangle, sizeof triangle);
+    return SONJECT_OK;
 }
 
-bool mesh_soup_add_polygon_corner(struct mesh_soup *soup, size_t place, uint32_t corner,
-                                  uint32_t fan[2])
+sonject_status mesh_soup_add_polygon_corner(struct mesh_soup *soup, size_t place, uint32_t corner,
+                                            uint32_t fan[2])
 {
-    if (place >= 2 && !mesh_soup_add_triangle(soup, fan[0], fan[1], corner))
-        return false;
+    CHECK(place >= 2 ? mesh_soup_add_triangle(soup, fan[0], fan[1], corner) : SONJECT_OK);
     fan[place == 0 ? 0 : 1] = corner;
-    return true;
-}
-
-sonject_status mesh_soup_failure(struct report *report, const char *path,
-                                 const struct mesh_soup *soup)
-{
-    if (soup->triangles < SOUP_TRIANGLES_MAX && soup->vertices < SOUP_VERTICES_MAX)
-        return report_out_of_memory(report, path);
-    return report_failure(
-        report, SONJECT_ERROR_INPUT,
-        "%s: a mesh may have %zu triangles and %zu vertices, and this one has more: "
-        "simplify it",
-        path, SOUP_TRIANGLES_MAX, SOUP_VERTICES_MAX);
+    return SONJECT_OK;
 }
 
 static uint64_t mix(uint64_t value)
@@ -109,75 +95,65 @@ static bool is_one(const struct weld *weld, const double a[3], const double b[3]
                                  : memcmp(a, b, 3 * sizeof *a) == 0;
 }
 
-/* The slot from this one on that has the position's vertex, or is free. */
-static size_t find_slot(const struct weld *weld, const struct mesh_soup *soup, size_t slot,
-                        const double position[3])
+static void set_vertex(struct weld *weld, size_t vertex)
 {
-    while (weld->slots[slot] != 0 &&
-           !is_one(weld, &soup->positions[3 * (size_t)(weld->slots[slot] - 1)], position))
-        slot = (slot + 1) & (weld->capacity - 1);
-    return slot;
-}
-
-static void set_vertex(struct weld *weld, const struct mesh_soup *soup, size_t vertex)
-{
-    size_t slot = slot_of(weld, &soup->positions[3 * vertex], (const int[3]){0, 0, 0});
+    size_t slot = slot_of(weld, &weld->soup->positions[3 * vertex], (const int[3]){0, 0, 0});
     while (weld->slots[slot] != 0)
         slot = (slot + 1) & (weld->capacity - 1);
     weld->slots[slot] = (uint32_t)(vertex + 1);
 }
 
-static bool widen(struct weld *weld, const struct mesh_soup *soup)
+static bool widen(struct weld *weld)
 {
-    struct weld wider = {NULL, weld->capacity > 0 ? 4 * weld->capacity : 1024, weld->tolerance};
+    struct weld wider = *weld;
+    wider.capacity = weld->capacity > 0 ? 4 * weld->capacity : 1024;
     wider.slots = allocate_array(wider.capacity, sizeof *wider.slots);
     if (!wider.slots)
         return false;
-    for (size_t i = 0; i < soup->vertices; i++)
-        set_vertex(&wider, soup, i);
+    for (size_t i = 0; i < weld->soup->vertices; i++)
+        set_vertex(&wider, i);
     free(weld->slots);
     *weld = wider;
     return true;
 }
 
 /* The vertex that is one with the position, counted from 1; 0: none is. */
-static uint32_t find_vertex(const struct weld *weld, const struct mesh_soup *soup,
-                            const double position[3])
+static uint32_t find_vertex(const struct weld *weld, const double position[3])
 {
     const int most = weld->tolerance > 0.0 ? 1 : 0;
     size_t before[27];
     size_t count = 0;
     for (int i = 0; i < (most ? 27 : 1); i++) {
         const int aside[3] = {most * (i % 3 - 1), most * (i / 3 % 3 - 1), most * (i / 9 - 1)};
-        const size_t first = slot_of(weld, position, aside);
+        size_t slot = slot_of(weld, position, aside);
         size_t k = 0;
-        while (k < count && before[k] != first)
+        while (k < count && before[k] != slot)
             k++;
         if (k < count) /* most of them are one cell */
             continue;
-        before[count++] = first;
-        const uint32_t found = weld->slots[find_slot(weld, soup, first, position)];
-        if (found)
-            return found;
+        before[count++] = slot;
+        for (; weld->slots[slot] != 0; slot = (slot + 1) & (weld->capacity - 1)) {
+            const uint32_t found = weld->slots[slot];
+            if (is_one(weld, &weld->soup->positions[3 * (size_t)(found - 1)], position))
+                return found;
+        }
     }
     return 0;
 }
 
-bool weld_vertex(struct weld *weld, struct mesh_soup *soup, const double position[3],
-                 uint32_t *number)
+sonject_status weld_vertex(struct weld *weld, const double position[3], uint32_t *number)
 {
+    struct mesh_soup *soup = weld->soup;
     const double point[3] = {position[0] + 0.0, position[1] + 0.0, position[2] + 0.0};
-    if (2 * soup->vertices >= weld->capacity && !widen(weld, soup))
-        return false;
-    uint32_t found = find_vertex(weld, soup, point);
+    CHECK_MEMORY(soup->report, 2 * soup->vertices < weld->capacity || widen(weld), soup->path);
+    uint32_t found = find_vertex(weld, point);
     if (found == 0) {
-        if (!mesh_soup_add_vertex(soup, point))
-            return false;
+        CHECK(mesh_soup_add_vertex(soup, point));
         found = (uint32_t)soup->vertices;
-        set_vertex(weld, soup, found - 1);
+        set_vertex(weld, found - 1);
     }
     *number = found - 1;
-    return true;
+    return SONJECT_OK;
 }
 
 void weld_clear(struct weld *weld)

@@ -1,10 +1,12 @@
-#include "mesh/topology.h"
+/* Whether triangles close, which side of them is outside, and the normals of the smooth surface
+ * that they stand for. */
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/memory.h"
+#include "mesh/mesh.h"
 
 #define FACETS_MAX 256
 #define NO_PARTNER UINT32_MAX
@@ -72,75 +74,68 @@ static void mean_normal(const struct facet *facets, const uint32_t *list, size_t
 }
 
 /* Corners (3 * triangle + 0...2) sorted by the vertex that they are at: those of vertex v are
- * list[starts[v]] to list[starts[v + 1] - 1], in ascending order. Both to be given to free().
- * Errors: MEMORY. */
-static sonject_status mesh_corners_by_vertex(struct report *report,
-                                             const uint32_t *vertex_of_corner, size_t corner_count,
-                                             size_t vertex_count, uint32_t **starts,
-                                             uint32_t **list)
+ * list[starts[v]] to list[starts[v + 1] - 1], in ascending order. */
+struct corner_lists {
+    uint32_t *starts, *list; /* owned */
+};
+
+static void clear_lists(struct corner_lists *lists)
 {
-    *starts = allocate_array(vertex_count + 2, sizeof **starts);
-    *list = allocate_array(corner_count, sizeof **list);
-    if (!*starts || !*list) {
-        free(*starts);
-        free(*list);
-        *starts = *list = NULL;
-        return report_out_of_memory(report, "the edges of a mesh");
-    }
+    free(lists->starts);
+    free(lists->list);
+}
+
+/* For clear_lists, whatever is returned. */
+static bool sort_corners(struct corner_lists *lists, const uint32_t *vertex_of_corner,
+                         size_t corner_count, size_t vertex_count)
+{
+    lists->starts = allocate_array(vertex_count + 2, sizeof *lists->starts);
+    lists->list = allocate_array(corner_count, sizeof *lists->list);
+    if (!lists->starts || !lists->list)
+        return false;
     /* counted two places on, so that filling leaves the starts where they belong */
-    uint32_t *next = *starts + 1;
+    uint32_t *next = lists->starts + 1;
     for (size_t i = 0; i < corner_count; i++)
         next[vertex_of_corner[i] + 1]++;
     for (size_t v = 1; v <= vertex_count; v++)
         next[v] += next[v - 1];
     for (size_t i = 0; i < corner_count; i++)
-        (*list)[next[vertex_of_corner[i]]++] = (uint32_t)i;
-    return SONJECT_OK;
+        lists->list[next[vertex_of_corner[i]]++] = (uint32_t)i;
+    return true;
 }
 
 sonject_status mesh_smooth_normals(struct report *report, const float *vertices,
                                    size_t vertex_count, const uint32_t *corners,
                                    size_t triangle_count, double angle, float **normals)
 {
+    const float least_cosine = (float)cos(angle);
+    struct corner_lists lists = {NULL, NULL};
     struct facet *facets = allocate_array(triangle_count, sizeof *facets);
-    uint32_t *starts = NULL;
-    uint32_t *list = NULL;
-    *normals = allocate_array(3 * triangle_count, 3 * sizeof **normals);
-    const sonject_status status = facets && *normals
-                                      ? mesh_corners_by_vertex(report, corners, 3 * triangle_count,
-                                                               vertex_count, &starts, &list)
-                                      : report_out_of_memory(report, "the normals of a mesh");
-    if (status == SONJECT_OK) {
-        for (size_t i = 0; i < triangle_count; i++)
-            measure_facet(&vertices[3 * (size_t)corners[3 * i]],
-                          &vertices[3 * (size_t)corners[3 * i + 1]],
-                          &vertices[3 * (size_t)corners[3 * i + 2]], &facets[i]);
-        const float least_cosine = (float)cos(angle);
-        for (size_t i = 0; i < 3 * triangle_count; i++) {
-            const uint32_t first = starts[corners[i]];
-            const size_t count = starts[corners[i] + 1] - first;
-            float *normal = *normals + 3 * i;
-            if (count > FACETS_MAX)
-                memcpy(normal, facets[i / 3].normal, 3 * sizeof *normal);
-            else
-                mean_normal(facets, list + first, count, i / 3, least_cosine, normal);
-        }
-    } else {
-        free(*normals);
-        *normals = NULL;
+    float *made = allocate_array(3 * triangle_count, 3 * sizeof *made);
+    const bool has_memory =
+        facets && made && sort_corners(&lists, corners, 3 * triangle_count, vertex_count);
+    for (size_t i = 0; has_memory && i < triangle_count; i++)
+        measure_facet(&vertices[3 * (size_t)corners[3 * i]],
+                      &vertices[3 * (size_t)corners[3 * i + 1]],
+                      &vertices[3 * (size_t)corners[3 * i + 2]], &facets[i]);
+    for (size_t i = 0; has_memory && i < 3 * triangle_count; i++) {
+        const uint32_t first = lists.starts[corners[i]];
+        const size_t count = lists.starts[corners[i] + 1] - first;
+        if (count > FACETS_MAX)
+            memcpy(&made[3 * i], facets[i / 3].normal, 3 * sizeof *made);
+        else
+            mean_normal(facets, lists.list + first, count, i / 3, least_cosine, &made[3 * i]);
     }
+    clear_lists(&lists);
     free(facets);
-    free(starts);
-    free(list);
-    return status;
+    *normals = has_memory ? made : NULL;
+    if (!has_memory)
+        free(made);
+    CHECK_MEMORY(report, has_memory, "the normals of a mesh");
+    return SONJECT_OK;
 }
 
 /* The edge that starts at corner k of a triangle is number 3 * triangle + k. */
-static uint32_t edge_start(const uint32_t *corners, size_t edge)
-{
-    return corners[edge];
-}
-
 static uint32_t edge_end(const uint32_t *corners, size_t edge)
 {
     return corners[edge % 3 == 2 ? edge - 2 : edge + 1];
@@ -160,13 +155,12 @@ static int compare_edges(const void *first, const void *second)
     return a->number < b->number ? -1 : a->number > b->number;
 }
 
+/* Most vertices have few. */
 static void sort_edges(struct edge *edges, size_t count)
 {
-    if (count > 24) {
+    if (count > 24)
         qsort(edges, count, sizeof *edges, compare_edges);
-        return;
-    }
-    for (size_t i = 1; i < count; i++) {
+    for (size_t i = 1; count <= 24 && i < count; i++) {
         const struct edge edge = edges[i];
         size_t place = i;
         for (; place > 0 && compare_edges(&edges[place - 1], &edge) > 0; place--)
@@ -196,45 +190,35 @@ static void pair_edges(struct mesh_topology *topology, uint32_t lower, const str
     }
 }
 
-/* partners[edge]: the other triangle's, NO_PARTNER unless there is exactly one. */
-static sonject_status find_partners(struct report *report, size_t vertex_count,
-                                    const uint32_t *corners, size_t edge_count,
-                                    struct mesh_topology *topology, uint32_t *partners)
+/* partners[edge]: the other triangle's, NO_PARTNER unless there is exactly one. False when memory
+ * is out. */
+static bool find_partners(size_t vertex_count, const uint32_t *corners, size_t edge_count,
+                          struct mesh_topology *topology, uint32_t *partners)
 {
+    struct corner_lists lists = {NULL, NULL};
     uint32_t *lowers = allocate_array(edge_count, sizeof *lowers);
-    struct edge *edges = NULL;
-    uint32_t *starts = NULL;
-    uint32_t *list = NULL;
-    sonject_status status = SONJECT_ERROR_MEMORY;
-    if (lowers) {
-        for (size_t i = 0; i < edge_count; i++) {
-            const uint32_t start = edge_start(corners, i);
-            const uint32_t end = edge_end(corners, i);
-            lowers[i] = start < end ? start : end;
-            partners[i] = NO_PARTNER;
-        }
-        status = mesh_corners_by_vertex(report, lowers, edge_count, vertex_count, &starts, &list);
+    struct edge *edges = allocate_array(edge_count, sizeof *edges);
+    for (size_t i = 0; lowers && i < edge_count; i++) {
+        const uint32_t end = edge_end(corners, i);
+        lowers[i] = corners[i] < end ? corners[i] : end;
+        partners[i] = NO_PARTNER;
     }
+    const bool has_memory =
+        lowers && edges && sort_corners(&lists, lowers, edge_count, vertex_count);
     free(lowers);
-    if (status == SONJECT_OK)
-        edges = allocate_array(edge_count, sizeof *edges);
-    for (size_t v = 0; edges && v < vertex_count; v++) {
-        const size_t count = starts[v + 1] - starts[v];
+    for (size_t v = 0; has_memory && v < vertex_count; v++) {
+        const size_t count = lists.starts[v + 1] - lists.starts[v];
         for (size_t i = 0; i < count; i++) {
-            const uint32_t number = list[starts[v] + i];
-            const uint32_t start = edge_start(corners, number);
+            const uint32_t number = lists.list[lists.starts[v] + i];
             edges[i].number = number;
-            edges[i].higher = start == v ? edge_end(corners, number) : start;
+            edges[i].higher = corners[number] == v ? edge_end(corners, number) : corners[number];
         }
         sort_edges(edges, count);
         pair_edges(topology, (uint32_t)v, edges, count, partners);
     }
-    if (!edges)
-        status = report_out_of_memory(report, "the edges of a mesh");
     free(edges);
-    free(starts);
-    free(list);
-    return status;
+    clear_lists(&lists);
+    return has_memory;
 }
 
 enum visit {
@@ -279,8 +263,7 @@ static size_t follow_piece(struct walk *walk, uint32_t first, size_t *turned,
             if (partner == NO_PARTNER)
                 continue;
             const size_t next = partner / 3;
-            const bool is_against =
-                edge_start(walk->corners, edge) == edge_start(walk->corners, partner);
+            const bool is_against = walk->corners[edge] == walk->corners[partner];
             const unsigned char wanted =
                 is_against == (walk->visits[triangle] == AS_IT_IS) ? REVERSED : AS_IT_IS;
             if (walk->visits[next] == UNSEEN) {
@@ -289,7 +272,7 @@ static size_t follow_piece(struct walk *walk, uint32_t first, size_t *turned,
                 *turned += wanted == REVERSED;
             } else if (walk->visits[next] != wanted && edge < partner) {
                 topology->twisted_edges++;
-                topology->edge[0] = edge_start(walk->corners, edge);
+                topology->edge[0] = walk->corners[edge];
                 topology->edge[1] = edge_end(walk->corners, edge);
             }
         }
@@ -359,16 +342,14 @@ sonject_status mesh_topology_find(struct report *report, const float *vertices, 
     uint32_t *partners = allocate_array(3 * triangle_count, sizeof *partners);
     struct walk walk = {vertices, corners, partners, allocate_array(triangle_count, 1),
                         allocate_array(triangle_count, sizeof *walk.list)};
-    sonject_status status;
-    if (partners && walk.visits && walk.list)
-        status =
-            find_partners(report, vertex_count, corners, 3 * triangle_count, topology, partners);
-    else
-        status = report_out_of_memory(report, "the edges of a mesh");
-    if (status == SONJECT_OK)
+    const bool has_memory =
+        partners && walk.visits && walk.list &&
+        find_partners(vertex_count, corners, 3 * triangle_count, topology, partners);
+    if (has_memory)
         orient(&walk, triangle_count, topology);
     free(partners);
     free(walk.visits);
     free(walk.list);
-    return status;
+    CHECK_MEMORY(report, has_memory, "the edges of a mesh");
+    return SONJECT_OK;
 }

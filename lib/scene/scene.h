@@ -11,7 +11,7 @@
 
 #include "base/ranges.h"
 #include "medium/water.h"
-#include "mesh/mesh_store.h"
+#include "mesh/mesh.h"
 #include "scene/aperture_motion.h"
 #include "scene/relief_features.h"
 #include "scene/response_table.h"

@@ -135,10 +135,9 @@ static void time_reader(const char *path, struct stopwatch *best)
 {
     for (int i = 0; i < REPEATS; i++) {
         struct report report = {{0}, NULL, NULL};
-        struct mesh_soup soup;
-        memset(&soup, 0, sizeof soup);
+        struct mesh_soup soup = {.report = &report, .path = path};
         const struct stopwatch start = now();
-        if (mesh_file_read(&report, path, &soup) != SONJECT_OK)
+        if (mesh_file_read(&soup) != SONJECT_OK)
             exit(1);
         keep_best(best, start, i == 0);
         mesh_soup_clear(&soup);

@@ -10,11 +10,11 @@
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {
     struct report report = {{0}, NULL, NULL};
-    struct mesh_soup soup = {0};
+    struct mesh_soup soup = {.report = &report, .path = "fuzz"};
     struct mesh_options options;
     struct mesh mesh;
     char *text = fuzz_text(bytes, count);
-    sonject_status status = READER(&report, "fuzz", text, count, &soup);
+    sonject_status status = READER(&soup, text, count);
     fuzz_expect(status, &report);
     if (status == SONJECT_OK) {
         for (size_t i = 0; i < 3 * soup.vertices; i++)

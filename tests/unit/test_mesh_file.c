@@ -56,11 +56,10 @@ static sonject_status read_part(enum format format, const char *bytes, size_t co
     assert_non_null(part);
     memcpy(part, bytes, count);
     part[count] = '\0';
-    memset(soup, 0, sizeof *soup);
-    const sonject_status status =
-        format <= STL_BINARY ? stl_read(&report, draft_names[format], part, count, soup)
-        : format == OBJ      ? obj_read(&report, draft_names[format], part, count, soup)
-                             : ply_read(&report, draft_names[format], part, count, soup);
+    *soup = (struct mesh_soup){.report = &report, .path = draft_names[format]};
+    const sonject_status status = format <= STL_BINARY ? stl_read(soup, part, count)
+                                  : format == OBJ      ? obj_read(soup, part, count)
+                                                       : ply_read(soup, part, count);
     free(part);
     return status;
 }

@@ -2,7 +2,7 @@
 #include "claims.h"
 #include "kernel/mesh_samples.h"
 #include "mesh/mesh.h"
-#include "mesh/topology.h"
+#include "mesh/mesh.h"
 
 static struct report report;
 
