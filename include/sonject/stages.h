@@ -55,7 +55,7 @@ SONJECT_API void sonject_form_params_init(sonject_form_params *params);
  * byte, but for times and memory in run.json. A bandwidth may be at most the one that was traced
  * and not much below a third of it, a resolution no finer than that one: trace at the largest
  * bandwidth that is wanted. The measured pixels stay as they are. Against a run at the other
- * bandwidth the rays are the same only where that lays the same fine grid (lib/scene/line_grid.h);
+ * bandwidth the rays are the same only where that lays the same fine grid (lib/scene/patch_view.h);
  * else energies differ by the noise of two sets of rays, and the outermost pixels lack up to 2 % of
  * their energy. Errors: ARGUMENT, INPUT (not such a file, damaged, of another version, of another
  * scene or image; a key or value that needs a new trace), DEVICE, STORAGE, MEMORY, UNSUPPORTED,

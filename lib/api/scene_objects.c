@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-#include "scene/pose.h"
+#include "scene/placement.h"
 #include "scene/shapes/shape.h"
 #include "schema/scene_target.h"
 

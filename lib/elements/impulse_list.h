@@ -5,7 +5,6 @@
 
 #include "base/report.h"
 #include "device/device.h"
-#include "scene/line_grid.h"
 #include "scene/patch_view.h"
 
 /* Some strips of a grid. All owned. */

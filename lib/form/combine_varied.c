@@ -4,8 +4,8 @@
 
 #include "base/memory.h"
 #include "device/device.h"
-#include "scene/cross_range.h"
 #include "scene/motion_response.h"
+#include "scene/point_response.h"
 
 #define BLOCK_COLUMNS 16 /* that share a response; holds whole groups of any width */
 #define ROWS_PER_ITEM 8  /* FORM_ROWS of kernels/image_formation.h */

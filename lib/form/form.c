@@ -8,7 +8,7 @@
 #include "device/device.h"
 #include "form/combine_varied.h"
 #include "kernels/layout.h"
-#include "scene/cross_range.h"
+#include "scene/point_response.h"
 
 #define SEARCH_STEP          64    /* bins that are looked at together */
 #define SHORT_GAP            8     /* strips: their copy takes as long as another launch */

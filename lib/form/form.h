@@ -10,7 +10,6 @@
 #include "base/report.h"
 #include "device/device.h"
 #include "kernels/layout.h"
-#include "scene/line_grid.h"
 #include "scene/patch_view.h"
 #include "scene/point_response.h"
 

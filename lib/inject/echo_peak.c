@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "scene/cross_range.h"
+#include "scene/point_response.h"
 
 #define POINTS_PER_RESOLUTION 4 /* a parabola in dB between them errs by 0.02 dB */
 #define MARGIN                2 /* points around the tile */

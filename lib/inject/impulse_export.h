@@ -12,7 +12,7 @@
  *   /chains/ORDER      energy (m^2) of paths of that many interactions, or of all from there on
  *                      where orders are not kept apart; only with several interactions
  *
- * Each set of lines has the attributes of its grid (scene/line_grid.h): strips_per_row,
+ * Each set of lines has the attributes of its grid (scene/patch_view.h): strips_per_row,
  * bins_per_pixel, first_strip, strips, first_bin, bins; its datasets are strips x bins of 32-bit
  * floats with an attribute units, in chunks of whole strips of about 1 MB, shuffled and deflated.
  * Rows are the view's: of images to starboard the last row comes first (patch_view.h). */

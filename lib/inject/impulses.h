@@ -6,7 +6,7 @@
 
 #include <sonject/status.h>
 
-#include "scene/line_grid.h"
+#include "scene/patch_view.h"
 
 /* Sets of lines, in the order in which they are handed out. */
 enum impulse_kind {

@@ -6,7 +6,6 @@
 
 #include "base/memory.h"
 #include "image/synthetic.h"
-#include "scene/cross_range.h"
 #include "scene/patch_view.h"
 #include "scene/point_response.h"
 

@@ -7,7 +7,7 @@
 #include "base/memory.h"
 #include "form/form.h"
 #include "inject/echoes.h"
-#include "scene/cross_range.h"
+#include "scene/point_response.h"
 
 #define CHUNK 256 /* strips drawn at a time */
 

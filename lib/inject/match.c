@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "scene/cross_range.h"
+#include "scene/point_response.h"
 
 #define PI            3.14159265358979323846
 #define REACH         160  /* pixels around the objects: ten blocks across */

@@ -6,7 +6,7 @@
 
 #include "base/memory.h"
 #include "image/statistics.h"
-#include "scene/cross_range.h"
+#include "scene/point_response.h"
 
 #define LEVEL_FLOOR                                                                                \
     1e-6 /* of the patch's mean intensity: blank corners of a swath have no level                  \

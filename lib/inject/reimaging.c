@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-#include "scene/cross_range.h"
+#include "scene/point_response.h"
 #include "trace/glints.h"
 
 #define EDGE_LOSS         0.02   /* of an edge pixel's energy */

@@ -3,7 +3,7 @@
 #ifndef SONJECT_INJECT_REIMAGING_H
 #define SONJECT_INJECT_REIMAGING_H
 
-#include "scene/line_grid.h"
+#include "scene/patch_view.h"
 #include "trace/tracer.h"
 
 /* Whether the tracer's response can be formed on the seabed's grid of a file: strips and bins fine

@@ -106,8 +106,8 @@ sonject_status motion_table_set(struct motion_table *table, struct report *repor
     if (!positions || !copies) {
         free(positions);
         free(copies);
-        return report_out_of_memory(report, "a table of motion");
     }
+    CHECK_MEMORY(report, positions && copies, "a table of motion");
     memcpy(positions, along_track_m, count * sizeof *positions);
     memcpy(copies, values, count * sizeof *copies);
     motion_table_clear(table);
@@ -181,14 +181,6 @@ struct places {
     double *values;
 };
 
-static void begin_with_table(const struct places *places, const struct motion_table *table)
-{
-    for (size_t i = 0; i < places->count; i++)
-        places->values[i] = table->count > 0
-                                ? value_of_table(table, places->start + (double)i * places->step)
-                                : 0.0;
-}
-
 static void add_wave(const struct places *places, double amplitude, double wavenumber, double phase)
 {
     for (size_t i = 0; i < places->count; i++)
@@ -214,12 +206,21 @@ static void add_random(const struct places *places, double rms, double correlati
     }
 }
 
+static struct places begin_with_table(const struct motion_table *table, double start, double step,
+                                      size_t count, double *values)
+{
+    const struct places places = {start, step, count, values};
+    for (size_t i = 0; i < count; i++)
+        values[i] = table->count > 0 ? value_of_table(table, start + (double)i * step) : 0.0;
+    return places;
+}
+
 void aperture_motion_sway(const struct aperture_motion *motion, double start_m, double step_m,
                           size_t count, double *sway_m)
 {
     const sonject_motion_params *params = &motion->params;
-    const struct places places = {start_m, step_m, count, sway_m};
-    begin_with_table(&places, &motion->sway_table);
+    const struct places places =
+        begin_with_table(&motion->sway_table, start_m, step_m, count, sway_m);
     for (uint32_t i = 0; i < params->sway_count; i++)
         add_wave(&places, params->sways[i].amplitude_m, 2.0 * PI / params->sways[i].wavelength_m,
                  params->sways[i].phase_rad);
@@ -231,8 +232,8 @@ void aperture_motion_yaw(const struct aperture_motion *motion, double start_m, d
                          size_t count, double *yaw_rad)
 {
     const sonject_motion_params *params = &motion->params;
-    const struct places places = {start_m, step_m, count, yaw_rad};
-    begin_with_table(&places, &motion->yaw_table);
+    const struct places places =
+        begin_with_table(&motion->yaw_table, start_m, step_m, count, yaw_rad);
     for (size_t i = 0; i < count; i++)
         yaw_rad[i] += params->yaw_bias_rad;
     for (uint32_t i = 0; i < params->yaw_count; i++)

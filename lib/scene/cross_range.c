@@ -1,10 +1,14 @@
-#include "scene/cross_range.h"
+/* The cross-range response as the image has it, and the whole response that a scene describes. */
 
 #include <math.h>
 #include <string.h>
 
+#include "scene/aperture_motion.h"
 #include "scene/motion_response.h"
+#include "scene/patch_view.h"
+#include "scene/point_response.h"
 #include "scene/relief.h"
+#include "scene/scene.h"
 #include "scene/sonar_array.h"
 
 #define PI               3.14159265358979323846
@@ -13,6 +17,10 @@
 #define BEAM_STEPS       4096
 #define HALF_POWER_POINT 0.31895 /* sinc(z)^4 = 1/2 */
 #define MIGRATION_SHARE  0.25    /* of a range cell, that an echo may move within the beam */
+
+#define SPACING_OVER_WIDTH_MAX 64
+#define CELLS_OF_REACH_MAX     256
+#define STRIPS_OF_REACH_MAX    4096
 
 static double sinc(double x)
 {
@@ -55,8 +63,9 @@ static double tangent_at(const struct point_response *response, double z)
     return sine / sqrt(1.0 - sine * sine);
 }
 
-void point_response_set_array(struct point_response *response, const sonject_sonar_params *sonar,
-                              const struct patch_view *view)
+/* The beam of the sonar's array, a real aperture of uniform weighting, in place of the window. */
+static void set_array(struct point_response *response, const sonject_sonar_params *sonar,
+                      const struct patch_view *view)
 {
     double axes[3][3];
     sonar_array_axes(axes, sonar, view->is_mirrored);
@@ -185,4 +194,79 @@ sonject_status cross_range_check(const struct point_response *response, struct r
                 is_turned ? "less heading and pitch, " : "");
     }
     return SONJECT_OK;
+}
+
+/* Measured responses that no grid of this patch could hold. */
+static sonject_status check_size(const struct point_response *response, struct report *report,
+                                 const struct patch_view *view)
+{
+    const double finest = view->column_spacing_m / SPACING_OVER_WIDTH_MAX;
+    if (response->range_resolution_m < finest)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the pulse's half-power width of %.3g m is below 1/%d of the column "
+                              "spacing: correct its table or bandwidth",
+                              response->range_resolution_m, SPACING_OVER_WIDTH_MAX);
+    if (response->pulse_reach_m > CELLS_OF_REACH_MAX * response->range_resolution_m)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the pulse reaches %.4g m to each side, more than %d range cells: "
+                              "cut its table",
+                              response->pulse_reach_m, CELLS_OF_REACH_MAX);
+    if (!response->cross_range_table)
+        return SONJECT_OK;
+    if (response->strip_m < view->row_spacing_m / SPACING_OVER_WIDTH_MAX)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the cross-range response's half-power width of %.3g m is below 1/%d "
+                              "of the row spacing: correct its table",
+                              response->strip_m, SPACING_OVER_WIDTH_MAX);
+    const double reach = response_table_reach(response->cross_range_table, MARGIN_ENERGY_SHARE);
+    if (reach > STRIPS_OF_REACH_MAX * response->strip_m)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "the cross-range response reaches %.4g m to each side, more than %d "
+                              "times its half-power width: cut its table",
+                              reach, STRIPS_OF_REACH_MAX);
+    return SONJECT_OK;
+}
+
+static sonject_status set_motion(struct point_response *response, struct report *report,
+                                 const struct scene *scene, const struct patch_view *view)
+{
+    const double middle = view_processor_range(view, 0.5 * (double)(view->columns - 1));
+    if (aperture_motion_has_yaw(&scene->motion) && scene->motion.params.yaw_advance_m == 0.0)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "sonar.motion.yaw: a table of yaw is given without the advance from "
+                              "ping to ping: give that too");
+    response->motion = &scene->motion;
+    response->motion_range_m = middle / view->range_ratio;
+    response->motion_phase_per_m = -4.0 * PI / view->wavelength_m * cos(view_grazing(view, middle));
+    return motion_response_spread(report, response, view);
+}
+
+sonject_status point_response_of_scene(struct point_response *response, struct report *report,
+                                       const struct scene *scene, const struct patch_view *view,
+                                       double reference_sound_speed_mps)
+{
+    const struct response_table *table = &scene->cross_range_table;
+    const bool is_real_aperture = scene->sonar.kind == SONJECT_SONAR_REAL;
+    const bool has_motion = !aperture_motion_is_still(&scene->motion);
+    point_response_init(response, &scene->sonar, reference_sound_speed_mps, view->row_spacing_m);
+    point_response_set_pulse(response, &scene->pulse, &scene->pulse_table,
+                             reference_sound_speed_mps);
+    if ((table->count > 0) + has_motion + is_real_aperture > 1)
+        return report_failure(
+            report, SONJECT_ERROR_INPUT, "%s and %s exclude each other: take one of them away",
+            table->count > 0 && has_motion ? "a measured cross-range response" : "a real aperture",
+            table->count > 0 && has_motion ? "motion"
+            : table->count > 0             ? "a measured cross-range response"
+                                           : "residual motion");
+    if (table->count > 0) {
+        response->cross_range_table = table;
+        response->cross_range_energy_m = response_table_energy(table, -HUGE_VAL, HUGE_VAL);
+        response->strip_m = fmin(response->strip_m, response_table_width(table));
+    }
+    if (is_real_aperture)
+        set_array(response, &scene->sonar, view);
+    const double patch_m = (double)view->columns * view->column_spacing_m;
+    response->pulse_tail_m = fmin(response->pulse_tail_m, fmax(response->pulse_reach_m, patch_m));
+    CHECK(check_size(response, report, view));
+    return has_motion ? set_motion(response, report, scene, view) : SONJECT_OK;
 }

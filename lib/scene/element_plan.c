@@ -144,10 +144,9 @@ sonject_status element_plan(sonject_element_layout *layout, struct report *repor
                               "wavelength of %g m",
                               response->resolution_m, wavelength);
     plan_array(layout);
-    sonject_status status = plan_pings(layout, report, view);
-    THEN(status, plan_rate(layout, report));
-    THEN(status, plan_times(layout, report, view, response));
-    return status;
+    CHECK(plan_pings(layout, report, view));
+    CHECK(plan_rate(layout, report));
+    return plan_times(layout, report, view, response);
 }
 
 size_t element_plan_samples(const sonject_element_layout *layout)

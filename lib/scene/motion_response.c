@@ -14,11 +14,11 @@
 #define PINGS_MAX   ((size_t)1 << 22)
 #define HEARD_STEPS 32 /* of an integral over the aspects */
 
-/* The steepest aspect that is integrated, as the sine of its angle. */
-static double steepest(const struct motion_response *motion)
-{
-    return fmin(0.999, motion->view->wavelength_m / (4.0 * motion->response->resolution_m));
-}
+#define SPREAD_ROWS  9
+#define SPREAD_REACH 2048 /* resolutions to each side that a spread is looked for in */
+
+/* Of |W|^2 that may lie beyond: at the patch's edges, beyond margins, beyond taps. */
+static const double spread_shares[MOTION_SHARES] = {0.04, MARGIN_ENERGY_SHARE, 0.001};
 
 /* Length over which the phase error changes all at once, m. */
 static double shortest_scale(const struct motion_response *motion)
@@ -51,21 +51,18 @@ static double side_of(const struct motion_response *motion)
     return motion->view->is_mirrored ? -1.0 : 1.0;
 }
 
-static void find_track(struct motion_response *motion)
+static sonject_status sample_sway(struct motion_response *motion, struct report *report)
 {
     const struct patch_view *view = motion->view;
-    const double sine = steepest(motion);
+    const double side = side_of(motion);
+    /* the steepest aspect that is integrated, as the sine of its angle */
+    const double sine = fmin(0.999, view->wavelength_m / (4.0 * motion->response->resolution_m));
     const double half_aperture =
         motion->response->motion_range_m * sine / sqrt(1.0 - sine * sine) + view->row_spacing_m;
     motion->first_m = view_x_of_row(view, 0.0) - half_aperture;
     motion->length_m = (double)view->rows * view->row_spacing_m + 2.0 * half_aperture;
-}
-
-static sonject_status sample_sway(struct motion_response *motion, struct report *report)
-{
-    const double side = side_of(motion);
     const double step = aperture_motion_step(motion->response->motion);
-    const double rows = motion->length_m / motion->view->row_spacing_m;
+    const double rows = motion->length_m / view->row_spacing_m;
     double steps = fmax(1.0, ceil(motion->length_m / step));
     if (steps > (double)SWAYS_MAX - 2.0)
         return report_failure(report, SONJECT_ERROR_INPUT,
@@ -77,8 +74,7 @@ static sonject_status sample_sway(struct motion_response *motion, struct report 
     motion->sways = (size_t)steps + 2;
     motion->sway_step_m = motion->length_m / (double)(motion->sways - 2);
     motion->sway_m = allocate_array(motion->sways, sizeof *motion->sway_m);
-    if (!motion->sway_m)
-        return report_out_of_memory(report, "motion");
+    CHECK_MEMORY(report, motion->sway_m, "motion");
     aperture_motion_sway(motion->response->motion, side * motion->first_m,
                          side * motion->sway_step_m, motion->sways, motion->sway_m);
     return SONJECT_OK;
@@ -99,8 +95,7 @@ static sonject_status sample_yaw(struct motion_response *motion, struct report *
                               PINGS_MAX);
     motion->pings = (size_t)pings;
     motion->yaw_rad = allocate_array(motion->pings, sizeof *motion->yaw_rad);
-    if (!motion->yaw_rad)
-        return report_out_of_memory(report, "motion");
+    CHECK_MEMORY(report, motion->yaw_rad, "motion");
     aperture_motion_yaw(motion->response->motion, side * motion->first_ping * motion->advance_m,
                         side * motion->advance_m, motion->pings, motion->yaw_rad);
     return SONJECT_OK;
@@ -113,9 +108,10 @@ static sonject_status allocate_aspects(struct motion_response *motion, struct re
     motion->root_imaginary = allocate_array(motion->aspects / 2, sizeof(double));
     motion->real_part = allocate_array(motion->aspects, sizeof(double));
     motion->imaginary_part = allocate_array(motion->aspects, sizeof(double));
-    if (!motion->root_real || !motion->root_imaginary || !motion->real_part ||
-        !motion->imaginary_part)
-        return report_out_of_memory(report, "motion");
+    CHECK_MEMORY(report,
+                 motion->root_real && motion->root_imaginary && motion->real_part &&
+                     motion->imaginary_part,
+                 "motion");
     fourier_roots(motion->root_real, motion->root_imaginary, motion->aspects);
     return SONJECT_OK;
 }
@@ -142,8 +138,7 @@ static sonject_status find_heard(struct motion_response *motion, struct report *
     const double range = motion->response->motion_range_m;
     const double length = 2.0 * motion->response->resolution_m / motion->view->wavelength_m;
     motion->heard = allocate_array(2 * (size_t)motion->reach + 1, sizeof *motion->heard);
-    if (!motion->heard)
-        return report_out_of_memory(report, "motion");
+    CHECK_MEMORY(report, motion->heard, "motion");
     for (int j = -motion->reach; j <= motion->reach; j++) {
         const double distance = j * motion->strip_m + motion->offset_m;
         const double aside = length * distance / hypot(range, distance);
@@ -168,7 +163,6 @@ sonject_status motion_response_begin(struct motion_response *motion, struct repo
     motion->strip_m = strip_m;
     motion->offset_m = offset_m;
     motion->reach = reach;
-    find_track(motion);
     sonject_status status = sample_sway(motion, report);
     THEN(status, sample_yaw(motion, report));
     THEN(status, find_heard(motion, report));
@@ -279,41 +273,113 @@ static void fill_aspects(struct motion_response *motion, double x)
     }
 }
 
-/* What the error makes of the straight response, at the distances. */
-static void find_change(struct motion_response *motion, double row, double *real_part,
-                        double *imaginary_part)
+/* What the error makes of the straight response, and that as it is known, at the distances. */
+static void find_row(struct motion_response *motion, double row, bool is_all_around,
+                     double *real_part, double *imaginary_part)
 {
     fill_aspects(motion, view_x_of_row(motion->view, row));
     fourier_transform(motion->real_part, motion->imaginary_part, motion->aspects, motion->root_real,
                       motion->root_imaginary);
     for (int j = -motion->reach; j <= motion->reach; j++) {
         const size_t at = (size_t)(j + (int)motion->aspects) % motion->aspects;
-        real_part[j + motion->reach] = motion->real_part[at];
-        imaginary_part[j + motion->reach] = motion->imaginary_part[at];
-    }
-}
-
-static void add_straight(const struct motion_response *motion, double *real_part)
-{
-    for (int j = -motion->reach; j <= motion->reach; j++)
-        real_part[j + motion->reach] +=
+        const int i = j + motion->reach;
+        const double heard = is_all_around ? 1.0 : motion->heard[i];
+        real_part[i] =
+            motion->real_part[at] * heard +
             along_track_response(motion->response, j * motion->strip_m + motion->offset_m);
+        imaginary_part[i] = motion->imaginary_part[at] * heard;
+    }
 }
 
 void motion_response_row_all_around(struct motion_response *motion, double row, double *real_part,
                                     double *imaginary_part)
 {
-    find_change(motion, row, real_part, imaginary_part);
-    add_straight(motion, real_part);
+    find_row(motion, row, true, real_part, imaginary_part);
 }
 
 void motion_response_row(struct motion_response *motion, double row, double *real_part,
                          double *imaginary_part)
 {
-    find_change(motion, row, real_part, imaginary_part);
-    for (int i = 0; i <= 2 * motion->reach; i++) {
-        real_part[i] *= motion->heard[i];
-        imaginary_part[i] *= motion->heard[i];
+    find_row(motion, row, false, real_part, imaginary_part);
+}
+
+/* Distances within which all but `share` of a row's energy lies; the whole reach where more lies
+ * beyond. */
+static double reach_of_row(const struct motion_response *motion, const double *real_part,
+                           const double *imaginary_part, double share)
+{
+    const double total = along_track_energy_width(motion->response) / motion->strip_m;
+    double inside = 0.0;
+    for (int j = 0; j <= motion->reach; j++)
+        for (int side = -1; side <= (j > 0 ? 1 : -1); side += 2) {
+            const int at = motion->reach + side * j;
+            inside += real_part[at] * real_part[at] + imaginary_part[at] * imaginary_part[at];
+            if (inside >= (1.0 - share) * total)
+                return j * motion->strip_m;
+        }
+    return motion->reach * motion->strip_m;
+}
+
+static sonject_status spread_row(const struct motion_response *motion, struct report *report,
+                                 const double *real_part, const double *imaginary_part,
+                                 double spread_m[MOTION_SHARES])
+{
+    for (int s = 0; s < MOTION_SHARES; s++) {
+        const double reach = reach_of_row(motion, real_part, imaginary_part, spread_shares[s]);
+        if (spread_shares[s] >= MARGIN_ENERGY_SHARE && reach >= motion->reach * motion->strip_m)
+            return report_failure(
+                report, SONJECT_ERROR_INPUT,
+                "sonar.motion spreads echoes farther than %.4g m along-track, %d times the "
+                "resolution: lessen it",
+                reach, motion->reach);
+        spread_m[s] =
+            fmax(spread_m[s], reach - along_track_energy_reach(motion->response, spread_shares[s]));
     }
-    add_straight(motion, real_part);
+    return SONJECT_OK;
+}
+
+/* Of a row's energy, what comes from beyond the beam of the elements. */
+static double lost_by_row(const struct motion_response *motion, const double *real_part,
+                          const double *imaginary_part)
+{
+    double lost = 0.0;
+    for (int i = 0; i <= 2 * motion->reach; i++) {
+        const double straight = along_track_response(
+            motion->response, (i - motion->reach) * motion->strip_m + motion->offset_m);
+        const double a = straight + motion->heard[i] * (real_part[i] - straight);
+        const double b = motion->heard[i] * imaginary_part[i];
+        lost += real_part[i] * real_part[i] + imaginary_part[i] * imaginary_part[i] - a * a - b * b;
+    }
+    return lost * motion->strip_m / along_track_energy_width(motion->response);
+}
+
+sonject_status motion_response_spread(struct report *report, struct point_response *response,
+                                      const struct patch_view *view)
+{
+    struct motion_response motion;
+    memset(response->motion_spread_m, 0, sizeof response->motion_spread_m);
+    CHECK(motion_response_begin(&motion, report, response, view, response->resolution_m, 0.0,
+                                SPREAD_REACH));
+    double *real_part = allocate_array(2 * (2 * (size_t)SPREAD_REACH + 1), sizeof *real_part);
+    double *imaginary_part = real_part ? real_part + 2 * SPREAD_REACH + 1 : NULL;
+    sonject_status status = real_part ? SONJECT_OK : report_out_of_memory(report, "motion");
+    response->motion_energy_share = 1.0;
+    for (int i = 0; status == SONJECT_OK && i < SPREAD_ROWS; i++) {
+        motion_response_row_all_around(&motion, (double)(view->rows - 1) * i / (SPREAD_ROWS - 1),
+                                       real_part, imaginary_part);
+        status = spread_row(&motion, report, real_part, imaginary_part, response->motion_spread_m);
+        response->motion_energy_share -=
+            lost_by_row(&motion, real_part, imaginary_part) / SPREAD_ROWS;
+    }
+    free(real_part);
+    motion_response_end(&motion);
+    return status;
+}
+
+double motion_spread(const struct point_response *response, double share)
+{
+    int s = MOTION_SHARES - 1;
+    while (s > 0 && spread_shares[s - 1] <= share)
+        s--;
+    return response->motion_spread_m[s];
 }

@@ -1,12 +1,16 @@
-/* A patch as the tracer sees it: where its pixels lie, with the imaged side to port. */
+/* A patch as the tracer sees it: where its pixels lie, with the imaged side to port, and the fine
+ * grid on which its echoes are collected before image formation. */
 #ifndef SONJECT_SCENE_PATCH_VIEW_H
 #define SONJECT_SCENE_PATCH_VIEW_H
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 #include "medium/water.h"
 #include "scene/scene.h"
+
+struct point_response;
 
 /* Starboard images are mirrored: x runs against the image's along-track axis and row n of the
  * view is row rows - 1 - n of the image, so that +y is to port of +x as in a right-handed frame. */
@@ -70,5 +74,44 @@ double view_refraction_gain(const struct patch_view *view, double processor_rang
 /* (processor / true range)^4: what the target-strength normalisation by processor range does to
  * energies when the processor's sound speed is off. */
 double view_energy_scale(const struct patch_view *view);
+
+struct span {
+    int32_t first, count;
+};
+
+/* Strips divide rows: strip q is part of row floor(q / strips_per_row); bins divide pixels: the
+ * middle of bin b is at column b / bins_per_pixel. Numbers below 0 and beyond the patch are its
+ * margins. */
+struct line_grid {
+    uint32_t strips_per_row, bins_per_pixel;
+    struct span strips, bins;
+};
+
+/* The grid for energies and speckle: cells of at most the along-track resolution by an eighth of
+ * the range resolution, with margins that hold all but 0.5 % of the energies of cross-range
+ * response and pulse, and end at range 0. */
+void line_grid_for_patch(struct line_grid *grid, const struct patch_view *view,
+                         const struct point_response *response);
+
+/* Bins on each side of a pixel that hold all but 0.1 % of the pulse's energy, and those that glints
+ * are spread over: to where its side lobes are below -60 dB. A Gaussian's are both 5 deviations
+ * (-108 dB). */
+int32_t pulse_reach_bins(const struct patch_view *view, const struct point_response *response,
+                         uint32_t bins_per_pixel);
+
+int32_t pulse_tail_bins(const struct patch_view *view, const struct point_response *response,
+                        uint32_t bins_per_pixel);
+
+/* Standard deviation in m of the shortest pulse that the bins of line_grid_for_patch are fine
+ * enough for. */
+double line_grid_shortest_deviation(const struct line_grid *grid, double column_spacing_m);
+
+/* The processor ranges, m, between which echoes share with the grid's bins: a bin beyond the
+ * middles of its outermost ones. */
+double line_grid_near_end(const struct line_grid *grid, const struct patch_view *view);
+double line_grid_far_end(const struct line_grid *grid, const struct patch_view *view);
+
+/* strips.count * bins.count */
+size_t line_grid_cells(const struct line_grid *grid);
 
 #endif

@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "scene/pose.h"
 
 #define PI                   3.14159265358979323846
 #define SMALLEST_WAVELENGTHS 0.5    /* an object's size, at least */
@@ -18,6 +17,30 @@ static const double downward[3] = {0.0, 0.0, -1.0};
 static double dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+void turn_axes(double axes[3][3], double heading, double pitch, double roll)
+{
+    const double cp = cos(pitch);
+    const double sp = sin(pitch);
+    const double nose[3] = {cos(heading) * cp, sin(heading) * cp, sp};
+    const double side[3] = {-sin(heading), cos(heading), 0.0};
+    const double up[3] = {-cos(heading) * sp, -sin(heading) * sp, cp};
+    for (int i = 0; i < 3; i++) {
+        axes[0][i] = nose[i];
+        axes[1][i] = side[i] * cos(roll) + up[i] * sin(roll);
+        axes[2][i] = up[i] * cos(roll) - side[i] * sin(roll);
+    }
+}
+
+void compose_axes(double product[3][3], double inner[3][3], double outer[3][3])
+{
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++) {
+            product[i][k] = 0.0;
+            for (int m = 0; m < 3; m++)
+                product[i][k] += inner[i][m] * outer[m][k];
+        }
 }
 
 double placement_extent(const struct placement *placement, const double direction[3])
@@ -74,28 +97,6 @@ static double overall_size(const struct placement *parts, uint32_t count, int ax
     return parts_extent(parts, count, forward) + parts_extent(parts, count, back);
 }
 
-static void take_shape(struct placement *part, const struct scene *scene, uint32_t object,
-                       const sonject_object_params *shape)
-{
-    memset(part, 0, sizeof *part);
-    part->shape = shape->shape;
-    part->object = object;
-    part->material = &shape->material;
-    shape_size_init_in_scene(&part->size, scene, shape);
-    part->bounding_radius_m = part->size.bounding_radius_m;
-}
-
-/* Turns a part that lies in its object's own frame, and its centre, as the object's axes say. */
-static void turn_part(struct placement *part, const struct scene_part *in_object, double axes[3][3])
-{
-    double own[3][3];
-    memcpy(own, in_object->axes, sizeof own);
-    compose_axes(part->axes, own, axes);
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < 3; k++)
-            part->centre[i] += in_object->centre[k] * axes[k][i];
-}
-
 void object_axes(double axes[3][3], const sonject_object_params *object, bool is_mirrored)
 {
     /* the image's along-track axis is -x in a mirrored view: heading and roll change sense; what is
@@ -104,29 +105,46 @@ void object_axes(double axes[3][3], const sonject_object_params *object, bool is
               is_mirrored ? -object->roll_rad : object->roll_rad);
 }
 
+/* A part as it lies in its object, which may be its own only part: in_object is NULL then. axes:
+ * the object's. */
+static struct placement pose_part(const struct scene *scene, uint32_t object,
+                                  const struct scene_part *in_object, double axes[3][3])
+{
+    const sonject_object_params *shape = in_object ? &in_object->shape : &scene->objects[object];
+    struct placement part = {.shape = shape->shape, .object = object, .material = &shape->material};
+    shape_size_init_in_scene(&part.size, scene, shape);
+    part.bounding_radius_m = part.size.bounding_radius_m;
+    if (!in_object) {
+        memcpy(part.axes, axes, sizeof part.axes);
+        return part;
+    }
+    double own[3][3];
+    memcpy(own, in_object->axes, sizeof own);
+    compose_axes(part.axes, own, axes);
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            part.centre[i] += in_object->centre[k] * axes[k][i];
+    return part;
+}
+
 /* The parts of an object, their centres counted from its origin in axes of the view. Returns their
  * number. parts: room for them, or NULL to count. */
 static uint32_t pose_parts(struct placement *parts, const struct scene *scene, uint32_t object,
                            bool is_mirrored)
 {
-    const sonject_object_params *whole = &scene->objects[object];
     double axes[3][3];
     uint32_t count = 0;
-    object_axes(axes, whole, is_mirrored);
-    if (whole->shape != SONJECT_SHAPE_PARTS) {
-        if (parts) {
-            take_shape(parts, scene, object, whole);
-            memcpy(parts->axes, axes, sizeof axes);
-        }
+    object_axes(axes, &scene->objects[object], is_mirrored);
+    if (scene->objects[object].shape != SONJECT_SHAPE_PARTS) {
+        if (parts)
+            parts[0] = pose_part(scene, object, NULL, axes);
         return 1;
     }
     for (uint32_t i = 0; i < scene->part_count; i++) {
         if (scene->parts[i].object != object)
             continue;
-        if (parts) {
-            take_shape(&parts[count], scene, object, &scene->parts[i].shape);
-            turn_part(&parts[count], &scene->parts[i], axes);
-        }
+        if (parts)
+            parts[count] = pose_part(scene, object, &scene->parts[i], axes);
         count++;
     }
     return count;
@@ -152,37 +170,45 @@ sonject_status object_top(const struct scene *scene, struct report *report, uint
     /* to which side the sonar looks does not matter */
     const uint32_t count = pose_parts(NULL, scene, object, false);
     struct placement *parts = allocate_array(count, sizeof *parts);
-    if (!parts)
-        return report_out_of_memory(report, "an object's parts");
+    CHECK_MEMORY(report, parts, "an object's parts");
     pose_parts(parts, scene, object, false);
     *top_m = overall_size(parts, count, 2) - burial_in_pose(parts, count, &scene->objects[object]);
     free(parts);
     return SONJECT_OK;
 }
 
+/* Placements in the making. */
+struct placing {
+    struct placements *placements;
+    struct report *report;
+    const struct scene *scene;
+    const struct patch_view *view;
+    double first_row, first_column; /* of the patch in the swath */
+};
+
 /* The ground point under an object's origin. */
-static sonject_status find_ground_point(double origin[3], struct report *report,
-                                        const struct patch_view *view, double first_row,
-                                        double first_column, const sonject_object_params *object)
+static sonject_status find_ground_point(double origin[3], const struct placing *placing,
+                                        const sonject_object_params *object)
 {
+    const struct patch_view *view = placing->view;
     double row, column;
-    view_find_pixel(view, first_row, first_column, object->position_kind, object->position_along,
-                    object->position_range, &row, &column);
+    view_find_pixel(view, placing->first_row, placing->first_column, object->position_kind,
+                    object->position_along, object->position_range, &row, &column);
+    const double range = view_processor_range(view, column);
     if (!(row >= -0.5 && row < (double)view->rows - 0.5 && column >= -0.5 &&
           column < (double)view->columns - 0.5))
         return report_failure(
-            report, SONJECT_ERROR_INPUT,
+            placing->report, SONJECT_ERROR_INPUT,
             "object '%s' lies outside the patch: its centre is %.1f m along-track "
             "and at %.1f m slant range; move it or the patch",
-            object->name, view_x_of_row(view, row) * (view->is_mirrored ? -1 : 1),
-            view_processor_range(view, column));
-    if (!(view_ground_range(view, view_processor_range(view, column)) > 0.0))
-        return report_failure(report, SONJECT_ERROR_INPUT,
+            object->name, view_x_of_row(view, row) * (view->is_mirrored ? -1 : 1), range);
+    if (!(view_ground_range(view, range) > 0.0))
+        return report_failure(placing->report, SONJECT_ERROR_INPUT,
                               "object '%s' lies in the water column, before the first return from "
                               "the bottom at %.2f m slant range: move it outwards",
                               object->name, view_bottom_range(view));
     origin[0] = view_x_of_row(view, row);
-    origin[1] = view_ground_range(view, view_processor_range(view, column));
+    origin[1] = view_ground_range(view, range);
     origin[2] = 0.0;
     return SONJECT_OK;
 }
@@ -192,15 +218,14 @@ static sonject_status find_height(double *height_m, struct report *report,
                                   const sonject_object_params *object,
                                   const struct placement *parts, uint32_t count)
 {
-    const double height = overall_size(parts, count, 2);
     const double burial = burial_in_pose(parts, count, object);
     if (object->burial_kind == SONJECT_BURIAL_PROUD && burial < 0.0)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "object '%s' cannot stand %.3f m proud of the seabed: in its pose it "
                               "is %.3f m high; lower burial.proud",
-                              object->name, object->proud_height_m, height);
+                              object->name, object->proud_height_m, overall_size(parts, count, 2));
     *height_m = parts_extent(parts, count, downward) - burial;
-    if (height < THINNEST_M && burial == 0.0)
+    if (overall_size(parts, count, 2) < THINNEST_M && burial == 0.0)
         *height_m += THINNEST_M;
     return SONJECT_OK;
 }
@@ -223,85 +248,78 @@ static struct footprint footprint_of(const struct placement *parts, uint32_t cou
     }
     const double forward = 0.5 * (reach[0] - reach[1]);
     const double aside = 0.5 * (reach[2] - reach[3]);
-    struct footprint footprint;
-    footprint.x_m = origin[0] + forward * along[0] + aside * across[0];
-    footprint.y_m = origin[1] + forward * along[1] + aside * across[1];
-    footprint.along_x = along[0];
-    footprint.along_y = along[1];
-    footprint.half_width_m = 0.5 * (reach[2] + reach[3]);
-    footprint.half_length_m = fmax(0.0, 0.5 * (reach[0] + reach[1]) - footprint.half_width_m);
-    return footprint;
+    const double half_width = 0.5 * (reach[2] + reach[3]);
+    return (struct footprint){.x_m = origin[0] + forward * along[0] + aside * across[0],
+                              .y_m = origin[1] + forward * along[1] + aside * across[1],
+                              .along_x = along[0],
+                              .along_y = along[1],
+                              .half_width_m = half_width,
+                              .half_length_m = fmax(0.0, 0.5 * (reach[0] + reach[1]) - half_width)};
 }
 
-/* Smaller objects are less than rays, which are a fraction of a wavelength apart, and physical
- * optics can tell the echo of (kernels/MATH.md, "Small objects"). */
-static sonject_status check_size(struct report *report, const struct patch_view *view,
-                                 const char *name, double size_m)
+/* Whether an object can be told and has room. */
+static sonject_status check_object_size(const struct placing *placing, const char *name,
+                                        const struct placed_object *placed,
+                                        const struct placement *parts)
 {
-    if (size_m >= SMALLEST_WAVELENGTHS * view->wavelength_m)
-        return SONJECT_OK;
-    return report_failure(report, SONJECT_ERROR_INPUT,
-                          "object '%s' is %.3g mm large, which is less than half the wavelength of "
-                          "%.3g mm: make it larger or raise sonar.frequency",
-                          name, 1e3 * size_m, 1e3 * view->wavelength_m);
-}
-
-static sonject_status check_room(struct report *report, const struct patch_view *view,
-                                 const sonject_object_params *object, const struct placement *parts,
-                                 uint32_t count)
-{
+    const struct patch_view *view = placing->view;
     const double patch_length = (double)view->rows * view->row_spacing_m;
     const double patch_width = (double)view->columns * view->column_spacing_m;
-    if (overall_size(parts, count, 0) > patch_length || overall_size(parts, count, 1) > patch_width)
-        return report_failure(report, SONJECT_ERROR_INPUT,
+    /* smaller ones are less than rays, which are a fraction of a wavelength apart, and physical
+     * optics can tell the echo of (kernels/MATH.md, "Small objects") */
+    if (placed->size_m < SMALLEST_WAVELENGTHS * view->wavelength_m)
+        return report_failure(placing->report, SONJECT_ERROR_INPUT,
+                              "object '%s' is %.3g mm large, which is less than half the "
+                              "wavelength of %.3g mm: make it larger or raise sonar.frequency",
+                              name, 1e3 * placed->size_m, 1e3 * view->wavelength_m);
+    if (overall_size(parts, placed->part_count, 0) > patch_length ||
+        overall_size(parts, placed->part_count, 1) > patch_width)
+        return report_failure(placing->report, SONJECT_ERROR_INPUT,
                               "object '%s' is larger than the patch of %.2f m x %.2f m: use a "
                               "larger patch",
-                              object->name, patch_length, patch_width);
-    for (uint32_t i = 0; i < count; i++)
+                              name, patch_length, patch_width);
+    for (uint32_t i = 0; i < placed->part_count; i++)
         if (parts[i].centre[2] + placement_extent(&parts[i], upward) >= view->altitude_m ||
             placement_range(&parts[i], view) <= 2.0 * parts[i].bounding_radius_m)
             return report_failure(
-                report, SONJECT_ERROR_INPUT,
-                "object '%s' reaches up to the sonar: lower it or raise the altitude",
-                object->name);
+                placing->report, SONJECT_ERROR_INPUT,
+                "object '%s' reaches up to the sonar: lower it or raise the altitude", name);
     return SONJECT_OK;
 }
 
 /* Poses an object and finds its place on the ground. */
-static sonject_status pose(struct placements *placements, struct report *report,
-                           const struct scene *scene, const struct patch_view *view,
-                           double first_row, double first_column, uint32_t number)
+static sonject_status pose(const struct placing *placing, uint32_t number)
 {
-    const sonject_object_params *object = &scene->objects[number];
+    struct placements *placements = placing->placements;
+    const sonject_object_params *object = &placing->scene->objects[number];
     struct placed_object *placed = &placements->objects[number];
-    struct placement *parts = &placements->parts[placements->part_count];
     placed->first_part = placements->part_count;
-    placed->part_count = pose_parts(parts, scene, number, view->is_mirrored);
+    placed->part_count = pose_parts(&placements->parts[placements->part_count], placing->scene,
+                                    number, placing->view->is_mirrored);
     placements->part_count += placed->part_count;
     if (placed->part_count == 0)
-        return scene_locate(scene, report,
-                            report_failure(report, SONJECT_ERROR_INPUT,
+        return scene_locate(placing->scene, placing->report,
+                            report_failure(placing->report, SONJECT_ERROR_INPUT,
                                            "object '%s' has no parts: give it some or a shape",
                                            object->name),
                             "objects[%u]", (unsigned)number);
-    const sonject_status status =
-        find_ground_point(placed->origin, report, view, first_row, first_column, object);
+    const sonject_status status = find_ground_point(placed->origin, placing, object);
     if (status != SONJECT_OK)
         placed->part_count = 0; /* it is not to be settled */
-    return scene_locate(scene, report, status, "objects[%u].position", (unsigned)number);
+    return scene_locate(placing->scene, placing->report, status, "objects[%u].position",
+                        (unsigned)number);
 }
 
 /* Lets a posed object down on the seabed. */
-static sonject_status settle(struct placements *placements, struct report *report,
-                             const struct scene *scene, const struct patch_view *view,
-                             uint32_t number)
+static sonject_status settle(const struct placing *placing, uint32_t number)
 {
-    const sonject_object_params *object = &scene->objects[number];
+    struct placements *placements = placing->placements;
+    const sonject_object_params *object = &placing->scene->objects[number];
     struct placed_object *placed = &placements->objects[number];
     struct placement *parts = &placements->parts[placed->first_part];
     double height = 0.0;
-    CHECK(scene_locate(scene, report,
-                       find_height(&height, report, object, parts, placed->part_count),
+    CHECK(scene_locate(placing->scene, placing->report,
+                       find_height(&height, placing->report, object, parts, placed->part_count),
                        "objects[%u].burial", (unsigned)number));
     placed->seabed_m = relief_height(placements->relief, placed->origin[0], placed->origin[1]);
     placed->origin[2] = placed->seabed_m + height;
@@ -312,9 +330,9 @@ static sonject_status settle(struct placements *placements, struct report *repor
     placed->top_m = parts_extent(parts, placed->part_count, upward);
     for (int axis = 0; axis < 3; axis++)
         placed->size_m = fmax(placed->size_m, overall_size(parts, placed->part_count, axis));
-    sonject_status status = check_size(report, view, object->name, placed->size_m);
-    THEN(status, check_room(report, view, object, parts, placed->part_count));
-    return scene_locate(scene, report, status, "objects[%u]", (unsigned)number);
+    return scene_locate(placing->scene, placing->report,
+                        check_object_size(placing, object->name, placed, parts), "objects[%u]",
+                        (unsigned)number);
 }
 
 /* Random numbers are told apart by the number of a shape. */
@@ -332,21 +350,39 @@ static sonject_status check_shape_count(struct report *report, const struct scen
 }
 
 /* Scour lies around objects, so the relief needs their places. */
-static sonject_status lay_relief(struct placements *placements, struct report *report,
-                                 const struct scene *scene, const struct patch_view *view,
-                                 double first_row, double first_column)
+static sonject_status lay_relief(const struct placing *placing)
 {
-    struct footprint *footprints = allocate_array(scene->object_count, sizeof *footprints);
-    if (!footprints)
-        return report_out_of_memory(report, "objects");
-    for (uint32_t i = 0; i < scene->object_count; i++) {
+    struct placements *placements = placing->placements;
+    struct footprint *footprints = allocate_array(placements->object_count, sizeof *footprints);
+    CHECK_MEMORY(placing->report, footprints, "objects");
+    for (uint32_t i = 0; i < placements->object_count; i++) {
         const struct placed_object *placed = &placements->objects[i];
         footprints[i] = footprint_of(&placements->parts[placed->first_part], placed->part_count,
                                      placed->origin);
     }
-    const sonject_status status = relief_create(&placements->relief, report, scene, view, first_row,
-                                                first_column, footprints);
+    const sonject_status status =
+        relief_create(&placements->relief, placing->report, placing->scene, placing->view,
+                      placing->first_row, placing->first_column, footprints);
     free(footprints);
+    return scene_locate(placing->scene, placing->report, status, "seabed.relief");
+}
+
+/* All wrong objects are told. */
+static sonject_status place(const struct placing *placing)
+{
+    char lines[REPORT_CAPACITY] = "";
+    struct placements *placements = placing->placements;
+    struct report *report = placing->report;
+    sonject_status status = SONJECT_OK;
+    CHECK_MEMORY(report, placements->parts && placements->objects, "objects");
+    CHECK(check_shape_count(report, placing->scene));
+    for (uint32_t i = 0; i < placements->object_count; i++)
+        status = report_gather(report, lines, status, pose(placing, i));
+    if (status == SONJECT_OK && scene_has_relief(placing->scene))
+        status = report_gather(report, lines, status, lay_relief(placing));
+    for (uint32_t i = 0; status != SONJECT_ERROR_MEMORY && i < placements->object_count; i++)
+        if (placements->objects[i].part_count > 0)
+            status = report_gather(report, lines, status, settle(placing, i));
     return status;
 }
 
@@ -354,31 +390,13 @@ sonject_status placements_init(struct placements *placements, struct report *rep
                                const struct scene *scene, const struct patch_view *view,
                                double first_row, double first_column)
 {
-    char lines[REPORT_CAPACITY] = "";
+    const struct placing placing = {placements, report, scene, view, first_row, first_column};
     memset(placements, 0, sizeof *placements);
     placements->object_count = scene->object_count;
     placements->parts =
         allocate_array((size_t)scene->object_count + scene->part_count, sizeof *placements->parts);
     placements->objects = allocate_array(scene->object_count, sizeof *placements->objects);
-    sonject_status status = placements->parts && placements->objects
-                                ? SONJECT_OK
-                                : report_out_of_memory(report, "objects");
-    THEN(status, check_shape_count(report, scene));
-    const bool can_be_posed = status == SONJECT_OK;
-    for (uint32_t i = 0; can_be_posed && i < scene->object_count; i++)
-        status = report_gather(report, lines, status,
-                               pose(placements, report, scene, view, first_row, first_column, i));
-    if (status == SONJECT_OK && scene_has_relief(scene))
-        status = report_gather(
-            report, lines, status,
-            scene_locate(scene, report,
-                         lay_relief(placements, report, scene, view, first_row, first_column),
-                         "seabed.relief"));
-    for (uint32_t i = 0; can_be_posed && status != SONJECT_ERROR_MEMORY && i < scene->object_count;
-         i++)
-        if (placements->objects[i].part_count > 0)
-            status =
-                report_gather(report, lines, status, settle(placements, report, scene, view, i));
+    const sonject_status status = place(&placing);
     if (status != SONJECT_OK)
         placements_clear(placements);
     return status;

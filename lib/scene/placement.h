@@ -46,6 +46,14 @@ sonject_status placements_init(struct placements *placements, struct report *rep
                                double first_row, double first_column);
 void placements_clear(struct placements *placements);
 
+/* Rows: nose, own y, own z, in the axes that the angles (rad) are counted in: heading turns x
+ * towards y, pitch raises the nose, roll turns about it. */
+void turn_axes(double axes[3][3], double heading, double pitch, double roll);
+
+/* Rows of `inner`, given in the axes that the rows of `outer` are, in those that outer's are given
+ * in. product may not be one of both. */
+void compose_axes(double product[3][3], double inner[3][3], double outer[3][3]);
+
 /* Nose, own y and own z of an object in the axes of a view. */
 void object_axes(double axes[3][3], const sonject_object_params *object, bool is_mirrored);
 

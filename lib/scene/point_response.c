@@ -111,8 +111,6 @@ static void set_chirp(struct point_response *response, const sonject_pulse_param
     }
     response->pulse_tail_m =
         cell * transform_tail(response->pulse_weights, response->pulse_terms, TAIL_LEVEL);
-    response->pulse_reach_m = range_energy_reach(response, PULSE_ENERGY_SHARE);
-    response->pulse_margin_m = range_energy_reach(response, MARGIN_ENERGY_SHARE);
 }
 
 static void set_pulse_table(struct point_response *response, const struct response_table *table,
@@ -128,8 +126,6 @@ static void set_pulse_table(struct point_response *response, const struct respon
     response->pulse_energy_m =
         response_table_energy(table, -HUGE_VAL, HUGE_VAL) * response->metres_per_position;
     response->pulse_tail_m = length * response->metres_per_position;
-    response->pulse_reach_m = range_energy_reach(response, PULSE_ENERGY_SHARE);
-    response->pulse_margin_m = range_energy_reach(response, MARGIN_ENERGY_SHARE);
 }
 
 void point_response_set_pulse(struct point_response *response, const sonject_pulse_params *pulse,
@@ -139,14 +135,10 @@ void point_response_set_pulse(struct point_response *response, const sonject_pul
         set_chirp(response, pulse);
     else if (pulse->kind == SONJECT_PULSE_TABLE)
         set_pulse_table(response, table, reference_sound_speed_mps);
-}
-
-void point_response_set_cross_range_table(struct point_response *response,
-                                          const struct response_table *table)
-{
-    response->cross_range_table = table;
-    response->cross_range_energy_m = response_table_energy(table, -HUGE_VAL, HUGE_VAL);
-    response->strip_m = fmin(response->strip_m, response_table_width(table));
+    else
+        return;
+    response->pulse_reach_m = range_energy_reach(response, PULSE_ENERGY_SHARE);
+    response->pulse_margin_m = range_energy_reach(response, MARGIN_ENERGY_SHARE);
 }
 
 double along_track_response(const struct point_response *response, double distance_m)

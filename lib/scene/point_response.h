@@ -1,6 +1,8 @@
 /* The point response of the formed image, along-track (W) and in range (G): pure functions of the
- * sonar. Distances in m; both are 1 at 0, measured ones 1 at their largest sample. Formulas:
- * kernels/MATH.md, "Point response". */
+ * sonar. Distances in m; both are 1 at 0, measured ones 1 at their largest sample. Of a synthetic
+ * aperture W is the window's, or a measured one, alike at all ranges; of a real one the array's
+ * two-way beam. Residual motion, which makes it differ from row to row: scene/motion_response.h.
+ * Formulas: kernels/MATH.md, "Point response". */
 #ifndef SONJECT_SCENE_POINT_RESPONSE_H
 #define SONJECT_SCENE_POINT_RESPONSE_H
 
@@ -59,26 +61,18 @@ sonject_status point_response_of_scene(struct point_response *response, struct r
                                        const struct scene *scene, const struct patch_view *view,
                                        double reference_sound_speed_mps);
 
+/* The widths of the window's W (delta) and of a Gaussian pulse (half-power, in range). */
+void point_response_set_widths(struct point_response *response, double resolution_m,
+                               double range_resolution_m);
+
 /* row_spacing_m stands in for the resolution where the sonar does not give one. The pulse is
  * Gaussian, W the sonar's window, the track straight. */
 void point_response_init(struct point_response *response, const sonject_sonar_params *sonar,
                          double reference_sound_speed_mps, double row_spacing_m);
 
-/* The widths of the window's W (delta) and of a Gaussian pulse (half-power, in range). */
-void point_response_set_widths(struct point_response *response, double resolution_m,
-                               double range_resolution_m);
-
 /* After point_response_init. table: for the kind TABLE; borrowed. */
 void point_response_set_pulse(struct point_response *response, const sonject_pulse_params *pulse,
                               const struct response_table *table, double reference_sound_speed_mps);
-
-/* The beam of the sonar's array, a real aperture of uniform weighting, in place of the window. */
-void point_response_set_array(struct point_response *response, const sonject_sonar_params *sonar,
-                              const struct patch_view *view);
-
-/* A measured W in place of the window's; borrowed. */
-void point_response_set_cross_range_table(struct point_response *response,
-                                          const struct response_table *table);
 
 /* The window's W(x). Real, because the weighting is symmetric and the track straight. */
 double along_track_response(const struct point_response *response, double distance_m);
@@ -100,5 +94,31 @@ double range_energy_width(const struct point_response *response);
 
 /* Half width in m beyond which less than `share` of that lies, at least 3 resolutions. */
 double range_energy_reach(const struct point_response *response, double share);
+
+/* Whether W is one real function at all ranges and rows: along_track_response. */
+bool cross_range_is_plain(const struct point_response *response);
+
+/* W of a pixel `distance_m` farther along the track than the point, at a processor's slant range;
+ * without residual motion. */
+struct complex_number cross_range_response(const struct point_response *response, double range_m,
+                                           double distance_m);
+
+/* Integral of |W|^2 over distance, m. Motion leaves it as it is (Parseval), but for what comes from
+ * beyond the beam of the elements. */
+double cross_range_energy_width(const struct point_response *response, double range_m);
+
+/* Half width in m beyond which less than `share` of that lies. */
+double cross_range_energy_reach(const struct point_response *response, double range_m,
+                                double share);
+
+/* Half width in m that glints are spread over: to where a beam's side lobes are below -60 dB;
+ * infinite for a synthetic aperture. */
+double cross_range_tail(const struct point_response *response, double range_m);
+
+/* Whether images can be formed so: echoes must stay within their range cell over a real aperture's
+ * beam, in all columns of the patch, and a turned array has level ground, straight rays, one
+ * interaction and a measured seabed. Errors: INPUT. */
+sonject_status cross_range_check(const struct point_response *response, struct report *report,
+                                 const struct scene *scene, const struct patch_view *view);
 
 #endif

@@ -31,7 +31,8 @@ struct footprint {
 
 /* Works out the relief that the scene tells, *relief NULL where it tells none. footprints: of the
  * scene's objects. On success the relief is to be given to relief_release. Errors: INPUT (too
- * steep, too high, finer than the grid can hold, scour around an unknown object), MEMORY. */
+ * steep, too high, finer than the grid can hold, scour around an unknown object; with a smooth
+ * seabed or a coherent map), MEMORY. */
 sonject_status relief_create(struct relief **relief, struct report *report,
                              const struct scene *scene, const struct patch_view *view,
                              double first_row, double first_column,
@@ -47,9 +48,6 @@ double relief_y(const struct relief *relief, uint32_t column);
 
 /* Sets slopes, lowest_m and highest_m from the heights. */
 void relief_finish(struct relief *relief);
-
-/* Refuses what cannot be had with relief: a smooth seabed, a coherent map. Errors: INPUT. */
-sonject_status relief_check_scene(const struct scene *scene, struct report *report);
 
 bool scene_has_relief(const struct scene *scene);
 

@@ -20,8 +20,27 @@ void sonject_relief_params_init(sonject_relief_params *relief)
     relief->column_spacing_m = 0.025;
 }
 
-static void check_position(struct check *check, const struct relief_feature *feature)
+sonject_status check_relief_feature(const struct relief_feature *feature, struct report *report,
+                                    struct check_listener *listener)
 {
+    struct check checks = {report, listener, SONJECT_OK};
+    struct check *check = &checks;
+    const bool has_height = feature->kind == RELIEF_RIPPLES || feature->kind == RELIEF_MOUND;
+    check_within(check, has_height ? "height" : "depth", feature->height_m, 0.0, HEIGHT_MAX_M,
+                 " m");
+    if (feature->kind == RELIEF_RIPPLES) {
+        check_positive_length(check, "wavelength", feature->wavelength_m);
+        check_finite(check, "heading", feature->heading_rad);
+        check_finite(check, "phase", feature->phase_rad);
+        check_within(check, "sharpness", feature->sharpness, 0.0, 1.0, "");
+        check_within(check, "irregularity", feature->irregularity, 0.0, 1.0, "");
+        return check->status;
+    }
+    if (feature->kind == RELIEF_SCOUR) {
+        check_positive_length(check, "width", feature->width_m);
+        return check->status;
+    }
+    check_positive_length(check, "radius", feature->radius_m);
     check_choice(check, "position", feature->position_kind, SONJECT_POSITION_PIXELS + 1);
     if (feature->position_kind == SONJECT_POSITION_PIXELS) {
         check_within(check, "position.row", feature->position_along, -INDEX_MAX, INDEX_MAX, "");
@@ -30,37 +49,7 @@ static void check_position(struct check *check, const struct relief_feature *fea
         check_coordinate(check, "position.along_track", feature->position_along);
         check_length(check, "position.slant_range", feature->position_range);
     }
-}
-
-static void check_ripples(struct check *check, const struct relief_feature *feature)
-{
-    check_positive_length(check, "wavelength", feature->wavelength_m);
-    check_within(check, "height", feature->height_m, 0.0, HEIGHT_MAX_M, " m");
-    check_finite(check, "heading", feature->heading_rad);
-    check_finite(check, "phase", feature->phase_rad);
-    check_within(check, "sharpness", feature->sharpness, 0.0, 1.0, "");
-    check_within(check, "irregularity", feature->irregularity, 0.0, 1.0, "");
-}
-
-sonject_status check_relief_feature(const struct relief_feature *feature, struct report *report,
-                                    struct check_listener *listener)
-{
-    struct check check = {report, listener, SONJECT_OK};
-    switch (feature->kind) {
-    case RELIEF_RIPPLES:
-        check_ripples(&check, feature);
-        break;
-    case RELIEF_SCOUR:
-        check_within(&check, "depth", feature->height_m, 0.0, HEIGHT_MAX_M, " m");
-        check_positive_length(&check, "width", feature->width_m);
-        break;
-    default:
-        check_within(&check, feature->kind == RELIEF_MOUND ? "height" : "depth", feature->height_m,
-                     0.0, HEIGHT_MAX_M, " m");
-        check_positive_length(&check, "radius", feature->radius_m);
-        check_position(&check, feature);
-    }
-    return check.status;
+    return check->status;
 }
 
 bool relief_grid_fits(uint64_t rows, uint64_t columns)
@@ -69,7 +58,7 @@ bool relief_grid_fits(uint64_t rows, uint64_t columns)
            columns <= RELIEF_GRID_SIDE_MAX && rows * columns <= GRID_SIZE_MAX;
 }
 
-sonject_status check_relief_grid(const sonject_relief_params *grid, const float *heights_m,
+static sonject_status check_grid(const sonject_relief_params *grid, const float *heights_m,
                                  struct report *report)
 {
     struct check check = {report, NULL, SONJECT_OK};
@@ -97,8 +86,7 @@ sonject_status relief_features_append(struct relief_features *features, struct r
                               "relief must be at most %d features; join some", RELIEF_FEATURES_MAX);
     struct relief_feature *grown =
         realloc(features->features, (features->count + 1) * sizeof *grown);
-    if (!grown)
-        return report_out_of_memory(report, "relief");
+    CHECK_MEMORY(report, grown, "relief");
     features->features = grown;
     features->features[features->count++] = *feature;
     return SONJECT_OK;
@@ -109,11 +97,10 @@ sonject_status relief_features_set_grid(struct relief_features *features, struct
 {
     float *copy = NULL;
     if (grid->rows > 0) {
-        CHECK(check_relief_grid(grid, heights_m, report));
+        CHECK(check_grid(grid, heights_m, report));
         const size_t count = (size_t)grid->rows * grid->columns;
         copy = allocate_array(count, sizeof *copy);
-        if (!copy)
-            return report_out_of_memory(report, "relief");
+        CHECK_MEMORY(report, copy, "relief");
         memcpy(copy, heights_m, count * sizeof *copy);
     }
     free(features->heights_m);
@@ -132,27 +119,21 @@ void relief_features_clear(struct relief_features *features)
 void relief_features_bounds(const struct relief_features *features, double *lowest_m,
                             double *highest_m)
 {
-    double lowest = 0.0;
-    double highest = 0.0;
-    for (uint32_t i = 0; i < features->count; i++) {
-        const struct relief_feature *feature = &features->features[i];
-        const double ripples = OVERSHOOT * 0.5 * feature->height_m;
-        if (feature->kind == RELIEF_RIPPLES) {
-            lowest -= ripples;
-            highest += ripples;
-        } else if (feature->kind == RELIEF_MOUND) {
-            highest += feature->height_m;
-        } else {
-            lowest -= feature->height_m;
-        }
-    }
     float low = 0.0f;
     float high = 0.0f;
+    *lowest_m = *highest_m = 0.0;
+    for (uint32_t i = 0; i < features->count; i++) {
+        const struct relief_feature *feature = &features->features[i];
+        const bool is_ripples = feature->kind == RELIEF_RIPPLES;
+        const double height = is_ripples ? OVERSHOOT * 0.5 * feature->height_m : feature->height_m;
+        *highest_m += is_ripples || feature->kind == RELIEF_MOUND ? height : 0.0;
+        *lowest_m -= feature->kind != RELIEF_MOUND ? height : 0.0;
+    }
     for (size_t i = 0;
          features->heights_m && i < (size_t)features->grid.rows * features->grid.columns; i++) {
         low = fminf(low, features->heights_m[i]);
         high = fmaxf(high, features->heights_m[i]);
     }
-    *lowest_m = lowest + (double)low;
-    *highest_m = highest + (double)high;
+    *lowest_m += (double)low;
+    *highest_m += (double)high;
 }

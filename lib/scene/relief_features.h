@@ -46,11 +46,9 @@ struct relief_features {
     float *heights_m;           /* owned, rows x columns; NULL: none */
 };
 
-/* Checks of one feature and of a caller's grid, as check_ functions of scene/scene.h do. */
+/* Checks one feature, as check_ functions of scene/scene.h do. */
 sonject_status check_relief_feature(const struct relief_feature *feature, struct report *report,
                                     struct check_listener *listener);
-sonject_status check_relief_grid(const sonject_relief_params *grid, const float *heights_m,
-                                 struct report *report);
 
 /* Whether heights may have so many: 2...RELIEF_GRID_SIDE_MAX of each, at most 2^24 points. */
 bool relief_grid_fits(uint64_t rows, uint64_t columns);

@@ -59,10 +59,9 @@ sonject_status response_table_set(struct response_table *table, struct report *r
     struct response_table taken = {allocate_array(count, sizeof *taken.positions),
                                    allocate_array(count, sizeof *taken.values), count, is_time};
     struct complex_number peak = {0.0, 0.0};
-    if (!taken.positions || !taken.values) {
+    if (!taken.positions || !taken.values)
         response_table_clear(&taken);
-        return report_out_of_memory(report, "a table of samples");
-    }
+    CHECK_MEMORY(report, taken.positions, "a table of samples");
     for (size_t i = 0; i < count; i++) {
         taken.positions[i] = positions[i];
         taken.values[i].real_part = real_part[i];
@@ -108,10 +107,9 @@ static size_t piece_at(const struct response_table *table, double position)
 static struct complex_number secant(const struct response_table *table, size_t i)
 {
     const double step = table->positions[i + 1] - table->positions[i];
-    const struct complex_number slope = {
+    return (struct complex_number){
         (table->values[i + 1].real_part - table->values[i].real_part) / step,
         (table->values[i + 1].imaginary_part - table->values[i].imaginary_part) / step};
-    return slope;
 }
 
 /* That of the parabola through a sample and its neighbours; of the first and last piece at the
@@ -126,10 +124,9 @@ static struct complex_number slope_at(const struct response_table *table, size_t
     const struct complex_number after = secant(table, i);
     const double all = table->positions[i + 1] - table->positions[i - 1];
     const double share = (table->positions[i] - table->positions[i - 1]) / all;
-    const struct complex_number slope = {(1.0 - share) * before.real_part + share * after.real_part,
-                                         (1.0 - share) * before.imaginary_part +
-                                             share * after.imaginary_part};
-    return slope;
+    return (struct complex_number){(1.0 - share) * before.real_part + share * after.real_part,
+                                   (1.0 - share) * before.imaginary_part +
+                                       share * after.imaginary_part};
 }
 
 static double hermite(double t, double step, double a, double slope_a, double b, double slope_b)
@@ -141,9 +138,8 @@ static double hermite(double t, double step, double a, double slope_a, double b,
 
 struct complex_number response_table_at(const struct response_table *table, double position)
 {
-    const struct complex_number nothing = {0.0, 0.0};
     if (!(position >= table->positions[0] && position <= table->positions[table->count - 1]))
-        return nothing;
+        return (struct complex_number){0.0, 0.0};
     const size_t i = piece_at(table, position);
     const double step = table->positions[i + 1] - table->positions[i];
     const double t = (position - table->positions[i]) / step;
@@ -151,11 +147,10 @@ struct complex_number response_table_at(const struct response_table *table, doub
     const struct complex_number b = table->values[i + 1];
     const struct complex_number slope_a = slope_at(table, i);
     const struct complex_number slope_b = slope_at(table, i + 1);
-    const struct complex_number value = {
+    return (struct complex_number){
         hermite(t, step, a.real_part, slope_a.real_part, b.real_part, slope_b.real_part),
         hermite(t, step, a.imaginary_part, slope_a.imaginary_part, b.imaginary_part,
                 slope_b.imaginary_part)};
-    return value;
 }
 
 /* Four points of Gauss and Legendre: exact for the square of a cubic. */

@@ -64,16 +64,6 @@ static void *make_room(void *elements, uint32_t count, size_t size)
     return realloc(elements, (count == 0 ? 1 : 2 * (size_t)count) * size);
 }
 
-/* The names that an object has where it was given none. */
-static void name_object(sonject_object_params *object, uint32_t number)
-{
-    const char *shape = shape_name(object->shape);
-    if (!object->name[0])
-        snprintf(object->name, sizeof object->name, "object %u", (unsigned)number);
-    if (!object->class_name[0] && shape)
-        snprintf(object->class_name, sizeof object->class_name, "%s", shape);
-}
-
 sonject_status scene_append_object(struct scene *scene, struct report *report,
                                    const sonject_object_params *object)
 {
@@ -84,11 +74,14 @@ sonject_status scene_append_object(struct scene *scene, struct report *report,
                               SCENE_OBJECTS_MAX);
     sonject_object_params *objects =
         make_room(scene->objects, scene->object_count, sizeof *objects);
-    if (!objects)
-        return report_out_of_memory(report, "objects");
+    CHECK_MEMORY(report, objects, "objects");
     scene->objects = objects;
-    scene->objects[scene->object_count++] = *object;
-    name_object(&scene->objects[scene->object_count - 1], scene->object_count);
+    sonject_object_params *own = &scene->objects[scene->object_count++];
+    *own = *object;
+    if (!own->name[0])
+        snprintf(own->name, sizeof own->name, "object %u", (unsigned)scene->object_count);
+    if (!own->class_name[0] && shape_name(own->shape))
+        snprintf(own->class_name, sizeof own->class_name, "%s", shape_name(own->shape));
     return SONJECT_OK;
 }
 
@@ -99,8 +92,7 @@ sonject_status scene_append_part(struct scene *scene, struct report *report,
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "parts must be at most %d in a scene; split it", SCENE_PARTS_MAX);
     struct scene_part *parts = make_room(scene->parts, scene->part_count, sizeof *parts);
-    if (!parts)
-        return report_out_of_memory(report, "parts");
+    CHECK_MEMORY(report, parts, "parts");
     scene->parts = parts;
     scene->parts[scene->part_count++] = *part;
     return SONJECT_OK;
@@ -122,41 +114,27 @@ void scene_cut_back(struct scene *scene, const struct scene_counts *counts)
     user_shapes_cut_back(&scene->user_shapes, counts->user_shapes, counts->snippets);
 }
 
-/* From the store, or from its file. */
-static sonject_status take_mesh(struct scene *scene, struct report *report, const char *path,
-                                const struct mesh_options *options, struct mesh *mesh)
-{
-    struct file_identity file;
-    if (!scene->mesh_store)
-        return mesh_load(report, path, options, mesh);
-    const sonject_status status = file_identify(report, path, &file);
-    if (status != SONJECT_OK || mesh_store_take(scene->mesh_store, &file, options, mesh))
-        return status;
-    return mesh_load(report, path, options, mesh);
-}
-
 sonject_status scene_append_mesh(struct scene *scene, struct report *report, const char *path,
                                  const struct mesh_options *options, bool allows_open)
 {
+    struct file_identity file;
     if (scene->mesh_count >= SCENE_MESHES_MAX)
         return report_failure(report, SONJECT_ERROR_INPUT,
                               "meshes must be at most %d in a scene; split it", SCENE_MESHES_MAX);
     struct mesh *meshes = make_room(scene->meshes, scene->mesh_count, sizeof *meshes);
-    if (!meshes)
-        return report_out_of_memory(report, "meshes");
+    CHECK_MEMORY(report, meshes, "meshes");
     scene->meshes = meshes;
     struct mesh *mesh = &scene->meshes[scene->mesh_count];
-    sonject_status status = take_mesh(scene, report, path, options, mesh);
-    if (status != SONJECT_OK)
-        return status;
-    if (!allows_open)
-        status = mesh_require_closed(report, path, mesh);
-    if (status != SONJECT_OK) {
+    CHECK(scene->mesh_store ? file_identify(report, path, &file) : SONJECT_OK);
+    if (!scene->mesh_store || !mesh_store_take(scene->mesh_store, &file, options, mesh))
+        CHECK(mesh_load(report, path, options, mesh));
+    const sonject_status status =
+        allows_open ? SONJECT_OK : mesh_require_closed(report, path, mesh);
+    if (status == SONJECT_OK)
+        scene->mesh_count++;
+    else
         mesh_clear(mesh);
-        return status;
-    }
-    scene->mesh_count++;
-    return SONJECT_OK;
+    return status;
 }
 
 sonject_status scene_share_mesh(struct scene *scene, struct report *report, const char *path,
@@ -164,15 +142,10 @@ sonject_status scene_share_mesh(struct scene *scene, struct report *report, cons
                                 uint32_t *number)
 {
     struct file_identity file;
-    sonject_status status = file_identify(report, path, &file);
-    for (uint32_t i = 0; i < scene->mesh_count && status == SONJECT_OK; i++) {
-        if (!mesh_is_of(&scene->meshes[i], &file, options))
-            continue;
-        *number = i;
-        return allows_open ? SONJECT_OK : mesh_require_closed(report, path, &scene->meshes[i]);
-    }
-    THEN(status, scene_append_mesh(scene, report, path, options, allows_open));
-    if (status == SONJECT_OK)
-        *number = scene->mesh_count - 1;
-    return status;
+    CHECK(file_identify(report, path, &file));
+    for (*number = 0; *number < scene->mesh_count; ++*number)
+        if (mesh_is_of(&scene->meshes[*number], &file, options))
+            return allows_open ? SONJECT_OK
+                               : mesh_require_closed(report, path, &scene->meshes[*number]);
+    return scene_append_mesh(scene, report, path, options, allows_open);
 }

@@ -1,6 +1,6 @@
 #include "scene/sonar_array.h"
 
-#include "scene/pose.h"
+#include "scene/placement.h"
 
 void sonar_array_axes(double axes[3][3], const sonject_sonar_params *sonar, bool is_mirrored)
 {

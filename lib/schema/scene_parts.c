@@ -3,8 +3,8 @@
 
 #include <string.h>
 
+#include "scene/placement.h"
 #include "schema/scene_shape.h"
-#include "scene/pose.h"
 
 #define LEVELS_MAX 8 /* of lists within lists */
 

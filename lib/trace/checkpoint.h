@@ -7,7 +7,7 @@
 #define SONJECT_TRACE_CHECKPOINT_H
 
 #include "kernels/layout.h"
-#include "scene/line_grid.h"
+#include "scene/patch_view.h"
 #include "trace/fan.h"
 #include "trace/sums_file.h"
 #include "trace/tracer.h"

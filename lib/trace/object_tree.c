@@ -7,7 +7,7 @@
 
 #include "base/memory.h"
 #include "kernels/target_numbers.h"
-#include "mesh/split.h"
+#include "mesh/hierarchy.h"
 
 typedef char branch_is_packed[sizeof(struct object_branch) == 112 * 4 ? 1 : -1];
 typedef char tree_is_packed[sizeof(struct object_tree_record) == 8 * 4 ? 1 : -1];

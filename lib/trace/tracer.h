@@ -8,7 +8,6 @@
 #include "base/report.h"
 #include "device/device.h"
 #include "kernels/layout.h"
-#include "scene/line_grid.h"
 #include "scene/patch_view.h"
 #include "scene/placement.h"
 #include "scene/point_response.h"

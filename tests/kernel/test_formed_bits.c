@@ -5,8 +5,8 @@
 
 #include "device/device.h"
 #include "physics/bench.h"
-#include "scene/cross_range.h"
 #include "scene/motion_response.h"
+#include "scene/point_response.h"
 
 #define ROWS    96
 #define COLUMNS 128

@@ -1,8 +1,8 @@
 #include "sea.h"
 
 #include "bench.h"
-#include "scene/cross_range.h"
-#include "scene/pose.h"
+#include "scene/placement.h"
+#include "scene/point_response.h"
 
 /* ---- claims ---- */
 

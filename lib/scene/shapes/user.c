@@ -1,7 +1,12 @@
-/* Code of a user's, of which a box and a sphere that hold it are known. */
+/* Code of a user's, of which a box and a sphere that hold it are known; and the codes of a scene.
+ */
 #include <math.h>
+#include <stdlib.h>
+#include <string.h>
 
 #include "scene/shapes/shape.h"
+
+#define PARAMETER_MOST 1e30
 
 void shape_size_of_user_shape(struct shape_size *size, const struct user_shape *shape)
 {
@@ -40,3 +45,96 @@ const struct shape shape_user = {.name = "user",
                                  .extent = extent,
                                  .cut_extent = extent,
                                  .is_left = is_left};
+
+void sonject_user_shape_params_init(sonject_user_shape_params *shape)
+{
+    memset(shape, 0, sizeof *shape);
+    shape->struct_size = sizeof *shape;
+}
+
+sonject_status check_user_shape(const sonject_user_shape_params *shape, struct report *report,
+                                struct check_listener *listener)
+{
+    struct check check = {report, listener, SONJECT_OK};
+    check_choice(&check, "open", shape->is_open, 2);
+    check_positive_length(&check, "bounding_radius", shape->bounding_radius_m);
+    check_length(&check, "half_length", shape->half_length_m);
+    check_length(&check, "half_width", shape->half_width_m);
+    check_length(&check, "half_height", shape->half_height_m);
+    if (shape->parameter_count > SONJECT_USER_PARAMETERS_CAPACITY)
+        check_failure(&check, "parameters", "must be at most %d, not %lu",
+                      SONJECT_USER_PARAMETERS_CAPACITY, (unsigned long)shape->parameter_count);
+    for (uint32_t i = 0; check.status == SONJECT_OK && i < shape->parameter_count; i++)
+        check_within(&check, "parameters", shape->parameters[i], -PARAMETER_MOST, PARAMETER_MOST,
+                     "");
+    return check.status;
+}
+
+static sonject_status find_snippet(struct user_shapes *shapes, struct report *report,
+                                   const sonject_user_shape_params *shape, uint32_t *number)
+{
+    for (uint32_t i = 0; i < shapes->snippet_count; i++)
+        if (strcmp(shapes->snippets[i].code, shape->code) == 0) {
+            *number = i;
+            return SONJECT_OK;
+        }
+    *number = shapes->snippet_count;
+    if (shapes->snippet_count == USER_SNIPPETS_MAX)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "different codes of shapes must be at most %d in a scene; split it",
+                              USER_SNIPPETS_MAX);
+    struct user_snippet *snippets =
+        realloc(shapes->snippets, (shapes->snippet_count + 1) * sizeof *snippets);
+    CHECK_MEMORY(report, snippets, "a shape's code");
+    shapes->snippets = snippets;
+    const sonject_status status =
+        snippet_make(report, shape->name, shape->first_line, shape->code, &snippets[*number]);
+    shapes->snippet_count += status == SONJECT_OK;
+    return status;
+}
+
+static double half_size(double given_m, double radius_m)
+{
+    return given_m > 0.0 ? fmin(given_m, radius_m) : radius_m;
+}
+
+sonject_status user_shapes_append(struct user_shapes *shapes, struct report *report,
+                                  const sonject_user_shape_params *shape)
+{
+    uint32_t snippet;
+    if (shapes->count == USER_SHAPES_MAX)
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "user shapes must be at most %d in a scene; split it",
+                              USER_SHAPES_MAX);
+    struct user_shape *grown = realloc(shapes->shapes, (shapes->count + 1) * sizeof *grown);
+    CHECK_MEMORY(report, grown, "a user's shape");
+    shapes->shapes = grown;
+    CHECK(find_snippet(shapes, report, shape, &snippet));
+    struct user_shape *made = &shapes->shapes[shapes->count++];
+    memset(made, 0, sizeof *made);
+    made->snippet = snippet;
+    made->is_open = shape->is_open != 0;
+    made->bounding_radius_m = shape->bounding_radius_m;
+    made->half_length_m = half_size(shape->half_length_m, shape->bounding_radius_m);
+    made->half_width_m = half_size(shape->half_width_m, shape->bounding_radius_m);
+    made->half_height_m = half_size(shape->half_height_m, shape->bounding_radius_m);
+    for (uint32_t i = 0; i < shape->parameter_count; i++)
+        made->parameters[i] = (float)shape->parameters[i];
+    return SONJECT_OK;
+}
+
+void user_shapes_cut_back(struct user_shapes *shapes, uint32_t count, uint32_t snippet_count)
+{
+    shapes->count = count;
+    while (shapes->snippet_count > snippet_count)
+        snippet_clear(&shapes->snippets[--shapes->snippet_count]);
+}
+
+void user_shapes_clear(struct user_shapes *shapes)
+{
+    for (uint32_t i = 0; i < shapes->snippet_count; i++)
+        snippet_clear(&shapes->snippets[i]);
+    free(shapes->snippets);
+    free(shapes->shapes);
+    memset(shapes, 0, sizeof *shapes);
+}
