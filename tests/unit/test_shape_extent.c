@@ -1,31 +1,16 @@
-/* How far shapes reach, whole and cut, against clouds of points that lie in them, and how they rest
- * on the seabed. */
+/* How far shapes reach, whole and cut, against clouds of points that lie in them, meshes and users'
+ * shapes against the shapes that they stand for; how they rest on the seabed; and when cuts leave
+ * nothing. */
 #include "claims.h"
+#include "first_key.h"
+#include "kernel/mesh_samples.h"
 #include "scene/placement.h"
 
 #define POINTS 150000
 
-static uint64_t generator = 88172645463325252u;
-
-static double uniform(double low, double high)
-{
-    generator ^= generator << 13;
-    generator ^= generator >> 7;
-    generator ^= generator << 17;
-    return low + (high - low) * ((double)(generator >> 11) + 0.5) / 9007199254740992.0;
-}
-
 static double dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void random_direction(double v[3])
-{
-    v[2] = uniform(-1.0, 1.0);
-    const double turn = uniform(-PI, PI);
-    v[0] = sqrt(1.0 - v[2] * v[2]) * cos(turn);
-    v[1] = sqrt(1.0 - v[2] * v[2]) * sin(turn);
 }
 
 /* A round end bulges beyond the joint, as high as a sphere through rim and tip. */
@@ -104,33 +89,39 @@ static bool is_left(const sonject_object_params *object, const double p[3])
     return is_in_shape(object, p);
 }
 
+static void draw_cuts(sonject_object_params *object, uint32_t count, double least_m, double most_m)
+{
+    object->cut_count = count;
+    for (uint32_t i = 0; i < count; i++) {
+        double normal[3];
+        sample_direction(normal);
+        object->cuts[i].azimuth_rad = atan2(normal[1], normal[0]);
+        object->cuts[i].elevation_rad = asin(normal[2]);
+        object->cuts[i].distance_m = sample_uniform(least_m, most_m);
+    }
+}
+
 static sonject_object_params random_object(uint32_t shape, uint32_t cuts)
 {
     sonject_object_params object;
     sonject_object_params_init(&object);
     object.shape = shape;
-    object.diameter_m = uniform(0.5, 1.0);
+    object.diameter_m = sample_uniform(0.5, 1.0);
     object.length_m = shape == SONJECT_SHAPE_CYLINDER || shape == SONJECT_SHAPE_CAPSULE
-                          ? uniform(1.1, 2.0)
-                          : uniform(0.4, 1.0);
-    object.width_m = uniform(0.4, 1.0);
-    object.height_m = shape == SONJECT_SHAPE_TORUS ? 0.4 * object.diameter_m : uniform(0.4, 1.0);
-    object.top_diameter_m = uniform(0.0, 1.0);
-    object.front_height_m = uniform(0.0, object.height_m);
-    object.nose_end = (uint32_t)uniform(0.0, 3.0);
-    object.tail_end = (uint32_t)uniform(0.0, 3.0);
-    object.nose_end_depth_m = uniform(0.0, 1.0) < 0.5 ? 0.0 : uniform(0.05, 0.25);
-    object.heading_rad = uniform(-PI, PI);
-    object.pitch_rad = uniform(-PI, PI);
-    object.roll_rad = uniform(-PI, PI);
-    object.cut_count = cuts;
-    for (uint32_t i = 0; i < cuts; i++) {
-        double normal[3];
-        random_direction(normal);
-        object.cuts[i].azimuth_rad = atan2(normal[1], normal[0]);
-        object.cuts[i].elevation_rad = asin(normal[2]);
-        object.cuts[i].distance_m = uniform(0.0, 0.2);
-    }
+                          ? sample_uniform(1.1, 2.0)
+                          : sample_uniform(0.4, 1.0);
+    object.width_m = sample_uniform(0.4, 1.0);
+    object.height_m =
+        shape == SONJECT_SHAPE_TORUS ? 0.4 * object.diameter_m : sample_uniform(0.4, 1.0);
+    object.top_diameter_m = sample_uniform(0.0, 1.0);
+    object.front_height_m = sample_uniform(0.0, object.height_m);
+    object.nose_end = (uint32_t)sample_uniform(0.0, 3.0);
+    object.tail_end = (uint32_t)sample_uniform(0.0, 3.0);
+    object.nose_end_depth_m = sample_uniform(0.0, 1.0) < 0.5 ? 0.0 : sample_uniform(0.05, 0.25);
+    object.heading_rad = sample_uniform(-PI, PI);
+    object.pitch_rad = sample_uniform(-PI, PI);
+    object.roll_rad = sample_uniform(-PI, PI);
+    draw_cuts(&object, cuts, 0.0, 0.2);
     return object;
 }
 
@@ -143,7 +134,7 @@ static bool is_sheet(uint32_t shape)
 static void random_point(const struct shape_size *size, uint32_t shape, double p[3])
 {
     for (int k = 0; k < 3; k++)
-        p[k] = uniform(-1.05, 1.05) * size->bounding_radius_m;
+        p[k] = sample_uniform(-1.05, 1.05) * size->bounding_radius_m;
     if (is_sheet(shape))
         p[2] = 0.0;
 }
@@ -159,7 +150,7 @@ static void test_clouds_of_points(void **state)
             double directions[12][3], farthest[12], extents[12];
             shape_size_init(&size, &object);
             for (int k = 0; k < 12; k++) {
-                random_direction(directions[k]);
+                sample_direction(directions[k]);
                 farthest[k] = -INFINITY;
                 extents[k] = shape_extent(&size, shape, directions[k]);
             }
@@ -297,15 +288,14 @@ static double lowest_point(const struct placement *placement, const sonject_obje
     return lowest;
 }
 
-/* Places the only object of a scene. */
+/* Places the only object of a scene, whose mesh may be NULL. */
 static sonject_status place(struct placement *placement, double *burial_m, struct report *report,
-                            const struct patch_view *view, sonject_object_params *object)
+                            const struct patch_view *view, struct mesh *mesh,
+                            sonject_object_params *object)
 {
     struct placements placements;
-    struct scene scene;
-    memset(&scene, 0, sizeof scene);
-    scene.objects = object;
-    scene.object_count = 1;
+    struct scene scene = {
+        .objects = object, .object_count = 1, .meshes = mesh, .mesh_count = mesh != NULL};
     const sonject_status status = placements_init(&placements, report, &scene, view, 0.0, 0.0);
     memset(placement, 0, sizeof *placement);
     *burial_m = NAN;
@@ -329,20 +319,20 @@ static void test_objects_rest_on_the_seabed(void **state)
             double highest, burial;
             sonject_object_params object = random_object(i / 3, i % 3);
             make_view(&view, &scene, side ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT);
-            EXPECT_OK(&report, place(&placement, &burial, &report, &view, &object));
+            EXPECT_OK(&report, place(&placement, &burial, &report, &view, NULL, &object));
             const double slack = 0.15 * placement.bounding_radius_m;
             const double lowest = lowest_point(&placement, &object, &highest);
             assert_true(lowest > -1e-9 && lowest < slack);
             const double height = highest - lowest;
             object.burial_kind = SONJECT_BURIAL_FRACTION;
             object.burial_fraction = 0.5;
-            assert_int_equal(place(&placement, &burial, &report, &view, &object), SONJECT_OK);
+            assert_int_equal(place(&placement, &burial, &report, &view, NULL, &object), SONJECT_OK);
             lowest_point(&placement, &object, &highest);
             assert_true(fabs(highest - 0.5 * height) < slack);
             assert_true(fabs(burial - 0.5 * height) < slack);
             object.burial_kind = SONJECT_BURIAL_PROUD;
             object.proud_height_m = 0.05;
-            assert_int_equal(place(&placement, &burial, &report, &view, &object), SONJECT_OK);
+            assert_int_equal(place(&placement, &burial, &report, &view, NULL, &object), SONJECT_OK);
             lowest_point(&placement, &object, &highest);
             assert_true(highest < 0.05 + 1e-9 && highest > 0.05 - slack);
             scene_clear(&scene);
@@ -361,14 +351,189 @@ static void test_nothing_stands_prouder_than_it_is_high(void **state)
     object.burial_kind = SONJECT_BURIAL_PROUD;
     object.proud_height_m = 0.5;
     make_view(&view, &scene, SONJECT_SIDE_PORT);
-    assert_int_equal(place(&placement, &burial, &report, &view, &object), SONJECT_OK);
+    assert_int_equal(place(&placement, &burial, &report, &view, NULL, &object), SONJECT_OK);
     assert_true(fabs(placement.centre[2] - 0.25) < 1e-12);
     object.proud_height_m = 0.501;
-    assert_int_equal(place(&placement, &burial, &report, &view, &object), SONJECT_ERROR_INPUT);
+    assert_int_equal(place(&placement, &burial, &report, &view, NULL, &object),
+                     SONJECT_ERROR_INPUT);
     assert_non_null(strstr(report.message, "burial.proud"));
     scene_clear(&scene);
 }
 
+static void make_mesh(struct mesh *mesh, struct mesh_sample *sample)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct mesh_options options;
+    mesh_options_init(&options);
+    EXPECT_OK(&report, mesh_from_arrays(&report, "sample", sample->positions, sample->vertices,
+                                        sample->corners, sample->triangles, &options, mesh));
+    sample_clear(sample);
+}
+
+/* Whether the cuts leave something of some size: of slivers a small error moves the ends by much.
+ */
+static bool is_thick(const sonject_object_params *object)
+{
+    struct shape_size size;
+    shape_size_init(&size, object);
+    for (uint32_t i = 0; i < size.cut_count; i++)
+        size.cuts[i].offset_m -= 0.2;
+    return shape_is_left(&size, object->shape);
+}
+
+/* The shape itself, and a mesh of it. */
+static void compare_extents(const struct mesh *mesh, sonject_object_params *object,
+                            double tolerance_m)
+{
+    int left = 0;
+    for (int i = 0; i < 300; i++) {
+        struct shape_size size, of_mesh;
+        double v[3];
+        draw_cuts(object, 1 + (uint32_t)i % 2, -0.6, 0.6);
+        shape_size_init(&size, object);
+        of_mesh = size;
+        shape_size_of_mesh(&of_mesh, mesh);
+        sample_direction(v);
+        const bool is_left = shape_is_left(&size, object->shape);
+        const double extent = shape_extent(&of_mesh, SONJECT_SHAPE_MESH, v);
+        if (shape_is_left(&of_mesh, SONJECT_SHAPE_MESH) != isfinite(extent) ||
+            (!is_left && isfinite(extent)))
+            fail_msg("cuts %d: the shape is %sleft", i, is_left ? "" : "not ");
+        if (!is_thick(object))
+            continue;
+        left++;
+        const double expected = shape_extent(&size, object->shape, v);
+        if (!(fabs(extent - expected) <= tolerance_m))
+            fail_msg("cuts %d: reaches %.9g m, not %.9g m", i, extent, expected);
+    }
+    assert_true(left > 150 && left < 300);
+}
+
+static void test_extents_of_meshes(void **state)
+{
+    struct mesh mesh;
+    struct mesh_sample sample;
+    sonject_object_params object;
+    sonject_object_params_init(&object);
+    object.shape = SONJECT_SHAPE_BOX;
+    object.length_m = 2.0;
+    object.width_m = 1.2;
+    object.height_m = 0.6;
+    sample_box(&sample);
+    make_mesh(&mesh, &sample);
+    compare_extents(&mesh, &object, 2e-6); /* vertices to 6e-8, where planes meet at a slant */
+    mesh_clear(&mesh);
+    sonject_object_params_init(&object);
+    object.diameter_m = 2.0;
+    sample_sphere(&sample, 5);
+    make_mesh(&mesh, &sample);
+    /* facets lie up to 0.0008 under the sphere (sides of 90 deg/32 at the octahedron's corners, of
+     * twice that at its middles); rims move by that over the cosine between plane and sphere */
+    compare_extents(&mesh, &object, 0.004);
+    mesh_clear(&mesh);
+}
+
+/* Of a user's shape the lesser of a box and a sphere is known. */
+static void test_extents_of_user_shapes(void **state)
+{
+    static const double upward[3] = {0.0, 0.0, 1.0}, nose[3] = {1.0, 0.0, 0.0};
+    const struct user_shape shape = {
+        .bounding_radius_m = 1.0, .half_length_m = 1.0, .half_width_m = 1.0, .half_height_m = 0.8};
+    struct shape_size size;
+    sonject_object_params object;
+    sonject_object_params_init(&object);
+    object.shape = SONJECT_SHAPE_USER;
+    object.cut_count = 1;
+    object.cuts[0].elevation_rad = 0.5 * PI;
+    object.cuts[0].distance_m = -0.6;
+    shape_size_init(&size, &object);
+    shape_size_of_user_shape(&size, &shape);
+    assert_true(shape_is_left(&size, SONJECT_SHAPE_USER));
+    assert_true(fabs(shape_extent(&size, SONJECT_SHAPE_USER, upward) + 0.6) < 1e-9);
+    assert_true(fabs(shape_extent(&size, SONJECT_SHAPE_USER, nose) - 0.8) <
+                1e-9);             /* of the sphere */
+    size.cuts[0].offset_m = -0.85; /* of the sphere something would be left, of the box not */
+    assert_false(shape_is_left(&size, SONJECT_SHAPE_USER));
+}
+
+/* A cut mesh of a box lies as deep as the cut box. */
+static void test_cut_meshes_lie_as_deep(void **state)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct patch_view view;
+    struct scene scene;
+    struct mesh mesh;
+    struct mesh_sample sample;
+    make_view(&view, &scene, SONJECT_SIDE_PORT);
+    int lower = 0;
+    sample_box(&sample);
+    make_mesh(&mesh, &sample);
+    for (int i = 0; i < 200; i++) {
+        sonject_object_params object;
+        sonject_object_params_init(&object);
+        object.shape = SONJECT_SHAPE_BOX;
+        object.length_m = 2.0;
+        object.width_m = 1.2;
+        object.height_m = 0.6;
+        object.pitch_rad = sample_uniform(-1.5, 1.5);
+        object.roll_rad = sample_uniform(-3.0, 3.0);
+        do
+            draw_cuts(&object, 1 + (uint32_t)i / 2 % 2, -0.2, 0.2);
+        while (!is_thick(&object));
+        object.burial_kind = i % 2 ? SONJECT_BURIAL_FRACTION : SONJECT_BURIAL_PROUD;
+        object.burial_fraction = 0.3;
+        object.proud_height_m = 0.05;
+        double heights[3], burial; /* of the centre: box, mesh, and uncut mesh */
+        for (int k = 0; k < 3; k++) {
+            struct placement placement;
+            object.shape = k == 0 ? SONJECT_SHAPE_BOX : SONJECT_SHAPE_MESH;
+            object.cut_count = k < 2 ? object.cut_count : 0;
+            EXPECT_OK(&report, place(&placement, &burial, &report, &view, &mesh, &object));
+            heights[k] = placement.centre[2];
+        }
+        assert_true(fabs(heights[1] - heights[0]) < 2e-6); /* as above */
+        lower += fabs(heights[2] - heights[0]) > 1e-3;
+    }
+    assert_true(lower > 100); /* the others lose a side only */
+    mesh_clear(&mesh);
+    scene_clear(&scene);
+}
+
+static void test_cuts_must_leave_something(void **state)
+{
+    struct report report = {{0}, NULL, NULL};
+    struct first_key first = FIRST_KEY;
+    struct scene scene;
+    struct mesh mesh;
+    struct mesh_sample sample;
+    sonject_object_params object;
+    sample_box(&sample);
+    make_mesh(&mesh, &sample);
+    scene_init(&scene);
+    scene.meshes = &mesh;
+    scene.mesh_count = 1;
+    sonject_object_params_init(&object);
+    object.shape = SONJECT_SHAPE_MESH;
+    object.cut_count = 2;
+    object.cuts[0].distance_m = -0.99;
+    object.cuts[1].azimuth_rad = PI;
+    object.cuts[1].distance_m = 1.0;
+    assert_int_equal(check_object(&object, &report, &first.listener), SONJECT_OK);
+    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, &first.listener), SONJECT_OK);
+    object.cuts[1].distance_m = 0.98;
+    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, &first.listener),
+                     SONJECT_ERROR_INPUT);
+    assert_string_equal(first.key, "cuts");
+    assert_string_equal(report.message, "cuts leave nothing of the object; move one outwards");
+    object.cut_count = 1;
+    object.cuts[0].distance_m = -1.0; /* touches */
+    assert_int_equal(check_cuts_in_scene(&scene, &object, &report, &first.listener),
+                     SONJECT_ERROR_INPUT);
+    mesh_clear(&mesh);
+}
+
 TEST_PROGRAM(NULL, NULL, TEST(test_clouds_of_points), TEST(test_closed_forms),
              TEST(test_bounding_radius), TEST(test_objects_rest_on_the_seabed),
-             TEST(test_nothing_stands_prouder_than_it_is_high))
+             TEST(test_nothing_stands_prouder_than_it_is_high), TEST(test_extents_of_meshes),
+             TEST(test_extents_of_user_shapes), TEST(test_cut_meshes_lie_as_deep),
+             TEST(test_cuts_must_leave_something))
