@@ -73,10 +73,14 @@ def test_the_stages_leave_what_a_run_leaves(sonject, scene, tmp_path, interactio
         ["sonar.pulse={kind: chirp, window: hann}"],
         ["sonar.motion={sway: [{amplitude: 1 mm, wavelength: 2 m}], "
          "yaw: {advance: 50 cm, bias: 0.05 deg}}"],
+        ["seabed.relief=[{mound: {height: 10 cm, radius: 40 cm}}]", "surface={depth: 20 m}",
+         "injection.interactions=2", "injection.order_energies=true"],
+        ["injection.estimator=brute_force", "injection.mode=resynthesise",
+         "sonar.transducer=1 m", "injection.interactions=2", "injection.order_energies=true"],
     ],
     ids=lambda chosen: chosen[0],
 )
-def test_the_stages_of_other_sonars(sonject, scene, tmp_path, chosen):
+def test_the_stages_of_other_sonars_and_seas(sonject, scene, tmp_path, chosen):
     compare_with_run(sonject, tmp_path, scene, *(word for each in chosen for word in ("--set", each)))
 
 

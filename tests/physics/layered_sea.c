@@ -27,7 +27,8 @@ static double reference_speed(const struct sea *sea)
 struct reference_way way_from(const struct sea *sea, enum image_of_sonar image)
 {
     struct reference_way way;
-    way.layers = sea_layers(sea, &way.count);
+    way.layers = sea->bench->water.layers;
+    way.count = sea->bench->water.count;
     way.sonar_height = sea->sonar->altitude_m;
     way.depth = sea->surface->water_depth_m;
     way.bounces = bounces_of(image);
@@ -55,8 +56,7 @@ struct reference_sound sound_on_seabed(const struct sea *sea, double processor_r
 /* p = cos/c of sound at a target, the same everywhere on its way. */
 static double parameter_of(const struct sea *sea, struct reference_sound sound)
 {
-    size_t count;
-    return cos(sound.grazing) / sea_layers(sea, &count)[0].speed_mps;
+    return cos(sound.grazing) / sea->bench->water.layers[0].speed_mps;
 }
 
 /* Share of the energy that all planes under the sonar pass on, one way: 1 - R^2 = 4 Z1 Z2 /
@@ -64,10 +64,9 @@ static double parameter_of(const struct sea *sea, struct reference_sound sound)
  * all. */
 static double passed_on(const struct sea *sea, double p)
 {
-    size_t count;
-    const struct water_layer *layer = sea_layers(sea, &count);
+    const struct water_layer *layer = sea->bench->water.layers;
     double share = 1.0;
-    for (size_t i = 0; i + 1 < count; i++, layer++) {
+    for (size_t i = 0; i + 1 < sea->bench->water.count; i++, layer++) {
         double impedance[2];
         for (int side = 0; side < 2; side++)
             impedance[side] = layer[side].density * layer[side].speed_mps /

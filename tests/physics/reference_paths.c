@@ -54,14 +54,6 @@ struct reference_object *reference_add_object(struct reference_scene *scene,
     return object;
 }
 
-void reference_turn(struct reference_object *object, double heading, double pitch)
-{
-    object->axes[0] =
-        reference_vector(cos(pitch) * cos(heading), cos(pitch) * sin(heading), -sin(pitch));
-    object->axes[1] = reference_vector(-sin(heading), cos(heading), 0.0);
-    object->axes[2] = reference_cross(object->axes[0], object->axes[1]);
-}
-
 /* Roots of a t^2 + 2 b t + c = 0, its discriminant b^2 - a c given by whoever knows it without
    cancellation. */
 static int quadratic_roots(double a, double b, double c, double discriminant, double roots[2])

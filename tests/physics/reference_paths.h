@@ -70,9 +70,6 @@ struct reference_object *reference_add_object(struct reference_scene *scene,
                                               enum reference_shape shape, double radius,
                                               double lambert);
 
-/* Heading (rad) from +x towards +y, then pitch, nose down. */
-void reference_turn(struct reference_object *object, double heading, double pitch);
-
 /* Nearest surface along a ray of unit direction; false, and *hit untouched, if there is none. */
 bool reference_nearest(const struct reference_scene *scene, struct reference_vector origin,
                        struct reference_vector direction, struct reference_hit *hit);

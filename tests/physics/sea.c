@@ -1,25 +1,30 @@
 #include "sea.h"
 
-#include "bench.h"
 #include "scene/placement.h"
 #include "scene/point_response.h"
 
 /* ---- claims ---- */
 
-static void **kept; /* until the claim ends */
-static size_t kept_count;
+/* What is done when the claim ends. */
+static struct {
+    void (*clear)(void *);
+    void *of;
+} * endings;
+static size_t ending_count;
 
-static void *keep(void *memory)
+void claim_end(void (*clear)(void *), void *of)
 {
-    kept = realloc(kept, (kept_count + 1) * sizeof *kept);
-    assert_true(kept && memory);
-    kept[kept_count++] = memory;
-    return memory;
+    endings = realloc(endings, (ending_count + 1) * sizeof *endings);
+    assert_true(endings && of);
+    endings[ending_count].clear = clear;
+    endings[ending_count++].of = of;
 }
 
 void *claim_memory(size_t count, size_t bytes)
 {
-    return keep(calloc(count, bytes));
+    void *memory = calloc(count, bytes);
+    claim_end(free, memory);
+    return memory;
 }
 
 const char *claim_device(void)
@@ -37,32 +42,40 @@ static void close_sea(void)
     the_sea.bench = NULL;
 }
 
+static void (*holds[32])(void);
+static struct CMUnitTest tests[COUNT(holds)];
+static size_t claim_count;
+
 static void hold(void **state)
 {
-    ((const struct claim *)*state)->hold();
+    (*(void (**)(void)) * state)();
 }
 
 static int end_claim(void **state)
 {
     (void)state;
     close_sea();
-    for (size_t i = 0; i < kept_count; i++)
-        free(kept[i]);
-    free(kept);
-    kept = NULL;
-    kept_count = 0;
+    while (ending_count > 0) {
+        ending_count--;
+        endings[ending_count].clear(endings[ending_count].of);
+    }
+    free(endings);
+    endings = NULL;
     return 0;
 }
 
-int hold_claims(const struct claim *claims, size_t count)
+void add_claim(const char *name, void (*function)(void))
 {
-    struct CMUnitTest tests[32];
-    assert_true(count <= COUNT(tests));
-    for (size_t i = 0; i < count; i++) {
-        const struct CMUnitTest test = {claims[i].name, hold, NULL, end_claim, (void *)&claims[i]};
-        tests[i] = test;
-    }
-    return bench_run_on_devices(tests, count);
+    if (claim_count == COUNT(holds))
+        abort();
+    holds[claim_count] = function;
+    tests[claim_count] = (struct CMUnitTest){name, hold, NULL, end_claim, &holds[claim_count]};
+    claim_count++;
+}
+
+int main(void)
+{
+    return bench_run_on_devices(tests, claim_count);
 }
 
 /* ---- the scene ---- */
@@ -72,23 +85,12 @@ struct sea *sea_open(size_t rows, size_t columns, double middle_range_m)
     close_sea();
     bench_open(&the_bench, rows, columns, middle_range_m);
     struct scene *scene = &the_bench.scene;
-    const struct sea sea = {&scene->sonar,    &scene->pulse,     &scene->motion.params,
-                            &scene->medium,   &scene->seabed,    &scene->surface,
-                            &scene->geometry, &scene->injection, rows,
-                            columns,          rows * columns,    &the_bench};
-    the_sea = sea;
+    the_sea =
+        (struct sea){&scene->sonar,  &scene->pulse,   &scene->motion.params, &scene->medium,
+                     &scene->seabed, &scene->surface, &scene->geometry,      &scene->injection,
+                     rows,           columns,         rows * columns,        false,
+                     &the_bench};
     return &the_sea;
-}
-
-void sea_move(struct sea *sea, double middle_range_m)
-{
-    bench_move(sea->bench, middle_range_m);
-}
-
-sonject_object_params *sea_add(struct sea *sea, sonject_shape shape, double length_m,
-                               double width_m, double diameter_m)
-{
-    return bench_add(sea->bench, shape, length_m, width_m, diameter_m);
 }
 
 sonject_object_params *sea_add_sphere(struct sea *sea, double radius_m, double height_m)
@@ -96,11 +98,6 @@ sonject_object_params *sea_add_sphere(struct sea *sea, double radius_m, double h
     sonject_object_params *sphere = sea_add(sea, SONJECT_SHAPE_SPHERE, 0.0, 0.0, 2.0 * radius_m);
     sphere->burial_m = -height_m;
     return sphere;
-}
-
-sonject_object_params *sea_object(const struct sea *sea, uint32_t number)
-{
-    return &sea->bench->scene.objects[number];
 }
 
 void place_in_pixels(sonject_object_params *object, double row, double column)
@@ -178,11 +175,6 @@ void sea_add_code(struct sea *sea, const char *name, const char *code, double bo
               user_shapes_append(&sea->bench->scene.user_shapes, &sea->bench->report, &params));
 }
 
-void sea_add_tetrahedron(struct sea *sea)
-{
-    bench_add_tetrahedron(sea->bench);
-}
-
 void sea_add_mound(struct sea *sea, double radius_m, double height_m, double beyond_m)
 {
     struct relief_feature *mound =
@@ -222,11 +214,6 @@ void sea_set_heights(struct sea *sea, const sonject_relief_params *grid, const f
                                                             &sea->bench->report, grid, heights_m));
 }
 
-void sea_set_layers(struct sea *sea, const struct water_layer *layers, size_t count)
-{
-    bench_set_layers(sea->bench, layers, count);
-}
-
 void set_mirror(sonject_material_params *material, double reflection)
 {
     material->reflection_kind = SONJECT_REFLECTION_CONSTANT;
@@ -240,69 +227,22 @@ void set_mirror(sonject_material_params *material, double reflection)
 void sea_ready(struct sea *sea)
 {
     bench_ready(sea->bench);
+    sea->is_put = false;
+}
+
+void sea_lay(struct sea *sea)
+{
+    if (!sea->is_put)
+        sea_ready(sea);
 }
 
 sonject_status sea_check_response(struct sea *sea)
 {
     struct bench *bench = sea->bench;
     struct point_response response;
-    const sonject_status status =
-        point_response_of_scene(&response, &bench->report, &bench->scene, &bench->tracer.view,
-                                bench->tracer.view.range_ratio * bench->water.straight_speed_mps);
-    return status == SONJECT_OK
-               ? cross_range_check(&response, &bench->report, &bench->scene, &bench->tracer.view)
-               : status;
-}
-
-const char *sea_message(const struct sea *sea)
-{
-    return sea->bench->report.message;
-}
-
-static const struct patch_view *view_of(const struct sea *sea)
-{
-    return &sea->bench->tracer.view;
-}
-
-double sea_range(const struct sea *sea, double column)
-{
-    return view_processor_range(view_of(sea), column);
-}
-
-double sea_column(const struct sea *sea, double processor_range_m)
-{
-    return view_column_of_range(view_of(sea), processor_range_m);
-}
-
-double sea_ground(const struct sea *sea, double processor_range_m)
-{
-    return view_ground_range(view_of(sea), processor_range_m);
-}
-
-double sea_grazing(const struct sea *sea, double processor_range_m)
-{
-    return view_grazing(view_of(sea), processor_range_m);
-}
-
-double sea_x(const struct sea *sea, double row)
-{
-    return view_x_of_row(view_of(sea), row);
-}
-
-double sea_height(const struct sea *sea, double x_m, double ground_m)
-{
-    return relief_height(sea->bench->placed.relief, x_m, ground_m);
-}
-
-const struct water_layer *sea_layers(const struct sea *sea, size_t *count)
-{
-    *count = sea->bench->water.count;
-    return sea->bench->water.layers;
-}
-
-double sea_wavelength(const struct sea *sea)
-{
-    return view_of(sea)->wavelength_m;
+    CHECK(point_response_of_scene(&response, &bench->report, &bench->scene, sea_view(sea),
+                                  sea_view(sea)->range_ratio * bench->water.straight_speed_mps));
+    return cross_range_check(&response, &bench->report, &bench->scene, sea_view(sea));
 }
 
 double sea_wavenumber(const struct sea *sea)
@@ -312,39 +252,18 @@ double sea_wavenumber(const struct sea *sea)
 
 double sea_pulse(const struct sea *sea, double distance_m)
 {
-    return range_response(&sea->bench->tracer.response, distance_m);
+    return range_response(sea_response(sea), distance_m);
 }
 
 double complex sea_pulse_complex(const struct sea *sea, double distance_m)
 {
-    const struct complex_number g =
-        range_response_complex(&sea->bench->tracer.response, distance_m);
+    const struct complex_number g = range_response_complex(sea_response(sea), distance_m);
     return g.real_part + I * g.imaginary_part;
 }
 
 double sea_window(const struct sea *sea, double distance_m)
 {
-    return along_track_response(&sea->bench->tracer.response, distance_m);
-}
-
-double sea_pulse_energy(const struct sea *sea)
-{
-    return range_energy_width(&sea->bench->tracer.response);
-}
-
-double sea_window_energy(const struct sea *sea)
-{
-    return along_track_energy_width(&sea->bench->tracer.response);
-}
-
-double sea_window_reach(const struct sea *sea, double share)
-{
-    return along_track_energy_reach(&sea->bench->tracer.response, share);
-}
-
-double sea_cross_range_energy(const struct sea *sea, double processor_range_m)
-{
-    return cross_range_energy_width(&sea->bench->tracer.response, processor_range_m);
+    return along_track_response(sea_response(sea), distance_m);
 }
 
 void sea_set_pulse(struct sea *sea, const double *positions, const double *real_part,
@@ -366,36 +285,14 @@ void sea_set_window(struct sea *sea, const double *positions, const double *real
 
 double sea_seabed_level(const struct sea *sea, double processor_range_m)
 {
-    return seabed_cell_energy(view_of(sea), &sea->bench->tracer.response, sea->seabed->lambert,
+    return seabed_cell_energy(sea_view(sea), sea_response(sea), sea->seabed->lambert,
                               processor_range_m);
-}
-
-const double *sea_centre(const struct sea *sea, uint32_t part)
-{
-    return sea->bench->placements[part].centre;
-}
-
-const double (*sea_axes(const struct sea *sea, uint32_t part))[3]
-{
-    return (const double(*)[3])sea->bench->placements[part].axes;
-}
-
-double sea_slant_range(const struct sea *sea, uint32_t part)
-{
-    return placement_range(&sea->bench->placements[part], view_of(sea));
-}
-
-void sea_heights(const struct sea *sea, uint32_t object, double heights[3])
-{
-    const struct placed_object *placed = &sea->bench->placed.objects[object];
-    heights[0] = placed->bottom_m;
-    heights[1] = placed->top_m;
-    heights[2] = placed->origin[2];
 }
 
 void sea_put(struct sea *sea, uint32_t part, const double centre[3], const double nose[3],
              const double own_y[3])
 {
+    sea->is_put = true;
     struct placement *placement = &sea->bench->placements[part];
     memcpy(placement->centre, centre, sizeof placement->centre);
     memcpy(placement->axes[0], nose, sizeof placement->axes[0]);

@@ -1,6 +1,6 @@
-/* A small sea for physical claims: one patch, some objects, one device. What the library computes
- * of it is given out as plain numbers, and its inside is named in sea*.c alone; all that is given
- * out lives until the claim ends. Calls that fail end the claim. */
+/* A small sea for physical claims: one patch, some objects, one device (bench.h). What the library
+ * computes of it is given out as plain numbers and lives until the claim ends. Calls that fail end
+ * the claim. */
 #ifndef SONJECT_TESTS_SEA_H
 #define SONJECT_TESTS_SEA_H
 
@@ -8,36 +8,27 @@
 
 #include <sonject/sonject.h>
 
-#include "claims.h"
-#include "estimate.h"
-
-struct bench;
-struct water_layer;
+#include "bench.h"
+#include "inject/injection.h"
 
 /* ---- claims ---- */
 
-struct claim {
-    const char *name;
-    void (*hold)(void);
-};
-
-#define CLAIM(function)                                                                            \
+/* CLAIM(name) { ... } is held on every device by the program. */
+#define CLAIM(name)                                                                                \
+    static void name(void);                                                                        \
+    __attribute__((constructor)) static void add_##name(void)                                      \
     {                                                                                              \
-#function, function                                                                        \
-    }
+        add_claim(#name, name);                                                                    \
+    }                                                                                              \
+    static void name(void)
 
-/* The program: each claim, on every device. */
-#define CLAIMS(...)                                                                                \
-    int main(void)                                                                                 \
-    {                                                                                              \
-        static const struct claim claims[] = {__VA_ARGS__};                                        \
-        return hold_claims(claims, COUNT(claims));                                                 \
-    }
-
-int hold_claims(const struct claim *claims, size_t count);
+void add_claim(const char *name, void (*hold)(void));
 
 /* Memory of zeros until the claim ends. */
 void *claim_memory(size_t count, size_t bytes);
+
+/* Calls a function with what is given when the claim ends. */
+void claim_end(void (*clear)(void *), void *of);
 
 /* The device that claims are held on now; NULL: the default one. */
 const char *claim_device(void);
@@ -54,6 +45,7 @@ struct sea {
     sonject_geometry_params *geometry;
     sonject_injection_params *injection;
     size_t rows, columns, pixels; /* pixels: rows x columns */
+    bool is_put;                  /* by hand, since it was laid */
     struct bench *bench;          /* the library's inside */
 };
 
@@ -63,16 +55,16 @@ struct sea {
 struct sea *sea_open(size_t rows, size_t columns, double middle_range_m);
 
 /* Puts the middle column somewhere else, after spacing or size changed. */
-void sea_move(struct sea *sea, double middle_range_m);
+#define sea_move(sea, middle_range_m) bench_move((sea)->bench, middle_range_m)
 
 /* An object in the middle of the patch, rigid and without a rough part; all lengths are those of
  * the shape's own words. Valid until the next one is added. */
-sonject_object_params *sea_add(struct sea *sea, sonject_shape shape, double length_m,
-                               double width_m, double diameter_m);
+#define sea_add(sea, shape, length_m, width_m, diameter_m)                                         \
+    bench_add((sea)->bench, shape, length_m, width_m, diameter_m)
+#define sea_object(sea, number) (&(sea)->bench->scene.objects[number])
 
 /* A sphere in the middle, its lowest point at a height. */
 sonject_object_params *sea_add_sphere(struct sea *sea, double radius_m, double height_m);
-sonject_object_params *sea_object(const struct sea *sea, uint32_t number);
 void place_in_pixels(sonject_object_params *object, double row, double column);
 void place_in_metres(sonject_object_params *object, double along_m, double range_m);
 
@@ -101,7 +93,7 @@ void sea_add_code(struct sea *sea, const char *name, const char *code, double bo
                   double first, double second);
 
 /* A tetrahedron within 0.5 m of its middle. */
-void sea_add_tetrahedron(struct sea *sea);
+#define sea_add_tetrahedron(sea) bench_add_tetrahedron((sea)->bench)
 
 /* The seabed: a raised cosine (a pit where the height is negative) so far beyond the patch's
  * middle; ripples across a heading; a scour about the first object; or any heights. */
@@ -110,39 +102,48 @@ void sea_add_ripples(struct sea *sea, double wavelength_m, double height_m, doub
                      double sharpness);
 void sea_add_scour(struct sea *sea, double width_m, double depth_m);
 void sea_set_heights(struct sea *sea, const sonject_relief_params *grid, const float *heights_m);
-void sea_set_layers(struct sea *sea, const struct water_layer *layers, size_t count);
 
 /* A material that mirrors alone. */
 void set_mirror(sonject_material_params *material, double reflection);
 
 /* ---- what is laid ---- */
 
+/* Works out view, response and places from the scene as it now is. Before rays are
+ * traced that is done anyway (sea_lay), unless a part was put by hand since. */
+void sea_ready(struct sea *sea);
+void sea_lay(struct sea *sea);
+#define sea_set_layers(sea, layers, count) bench_set_layers((sea)->bench, layers, count)
+
 /* Whether image formation takes it, after sea_ready; why not: sea_message. */
 sonject_status sea_check_response(struct sea *sea);
-const char *sea_message(const struct sea *sea);
+#define sea_message(sea) ((const char *)(sea)->bench->report.message)
 
-/* Works out view, response and places from the scene as it now is. */
-void sea_ready(struct sea *sea);
-double sea_range(const struct sea *sea, double column); /* apparent */
-double sea_column(const struct sea *sea, double processor_range_m);
-double sea_ground(const struct sea *sea, double processor_range_m);
-double sea_grazing(const struct sea *sea, double processor_range_m);
-double sea_x(const struct sea *sea, double row);
-double sea_height(const struct sea *sea, double x_m, double ground_m);      /* of the relief */
-const struct water_layer *sea_layers(const struct sea *sea, size_t *count); /* as they were laid */
-double sea_wavelength(const struct sea *sea);
+/* The call, which has the sea's report, must fail for bad input and say so in these words. */
+#define EXPECT_REFUSED(sea, words, call)                                                           \
+    do {                                                                                           \
+        assert_int_equal(call, SONJECT_ERROR_INPUT);                                               \
+        if (!strstr(sea_message(sea), words))                                                      \
+            fail_msg("'%s' does not say '%s'", sea_message(sea), words);                           \
+    } while (0)
+
+/* Ranges are apparent, the processor's; heights those of the relief. */
+#define sea_view(sea)                  (&(sea)->bench->tracer.view)
+#define sea_range(sea, column)         view_processor_range(sea_view(sea), column)
+#define sea_column(sea, range_m)       view_column_of_range(sea_view(sea), range_m)
+#define sea_ground(sea, range_m)       view_ground_range(sea_view(sea), range_m)
+#define sea_grazing(sea, range_m)      view_grazing(sea_view(sea), range_m)
+#define sea_x(sea, row)                view_x_of_row(sea_view(sea), row)
+#define sea_height(sea, x_m, ground_m) relief_height((sea)->bench->placed.relief, x_m, ground_m)
+#define sea_wavelength(sea)            (sea_view(sea)->wavelength_m)
 double sea_wavenumber(const struct sea *sea);
-double sea_pulse(const struct sea *sea, double distance_m); /* G, its real part */
+
+/* G, its real part, and W of a straight track; and integrals of their squares, m. */
+#define sea_response(sea)      (&(sea)->bench->tracer.response)
+#define sea_pulse_energy(sea)  range_energy_width(sea_response(sea))
+#define sea_window_energy(sea) along_track_energy_width(sea_response(sea))
+double sea_pulse(const struct sea *sea, double distance_m);
 double complex sea_pulse_complex(const struct sea *sea, double distance_m);
-double sea_window(const struct sea *sea, double distance_m); /* W of a straight track */
-double sea_pulse_energy(const struct sea *sea);              /* integrals of their squares, m */
-double sea_window_energy(const struct sea *sea);
-
-/* Half width, m, beyond which less than a share of W's energy lies. */
-double sea_window_reach(const struct sea *sea, double share);
-
-/* Integral of |W|^2, m, whatever the aperture, at an apparent range. */
-double sea_cross_range_energy(const struct sea *sea, double processor_range_m);
+double sea_window(const struct sea *sea, double distance_m);
 
 /* Tables of the pulse, over seconds or m, and of W over m; imaginary parts may be NULL. */
 void sea_set_pulse(struct sea *sea, const double *positions, const double *real_part,
@@ -154,12 +155,10 @@ void sea_set_window(struct sea *sea, const double *positions, const double *real
 double sea_seabed_level(const struct sea *sea, double processor_range_m);
 
 /* Of a part of an object. */
-const double *sea_centre(const struct sea *sea, uint32_t part);
-const double (*sea_axes(const struct sea *sea, uint32_t part))[3];
-double sea_slant_range(const struct sea *sea, uint32_t part);
-
-/* The whole object's lowest and highest point and origin, m over the mean seabed. */
-void sea_heights(const struct sea *sea, uint32_t object, double heights[3]);
+#define sea_part(sea, part)        (&(sea)->bench->placements[part])
+#define sea_centre(sea, part)      ((const double *)sea_part(sea, part)->centre)
+#define sea_axes(sea, part)        ((const double(*)[3])sea_part(sea, part)->axes)
+#define sea_slant_range(sea, part) placement_range(sea_part(sea, part), sea_view(sea))
 
 /* Puts it exactly where it is wanted, after sea_ready; nose and own y are square unit vectors. */
 void sea_put(struct sea *sea, uint32_t part, const double centre[3], const double nose[3],
@@ -201,10 +200,11 @@ struct tile_sums {
     double energy, lost, footprint; /* of one part: its echo, hidden seabed (m2), rays that hit */
 };
 
-/* The rough part. sums, tiles: of each part; may be NULL. And of an even seabed as the beam of a
- * real aperture sees it, one strip a ping. */
+/* The rough part. sums, tiles: of each part; may be NULL. is_beam: of an even seabed as the beam of
+ * a real aperture sees it, one strip a ping. */
 struct strips sea_rough(struct sea *sea, struct tile_sums *sums, struct strips *tiles);
-struct strips sea_rough_of_beam(struct sea *sea);
+struct strips sea_rough_of(struct sea *sea, bool is_beam, struct tile_sums *sums,
+                           struct strips *tiles);
 
 /* Strips of which the patch's tallies are made, and where they begin and end along x. */
 struct strips sea_grid(const struct sea *sea, double *first_x, double *last_x);
@@ -226,29 +226,26 @@ struct energies {
 struct energies sea_chains(struct sea *sea, const struct ranges *ranges, uint64_t first_seed,
                            int seeds);
 /* The same where a claim changes what the device is told (bench.h) before rays are traced. */
-struct chain_trace;
 struct energies sea_changed_chains(struct sea *sea, const struct ranges *ranges,
                                    uint64_t first_seed, int seeds,
                                    void (*change)(struct bench *bench, struct chain_trace *trace));
 
-/* How many rays more than begun were followed, connections to the source among them. */
-uint64_t sea_queries(const struct sea *sea);
+/* Compares an order's energies with those expected, where these are a fiftieth of the most; errors
+ * of so many of them at least must be below a share of them. */
+void expect_energies(const char *what, const struct energies *measured, int order,
+                     const struct estimate *expected, int count, double systematic, double resolved,
+                     int least);
 struct estimate energy_of(const struct energies *energies, int order, int range);
 
 /* ---- images ---- */
 
-struct object_image {
-    size_t first_column, columns;
-    const float *energy;
-    double peak_energy;
-};
 struct image {
     size_t rows, columns, pixels;
     const float *seabed_energy, *level_energy, *lost_energy, *target_energy, *energy;
     const float *order_energy[CHAIN_ORDERS];
     uint32_t orders;
     const double complex *target, *seabed; /* realisations, m */
-    const struct object_image *objects;
+    const struct object_echo *objects;
 };
 
 /* Of the sea as it is laid. map: reflectivity over mu0 or NULL; seabed is NULL without speckle. */
@@ -276,10 +273,12 @@ enum noise {
 };
 double complex *sea_noise(struct sea *sea, enum noise kind);
 
-/* Of the seabed, energy or realisation, over that of its plain pixels, without so many columns at
- * either side: the mean of the columns' means and its error, were these independent. */
-struct estimate level_over(const struct sea *sea, const struct image *image, size_t edge,
-                           bool is_field);
+/* Of the seabed, energy or realisation, over what is expected of a pixel at an apparent range
+ * (sea_seabed_level or a closed form), without so many rows and columns at either side: the mean of
+ * the columns' means and its error, of which three lie within a pulse at most. */
+typedef double expected_level(const struct sea *sea, double processor_range_m);
+struct estimate level_over(const struct sea *sea, const struct image *image, size_t edge_rows,
+                           size_t edge_columns, bool is_field, expected_level *expected);
 
 /* Mean of conj(a) b over pixels a and those b so many rows and columns on; and a field over the
  * roots of its expected energies. */
@@ -289,26 +288,12 @@ double complex *unit_field(const struct sea *sea, const double complex *field, c
 
 /* ---- injections ---- */
 
-struct injected {
-    const float *image, *energy, *visibility;
-    const float *field; /* pairs */
-    const float *order_energy[CHAIN_ORDERS];
-    const uint8_t *highlight, *labels, *influence;
-    const sonject_object_truth *objects;
-    sonject_statistics statistics;
-};
-
 /* pixels: amplitudes or pairs. */
-const struct injected *sea_inject(struct sea *sea, const float *pixels, bool is_complex);
+const struct injection_result *sea_inject(struct sea *sea, const float *pixels, bool is_complex);
 float *pairs_of(const double complex *field, size_t count);
 float *magnitudes_of(const double complex *field, size_t count);
 
-/* The level of a measured patch, its mean over pixels of one kind: intensity of the patch, energy
- * of plain seabed (m2) by column, and noise over level. */
-struct level {
-    const float *level, *cell_energy;
-    double noise_ratio;
-};
-struct level sea_level(struct sea *sea, const float *pixels, bool is_complex);
+/* The level of a measured patch. */
+const struct patch_level *sea_level(struct sea *sea, const float *pixels, bool is_complex);
 
 #endif

@@ -1,13 +1,12 @@
 /* What rays bring, before the image is formed. */
 #include "sea.h"
 
-#include "bench.h"
-
 struct line sea_line(struct sea *sea, uint32_t object)
 {
     struct tracer *tracer = &sea->bench->tracer;
     struct glints glints;
     struct line line;
+    sea_lay(sea);
     EXPECT_OK(&sea->bench->report, glints_begin(&glints, tracer, object));
     line.bins = (size_t)glints.grid.bins.count;
     line.spacing_m = tracer->view.column_spacing_m / glints.grid.bins_per_pixel;
@@ -81,21 +80,29 @@ double sea_peak(struct sea *sea, double *range_m)
 
 static struct strips strips_of(const struct line_grid *grid, const float *energy)
 {
-    const struct strips strips = {grid->strips.count,
-                                  grid->bins.count,
-                                  grid->strips.first,
-                                  grid->bins.first,
-                                  (int)grid->strips_per_row,
-                                  (int)grid->bins_per_pixel,
-                                  energy};
-    return strips;
+    return (struct strips){grid->strips.count,
+                           grid->bins.count,
+                           grid->strips.first,
+                           grid->bins.first,
+                           (int)grid->strips_per_row,
+                           (int)grid->bins_per_pixel,
+                           energy};
 }
 
 struct strips sea_rough(struct sea *sea, struct tile_sums *sums, struct strips *tiles)
 {
+    return sea_rough_of(sea, false, sums, tiles);
+}
+
+struct strips sea_rough_of(struct sea *sea, bool is_beam, struct tile_sums *sums,
+                           struct strips *tiles)
+{
     static struct rough_trace trace;
     struct tracer *tracer = &sea->bench->tracer;
-    EXPECT_OK(&sea->bench->report, rough_trace_begin(&trace, tracer, NULL));
+    sea_lay(sea);
+    EXPECT_OK(&sea->bench->report, is_beam
+                                       ? rough_trace_begin_beam(&trace, tracer, &tracer->response)
+                                       : rough_trace_begin(&trace, tracer, NULL));
     float *energy = claim_memory(line_grid_cells(&trace.grid), sizeof *energy);
     float *planes = claim_memory(trace.tile_elements + 1, sizeof *planes);
     EXPECT_OK(&sea->bench->report, rough_trace_strips(&trace, tracer, trace.grid.strips, energy));
@@ -117,22 +124,10 @@ struct strips sea_rough(struct sea *sea, struct tile_sums *sums, struct strips *
     return strips;
 }
 
-struct strips sea_rough_of_beam(struct sea *sea)
-{
-    static struct rough_trace trace;
-    struct tracer *tracer = &sea->bench->tracer;
-    EXPECT_OK(&sea->bench->report, rough_trace_begin_beam(&trace, tracer, &tracer->response));
-    float *energy = claim_memory(line_grid_cells(&trace.grid), sizeof *energy);
-    EXPECT_OK(&sea->bench->report, rough_trace_strips(&trace, tracer, trace.grid.strips, energy));
-    const struct strips strips = strips_of(&trace.grid, energy);
-    rough_trace_end(&trace);
-    return strips;
-}
-
 struct strips sea_grid(const struct sea *sea, double *first_x, double *last_x)
 {
     struct line_grid grid;
-    line_grid_for_patch(&grid, &sea->bench->tracer.view, &sea->bench->tracer.response);
+    line_grid_for_patch(&grid, sea_view(sea), sea_response(sea));
     const double strips = grid.strips_per_row;
     *first_x = sea_x(sea, grid.strips.first / strips - 0.5);
     *last_x = sea_x(sea, (grid.strips.first + grid.strips.count) / strips - 0.5);
@@ -184,6 +179,7 @@ struct energies sea_changed_chains(struct sea *sea, const struct ranges *ranges,
 {
     struct energies energies;
     memset(&energies, 0, sizeof energies);
+    sea_lay(sea);
     for (; energies.seeds < seeds; energies.seeds++) {
         sea->injection->seed = first_seed + (uint64_t)energies.seeds;
         add_chains(sea, ranges, change, &energies);
@@ -197,13 +193,29 @@ struct energies sea_chains(struct sea *sea, const struct ranges *ranges, uint64_
     return sea_changed_chains(sea, ranges, first_seed, seeds, NULL);
 }
 
-uint64_t sea_queries(const struct sea *sea)
-{
-    return sea->bench->tracer.counts.queries - sea->bench->tracer.counts.rays;
-}
-
 struct estimate energy_of(const struct energies *energies, int order, int range)
 {
     return estimate_of_sums(energies->sum[order][range], energies->square[order][range],
                             energies->seeds);
+}
+
+void expect_energies(const char *what, const struct energies *measured, int order,
+                     const struct estimate *expected, int count, double systematic, double resolved,
+                     int least)
+{
+    int compared = 0;
+    double most = 0.0;
+    for (int range = 0; range < count; range++)
+        most = fmax(most, expected[range].mean);
+    for (int range = 0; range < count; range++) {
+        struct estimate energy = energy_of(measured, order, range);
+        energy.error = hypot(energy.error, expected[range].error);
+        if (expected[range].mean < 0.02 * most) /* beside the edge of what comes first */
+            continue;
+        print_message("%s, order %d, range %d: ", what, order + 1, range);
+        expect_estimate("energy, m2", energy, expected[range].mean,
+                        systematic * expected[range].mean);
+        compared += energy.error < resolved * expected[range].mean;
+    }
+    assert_true(most > 0.0 && compared >= least);
 }

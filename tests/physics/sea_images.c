@@ -1,22 +1,6 @@
 /* What is formed of rays, and put into measured images. */
 #include "sea.h"
 
-#include "bench.h"
-#include "inject/injection.h"
-
-static void *copy_bytes(const void *from, size_t bytes)
-{
-    void *copy = claim_memory(bytes + 1, 1);
-    if (bytes > 0)
-        memcpy(copy, from, bytes);
-    return copy;
-}
-
-static float *copy_plane(const float *plane, size_t count)
-{
-    return plane ? copy_bytes(plane, count * sizeof *plane) : NULL;
-}
-
 static double complex *join_planes(const float *real_part, const float *imaginary_part,
                                    size_t count)
 {
@@ -26,44 +10,44 @@ static double complex *join_planes(const float *real_part, const float *imaginar
     return joined;
 }
 
-static const struct object_image *copy_objects(const struct echoes *echoes)
+static void clear_echoes(void *echoes)
 {
-    struct object_image *objects = claim_memory(echoes->object_count + 1, sizeof *objects);
-    for (uint32_t i = 0; i < echoes->object_count; i++) {
-        const struct object_echo *echo = &echoes->objects[i];
-        objects[i].first_column = echo->first_column;
-        objects[i].columns = echo->columns;
-        objects[i].energy = copy_plane(echo->energy, echoes->rows * echo->columns);
-        objects[i].peak_energy = echo->peak_energy;
-    }
-    return objects;
+    echoes_clear(echoes);
+}
+
+static void clear_result(void *result)
+{
+    injection_result_clear(result);
+}
+
+static void clear_level(void *level)
+{
+    patch_level_clear(level);
 }
 
 const struct image *sea_image_of(struct sea *sea, const float *map, bool has_speckle)
 {
     struct image *image = claim_memory(1, sizeof *image);
-    struct echoes echoes;
-    struct echo_request request;
-    memset(&request, 0, sizeof request);
-    request.map = map;
-    request.field = has_speckle ? SEABED_FIELD_SPECKLE : SEABED_FIELD_NONE;
-    EXPECT_OK(&sea->bench->report, echoes_compute(&echoes, &sea->bench->tracer, &request));
-    const size_t count = echoes.rows * echoes.columns;
-    image->rows = echoes.rows;
-    image->columns = echoes.columns;
-    image->pixels = count;
-    image->seabed_energy = copy_plane(echoes.seabed_energy, count);
-    image->level_energy = copy_plane(echoes.level_energy, count);
-    image->lost_energy = copy_plane(echoes.lost_energy, count);
-    image->target_energy = copy_plane(echoes.target_energy, count);
-    image->energy = copy_plane(echoes.energy, count);
-    image->orders = echoes.orders;
-    for (uint32_t order = 0; order < echoes.orders && order < CHAIN_ORDERS; order++)
-        image->order_energy[order] = copy_plane(echoes.order_energy[order], count);
-    image->target = join_planes(echoes.target_real, echoes.target_imaginary, count);
-    image->seabed = join_planes(echoes.seabed_real, echoes.seabed_imaginary, count);
-    image->objects = copy_objects(&echoes);
-    echoes_clear(&echoes);
+    struct echoes *echoes = claim_memory(1, sizeof *echoes);
+    const struct echo_request request = {
+        .map = map, .field = has_speckle ? SEABED_FIELD_SPECKLE : SEABED_FIELD_NONE};
+    sea_lay(sea);
+    EXPECT_OK(&sea->bench->report, echoes_compute(echoes, &sea->bench->tracer, &request));
+    claim_end(clear_echoes, echoes);
+    *image = (struct image){.rows = echoes->rows,
+                            .columns = echoes->columns,
+                            .pixels = echoes->rows * echoes->columns,
+                            .seabed_energy = echoes->seabed_energy,
+                            .level_energy = echoes->level_energy,
+                            .lost_energy = echoes->lost_energy,
+                            .target_energy = echoes->target_energy,
+                            .energy = echoes->energy,
+                            .orders = echoes->orders,
+                            .objects = echoes->objects};
+    for (uint32_t order = 0; order < echoes->orders && order < CHAIN_ORDERS; order++)
+        image->order_energy[order] = echoes->order_energy[order];
+    image->target = join_planes(echoes->target_real, echoes->target_imaginary, image->pixels);
+    image->seabed = join_planes(echoes->seabed_real, echoes->seabed_imaginary, image->pixels);
     return image;
 }
 
@@ -139,22 +123,24 @@ double complex *sea_noise(struct sea *sea, enum noise kind)
     return join_planes(parts[0], parts[1], sea->pixels);
 }
 
-struct estimate level_over(const struct sea *sea, const struct image *image, size_t edge,
-                           bool is_field)
+struct estimate level_over(const struct sea *sea, const struct image *image, size_t edge_rows,
+                           size_t edge_columns, bool is_field, expected_level *expected)
 {
     double sum = 0.0, squares = 0.0;
-    for (size_t column = edge; column + edge < sea->columns; column++) {
-        const double expected = sea_seabed_level(sea, sea_range(sea, (double)column));
+    for (size_t column = edge_columns; column + edge_columns < sea->columns; column++) {
         double mean = 0.0;
-        for (size_t row = 0; row < sea->rows; row++) {
+        for (size_t row = edge_rows; row + edge_rows < sea->rows; row++) {
             const size_t i = row * sea->columns + column;
-            mean += (is_field ? pow(cabs(image->seabed[i]), 2.0) : image->seabed_energy[i]) /
-                    expected / (double)sea->rows;
+            mean += is_field ? pow(cabs(image->seabed[i]), 2.0) : image->seabed_energy[i];
         }
+        mean /= (double)(sea->rows - 2 * edge_rows) * expected(sea, sea_range(sea, (double)column));
         sum += mean;
         squares += mean * mean;
     }
-    return estimate_of_sums(sum, squares, (double)(sea->columns - 2 * edge));
+    struct estimate level =
+        estimate_of_sums(sum, squares, (double)(sea->columns - 2 * edge_columns));
+    level.error *= sqrt(3.0);
+    return level;
 }
 
 double complex correlation_of(const struct sea *sea, const double complex *field, size_t rows,
@@ -179,31 +165,15 @@ double complex *unit_field(const struct sea *sea, const double complex *field, c
     return unit;
 }
 
-const struct injected *sea_inject(struct sea *sea, const float *pixels, bool is_complex)
+const struct injection_result *sea_inject(struct sea *sea, const float *pixels, bool is_complex)
 {
-    struct injected *injected = claim_memory(1, sizeof *injected);
-    struct injection_input input;
-    struct injection_result result;
-    memset(&input, 0, sizeof input);
-    input.rows = sea->rows;
-    input.columns = sea->columns;
-    input.is_complex = is_complex;
-    input.pixels = pixels;
+    struct injection_result *result = claim_memory(1, sizeof *result);
+    const struct injection_input input = {
+        .rows = sea->rows, .columns = sea->columns, .is_complex = is_complex, .pixels = pixels};
     EXPECT_OK(&sea->bench->report, injection_run(&sea->bench->report, sea->bench->tracer.device,
-                                                 &sea->bench->scene, &input, NULL, NULL, &result));
-    injected->image = copy_plane(result.image, sea->pixels * (is_complex ? 2 : 1));
-    injected->field = copy_plane(result.field, 2 * sea->pixels);
-    injected->energy = copy_plane(result.energy, sea->pixels);
-    injected->visibility = copy_plane(result.visibility, sea->pixels);
-    for (uint32_t order = 0; order < result.orders && order < CHAIN_ORDERS; order++)
-        injected->order_energy[order] = copy_plane(result.order_energy[order], sea->pixels);
-    injected->highlight = copy_bytes(result.highlight, sea->pixels);
-    injected->labels = copy_bytes(result.labels, sea->pixels);
-    injected->influence = copy_bytes(result.influence, sea->pixels);
-    injected->objects = copy_bytes(result.objects, result.object_count * sizeof *result.objects);
-    injected->statistics = result.statistics;
-    injection_result_clear(&result);
-    return injected;
+                                                 &sea->bench->scene, &input, NULL, NULL, result));
+    claim_end(clear_result, result);
+    return result;
 }
 
 float *pairs_of(const double complex *field, size_t count)
@@ -224,15 +194,12 @@ float *magnitudes_of(const double complex *field, size_t count)
     return magnitudes;
 }
 
-struct level sea_level(struct sea *sea, const float *pixels, bool is_complex)
+const struct patch_level *sea_level(struct sea *sea, const float *pixels, bool is_complex)
 {
-    struct patch_level level;
+    struct patch_level *level = claim_memory(1, sizeof *level);
     EXPECT_OK(&sea->bench->report,
-              patch_level_init(&level, &sea->bench->report, &sea->bench->scene,
-                               &sea->bench->tracer.view, &sea->bench->tracer.response, pixels,
-                               is_complex));
-    const struct level copy = {copy_plane(level.level, sea->pixels),
-                               copy_plane(level.cell_energy, sea->columns), level.noise_ratio};
-    patch_level_clear(&level);
-    return copy;
+              patch_level_init(level, &sea->bench->report, &sea->bench->scene, sea_view(sea),
+                               sea_response(sea), pixels, is_complex));
+    claim_end(clear_level, level);
+    return level;
 }

@@ -1,6 +1,5 @@
 /* Many objects at a time: each is what it is alone where no other is near, and sound between seabed
  * and many targets is what plain cosine sampling finds. */
-#include "bench.h"
 #include "device/device.h"
 #include "sea.h"
 
@@ -28,14 +27,13 @@ static void add_to_lattice(struct sea *sea, int number)
  * and their random numbers are the patch's, not the objects'. Those of glints depend on the
  * object's number: as the first of all a glint has the same bits, as another one the same energy.
  */
-static void each_is_what_it_is_alone(void)
+CLAIM(each_is_what_it_is_alone)
 {
     static struct strips all[SIDE * SIDE], one;
     double energy[SIDE * SIDE];
     struct sea *sea = sea_open(PIXELS, PIXELS, MIDDLE_M);
     for (int i = 0; i < SIDE * SIDE; i++)
         add_to_lattice(sea, i);
-    sea_ready(sea);
     sea_rough(sea, NULL, all);
     for (int i = 0; i < SIDE * SIDE; i += 9) {
         const struct line among = sea_line(sea, (uint32_t)i);
@@ -44,7 +42,6 @@ static void each_is_what_it_is_alone(void)
     for (int i = 0; i < SIDE * SIDE; i += 9) {
         sea = sea_open(PIXELS, PIXELS, MIDDLE_M);
         add_to_lattice(sea, i);
-        sea_ready(sea);
         sea_rough(sea, NULL, &one);
         const size_t cells = (size_t)(one.strips * one.bins);
         assert_int_equal(one.strips, all[i].strips);
@@ -60,7 +57,6 @@ static void each_is_what_it_is_alone(void)
         for (int k = 0; k < SIDE * SIDE; k++)
             if (k != i)
                 add_to_lattice(sea, k);
-        sea_ready(sea);
         const struct line among = sea_line(sea, 0);
         assert_true(line_energy(&alone) > 0.0);
         assert_int_equal(alone.bins, among.bins);
@@ -89,7 +85,7 @@ static void make_plain(struct bench *bench, struct chain_trace *trace)
 /* Led from the seabed to one of 160 targets, or not led at all: the same energy, in the ranges that
  * plain sampling finds to 10 % and better. Strewn; heaped so that spheres overlap and hold the
  * seabed about them; and below waves, to which sound is led from the seabed besides. */
-static void sound_led_to_many_targets_has_its_energy(void)
+CLAIM(sound_led_to_many_targets_has_its_energy)
 {
     static const struct {
         const char *name;
@@ -150,7 +146,7 @@ static void sound_led_to_many_targets_has_its_energy(void)
 }
 
 /* More shapes than random numbers are told apart for are refused with one line. */
-static void too_many_shapes_are_refused(void)
+CLAIM(too_many_shapes_are_refused)
 {
     static const double nowhere[3] = {0.0, 0.0, 0.0};
     struct placements placed;
@@ -171,6 +167,3 @@ static void too_many_shapes_are_refused(void)
                         "objects: 1025 shapes, counting those of parts, are too many: a scene may "
                         "have 1024; split it");
 }
-
-CLAIMS(CLAIM(each_is_what_it_is_alone), CLAIM(sound_led_to_many_targets_has_its_energy),
-       CLAIM(too_many_shapes_are_refused))

@@ -458,7 +458,7 @@ static struct tally measure_poses(const char *what, void (*draw_pose)(struct pos
  * no shadow misses it and 1 highlight: more than 2 in 100 would be once in 500 such tests. The
  * errors that are told are what they say: with those seeds their rms is 1.04 to 1.16 for shadows
  * and 0.90 to 1.15 for highlights, and of 80 poses it is known to 1/sqrt(160) = 8 %. */
-static void random_slabs_are_measured(void)
+CLAIM(random_slabs_are_measured)
 {
     const struct tally tally = measure_poses("slabs", draw_slab, POSES);
     print_message("%d highlights (mean error %.2f pixels, %.2f standard errors rms)\n",
@@ -479,7 +479,7 @@ static void random_slabs_are_measured(void)
 
 /* The lit top of a thick target is no part of its shadow. That of a smooth one is as dark as the
  * shadow but for some dB, which tell it apart where they are enough. */
-static void solids_are_measured(void)
+CLAIM(solids_are_measured)
 {
     const struct tally boxes = measure_poses("boxes", draw_box, SOLIDS);
     const struct tally cones = measure_poses("truncated cones", draw_truncated_cone, SOLIDS);
@@ -488,5 +488,3 @@ static void solids_are_measured(void)
     assert_true(cones.good_shadows >= SOLIDS - 1);
     assert_true(smooth.told_shadows > smooth.good_shadows + SOLIDS / 2);
 }
-
-CLAIMS(CLAIM(random_slabs_are_measured), CLAIM(solids_are_measured))

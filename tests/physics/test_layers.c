@@ -102,7 +102,7 @@ static void expect_sphere(struct sea *sea, double a)
 
 /* On the seabed and over it; and with its top near the thermocline, away from the patch's middle.
  */
-static void a_sphere_echoes_its_ray_tube(void)
+CLAIM(a_sphere_echoes_its_ray_tube)
 {
     for (size_t i = 0; i < COUNT(seas); i++)
         for (int is_lifted = 0; is_lifted < (i < 2 ? 2 : 1); is_lifted++) {
@@ -122,21 +122,12 @@ static void a_sphere_echoes_its_ray_tube(void)
 
 /* A place given by its apparent range is where the seabed is heard at that time; the map's pixels
  * lie there too, and the image shows them there. */
-static void apparent_range_is_travel_time(void)
+CLAIM(apparent_range_is_travel_time)
 {
     for (size_t number = 0; number < WEAK_SEAS; number++) {
         struct sea *sea = open_sea(number, 120, 200);
         sea_add_sphere(sea, 0.05, -0.05);
         sea_ready(sea);
-        const struct reference_way way = way_from(sea, SONAR);
-        for (double column = 0.0; column < 200.0; column += 33.0) {
-            const double apparent = sea_range(sea, column);
-            const long double p = reference_parameter_of_time(&way, apparent / REFERENCE);
-            const double ground = (double)reference_sum(&way, 0.0, p).range;
-            expect_close("ground range, m", sea_ground(sea, apparent), ground, 1e-9);
-            expect_close("grazing angle, rad", sea_grazing(sea, apparent),
-                         straight(sea, ground, 0.0).grazing, 1e-9);
-        }
         expect_close("object in the middle, m",
                      REFERENCE * straight(sea, sea_centre(sea, 0)[1], 0.0).time,
                      seas[number].middle, 1e-9);
@@ -164,39 +155,21 @@ static void apparent_range_is_travel_time(void)
 #define COLUMNS 200
 #define EDGE    24 /* resolution cells of |W|^2 and pulses that pixels near the edge lack */
 
-/* Mean over its closed form, mu sin^2(grazing) times the resolution cell's area and both
- * intensities: of energies, or of a realisation. Three columns lie within a pulse. */
-static struct estimate level_of(const struct sea *sea, const struct image *image, bool is_field)
+/* mu sin^2(grazing) times the resolution cell's area and both intensities. */
+static double closed_form(const struct sea *sea, double processor_range)
 {
-    double sum = 0.0, squares = 0.0;
-    const double count = COLUMNS - 2 * EDGE;
-    for (size_t column = EDGE; column < COLUMNS - EDGE; column++) {
-        double area, mean = 0.0;
-        const struct reference_sound sound =
-            sound_on_seabed(sea, sea_range(sea, (double)column), &area);
-        const double expected =
-            sea->seabed->lambert * area * pow(sin(sound.grazing) * gain_of(sea, sound, sound), 2.0);
-        for (size_t row = EDGE; row < ROWS - EDGE; row++) {
-            const size_t i = row * COLUMNS + column;
-            mean += (is_field ? pow(cabs(image->seabed[i]), 2.0) : image->seabed_energy[i]) /
-                    expected / (ROWS - 2 * EDGE);
-        }
-        sum += mean;
-        squares += mean * mean;
-    }
-    struct estimate level = estimate_of_sums(sum, squares, count);
-    level.error *= sqrt(3.0);
-    return level;
+    double area;
+    const struct reference_sound sound = sound_on_seabed(sea, processor_range, &area);
+    return sea->seabed->lambert * area * pow(sin(sound.grazing) * gain_of(sea, sound, sound), 2.0);
 }
 
-static void the_seabeds_level(void)
+CLAIM(the_seabeds_level)
 {
     for (size_t number = 0; number < COUNT(seas); number++) {
         struct sea *sea = open_sea(number, ROWS, COLUMNS);
-        sea_ready(sea);
         const struct image *image = sea_image_of(sea, NULL, true);
-        const struct estimate energy = level_of(sea, image, false);
-        const struct estimate field = level_of(sea, image, true);
+        const struct estimate energy = level_over(sea, image, EDGE, EDGE, false, closed_form);
+        const struct estimate field = level_over(sea, image, EDGE, EDGE, true, closed_form);
         /* W's tail beyond the kept reach: 0.1 % of the energy */
         expect_estimate("expected energy over closed form", energy, 1.0, 2e-3);
         expect_below("its 4 standard errors", 4.0 * energy.error, number < WEAK_SEAS ? 4e-3 : 8e-3);
@@ -209,7 +182,7 @@ static void the_seabeds_level(void)
 
 /* Energy of a tilted Lambert plate: mu cos^2 times its area, and both intensities. The centroid of
  * its energy is its travel time. */
-static void a_rough_plate(void)
+CLAIM(a_rough_plate)
 {
     const double tilt = 0.5;
     for (size_t number = 0; number < WEAK_SEAS; number++) {
@@ -227,7 +200,6 @@ static void a_rough_plate(void)
             sound = straight(sea, sea_centre(sea, 0)[1], sea_centre(sea, 0)[2]);
             object->pitch_rad = sound.grazing + tilt - 0.5 * PI;
         }
-        sea_ready(sea);
         const struct image *image = sea_image(sea);
         double sum = 0.0, moment = 0.0;
         for (size_t i = 0; i < image->pixels; i++) {
@@ -250,14 +222,13 @@ static double column_behind(const struct sea *sea, double range, double height)
     return sea_column(sea, REFERENCE * straight(sea, on, 0.0).time);
 }
 
-static void the_shadow_of_a_flat_top(void)
+CLAIM(the_shadow_of_a_flat_top)
 {
     for (size_t number = 0; number < WEAK_SEAS; number++) {
         const double height = number % 2 ? 0.3 : 0.6;
         struct sea *sea = open_sea(number, 121, 401);
         sea->injection->ray_scale = 16.0;
         sea_add(sea, SONJECT_SHAPE_PLANE, 2.0, 1.2, 0.0)->burial_m = -height;
-        sea_ready(sea);
         const double *visibility = visibility_of(sea_image(sea)) + 60 * 401;
         const double centre = sea_centre(sea, 0)[1];
         const double near = column_behind(sea, centre - 0.6, height);
@@ -295,7 +266,6 @@ static const struct image *all_echoes(const struct water_layer *layers, size_t c
     capsule->material.lambert = 0.05;
     capsule->heading_rad = 0.4;
     capsule->burial_m = -0.5;
-    sea_ready(sea);
     const struct image *image = sea_image_of(sea, NULL, true);
     assert_true(image->orders == 3);
     return image;
@@ -303,7 +273,7 @@ static const struct image *all_echoes(const struct water_layer *layers, size_t c
 
 /* Layers that differ in nothing are one layer, to the bit, and what lies over sonar and surface is
  * not heard. */
-static void layers_that_do_nothing(void)
+CLAIM(layers_that_do_nothing)
 {
     static const struct water_layer equal[] = {
         {0.0, 1490.0, 1.0}, {0.3, 1490.0, 1.0}, {9.0, 1490.0, 1.0}, {23.0, 1490.0, 1.0}};
@@ -358,7 +328,6 @@ static void add_energies(bool is_light_above, double source_side, uint64_t seed,
     sonject_object_params *sphere = sea_add_sphere(sea, 0.3, 0.2);
     sphere->material.lambert = 0.1;
     sphere->material.roughness_m = 1e-3;
-    sea_ready(sea);
     const struct image *image = sea_image(sea);
     energies[SEABED][at] = sum_of(image->seabed_energy, image->pixels);
     energies[SHADOW][at] = sum_of(image->lost_energy, image->pixels);
@@ -367,7 +336,7 @@ static void add_energies(bool is_light_above, double source_side, uint64_t seed,
     energies[TWO_INTERACTIONS][at] = sum_of(image->order_energy[1], image->pixels);
 }
 
-static void density_alone_transmits(void)
+CLAIM(density_alone_transmits)
 {
     static const char *const names[KINDS] = {"seabed", "shadow", "glints", "one interaction",
                                              "two interactions"};
@@ -403,7 +372,6 @@ static struct estimate chain_energy(struct sea *sea, uint32_t column_rule, uint6
     sea->injection->column_rule = column_rule;
     sea->injection->interactions = 2;
     sea->injection->order_energies = 1;
-    sea_ready(sea);
     const struct energies energies = sea_chains(sea, &all, first_seed, 24);
     return energy_of(&energies, 1, 0);
 }
@@ -416,25 +384,10 @@ static void expect_ratio(const char *what, struct estimate one, struct estimate 
     expect_below("its 4 standard errors", 4.0 * ratio.error / expected, 0.03);
 }
 
-/* With the layers' contrast what they do goes: 1e-4 is worth less than 0.3 %. */
-static void chains_through_small_contrast(void)
-{
-    static const struct water_layer layers[] = {{0.0, 1490.0, 1.0}, {8.0, 1490.149, 1.0}};
-    for (int rule = 0; rule < 2; rule++) {
-        struct estimate energies[2];
-        for (uint64_t plain = 0; plain < 2; plain++) {
-            struct sea *sea = layered_sea_open(160, 160, 40.0, layers, plain ? 0 : 2);
-            sea->medium->sound_speed_mps = 1490.0;
-            energies[plain] = chain_energy(sea, column_rules[rule], 100 + 800 * plain);
-        }
-        expect_ratio("weak layers over none", energies[0], energies[1], 1.0, 0.003);
-    }
-}
-
 /* Around the sphere the water is straight: what happens there is what happens in straight water to
  * a sonar from which sound comes at the same angle with the same curvature. Only what reaches the
  * place, and what comes home, is another. */
-static void chains_scale_with_the_ray_tube(void)
+CLAIM(chains_scale_with_the_ray_tube)
 {
     for (size_t i = 0; i < 4; i++) {
         struct sea *sea = open_sea(i / 2, 160, 160);
@@ -454,8 +407,3 @@ static void chains_scale_with_the_ray_tube(void)
                      chain_energy(sea, column_rules[i % 2], 900), gain, 0.01);
     }
 }
-
-CLAIMS(CLAIM(a_sphere_echoes_its_ray_tube), CLAIM(apparent_range_is_travel_time),
-       CLAIM(the_seabeds_level), CLAIM(a_rough_plate), CLAIM(the_shadow_of_a_flat_top),
-       CLAIM(layers_that_do_nothing), CLAIM(density_alone_transmits),
-       CLAIM(chains_through_small_contrast), CLAIM(chains_scale_with_the_ray_tube))

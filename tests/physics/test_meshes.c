@@ -5,7 +5,6 @@
 #include "trace_rough.h"
 
 #include "../kernel/mesh_samples.h"
-#include "bench.h"
 #include "device/opencl.h"
 #include "sea.h"
 #include "user_codes.h"
@@ -86,7 +85,7 @@ static double difference_db(struct line one, const struct line *other)
 
 /* Facets as fine as a sphere's glint wants have its level and phase; coarse ones, some wavelengths
  * wide, do not, but converge as their sagitta, which falls with the square of their width. */
-static void facets_converge_to_the_sphere(void)
+CLAIM(facets_converge_to_the_sphere)
 {
     double range, at, last = INFINITY;
     struct sea *sea = open_ball(SPHERE, 0, NULL);
@@ -121,7 +120,7 @@ static sonject_cut facing_cut(void)
 /* Faces seen square and not at all, and one that takes half of the glint away. A facet's depth is
  * 24 um at the most: 1.2 deg of phase, -33 dB. Of a user's sphere the same rays meet the same, but
  * for roundings and those along rims. */
-static void cut_balls_glint_like_the_cut_sphere(void)
+CLAIM(cut_balls_glint_like_the_cut_sphere)
 {
     const sonject_cut cuts[] = {facing_cut(), {0.5 * PI, 0.0, 0.02}, {0.0, 0.0, 0.01}};
     static const char *const names[] = {"towards the sonar", "away from it", "across it"};
@@ -135,18 +134,6 @@ static void cut_balls_glint_like_the_cut_sphere(void)
                 kind == MESH ? -33.0 : -60.0);
         }
     }
-}
-
-/* The face of a cut towards the sonar is a disc: pi a^2 / lambda of a flat plate. */
-static void the_face_of_a_cut_is_lit(void)
-{
-    const sonject_cut cut = facing_cut();
-    struct sea *sea = open_ball(MESH, SUBDIVISIONS, &cut);
-    const double area = PI * (BALL * BALL - cut.distance_m * cut.distance_m);
-    /* the plate is large for the wavefront's curvature: k a^2 / r = 0.5 rad at its rim, a quarter
-     * of which on average, -0.05 dB; the pulse's band 0.1 dB */
-    expect_close("face, dB re area / wavelength",
-                 decibels_of_amplitude(sea_peak(sea, NULL) * sea_wavelength(sea) / area), 0.0, 0.2);
 }
 
 /* Of what passes the pulse's band. */
@@ -163,7 +150,7 @@ static double energy_in_band(const struct sea *sea, const struct line *line)
  * plane crosses echo once. Rays hit or miss the cells of wavefront that the plane divides: of the
  * built-in sphere, halves of other seeds differ by -32 to -34 dB, two of them by 3 dB more, and
  * that energy of many cells varies by no more than 2 dB. A strip of 3.6 mm lost would be -20 dB. */
-static void two_halves_are_the_whole(void)
+CLAIM(two_halves_are_the_whole)
 {
     static const sonject_cut halves[2] = {{0.0, 0.0, 0.013}, {PI, 0.0, -0.013}};
     struct line rest = sea_line(open_ball(MESH, SUBDIVISIONS, NULL), 0);
@@ -183,7 +170,7 @@ static void two_halves_are_the_whole(void)
 
 /* The same rays meet the ball and what stands for it, whole and cut; energies differ by less than
  * the facets' depth over the radius, 1e-4, and by the few rays between both outlines and rims. */
-static void rough_balls_are_lit_like_the_sphere(void)
+CLAIM(rough_balls_are_lit_like_the_sphere)
 {
     static const sonject_cut cuts[] = {{0, 0, 0}, {-0.5 * PI, 0.7, 0.05}, {0.3, 0.2, 0.05}};
     double uncut = 0.0;
@@ -209,7 +196,7 @@ static void rough_balls_are_lit_like_the_sphere(void)
  * in a mirror. Half a turn about the upright takes a view to starboard into one to port along the
  * reverse track, where a heading h is pi - h: both show the same. A mirrored box would return 3 %
  * less. */
-static void both_sides_show_the_same(void)
+CLAIM(both_sides_show_the_same)
 {
     static const double positions[][3] = {{-0.5, -0.2, -0.1}, {0.5, -0.2, -0.1}, {0.5, 0.2, -0.1},
                                           {-0.5, 0.2, -0.1},  {-0.5, -0.2, 0.1}, {0.5, -0.2, 0.1},
@@ -227,7 +214,6 @@ static void both_sides_show_the_same(void)
         make_rough(object, 0.1);
         object->heading_rad = i ? PI - 0.4 : 0.4;
         sea_add_mesh(sea, &box, 1.0, 0.0);
-        sea_ready(sea);
         sea_rough(sea, &sums[i], NULL);
     }
     expect_close("echoes", sums[1].energy / sums[0].energy, 1.0, 0.01);
@@ -244,7 +230,7 @@ static void lay_mirror(struct sea *sea)
 
 /* Twelve facets of many wavelengths are the box: the same rays meet it, and only single precision
  * and the rays at its edges differ. Once a face is seen straight on. */
-static void a_box_of_facets_is_the_box(void)
+CLAIM(a_box_of_facets_is_the_box)
 {
     static const double poses[][3] = {{0.0, 0.0, -0.25}, {-0.5, 0.1, 0.0}, {0.9, 0.3, 0.4}};
     for (size_t pose = 0; pose < COUNT(poses); pose++) {
@@ -264,7 +250,6 @@ static void a_box_of_facets_is_the_box(void)
                 add_sample(sea, &sample, 0.5, 0.0);
             else
                 sample_clear(&sample);
-            sea_ready(sea);
             images[is_mesh] = sea_image(sea);
         }
         const double difference = image_difference(images[0], images[1], &peak);
@@ -273,106 +258,6 @@ static void a_box_of_facets_is_the_box(void)
          * of a face of 0.3 m^2 are less */
         expect_below("mesh less box, dB of the glint", decibels_of_amplitude(difference / peak),
                      -50.0);
-    }
-}
-
-/* An octahedron with corners on the sphere, one face of which looks up by an angle. */
-static void turned_octahedron(struct mesh_sample *sample, double elevation)
-{
-    const double n[3] = {1.0 / sqrt(3.0), 1.0 / sqrt(3.0), 1.0 / sqrt(3.0)};
-    const double t[3] = {1.0 / sqrt(2.0), -1.0 / sqrt(2.0), 0.0};
-    const double b[3] = {-t[1] * n[2], t[0] * n[2], t[1] * n[0] - t[0] * n[1]};
-    sample_sphere(sample, 0);
-    for (size_t i = 0; i < sample->vertices; i++) {
-        double *p = &sample->positions[3 * i];
-        const double to_face = p[0] * n[0] + p[1] * n[1] + p[2] * n[2];
-        const double along = p[0] * t[0] + p[1] * t[1] + p[2] * t[2];
-        /* b is n x t, so that (t, b, n) turn into (x, ..., face) without a mirror */
-        const double across = p[0] * b[0] + p[1] * b[1] + p[2] * b[2];
-        p[0] = along;
-        p[1] = -cos(elevation) * to_face + sin(elevation) * across;
-        p[2] = sin(elevation) * to_face + cos(elevation) * across;
-    }
-}
-
-#define STEPS 700 /* of quadrature along a facet's edges: 0.6 mm, a phase of 0.5 rad at most */
-
-/* Physical optics of one facet by quadrature, each point seen from abreast of it, through the
- * pulse: adds it at some ranges. */
-static void add_facet(const struct sea *sea, double corners[3][3], const double *ranges,
-                      size_t count, double complex *values)
-{
-    const double k = sea_wavenumber(sea);
-    const double h = sea->sonar->altitude_m;
-    double ab[3], ac[3];
-    for (int axis = 0; axis < 3; axis++) {
-        ab[axis] = corners[1][axis] - corners[0][axis];
-        ac[axis] = corners[2][axis] - corners[0][axis];
-    }
-    const double n[3] = {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2],
-                         ab[0] * ac[1] - ab[1] * ac[0]}; /* twice the area */
-    for (int i = 0; i < STEPS; i++)
-        for (int j = 0; j < STEPS - i; j++)
-            for (int half = 0; half < (j < STEPS - i - 1 ? 2 : 1); half++) {
-                const double u = (i + (1.0 + half) / 3.0) / STEPS;
-                const double v = (j + (1.0 + half) / 3.0) / STEPS;
-                const double y = corners[0][1] + u * ab[1] + v * ac[1];
-                const double z = corners[0][2] + u * ab[2] + v * ac[2] - h;
-                const double r = hypot(y, z);
-                const double projected = -0.5 * (n[1] * y + n[2] * z) / (r * STEPS * STEPS);
-                if (projected <= 0.0)
-                    return; /* dark: all of a facet is, but for a grazing sliver */
-                const double phase = 2.0 * k * r;
-                const double share = projected * k / (2.0 * PI);
-                for (size_t at = 0; at < count; at++)
-                    values[at] -= I * share * sea_pulse(sea, ranges[at] - r) * cexp(I * phase);
-            }
-}
-
-/* Eight plates of many wavelengths against quadrature over them, once with a face that mirrors and
- * once with one that is 0.1 rad off it. */
-static void an_octahedron_is_eight_plates(void)
-{
-    static const double off[] = {0.0, 0.1};
-    const double radius = 0.3;
-    for (size_t i = 0; i < 2; i++) {
-        struct mesh_sample sample;
-        double ranges[40];
-        double complex reference[40] = {0.0};
-        struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
-        sea_add(sea, SONJECT_SHAPE_MESH, 0.0, 0.0, 0.0)->burial_m = -0.5;
-        turned_octahedron(&sample, asin((sea->sonar->altitude_m - 0.8) / RANGE) + off[i]);
-        const struct triangles octahedron = {sample.positions, sample.corners, sample.vertices,
-                                             sample.triangles};
-        sea_add_mesh(sea, &octahedron, radius, 0.0);
-        sea_ready(sea);
-        const double *centre = sea_centre(sea, 0);
-        for (size_t at = 0; at < COUNT(ranges); at++)
-            ranges[at] = sea_slant_range(sea, 0) + radius * (-1.2 + 2.4 * (double)at / 39.0);
-        for (size_t facet = 0; facet < sample.triangles; facet++) {
-            double corners[3][3];
-            for (size_t corner = 0; corner < 3; corner++)
-                for (int axis = 0; axis < 3; axis++) {
-                    const double *p = &sample.positions[3 * sample.corners[3 * facet + corner]];
-                    corners[corner][axis] = centre[axis];
-                    for (int own = 0; own < 3; own++)
-                        corners[corner][axis] += radius * p[own] * sea_axes(sea, 0)[own][axis];
-                }
-            add_facet(sea, corners, ranges, COUNT(ranges), reference);
-        }
-        sample_clear(&sample);
-        const struct line line = sea_line(sea, 0);
-        double peak = 0.0, largest = 0.0;
-        for (size_t at = 0; at < COUNT(ranges); at++) {
-            peak = fmax(peak, cabs(reference[at]));
-            largest = fmax(largest, cabs(line_at(sea, &line, ranges[at]) - reference[at]));
-        }
-        print_message("%.1f rad off, peak %.2f dB re 1 m: ", off[i], decibels_of_amplitude(peak));
-        /* ranges of 40 m come in steps of 3.8 um in single precision: two of them are a phase of
-         * 0.0064, and 0.02 dB of level; cells of lambda/8 that the facets' edges divide, 2.5 m of
-         * them, are hit or missed by chance: 4 x 0.29 sqrt(L/c) c^2/lambda = 0.0098 m */
-        expect_below("error, dB re 1 m", decibels_of_amplitude(largest),
-                     decibels_of_amplitude(0.0098 + 0.009 * peak));
     }
 }
 
@@ -395,13 +280,12 @@ static const struct image *image_of_sheet(int kind, bool is_rough)
         const struct triangles sheet = {positions[0], corners[kind][0], 4, 2};
         sea_add_mesh(sea, &sheet, 1.0, 0.0);
     }
-    sea_ready(sea);
     return sea_image(sea);
 }
 
 /* Mirrors and chains too find both sides: the same rays as the plate's, but for rays through the
  * edges: 2 m of them against cells of some mm in 0.24 m^2. */
-static void sheets_reflect_on_both_sides(void)
+CLAIM(sheets_reflect_on_both_sides)
 {
     for (int i = 0; i < 4; i++) {
         const struct image *plate = image_of_sheet(2, i / 2 > 0);
@@ -481,7 +365,6 @@ static double shading_error(enum sphere_kind kind, double *brightness)
         sea = open_lambert_sphere(kind, RANGE);
         sea->injection->ray_scale = 16.0;
         sea_object(sea, 0)->material.lambert_exponent = 1.0 + i;
-        sea_ready(sea);
         sea_rough(sea, NULL, &tiles[i]);
     }
     for (int i = 0; i < tiles[0].strips * tiles[0].bins; i++) {
@@ -502,7 +385,7 @@ static double shading_error(enum sphere_kind kind, double *brightness)
     return sqrt(sums[1] / sums[0]);
 }
 
-static void smooth_normals_shade_like_the_sphere(void)
+CLAIM(smooth_normals_shade_like_the_sphere)
 {
     double error[3], brightness = 0.0;
     for (enum sphere_kind kind = EXACT; kind <= SMOOTH; kind++)
@@ -515,7 +398,7 @@ static void smooth_normals_shade_like_the_sphere(void)
 
 /* A convex body sees nothing of itself, and no more do the facets that stand for one: what there is
  * of two interactions is by way of a seabed that hardly scatters. */
-static void facets_see_nothing_of_themselves(void)
+CLAIM(facets_see_nothing_of_themselves)
 {
     double share[3];
     for (enum sphere_kind kind = EXACT; kind <= SMOOTH; kind++) {
@@ -523,7 +406,6 @@ static void facets_see_nothing_of_themselves(void)
         sea->injection->interactions = 2;
         sea->injection->order_energies = 1;
         sea->seabed->lambert = 1e-6;
-        sea_ready(sea);
         const struct image *image = sea_image(sea);
         share[kind] = sum_of(image->order_energy[1], image->pixels) /
                       sum_of(image->order_energy[0], image->pixels);
@@ -542,7 +424,6 @@ static void mirrored_energy(enum sphere_kind kind, double columns[COLUMNS])
         sea->injection->ray_scale = 4.0;
         sea->injection->interactions = interactions;
         lay_mirror(sea);
-        sea_ready(sea);
         const struct image *image = sea_image(sea);
         for (size_t i = 0; i < image->pixels; i++)
             columns[i % COLUMNS] +=
@@ -550,7 +431,7 @@ static void mirrored_energy(enum sphere_kind kind, double columns[COLUMNS])
     }
 }
 
-static void facets_throw_no_shadows(void)
+CLAIM(facets_throw_no_shadows)
 {
     double exact[COLUMNS], smooth[COLUMNS], peak = 0.0, tails[2] = {0.0, 0.0};
     mirrored_energy(EXACT, exact);
@@ -601,7 +482,7 @@ static size_t lay_rings(struct sea *sea, bool is_shared)
 }
 
 /* One mesh shown by several objects: the same bits as a mesh for each, and one copy of it. */
-static void a_mesh_of_many_objects_is_held_once(void)
+CLAIM(a_mesh_of_many_objects_is_held_once)
 {
     const struct image *images[2];
     size_t bytes[2], of_mesh = 0;
@@ -622,7 +503,7 @@ static void a_mesh_of_many_objects_is_held_once(void)
 }
 
 /* Connections to a source of 10 cm start where smooth normals lift them to. */
-static void tallies_have_the_bits_of_plain_c(void)
+CLAIM(tallies_have_the_bits_of_plain_c)
 {
     for (int is_smooth = 0; is_smooth < 2; is_smooth++) {
         static struct rough_trace trace;
@@ -658,11 +539,3 @@ static void tallies_have_the_bits_of_plain_c(void)
         rough_trace_end(&trace);
     }
 }
-
-CLAIMS(CLAIM(facets_converge_to_the_sphere), CLAIM(cut_balls_glint_like_the_cut_sphere),
-       CLAIM(the_face_of_a_cut_is_lit), CLAIM(two_halves_are_the_whole),
-       CLAIM(rough_balls_are_lit_like_the_sphere), CLAIM(both_sides_show_the_same),
-       CLAIM(a_box_of_facets_is_the_box), CLAIM(an_octahedron_is_eight_plates),
-       CLAIM(sheets_reflect_on_both_sides), CLAIM(smooth_normals_shade_like_the_sphere),
-       CLAIM(facets_see_nothing_of_themselves), CLAIM(facets_throw_no_shadows),
-       CLAIM(a_mesh_of_many_objects_is_held_once), CLAIM(tallies_have_the_bits_of_plain_c))

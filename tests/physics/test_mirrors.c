@@ -64,7 +64,7 @@ static struct sea *open_case(const struct mirror_case *mirrors)
 
 /* A sphere high over a smooth seabed returns a/2 (1, 2R, R^2) at its three ranges, under a surface
  * likewise; in shallow water there is every family of up to two mirrors a leg. */
-static void glints_by_mirrors(void)
+CLAIM(glints_by_mirrors)
 {
     static const struct mirror_case cases[] = {
         {NULL, RANGE, 10.0, 0.0, 1.0, 0.0, 0.0, 3.0, 401, 3, 2, false},
@@ -107,7 +107,7 @@ static void glints_by_mirrors(void)
 }
 
 /* A pulse far longer than the paths differ: |e^{ikR1}/R1 + R e^{ikR2}/R2|^2, there and back. */
-static void lloyds_mirror(void)
+CLAIM(lloyds_mirror)
 {
     static const double reflections[] = {-1.0, 0.6};
     for (size_t i = 0; i < 24; i++) {
@@ -149,7 +149,7 @@ static double complex wall_family(const struct sea *sea, double b, double length
 }
 
 /* sigma = (2 A cos(grazing)/lambda)^2 from D-M and M-D together; what is buried does not count. */
-static void a_wall_on_the_seabed(void)
+CLAIM(a_wall_on_the_seabed)
 {
     const double b = 0.2, length = 0.3;
     double complex before = 0.0;
@@ -160,7 +160,6 @@ static void a_wall_on_the_seabed(void)
         sonject_object_params *object = sea_add(sea, SONJECT_SHAPE_PLANE, length, b + buried, 0.0);
         object->roll_rad = 0.5 * PI;
         object->burial_m = buried;
-        sea_ready(sea);
         const struct line line = sea_line(sea, 0);
         const double y = sea_centre(sea, 0)[1], corner = hypot(y, 10.0);
         const double complex measured = line_at(sea, &line, corner);
@@ -185,7 +184,7 @@ static void a_wall_on_the_seabed(void)
 /* Half a sphere buried: with its image in a rigid seabed the rest is a whole sphere, which the
  * sonar and its image see from two sides: D-M and M-D together return a/2, not 2 a/2. To what is
  * wholly buried no way leads, whichever side it comes from. */
-static void buried_spheres(void)
+CLAIM(buried_spheres)
 {
     double complex before = 0.0;
     for (uint32_t interactions = 1; interactions <= 2; interactions++) {
@@ -205,7 +204,6 @@ static void buried_spheres(void)
     struct sea *sea = open_at(RANGE, COLUMNS, 3, 1.0);
     sea->surface->water_depth_m = 14.0;
     sea_add_sphere(sea, 0.15, -0.5);
-    sea_ready(sea);
     const struct line line = sea_line(sea, 0);
     assert_true(line_energy(&line) == 0.0);
 }
@@ -227,7 +225,7 @@ static void add_plate(struct sea *sea, double wide, double beyond, double height
 
 /* The way by the seabed is closed by an object that hides the point of reflection, in front of it
  * or behind it, and open beside it; the straight way is not. */
-static void a_hidden_reflection_is_not_heard(void)
+CLAIM(a_hidden_reflection_is_not_heard)
 {
     static const struct {
         double beyond, height, along;
@@ -255,7 +253,7 @@ static void a_hidden_reflection_is_not_heard(void)
 }
 
 /* What cannot be heard in the patch changes no bit of it; what can does. */
-static void a_far_surface_changes_nothing(void)
+CLAIM(a_far_surface_changes_nothing)
 {
     static const double depths[] = {0.0, 10000.0, 14.0};
     const struct image *images[3];
@@ -265,7 +263,6 @@ static void a_far_surface_changes_nothing(void)
         sonject_object_params *object = sea_add_sphere(sea, 0.15, 0.0);
         object->material.lambert = 0.05;
         object->material.roughness_m = 1e-3;
-        sea_ready(sea);
         images[i] = sea_image_of(sea, NULL, true);
     }
     assert_false(images_differ(images[0], images[1]));
@@ -273,14 +270,13 @@ static void a_far_surface_changes_nothing(void)
 }
 
 /* The image holds what the line holds: the energies of all families are those of their sum. */
-static void families_in_the_image(void)
+CLAIM(families_in_the_image)
 {
     static const enum image_of_sonar pairs[][2] = {
         {SONAR, SONAR}, {SONAR, BY_SEABED}, {BY_SEABED, BY_SEABED}};
     struct sea *sea = open_at(RANGE, COLUMNS, 3, -1.0);
     sea->sonar->bandwidth_hz = 15e3; /* columns sample the pulse's energy within 1e-5 */
     sea_add_sphere(sea, 0.15, 3.0);
-    sea_ready(sea);
     const struct image *image = sea_image(sea);
     double straight = 0.0;
     for (int i = 0; i < 3; i++) {
@@ -300,7 +296,7 @@ static void families_in_the_image(void)
 
 /* What is left of D-M and M-D where a smooth convex body returns nothing: as straight there and
  * back (tests/physics/test_glints.c), below -64 dB re 1 m^2 at the default number of rays. */
-static void little_is_left_beside_a_mirrored_glint(void)
+CLAIM(little_is_left_beside_a_mirrored_glint)
 {
     const double a = 0.4;
     const struct image *images[2];
@@ -308,7 +304,6 @@ static void little_is_left_beside_a_mirrored_glint(void)
     for (uint32_t i = 0; i < 2; i++) {
         struct sea *sea = open_at(RANGE, COLUMNS, 1 + i, 1.0);
         sea_add_sphere(sea, a, 2.5);
-        sea_ready(sea);
         images[i] = sea_image(sea);
         const double range = family_of(sea, SONAR, BY_SEABED).range;
         first = (size_t)ceil(sea_column(sea, range) + 5.0);
@@ -325,7 +320,7 @@ static void little_is_left_beside_a_mirrored_glint(void)
 
 /* A rough sphere over a smooth seabed, once so low that both sources are one direction, and under
  * a surface through a thermocline. */
-static void rough_spheres_by_mirrors(void)
+CLAIM(rough_spheres_by_mirrors)
 {
     static const struct {
         struct mirror_case sea;
@@ -354,7 +349,6 @@ static void rough_spheres_by_mirrors(void)
                 sea->injection->seed = 1 + seed + 6 * mirrored;
                 sea->seabed->lambert = 1e-9; /* chains by the seabed are not meant */
                 make_rough(sea_object(sea, 0), 0.1);
-                sea_ready(sea);
                 const struct image *image = sea_image(sea);
                 sum[mirrored] = sum_of(image->target_energy, image->pixels);
                 expected = rough_ratio(sea, cases[i].image,
@@ -369,7 +363,7 @@ static void rough_spheres_by_mirrors(void)
 
 /* The echo of a rough sphere by way of the seabed is where half its path ends, and a plate over the
  * point of reflection takes it away. */
-static void a_rough_sphere_behind_a_hidden_reflection(void)
+CLAIM(a_rough_sphere_behind_a_hidden_reflection)
 {
     double sum[3];
     for (uint32_t i = 0; i < 3; i++) { /* straight; mirror; mirror behind a plate */
@@ -384,9 +378,3 @@ static void a_rough_sphere_behind_a_hidden_reflection(void)
     /* nothing is left but what sphere, plate and seabed scatter to one another */
     expect_close("hidden over straight", sum[2] / sum[0], 1.0, 1e-3);
 }
-
-CLAIMS(CLAIM(glints_by_mirrors), CLAIM(lloyds_mirror), CLAIM(a_wall_on_the_seabed),
-       CLAIM(buried_spheres), CLAIM(a_hidden_reflection_is_not_heard),
-       CLAIM(a_far_surface_changes_nothing), CLAIM(families_in_the_image),
-       CLAIM(little_is_left_beside_a_mirrored_glint), CLAIM(rough_spheres_by_mirrors),
-       CLAIM(a_rough_sphere_behind_a_hidden_reflection))

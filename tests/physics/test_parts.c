@@ -194,7 +194,6 @@ static const struct image *compute(builder build, bool other, bool is_rough, con
     if (is_rough)
         make_all_rough(sea);
     sea->injection->seed = seed;
-    sea_ready(sea);
     return sea_image(sea);
 }
 
@@ -258,7 +257,7 @@ static void expect_same_smooth_object(builder build, const double pose[3], doubl
  * nose, behind which the joint lies like another one; a lopsided one, rough; and the mesh of a
  * union, turned about the upright, and tipped: facets of the cylinder are 3 mm wide and lie
  * 0.005 mm within it, 0.004 rad of phase, its edges are 10 m long. */
-static void parts_look_like_the_shape_they_make_up(void)
+CLAIM(parts_look_like_the_shape_they_make_up)
 {
     const double outline = 2.0 * (LENGTH - DIAMETER) + PI * DIAMETER;
     const struct {
@@ -289,7 +288,7 @@ static void parts_look_like_the_shape_they_make_up(void)
 }
 
 /* What a union's parts scatter to one another, its mesh scatters to itself. */
-static void a_mesh_of_the_union_lights_itself(void)
+CLAIM(a_mesh_of_the_union_lights_itself)
 {
     double shares[2][SEEDS];
     for (int i = 0; i < 2 * SEEDS; i++) {
@@ -301,7 +300,6 @@ static void a_mesh_of_the_union_lights_itself(void)
         sea->injection->interactions = 2;
         sea->injection->order_energies = 1;
         sea->injection->seed = (uint64_t)i + 1;
-        sea_ready(sea);
         const struct image *image = sea_image(sea);
         shares[i % 2][i / 2] = sum_of(image->order_energy[1], image->pixels) /
                                sum_of(image->order_energy[0], image->pixels);
@@ -315,7 +313,7 @@ static void a_mesh_of_the_union_lights_itself(void)
 
 /* The second of two parts in one place, and a part within another, add no echo and hide nothing:
  * the first one's rays are those of the object by itself. */
-static void hidden_parts_change_no_bit(void)
+CLAIM(hidden_parts_change_no_bit)
 {
     static const double level[3] = {0.0, 0.0, 0.0};
     static const builder builders[] = {build_spheres, build_hidden_sphere};
@@ -332,14 +330,13 @@ static void hidden_parts_change_no_bit(void)
 
 /* A sphere ahead and a box behind that is level as the object is pitched. Bounds are exact but for
  * double precision. */
-static void parts_rest_on_the_seabed(void)
+CLAIM(parts_rest_on_the_seabed)
 {
     for (uint32_t i = 0; i < 6; i++) {
         const double pitch = 0.3, lowest = -0.5 * sin(pitch) - 0.1;
         const double height = sin(pitch) + 0.2 - lowest;
         const double bottom = i / 2 == 0 ? -0.05 : i / 2 == 1 ? -0.25 * height : 0.3 - height;
         const double behind[3] = {-0.5, 0.0, 0.0}, level[3] = {0.0, -pitch, 0.0};
-        double heights[3];
         struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
         sea->geometry->side = i % 2 ? SONJECT_SIDE_STARBOARD : SONJECT_SIDE_PORT;
         sonject_object_params *object = add(sea, SONJECT_SHAPE_PARTS, 0.0, 0.4, 0.2, 0.0);
@@ -352,12 +349,9 @@ static void parts_rest_on_the_seabed(void)
         add_part(sea, SONJECT_SHAPE_SPHERE, 0.0, 0.4, 1.0, 0.0, 0.0);
         sea_add_part(sea, SONJECT_SHAPE_BOX, behind, level)->length_m = 0.6;
         sea_ready(sea);
-        sea_heights(sea, 0, heights);
-        expect_close("lowest point, m", heights[0], bottom, 1e-12);
-        expect_close("highest point, m", heights[1], bottom + height, 1e-12);
-        expect_close("origin, m", heights[2], bottom - lowest, 1e-12);
+        const struct placed_object *placed = &sea->bench->placed.objects[0];
+        expect_close("lowest point, m", placed->bottom_m, bottom, 1e-12);
+        expect_close("highest point, m", placed->top_m, bottom + height, 1e-12);
+        expect_close("origin, m", placed->origin[2], bottom - lowest, 1e-12);
     }
 }
-
-CLAIMS(CLAIM(parts_look_like_the_shape_they_make_up), CLAIM(a_mesh_of_the_union_lights_itself),
-       CLAIM(hidden_parts_change_no_bit), CLAIM(parts_rest_on_the_seabed))

@@ -24,29 +24,9 @@ static double closed_form(const struct sea *sea, double processor_range)
            pow(processor_range / range, 4.0);
 }
 
-/* Mean over the pixels away from the edges, each over its own closed form; its standard error from
- * the scatter of column means, whose neighbours within a pulse are not independent (a factor of 3
- * pixels at most). */
-static struct estimate level_of(const struct sea *sea, const struct image *image, bool is_field)
-{
-    double means[COLUMNS - 2 * EDGE];
-    for (size_t column = EDGE; column < COLUMNS - EDGE; column++) {
-        double sum = 0.0;
-        for (size_t row = EDGE; row < ROWS - EDGE; row++) {
-            const size_t i = row * COLUMNS + column;
-            sum += is_field ? pow(cabs(image->seabed[i]), 2.0) : image->seabed_energy[i];
-        }
-        means[column - EDGE] =
-            sum / (ROWS - 2 * EDGE) / closed_form(sea, sea_range(sea, (double)column));
-    }
-    struct estimate level = estimate_of(means, COUNT(means));
-    level.error *= sqrt(3.0);
-    return level;
-}
-
 /* Ranges; rays; a wrong sound speed; a source beside the receiver, which changes path and angle by
  * a few mm in 30 m; and another pixel grid, resolution and bandwidth. */
-static void the_level_is_lamberts(void)
+CLAIM(the_level_is_lamberts)
 {
     static const struct {
         double range, rays, reference_speed, source, row, column, resolution, bandwidth;
@@ -73,10 +53,9 @@ static void the_level_is_lamberts(void)
             sea->sonar->along_track_resolution_m = cases[i].resolution;
         sea->sonar->bandwidth_hz = cases[i].bandwidth;
         sea_move(sea, cases[i].range);
-        sea_ready(sea);
         const struct image *image = sea_image_of(sea, NULL, true);
-        const struct estimate energy = level_of(sea, image, false);
-        const struct estimate field = level_of(sea, image, true);
+        const struct estimate energy = level_over(sea, image, EDGE, EDGE, false, closed_form);
+        const struct estimate field = level_over(sea, image, EDGE, EDGE, true, closed_form);
         print_message("%.0f m, %.0f times the rays\n", cases[i].range, cases[i].rays);
         /* W's tail beyond the kept reach: 0.1 % of the energy */
         expect_estimate("expected energy over closed form", energy, 1.0, 2e-3);
@@ -88,7 +67,7 @@ static void the_level_is_lamberts(void)
 
 /* A map multiplies: half the ground twice as bright, the middle of each half shows it, and steps
  * between pixels sit where these are: half-way energy between their middles. */
-static void a_map_multiplies(void)
+CLAIM(a_map_multiplies)
 {
     static const size_t at[4][2] = {{60, 50}, {180, 50}, {60, 150}, {180, 150}};
     static const double factor[4] = {1.0, 3.0, 10.0, 30.0};
@@ -97,7 +76,6 @@ static void a_map_multiplies(void)
     for (size_t i = 0; i < sea->pixels; i++)
         map[i] = (float)((i / COLUMNS < ROWS / 2 ? 1.0 : 3.0) *
                          (i % COLUMNS < COLUMNS / 2 ? 1.0 : 10.0));
-    sea_ready(sea);
     const struct image *image = sea_image_of(sea, map, false);
     double *ratio = claim_memory(sea->pixels, sizeof *ratio);
     for (size_t i = 0; i < sea->pixels; i++)
@@ -132,14 +110,13 @@ static void a_map_multiplies(void)
  * mu h atan(y/h); none before the bin whose middle comes last before the first return. From 10 m
  * over the seabed, and from 2 m in a patch that begins nearer to the sonar than the pulse reaches.
  */
-static void the_first_return(void)
+CLAIM(the_first_return)
 {
     static const double ranges[] = {10.6, 3.01}, altitudes[] = {10.0, 2.0};
     for (int i = 0; i < 2; i++) {
         struct sea *sea = sea_open(48, 241, ranges[i]);
         const double h = altitudes[i];
         sea->sonar->altitude_m = h;
-        sea_ready(sea);
         const struct strips rough = sea_rough(sea, NULL, NULL);
         const double strip = sea->geometry->row_spacing_m / rough.strips_per_row;
         const double per_pixel = rough.bins_per_pixel;
@@ -163,11 +140,10 @@ static void the_first_return(void)
 
 /* Echoes from beyond the middles of the outermost bins share with them too: rays go that far. Over
  * its neighbour each has 1 but for 1e-4 of range. */
-static void outermost_bins_are_full(void)
+CLAIM(outermost_bins_are_full)
 {
     struct sea *sea = sea_open(64, 96, 50.0);
     sea->injection->ray_scale = 16.0;
-    sea_ready(sea);
     const struct strips rough = sea_rough(sea, NULL, NULL);
     for (int end = 0; end < 2; end++) {
         double sum = 0.0, square = 0.0;
@@ -201,7 +177,6 @@ static double trace_face(struct sea *sea, int step, double energy[2 * REACH + 1]
         const double *centre = sea_centre(sea, 0);
         face->roll_rad = 0.5 * PI - atan2(sea->sonar->altitude_m - centre[2], centre[1]);
     }
-    sea_ready(sea);
     const struct image *image = sea_image(sea);
     const double column = sea_column(sea, sea_slant_range(sea, 0));
     const size_t middle = (size_t)(column + 0.5);
@@ -218,7 +193,7 @@ static double trace_face(struct sea *sea, int step, double energy[2 * REACH + 1]
  * pulse's energy, a Gaussian of variance s^2, by up to d^2/4: with d = s/3.4 its peak is 0.047 dB
  * low at most, and 0.02 mm off. Rays count the face's area to 0.2 %. Of the mean over a pixel no
  * bin can take anything. */
-static void a_face_within_a_pixel(void)
+CLAIM(a_face_within_a_pixel)
 {
     static double energy[STEPS][2 * REACH + 1], beyond[STEPS];
     struct sea *sea = sea_open(64, 96, 50.0);
@@ -351,7 +326,7 @@ static void expect_response(const double complex *field)
     }
 }
 
-static void speckle_is_gaussian_with_the_responses_correlation(void)
+CLAIM(speckle_is_gaussian_with_the_responses_correlation)
 {
     for (int i = 0; i < 3; i++) {
         print_message("%s\n", i == 0 ? "noise" : i == 1 ? "seabed" : "seabed, 16 times the rays");
@@ -362,7 +337,7 @@ static void speckle_is_gaussian_with_the_responses_correlation(void)
     }
 }
 
-static void fields_are_independent(void)
+CLAIM(fields_are_independent)
 {
     const double complex *seabed = speckle_of(1.0, 1);
     const double complex *noise = sea_noise(open_speckle(1.0, 1), NOISE_OF_IMAGE);
@@ -383,7 +358,3 @@ static void fields_are_independent(void)
                 expect_estimate(pairs[i].name, parts[part], 0.0, 0.0);
         }
 }
-
-CLAIMS(CLAIM(the_level_is_lamberts), CLAIM(a_map_multiplies), CLAIM(the_first_return),
-       CLAIM(outermost_bins_are_full), CLAIM(a_face_within_a_pixel),
-       CLAIM(speckle_is_gaussian_with_the_responses_correlation), CLAIM(fields_are_independent))

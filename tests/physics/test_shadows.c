@@ -9,7 +9,6 @@
 static const double *trace_visibility(struct sea *sea)
 {
     sea->injection->ray_scale = 16.0;
-    sea_ready(sea);
     const double *visibility = visibility_of(sea_image(sea));
     for (size_t i = 0; i < sea->pixels; i++) /* single precision sums of the same energies */
         assert_true(visibility[i] > -1e-5 && visibility[i] < 1.0 + 1e-5);
@@ -35,7 +34,7 @@ static double column_of_ground(const struct sea *sea, double ground_range)
 
 /* A level plate at height H hides the ground from y h/(h - H) of its near edge to that of its far
  * one: H y/(h - H) behind each. Half a pixel is asked; stratified rays draw a tenth of it. */
-static void the_shadow_of_a_flat_top(void)
+CLAIM(the_shadow_of_a_flat_top)
 {
     static const double heights[] = {0.3, 0.6, 1.0};
     for (size_t i = 0; i < 3; i++) {
@@ -63,7 +62,7 @@ static void the_shadow_of_a_flat_top(void)
 
 /* Rays tangent to the sphere, in the plane through its centre. The rows beside, which |W|^2 brings
  * in, have a shorter shadow; in the middle of the shadow its width is that of the sphere. */
-static void the_shadow_of_a_sphere(void)
+CLAIM(the_shadow_of_a_sphere)
 {
     static const double radii[] = {0.25, 0.35}, lifts[] = {0.0, 0.2};
     for (size_t i = 0; i < 4; i++) {
@@ -89,7 +88,8 @@ static void the_shadow_of_a_sphere(void)
 }
 
 /* A tilted plate off the middle, about which nothing is symmetric, put into an even patch. */
-static const struct injected *inject_plate(struct sea *sea, double row, double heading, double roll)
+static const struct injection_result *inject_plate(struct sea *sea, double row, double heading,
+                                                   double roll)
 {
     float *pixels = claim_memory(sea->pixels, sizeof *pixels);
     for (size_t i = 0; i < sea->pixels; i++)
@@ -107,14 +107,14 @@ static const struct injected *inject_plate(struct sea *sea, double row, double h
 
 /* Starboard is port seen from the other end: rows in reverse, heading pi less, roll the other way
  * round. The same rays are traced, so every bit agrees. */
-static void starboard_is_port_from_the_other_end(void)
+CLAIM(starboard_is_port_from_the_other_end)
 {
     struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
     sea->geometry->first_along_track_m = -200.0 * 0.025;
-    const struct injected *port = inject_plate(sea, 200.0 - 80.0, PI - 0.5, -0.25);
+    const struct injection_result *port = inject_plate(sea, 200.0 - 80.0, PI - 0.5, -0.25);
     sea = sea_open(ROWS, COLUMNS, RANGE);
     sea->geometry->side = SONJECT_SIDE_STARBOARD;
-    const struct injected *starboard = inject_plate(sea, 80.0, 0.5, 0.25);
+    const struct injection_result *starboard = inject_plate(sea, 80.0, 0.5, 0.25);
     size_t shaded = 0;
     for (size_t i = 0; i < sea->pixels; i++) {
         const size_t j = (ROWS - 1 - i / COLUMNS) * COLUMNS + i % COLUMNS;
@@ -131,9 +131,9 @@ static void starboard_is_port_from_the_other_end(void)
 
 /* The same scene on the other side makes the same picture: poses are meant in ping order. Other
  * rays are traced, so energies agree as far as their number allows. */
-static void sides_look_alike(void)
+CLAIM(sides_look_alike)
 {
-    const struct injected *sides[2];
+    const struct injection_result *sides[2];
     double difference = 0.0, sum = 0.0;
     for (int side = 0; side < 2; side++) {
         struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
@@ -152,7 +152,7 @@ static void sides_look_alike(void)
 
 /* A ball hides as much seabed when 39 others stand in its shadow or inside it: what is hidden twice
  * is lost once. */
-static void shadows_are_lost_once(void)
+CLAIM(shadows_are_lost_once)
 {
     double hidden[2] = {0.0, 0.0};
     for (int is_crowded = 0; is_crowded < 2; is_crowded++) {
@@ -162,7 +162,6 @@ static void shadows_are_lost_once(void)
             place_in_pixels(sea_add_sphere(sea, 0.025, 0.0), 200.0 + 1.5 * (i % 3 - 1),
                             150.0 + 0.6 * i);
         place_in_pixels(sea_add_sphere(sea, 0.3, 0.0), 200.0, 150.0);
-        sea_ready(sea);
         sea_rough(sea, sums, NULL);
         for (int i = 0; i < (is_crowded ? 40 : 1); i++)
             hidden[is_crowded] += sums[i].lost;
@@ -170,7 +169,3 @@ static void shadows_are_lost_once(void)
     assert_true(hidden[0] > 0.0);
     expect_close("hidden in a crowd over alone", hidden[1] / hidden[0], 1.0, 1e-6);
 }
-
-CLAIMS(CLAIM(the_shadow_of_a_flat_top), CLAIM(the_shadow_of_a_sphere),
-       CLAIM(starboard_is_port_from_the_other_end), CLAIM(sides_look_alike),
-       CLAIM(shadows_are_lost_once))

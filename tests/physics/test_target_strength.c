@@ -32,7 +32,6 @@ static struct sea *hang(size_t place, sonject_shape shape, double length_m, doub
 
 static double peak_db(struct sea *sea)
 {
-    sea_ready(sea);
     return decibels_of_energy(sea_image(sea)->objects[0].peak_energy);
 }
 
@@ -59,7 +58,7 @@ static double sphere_db(double a)
 }
 
 /* The level that is asked for is the target's, too, not that of a pixel. */
-static void spheres_wherever_pixels_lie(void)
+CLAIM(spheres_wherever_pixels_lie)
 {
     static const double radii[] = {0.15, 0.3};
     const double expected[] = {sphere_db(radii[0]), sphere_db(radii[1])};
@@ -80,7 +79,7 @@ static void spheres_wherever_pixels_lie(void)
 }
 
 /* Broadside: sqrt(a / 2 lambda) delta where W passes over the line, Gibbs' overshoot at its end. */
-static void a_cylinder_peaks_at_its_ends(void)
+CLAIM(a_cylinder_peaks_at_its_ends)
 {
     for (size_t i = 0; i < PLACES; i++)
         expect_close(
@@ -90,7 +89,7 @@ static void a_cylinder_peaks_at_its_ends(void)
 
 /* Lambert's sphere: the expected energy, speckle averaged out. No closed form is held here, but
  * that pixels do not matter. */
-static void a_rough_sphere_wherever_pixels_lie(void)
+CLAIM(a_rough_sphere_wherever_pixels_lie)
 {
     double lowest = INFINITY, highest = -INFINITY;
     for (size_t i = 0; i < PLACES; i += COUNT(spacings)) {
@@ -102,6 +101,3 @@ static void a_rough_sphere_wherever_pixels_lie(void)
     }
     expect_below("rough sphere's target strengths are apart, dB", highest - lowest, ROUGH_DB);
 }
-
-CLAIMS(CLAIM(spheres_wherever_pixels_lie), CLAIM(a_cylinder_peaks_at_its_ends),
-       CLAIM(a_rough_sphere_wherever_pixels_lie))

@@ -1,9 +1,6 @@
-/* Shapes that users write: against the built-in sphere by physical optics, energies and chains; a
- * dome against double precision; several codes beside a mesh; compilers' errors in the user's
+/* Shapes that users write: against the built-in sphere by physical optics, energies and
+ * chains; several codes beside a mesh; compilers' errors in the user's
  * lines; and what the check of a shape catches. */
-#include <float.h>
-
-#include "bench.h"
 #include "sea.h"
 #include "user/shape_check.h"
 #include "user/snippet.h"
@@ -60,7 +57,7 @@ static void expect_same_sums(const struct tile_sums *one, const struct tile_sums
 /* The same rays, the same formula: what is left are roundings and rays along the outline, of which
  * a disc at 11 deg of grazing has more: level, 10 cm above the seabed, seen from above, so that its
  * normal has to turn. */
-static void rough_shapes_are_lit_like_the_librarys(void)
+CLAIM(rough_shapes_are_lit_like_the_librarys)
 {
     for (enum sound_shape shape = SPHERE_SHAPE; shape <= DISC_SHAPE; shape++) {
         struct tile_sums sums[2];
@@ -69,7 +66,6 @@ static void rough_shapes_are_lit_like_the_librarys(void)
             sonject_object_params *object = add_shape(sea, shape, is_user);
             make_rough(object, 0.1);
             object->burial_m = shape == DISC_SHAPE ? -0.1 : 0.0;
-            sea_ready(sea);
             sea_rough(sea, &sums[is_user], NULL);
         }
         expect_same_sums(&sums[1], &sums[0], shape == DISC_SHAPE ? 1e-3 : 1e-4);
@@ -77,13 +73,12 @@ static void rough_shapes_are_lit_like_the_librarys(void)
 }
 
 /* Phases differ by roundings of ranges, 4 eps of 0.25 m at 0.84 rad/mm: 1e-4 rad, -80 dB. */
-static void a_sphere_by_code_glints_like_the_sphere(void)
+CLAIM(a_sphere_by_code_glints_like_the_sphere)
 {
     struct line lines[2];
     for (int is_user = 0; is_user < 2; is_user++) {
         struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
         add_shape(sea, SPHERE_SHAPE, is_user)->burial_m = -1.0;
-        sea_ready(sea);
         lines[is_user] = sea_line(sea, 0);
     }
     const double energy = line_energy(&lines[0]);
@@ -97,7 +92,7 @@ static const struct ranges all_ranges = {0, 0.0, 0.0};
 
 /* Chains between sphere and seabed. The library leaves a convex shape out where rays leave it; code
  * is asked, 20 um off its surface: some grazing ways may be decided otherwise. */
-static void a_sphere_by_code_has_the_spheres_chains(void)
+CLAIM(a_sphere_by_code_has_the_spheres_chains)
 {
     struct energies energies[2];
     for (int is_user = 0; is_user < 2; is_user++) {
@@ -106,7 +101,6 @@ static void a_sphere_by_code_has_the_spheres_chains(void)
         sea->injection->order_energies = 1;
         sea->injection->ray_scale = 0.25;
         make_rough(add_shape(sea, SPHERE_SHAPE, is_user), 0.1);
-        sea_ready(sea);
         energies[is_user] = sea_chains(sea, &all_ranges, 1, 1);
     }
     for (int order = 1; order < 3; order++) {
@@ -117,7 +111,7 @@ static void a_sphere_by_code_has_the_spheres_chains(void)
 
 /* Two spheres light each other. As one shape of code they must find each other as parts do; the
  * seabed scatters nothing. */
-static void a_shape_by_code_meets_itself(void)
+CLAIM(a_shape_by_code_meets_itself)
 {
     struct estimate energy[2];
     for (int is_user = 0; is_user < 2; is_user++) {
@@ -132,7 +126,6 @@ static void a_shape_by_code_meets_itself(void)
             const double centre[3] = {i == 0 ? -0.3 : 0.3, 0.0, 0.0};
             sea_add_part(sea, SONJECT_SHAPE_SPHERE, centre, level)->diameter_m = 0.5;
         }
-        sea_ready(sea);
         const struct energies energies = sea_chains(sea, &all_ranges, 10, 4);
         energy[is_user] = energy_of(&energies, 1, 0);
     }
@@ -141,122 +134,9 @@ static void a_shape_by_code_meets_itself(void)
     expect_estimate("echoes between the spheres", ratio, 1.0, 0.0);
 }
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-/* Value of the dome: negative inside. */
-static double dome_at(const double p[3])
-{
-    const double k = 0.5 * DOME_A * DOME_A / DOME_H;
-    const double round = (p[0] * p[0] + p[1] * p[1] - k * (DOME_H - p[2])) / (2.0 * DOME_A);
-    return fmax(round, -DOME_H - p[2]);
-}
-
-/* First change of sides beyond `nearest`, by steps of 0.1 mm and bisection; NaN: none. */
-static double march_dome(const double p[3], const double d[3], double nearest, double end)
-{
-    const double step = 1e-4;
-    for (double t = nearest; t < end; t += step) {
-        double ends[2] = {t, t + step};
-        double values[2];
-        for (int i = 0; i < 2; i++) {
-            const double at[3] = {p[0] + ends[i] * d[0], p[1] + ends[i] * d[1],
-                                  p[2] + ends[i] * d[2]};
-            values[i] = dome_at(at);
-        }
-        if ((values[0] < 0.0) == (values[1] < 0.0))
-            continue;
-        for (int i = 0; i < 50; i++) {
-            const double middle = 0.5 * (ends[0] + ends[1]);
-            const double at[3] = {p[0] + middle * d[0], p[1] + middle * d[1], p[2] + middle * d[2]};
-            ends[(dome_at(at) < 0.0) == (values[0] < 0.0) ? 0 : 1] = middle;
-        }
-        return ends[1];
-    }
-    return NAN;
-}
-
-/* From outside and from inside, at all angles. A distance is good to some roundings of the size
- * over the cosine of incidence. */
-static void a_dome_against_double_precision(void)
-{
-    enum {
-        RAYS = 2000
-    };
-    static struct probe_ray rays[RAYS];
-    static struct probe_hit hits[RAYS];
-    const double radius = hypot(DOME_A, DOME_H);
-    struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
-    struct report *report = &sea->bench->report;
-    struct shape_probe probe;
-    uint64_t random = 7;
-    size_t met = 0, wrong = 0;
-    sea_add_code(sea, "dome.cl", DOME_CODE, radius, DOME_A, DOME_H);
-    assert_int_equal(
-        shape_probe_begin(&probe, report, sea->bench->tracer.device, shapes_of(sea), 0),
-        SONJECT_OK);
-    for (size_t i = 0; i < RAYS; i++) {
-        double d[3], p[3];
-        for (int k = 0; k < 3; k++) {
-            d[k] = 2.0 * next_uniform(&random) - 1.0;
-            p[k] = (2.0 * next_uniform(&random) - 1.0) * radius;
-        }
-        const double length = sqrt(dot(d, d));
-        for (int k = 0; k < 3; k++)
-            d[k] /= length;
-        const double middle = -dot(p, d);
-        for (int k = 0; k < 3; k++) {
-            rays[i].point[k] = (float)(p[k] + middle * d[k]);
-            rays[i].direction[k] = (float)d[k];
-        }
-        rays[i].nearest = (float)((2.0 * next_uniform(&random) - 1.0) * radius);
-    }
-    assert_int_equal(shape_probe_ask(&probe, rays, hits, RAYS), SONJECT_OK);
-    for (size_t i = 0; i < RAYS; i++) {
-        double p[3], d[3], at[3], normal[3], slope[3];
-        for (int k = 0; k < 3; k++) {
-            p[k] = rays[i].point[k];
-            d[k] = rays[i].direction[k];
-            normal[k] = hits[i].normal[k];
-        }
-        const double expected = march_dome(p, d, rays[i].nearest, 1.01 * radius);
-        const bool is_met = isfinite(hits[i].distance);
-        if (isnan(expected) || !is_met) {
-            wrong += is_met == isnan(expected); /* along the outline and through the rim */
-            continue;
-        }
-        for (int k = 0; k < 3; k++)
-            at[k] = p[k] + expected * d[k];
-        for (int k = 0; k < 3; k++) {
-            double ends[2];
-            for (int end = 0; end < 2; end++) {
-                double beside[3] = {at[0], at[1], at[2]};
-                beside[k] += end == 0 ? 1e-6 : -1e-6;
-                ends[end] = dome_at(beside);
-            }
-            slope[k] = (ends[0] - ends[1]) / 2e-6;
-        }
-        const double cosine = fabs(dot(slope, d)) / sqrt(dot(slope, slope));
-        const double rim = hypot(hypot(at[0], at[1]) - DOME_A, at[2] + DOME_H);
-        if (cosine < 0.1 || rim < 1e-4)
-            continue;
-        met++;
-        if (fabs(hits[i].distance - expected) > 64.0 * FLT_EPSILON * radius / (cosine * cosine))
-            fail_msg("ray %zu: %.9g m, not %.9g m", i, (double)hits[i].distance, expected);
-        const double agreement = dot(normal, slope) / sqrt(dot(normal, normal) * dot(slope, slope));
-        if (!(agreement > cos(1e-3)))
-            fail_msg("ray %zu: its normal is off by %g rad", i, acos(agreement));
-    }
-    assert_true(met > RAYS / 5);
-    assert_true(wrong < RAYS / 200);
-    shape_probe_end(&probe);
-}
-
 /* Dome, sphere twice (one code, two sizes), dome of other sizes and a mesh, along the track: each
  * tile is what it is where the library's own spheres stand. */
-static void several_codes_beside_a_mesh(void)
+CLAIM(several_codes_beside_a_mesh)
 {
     static const double radii[2] = {RADIUS, 0.15};
     struct tile_sums sums[2][5];
@@ -284,7 +164,6 @@ static void several_codes_beside_a_mesh(void)
             }
         }
         assert_int_equal(shapes->snippet_count, 2);
-        sea_ready(sea);
         sea_rough(sea, sums[is_user], NULL);
     }
     for (int i = 0; i < 5; i++)
@@ -310,7 +189,7 @@ static sonject_status compile(struct sea *sea, const char *code, enum device_pro
     return status;
 }
 
-static void errors_are_in_the_users_lines(void)
+CLAIM(errors_are_in_the_users_lines)
 {
     /* what stands in the message after the name of the code */
     static const struct {
@@ -366,7 +245,7 @@ static void errors_are_in_the_users_lines(void)
 }
 
 /* A normal that is none must not be drawn. */
-static void a_missing_normal_fails_the_run(void)
+CLAIM(a_missing_normal_fails_the_run)
 {
     static struct rough_trace trace;
     struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
@@ -402,7 +281,7 @@ static sonject_status check_code(struct sea *sea, const char *code, double radiu
     return check(sea, result);
 }
 
-static void sound_shapes_pass_the_check(void)
+CLAIM(sound_shapes_pass_the_check)
 {
     static const struct {
         const char *code;
@@ -440,7 +319,7 @@ static void sound_shapes_pass_the_check(void)
     "    return dot(p, p) > a[0] * a[0] ? INFINITY : " result ";\n"                                \
     "}\n"
 
-static void the_check_catches_small_boxes(void)
+CLAIM(the_check_catches_small_boxes)
 {
     struct shape_check result;
     struct sea *sea = sea_open(ROWS, COLUMNS, RANGE);
@@ -460,7 +339,7 @@ static void the_check_catches_small_boxes(void)
     }
 }
 
-static void the_check_catches_wrong_codes(void)
+CLAIM(the_check_catches_wrong_codes)
 {
     static const struct {
         const char *code;
@@ -503,11 +382,3 @@ static void the_check_catches_wrong_codes(void)
             fail_msg("case %zu: '%s' is not in '%s'", i, cases[i].words, sea_message(sea));
     }
 }
-
-CLAIMS(CLAIM(rough_shapes_are_lit_like_the_librarys),
-       CLAIM(a_sphere_by_code_glints_like_the_sphere),
-       CLAIM(a_sphere_by_code_has_the_spheres_chains), CLAIM(a_shape_by_code_meets_itself),
-       CLAIM(a_dome_against_double_precision), CLAIM(several_codes_beside_a_mesh),
-       CLAIM(errors_are_in_the_users_lines), CLAIM(a_missing_normal_fails_the_run),
-       CLAIM(sound_shapes_pass_the_check), CLAIM(the_check_catches_wrong_codes),
-       CLAIM(the_check_catches_small_boxes))
