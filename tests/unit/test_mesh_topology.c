@@ -2,7 +2,6 @@
 #include "claims.h"
 #include "kernel/mesh_samples.h"
 #include "mesh/mesh.h"
-#include "mesh/mesh.h"
 
 static struct report report;
 
@@ -24,33 +23,43 @@ static void reverse(struct mesh_sample *sample, size_t triangle)
     sample->corners[3 * triangle + 2] = second;
 }
 
-static void expect_box(const struct mesh *mesh, size_t turned)
+struct expected {
+    size_t open, crowded, twisted, turned, pieces, vertices, degenerate;
+    double volume; /* 0: it is not closed */
+};
+
+/* Coordinates are rounded to 6e-8 of themselves. */
+static void expect_topology(const struct mesh_sample *sample, struct expected expected)
 {
-    assert_true(mesh->topology.is_closed);
-    assert_int_equal(mesh->topology.turned, turned);
-    assert_int_equal(mesh->topology.pieces, 1);
-    /* coordinates are rounded to 6e-8 of themselves */
-    assert_true(fabs(mesh->volume_m3 - 1.44) < 1e-6);
-    assert_int_equal(mesh_require_closed(&report, "box", mesh), SONJECT_OK);
+    struct mesh mesh = prepare(sample);
+    const struct mesh_topology *topology = &mesh.topology;
+    assert_int_equal(topology->open_edges, expected.open);
+    assert_int_equal(topology->crowded_edges, expected.crowded);
+    assert_int_equal(topology->twisted_edges, expected.twisted);
+    assert_int_equal(topology->turned, expected.turned);
+    assert_int_equal(topology->pieces, expected.pieces);
+    assert_int_equal(mesh.vertex_count, expected.vertices);
+    assert_int_equal(mesh.degenerate, expected.degenerate);
+    assert_int_equal(topology->is_closed, expected.volume > 0.0);
+    assert_true(fabs(mesh.volume_m3 - expected.volume) < 1e-6);
+    const sonject_status status = mesh_require_closed(&report, "box.stl", &mesh);
+    assert_int_equal(status, expected.volume > 0.0 ? SONJECT_OK : SONJECT_ERROR_INPUT);
+    mesh_clear(&mesh);
 }
 
 static void test_orientation(void **state)
 {
     struct mesh_sample sample;
     sample_box(&sample);
-    struct mesh mesh = prepare(&sample);
-    expect_box(&mesh, 0);
-    mesh_clear(&mesh);
+    expect_topology(&sample, (struct expected){.pieces = 1, .vertices = 8, .volume = 1.44});
     for (size_t i = 0; i < 12; i++)
         reverse(&sample, i); /* inside out */
-    mesh = prepare(&sample);
-    expect_box(&mesh, 12);
-    mesh_clear(&mesh);
+    expect_topology(&sample,
+                    (struct expected){.turned = 12, .pieces = 1, .vertices = 8, .volume = 1.44});
     for (size_t i = 0; i < 12; i += 5)
         reverse(&sample, i); /* and three of them not */
-    mesh = prepare(&sample);
-    expect_box(&mesh, 9);
-    mesh_clear(&mesh);
+    expect_topology(&sample,
+                    (struct expected){.turned = 9, .pieces = 1, .vertices = 8, .volume = 1.44});
     sample_clear(&sample);
 }
 
@@ -123,12 +132,7 @@ static void test_cavity(void **state)
         corners[36 + i] = 8 + inner.corners[i];
     }
     const struct mesh_sample both = {positions, corners, 16, 24};
-    struct mesh mesh = prepare(&both);
-    assert_true(mesh.topology.is_closed);
-    assert_int_equal(mesh.topology.pieces, 2);
-    assert_int_equal(mesh.topology.turned, 0);
-    assert_true(fabs(mesh.volume_m3 - 1.44 * 0.875) < 1e-6);
-    mesh_clear(&mesh);
+    expect_topology(&both, (struct expected){.pieces = 2, .vertices = 16, .volume = 1.44 * 0.875});
     sample_clear(&outer);
     sample_clear(&inner);
 }
@@ -138,14 +142,8 @@ static void test_open(void **state)
     struct mesh_sample sample;
     sample_box(&sample);
     sample.triangles = 11;
-    struct mesh mesh = prepare(&sample);
-    assert_false(mesh.topology.is_closed);
-    assert_int_equal(mesh.topology.open_edges, 3);
-    assert_int_equal(mesh.topology.crowded_edges, 0);
-    assert_true(mesh.volume_m3 == 0.0);
-    assert_int_equal(mesh_require_closed(&report, "box.stl", &mesh), SONJECT_ERROR_INPUT);
+    expect_topology(&sample, (struct expected){.open = 3, .pieces = 1, .vertices = 8});
     assert_non_null(strstr(report.message, "box.stl: the mesh does not enclose a volume: 3 edges"));
-    mesh_clear(&mesh);
     sample_clear(&sample);
 }
 
@@ -163,10 +161,8 @@ static void test_crowded(void **state)
     corners[37] = 1;
     corners[38] = 8;
     const struct mesh_sample finned = {positions, corners, 9, 13};
-    struct mesh mesh = prepare(&finned);
-    assert_int_equal(mesh.topology.crowded_edges, 1);
-    assert_int_equal(mesh.topology.open_edges, 2);
-    mesh_clear(&mesh);
+    expect_topology(&finned, (struct expected){
+                                 .open = 2, .crowded = 1, .turned = 0, .pieces = 2, .vertices = 9});
     sample_clear(&sample);
 }
 
@@ -194,11 +190,10 @@ static void test_twisted(void **state)
         memcpy(&corners[6 * i], both, sizeof both);
     }
     const struct mesh_sample band = {positions, corners, 2 * STEPS, 2 * STEPS};
-    struct mesh mesh = prepare(&band);
-    assert_int_equal(mesh.topology.twisted_edges, 1);
-    assert_int_equal(mesh.topology.open_edges, 2 * STEPS);
-    assert_false(mesh.topology.is_closed);
-    mesh_clear(&mesh);
+    expect_topology(
+        &band,
+        (struct expected){
+            .open = 2 * STEPS, .twisted = 1, .turned = STEPS, .pieces = 1, .vertices = 2 * STEPS});
 }
 
 /* Triangles with two equal corners go, and take no closedness with them; one whose corners lie on a
@@ -220,12 +215,10 @@ static void test_degenerate(void **state)
     memcpy(corners, more, 3 * sizeof *corners);
     memcpy(&corners[36], &more[3], 9 * sizeof *corners);
     const struct mesh_sample mended = {positions, corners, 11, 15};
+    expect_topology(&mended,
+                    (struct expected){.pieces = 1, .vertices = 9, .degenerate = 1, .volume = 1.44});
     struct mesh mesh = prepare(&mended);
-    assert_int_equal(mesh.degenerate, 1);
     assert_int_equal(mesh.triangle_count, 14);
-    assert_int_equal(mesh.vertex_count, 9);
-    assert_true(mesh.topology.is_closed);
-    assert_true(fabs(mesh.volume_m3 - 1.44) < 1e-6);
     assert_true((double)mesh.radius_m < 1.3);
     mesh_clear(&mesh);
     sample_clear(&sample);
