@@ -107,25 +107,6 @@ CLAIM(a_sway_makes_paired_echoes)
         expect_lobe(cut, m, spacing, m == 0 ? 0.99002497 : 0.09950083);
 }
 
-/* A constant yaw makes the sway a sawtooth, as long as the pings' advance A: phases of period A,
- * whose harmonics are c_m = sinc(m + 2 yaw A cos(grazing) / wavelength). Each moves W by
- * -m wavelength range / 2A, the lobes of a grating of this spacing; of the two beside the main one,
- * that on the side where the array looks is the higher. */
-CLAIM(a_constant_yaw_makes_lobes)
-{
-    const double advance = 1.2; /* beams of elements leave 0.05 dB less of the lobes */
-    const double steps = 0.3;   /* of a phase of 2 pi, within a ping */
-    struct sea *sea = open_aperture(true);
-    const double complex straight = middle_of(sea);
-    sea->motion->yaw_advance_m = advance;
-    sea->motion->yaw_bias_rad =
-        steps * sea_wavelength(sea) / (2.0 * advance * cosine_of_grazing(sea));
-    const double complex *cut = cut_through(sea, straight);
-    const double spacing = sea_wavelength(sea) * response_of(sea)->motion_range_m / (2.0 * advance);
-    for (int m = -1; m <= 1; m++)
-        expect_lobe(cut, -m, spacing, fabs(sinc(m + steps)));
-}
-
 /* The response that motion gives a row of the image, over places so far apart along the track. */
 static const double complex *row_of_response(struct sea *sea, double spacing, double row, int reach,
                                              bool is_all_around)
@@ -145,9 +126,13 @@ static const double complex *row_of_response(struct sea *sea, double spacing, do
     return values;
 }
 
-/* The same lobes as they leave the beam of elements of 2 delta, whose zero is where lobe A/delta
- * lies; delta is such that each lobe lies at a zero of all others. The beam leaves the mean over
- * |v| < 1/2 of sinc(v + t)^2 / sinc(v)^2, t = m delta/A: for whole t that of v^2 / (v + t)^2. */
+/* A constant yaw makes the sway a sawtooth, as long as the pings' advance A: phases of period A,
+ * whose harmonics are c_m = sinc(m + 2 yaw A cos(grazing) / wavelength). Each moves W by
+ * -m wavelength range / 2A, the lobes of a grating of this spacing; of the two beside the main one,
+ * that on the side where the array looks is the higher. They leave the beam of elements of 2 delta,
+ * whose zero is where lobe A/delta lies; delta is such that each lobe lies at a zero of all others.
+ * The beam leaves the mean over |v| < 1/2 of sinc(v + t)^2 / sinc(v)^2, t = m delta/A: for whole t
+ * that of v^2 / (v + t)^2. */
 CLAIM(lobes_leave_the_elements_beam)
 {
     enum {
