@@ -144,6 +144,9 @@ static void test_open(void **state)
     sample.triangles = 11;
     expect_topology(&sample, (struct expected){.open = 3, .pieces = 1, .vertices = 8});
     assert_non_null(strstr(report.message, "box.stl: the mesh does not enclose a volume: 3 edges"));
+    for (size_t i = 0; i < 11; i += 5)
+        reverse(&sample, i); /* the fewer */
+    expect_topology(&sample, (struct expected){.open = 3, .turned = 3, .pieces = 1, .vertices = 8});
     sample_clear(&sample);
 }
 
