@@ -224,8 +224,18 @@ void set_mirror(sonject_material_params *material, double reflection)
 
 /* ---- what is laid ---- */
 
+static void clear_placements(void *placements)
+{
+    placements_clear(placements);
+}
+
+/* What was laid before stays until the claim ends, for those who look at it. */
 void sea_ready(struct sea *sea)
 {
+    struct placements *before = claim_memory(1, sizeof *before);
+    *before = sea->bench->placed;
+    memset(&sea->bench->placed, 0, sizeof sea->bench->placed);
+    claim_end(clear_placements, before);
     bench_ready(sea->bench);
     sea->is_put = false;
 }
