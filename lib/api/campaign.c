@@ -6,7 +6,7 @@
 
 #include "api/handles.h"
 #include "base/memory.h"
-#include "dataset/campaign_handle.h"
+#include "dataset/campaign.h"
 #include "schema/scene_file.h"
 #include "schema/yaml_tree.h"
 

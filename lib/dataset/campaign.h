@@ -1,20 +1,91 @@
-/* A campaign: many scenes drawn from distributions around one that is written out. Pure data. */
+/* A campaign: many scenes drawn from distributions around one that is written out, and one image of
+ * it. What an image is depends on the campaign and its number alone, so that any can be made by
+ * itself. */
 #ifndef SONJECT_DATASET_CAMPAIGN_H
 #define SONJECT_DATASET_CAMPAIGN_H
 
-#include "dataset/distribution.h"
+#include <jansson.h>
+
+#include <sonject/campaign.h>
+
+#include "base/hash.h"
+#include "dataset/labels.h"
 #include "image/raster.h"
-#include "schema/yaml_tree.h"
+#include "inject/injection.h"
+#include "inject/swath.h"
+#include "schema/scene_schema.h"
 
 #define CAMPAIGN_IMAGES_MAX  10000000 /* ids have eight digits */
-#define CAMPAIGN_SWATHS_MAX  10000
-#define CAMPAIGN_ITEMS_MAX   250 /* targets and clutter, of each */
-#define CAMPAIGN_CLUTTER_MAX 50  /* in an image */
+#define CAMPAIGN_ITEMS_MAX   250      /* targets and clutter, of each */
+#define CAMPAIGN_CLUTTER_MAX 50       /* in an image */
 #define CAMPAIGN_SPLITS_MAX  16
 #define CAMPAIGN_CHIP_MAX    8192 /* rows, columns */
 #define SPLIT_NAME_CAPACITY  33
 
-/* Where in a swath chips may lie: inside, and touching no box that is to be avoided. */
+/* Counted random numbers: a deviate of (0, 1), the middle of one of 2^53 equal parts; streams are
+ * independent. */
+double uniform_number(uint64_t seed, uint32_t stream, uint64_t index);
+
+/* Where a random permutation of 0...count - 1 takes index, which is below count. */
+uint64_t permuted_index(uint64_t seed, uint32_t stream, uint64_t index, uint64_t count);
+
+/* The index-th of count deviates of (0, 1) of which each of count equal parts holds one, in random
+ * order: an axis of a Latin hypercube. */
+double stratified_number(uint64_t seed, uint32_t stream, uint64_t index, uint64_t count);
+
+/* Splits total by weights (finite, >= 0, their sum above 0) into whole shares that add up to it and
+ * miss their exact values by less than 1, after Hamilton: of equal remainders the first is rounded
+ * up. */
+void share_out(uint64_t total, const double *weights, size_t count, uint64_t *shares);
+
+enum distribution_kind {
+    DISTRIBUTION_UNIFORM,     /* between low and high */
+    DISTRIBUTION_LOG_UNIFORM, /* its logarithm is */
+    DISTRIBUTION_NORMAL,      /* cut off at low and high */
+    DISTRIBUTION_CHOICE,      /* one of the texts */
+    DISTRIBUTION_FIXED        /* the only text */
+};
+
+/* What a value of a scene is drawn from. */
+struct distribution {
+    enum distribution_kind kind;
+    char *key; /* of the scene or of an object; owned */
+    struct tree_place place;
+    double low, high; /* in the unit as it is written */
+    double mean, deviation;
+    char unit[16];      /* " kHz", "" for none */
+    char **texts;       /* values as --set takes them; owned */
+    double *cumulative; /* weights of the texts, added up, the last 1; owned */
+    size_t count;       /* of texts */
+    uint32_t steps;     /* of a grid's axis; 0: none */
+    uint32_t stream;    /* of random numbers */
+};
+
+#define DISTRIBUTION_TEXT_CAPACITY 48
+
+/* Reads what the node says: a single value, a list, or a section {uniform: [low, high]},
+ * {log_uniform: [low, high]}, {normal: {mean, deviation, minimum, maximum}}, {choice: [...],
+ * weights: [...]}, {fixed: value}; the first two also with steps. The reader's path is the
+ * value's. distribution: all zeros; on failure as well it is for distribution_clear. Errors: INPUT,
+ * MEMORY. */
+sonject_status distribution_read(struct reader *reader, const struct tree_node *node,
+                                 const char *key, struct distribution *distribution);
+void distribution_clear(struct distribution *distribution);
+
+/* The value that a share of u, 0...1, lies below, as a text for --set; text: where numbers are
+ * written, to nine digits. */
+const char *distribution_value(const struct distribution *distribution, double u,
+                               char text[DISTRIBUTION_TEXT_CAPACITY]);
+
+/* The same as a number in the written unit; only of kinds with low and high. */
+double distribution_number(const struct distribution *distribution, double u);
+
+/* Number of values on a grid's axis: its steps, or the texts of a choice whose weights are equal;
+ * 0: it is none. distribution_step gives each, counted from 0. */
+uint32_t distribution_steps(const struct distribution *distribution);
+const char *distribution_step(const struct distribution *distribution, uint32_t step,
+                              char text[DISTRIBUTION_TEXT_CAPACITY]);
+
 /* First pixels of chips, in bands of rows that have the same columns. */
 struct column_range {
     uint64_t first, count;
@@ -26,6 +97,7 @@ struct row_band {
     size_t first_range, ranges;
 };
 
+/* Where in a swath chips may lie: inside, and touching no box that is to be avoided. */
 struct chip_room {
     struct row_band *bands; /* owned */
     struct column_range *ranges;
@@ -52,6 +124,7 @@ struct draws {
 
 /* Something that is put into images: a target or clutter. */
 struct item {
+    struct campaign *campaign; /* that it is of */
     char class_name[SONJECT_NAME_CAPACITY];
     double weight;
     char *object; /* its section of a scene, in flow style; owned */
@@ -95,16 +168,24 @@ enum design {
     DESIGN_GRID
 };
 
-/* What is written of each image beside image, truth and COCO. */
+/* The files of an image, each kind in a folder of its own; all images have the first two and the
+ * last. */
 enum output {
-    OUTPUT_HIGHLIGHT = 1,
-    OUTPUT_SHADOW = 2,
-    OUTPUT_MASKS = 4,
-    OUTPUT_ENERGY = 8,
-    OUTPUT_FIELD = 16,
-    OUTPUT_YOLO = 32,
-    OUTPUT_VOC = 64
+    OUTPUT_IMAGE,
+    OUTPUT_TRUTH,
+    OUTPUT_HIGHLIGHT,
+    OUTPUT_SHADOW,
+    OUTPUT_MASKS,
+    OUTPUT_ENERGY,
+    OUTPUT_FIELD,
+    OUTPUT_YOLO,
+    OUTPUT_VOC,
+    OUTPUT_RECORD,
+    OUTPUT_KINDS
 };
+#define OUTPUT_BIT(output) (UINT32_C(1) << (output))
+#define OUTPUT_ALWAYS                                                                              \
+    (OUTPUT_BIT(OUTPUT_IMAGE) | OUTPUT_BIT(OUTPUT_TRUTH) | OUTPUT_BIT(OUTPUT_RECORD))
 
 struct campaign {
     char *path;   /* of its file */
@@ -117,10 +198,10 @@ struct campaign {
     double spread;            /* of the chip's sides, where objects may lie */
     double nearest_range_m, farthest_range_m;
     double empty, clutter_alone;
-    uint32_t outputs; /* of enum output */
+    uint32_t outputs; /* bits of enum output */
     struct draws draws, object_draws;
-    struct item *targets, *clutter;
-    size_t target_count, clutter_count;
+    struct item targets[CAMPAIGN_ITEMS_MAX], clutter[CAMPAIGN_ITEMS_MAX];
+    uint32_t target_count, clutter_count;
     struct distribution clutter_number;
     struct swath_plan *swaths;
     size_t swath_count;
@@ -137,18 +218,121 @@ sonject_status campaign_read(struct report *report, const char *path, const char
                              size_t count, struct campaign *campaign);
 void campaign_clear(struct campaign *campaign);
 
+/* Gives *list, of count elements of size bytes, room for one more, which becomes all zeros. Errors:
+ * MEMORY. */
+sonject_status grow_list(struct report *report, void *list, size_t count, size_t size);
+
 /* Whether a split may have this name, which is a folder's and stands in documents. */
 bool is_split_name(const char *name);
 
 /* Gives each swath to a split and each split its images, so that no swath is in two: swaths whose
- * identities (one text each, such as a hash) are equal count as one. Errors: INPUT, MEMORY. */
+ * files have equal hashes count as one. Errors: INPUT, MEMORY. */
 sonject_status campaign_split(struct report *report, struct campaign *campaign,
-                              const char *const *identities);
+                              char (*hashes)[HASH_TEXT_CAPACITY]);
 
 /* Finds where images may lie in a swath whose layout is known. geometry: of the scene with that
  * swath. altitude_m: the sonar's highest, which images begin beyond, so that no target lies in the
  * water column. Errors: INPUT (no room), MEMORY. */
 sonject_status campaign_measure(struct report *report, struct campaign *campaign, size_t swath,
                                 const sonject_geometry_params *geometry, double altitude_m);
+
+/* "key=value" for the scene, and where the campaign file says so. */
+struct plan_key {
+    char *text;
+    struct tree_place place; /* line 0: nowhere */
+};
+
+/* One image: which swath, where, and what of the scene is drawn how. */
+struct image_plan {
+    uint64_t id;
+    uint32_t split, swath;
+    uint32_t category; /* enum category; targets from CATEGORY_TARGET on */
+    struct region chip;
+    uint64_t seed;
+    uint32_t object_count;
+    struct plan_key *keys; /* owned; names of files in them are meant from the campaign's folder */
+    size_t key_count;
+};
+
+/* The plan of image id, below campaign->images. plan: for image_plan_clear, also on failure.
+ * Errors: MEMORY. */
+sonject_status image_plan_make(struct report *report, const struct campaign *campaign, uint64_t id,
+                               struct image_plan *plan);
+
+/* A plan that tries the ends of all distributions: one with an object of a category (and of
+ * clutter number item), in the first place of a swath. step 0: low ends, 1: high ends, and of
+ * choices the step-th. */
+sonject_status image_plan_try(struct report *report, const struct campaign *campaign,
+                              uint32_t swath, uint32_t category, uint32_t item, uint32_t step,
+                              struct image_plan *plan);
+void image_plan_clear(struct image_plan *plan);
+
+/* How many steps image_plan_try has use for: two, or as many as the longest choice has entries,
+ * among what is drawn of an item, or, for NULL, of the scene itself. */
+uint32_t image_plan_steps(const struct campaign *campaign, const struct item *item);
+
+/* Whether each target comes often enough for all cells of a grid. Errors: INPUT. */
+sonject_status image_plan_check_grid(const struct campaign *campaign);
+
+/* The split that an image is in. */
+uint32_t image_split(const struct campaign *campaign, uint64_t id);
+
+/* A campaign as the library keeps it. */
+struct sonject_campaign {
+    struct report *report; /* the context's */
+    struct campaign campaign;
+    char *scene_text; /* of the base scene's file; owned */
+    size_t scene_bytes;
+    bool allows_user_shapes;
+    bool has_user_shapes;                     /* among what may be drawn */
+    char (*swath_hashes)[HASH_TEXT_CAPACITY]; /* of the swaths' files; owned */
+    json_t *inputs;                           /* all that images depend on, by name; owned */
+    char hash[HASH_TEXT_CAPACITY];            /* of inputs */
+    struct class_names classes; /* of all that may be drawn: images number them alike */
+    struct swath_store store;
+    struct mesh_store meshes; /* of scenes whose mesh_store it is */
+};
+
+/* Reads the scene that a plan describes. scene: initialised and empty; on failure it is left empty.
+ * Errors: as sonject_scene_read, with the place in the campaign file where that says it. */
+sonject_status campaign_read_scene(struct sonject_campaign *campaign, const struct image_plan *plan,
+                                   struct scene *scene);
+
+/* Opens and measures the swaths, splits them, tries scenes with all that may be drawn, and makes
+ * the campaign's hash. Errors: INPUT, STORAGE, UNSUPPORTED, MEMORY. */
+sonject_status campaign_check(struct sonject_campaign *campaign);
+
+/* Whether the campaign has an image of that id. Errors: ARGUMENT. */
+sonject_status campaign_check_id(const struct sonject_campaign *campaign, uint64_t id);
+
+/* An image as it is made. Starts as all zeros, is for campaign_image_clear. */
+struct campaign_image {
+    struct image_plan plan;
+    struct scene scene;
+    struct swath swath;
+    struct injection_result result;
+};
+
+/* Plans the image, reads its scene and its part of the swath, and injects. Errors: as
+ * sonject_campaign_inject; the message names the image. */
+sonject_status campaign_image_make(struct device *device, struct sonject_campaign *campaign,
+                                   uint64_t id, sonject_progress_function progress, void *user,
+                                   struct campaign_image *image);
+void campaign_image_clear(struct campaign_image *image);
+
+/* Writes the image's files below the folder, its record last. Errors: STORAGE, MEMORY,
+ * UNSUPPORTED. */
+sonject_status campaign_image_write(struct sonject_campaign *campaign, struct campaign_image *image,
+                                    const char *folder);
+
+/* The images that the folder lacks, of those that params asks for, and the documents of the whole:
+ * sonject_campaign_run. */
+sonject_status campaign_run(struct sonject_campaign *campaign, struct device_slot *slot,
+                            const sonject_campaign_run_params *params,
+                            sonject_progress_function progress, void *user, int *was_finished);
+
+/* Those documents, once all images are there: sonject_campaign_merge. */
+sonject_status campaign_merge(struct report *report, const char *folder,
+                              sonject_progress_function progress, void *user);
 
 #endif

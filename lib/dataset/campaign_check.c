@@ -7,13 +7,34 @@
 
 #include "base/file_list.h"
 #include "base/json_document.h"
-#include "base/memory.h"
 #include "base/text.h"
-#include "dataset/campaign_handle.h"
+#include "dataset/campaign.h"
 #include "inject/scene_hash.h"
-#include "schema/yaml_tree.h"
 
 #define TRIALS_MAX 20000 /* scenes, about as many milliseconds at the most */
+
+/* What a scene that a plan describes is read for. */
+struct trial {
+    struct image_plan plan;
+    struct scene scene;
+};
+
+/* trial: for trial_clear, also on failure. */
+static sonject_status trial_read(struct trial *trial, struct sonject_campaign *campaign,
+                                 uint32_t swath, uint32_t category, uint32_t item, uint32_t step)
+{
+    scene_init(&trial->scene);
+    trial->scene.mesh_store = &campaign->meshes;
+    CHECK(image_plan_try(campaign->report, &campaign->campaign, swath, category, item, step,
+                         &trial->plan));
+    return campaign_read_scene(campaign, &trial->plan, &trial->scene);
+}
+
+static void trial_clear(struct trial *trial)
+{
+    scene_clear(&trial->scene);
+    image_plan_clear(&trial->plan);
+}
 
 /* Over all of the swath, whose pings say it, or as the scene does. */
 static double highest_altitude(const struct scene *scene, const struct xtf_file *xtf)
@@ -28,11 +49,8 @@ static double highest_altitude(const struct scene *scene, const struct xtf_file 
 static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t number)
 {
     struct swath_plan *swath = &campaign->campaign.swaths[number];
-    struct image_plan plan;
-    struct scene scene;
+    struct trial trial;
     struct swath_file *file = NULL;
-    scene_init(&scene);
-    scene.mesh_store = &campaign->meshes;
     sonject_status status =
         file_hash(campaign->report, swath->path, campaign->swath_hashes[number]);
     if (status == SONJECT_ERROR_MEMORY)
@@ -40,39 +58,31 @@ static sonject_status measure_swath(struct sonject_campaign *campaign, uint32_t 
     if (status != SONJECT_OK)
         return tree_failure(&campaign->campaign.tree, swath->place, "swaths",
                             "there is no %s that can be read; check its name", swath->path);
-    status =
-        image_plan_try(campaign->report, &campaign->campaign, number, CATEGORY_EMPTY, 0, 0, &plan);
-    THEN(status, campaign_read_scene(campaign, &plan, &scene));
-    THEN(status,
-         swath_file_open_array(campaign->report, swath->path, scene.channel, scene.array, &file));
+    status = trial_read(&trial, campaign, number, CATEGORY_EMPTY, 0, 0);
+    THEN(status, swath_file_open_array(campaign->report, swath->path, trial.scene.channel,
+                                       trial.scene.array, &file));
     if (status == SONJECT_OK) {
         swath_file_layout(file, &swath->layout);
-        status = campaign_measure(campaign->report, &campaign->campaign, number, &scene.geometry,
-                                  highest_altitude(&scene, swath_file_xtf(file)));
+        status =
+            campaign_measure(campaign->report, &campaign->campaign, number, &trial.scene.geometry,
+                             highest_altitude(&trial.scene, swath_file_xtf(file)));
     }
     swath_file_close(&file);
-    scene_clear(&scene);
-    image_plan_clear(&plan);
+    trial_clear(&trial);
     return status;
 }
 
 static sonject_status try_scene(struct sonject_campaign *campaign, struct hash *hash,
                                 uint32_t swath, uint32_t category, uint32_t item, uint32_t step)
 {
-    struct image_plan plan;
-    struct scene scene;
+    struct trial trial;
     char text[HASH_TEXT_CAPACITY];
-    scene_init(&scene);
-    scene.mesh_store = &campaign->meshes;
-    sonject_status status =
-        image_plan_try(campaign->report, &campaign->campaign, swath, category, item, step, &plan);
-    THEN(status, campaign_read_scene(campaign, &plan, &scene));
-    THEN(status, scene_hash(campaign->report, &scene, NULL, text));
+    sonject_status status = trial_read(&trial, campaign, swath, category, item, step);
+    THEN(status, scene_hash(campaign->report, &trial.scene, NULL, text));
     if (status == SONJECT_OK)
         hash_add_text(hash, text);
-    campaign->has_user_shapes = campaign->has_user_shapes || scene.user_shapes.count > 0;
-    scene_clear(&scene);
-    image_plan_clear(&plan);
+    campaign->has_user_shapes = campaign->has_user_shapes || trial.scene.user_shapes.count > 0;
+    trial_clear(&trial);
     return status;
 }
 
@@ -82,16 +92,15 @@ static sonject_status try_steps(struct sonject_campaign *campaign, struct hash *
                                 uint64_t *trials)
 {
     const uint32_t steps = image_plan_steps(&campaign->campaign, item);
-    sonject_status status = SONJECT_OK;
     *trials += steps;
     if (*trials > TRIALS_MAX)
         return report_failure(campaign->report, SONJECT_ERROR_INPUT,
                               "%s: draws from so many choices that more than %d scenes were to be "
                               "checked; make several campaigns of it",
                               campaign->campaign.path, TRIALS_MAX);
-    for (uint32_t step = 0; status == SONJECT_OK && step < steps; step++)
-        status = try_scene(campaign, hash, 0, category, number, step);
-    return status;
+    for (uint32_t step = 0; step < steps; step++)
+        CHECK(try_scene(campaign, hash, 0, category, number, step));
+    return SONJECT_OK;
 }
 
 /* Tries each swath, and each object with the ends and all choices of what is drawn of it. Files
@@ -100,27 +109,14 @@ static sonject_status try_scenes(struct sonject_campaign *campaign, struct hash 
 {
     const struct campaign *plan = &campaign->campaign;
     uint64_t trials = 0;
-    sonject_status status = SONJECT_OK;
-    for (uint32_t i = 0; status == SONJECT_OK && i < plan->swath_count; i++)
-        status = try_scene(campaign, hash, i, CATEGORY_EMPTY, 0, 1);
-    THEN(status, try_steps(campaign, hash, CATEGORY_EMPTY, 0, NULL, &trials));
-    for (uint32_t i = 0; status == SONJECT_OK && i < plan->target_count; i++)
-        status = try_steps(campaign, hash, CATEGORY_TARGET + i, 0, &plan->targets[i], &trials);
-    for (uint32_t i = 0; status == SONJECT_OK && i < plan->clutter_count; i++)
-        status = try_steps(campaign, hash, CATEGORY_CLUTTER, i, &plan->clutter[i], &trials);
-    return status;
-}
-
-static sonject_status split_swaths(struct sonject_campaign *campaign)
-{
-    struct campaign *plan = &campaign->campaign;
-    const char **identities = allocate_array(plan->swath_count, sizeof *identities);
-    CHECK_MEMORY(campaign->report, identities, "the splits");
-    for (size_t i = 0; i < plan->swath_count; i++)
-        identities[i] = campaign->swath_hashes[i];
-    const sonject_status status = campaign_split(campaign->report, plan, identities);
-    free(identities);
-    return status;
+    for (uint32_t i = 0; i < plan->swath_count; i++)
+        CHECK(try_scene(campaign, hash, i, CATEGORY_EMPTY, 0, 1));
+    CHECK(try_steps(campaign, hash, CATEGORY_EMPTY, 0, NULL, &trials));
+    for (uint32_t i = 0; i < plan->target_count; i++)
+        CHECK(try_steps(campaign, hash, CATEGORY_TARGET + i, 0, &plan->targets[i], &trials));
+    for (uint32_t i = 0; i < plan->clutter_count; i++)
+        CHECK(try_steps(campaign, hash, CATEGORY_CLUTTER, i, &plan->clutter[i], &trials));
+    return SONJECT_OK;
 }
 
 /* A key of the campaign's file with its value: a number, or a digest of its text. */
@@ -141,16 +137,15 @@ static void add_key(struct sonject_campaign *campaign, struct hash *hash,
     free(value);
 }
 
-static void add_inputs(struct sonject_campaign *campaign, struct hash *hash, const char *code,
-                       const char *trials)
+static sonject_status make_inputs(struct sonject_campaign *campaign, struct hash *hash,
+                                  const char *code, const char *trials)
 {
     const struct campaign *plan = &campaign->campaign;
     const struct tree_node *root = &plan->tree.root;
     char digest[HASH_TEXT_CAPACITY];
     char name[48];
-    campaign->inputs = json_object();
-    json_add(&campaign->inputs, "sonject", json_string(sonject_version()));
-    json_add(&campaign->inputs, "sonject's kernels", json_string(code));
+    campaign->inputs = JSON_OBJECT({"sonject", json_string(sonject_version())},
+                                   {"sonject's kernels", json_string(code)});
     for (size_t i = 0; i < root->count; i++)
         add_key(campaign, hash, &root->entries[i]);
     hash_add(hash, campaign->scene_text, campaign->scene_bytes);
@@ -164,7 +159,10 @@ static void add_inputs(struct sonject_campaign *campaign, struct hash *hash, con
     char *text = json_document_text(campaign->inputs, JSON_COMPACT | JSON_SORT_KEYS);
     hash_add_text(hash, text);
     hash_restart(hash, campaign->hash);
+    const bool has_memory = campaign->inputs && text;
     free(text);
+    return has_memory ? SONJECT_OK
+                      : report_out_of_memory(campaign->report, "the campaign's inputs");
 }
 
 sonject_status campaign_check(struct sonject_campaign *campaign)
@@ -172,20 +170,16 @@ sonject_status campaign_check(struct sonject_campaign *campaign)
     struct campaign *plan = &campaign->campaign;
     char code[HASH_TEXT_CAPACITY];
     char trials[HASH_TEXT_CAPACITY];
+    CHECK(code_hash(campaign->report, code));
+    for (uint32_t i = 0; i < plan->swath_count; i++)
+        CHECK(measure_swath(campaign, i));
+    CHECK(campaign_split(campaign->report, plan, campaign->swath_hashes));
+    CHECK(image_plan_check_grid(plan));
     struct hash *hash = hash_begin();
     CHECK_MEMORY(campaign->report, hash, "a hash");
-    sonject_status status = code_hash(campaign->report, code);
-    for (uint32_t i = 0; status == SONJECT_OK && i < plan->swath_count; i++)
-        status = measure_swath(campaign, i);
-    THEN(status, split_swaths(campaign));
-    THEN(status, image_plan_check_grid(plan));
-    THEN(status, try_scenes(campaign, hash));
+    sonject_status status = try_scenes(campaign, hash);
     hash_restart(hash, trials);
-    if (status == SONJECT_OK) {
-        add_inputs(campaign, hash, code, trials);
-        if (!campaign->inputs)
-            status = report_out_of_memory(campaign->report, "the campaign's inputs");
-    }
+    THEN(status, make_inputs(campaign, hash, code, trials));
     hash_end(hash, trials);
     return status;
 }

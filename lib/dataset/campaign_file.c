@@ -1,24 +1,330 @@
 /* Campaign files: the tables of their keys. */
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "dataset/campaign_fields.h"
-#include "schema/scene_file.h"
-#include "schema/yaml_tree.h"
+#include "base/text.h"
+#include "dataset/campaign.h"
+#include "schema/scene_fields.h"
+#include "schema/scene_key.h"
 
-#define STRUCTURE struct campaign
+#define STRUCTURE     struct campaign
+#define OBJECT_PREFIX "objects[]."
+#define SWATHS_MAX    10000
+#define PIXELS_MAX    (UINT64_C(1) << 40)
+#define BOXES_MAX     1000 /* in a swath */
+
+sonject_status grow_list(struct report *report, void *list, size_t count, size_t size)
+{
+    void *old;
+    size_t bytes;
+    memcpy(&old, list, sizeof old);
+    char *grown = size_multiply(count + 1, size, &bytes) ? realloc(old, bytes) : NULL;
+    CHECK_MEMORY(report, grown, "the campaign");
+    memset(grown + count * size, 0, size);
+    memcpy(list, &grown, sizeof grown);
+    return SONJECT_OK;
+}
+
+/* Keys that the campaign itself gives values. */
+static bool is_taken(const char *key, bool is_object)
+{
+    static const char *const taken[] = {"sonject", "input.path", "patch", "objects", "elements"};
+    if (is_object)
+        return strcmp(key, "class") == 0 || strncmp(key, "position", 8) == 0;
+    for (size_t i = 0; i < COUNT(taken); i++) {
+        const size_t length = strlen(taken[i]);
+        if (strncmp(key, taken[i], length) == 0 && (!key[length] || strchr(".[", key[length])))
+            return true;
+    }
+    return false;
+}
+
+/* Whether key, which entry's text is or ends with, is one of the scene (or of an object) that a
+ * campaign may set. Errors: INPUT. */
+static sonject_status check_scene_key(struct reader *reader, const struct tree_entry *entry,
+                                      const char *key, bool is_object)
+{
+    const char *near;
+    const struct section *section;
+    struct word_list list = {{0}, 0};
+    sonject_status status = SONJECT_OK;
+    const size_t before = key_path_add(&reader->path, entry->key);
+    if (is_taken(key, is_object)) {
+        status = tree_failure(reader->tree, entry->place, reader->path.text,
+                              "the campaign itself sets %s; remove it", key);
+    } else if (!scene_key_find(is_object ? &object_section : &scene_section, key, &near,
+                               &section)) {
+        for (size_t i = 0; i < section->count; i++)
+            list_word(&list, section->fields[i].key);
+        status = tree_failure(reader->tree, entry->place, reader->path.text,
+                              near ? "scenes have no such key; did you mean '%s'?"
+                                   : "scenes have no such key; there are %s",
+                              near ? near : list.text);
+    }
+    key_path_shorten(&reader->path, before);
+    return status;
+}
+
+static sonject_status read_draw(struct reader *reader, struct campaign *campaign,
+                                const struct tree_entry *entry, const char *key,
+                                struct draws *draws)
+{
+    CHECK(grow_list(reader->report, &draws->list, draws->count, sizeof *draws->list));
+    struct distribution *distribution = &draws->list[draws->count++];
+    distribution->stream = ++campaign->streams;
+    const size_t before = key_path_add(&reader->path, entry->key);
+    const sonject_status status = distribution_read(reader, &entry->value, key, distribution);
+    key_path_shorten(&reader->path, before);
+    return status;
+}
+
+/* What is drawn of an item, or, where that is NULL, of the scene: draws of "objects[].heading" and
+ * the like are those of all objects. */
+static sonject_status read_draws(struct reader *reader, const struct tree_node *node,
+                                 struct campaign *campaign, struct item *item)
+{
+    const size_t prefix = strlen(OBJECT_PREFIX);
+    sonject_status status = SONJECT_OK;
+    if (node->kind != TREE_SECTION && !tree_is_null(node))
+        return refuse_value(reader, node, "must be a section of 'key: distribution' lines");
+    for (size_t i = 0; !reading_ends(status) && i < node->count; i++) {
+        const struct tree_entry *entry = &node->entries[i];
+        const bool is_of_all = !item && strncmp(entry->key, OBJECT_PREFIX, prefix) == 0;
+        const char *key = entry->key + (is_of_all ? prefix : 0);
+        if (check_scene_key(reader, entry, key, item || is_of_all) == SONJECT_OK)
+            status = read_draw(reader, campaign, entry, key,
+                               item        ? &item->draws
+                               : is_of_all ? &campaign->object_draws
+                                           : &campaign->draws);
+    }
+    return status;
+}
+
+static sonject_status read_item_draws(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    struct item *item = structure;
+    return read_draws(reader, node, item->campaign, item);
+}
+
+static sonject_status read_campaign_draws(struct reader *reader, const struct tree_node *node,
+                                          void *structure)
+{
+    return read_draws(reader, node, structure, NULL);
+}
+
+static sonject_status read_object(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    struct item *item = structure;
+    if (node->kind != TREE_SECTION)
+        return refuse_value(reader, node, "must be a section, as of objects in a scene");
+    for (size_t i = 0; i < node->count; i++)
+        check_scene_key(reader, &node->entries[i], node->entries[i].key, true);
+    return tree_override_text(reader->report, node, &item->object);
+}
+
+static sonject_status finish_item(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    struct item *item = structure;
+    item->place = node->place;
+    if (is_given(node, "class") && (!*item->class_name || !text_is_printable(item->class_name)))
+        refuse_key(reader, node, "class", "must be 1 to %d bytes on one line",
+                   SONJECT_NAME_CAPACITY - 1);
+    if (!(item->weight >= 0.0 && item->weight <= 1e9))
+        refuse_key(reader, node, "weight", "must be from 0 to 1e9");
+    return SONJECT_OK;
+}
+
+static const struct field item_fields[] = {
+    {"class", "label for training", LABEL(struct item, class_name), REQUIRED},
+    {"weight", "how often, beside the others; by default 1",
+     QUANTITY(struct item, weight, QUANTITY_NUMBER)},
+    {"object", "keys of an object that are not drawn", .kind = FIELD_SPECIAL, .read = read_object,
+     REQUIRED},
+    {"draw", "what other keys of the object are drawn from", .kind = FIELD_SPECIAL,
+     .read = read_item_draws},
+};
+static const struct section item_section = {item_fields, COUNT(item_fields), finish_item};
+
+/* Whole numbers: fixed, or a choice of such. */
+static sonject_status read_clutter_number(struct reader *reader, const struct tree_node *node,
+                                          void *structure)
+{
+    struct campaign *campaign = structure;
+    struct distribution *number = &campaign->clutter_number;
+    uint64_t value;
+    number->stream = ++campaign->streams;
+    CHECK(distribution_read(reader, node, "clutter.number", number));
+    if (number->kind != DISTRIBUTION_FIXED && number->kind != DISTRIBUTION_CHOICE)
+        return refuse_value(reader, node, "must be a whole number or a choice of such");
+    for (size_t i = 0; i < number->count; i++)
+        if (!text_to_count(number->texts[i], &value) || value > CAMPAIGN_CLUTTER_MAX)
+            return refuse_value(reader, node, "must be whole numbers from 0 to %d",
+                                CAMPAIGN_CLUTTER_MAX);
+    return SONJECT_OK;
+}
+
+/* The name of a file to open, and as it is written. */
+static sonject_status read_both_names(struct reader *reader, const struct tree_node *node,
+                                      char **path, char **written)
+{
+    CHECK(read_path(reader, node, path));
+    *written = copy_text(node->text);
+    return *written ? SONJECT_OK : report_out_of_memory(reader->report, "the campaign");
+}
+
+static sonject_status read_swath_path(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    struct swath_plan *swath = structure;
+    return read_both_names(reader, node, &swath->path, &swath->written);
+}
 
 static sonject_status read_scene_name(struct reader *reader, const struct tree_node *node,
                                       void *structure)
 {
     struct campaign *campaign = structure;
-    CHECK(read_path(reader, node, &campaign->scene_path));
-    campaign->scene_written = copy_text(node->text);
-    return campaign->scene_written ? SONJECT_OK
-                                   : report_out_of_memory(reader->report, "the campaign");
+    return read_both_names(reader, node, &campaign->scene_path, &campaign->scene_written);
+}
+
+static sonject_status read_swath_key(struct reader *reader, const struct tree_entry *entry,
+                                     struct swath_plan *swath)
+{
+    char *value = NULL;
+    struct growing_text pair = {NULL, 0, 0, false};
+    CHECK(check_scene_key(reader, entry, entry->key, false));
+    CHECK(grow_list(reader->report, &swath->keys, swath->key_count, sizeof *swath->keys));
+    CHECK(tree_override_text(reader->report, &entry->value, &value));
+    growing_text_add(&pair, "%s=%s", entry->key, value);
+    free(value);
+    swath->keys[swath->key_count] = growing_text_end(&pair);
+    CHECK_MEMORY(reader->report, swath->keys[swath->key_count], "the campaign");
+    swath->key_count++;
+    return SONJECT_OK;
+}
+
+static sonject_status read_swath_keys(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    sonject_status status = SONJECT_OK;
+    if (node->kind != TREE_SECTION)
+        return refuse_value(reader, node, "must be a section of 'key: value' lines");
+    for (size_t i = 0; !reading_ends(status) && i < node->count; i++)
+        status = read_swath_key(reader, &node->entries[i], structure);
+    return status;
+}
+
+static const struct field box_fields[] = {
+    {"row", "first row", COUNT64(struct region, first_row, PIXELS_MAX), REQUIRED},
+    {"column", "first column", COUNT64(struct region, first_column, PIXELS_MAX), REQUIRED},
+    {"rows", "number of rows", COUNT64(struct region, rows, PIXELS_MAX), REQUIRED},
+    {"columns", "number of columns", COUNT64(struct region, columns, PIXELS_MAX), REQUIRED},
+};
+static const struct section box_section = {box_fields, COUNT(box_fields), NULL};
+
+static sonject_status read_box(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    struct swath_plan *swath = structure;
+    CHECK(grow_list(reader->report, &swath->avoid, swath->avoid_count, sizeof *swath->avoid));
+    return read_section(reader, &box_section, node, &swath->avoid[swath->avoid_count++]);
+}
+
+static sonject_status read_avoid(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    static const struct list boxes = {BOXES_MAX, " of {row: , column: , rows: , columns: }",
+                                      read_box};
+    return read_list(reader, node, &boxes, structure);
+}
+
+static const struct field swath_fields[] = {
+    {"path", "image file", .kind = FIELD_SPECIAL, .read = read_swath_path, REQUIRED},
+    {"split", "that all of its images are in", TEXT(struct swath_plan, split)},
+    {"set", "keys of the scene for this swath", .kind = FIELD_SPECIAL, .read = read_swath_keys},
+    {"avoid", "boxes of contacts that images are not to show", .kind = FIELD_SPECIAL,
+     .read = read_avoid},
+};
+static const struct section swath_section = {swath_fields, COUNT(swath_fields), NULL};
+
+static sonject_status check_split_name(struct reader *reader, const struct campaign *campaign,
+                                       const struct swath_plan *swath, const struct tree_node *node)
+{
+    struct word_list list = {{0}, 0};
+    for (size_t i = 0; i < campaign->split_count; i++) {
+        if (!swath->split || strcmp(swath->split, campaign->splits[i].name) == 0)
+            return SONJECT_OK;
+        list_word(&list, campaign->splits[i].name);
+    }
+    if (mistakes_concern(reader->tree->mistakes, reader->tree, "splits"))
+        return SONJECT_ERROR_INPUT;
+    return refuse_key(reader, node, "split", "is none of the splits, which are %s", list.text);
+}
+
+static sonject_status read_swath(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    struct campaign *campaign = structure;
+    CHECK(grow_list(reader->report, &campaign->swaths, campaign->swath_count,
+                    sizeof *campaign->swaths));
+    struct swath_plan *swath = &campaign->swaths[campaign->swath_count++];
+    swath->place = node->place;
+    const sonject_status status = read_section(reader, &swath_section, node, swath);
+    return reading_ends(status) ? status : check_split_name(reader, campaign, swath, node);
+}
+
+static sonject_status read_swaths(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    static const struct list swaths = {SWATHS_MAX, "", read_swath};
+    if (node->kind != TREE_LIST || node->count == 0 || node->count > SWATHS_MAX)
+        return refuse_value(reader, node, "must be a list of 1 to %d entries", SWATHS_MAX);
+    return read_list(reader, node, &swaths, structure);
+}
+
+bool is_split_name(const char *name)
+{
+    static const char signs[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    return *name && *name != '-' && strspn(name, signs) == strlen(name) &&
+           strlen(name) < SPLIT_NAME_CAPACITY;
+}
+
+static sonject_status read_splits(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    struct campaign *campaign = structure;
+    double sum = 0.0;
+    sonject_status status = SONJECT_OK;
+    if (node->kind != TREE_SECTION || node->count == 0 || node->count > CAMPAIGN_SPLITS_MAX)
+        return refuse_value(reader, node, "must be a section of 1 to %d 'name: fraction' lines",
+                            CAMPAIGN_SPLITS_MAX);
+    campaign->split_count = 0;
+    for (size_t i = 0; i < node->count; i++) {
+        const struct tree_entry *entry = &node->entries[i];
+        struct split *split = &campaign->splits[campaign->split_count++];
+        memset(split, 0, sizeof *split);
+        const size_t before = key_path_add(&reader->path, entry->key);
+        if (is_split_name(entry->key))
+            strcpy(split->name, entry->key);
+        else
+            status = tree_failure(reader->tree, entry->place, reader->path.text,
+                                  "names a folder: use up to %d letters, digits, _ and -",
+                                  SPLIT_NAME_CAPACITY - 1);
+        if (read_quantity(reader, &entry->value, QUANTITY_NUMBER, &split->fraction) != SONJECT_OK)
+            status = SONJECT_ERROR_INPUT;
+        else if (!(split->fraction > 0.0 && split->fraction <= 1.0))
+            status = refuse_value(reader, &entry->value, "must be above 0 and at most 1");
+        sum += split->fraction;
+        key_path_shorten(&reader->path, before);
+    }
+    if (status == SONJECT_OK && fabs(sum - 1.0) > 1e-6)
+        return refuse_value(reader, node, "add up to %g; make that 1", sum);
+    return status;
 }
 
 static sonject_status read_range_end(struct reader *reader, const struct tree_node *node,
@@ -44,58 +350,77 @@ static sonject_status read_range(struct reader *reader, const struct tree_node *
     return status;
 }
 
-/* Words, the first of which stands for the bit `first`, the next for the next. */
-struct bit_words {
-    const char *const *words;
-    size_t count;
-    uint32_t first;
-    uint32_t *bits;
-};
+/* Of enum output, from the first that a user chooses on; labels begin with yolo. */
+static const char *const output_words[] = {"highlight", "shadow", "masks", "energy",
+                                           "field",     "yolo",   "voc"};
+#define LABEL_WORDS 2
 
-static sonject_status read_bit_word(struct reader *reader, const struct tree_node *node,
-                                    void *structure)
+static sonject_status read_word_of(struct reader *reader, const struct tree_node *node,
+                                   struct campaign *campaign, size_t first, size_t end)
 {
-    const struct bit_words *bits = structure;
     struct word_list list = {{0}, 0};
     const char *text = read_text(reader, node);
-    size_t word = 0;
     if (!text)
         return SONJECT_ERROR_INPUT;
-    while (word < bits->count && strcmp(bits->words[word], text) != 0)
-        list_word(&list, bits->words[word++]);
-    if (word == bits->count)
-        return refuse_word(reader, node, text, &list, nearest_word(text, bits->words, bits->count));
-    *bits->bits |= bits->first << word;
-    return SONJECT_OK;
+    for (size_t word = first; word < end; word++) {
+        list_word(&list, output_words[word]);
+        if (strcmp(output_words[word], text) == 0) {
+            campaign->outputs |= OUTPUT_BIT(OUTPUT_HIGHLIGHT + word);
+            return SONJECT_OK;
+        }
+    }
+    return refuse_word(reader, node, text, &list,
+                       nearest_word(text, output_words + first, end - first));
 }
 
-static const struct list bit_words = {SIZE_MAX, "", read_bit_word};
+static sonject_status read_output(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    return read_word_of(reader, node, structure, 0, COUNT(output_words) - LABEL_WORDS);
+}
+
+static sonject_status read_label_format(struct reader *reader, const struct tree_node *node,
+                                        void *structure)
+{
+    return read_word_of(reader, node, structure, COUNT(output_words) - LABEL_WORDS,
+                        COUNT(output_words));
+}
 
 static sonject_status read_outputs(struct reader *reader, const struct tree_node *node,
                                    void *structure)
 {
-    static const char *const words[] = {"highlight", "shadow", "masks", "energy", "field"};
+    static const struct list words = {SIZE_MAX, "", read_output};
     struct campaign *campaign = structure;
-    campaign->outputs &= OUTPUT_YOLO | OUTPUT_VOC;
-    struct bit_words bits = {words, COUNT(words), OUTPUT_HIGHLIGHT, &campaign->outputs};
-    return read_list(reader, node, &bit_words, &bits);
+    campaign->outputs &= OUTPUT_ALWAYS | OUTPUT_BIT(OUTPUT_YOLO) | OUTPUT_BIT(OUTPUT_VOC);
+    return read_list(reader, node, &words, campaign);
 }
 
-static sonject_status read_labels(struct reader *reader, const struct tree_node *node,
-                                  void *structure)
+static sonject_status read_label_formats(struct reader *reader, const struct tree_node *node,
+                                         void *structure)
 {
-    static const char *const words[] = {"yolo", "voc"};
-    struct campaign *campaign = structure;
-    struct bit_words bits = {words, COUNT(words), OUTPUT_YOLO, &campaign->outputs};
-    return read_list(reader, node, &bit_words, &bits);
+    static const struct list words = {SIZE_MAX, "", read_label_format};
+    return read_list(reader, node, &words, structure);
 }
 
-static sonject_status finish_fraction(struct reader *reader, const struct tree_node *node,
-                                      const char *key, double fraction)
+static sonject_status check_fraction(struct reader *reader, const struct tree_node *node,
+                                     const char *key, double fraction)
 {
     if (fraction >= 0.0 && fraction <= 1.0)
         return SONJECT_OK;
     return refuse_key(reader, node, key, "must be from 0 to 1, not %g", fraction);
+}
+
+/* Items of which something may be drawn. */
+static sonject_status check_items(struct reader *reader, const struct tree_node *node,
+                                  const char *key, const struct item *items, uint32_t count)
+{
+    double sum = 0.0;
+    for (uint32_t i = 0; i < count; i++)
+        sum += items[i].weight;
+    if (!is_given(node, key) || sum > 0.0)
+        return SONJECT_OK;
+    return refuse_key(reader, node, key, "must be a list of 1 to %d entries, not all of weight 0",
+                      CAMPAIGN_ITEMS_MAX);
 }
 
 static sonject_status finish_chip(struct reader *reader, const struct tree_node *node,
@@ -106,7 +431,7 @@ static sonject_status finish_chip(struct reader *reader, const struct tree_node 
         refuse_key(reader, node, "rows", "must be at least 16");
     if (campaign->chip_columns < 16)
         refuse_key(reader, node, "columns", "must be at least 16");
-    return finish_fraction(reader, node, "spread", campaign->spread);
+    return check_fraction(reader, node, "spread", campaign->spread);
 }
 
 static const struct field chip_fields[] = {
@@ -127,12 +452,13 @@ static sonject_status finish_clutter(struct reader *reader, const struct tree_no
                                      void *structure)
 {
     const struct campaign *campaign = structure;
-    return finish_fraction(reader, node, "alone", campaign->clutter_alone);
+    check_items(reader, node, "objects", campaign->clutter, campaign->clutter_count);
+    return check_fraction(reader, node, "alone", campaign->clutter_alone);
 }
 
 static const struct field clutter_fields[] = {
-    {"objects", "list of what clutter may be, as targets are", .kind = FIELD_SPECIAL,
-     .unit = "list", .read = read_clutter_objects, REQUIRED},
+    {"objects", "list of what clutter may be, as targets are",
+     ENTRIES(STRUCTURE, clutter, clutter_count, "object", item_section), REQUIRED},
     {"number", "of clutter objects in an image with a target", .kind = FIELD_SPECIAL,
      .unit = "whole number, or a distribution", .read = read_clutter_number},
     {"alone", "fraction of images with clutter and no target",
@@ -148,7 +474,8 @@ static sonject_status finish_campaign(struct reader *reader, const struct tree_n
     const double without_target = campaign->empty + campaign->clutter_alone;
     if (campaign->images == 0)
         refuse_key(reader, node, "images", "must be at least 1");
-    finish_fraction(reader, node, "empty", campaign->empty);
+    check_fraction(reader, node, "empty", campaign->empty);
+    check_items(reader, node, "targets", campaign->targets, campaign->target_count);
     if (without_target > 1.0)
         refuse_relation(reader, node, "empty", "clutter", "and clutter.alone together are above 1");
     if (campaign->target_count == 0 && without_target < 1.0)
@@ -168,11 +495,10 @@ static const struct field campaign_fields[] = {
     {"design", "how values are drawn",
      WORD(STRUCTURE, design) =
          {[DESIGN_RANDOM] = "random", [DESIGN_STRATIFIED] = "stratified", [DESIGN_GRID] = "grid"}},
-    {"chip", "size of images, and where in swaths they lie", .kind = FIELD_SECTION, .offset = 0,
-     .section = &chip_section, REQUIRED},
+    {"chip", "size of images, and where in swaths they lie", SAME(chip_section), REQUIRED},
     {"outputs", "written beside image and truth: highlight, shadow, masks, energy, field",
      .kind = FIELD_SPECIAL, .read = read_outputs, .unit = "list of words"},
-    {"labels", "beside COCO: yolo, voc", .kind = FIELD_SPECIAL, .read = read_labels,
+    {"labels", "beside COCO: yolo, voc", .kind = FIELD_SPECIAL, .read = read_label_formats,
      .unit = "list of words"},
     {"empty", "fraction of images without any object", QUANTITY(STRUCTURE, empty, QUANTITY_NUMBER)},
     {"splits", "names and fractions, such as {train: 0.8, test: 0.2}", .kind = FIELD_SPECIAL,
@@ -181,10 +507,9 @@ static const struct field campaign_fields[] = {
      .read = read_swaths, .unit = "list", REQUIRED},
     {"draw", "what keys of the scene are drawn from", .kind = FIELD_SPECIAL,
      .read = read_campaign_draws, .unit = "section"},
-    {"targets", "list of what is to be found", .kind = FIELD_SPECIAL, .read = read_targets,
-     .unit = "list"},
-    {"clutter", "what else lies there", .kind = FIELD_SECTION, .offset = 0,
-     .section = &clutter_section},
+    {"targets", "list of what is to be found",
+     ENTRIES(STRUCTURE, targets, target_count, "target", item_section)},
+    {"clutter", "what else lies there", SAME(clutter_section)},
 };
 static const struct section campaign_section = {campaign_fields, COUNT(campaign_fields),
                                                 finish_campaign};
@@ -204,24 +529,24 @@ static sonject_status fill_campaign(struct tree *tree, const char *const *overri
     return read_section(&reader, &campaign_section, &tree->root, campaign);
 }
 
-static void set_defaults(struct campaign *campaign)
-{
-    memset(campaign, 0, sizeof *campaign);
-    campaign->seed = 1;
-    campaign->design = DESIGN_STRATIFIED;
-    campaign->spread = 0.5;
-    campaign->outputs = OUTPUT_HIGHLIGHT | OUTPUT_SHADOW | OUTPUT_MASKS;
-    campaign->splits[0].fraction = 1.0;
-    strcpy(campaign->splits[0].name, "all");
-    campaign->split_count = 1;
-}
-
 sonject_status campaign_read(struct report *report, const char *path, const char *const *overrides,
                              size_t count, struct campaign *campaign)
 {
     char *text = NULL;
     size_t bytes;
-    set_defaults(campaign);
+    memset(campaign, 0, sizeof *campaign);
+    campaign->seed = 1;
+    campaign->design = DESIGN_STRATIFIED;
+    campaign->spread = 0.5;
+    campaign->outputs = OUTPUT_ALWAYS | OUTPUT_BIT(OUTPUT_HIGHLIGHT) | OUTPUT_BIT(OUTPUT_SHADOW) |
+                        OUTPUT_BIT(OUTPUT_MASKS);
+    campaign->splits[0].fraction = 1.0;
+    strcpy(campaign->splits[0].name, "all");
+    campaign->split_count = 1;
+    for (size_t i = 0; i < CAMPAIGN_ITEMS_MAX; i++) {
+        campaign->targets[i].campaign = campaign->clutter[i].campaign = campaign;
+        campaign->targets[i].weight = campaign->clutter[i].weight = 1.0;
+    }
     campaign->path = copy_text(path);
     campaign->folder = path_folder(path);
     CHECK_MEMORY(report, campaign->path && campaign->folder, "the campaign");
@@ -254,7 +579,6 @@ static void clear_items(struct item *items, size_t count)
         clear_draws(&items[i].draws);
         free(items[i].object);
     }
-    free(items);
 }
 
 static void clear_swath(struct swath_plan *swath)

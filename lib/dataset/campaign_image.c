@@ -1,23 +1,17 @@
-/* One image of a campaign: made, written, looked for. */
+/* One image of a campaign: made and written. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include <jansson.h>
 
 #include <sonject/version.h>
 
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
-#include "dataset/campaign_files.h"
-#include "dataset/campaign_handle.h"
-#include "dataset/documents.h"
-#include "dataset/label_files.h"
-#include "dataset/labels.h"
+#include "dataset/data_set.h"
+#include "dataset/run_files.h"
 #include "inject/scene_hash.h"
 #include "schema/scene_file.h"
-#include "schema/yaml_tree.h"
 #include "swath/geometry_notes.h"
 #include "swath/raster_file.h"
 
@@ -39,8 +33,7 @@ static sonject_status name_image(struct report *report, uint64_t id, sonject_sta
     return report_failure(report, status, "image %llu: %s", (unsigned long long)id, message);
 }
 
-/* What is said of "--set KEY: what" is the campaign file's where that drew the key.
- */
+/* What is said of "--set KEY: what" is the campaign file's where that drew the key. */
 static bool place_line(struct tree *tree, const struct image_plan *plan, const char *line)
 {
     static const char start[] = "--set ";
@@ -168,153 +161,142 @@ static void take_alone(struct campaign_image *image, struct scene *scene, struct
     swath->patch = all;
 }
 
+/* An image of one channel, or of real and imaginary parts. */
+static sonject_status write_raster(struct sonject_campaign *campaign, const struct scene *scene,
+                                   const struct raster_layout *layout, bool is_complex,
+                                   const void *pixels, const char *path)
+{
+    static const char *const complex_names[] = {"real", "imag"};
+    struct geometry_notes notes;
+    geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
+    return raster_file_write(campaign->report, path, layout, is_complex ? complex_names : NULL,
+                             notes.attributes, notes.count, pixels);
+}
+
 static sonject_status write_pixels(struct sonject_campaign *campaign, const struct scene *scene,
                                    struct swath *swath, struct injection_result *result,
                                    const char *path)
 {
-    static const char *const complex_names[] = {"real", "imag"};
-    struct geometry_notes notes;
     void *stored = swath_stored_result(swath, result, &result->statistics.output_clipped);
     CHECK_MEMORY(campaign->report, stored, "an image");
-    geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
-    const sonject_status status = raster_file_write(campaign->report, path, &swath->layout,
-                                                    swath->is_complex ? complex_names : NULL,
-                                                    notes.attributes, notes.count, stored);
+    const sonject_status status =
+        write_raster(campaign, scene, &swath->layout, swath->is_complex, stored, path);
     free(stored);
     return status;
 }
 
-static sonject_status write_mask(struct sonject_campaign *campaign, const struct swath *swath,
-                                 const struct injection_result *result, uint32_t output,
-                                 const char *path)
-{
-    const struct raster_layout layout = {swath->layout.rows, swath->layout.columns, 1, PIXEL_UINT8};
-    const struct region all = {0, 0, layout.rows, layout.columns};
-    if (output != OUTPUT_HIGHLIGHT && output != OUTPUT_SHADOW)
-        return write_label_mask(campaign->report, swath, &all, result->labels, path);
-    return raster_file_write_placed(campaign->report, path, &layout, &all,
-                                    output == OUTPUT_HIGHLIGHT ? result->highlight : result->shadow,
-                                    NULL);
-}
+/* What images, truth and labels are made of. */
+struct image_parts {
+    struct scene scene;
+    struct swath swath;
+    struct image_labels labels;
+    struct image_files files;
+};
 
-/* Energy and field. */
-static sonject_status write_layer(struct sonject_campaign *campaign, const struct scene *scene,
-                                  const struct swath *swath, const struct injection_result *result,
-                                  uint32_t output, const char *path)
-{
-    static const char *const complex_names[] = {"real", "imag"};
-    struct geometry_notes notes;
-    struct raster_layout layout = {swath->layout.rows, swath->layout.columns, 1, PIXEL_FLOAT32};
-    layout.channels = output == OUTPUT_FIELD ? 2 : 1;
-    geometry_notes_init(&notes, &scene->sonar, &scene->geometry, 0.0, 0.0);
-    return raster_file_write(campaign->report, path, &layout,
-                             layout.channels == 2 ? complex_names : NULL, notes.attributes,
-                             notes.count, output == OUTPUT_FIELD ? result->field : result->energy);
-}
-
-/* Annotations are numbered when all images are known. */
 static json_t *record_of(const struct sonject_campaign *campaign,
-                         const struct campaign_image *image, const char *image_name,
-                         const char *scene_hash_text, json_t *files, json_t *annotations)
+                         const struct campaign_image *image, const struct image_parts *parts,
+                         const char *scene_hash_text, json_t *files)
 {
     const struct image_plan *plan = &image->plan;
-    const struct swath_plan *swath = &campaign->campaign.swaths[plan->swath];
+    const struct campaign *drawn = &campaign->campaign;
     const bool has_target = plan->category >= CATEGORY_TARGET;
     json_t *keys = json_array();
     for (size_t i = 0; i < plan->key_count; i++)
         json_append(&keys, json_string(plan->keys[i].text));
     json_t *place = JSON_OBJECT(
-        {"path", json_string(swath->written)},
+        {"path", json_string(drawn->swaths[plan->swath].written)},
         {"hash", json_string(campaign->swath_hashes[plan->swath])},
         {"row", json_count(plan->chip.first_row)}, {"column", json_count(plan->chip.first_column)},
         {"rows", json_count(plan->chip.rows)}, {"columns", json_count(plan->chip.columns)});
     return JSON_OBJECT(
-        {"id", json_count(plan->id)},
-        {"split", json_string(campaign->campaign.splits[plan->split].name)},
-        {"image", json_string(image_name)},
-        {"target",
-         has_target
-             ? json_string(campaign->campaign.targets[plan->category - CATEGORY_TARGET].class_name)
-             : json_null()},
+        {"id", json_count(plan->id)}, {"split", json_string(drawn->splits[plan->split].name)},
+        {"image", json_string(parts->labels.file_name)},
+        {"target", has_target
+                       ? json_string(drawn->targets[plan->category - CATEGORY_TARGET].class_name)
+                       : json_null()},
         {"swath", place}, {"seed", json_seed(image->scene.injection.seed)},
-        {"scene", json_string(campaign->campaign.scene_written)}, {"set", keys},
+        {"scene", json_string(drawn->scene_written)}, {"set", keys},
         {"scene_hash", json_string(scene_hash_text)},
         {"campaign_hash", json_string(campaign->hash)}, {"sonject", json_string(sonject_version())},
-        {"files", files}, {"annotations", annotations});
+        {"files", files}, {"annotations", coco_annotations(&parts->labels)});
 }
 
 static sonject_status write_record(struct sonject_campaign *campaign,
                                    const struct campaign_image *image,
-                                   const struct image_labels *labels,
-                                   const struct image_files *files)
+                                   const struct image_parts *parts, const char *path)
 {
     char hash[HASH_TEXT_CAPACITY];
     json_t *list;
     CHECK(scene_hash(campaign->report, &image->scene, image->swath.identity, hash));
-    CHECK(image_files_list(files, campaign->report, &list));
-    return json_document_write(
-        campaign->report,
-        record_of(campaign, image, labels->file_name, hash, list, coco_annotations(labels)), 9,
-        files->record);
+    CHECK(image_files_list(&parts->files, campaign->report, &list));
+    return json_document_write(campaign->report, record_of(campaign, image, parts, hash, list), 9,
+                               path);
 }
 
-static sonject_status write_output(struct sonject_campaign *campaign,
-                                   const struct campaign_image *image, const struct scene *scene,
-                                   const struct swath *swath, const struct image_labels *labels,
-                                   uint32_t output, const char *path)
+static sonject_status write_file(struct sonject_campaign *campaign, struct campaign_image *image,
+                                 struct image_parts *parts, enum output output, const char *path)
 {
+    struct report *report = campaign->report;
+    struct injection_result *result = &image->result;
+    const struct swath *swath = &parts->swath;
+    const struct run_facts facts = {.scene = &parts->scene,
+                                    .swath = swath,
+                                    .result = result,
+                                    .image_name = parts->labels.file_name};
+    struct raster_layout layout = {swath->layout.rows, swath->layout.columns, 1, PIXEL_FLOAT32};
     switch (output) {
-    case OUTPUT_YOLO:
-        return labels_write(campaign->report, labels, &campaign->classes, LABEL_YOLO, path);
-    case OUTPUT_VOC:
-        return labels_write(campaign->report, labels, &campaign->classes, LABEL_VOC, path);
+    case OUTPUT_IMAGE:
+        return write_pixels(campaign, &parts->scene, &parts->swath, result, path);
+    case OUTPUT_TRUTH:
+        return write_truth(report, &facts, path);
+    case OUTPUT_HIGHLIGHT:
+        return write_mask(report, swath, result->highlight, path);
+    case OUTPUT_SHADOW:
+        return write_mask(report, swath, result->shadow, path);
+    case OUTPUT_MASKS:
+        return write_label_mask(report, swath, result->labels, path);
     case OUTPUT_ENERGY:
+        return write_raster(campaign, &parts->scene, &layout, false, result->energy, path);
     case OUTPUT_FIELD:
-        return write_layer(campaign, scene, swath, &image->result, output, path);
+        layout.channels = 2;
+        return write_raster(campaign, &parts->scene, &layout, true, result->field, path);
+    case OUTPUT_YOLO:
+        return labels_write(report, &parts->labels, &campaign->classes, LABEL_YOLO, path);
+    case OUTPUT_VOC:
+        return labels_write(report, &parts->labels, &campaign->classes, LABEL_VOC, path);
     default:
-        return write_mask(campaign, swath, &image->result, output, path);
+        return write_record(campaign, image, parts, path);
     }
-}
-
-/* All but the image itself. */
-static sonject_status write_rest(struct sonject_campaign *campaign,
-                                 const struct campaign_image *image, const struct scene *scene,
-                                 const struct swath *swath, const struct image_labels *labels,
-                                 const struct image_files *files)
-{
-    const struct run_facts facts = {
-        .scene = scene, .swath = swath, .result = &image->result, .image_name = labels->file_name};
-    sonject_status status = SONJECT_OK;
-    for (size_t i = 0; status == SONJECT_OK && i < files->output_count; i++)
-        status = write_output(campaign, image, scene, swath, labels, files->outputs[i].kind->output,
-                              files->outputs[i].path);
-    THEN(status, write_truth(campaign->report, &facts, files->truth));
-    THEN(status, write_record(campaign, image, labels, files));
-    return status;
 }
 
 sonject_status campaign_image_write(struct sonject_campaign *campaign, struct campaign_image *image,
                                     const char *folder)
 {
-    struct scene scene;
-    struct swath swath;
-    struct image_labels labels;
-    struct image_files files;
-    char image_name[64];
-    const char *split = campaign->campaign.splits[image->plan.split].name;
-    take_alone(image, &scene, &swath);
-    snprintf(image_name, sizeof image_name, "images/%08llu%s", (unsigned long long)image->plan.id,
-             image_extension(swath.layout.type, swath.is_complex));
+    struct image_parts parts;
+    char name[IMAGE_NAME_CAPACITY];
+    char image_name[IMAGE_NAME_CAPACITY];
+    memset(&parts, 0, sizeof parts);
+    take_alone(image, &parts.scene, &parts.swath);
+    const struct raster_layout *layout = &parts.swath.layout;
+    const bool is_grey = layout->type == PIXEL_UINT8 && !parts.swath.is_complex;
+    sonject_status status = image_files_init(
+        &parts.files, campaign->report, folder, campaign->campaign.splits[image->plan.split].name,
+        image->plan.id, campaign->campaign.outputs, is_grey ? ".png" : ".tif");
     const struct label_request request = {
-        &scene,      &image->result, image_name, swath.layout.rows, swath.layout.columns,
-        swath.patch, &swath.track};
-    CHECK(image_labels_find(&labels, campaign->report, &request, &campaign->classes));
-    sonject_status status =
-        image_files_init(&files, campaign->report, folder, split, image->plan.id, swath.layout.type,
-                         swath.is_complex, campaign->campaign.outputs);
-    THEN(status, write_pixels(campaign, &scene, &swath, &image->result, files.image));
-    THEN(status, write_rest(campaign, image, &scene, &swath, &labels, &files));
-    image_files_clear(&files);
-    image_labels_clear(&labels);
+        &parts.scene,      &image->result,  image_file_name(&parts.files, OUTPUT_IMAGE, image_name),
+        layout->rows,      layout->columns, parts.swath.patch,
+        &parts.swath.track};
+    THEN(status, image_labels_find(&parts.labels, campaign->report, &request, &campaign->classes));
+    for (int i = 0; status == SONJECT_OK && i < OUTPUT_KINDS; i++) {
+        const enum output output = (enum output)i;
+        if (!(parts.files.outputs & OUTPUT_BIT(output)))
+            continue;
+        char *path = path_join(parts.files.folder, image_file_name(&parts.files, output, name));
+        status = path ? write_file(campaign, image, &parts, output, path)
+                      : report_out_of_memory(campaign->report, "a file name");
+        free(path);
+    }
+    free(parts.files.folder);
+    image_labels_clear(&parts.labels);
     return status;
 }

@@ -7,7 +7,7 @@
 #include "base/file.h"
 #include "base/json_document.h"
 #include "base/memory.h"
-#include "dataset/campaign_documents.h"
+#include "dataset/data_set.h"
 
 /* A run over images, and how far it is. */
 struct sweep {

@@ -1,3 +1,5 @@
+/* What values are drawn from: counted random numbers, permutations, shares of whole things, and
+ * distributions as campaign files write them. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -5,10 +7,13 @@
 
 #include "base/memory.h"
 #include "base/text.h"
-#include "dataset/distribution.h"
+#include "dataset/campaign.h"
 #include "kernels/random.h"
+#include "schema/scene_fields.h"
 
 #define FEISTEL_ROUNDS 8
+#define STEPS_MAX      1000000
+#define ROOT_HALF      0.70710678118654752440
 
 /* Streams of what a permutation needs beside those of callers, which are below this. */
 #define JITTER_STREAMS 0x40000000u
@@ -89,8 +94,6 @@ void share_out(uint64_t total, const double *weights, size_t count, uint64_t *sh
         given++;
     }
 }
-
-#define ROOT_HALF 0.70710678118654752440
 
 /* Mass of the standard normal distribution between low and high. Tails are measured from their own
  * side, where they have their digits. */
@@ -180,6 +183,253 @@ const char *distribution_step(const struct distribution *distribution, uint32_t 
     const double u =
         distribution->steps > 1 ? (double)step / (double)(distribution->steps - 1) : 0.5;
     return write_number(distribution, distribution_number(distribution, u), text);
+}
+
+/* A number with the unit behind it, which all numbers of a distribution share. */
+static sonject_status read_number(struct reader *reader, const struct tree_node *node,
+                                  struct distribution *distribution, bool is_first, double *number)
+{
+    char excerpt[40];
+    char unit[sizeof distribution->unit] = "";
+    const char *rest;
+    const char *text = read_text(reader, node);
+    if (!text)
+        return SONJECT_ERROR_INPUT;
+    if (!text_to_number(text, number, &rest) || !isfinite(*number))
+        return refuse_value(reader, node, "'%s' is not a finite number, which a unit may follow",
+                            text_excerpt(excerpt, sizeof excerpt, text));
+    rest += strspn(rest, " \t");
+    if (strlen(rest) + 2 > sizeof unit)
+        return refuse_value(reader, node, "'%s' is no unit",
+                            text_excerpt(excerpt, sizeof excerpt, rest));
+    if (*rest)
+        snprintf(unit, sizeof unit, " %s", rest);
+    if (!is_first && strcmp(unit, distribution->unit) != 0)
+        return refuse_value(reader, node, "needs the same unit as the first number,%s",
+                            *distribution->unit ? distribution->unit : " none");
+    memcpy(distribution->unit, unit, sizeof unit);
+    return SONJECT_OK;
+}
+
+static sonject_status check_limits(struct reader *reader, const struct tree_node *node,
+                                   const struct distribution *distribution)
+{
+    if (!(distribution->low <= distribution->high))
+        return refuse_value(reader, node, "begins at %g, which is above its end, %g; swap them",
+                            distribution->low, distribution->high);
+    if (!isfinite(distribution->high - distribution->low))
+        return refuse_value(reader, node, "is too wide");
+    if (distribution->kind == DISTRIBUTION_LOG_UNIFORM && !(distribution->low > 0.0))
+        return refuse_value(reader, node, "must begin above 0, not at %g", distribution->low);
+    return SONJECT_OK;
+}
+
+static sonject_status read_limits(struct reader *reader, const struct tree_node *node,
+                                  struct distribution *distribution)
+{
+    if (node->kind != TREE_LIST || node->count != 2)
+        return refuse_value(reader, node, "must be two numbers, [lowest, highest]");
+    CHECK(read_number(reader, &node->entries[0].value, distribution, true, &distribution->low));
+    CHECK(read_number(reader, &node->entries[1].value, distribution, false, &distribution->high));
+    return check_limits(reader, node, distribution);
+}
+
+/* Its numbers are read when all are there, since they share a unit. */
+static sonject_status read_later(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    (void)reader;
+    (void)node;
+    (void)structure;
+    return SONJECT_OK;
+}
+
+#define LATER .kind = FIELD_SPECIAL, .read = read_later
+static const struct field normal_fields[] = {
+    {"mean", "of the normal distribution before it is cut off", LATER, REQUIRED},
+    {"deviation", "its standard deviation", LATER, REQUIRED},
+    {"minimum", "nothing is drawn below it", LATER},
+    {"maximum", "nothing is drawn above it", LATER},
+};
+static const struct section normal_section = {normal_fields, COUNT(normal_fields), NULL};
+
+/* Without limits of its own a normal distribution ends ten deviations from its mean. */
+static sonject_status read_normal(struct reader *reader, const struct tree_node *node,
+                                  struct distribution *distribution)
+{
+    double *values[] = {&distribution->mean, &distribution->deviation, &distribution->low,
+                        &distribution->high};
+    sonject_status status = read_section(reader, &normal_section, node, distribution);
+    for (int i = 0; status == SONJECT_OK && i < 4; i++) {
+        const struct tree_entry *entry = tree_find(node, normal_fields[i].key);
+        if (i >= 2)
+            *values[i] = distribution->mean + (i == 2 ? -10.0 : 10.0) * distribution->deviation;
+        if (!entry)
+            continue;
+        const size_t before = key_path_add(&reader->path, entry->key);
+        status = read_number(reader, &entry->value, distribution, i == 0, values[i]);
+        if (status == SONJECT_OK && i == 1 && !(distribution->deviation > 0.0))
+            status = refuse_value(reader, &entry->value, "must be above 0");
+        key_path_shorten(&reader->path, before);
+    }
+    THEN(status, check_limits(reader, node, distribution));
+    if (status != SONJECT_OK)
+        return status;
+    const double a = (distribution->low - distribution->mean) / distribution->deviation;
+    const double b = (distribution->high - distribution->mean) / distribution->deviation;
+    if (!isfinite(a) || !isfinite(b) || a > 10.0 || b < -10.0)
+        return refuse_value(reader, node,
+                            "draws nothing: minimum and maximum lie more than ten deviations from "
+                            "the mean");
+    return SONJECT_OK;
+}
+
+static sonject_status make_room(struct reader *reader, struct distribution *distribution,
+                                size_t count)
+{
+    distribution->texts = allocate_array(count, sizeof *distribution->texts);
+    distribution->cumulative = allocate_array(count, sizeof *distribution->cumulative);
+    CHECK_MEMORY(reader->report, distribution->texts && distribution->cumulative, "the campaign");
+    return SONJECT_OK;
+}
+
+static sonject_status keep_text(struct reader *reader, const struct tree_node *node,
+                                struct distribution *distribution)
+{
+    if (tree_is_null(node))
+        return refuse_value(reader, node, "has no value");
+    CHECK(
+        tree_override_text(reader->report, node, &distribution->texts[distribution->count]));
+    distribution->count++;
+    return SONJECT_OK;
+}
+
+static sonject_status read_fixed(struct reader *reader, const struct tree_node *node,
+                                 struct distribution *distribution)
+{
+    CHECK(make_room(reader, distribution, 1));
+    return keep_text(reader, node, distribution);
+}
+
+static sonject_status read_choice(struct reader *reader, const struct tree_node *node,
+                                  struct distribution *distribution)
+{
+    if (node->kind != TREE_LIST || node->count == 0)
+        return refuse_value(reader, node, "must be a list of values, one at least");
+    sonject_status status = make_room(reader, distribution, node->count);
+    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
+        const size_t before = key_path_add_index(&reader->path, i);
+        status = keep_text(reader, &node->entries[i].value, distribution);
+        distribution->cumulative[i] = (double)(i + 1) / (double)node->count;
+        key_path_shorten(&reader->path, before);
+    }
+    return status;
+}
+
+static sonject_status read_weights(struct reader *reader, const struct tree_node *node,
+                                   struct distribution *distribution)
+{
+    double sum = 0.0;
+    if (node->kind != TREE_LIST || node->count != distribution->count)
+        return refuse_value(reader, node, "must be a list of %zu numbers, one a choice",
+                            distribution->count);
+    for (size_t i = 0; i < node->count; i++) {
+        double weight;
+        CHECK(read_quantity(reader, &node->entries[i].value, QUANTITY_NUMBER, &weight));
+        if (!(weight >= 0.0 && weight <= 1e9))
+            return refuse_value(reader, &node->entries[i].value, "must be from 0 to 1e9");
+        sum += weight;
+        distribution->cumulative[i] = sum;
+    }
+    if (!(sum > 0.0))
+        return refuse_value(reader, node, "are all 0");
+    for (size_t i = 0; i < node->count; i++)
+        distribution->cumulative[i] /= sum;
+    return SONJECT_OK;
+}
+
+static sonject_status read_steps(struct reader *reader, const struct tree_node *node,
+                                 struct distribution *distribution)
+{
+    uint64_t steps;
+    const char *text = read_text(reader, node);
+    if (!text)
+        return SONJECT_ERROR_INPUT;
+    if (!text_to_count(text, &steps) || steps < 1 || steps > STEPS_MAX)
+        return refuse_value(reader, node, "must be a whole number from 1 to %d", STEPS_MAX);
+    distribution->steps = (uint32_t)steps;
+    return SONJECT_OK;
+}
+
+typedef sonject_status read_function(struct reader *reader, const struct tree_node *node,
+                                     struct distribution *distribution);
+
+/* How each kind is written, and what may stand beside it. */
+static const struct {
+    const char *word;
+    read_function *read;
+    const char *beside; /* NULL: nothing */
+    read_function *read_beside;
+} kinds[] = {[DISTRIBUTION_UNIFORM] = {"uniform", read_limits, "steps", read_steps},
+             [DISTRIBUTION_LOG_UNIFORM] = {"log_uniform", read_limits, "steps", read_steps},
+             [DISTRIBUTION_NORMAL] = {"normal", read_normal, NULL, NULL},
+             [DISTRIBUTION_CHOICE] = {"choice", read_choice, "weights", read_weights},
+             [DISTRIBUTION_FIXED] = {"fixed", read_fixed, NULL, NULL}};
+
+static sonject_status refuse_kind(struct reader *reader, const struct tree_node *node)
+{
+    struct word_list list = {{0}, 0};
+    const char *words[COUNT(kinds)];
+    for (size_t i = 0; i < COUNT(kinds); i++)
+        list_word(&list, words[i] = kinds[i].word);
+    const char *near =
+        node->count > 0 ? nearest_word(node->entries[0].key, words, COUNT(kinds)) : NULL;
+    return refuse_value(reader, node, "needs one of %s%s%s%s; a section is {fixed: {...}}",
+                        list.text, near ? "; did you mean '" : "", near ? near : "",
+                        near ? "'?" : "");
+}
+
+/* Reads the key that names the kind, or all others. */
+static sonject_status read_keys(struct reader *reader, const struct tree_node *node,
+                                struct distribution *distribution, bool names_kind)
+{
+    const enum distribution_kind kind = distribution->kind;
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; status == SONJECT_OK && i < node->count; i++) {
+        const struct tree_entry *entry = &node->entries[i];
+        if ((strcmp(entry->key, kinds[kind].word) == 0) != names_kind)
+            continue;
+        const size_t before = key_path_add(&reader->path, entry->key);
+        if (names_kind)
+            status = kinds[kind].read(reader, &entry->value, distribution);
+        else if (kinds[kind].beside && strcmp(entry->key, kinds[kind].beside) == 0)
+            status = kinds[kind].read_beside(reader, &entry->value, distribution);
+        else
+            status = refuse_value(reader, &entry->value, "does not belong here; remove it");
+        key_path_shorten(&reader->path, before);
+    }
+    return status;
+}
+
+sonject_status distribution_read(struct reader *reader, const struct tree_node *node,
+                                 const char *key, struct distribution *distribution)
+{
+    size_t known = 0;
+    distribution->place = node->place;
+    distribution->kind = DISTRIBUTION_FIXED;
+    distribution->key = copy_text(key);
+    CHECK_MEMORY(reader->report, distribution->key, "the campaign");
+    if (node->kind != TREE_SECTION)
+        return read_fixed(reader, node, distribution);
+    for (size_t i = 0; i < COUNT(kinds); i++)
+        if (tree_find(node, kinds[i].word)) {
+            distribution->kind = (enum distribution_kind)i;
+            known++;
+        }
+    if (known != 1)
+        return refuse_kind(reader, node);
+    CHECK(read_keys(reader, node, distribution, true));
+    return read_keys(reader, node, distribution, false);
 }
 
 void distribution_clear(struct distribution *distribution)

@@ -8,10 +8,7 @@
 #include "base/growing_text.h"
 #include "base/memory.h"
 #include "base/text.h"
-#include "dataset/campaign_fields.h"
-#include "dataset/distribution.h"
-#include "dataset/image_plan.h"
-#include "schema/yaml_tree.h"
+#include "dataset/campaign.h"
 
 /* Streams of random numbers beyond those of distributions. */
 enum {
@@ -121,21 +118,6 @@ static bool draws_have_key(const struct draws *draws, const char *key)
     return false;
 }
 
-static void choose_chip(const struct campaign *campaign, struct image_plan *plan, uint64_t index,
-                        uint64_t count)
-{
-    double u, v;
-    if (campaign->design == DESIGN_STRATIFIED) {
-        u = stratified_number(campaign->seed, STREAM_CHIP_ROW + plan->swath, index, count);
-        v = stratified_number(campaign->seed, STREAM_CHIP_COLUMN + plan->swath, index, count);
-    } else {
-        u = uniform_number(campaign->seed, STREAM_CHIP_ROW, plan->id);
-        v = uniform_number(campaign->seed, STREAM_CHIP_COLUMN, plan->id);
-    }
-    chip_room_choose(&campaign->swaths[plan->swath].room, u, v, &plan->chip.first_row,
-                     &plan->chip.first_column);
-}
-
 uint32_t image_split(const struct campaign *campaign, uint64_t id)
 {
     uint32_t number = 0;
@@ -144,27 +126,28 @@ uint32_t image_split(const struct campaign *campaign, uint64_t id)
     return number;
 }
 
-/* Images of a split follow its swaths: as many from each, but for one. */
-static uint64_t swath_within(const struct split *split, uint64_t within)
-{
-    return within * split->swath_count / split->images;
-}
-
-uint32_t image_swath(const struct campaign *campaign, uint64_t id)
-{
-    const struct split *split = &campaign->splits[image_split(campaign, id)];
-    return split->swaths[swath_within(split, id - split->first_image)];
-}
-
-static void choose_swath(const struct campaign *campaign, struct image_plan *plan, uint64_t within)
+/* The image's swath and its place there. Images of a split follow its swaths: as many from each, but
+ * for one. within: the image's number in its split. */
+static void choose_place(const struct campaign *campaign, struct image_plan *plan, uint64_t within)
 {
     const struct split *split = &campaign->splits[plan->split];
     const uint64_t swaths = split->swath_count;
-    const uint64_t number = swath_within(split, within);
+    const uint64_t number = within * swaths / split->images;
     const uint64_t first = (number * split->images + swaths - 1) / swaths;
     const uint64_t end = ((number + 1) * split->images + swaths - 1) / swaths;
+    double u, v;
     plan->swath = split->swaths[number];
-    choose_chip(campaign, plan, within - first, end - first);
+    if (campaign->design == DESIGN_STRATIFIED) {
+        u = stratified_number(campaign->seed, STREAM_CHIP_ROW + plan->swath, within - first,
+                              end - first);
+        v = stratified_number(campaign->seed, STREAM_CHIP_COLUMN + plan->swath, within - first,
+                              end - first);
+    } else {
+        u = uniform_number(campaign->seed, STREAM_CHIP_ROW, plan->id);
+        v = uniform_number(campaign->seed, STREAM_CHIP_COLUMN, plan->id);
+    }
+    chip_room_choose(&campaign->swaths[plan->swath].room, u, v, &plan->chip.first_row,
+                     &plan->chip.first_column);
 }
 
 /* The kind of image, in random order; index and count of the image among those of its kind. */
@@ -185,16 +168,6 @@ static void choose_kind(struct drawing *drawing, uint64_t within)
     }
     drawing->cell = permuted_index(category_seed(campaign, plan->category), STREAM_GRID,
                                    drawing->index, drawing->count);
-}
-
-/* The image's swath, its place there, and its category: all that its id alone says. */
-static void choose_place(struct drawing *drawing)
-{
-    struct image_plan *plan = drawing->plan;
-    plan->split = image_split(drawing->campaign, plan->id);
-    const uint64_t within = plan->id - drawing->campaign->splits[plan->split].first_image;
-    choose_swath(drawing->campaign, plan, within);
-    choose_kind(drawing, within);
 }
 
 #define CANDIDATES 16 /* places that are tried for an object beside others */
@@ -390,7 +363,10 @@ sonject_status image_plan_make(struct report *report, const struct campaign *cam
     drawing_init(&drawing, report, campaign, NO_TRIAL, plan);
     plan->id = id;
     plan->seed = (uint64_t)(uniform_number(campaign->seed, STREAM_SEED, id) * 0x1p52);
-    choose_place(&drawing);
+    plan->split = image_split(campaign, id);
+    const uint64_t within = id - campaign->splits[plan->split].first_image;
+    choose_place(campaign, plan, within);
+    choose_kind(&drawing, within);
     return fill_plan(&drawing, NULL);
 }
 

@@ -6,7 +6,6 @@
 
 #include "base/file.h"
 #include "dataset/earlier_result.h"
-#include "dataset/merged_bands.h"
 #include "dataset/run.h"
 #include "inject/checkpoints.h"
 #include "trace/sums_file.h"

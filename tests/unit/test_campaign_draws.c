@@ -4,7 +4,6 @@
 #include "base/text.h"
 #include "claims.h"
 #include "dataset/campaign.h"
-#include "dataset/distribution.h"
 
 #define DRAWS 40000
 

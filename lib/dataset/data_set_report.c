@@ -7,7 +7,7 @@
 #include "base/growing_text.h"
 #include "base/memory.h"
 #include "base/text.h"
-#include "dataset/campaign_documents.h"
+#include "dataset/data_set.h"
 
 #define BINS   24
 #define WIDTH  320
@@ -15,6 +15,16 @@
 #define LEFT   12
 #define BOTTOM 160
 #define TOP    34
+
+#define SERIES_MAX 64
+#define IMAGES_MAX 20000 /* whose values are kept; of more, every second, third, ... is taken */
+
+/* Values under one name, in one unit. */
+struct series {
+    char name[80], unit[16];
+    double *values; /* owned */
+    size_t count, capacity;
+};
 
 static void add_base64(struct growing_text *text, const char *bytes)
 {
@@ -40,18 +50,13 @@ static void add_plain(struct growing_text *svg, const char *words)
             growing_text_add(svg, "%c", *words);
 }
 
-static void add_label(struct growing_text *svg, int x, const char *anchor, double value)
-{
-    char number[40];
-    growing_text_add(svg, "<text x=\"%d\" y=\"%d\" text-anchor=\"%s\">%s</text>", x, BOTTOM + 16,
-                     anchor, text_of_number(number, sizeof number, value, 4));
-}
-
 static void draw(struct growing_text *svg, const char *name, const char *unit, const size_t *bins,
                  double low, double high, size_t count)
 {
     size_t most = 1;
     const int bar = (WIDTH - 2 * LEFT) / BINS;
+    const int right = LEFT + BINS * bar;
+    char ends[2][40];
     for (int i = 0; i < BINS; i++)
         most = bins[i] > most ? bins[i] : most;
     growing_text_add(svg,
@@ -68,35 +73,35 @@ static void draw(struct growing_text *svg, const char *name, const char *unit, c
                          "<rect x=\"%d\" y=\"%d\" width=\"%d\" height=\"%d\" fill=\"#4878a8\"/>",
                          LEFT + i * bar, BOTTOM - height, bar - 1, height);
     }
-    growing_text_add(svg, "<path d=\"M%d %dH%d\" stroke=\"#000\"/>", LEFT, BOTTOM,
-                     LEFT + BINS * bar);
-    add_label(svg, LEFT, "start", low);
-    add_label(svg, LEFT + BINS * bar, "end", high);
-    growing_text_add(svg, "<text x=\"%d\" y=\"%d\">%lu values, at most %lu in a bin</text></svg>",
-                     LEFT, BOTTOM + 34, (unsigned long)count, (unsigned long)most);
+    growing_text_add(svg,
+                     "<path d=\"M%d %dH%d\" stroke=\"#000\"/>"
+                     "<text x=\"%d\" y=\"%d\" text-anchor=\"start\">%s</text>"
+                     "<text x=\"%d\" y=\"%d\" text-anchor=\"end\">%s</text>"
+                     "<text x=\"%d\" y=\"%d\">%lu values, at most %lu in a bin</text></svg>",
+                     LEFT, BOTTOM, right, LEFT, BOTTOM + 16,
+                     text_of_number(ends[0], sizeof ends[0], low, 4), right, BOTTOM + 16,
+                     text_of_number(ends[1], sizeof ends[1], high, 4), LEFT, BOTTOM + 34,
+                     (unsigned long)count, (unsigned long)most);
 }
 
-static void histogram_write(struct growing_text *text, const char *name, const char *unit,
-                            const double *values, size_t count)
+static void write_histogram(struct growing_text *text, const struct series *series)
 {
     size_t bins[BINS] = {0};
     struct growing_text svg = {NULL, 0, 0, false};
-    if (count == 0)
-        return;
-    double low = values[0];
-    double high = values[0];
-    for (size_t i = 1; i < count; i++) {
-        low = fmin(low, values[i]);
-        high = fmax(high, values[i]);
+    double low = series->values[0];
+    double high = series->values[0];
+    for (size_t i = 1; i < series->count; i++) {
+        low = fmin(low, series->values[i]);
+        high = fmax(high, series->values[i]);
     }
-    for (size_t i = 0; i < count; i++) {
-        const double place = high > low ? (values[i] - low) / (high - low) * BINS : 0.0;
+    for (size_t i = 0; i < series->count; i++) {
+        const double place = high > low ? (series->values[i] - low) / (high - low) * BINS : 0.0;
         bins[place < BINS ? (int)place : BINS - 1]++;
     }
-    draw(&svg, name, unit, bins, low, high, count);
+    draw(&svg, series->name, series->unit, bins, low, high, series->count);
     char *picture = growing_text_end(&svg);
     growing_text_add(text, "<img width=\"%d\" height=\"%d\" alt=\"", WIDTH, HEIGHT);
-    add_plain(text, name);
+    add_plain(text, series->name);
     growing_text_add(text, "\" src=\"data:image/svg+xml;base64,");
     if (picture)
         add_base64(text, picture);
@@ -105,16 +110,6 @@ static void histogram_write(struct growing_text *text, const char *name, const c
     growing_text_add(text, "\">\n");
     free(picture);
 }
-
-#define SERIES_MAX 64
-#define IMAGES_MAX 20000 /* whose values are kept; of more, every second, third, ... is taken */
-
-/* Values under one name, in one unit. */
-struct series {
-    char name[80], unit[16];
-    double *values; /* owned */
-    size_t count, capacity;
-};
 
 struct statistics_page {
     const struct data_set *set;
@@ -188,13 +183,6 @@ static void add_set_value(struct statistics_page *page, const char *text)
     add_value(page, key, rest, value);
 }
 
-/* A number, NAN if there is none. */
-static double member_number(const json_t *object, const char *key)
-{
-    const json_t *value = json_object_get(object, key);
-    return json_is_number(value) ? json_number_value(value) : NAN;
-}
-
 static void count_object(struct statistics_page *page, size_t split, const json_t *object)
 {
     size_t i;
@@ -208,15 +196,21 @@ static void count_object(struct statistics_page *page, size_t split, const json_
 
 static void add_object(struct statistics_page *page, const json_t *object)
 {
-    add_value(page, "slant range of objects", "m", member_number(object, "slant_range_m"));
-    add_value(page, "grazing angle of objects", "deg", member_number(object, "grazing_deg"));
-    add_value(page, "burial of objects", "m", member_number(object, "burial_m"));
-    add_value(page, "target strength of objects", "dB",
-              member_number(object, "target_strength_db"));
-    add_value(page, "contrast of highlights", "dB", member_number(object, "highlight_contrast_db"));
-    add_value(page, "contrast of shadows", "dB", member_number(object, "shadow_contrast_db"));
-    add_value(page, "pixels of highlights", "", member_number(object, "highlight_pixels"));
-    add_value(page, "pixels of shadows", "", member_number(object, "shadow_pixels"));
+    static const struct {
+        const char *name, *unit, *key;
+    } values[] = {{"slant range of objects", "m", "slant_range_m"},
+                  {"grazing angle of objects", "deg", "grazing_deg"},
+                  {"burial of objects", "m", "burial_m"},
+                  {"target strength of objects", "dB", "target_strength_db"},
+                  {"contrast of highlights", "dB", "highlight_contrast_db"},
+                  {"contrast of shadows", "dB", "shadow_contrast_db"},
+                  {"pixels of highlights", "", "highlight_pixels"},
+                  {"pixels of shadows", "", "shadow_pixels"}};
+    for (size_t i = 0; i < sizeof values / sizeof *values; i++) {
+        const json_t *value = json_object_get(object, values[i].key);
+        if (json_is_number(value))
+            add_value(page, values[i].name, values[i].unit, json_number_value(value));
+    }
 }
 
 static sonject_status add_image(struct statistics_page *page, size_t split, uint64_t id)
@@ -256,11 +250,13 @@ static void add_escaped(struct growing_text *text, const char *raw)
 static void write_counts(const struct statistics_page *page, struct growing_text *text)
 {
     const struct data_set *set = page->set;
-    const json_t *classes = json_object_get(set->head, "classes");
+    size_t j;
+    const json_t *name;
     growing_text_add(text, "<table><tr><th>split</th><th>images</th><th>without objects</th>");
-    for (size_t j = 0; j < page->class_count; j++) {
+    json_array_foreach(json_object_get(set->head, "classes"), j, name)
+    {
         growing_text_add(text, "<th>");
-        add_escaped(text, json_string_value(json_array_get(classes, j)));
+        add_escaped(text, json_string_value(name));
         growing_text_add(text, "</th>");
     }
     growing_text_add(text, "</tr>\n");
@@ -268,7 +264,7 @@ static void write_counts(const struct statistics_page *page, struct growing_text
         growing_text_add(text, "<tr><td>%s</td><td>%llu</td><td>%llu</td>", set->split_names[i],
                          (unsigned long long)set->split_images[i],
                          (unsigned long long)page->empty[i]);
-        for (size_t j = 0; j < page->class_count; j++)
+        for (j = 0; j < page->class_count; j++)
             growing_text_add(text, "<td>%llu</td>",
                              (unsigned long long)page->counts[i * page->class_count + j]);
         growing_text_add(text, "</tr>\n");
@@ -276,11 +272,24 @@ static void write_counts(const struct statistics_page *page, struct growing_text
     growing_text_add(text, "</table>\n");
 }
 
-static void write_swaths(const struct statistics_page *page, struct growing_text *text)
+static void write_page(const struct statistics_page *page, struct growing_text *text)
 {
     size_t i;
     const json_t *swath;
-    growing_text_add(text, "<table><tr><th>swath</th><th>split</th></tr>\n");
+    growing_text_add(text,
+                     "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+                     "<title>Data set</title><style>body{font-family:sans-serif;margin:2em}"
+                     "table{border-collapse:collapse;margin:1em 0}"
+                     "td,th{border:1px solid #999;padding:.2em .6em;text-align:right}"
+                     "img{margin:.5em}</style></head><body>\n<h1>Data set of %llu images</h1>\n"
+                     "<p>campaign ",
+                     (unsigned long long)page->set->images);
+    add_escaped(text, member_text(page->set->head, "hash"));
+    growing_text_add(text, ", sonject ");
+    add_escaped(text, member_text(page->set->head, "sonject"));
+    growing_text_add(text, "</p>\n<h2>Objects by class</h2>\n");
+    write_counts(page, text);
+    growing_text_add(text, "<h2>Swaths</h2>\n<table><tr><th>swath</th><th>split</th></tr>\n");
     json_array_foreach(json_object_get(page->set->head, "swaths"), i, swath)
     {
         growing_text_add(text, "<tr><td>");
@@ -289,31 +298,9 @@ static void write_swaths(const struct statistics_page *page, struct growing_text
         add_escaped(text, member_text(swath, "split"));
         growing_text_add(text, "</td></tr>\n");
     }
-    growing_text_add(text, "</table>\n");
-}
-
-static void write_page(const struct statistics_page *page, struct growing_text *text)
-{
-    growing_text_add(text,
-                     "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
-                     "<title>Data set</title><style>body{font-family:sans-serif;margin:2em}"
-                     "table{border-collapse:collapse;margin:1em 0}"
-                     "td,th{border:1px solid #999;padding:.2em .6em;text-align:right}"
-                     "img{margin:.5em}</style></head><body>\n<h1>Data set of %llu images</h1>\n",
-                     (unsigned long long)page->set->images);
-    growing_text_add(text, "<p>campaign ");
-    add_escaped(text, member_text(page->set->head, "hash"));
-    growing_text_add(text, ", sonject ");
-    add_escaped(text, member_text(page->set->head, "sonject"));
-    growing_text_add(text, "</p>\n<h2>Objects by class</h2>\n");
-    write_counts(page, text);
-    growing_text_add(text, "<h2>Swaths</h2>\n");
-    write_swaths(page, text);
-    growing_text_add(text, "<h2>Distributions</h2>\n<div>\n");
-    for (size_t i = 0; i < page->series_count; i++) {
-        const struct series *series = &page->series[i];
-        histogram_write(text, series->name, series->unit, series->values, series->count);
-    }
+    growing_text_add(text, "</table>\n<h2>Distributions</h2>\n<div>\n");
+    for (i = 0; i < page->series_count; i++)
+        write_histogram(text, &page->series[i]);
     growing_text_add(text, "</div>\n<h2>Images</h2>\n<p><img src=\"contact_sheet.png\" "
                            "alt=\"images from all over the data set\"></p>\n</body></html>\n");
 }

@@ -5,7 +5,7 @@
 
 #include "base/file.h"
 #include "base/memory.h"
-#include "dataset/campaign_documents.h"
+#include "dataset/data_set.h"
 #include "image/canvas.h"
 #include "swath/raster_file.h"
 

@@ -1,13 +1,43 @@
-/* The documents of a whole data set, from what lies in its folder. */
-#ifndef SONJECT_DATASET_CAMPAIGN_DOCUMENTS_H
-#define SONJECT_DATASET_CAMPAIGN_DOCUMENTS_H
+/* A data set in its folder: the files of a campaign's images, and the documents of the whole. */
+#ifndef SONJECT_DATASET_DATA_SET_H
+#define SONJECT_DATASET_DATA_SET_H
 
-#include <stdio.h>
-
-#include "dataset/campaign_files.h"
-#include "dataset/campaign_handle.h"
+#include "dataset/campaign.h"
 
 #define CLASSES_MAX (2 * CAMPAIGN_ITEMS_MAX)
+
+/* Where files of enum output lie; extension NULL: ".png" where that stores the pixels as they are,
+ * else ".tif". */
+extern const struct output_kind {
+    const char *folder, *extension;
+} output_kinds[OUTPUT_KINDS];
+
+/* The files of one image. */
+struct image_files {
+    char *folder; /* of its split; owned */
+    uint64_t id;
+    uint32_t outputs;      /* bits of enum output */
+    const char *extension; /* of its pixels; static */
+};
+
+/* files: for free() of its folder. Errors: MEMORY. */
+sonject_status image_files_init(struct image_files *files, struct report *report,
+                                const char *folder, const char *split, uint64_t id,
+                                uint32_t outputs, const char *extension);
+
+#define IMAGE_NAME_CAPACITY 48
+
+/* The file's name within its split, "images/00000007.png". Returns name. */
+const char *image_file_name(const struct image_files *files, enum output output,
+                            char name[IMAGE_NAME_CAPACITY]);
+
+/* Size and hash of all files but the record, for it. Errors: STORAGE, MEMORY. */
+sonject_status image_files_list(const struct image_files *files, struct report *report,
+                                json_t **list);
+
+/* Makes the folders of a split. Errors: STORAGE, MEMORY. */
+sonject_status split_folders_make(struct report *report, const char *folder, const char *split,
+                                  uint32_t outputs);
 
 /* What campaign.json says that documents need. Starts as all zeros, is for data_set_clear. */
 struct data_set {
@@ -34,9 +64,6 @@ sonject_status data_set_begin(struct sonject_campaign *campaign, const struct de
 /* Opens a folder by its campaign.json. Errors: INPUT, STORAGE, MEMORY. */
 sonject_status data_set_open(struct data_set *set, struct report *report, const char *folder);
 void data_set_clear(struct data_set *set);
-
-/* Removes the images and documents, campaign.json last. Never fails. */
-void data_set_remove(const struct data_set *set);
 
 /* Whether the documents are there as they were written. Errors: STORAGE, MEMORY. */
 sonject_status data_set_is_finished(const struct data_set *set, bool *is_finished);
@@ -67,8 +94,7 @@ bool has_plain(const json_t *object, const char *key);
 bool all_are(const struct data_set *set, const json_t *list,
              bool (*is_one)(const struct data_set *set, const json_t *element));
 
-/* Each writes its documents from images that are all there. Errors: as data_set_finish. */
-sonject_status write_data_set_coco(const struct data_set *set);
+/* Each writes its document from images that are all there. Errors: as data_set_finish. */
 sonject_status write_contact_sheet(const struct data_set *set);
 sonject_status write_report_page(const struct data_set *set);
 

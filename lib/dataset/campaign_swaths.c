@@ -1,0 +1,340 @@
+/* The swaths of a campaign: dealt to splits, and the room that they have for images. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "dataset/campaign.h"
+
+#define SWATH_STREAM 0x30000001u /* beyond those of distributions */
+#define SPLIT_OPEN   UINT32_MAX
+
+/* Swaths with one identity form a group, which is named after its first. */
+struct groups {
+    uint32_t *group_of; /* of each swath; owned, with the others behind it */
+    uint32_t *split_of; /* of each group, SPLIT_OPEN until it has one */
+    uint32_t *open;     /* groups without a split, in random order */
+    size_t open_count, count;
+};
+
+/* Splits that swaths ask for. */
+static sonject_status take_wishes(const struct campaign *campaign, struct groups *groups)
+{
+    for (size_t i = 0; i < campaign->swath_count; i++) {
+        const struct swath_plan *plan = &campaign->swaths[i];
+        uint32_t *split = &groups->split_of[groups->group_of[i]];
+        uint32_t wish = 0;
+        if (!plan->split)
+            continue;
+        while (strcmp(campaign->splits[wish].name, plan->split) != 0)
+            wish++;
+        if (*split != SPLIT_OPEN && *split != wish)
+            return tree_failure(&campaign->tree, plan->place, "swaths",
+                                "%s is the same image as %s, which is in split %s: no swath may be "
+                                "in two",
+                                plan->written, campaign->swaths[groups->group_of[i]].written,
+                                campaign->splits[*split].name);
+        *split = wish;
+    }
+    return SONJECT_OK;
+}
+
+static sonject_status find_groups(const struct campaign *campaign,
+                                  char (*hashes)[HASH_TEXT_CAPACITY], struct groups *groups)
+{
+    for (size_t i = 0; i < campaign->swath_count; i++) {
+        uint32_t first = 0;
+        while (strcmp(hashes[first], hashes[i]) != 0)
+            first++;
+        groups->group_of[i] = first;
+        groups->split_of[i] = SPLIT_OPEN;
+        groups->count += first == i;
+    }
+    CHECK(take_wishes(campaign, groups));
+    for (size_t i = 0; i < campaign->swath_count; i++)
+        if (groups->group_of[i] == i && groups->split_of[i] == SPLIT_OPEN)
+            groups->open[groups->open_count++] = (uint32_t)i;
+    return SONJECT_OK;
+}
+
+/* Open groups go, in random order, to the split that lacks most of its share; splits without any
+ * come first. */
+static sonject_status deal(const struct campaign *campaign, struct groups *groups)
+{
+    double held[CAMPAIGN_SPLITS_MAX] = {0};
+    for (size_t i = 0; i < campaign->swath_count; i++)
+        if (groups->group_of[i] == i && groups->split_of[i] != SPLIT_OPEN)
+            held[groups->split_of[i]] += 1.0;
+    for (size_t i = 0; i < groups->open_count; i++) {
+        uint32_t best = 0;
+        double most = -1e300;
+        for (uint32_t j = 0; j < campaign->split_count; j++) {
+            const double lack = campaign->splits[j].fraction * (double)groups->count - held[j] +
+                                (held[j] == 0.0 ? 1e9 : 0.0);
+            if (lack > most + 1e-9) {
+                most = lack;
+                best = j;
+            }
+        }
+        const uint64_t drawn = permuted_index(campaign->seed, SWATH_STREAM, i, groups->open_count);
+        groups->split_of[groups->open[drawn]] = best;
+        held[best] += 1.0;
+    }
+    for (size_t j = 0; j < campaign->split_count; j++)
+        if (held[j] == 0.0)
+            return tree_failure(&campaign->tree, campaign->swaths[0].place, "swaths",
+                                "no swath is left for split %s: %zu different swaths are too few "
+                                "for %zu splits, since no swath may be in two; add swaths or "
+                                "remove splits",
+                                campaign->splits[j].name, groups->count, campaign->split_count);
+    return SONJECT_OK;
+}
+
+/* Exact shares of each kind of image in a split. */
+static sonject_status share_kinds(struct report *report, const struct campaign *campaign,
+                                  struct split *split)
+{
+    const size_t count = CATEGORY_TARGET + campaign->target_count;
+    const double rest = fmax(0.0, 1.0 - campaign->empty - campaign->clutter_alone);
+    double *weights = allocate_array(count, sizeof *weights);
+    double sum = 0.0;
+    CHECK_MEMORY(report, weights, "the splits");
+    for (size_t i = 0; i < campaign->target_count; i++)
+        sum += campaign->targets[i].weight;
+    weights[CATEGORY_EMPTY] = campaign->empty;
+    weights[CATEGORY_CLUTTER] = campaign->clutter_alone;
+    for (size_t i = 0; i < campaign->target_count; i++)
+        weights[CATEGORY_TARGET + i] = rest * (campaign->targets[i].weight / sum);
+    split->shares = allocate_array(count, sizeof *split->shares);
+    if (split->shares)
+        share_out(split->images, weights, count, split->shares);
+    free(weights);
+    return split->shares ? SONJECT_OK : report_out_of_memory(report, "the splits");
+}
+
+static sonject_status fill_splits(struct report *report, struct campaign *campaign,
+                                  const struct groups *groups)
+{
+    double fractions[CAMPAIGN_SPLITS_MAX];
+    uint64_t shares[CAMPAIGN_SPLITS_MAX];
+    uint64_t first = 0;
+    for (size_t j = 0; j < campaign->split_count; j++)
+        fractions[j] = campaign->splits[j].fraction;
+    share_out(campaign->images, fractions, campaign->split_count, shares);
+    for (size_t j = 0; j < campaign->split_count; j++) {
+        struct split *split = &campaign->splits[j];
+        split->first_image = first;
+        split->images = shares[j];
+        first += shares[j];
+        split->swaths = allocate_array(campaign->swath_count, sizeof *split->swaths);
+        CHECK_MEMORY(report, split->swaths, "the splits");
+        CHECK(share_kinds(report, campaign, split));
+    }
+    for (size_t i = 0; i < campaign->swath_count; i++) {
+        struct swath_plan *plan = &campaign->swaths[i];
+        plan->split_number = groups->split_of[groups->group_of[i]];
+        struct split *split = &campaign->splits[plan->split_number];
+        split->swaths[split->swath_count++] = (uint32_t)i;
+    }
+    return SONJECT_OK;
+}
+
+sonject_status campaign_split(struct report *report, struct campaign *campaign,
+                              char (*hashes)[HASH_TEXT_CAPACITY])
+{
+    const size_t count = campaign->swath_count;
+    struct groups groups = {allocate_array(count, 3 * sizeof *groups.group_of), NULL, NULL, 0, 0};
+    CHECK_MEMORY(report, groups.group_of, "the splits");
+    groups.split_of = groups.group_of + count;
+    groups.open = groups.split_of + count;
+    sonject_status status = find_groups(campaign, hashes, &groups);
+    THEN(status, deal(campaign, &groups));
+    THEN(status, fill_splits(report, campaign, &groups));
+    free(groups.group_of);
+    return status;
+}
+
+static int compare_numbers(const void *a, const void *b)
+{
+    const uint64_t first = *(const uint64_t *)a;
+    const uint64_t second = *(const uint64_t *)b;
+    return (first > second) - (first < second);
+}
+
+static int compare_starts(const void *a, const void *b)
+{
+    return compare_numbers(&((const struct region *)a)->first_column,
+                           &((const struct region *)b)->first_column);
+}
+
+static uint64_t clip(uint64_t value, uint64_t low, uint64_t high)
+{
+    return value < low ? low : value > high ? high : value;
+}
+
+/* Adds the columns of a band of rows that no box takes; boxes are sorted by their first column. */
+static void add_band(struct chip_room *room, const struct region *chips, const struct region *avoid,
+                     size_t count, uint64_t row, uint64_t end_row)
+{
+    const uint64_t end = chips->first_column + chips->columns;
+    uint64_t next = chips->first_column; /* that may be free */
+    struct row_band band = {row, end_row - row, 0, room->range_count, 0};
+    for (size_t i = 0; i <= count; i++) {
+        if (i < count && (avoid[i].first_row > row || avoid[i].first_row + avoid[i].rows <= row))
+            continue;
+        const uint64_t taken = i < count ? clip(avoid[i].first_column, next, end) : end;
+        if (taken > next) {
+            const struct column_range range = {next, taken - next};
+            room->ranges[room->range_count++] = range;
+            band.columns += range.count;
+            band.ranges++;
+        }
+        if (i < count && avoid[i].first_column + avoid[i].columns > next)
+            next = clip(avoid[i].first_column + avoid[i].columns, next, end);
+    }
+    if (band.columns > 0)
+        room->bands[room->band_count++] = band;
+    room->places += band.rows * band.columns;
+}
+
+sonject_status chip_room_init(struct chip_room *room, struct report *report,
+                              const struct region *chips, const struct region *avoid, size_t count)
+{
+    const uint64_t end = chips->first_row + chips->rows;
+    const size_t edge_count = 2 * count + 2;
+    size_t ranges;
+    memset(room, 0, sizeof *room);
+    uint64_t *edges = allocate_array(edge_count, sizeof *edges);
+    struct region *sorted = allocate_array(count, sizeof *sorted);
+    room->bands = allocate_array(2 * count + 1, sizeof *room->bands);
+    room->ranges = size_multiply(2 * count + 1, count + 1, &ranges)
+                       ? allocate_array(ranges, sizeof *room->ranges)
+                       : NULL;
+    const bool has_memory = edges && sorted && room->bands && room->ranges;
+    if (has_memory) {
+        memcpy(sorted, avoid, count * sizeof *sorted);
+        qsort(sorted, count, sizeof *sorted, compare_starts);
+        for (size_t i = 0; i < count; i++) {
+            edges[2 * i] = clip(avoid[i].first_row, chips->first_row, end);
+            edges[2 * i + 1] = clip(avoid[i].first_row + avoid[i].rows, chips->first_row, end);
+        }
+        edges[2 * count] = chips->first_row;
+        edges[2 * count + 1] = end;
+        qsort(edges, edge_count, sizeof *edges, compare_numbers);
+        for (size_t i = 0; i + 1 < edge_count; i++)
+            if (edges[i + 1] > edges[i])
+                add_band(room, chips, sorted, count, edges[i], edges[i + 1]);
+        struct column_range *fitting =
+            realloc(room->ranges, (room->range_count + 1) * sizeof *room->ranges);
+        room->ranges = fitting ? fitting : room->ranges;
+    }
+    free(edges);
+    free(sorted);
+    return has_memory ? SONJECT_OK : report_out_of_memory(report, "the places for images");
+}
+
+void chip_room_clear(struct chip_room *room)
+{
+    free(room->bands);
+    free(room->ranges);
+    memset(room, 0, sizeof *room);
+}
+
+static uint64_t part_of(uint64_t count, double u)
+{
+    const uint64_t part = (uint64_t)floor((double)count * u);
+    return part < count ? part : count - 1;
+}
+
+void chip_room_choose(const struct chip_room *room, double along_track, double range, uint64_t *row,
+                      uint64_t *column)
+{
+    uint64_t place = part_of(room->places, along_track);
+    const struct row_band *band = room->bands;
+    for (; place >= band->rows * band->columns; band++)
+        place -= band->rows * band->columns;
+    *row = band->first_row + place / band->columns;
+    uint64_t left = part_of(band->columns, range);
+    const struct column_range *free_columns = room->ranges + band->first_range;
+    for (; left >= free_columns->count; free_columns++)
+        left -= free_columns->count;
+    *column = free_columns->first + left;
+}
+
+static double column_at(const sonject_geometry_params *geometry, double range_m)
+{
+    return (range_m - geometry->first_slant_range_m) / geometry->column_spacing_m;
+}
+
+/* First columns beyond the first return whose chip's middle has a slant range within the limits. */
+static void limit_ranges(const struct campaign *campaign, const sonject_geometry_params *geometry,
+                         double altitude_m, struct region *chips)
+{
+    const double half = 0.5 * (double)(campaign->chip_columns - 1);
+    double low = fmax((double)chips->first_column, floor(column_at(geometry, altitude_m)) + 1.0);
+    double high = (double)chips->first_column + (double)chips->columns - 1.0;
+    if (campaign->has_range) {
+        low = fmax(low, ceil(column_at(geometry, campaign->nearest_range_m) - half - 1e-9));
+        high = fmin(high, floor(column_at(geometry, campaign->farthest_range_m) - half + 1e-9));
+    }
+    chips->columns = low <= high ? (uint64_t)(high - low) + 1 : 0;
+    if (chips->columns > 0)
+        chips->first_column = (uint64_t)low;
+}
+
+/* First pixels, along one axis, of chips that would touch a box. */
+static void forbid(const struct campaign *campaign, uint32_t chip, uint64_t first, uint64_t count,
+                   uint64_t *first_forbidden, uint64_t *forbidden)
+{
+    const uint64_t before = (uint64_t)campaign->clearance + chip - 1;
+    *first_forbidden = first > before ? first - before : 0;
+    *forbidden = first + count + campaign->clearance - *first_forbidden;
+}
+
+sonject_status campaign_measure(struct report *report, struct campaign *campaign, size_t swath,
+                                const sonject_geometry_params *geometry, double altitude_m)
+{
+    struct swath_plan *plan = &campaign->swaths[swath];
+    const uint64_t rows = (uint64_t)campaign->chip_rows + 2 * (uint64_t)campaign->edge;
+    const uint64_t columns = (uint64_t)campaign->chip_columns + 2 * (uint64_t)campaign->edge;
+    if (plan->layout.rows < rows || plan->layout.columns < columns)
+        return tree_failure(&campaign->tree, plan->place, "swaths",
+                            "%s has %llu x %llu pixels, too few for images of %u x %u that stay %u "
+                            "pixels away from its edges",
+                            plan->written, (unsigned long long)plan->layout.rows,
+                            (unsigned long long)plan->layout.columns, (unsigned)campaign->chip_rows,
+                            (unsigned)campaign->chip_columns, (unsigned)campaign->edge);
+    struct region chips = {campaign->edge, campaign->edge, plan->layout.rows - rows + 1,
+                           plan->layout.columns - columns + 1};
+    limit_ranges(campaign, geometry, altitude_m, &chips);
+    if (chips.columns == 0 && !campaign->has_range)
+        return tree_failure(&campaign->tree, plan->place, "swaths",
+                            "no image within %s begins beyond the sonar's altitude, up to %g m",
+                            plan->written, altitude_m);
+    if (chips.columns == 0)
+        return tree_failure(&campaign->tree, plan->place, "swaths",
+                            "no image within %s has its middle at slant ranges of %g to %g m and "
+                            "begins beyond the sonar's altitude, up to %g m",
+                            plan->written, campaign->nearest_range_m, campaign->farthest_range_m,
+                            altitude_m);
+    struct region *forbidden = allocate_array(plan->avoid_count, sizeof *forbidden);
+    CHECK_MEMORY(report, forbidden, "the places for images");
+    for (size_t i = 0; i < plan->avoid_count; i++) {
+        const struct region *box = &plan->avoid[i];
+        forbid(campaign, campaign->chip_rows, box->first_row, box->rows, &forbidden[i].first_row,
+               &forbidden[i].rows);
+        forbid(campaign, campaign->chip_columns, box->first_column, box->columns,
+               &forbidden[i].first_column, &forbidden[i].columns);
+    }
+    chip_room_clear(&plan->room);
+    const sonject_status status =
+        chip_room_init(&plan->room, report, &chips, forbidden, plan->avoid_count);
+    free(forbidden);
+    if (status != SONJECT_OK || plan->room.places > 0)
+        return status;
+    return tree_failure(&campaign->tree, plan->place, "swaths",
+                        "the %zu contacts to avoid in %s leave no room for images of %u x %u that "
+                        "stay %u pixels away from them",
+                        plan->avoid_count, plan->written, (unsigned)campaign->chip_rows,
+                        (unsigned)campaign->chip_columns, (unsigned)campaign->clearance);
+}

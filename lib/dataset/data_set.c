@@ -1,0 +1,519 @@
+/* The documents of a whole data set: campaign.json, which says what it is, written by whoever
+ * begins it and checked by all others; COCO documents of splits, put together image by image; and
+ * dataset.json, the last, so that a folder that has it is complete. */
+#define _POSIX_C_SOURCE 200809L
+#include "dataset/data_set.h"
+
+#include <errno.h>
+#include <inttypes.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include <sonject/version.h>
+
+#include "base/file.h"
+#include "base/file_list.h"
+#include "base/folder.h"
+#include "base/json_document.h"
+#include "base/text.h"
+#include "dataset/earlier_result.h"
+#include "dataset/run_files.h"
+
+#define FORMAT_VERSION 2
+#define HEAD_FILE      "campaign.json"
+#define LAST_FILE      "dataset.json"
+
+/* The documents that are the same for every folder. */
+static const char *const documents[] = {"classes.txt", "contact_sheet.png", "report.html"};
+
+#define DOCUMENTS (sizeof documents / sizeof *documents)
+
+/* Calls on each folder of a split. */
+static sonject_status each_folder(struct report *report, const char *folder, const char *split,
+                                  uint32_t outputs,
+                                  sonject_status (*call)(struct report *report, const char *path))
+{
+    sonject_status status = SONJECT_OK;
+    char *base = path_join(folder, split);
+    CHECK_MEMORY(report, base, "a file name");
+    for (int i = 0; status == SONJECT_OK && i < OUTPUT_KINDS; i++) {
+        if (!(outputs & OUTPUT_BIT(i)))
+            continue;
+        char *path = path_join(base, output_kinds[i].folder);
+        status = path ? call(report, path) : report_out_of_memory(report, "a file name");
+        free(path);
+    }
+    free(base);
+    return status;
+}
+
+sonject_status split_folders_make(struct report *report, const char *folder, const char *split,
+                                  uint32_t outputs)
+{
+    return each_folder(report, folder, split, outputs, folder_make);
+}
+
+/* Files named as images are, and the folder where that is all. */
+static sonject_status remove_images(struct report *report, const char *path)
+{
+    struct folder_names list;
+    if (folder_names_read(&list, report, path, "") != SONJECT_OK)
+        return SONJECT_OK;
+    for (size_t i = 0; i < list.count; i++) {
+        const bool is_image = strspn(list.names[i], "0123456789") == 8 && list.names[i][8] == '.';
+        char *file = is_image ? path_join(path, list.names[i]) : NULL;
+        if (file)
+            file_discard(file);
+        free(file);
+    }
+    folder_names_clear(&list);
+    rmdir(path);
+    return SONJECT_OK;
+}
+
+static sonject_status tidy(struct report *report, const char *path)
+{
+    (void)report;
+    folder_tidy(path);
+    return SONJECT_OK;
+}
+
+static void discard(const char *folder, const char *name)
+{
+    char *path = path_join(folder, name);
+    if (path)
+        file_discard(path);
+    free(path);
+}
+
+/* Removes the images and documents, campaign.json last. */
+static void remove_all(const struct data_set *set)
+{
+    struct report ignored = {{0}, NULL, NULL};
+    discard(set->folder, LAST_FILE);
+    for (size_t i = 0; i < DOCUMENTS; i++)
+        discard(set->folder, documents[i]);
+    discard(set->folder, "times.json");
+    for (size_t i = 0; i < set->split_count; i++) {
+        char *path = path_join(set->folder, set->split_names[i]);
+        each_folder(&ignored, set->folder, set->split_names[i], UINT32_MAX, remove_images);
+        if (path) {
+            discard(path, "coco.json");
+            rmdir(path);
+        }
+        free(path);
+    }
+    discard(set->folder, HEAD_FILE);
+}
+
+static json_t *head_of(const struct sonject_campaign *campaign, const struct device *device,
+                       json_t *inputs)
+{
+    const struct campaign *plan = &campaign->campaign;
+    json_t *splits = json_array();
+    json_t *classes = json_array();
+    json_t *outputs = json_array();
+    json_t *swaths = json_array();
+    for (size_t i = 0; i < plan->split_count; i++)
+        json_append(&splits, JSON_OBJECT({"name", json_string(plan->splits[i].name)},
+                                         {"first_image", json_count(plan->splits[i].first_image)},
+                                         {"images", json_count(plan->splits[i].images)}));
+    for (uint32_t i = 0; i < campaign->classes.count; i++)
+        json_append(&classes, json_string(campaign->classes.names[i]));
+    for (int i = 0; i < OUTPUT_KINDS; i++)
+        if (plan->outputs & ~OUTPUT_ALWAYS & OUTPUT_BIT(i))
+            json_append(&outputs, json_string(output_kinds[i].folder));
+    for (size_t i = 0; i < plan->swath_count; i++) {
+        const struct swath_plan *swath = &plan->swaths[i];
+        json_append(&swaths,
+                    JSON_OBJECT({"path", json_string(swath->written)},
+                                {"hash", json_string(campaign->swath_hashes[i])},
+                                {"split", json_string(plan->splits[swath->split_number].name)}));
+    }
+    return JSON_OBJECT({"sonject_campaign", json_integer(FORMAT_VERSION)},
+                       {"sonject", json_string(sonject_version())},
+                       {"hash", json_string(campaign->hash)}, {"inputs", json_incref(inputs)},
+                       {"device", device ? device_document(device) : json_null()},
+                       {"images", json_count(plan->images)}, {"rows", json_count(plan->chip_rows)},
+                       {"columns", json_count(plan->chip_columns)}, {"splits", splits},
+                       {"classes", classes}, {"outputs", outputs}, {"swaths", swaths});
+}
+
+/* Whose images the folder holds; those of another campaign are removed where they may be. */
+static sonject_status check_head(struct sonject_campaign *campaign, const json_t *inputs,
+                                 const char *folder, bool overwrites, bool *is_same)
+{
+    struct data_set set;
+    memset(&set, 0, sizeof set);
+    sonject_status status = data_set_open(&set, campaign->report, folder);
+    THEN(status, inputs_check(campaign->report, folder, json_object_get(set.head, "inputs"), inputs,
+                              NULL, overwrites, is_same));
+    if (status == SONJECT_OK && !*is_same)
+        remove_all(&set);
+    data_set_clear(&set);
+    return status;
+}
+
+sonject_status data_set_begin(struct sonject_campaign *campaign, const struct device *device,
+                              const char *folder, bool overwrites)
+{
+    struct report *report = campaign->report;
+    bool is_same = false;
+    json_t *inputs = json_copy(campaign->inputs);
+    char *path = path_join(folder, HEAD_FILE);
+    if (device)
+        json_add(&inputs, "device", device_document(device));
+    sonject_status status = path && inputs ? SONJECT_OK : report_out_of_memory(report, "inputs");
+    if (status == SONJECT_OK && file_exists(path))
+        status = check_head(campaign, inputs, folder, overwrites, &is_same);
+    if (status == SONJECT_OK && !is_same)
+        status = json_document_write(report, head_of(campaign, device, inputs), 9, path);
+    json_decref(inputs);
+    free(path);
+    return status;
+}
+
+/* Names and numbers of images, one split after the other. */
+static bool take_splits(struct data_set *set, const json_t *splits)
+{
+    set->split_count = json_array_size(splits);
+    if (set->split_count == 0 || set->split_count > CAMPAIGN_SPLITS_MAX)
+        return false;
+    for (size_t i = 0; i < set->split_count; i++) {
+        const json_t *split = json_array_get(splits, i);
+        const json_int_t images = json_integer_value(json_object_get(split, "images"));
+        const char *name = member_text(split, "name");
+        if (images < 0 || images > CAMPAIGN_IMAGES_MAX || !is_split_name(name))
+            return false;
+        set->split_names[i] = name;
+        set->split_first[i] = set->images;
+        set->split_images[i] = (uint64_t)images;
+        set->images += (uint64_t)images;
+    }
+    return set->images > 0;
+}
+
+static bool is_class_name(const struct data_set *set, const json_t *name)
+{
+    (void)set;
+    return json_is_string(name) && *json_string_value(name) &&
+           text_is_printable(json_string_value(name));
+}
+
+static bool is_swath(const struct data_set *set, const json_t *swath)
+{
+    (void)set;
+    return has_plain(swath, "path") && has_plain(swath, "hash") &&
+           is_split_name(member_text(swath, "split"));
+}
+
+static bool is_side(json_int_t pixels)
+{
+    return pixels >= 1 && pixels <= CAMPAIGN_CHIP_MAX;
+}
+
+/* True if what documents need of the head is as it should be. */
+static bool read_head(struct data_set *set)
+{
+    size_t i;
+    const json_t *name;
+    const json_t *outputs = json_object_get(set->head, "outputs");
+    const json_t *device = json_object_get(set->head, "device");
+    const json_t *classes = json_object_get(set->head, "classes");
+    set->outputs = OUTPUT_ALWAYS;
+    json_array_foreach(outputs, i, name)
+    {
+        for (int kind = 0; json_is_string(name) && kind < OUTPUT_KINDS; kind++)
+            if (strcmp(json_string_value(name), output_kinds[kind].folder) == 0)
+                set->outputs |= OUTPUT_BIT(kind);
+    }
+    set->rows = json_integer_value(json_object_get(set->head, "rows"));
+    set->columns = json_integer_value(json_object_get(set->head, "columns"));
+    return json_integer_value(json_object_get(set->head, "sonject_campaign")) == FORMAT_VERSION &&
+           has_plain(set->head, "sonject") && has_plain(set->head, "hash") && is_side(set->rows) &&
+           is_side(set->columns) && json_is_array(outputs) &&
+           all_are(set, json_object_get(set->head, "swaths"), is_swath) &&
+           (json_is_null(device) || json_is_object(device)) &&
+           all_are(set, classes, is_class_name) && json_array_size(classes) <= CLASSES_MAX &&
+           take_splits(set, json_object_get(set->head, "splits")) &&
+           json_integer_value(json_object_get(set->head, "images")) == (json_int_t)set->images;
+}
+
+sonject_status data_set_open(struct data_set *set, struct report *report, const char *folder)
+{
+    char *path = path_join(folder, HEAD_FILE);
+    set->report = report;
+    set->folder = folder;
+    CHECK_MEMORY(report, path, "a file name");
+    sonject_status status = SONJECT_OK;
+    if (!file_exists(path))
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "%s: holds no campaign: there is no campaign.json", folder);
+    THEN(status, json_document_read(report, path, &set->head));
+    if (status == SONJECT_OK && !read_head(set))
+        status = report_failure(report, SONJECT_ERROR_INPUT,
+                                "%s: damaged; remove it and run the campaign again", path);
+    free(path);
+    return status;
+}
+
+void data_set_clear(struct data_set *set)
+{
+    json_decref(set->head);
+    memset(set, 0, sizeof *set);
+}
+
+sonject_status data_set_is_finished(const struct data_set *set, bool *is_finished)
+{
+    const char *changed = NULL;
+    json_t *document;
+    sonject_status status = earlier_document(set->report, set->folder, LAST_FILE, &document);
+    const json_t *files = json_object_get(document, "files");
+    THEN(status, file_list_check(files, set->report, set->folder, true, &changed));
+    *is_finished = status == SONJECT_OK && !changed &&
+                   json_array_size(files) == DOCUMENTS + set->split_count &&
+                   strcmp(member_text(document, "hash"), member_text(set->head, "hash")) == 0;
+    json_decref(document);
+    return status;
+}
+
+/* Ids that are missing, as ranges while they fit. */
+struct missing {
+    uint64_t count, first, last; /* of the range that is being found */
+    size_t ranges;
+    struct growing_text text;
+};
+
+#define RANGES_TOLD 12
+
+static void tell_range(struct missing *missing)
+{
+    if (missing->ranges++ == RANGES_TOLD)
+        growing_text_add(&missing->text, ", ...");
+    if (missing->ranges > RANGES_TOLD)
+        return;
+    growing_text_add(&missing->text, "%s%" PRIu64, missing->ranges > 1 ? ", " : "", missing->first);
+    if (missing->last > missing->first)
+        growing_text_add(&missing->text, "-%" PRIu64, missing->last);
+}
+
+static void add_missing(struct missing *missing, uint64_t id)
+{
+    if (missing->count > 0 && id != missing->last + 1)
+        tell_range(missing);
+    if (missing->count == 0 || id != missing->last + 1)
+        missing->first = id;
+    missing->last = id;
+    missing->count++;
+}
+
+static sonject_status check_complete(const struct data_set *set)
+{
+    struct missing missing;
+    char *changed = NULL;
+    sonject_status status = SONJECT_OK;
+    memset(&missing, 0, sizeof missing);
+    for (size_t i = 0; i < set->split_count; i++)
+        for (uint64_t k = 0; status == SONJECT_OK && k < set->split_images[i]; k++) {
+            bool has = false;
+            status = data_set_has_image(set, i, set->split_first[i] + k, &changed, &has);
+            if (status == SONJECT_OK && !has)
+                add_missing(&missing, set->split_first[i] + k);
+        }
+    if (missing.count > 0)
+        tell_range(&missing);
+    char *ids = growing_text_end(&missing.text);
+    if (status == SONJECT_OK && missing.count > 0)
+        status = report_failure(set->report, SONJECT_ERROR_INPUT,
+                                "%s: %llu of %llu images are missing%s: %s%s%s; run the campaign "
+                                "or its shards again",
+                                set->folder, (unsigned long long)missing.count,
+                                (unsigned long long)set->images, changed ? " or changed" : "",
+                                ids ? ids : "", changed ? "; not as it was written: " : "",
+                                changed ? changed : "");
+    free(changed);
+    free(ids);
+    return status;
+}
+
+/* A COCO document in the making, list after list. */
+struct coco_file {
+    const struct data_set *set;
+    size_t split;
+    FILE *file;
+    uint64_t entries; /* of the list */
+};
+
+static sonject_status add_text(struct coco_file *coco, const char *text)
+{
+    return fputs(text, coco->file) < 0
+               ? file_failure(coco->set->report, coco->set->folder, "write coco.json below", errno)
+               : SONJECT_OK;
+}
+
+/* Begins a list; ends the one before. */
+static sonject_status begin_list(struct coco_file *coco, const char *text)
+{
+    coco->entries = 0;
+    return add_text(coco, text);
+}
+
+/* Adds a list's next entry, which is given up. */
+static sonject_status add_entry(struct coco_file *coco, json_t *entry)
+{
+    char *text = json_document_text(entry, JSON_COMPACT | JSON_REAL_PRECISION(9));
+    json_decref(entry);
+    CHECK_MEMORY(coco->set->report, text, "coco.json");
+    sonject_status status = add_text(coco, coco->entries++ ? ",\n" : "\n");
+    THEN(status, add_text(coco, text));
+    free(text);
+    return status;
+}
+
+/* The image's entry, or its annotations, numbered over the split. */
+static sonject_status add_image(struct coco_file *coco, uint64_t id, bool has_annotations)
+{
+    json_t *record;
+    const struct data_set *set = coco->set;
+    CHECK(data_set_image(set, coco->split, id, &record, NULL, NULL));
+    sonject_status status = SONJECT_OK;
+    const json_t *list = has_annotations ? json_object_get(record, "annotations") : NULL;
+    if (!has_annotations)
+        status = add_entry(coco, coco_image(id, member_text(record, "image"), (uint64_t)set->rows,
+                                            (uint64_t)set->columns));
+    for (size_t i = 0; status == SONJECT_OK && i < json_array_size(list); i++) {
+        json_t *numbered = json_copy(json_array_get(list, i));
+        json_add(&numbered, "id", json_count(coco->entries + 1));
+        json_add(&numbered, "image_id", json_count(id));
+        status = add_entry(coco, numbered);
+    }
+    json_decref(record);
+    return status;
+}
+
+static sonject_status add_images(struct coco_file *coco, bool has_annotations)
+{
+    const struct data_set *set = coco->set;
+    const uint64_t images = set->split_images[coco->split];
+    for (uint64_t k = 0; k < images; k++) {
+        const double done = 0.5 * (double)(k + (has_annotations ? images : 0));
+        const double fraction =
+            ((double)set->split_first[coco->split] + done) / (double)set->images;
+        if (set->progress && set->progress(set->user, fraction, "documents") != 0)
+            return report_failure(set->report, SONJECT_CANCELLED, "cancelled");
+        CHECK(add_image(coco, set->split_first[coco->split] + k, has_annotations));
+    }
+    return SONJECT_OK;
+}
+
+/* Records are read twice, since annotations follow when all images are told. */
+static sonject_status write_split(struct coco_file *coco)
+{
+    size_t i;
+    const json_t *name;
+    CHECK(begin_list(coco, "{\"info\": {\"description\": \"targets injected by sonject\", "
+                           "\"version\": \""));
+    CHECK(add_text(coco, sonject_version()));
+    CHECK(add_text(coco, "\"},\n\"licenses\": [],\n\"images\": ["));
+    CHECK(add_images(coco, false));
+    CHECK(begin_list(coco, "],\n\"annotations\": ["));
+    CHECK(add_images(coco, true));
+    CHECK(begin_list(coco, "],\n\"categories\": ["));
+    json_array_foreach(json_object_get(coco->set->head, "classes"), i, name)
+    {
+        CHECK(add_entry(coco, coco_category(i + 1, json_string_value(name))));
+    }
+    return add_text(coco, "]}\n");
+}
+
+static sonject_status write_coco(const struct data_set *set, size_t split)
+{
+    char *folder = path_join(set->folder, set->split_names[split]);
+    char *path = folder ? path_join(folder, "coco.json") : NULL;
+    char *part = path ? file_part_name(path) : NULL;
+    struct coco_file coco = {set, split, part ? fopen(part, "wb") : NULL, 0};
+    sonject_status status = SONJECT_OK;
+    if (!part)
+        status = report_out_of_memory(set->report, "a file name");
+    else if (!coco.file)
+        status = file_failure(set->report, path, "write", errno);
+    THEN(status, write_split(&coco));
+    if (coco.file && fclose(coco.file) != 0 && status == SONJECT_OK)
+        status = file_failure(set->report, path, "write", errno);
+    if (status == SONJECT_OK)
+        status = file_publish(set->report, part, path);
+    else if (part)
+        file_discard(part);
+    free(part);
+    free(path);
+    free(folder);
+    return status;
+}
+
+/* YOLO numbers classes by their lines in here. */
+static sonject_status write_classes(const struct data_set *set)
+{
+    size_t i;
+    const json_t *name;
+    struct growing_text text = {NULL, 0, 0, false};
+    char *path = path_join(set->folder, "classes.txt");
+    CHECK_MEMORY(set->report, path, "classes.txt");
+    json_array_foreach(json_object_get(set->head, "classes"), i, name)
+    {
+        growing_text_add(&text, "%s\n", json_string_value(name));
+    }
+    const sonject_status status = growing_text_write(set->report, &text, path);
+    free(path);
+    return status;
+}
+
+/* What the whole is, with size and hash of the documents of splits and of the whole. */
+static sonject_status write_last(const struct data_set *set)
+{
+    static const char *const kept[] = {"sonject", "hash",   "device",  "images",  "rows",
+                                       "columns", "splits", "classes", "outputs", "swaths"};
+    char name[SPLIT_NAME_CAPACITY + 16];
+    json_t *files = json_array();
+    json_t *document = json_object();
+    char *path = path_join(set->folder, LAST_FILE);
+    sonject_status status = path ? SONJECT_OK : report_out_of_memory(set->report, "a file name");
+    for (size_t i = 0; status == SONJECT_OK && i < set->split_count + DOCUMENTS; i++) {
+        if (i < set->split_count)
+            snprintf(name, sizeof name, "%s/coco.json", set->split_names[i]);
+        status =
+            file_list_add(&files, set->report, set->folder,
+                          i < set->split_count ? name : documents[i - set->split_count], false);
+    }
+    for (size_t i = 0; i < sizeof kept / sizeof *kept; i++)
+        json_add(&document, kept[i], json_incref(json_object_get(set->head, kept[i])));
+    json_add(&document, "files", files);
+    if (status == SONJECT_OK)
+        status = json_document_write(set->report, document, 9, path);
+    else
+        json_decref(document);
+    free(path);
+    return status;
+}
+
+sonject_status data_set_finish(struct data_set *set)
+{
+    CHECK(check_complete(set));
+    for (size_t i = 0; i < set->split_count; i++)
+        CHECK(write_coco(set, i));
+    CHECK(write_classes(set));
+    CHECK(write_contact_sheet(set));
+    CHECK(write_report_page(set));
+    CHECK(write_last(set));
+    struct report silent = {{0}, NULL, NULL};
+    for (size_t i = 0; i < set->split_count; i++) {
+        char *path = path_join(set->folder, set->split_names[i]);
+        each_folder(&silent, set->folder, set->split_names[i], set->outputs, tidy);
+        if (path)
+            folder_tidy(path);
+        free(path);
+    }
+    folder_tidy(set->folder);
+    return SONJECT_OK;
+}
