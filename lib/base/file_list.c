@@ -103,12 +103,18 @@ sonject_status file_list_add(json_t **list, struct report *report, const char *f
     return status != SONJECT_OK || *list ? status : report_out_of_memory(report, "a list of files");
 }
 
-/* The path of an entry's file, for free(); NULL where its name leads out of the folder, or memory
- * is out. */
-static char *entry_path(const json_t *entry, const char *folder)
+/* Whether an entry names a file, and none out of the folder. */
+static bool names_file(const json_t *entry)
 {
     const char *name = json_string_value(json_object_get(entry, "name"));
-    return name && *name && *name != '/' && !strstr(name, "..") ? path_join(folder, name) : NULL;
+    return name && *name && *name != '/' && !strstr(name, "..");
+}
+
+/* The path of an entry's file, for free(); NULL where it names none, or memory is out. */
+static char *entry_path(const json_t *entry, const char *folder)
+{
+    return names_file(entry) ? path_join(folder, json_string_value(json_object_get(entry, "name")))
+                             : NULL;
 }
 
 sonject_status file_list_check(const json_t *list, struct report *report, const char *folder,
@@ -121,8 +127,11 @@ sonject_status file_list_check(const json_t *list, struct report *report, const 
     {
         bool holds = false;
         char *path = entry_path(entry, folder);
-        const sonject_status status =
-            path ? file_entry_holds(report, entry, path, hashes_all, &holds) : SONJECT_OK;
+        sonject_status status = SONJECT_OK;
+        if (path)
+            status = file_entry_holds(report, entry, path, hashes_all, &holds);
+        else if (names_file(entry))
+            status = report_out_of_memory(report, "a path");
         free(path);
         if (status != SONJECT_OK)
             return status;

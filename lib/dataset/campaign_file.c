@@ -355,9 +355,15 @@ static const char *const output_words[] = {"highlight", "shadow", "masks", "ener
                                            "field",     "yolo",   "voc"};
 #define LABEL_WORDS 2
 
-static sonject_status read_word_of(struct reader *reader, const struct tree_node *node,
-                                   struct campaign *campaign, size_t first, size_t end)
+/* One of the list `outputs` or `labels`, as the path says. */
+static sonject_status read_output(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
 {
+    const size_t labels = COUNT(output_words) - LABEL_WORDS;
+    const bool is_label = strncmp(reader->path.text, "labels", 6) == 0;
+    const size_t first = is_label ? labels : 0;
+    const size_t end = is_label ? COUNT(output_words) : labels;
+    struct campaign *campaign = structure;
     struct word_list list = {{0}, 0};
     const char *text = read_text(reader, node);
     if (!text)
@@ -373,33 +379,14 @@ static sonject_status read_word_of(struct reader *reader, const struct tree_node
                        nearest_word(text, output_words + first, end - first));
 }
 
-static sonject_status read_output(struct reader *reader, const struct tree_node *node,
-                                  void *structure)
-{
-    return read_word_of(reader, node, structure, 0, COUNT(output_words) - LABEL_WORDS);
-}
-
-static sonject_status read_label_format(struct reader *reader, const struct tree_node *node,
-                                        void *structure)
-{
-    return read_word_of(reader, node, structure, COUNT(output_words) - LABEL_WORDS,
-                        COUNT(output_words));
-}
-
 static sonject_status read_outputs(struct reader *reader, const struct tree_node *node,
                                    void *structure)
 {
     static const struct list words = {SIZE_MAX, "", read_output};
     struct campaign *campaign = structure;
-    campaign->outputs &= OUTPUT_ALWAYS | OUTPUT_BIT(OUTPUT_YOLO) | OUTPUT_BIT(OUTPUT_VOC);
+    if (strcmp(reader->path.text, "outputs") == 0)
+        campaign->outputs &= OUTPUT_ALWAYS | OUTPUT_BIT(OUTPUT_YOLO) | OUTPUT_BIT(OUTPUT_VOC);
     return read_list(reader, node, &words, campaign);
-}
-
-static sonject_status read_label_formats(struct reader *reader, const struct tree_node *node,
-                                         void *structure)
-{
-    static const struct list words = {SIZE_MAX, "", read_label_format};
-    return read_list(reader, node, &words, structure);
 }
 
 static sonject_status check_fraction(struct reader *reader, const struct tree_node *node,
@@ -498,7 +485,7 @@ static const struct field campaign_fields[] = {
     {"chip", "size of images, and where in swaths they lie", SAME(chip_section), REQUIRED},
     {"outputs", "written beside image and truth: highlight, shadow, masks, energy, field",
      .kind = FIELD_SPECIAL, .read = read_outputs, .unit = "list of words"},
-    {"labels", "beside COCO: yolo, voc", .kind = FIELD_SPECIAL, .read = read_label_formats,
+    {"labels", "beside COCO: yolo, voc", .kind = FIELD_SPECIAL, .read = read_outputs,
      .unit = "list of words"},
     {"empty", "fraction of images without any object", QUANTITY(STRUCTURE, empty, QUANTITY_NUMBER)},
     {"splits", "names and fractions, such as {train: 0.8, test: 0.2}", .kind = FIELD_SPECIAL,

@@ -161,10 +161,12 @@ sonject_status data_set_begin(struct sonject_campaign *campaign, const struct de
 {
     struct report *report = campaign->report;
     bool is_same = false;
-    json_t *inputs = json_copy(campaign->inputs);
+    json_t *inputs = device ? json_object() : json_incref(campaign->inputs);
     char *path = path_join(folder, HEAD_FILE);
-    if (device)
-        json_add(&inputs, "device", device_document(device));
+    if (device) /* json_copy would not tell what it had no memory for */
+        json_add(&inputs, "device",
+                 json_object_update(inputs, campaign->inputs) == 0 ? device_document(device)
+                                                                   : NULL);
     sonject_status status = path && inputs ? SONJECT_OK : report_out_of_memory(report, "inputs");
     if (status == SONJECT_OK && file_exists(path))
         status = check_head(campaign, inputs, folder, overwrites, &is_same);
@@ -384,10 +386,10 @@ static sonject_status add_image(struct coco_file *coco, uint64_t id, bool has_an
         status = add_entry(coco, coco_image(id, member_text(record, "image"), (uint64_t)set->rows,
                                             (uint64_t)set->columns));
     for (size_t i = 0; status == SONJECT_OK && i < json_array_size(list); i++) {
-        json_t *numbered = json_copy(json_array_get(list, i));
-        json_add(&numbered, "id", json_count(coco->entries + 1));
-        json_add(&numbered, "image_id", json_count(id));
-        status = add_entry(coco, numbered);
+        json_t *annotation = json_incref(json_array_get(list, i));
+        json_add(&annotation, "id", json_count(coco->entries + 1));
+        json_add(&annotation, "image_id", json_count(id));
+        status = add_entry(coco, annotation);
     }
     json_decref(record);
     return status;

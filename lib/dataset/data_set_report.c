@@ -42,12 +42,13 @@ static void add_base64(struct growing_text *text, const char *bytes)
     }
 }
 
-/* Keys are plain words; what is not is left out. */
-static void add_plain(struct growing_text *svg, const char *words)
+static void add_escaped(struct growing_text *text, const char *raw)
 {
-    for (; *words; words++)
-        if (!strchr("<>&\"'", *words))
-            growing_text_add(svg, "%c", *words);
+    for (; *raw; raw++)
+        if (strchr("<>&\"'", *raw))
+            growing_text_add(text, "&#%d;", *raw);
+        else
+            growing_text_add(text, "%c", *raw);
 }
 
 static void draw(struct growing_text *svg, const char *name, const char *unit, const size_t *bins,
@@ -63,9 +64,9 @@ static void draw(struct growing_text *svg, const char *name, const char *unit, c
                      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
                      "font-family=\"sans-serif\" font-size=\"12\"><text x=\"%d\" y=\"16\">",
                      WIDTH, HEIGHT, LEFT);
-    add_plain(svg, name);
+    add_escaped(svg, name);
     growing_text_add(svg, "%s", *unit ? ", " : "");
-    add_plain(svg, unit);
+    add_escaped(svg, unit);
     growing_text_add(svg, "</text>");
     for (int i = 0; i < BINS; i++) {
         const int height = (int)lround((double)(BOTTOM - TOP) * (double)bins[i] / (double)most);
@@ -101,7 +102,7 @@ static void write_histogram(struct growing_text *text, const struct series *seri
     draw(&svg, series->name, series->unit, bins, low, high, series->count);
     char *picture = growing_text_end(&svg);
     growing_text_add(text, "<img width=\"%d\" height=\"%d\" alt=\"", WIDTH, HEIGHT);
-    add_plain(text, series->name);
+    add_escaped(text, series->name);
     growing_text_add(text, "\" src=\"data:image/svg+xml;base64,");
     if (picture)
         add_base64(text, picture);
@@ -236,15 +237,6 @@ static sonject_status add_image(struct statistics_page *page, size_t split, uint
     json_decref(record);
     json_decref(truth);
     return SONJECT_OK;
-}
-
-static void add_escaped(struct growing_text *text, const char *raw)
-{
-    for (; *raw; raw++)
-        if (strchr("<>&\"'", *raw))
-            growing_text_add(text, "&#%d;", *raw);
-        else
-            growing_text_add(text, "%c", *raw);
 }
 
 static void write_counts(const struct statistics_page *page, struct growing_text *text)

@@ -421,62 +421,62 @@ static sonject_status write_quicklook(struct report *report, const struct run_fa
     return status;
 }
 
-enum layer {
-    LAYER_FIELD,
-    LAYER_ENERGY,
-    LAYER_HIGHLIGHT,
-    LAYER_SHADOW,
+enum layer_kind {
+    LAYER_COMPLEX,
+    LAYER_REAL,
+    LAYER_MASK,
     LAYER_LABELS,
-    LAYER_INFLUENCE,
-    LAYER_QUICKLOOK,
-    LAYER_ORDERS /* one for each order of interaction */
+    LAYER_QUICKLOOK
 };
 
-static sonject_status write_layer(struct report *report, const struct run_facts *facts, int layer,
-                                  const char *path)
+static sonject_status write_layer(struct report *report, const struct run_facts *facts,
+                                  enum layer_kind kind, const void *pixels, const char *path)
 {
-    const struct injection_result *result = facts->result;
-    switch (layer) {
-    case LAYER_FIELD:
-        return write_float_layer(report, facts, 2, result->field, path);
-    case LAYER_ENERGY:
-        return write_float_layer(report, facts, 1, result->energy, path);
-    case LAYER_HIGHLIGHT:
-        return write_mask(report, facts->swath, result->highlight, path);
-    case LAYER_SHADOW:
-        return write_mask(report, facts->swath, result->shadow, path);
+    switch (kind) {
+    case LAYER_COMPLEX:
+        return write_float_layer(report, facts, 2, pixels, path);
+    case LAYER_REAL:
+        return write_float_layer(report, facts, 1, pixels, path);
+    case LAYER_MASK:
+        return write_mask(report, facts->swath, pixels, path);
     case LAYER_LABELS:
-        return write_label_mask(report, facts->swath, result->labels, path);
-    case LAYER_INFLUENCE:
-        return write_mask(report, facts->swath, result->influence, path);
-    case LAYER_QUICKLOOK:
-        return write_quicklook(report, facts, path);
+        return write_label_mask(report, facts->swath, pixels, path);
     default:
-        return write_float_layer(report, facts, 1, result->order_energy[layer - LAYER_ORDERS],
-                                 path);
+        return write_quicklook(report, facts, path);
     }
 }
 
 /* Orders that this result has not may be there from a run before. */
 sonject_status write_layers(struct report *report, struct run_facts *facts, const char *folder)
 {
-    static const char *const names[LAYER_ORDERS] = {"patch.tif",    "energy.tif", "highlight.png",
-                                                    "shadow.png",   "labels.png", "influence.png",
-                                                    "quicklook.png"};
-    const int wanted = LAYER_ORDERS + (int)facts->result->orders;
+    const struct injection_result *result = facts->result;
+    const struct {
+        const char *name;
+        enum layer_kind kind;
+        const void *pixels;
+    } layers[] = {{"patch.tif", LAYER_COMPLEX, result->field},
+                  {"energy.tif", LAYER_REAL, result->energy},
+                  {"highlight.png", LAYER_MASK, result->highlight},
+                  {"shadow.png", LAYER_MASK, result->shadow},
+                  {"labels.png", LAYER_LABELS, result->labels},
+                  {"influence.png", LAYER_MASK, result->influence},
+                  {"quicklook.png", LAYER_QUICKLOOK, NULL}};
     sonject_status status = SONJECT_OK;
-    for (int i = 0; status == SONJECT_OK && i < LAYER_ORDERS + SCENE_INTERACTIONS_MAX; i++) {
+    for (uint32_t i = 0; status == SONJECT_OK && i < COUNT(layers) + SCENE_INTERACTIONS_MAX; i++) {
+        const uint32_t order = i < COUNT(layers) ? 0 : i - (uint32_t)COUNT(layers) + 1;
         char name[32];
-        snprintf(name, sizeof name, "energy_order_%d.tif", i - LAYER_ORDERS + 1);
-        const char *file = i < LAYER_ORDERS ? names[i] : name;
+        snprintf(name, sizeof name, "energy_order_%u.tif", (unsigned)order);
+        const char *file = order == 0 ? layers[i].name : name;
         char *path = path_join(folder, file);
         CHECK_MEMORY(report, path, "a path");
-        if (i >= wanted)
+        if (order > result->orders)
             file_discard(path);
+        else if (order > 0)
+            status = write_float_layer(report, facts, 1, result->order_energy[order - 1], path);
         else
-            status = write_layer(report, facts, i, path);
+            status = write_layer(report, facts, layers[i].kind, layers[i].pixels, path);
         free(path);
-        if (i < wanted)
+        if (order <= result->orders)
             THEN(status, file_list_add(&facts->files, report, folder, file, true));
     }
     return status;
