@@ -298,8 +298,7 @@ static sonject_status keep_text(struct reader *reader, const struct tree_node *n
 {
     if (tree_is_null(node))
         return refuse_value(reader, node, "has no value");
-    CHECK(
-        tree_override_text(reader->report, node, &distribution->texts[distribution->count]));
+    CHECK(tree_override_text(reader->report, node, &distribution->texts[distribution->count]));
     distribution->count++;
     return SONJECT_OK;
 }

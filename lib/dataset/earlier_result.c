@@ -59,12 +59,9 @@ static void add_difference(struct differences *differences, const char *name, co
     if (differences->count++ >= DIFFERENCES_NAMED)
         return;
     growing_text_add(&differences->text, "%s%s", differences->count > 1 ? ", " : "", name);
-    char *old = json_is_integer(there) ? json_dumps(there, JSON_ENCODE_ANY) : NULL;
-    char *new = json_is_integer(here) ? json_dumps(here, JSON_ENCODE_ANY) : NULL;
-    if (old && new)
-        growing_text_add(&differences->text, " (%s there, %s here)", old, new);
-    free(old);
-    free(new);
+    if (json_is_integer(there) && json_is_integer(here))
+        growing_text_add(&differences->text, " (%lld there, %lld here)",
+                         (long long)json_integer_value(there), (long long)json_integer_value(here));
 }
 
 sonject_status inputs_check(struct report *report, const char *folder, const json_t *there,

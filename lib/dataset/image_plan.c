@@ -65,13 +65,11 @@ static sonject_status add_key(struct drawing *drawing, struct tree_place place, 
     CHECK_MEMORY(drawing->report, text, "an image's scene");
     const sonject_status status =
         grow_list(drawing->report, &plan->keys, plan->key_count, sizeof *plan->keys);
-    if (status != SONJECT_OK) {
+    if (status == SONJECT_OK)
+        plan->keys[plan->key_count++] = (struct plan_key){text, place};
+    else
         free(text);
-        return status;
-    }
-    plan->keys[plan->key_count].text = text;
-    plan->keys[plan->key_count++].place = place;
-    return SONJECT_OK;
+    return status;
 }
 
 static sonject_status add_value(struct drawing *drawing, struct tree_place place,
@@ -126,8 +124,8 @@ uint32_t image_split(const struct campaign *campaign, uint64_t id)
     return number;
 }
 
-/* The image's swath and its place there. Images of a split follow its swaths: as many from each, but
- * for one. within: the image's number in its split. */
+/* The image's swath and its place there. Images of a split follow its swaths: as many from each,
+ * but for one. within: the image's number in its split. */
 static void choose_place(const struct campaign *campaign, struct image_plan *plan, uint64_t within)
 {
     const struct split *split = &campaign->splits[plan->split];
@@ -183,24 +181,21 @@ static sonject_status draw_object(struct drawing *drawing, const struct item *it
     const uint64_t seed =
         category_seed(campaign, is_clutter ? UINT32_MAX - 1 : drawing->plan->category);
     char prefix[32];
-    sonject_status status = SONJECT_OK;
     snprintf(prefix, sizeof prefix, "objects[%u].", (unsigned)number);
     for (int k = 0; k < 2; k++)
-        for (size_t i = 0; status == SONJECT_OK && i < both[k]->count; i++) {
+        for (size_t i = 0; i < both[k]->count; i++) {
             char text[DISTRIBUTION_TEXT_CAPACITY];
-            const char *value;
             const struct distribution *distribution = &both[k]->list[i];
             if (k == 0 && draws_have_key(&item->draws, distribution->key))
                 continue;
-            if (is_clutter && drawing->trial == NO_TRIAL)
-                value = distribution_value(distribution,
-                                           uniform_number(seed, distribution->stream, place), text);
-            else
-                value =
-                    draw_value(drawing, distribution, seed, drawing->index, drawing->count, text);
-            status = add_value(drawing, distribution->place, prefix, distribution->key, value);
+            const char *value =
+                is_clutter && drawing->trial == NO_TRIAL
+                    ? distribution_value(distribution,
+                                         uniform_number(seed, distribution->stream, place), text)
+                    : draw_value(drawing, distribution, seed, drawing->index, drawing->count, text);
+            CHECK(add_value(drawing, distribution->place, prefix, distribution->key, value));
         }
-    return status;
+    return SONJECT_OK;
 }
 
 /* A place in the middle part of the chip: the first candidate for the first object, for others the
@@ -310,50 +305,35 @@ static sonject_status draw_objects(struct drawing *drawing, const struct item *t
     for (uint32_t i = 0; i < count; i++)
         write_object(drawing, items[i], &text);
     growing_text_add(&text, "]");
-    sonject_status status = add_key(drawing, nowhere, growing_text_end(&text));
-    for (uint32_t i = 0; status == SONJECT_OK && i < count; i++)
-        status = draw_object(drawing, items[i], i, i >= first_clutter);
-    return status;
+    CHECK(add_key(drawing, nowhere, growing_text_end(&text)));
+    for (uint32_t i = 0; i < count; i++)
+        CHECK(draw_object(drawing, items[i], i, i >= first_clutter));
+    return SONJECT_OK;
 }
 
-static sonject_status draw_scene(struct drawing *drawing)
-{
-    const struct campaign *campaign = drawing->campaign;
-    sonject_status status = SONJECT_OK;
-    for (size_t i = 0; status == SONJECT_OK && i < campaign->draws.count; i++) {
-        char text[DISTRIBUTION_TEXT_CAPACITY];
-        const struct distribution *distribution = &campaign->draws.list[i];
-        const char *value = draw_value(drawing, distribution, campaign->seed, drawing->plan->id,
-                                       campaign->images, text);
-        status = add_value(drawing, distribution->place, "", distribution->key, value);
-    }
-    return status;
-}
-
-static sonject_status draw_patch(struct drawing *drawing)
+/* The swath's own keys, the chip and the seed, what is drawn of the scene, and the objects. */
+static sonject_status fill_plan(struct drawing *drawing, const struct item *trial_clutter)
 {
     const struct campaign *campaign = drawing->campaign;
     const struct region *chip = &drawing->plan->chip;
     const struct tree_place nowhere = {NULL, 0, 0};
     const struct swath_plan *swath = &campaign->swaths[drawing->plan->swath];
     char text[160];
-    sonject_status status = SONJECT_OK;
-    for (size_t i = 0; status == SONJECT_OK && i < swath->key_count; i++)
-        status = add_key(drawing, swath->place, copy_text(swath->keys[i]));
+    for (size_t i = 0; i < swath->key_count; i++)
+        CHECK(add_key(drawing, swath->place, copy_text(swath->keys[i])));
     snprintf(text, sizeof text, "{row: %llu, column: %llu, rows: %llu, columns: %llu}",
              (unsigned long long)chip->first_row, (unsigned long long)chip->first_column,
              (unsigned long long)chip->rows, (unsigned long long)chip->columns);
-    THEN(status, add_value(drawing, nowhere, "", "patch", text));
+    CHECK(add_value(drawing, nowhere, "", "patch", text));
     snprintf(text, sizeof text, "%llu", (unsigned long long)drawing->plan->seed);
-    THEN(status, add_value(drawing, nowhere, "", "injection.seed", text));
-    return status;
-}
-
-static sonject_status fill_plan(struct drawing *drawing, const struct item *trial_clutter)
-{
-    sonject_status status = draw_patch(drawing);
-    THEN(status, draw_scene(drawing));
-    return status == SONJECT_OK ? draw_objects(drawing, trial_clutter) : status;
+    CHECK(add_value(drawing, nowhere, "", "injection.seed", text));
+    for (size_t i = 0; i < campaign->draws.count; i++) {
+        const struct distribution *distribution = &campaign->draws.list[i];
+        const char *value = draw_value(drawing, distribution, campaign->seed, drawing->plan->id,
+                                       campaign->images, text);
+        CHECK(add_value(drawing, distribution->place, "", distribution->key, value));
+    }
+    return draw_objects(drawing, trial_clutter);
 }
 
 sonject_status image_plan_make(struct report *report, const struct campaign *campaign, uint64_t id,

@@ -269,14 +269,6 @@ uint32_t labels_of_document(const json_t *run)
     return formats;
 }
 
-static void add_members(json_t **document, const struct json_member *members)
-{
-    for (; members->key; members++)
-        json_add(document, members->key, members->value);
-}
-#define ADD(document, ...)                                                                         \
-    add_members(document, (const struct json_member[]){__VA_ARGS__, {NULL, NULL}})
-
 sonject_status write_run(struct report *report, const struct run_facts *facts, const char *path)
 {
     const sonject_statistics *statistics = &facts->result->statistics;
@@ -293,21 +285,25 @@ sonject_status write_run(struct report *report, const struct run_facts *facts, c
                           NUMBER(statistics, output_contrast),
                           NUMBER(statistics, histogram_distance), NUMBER(statistics, correlation))
             : json_null();
+    const char *band = facts->scene->band;
     json_t *document = JSON_OBJECT(
         {"sonject", json_string(sonject_version())}, {"scene_hash", json_string(facts->scene_hash)},
         {"seed", json_seed(facts->scene->injection.seed)},
-        {"device", device_document(facts->device)}, {"options", options_document(facts->scene)});
-    if (facts->scene->band)
-        ADD(&document, {"band", json_text(facts->scene->band)},
-            {"bands", bands_document(facts->scene)});
-    ADD(&document, {"image", json_text(facts->image_name)},
-        {"labels", labels_document(facts->label_formats)}, {"times_s", times},
-        WHOLE(statistics, pings), WHOLE(statistics, rays), WHOLE(statistics, ray_queries),
-        WHOLE(statistics, impulses), {"peak_memory_bytes", json_count((uint64_t)kilobytes * 1024)},
+        {"device", device_document(facts->device)}, {"options", options_document(facts->scene)},
+        {"band", band ? json_text(band) : json_null()},
+        {"bands", band ? bands_document(facts->scene) : json_null()},
+        {"image", json_text(facts->image_name)}, {"labels", labels_document(facts->label_formats)},
+        {"times_s", times}, WHOLE(statistics, pings), WHOLE(statistics, rays),
+        WHOLE(statistics, ray_queries), WHOLE(statistics, impulses),
+        {"peak_memory_bytes", json_count((uint64_t)kilobytes * 1024)},
         NUMBER(statistics, noise_floor_db), {"blending", blending_document(statistics)},
         {"input_clipped_pixels", json_count(statistics->input_clipped)},
         {"output_clipped_pixels", json_count(statistics->output_clipped)},
         WHOLE(statistics, changed_pixels), {"seabed_comparison", comparison});
+    if (!band) {
+        json_object_del(document, "band");
+        json_object_del(document, "bands");
+    }
     const sonject_status status =
         earlier_describe(report, &document, facts->inputs, facts->files, facts->scene);
     if (status == SONJECT_OK)
