@@ -9,7 +9,7 @@
 #include "base/json_document.h"
 #include "base/memory.h"
 #include "dataset/data_set.h"
-#include "dataset/run_files.h"
+#include "dataset/run.h"
 #include "inject/scene_hash.h"
 #include "schema/scene_file.h"
 #include "swath/geometry_notes.h"

@@ -19,7 +19,7 @@
 #include "base/json_document.h"
 #include "base/text.h"
 #include "dataset/earlier_result.h"
-#include "dataset/run_files.h"
+#include "dataset/run.h"
 
 #define FORMAT_VERSION 2
 #define HEAD_FILE      "campaign.json"

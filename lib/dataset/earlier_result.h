@@ -1,5 +1,5 @@
 /* What a folder holds of an earlier call: a result whose last document names what it was made of
- * and its files; and runs of several bands, each in a folder of its name. */
+ * and its files. */
 #ifndef SONJECT_DATASET_EARLIER_RESULT_H
 #define SONJECT_DATASET_EARLIER_RESULT_H
 
@@ -56,17 +56,5 @@ bool folder_has_result(const char *folder);
  * STORAGE, MEMORY. */
 sonject_status earlier_document(struct report *report, const char *folder, const char *name,
                                 json_t **document);
-
-/* The names of all bands of the scene of which a folder below this one, which has a band's name,
- * holds shards or a result: one a line, for free(); "" where there is none, or where this folder
- * itself holds a run. Errors: INPUT, STORAGE, MEMORY. */
-sonject_status find_bands(struct report *report, const char *folder, char **names);
-
-/* Whether there is a shard or a result of each. Errors: INPUT (names one that has none), STORAGE,
- * MEMORY. */
-sonject_status check_bands_begun(struct report *report, const char *folder, const char *names);
-
-/* The next of the names, for free(); NULL where memory is out. There must be one. */
-char *take_band(const char **names);
 
 #endif

@@ -24,18 +24,19 @@
 #define SERIES_FILE "series.npy"
 #define DOCUMENT    "elements.json"
 
+#define NUMBER(structure, member)                                                                  \
+    {                                                                                              \
+#member, json_number((structure)->member)                                                  \
+    }
+
 static json_t *array_document(const sonject_elements_params *elements)
 {
-    return JSON_OBJECT({"pings", json_integer((json_int_t)elements->pings)},
-                       {"first_ping_m", json_number(elements->first_ping_m)},
-                       {"ping_spacing_m", json_number(elements->ping_spacing_m)},
-                       {"transmitter_offset_m", json_number(elements->transmitter_offset_m)},
-                       {"transmitter_length_m", json_number(elements->transmitter_length_m)},
-                       {"hydrophones", json_integer((json_int_t)elements->hydrophones)},
-                       {"first_hydrophone_m", json_number(elements->first_hydrophone_m)},
-                       {"hydrophone_spacing_m", json_number(elements->hydrophone_spacing_m)},
-                       {"hydrophone_length_m", json_number(elements->hydrophone_length_m)},
-                       {"aspect_limit_rad", json_number(elements->aspect_limit_rad)});
+    return JSON_OBJECT({"pings", json_count(elements->pings)}, NUMBER(elements, first_ping_m),
+                       NUMBER(elements, ping_spacing_m), NUMBER(elements, transmitter_offset_m),
+                       NUMBER(elements, transmitter_length_m),
+                       {"hydrophones", json_count(elements->hydrophones)},
+                       NUMBER(elements, first_hydrophone_m), NUMBER(elements, hydrophone_spacing_m),
+                       NUMBER(elements, hydrophone_length_m), NUMBER(elements, aspect_limit_rad));
 }
 
 /* Where the scene's image lies, for those who want to see the same. */
@@ -75,13 +76,10 @@ static json_t *series_document(const struct scene *scene, const struct injection
                          : "pressure over that of the source at 1 m, without absorption")},
         {"source_level_db", is_pressure ? json_number(elements->source_level_db) : json_null()},
         {"heard", json_string(resynthesises ? "targets and seabed" : "targets")},
-        {"samples", json_integer((json_int_t)layout->samples)},
-        {"sampling_rate_hz", json_number(elements->sampling_rate_hz)},
-        {"first_time_s", json_number(elements->first_time_s)},
-        {"sound_speed_mps", json_number(layout->sound_speed_mps)},
-        {"centre_frequency_hz", json_number(layout->centre_frequency_hz)},
-        {"bandwidth_hz", json_number(layout->bandwidth_hz)},
-        {"along_track_resolution_m", json_number(layout->along_track_resolution_m)},
+        {"samples", json_count(layout->samples)}, NUMBER(elements, sampling_rate_hz),
+        NUMBER(elements, first_time_s), NUMBER(layout, sound_speed_mps),
+        NUMBER(layout, centre_frequency_hz), NUMBER(layout, bandwidth_hz),
+        NUMBER(layout, along_track_resolution_m),
         {"altitude_m", json_number(scene->sonar.altitude_m)},
         {"side",
          json_string(scene->geometry.side == SONJECT_SIDE_STARBOARD ? "starboard" : "port")},

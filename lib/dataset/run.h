@@ -1,6 +1,9 @@
-/* Whole runs on files: from rays, from impulses that were kept, or from shards. */
+/* Whole runs on files, from rays, from impulses that were kept, or from shards; and their files:
+ * images, labels and JSON. */
 #ifndef SONJECT_DATASET_RUN_H
 #define SONJECT_DATASET_RUN_H
+
+#include <jansson.h>
 
 #include <sonject/run.h>
 #include <sonject/stages.h>
@@ -37,11 +40,6 @@ sonject_status merge_folder(struct report *report, struct device_slot *slot,
                             const struct run_request *request, bool allows_user_shapes,
                             int *was_finished);
 
-/* Whether scene and image are those that the impulses were traced from, but for what image
- * formation alone depends on. Errors: INPUT, MEMORY. */
-sonject_status check_traced(struct report *report, const struct impulse_file *impulses,
-                            const struct scene *scene, const struct swath *swath);
-
 /* Reads the scene whose text a file keeps, with the overrides of params, whose file is for the
  * message. Names of files are meant from where it was traced. scene is the caller's for
  * scene_clear, also on failure. Errors: INPUT, STORAGE, MEMORY. */
@@ -56,5 +54,45 @@ sonject_status run_elements(struct report *report, struct device_slot *slot,
 /* The scene's geometry as a text with a drawing, for free(): sonject_check. */
 sonject_status describe_scene(struct report *report, struct device_slot *slot,
                               const struct scene *scene, char **text);
+
+struct run_facts {
+    const struct scene *scene;
+    const struct swath *swath;
+    const struct injection_result *result;
+    const struct device *device;
+    const char *scene_hash; /* of scene and input: see run.c */
+    json_t *inputs;         /* of what that is made */
+    json_t *files;          /* that were written, as file_list_add has them */
+    const char *image_name;
+    uint32_t label_formats; /* sum of sonject_labels */
+    double read_s, write_s, total_s;
+};
+
+/* Each writes one file, whole or not at all. Errors: STORAGE, MEMORY. */
+sonject_status write_truth(struct report *report, const struct run_facts *facts, const char *path);
+sonject_status write_run(struct report *report, const struct run_facts *facts, const char *path);
+
+/* Writes patch.tif, energy.tif, highlight.png, shadow.png, labels.png, influence.png, quicklook.png
+ * and, where the result has them, energy_order_1.tif and so on into the folder, each whole or not
+ * at all, and lists them in facts->files. Errors: STORAGE, MEMORY. */
+sonject_status write_layers(struct report *report, struct run_facts *facts, const char *folder);
+
+/* Writes coco.json, contacts.json, contacts.csv, and what facts->label_formats asks for, and lists
+ * them in facts->files; label files of other formats that an earlier run left are removed. Errors:
+ * STORAGE, MEMORY. */
+sonject_status write_labels(struct report *report, struct run_facts *facts, const char *folder);
+
+/* A mask of the swath's patch in an image of the swath's size, and the numbers of objects, each in
+ * a colour of its own. Errors: STORAGE, MEMORY. */
+sonject_status write_mask(struct report *report, const struct swath *swath, const uint8_t *mask,
+                          const char *path);
+sonject_status write_label_mask(struct report *report, const struct swath *swath,
+                                const uint8_t *labels, const char *path);
+
+/* The formats (sum of sonject_labels) that a run.json names. */
+uint32_t labels_of_document(const json_t *run);
+
+/* Which device that is; NULL when memory is out. */
+json_t *device_document(const struct device *device);
 
 #endif

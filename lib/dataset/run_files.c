@@ -1,5 +1,5 @@
 #define _POSIX_C_SOURCE 200809L
-#include "dataset/run_files.h"
+#include "dataset/run.h"
 
 #include <math.h>
 #include <stdio.h>
