@@ -1,3 +1,4 @@
+/* Two sets of contacts, measure by measure: whether both come from one distribution. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +11,6 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "image/canvas.h"
-#include "measure/contacts.h"
 #include "measure/measures.h"
 #include "swath/raster_file.h"
 
@@ -25,6 +25,95 @@ static const struct colour paper = {255, 255, 255};
 static const struct colour ink = {0, 0, 0};
 static const struct colour blue = {0, 90, 200}; /* the first set */
 static const struct colour red = {210, 40, 20}; /* the second */
+
+struct sample_summary {
+    size_t count;
+    double mean, error; /* standard error of the mean; NaN where there are too few */
+};
+
+/* Whether two sets of numbers, such as a measure of contacts, come from one distribution. */
+struct sample_comparison {
+    struct sample_summary first, second;
+    double distance;    /* Kolmogorov-Smirnov, 0...1; NaN where a set is empty */
+    double probability; /* that two sets of one distribution are at least that far apart:
+                           asymptotic, with Stephens's correction for small sets */
+};
+
+static int by_size(const void *a, const void *b)
+{
+    const double x = *(const double *)a;
+    const double y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static struct sample_summary summarise(const double *values, size_t count)
+{
+    struct sample_summary summary = {count, NAN, NAN};
+    double sum = 0.0;
+    double squares = 0.0;
+    for (size_t i = 0; i < count; i++)
+        sum += values[i];
+    if (count > 0)
+        summary.mean = sum / (double)count;
+    for (size_t i = 0; i < count; i++)
+        squares += (values[i] - summary.mean) * (values[i] - summary.mean);
+    if (count > 1)
+        summary.error = sqrt(squares / ((double)count - 1.0) / (double)count);
+    return summary;
+}
+
+static double largest_distance(const double *a, size_t a_count, const double *b, size_t b_count)
+{
+    size_t in_a = 0;
+    size_t in_b = 0;
+    double largest = 0.0;
+    while (in_a < a_count && in_b < b_count) {
+        const double value = fmin(a[in_a], b[in_b]);
+        while (in_a < a_count && a[in_a] <= value)
+            in_a++;
+        while (in_b < b_count && b[in_b] <= value)
+            in_b++;
+        largest =
+            fmax(largest, fabs((double)in_a / (double)a_count - (double)in_b / (double)b_count));
+    }
+    return largest;
+}
+
+/* Kolmogorov's distribution, beyond an argument. */
+static double kolmogorov_tail(double argument)
+{
+    double sum = 0.0;
+    double sign = 1.0;
+    if (argument < 0.2) /* 1 - 5e-13 there, and the series does not converge */
+        return 1.0;
+    for (int k = 1; k <= 100; k++) {
+        sum += sign * exp(-2.0 * k * k * argument * argument);
+        sign = -sign;
+    }
+    return fmin(1.0, fmax(0.0, 2.0 * sum));
+}
+
+/* Sorts both. */
+static struct sample_comparison compare_samples(double *first, size_t first_count, double *second,
+                                                size_t second_count)
+{
+    struct sample_comparison comparison;
+    comparison.first = summarise(first, first_count);
+    comparison.second = summarise(second, second_count);
+    comparison.distance = NAN;
+    comparison.probability = NAN;
+    if (first_count > 0)
+        qsort(first, first_count, sizeof *first, by_size);
+    if (second_count > 0)
+        qsort(second, second_count, sizeof *second, by_size);
+    if (first_count > 0 && second_count > 0) {
+        const double n = sqrt((double)first_count * (double)second_count /
+                              ((double)first_count + (double)second_count));
+        comparison.distance = largest_distance(first, first_count, second, second_count);
+        comparison.probability = kolmogorov_tail((n + 0.12 + 0.11 / n) * comparison.distance);
+    }
+    return comparison;
+}
 
 /* The values of one measure in a set. */
 struct sample {

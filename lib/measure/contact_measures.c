@@ -43,8 +43,7 @@ const struct contact_number contact_numbers[CONTACT_NUMBERS] = {
     NUMBER(shadow_along_error_pixels),
     NUMBER(shadow_range_error_pixels),
     NUMBER(gap_range_error_pixels),
-    NUMBER(dim_range_error_pixels),
-};
+    NUMBER(dim_range_error_pixels)};
 
 static sonject_box public_box(const struct window_box *box)
 {

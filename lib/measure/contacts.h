@@ -147,21 +147,4 @@ sonject_status contact_search_next(struct contact_search *search, struct report 
 size_t contact_search_left(const struct contact_search *search, const struct contact_image *image,
                            double contrast);
 
-struct sample_summary {
-    size_t count;
-    double mean, error; /* standard error of the mean; NaN where there are too few */
-};
-
-/* Whether two sets of numbers, such as a measure of contacts, come from one distribution. */
-struct sample_comparison {
-    struct sample_summary first, second;
-    double distance;    /* Kolmogorov-Smirnov, 0...1; NaN where a set is empty */
-    double probability; /* that two sets of one distribution are at least that far apart:
-                           asymptotic, with Stephens's correction for small sets */
-};
-
-/* Sorts both. */
-struct sample_comparison compare_samples(double *first, size_t first_count, double *second,
-                                         size_t second_count);
-
 #endif
