@@ -5,7 +5,7 @@
 
 #include "scene/placement.h"
 #include "scene/shapes/shape.h"
-#include "schema/scene_target.h"
+#include "schema/scene_file.h"
 
 sonject_status sonject_scene_add_mesh(sonject_scene *scene, const char *path,
                                       const sonject_mesh_params *params, uint32_t *mesh)

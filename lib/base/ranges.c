@@ -4,9 +4,6 @@
 #include <stdarg.h>
 #include <stdio.h>
 
-#define LENGTH_MIN_M 1e-6
-#define LENGTH_MAX_M 1e6
-
 static void fail(struct check *check, const char *key, const char *others, const char *format,
                  va_list arguments)
 {

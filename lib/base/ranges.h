@@ -6,8 +6,12 @@
 
 #include "base/report.h"
 
+/* Of lengths that a sonar can meet. */
+#define LENGTH_MIN_M 1e-6
+#define LENGTH_MAX_M 1e6
+
 /* Is told of every failure of a check, for what is to tell them all. Keys are the names of values
- * as scene files write them, in static storage. others: keys, separated by blanks, without whose
+ * as scene files write them, borrowed. others: keys, separated by blanks, without whose
  * being right the failure says nothing. */
 struct check_listener {
     void (*hear)(struct check_listener *listener, const char *key, const char *others,

@@ -13,7 +13,7 @@
 #include "image/raster.h"
 #include "inject/injection.h"
 #include "inject/swath.h"
-#include "schema/scene_schema.h"
+#include "schema/keys.h"
 
 #define CAMPAIGN_IMAGES_MAX  10000000 /* ids have eight digits */
 #define CAMPAIGN_ITEMS_MAX   250      /* targets and clutter, of each */

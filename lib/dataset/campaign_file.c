@@ -8,10 +8,8 @@
 #include "base/memory.h"
 #include "base/text.h"
 #include "dataset/campaign.h"
-#include "schema/scene_fields.h"
-#include "schema/scene_key.h"
+#include "schema/keys.h"
 
-#define STRUCTURE     struct campaign
 #define OBJECT_PREFIX "objects[]."
 #define SWATHS_MAX    10000
 #define PIXELS_MAX    (UINT64_C(1) << 40)
@@ -59,7 +57,8 @@ static sonject_status check_scene_key(struct reader *reader, const struct tree_e
     } else if (!scene_key_find(is_object ? &object_section : &scene_section, key, &near,
                                &section)) {
         for (size_t i = 0; i < section->count; i++)
-            list_word(&list, section->fields[i].key);
+            if (!section->fields[i].is_hidden)
+                list_word(&list, section->fields[i].key);
         status = tree_failure(reader->tree, entry->place, reader->path.text,
                               near ? "scenes have no such key; did you mean '%s'?"
                                    : "scenes have no such key; there are %s",
@@ -136,21 +135,21 @@ static sonject_status finish_item(struct reader *reader, const struct tree_node 
     if (is_given(node, "class") && (!*item->class_name || !text_is_printable(item->class_name)))
         refuse_key(reader, node, "class", "must be 1 to %d bytes on one line",
                    SONJECT_NAME_CAPACITY - 1);
-    if (!(item->weight >= 0.0 && item->weight <= 1e9))
-        refuse_key(reader, node, "weight", "must be from 0 to 1e9");
     return SONJECT_OK;
 }
 
+#define STRUCTURE struct item
 static const struct field item_fields[] = {
-    {"class", "label for training", LABEL(struct item, class_name), REQUIRED},
-    {"weight", "how often, beside the others; by default 1",
-     QUANTITY(struct item, weight, QUANTITY_NUMBER)},
+    {"class", "label for training", LABEL(class_name), REQUIRED},
+    {"weight", "how often, beside the others; by default 1", QUANTITY(weight, NUMBER),
+     WITHIN(0.0, 1e9)},
     {"object", "keys of an object that are not drawn", .kind = FIELD_SPECIAL, .read = read_object,
      REQUIRED},
     {"draw", "what other keys of the object are drawn from", .kind = FIELD_SPECIAL,
      .read = read_item_draws},
 };
-static const struct section item_section = {item_fields, COUNT(item_fields), finish_item};
+static const struct section item_section = {ROWS(item_fields), .finish = finish_item};
+#undef STRUCTURE
 
 /* Whole numbers: fixed, or a choice of such. */
 static sonject_status read_clutter_number(struct reader *reader, const struct tree_node *node,
@@ -220,13 +219,15 @@ static sonject_status read_swath_keys(struct reader *reader, const struct tree_n
     return status;
 }
 
+#define STRUCTURE struct region
 static const struct field box_fields[] = {
-    {"row", "first row", COUNT64(struct region, first_row, PIXELS_MAX), REQUIRED},
-    {"column", "first column", COUNT64(struct region, first_column, PIXELS_MAX), REQUIRED},
-    {"rows", "number of rows", COUNT64(struct region, rows, PIXELS_MAX), REQUIRED},
-    {"columns", "number of columns", COUNT64(struct region, columns, PIXELS_MAX), REQUIRED},
+    {"row", "first row", COUNT64(first_row, 0, PIXELS_MAX), REQUIRED},
+    {"column", "first column", COUNT64(first_column, 0, PIXELS_MAX), REQUIRED},
+    {"rows", "number of rows", COUNT64(rows, 0, PIXELS_MAX), REQUIRED},
+    {"columns", "number of columns", COUNT64(columns, 0, PIXELS_MAX), REQUIRED},
 };
-static const struct section box_section = {box_fields, COUNT(box_fields), NULL};
+static const struct section box_section = {ROWS(box_fields)};
+#undef STRUCTURE
 
 static sonject_status read_box(struct reader *reader, const struct tree_node *node, void *structure)
 {
@@ -243,14 +244,16 @@ static sonject_status read_avoid(struct reader *reader, const struct tree_node *
     return read_list(reader, node, &boxes, structure);
 }
 
+#define STRUCTURE struct swath_plan
 static const struct field swath_fields[] = {
     {"path", "image file", .kind = FIELD_SPECIAL, .read = read_swath_path, REQUIRED},
-    {"split", "that all of its images are in", TEXT(struct swath_plan, split)},
+    {"split", "that all of its images are in", TEXT(split)},
     {"set", "keys of the scene for this swath", .kind = FIELD_SPECIAL, .read = read_swath_keys},
     {"avoid", "boxes of contacts that images are not to show", .kind = FIELD_SPECIAL,
      .read = read_avoid},
 };
-static const struct section swath_section = {swath_fields, COUNT(swath_fields), NULL};
+static const struct section swath_section = {ROWS(swath_fields)};
+#undef STRUCTURE
 
 static sonject_status check_split_name(struct reader *reader, const struct campaign *campaign,
                                        const struct swath_plan *swath, const struct tree_node *node)
@@ -389,14 +392,6 @@ static sonject_status read_outputs(struct reader *reader, const struct tree_node
     return read_list(reader, node, &words, campaign);
 }
 
-static sonject_status check_fraction(struct reader *reader, const struct tree_node *node,
-                                     const char *key, double fraction)
-{
-    if (fraction >= 0.0 && fraction <= 1.0)
-        return SONJECT_OK;
-    return refuse_key(reader, node, key, "must be from 0 to 1, not %g", fraction);
-}
-
 /* Items of which something may be drawn. */
 static sonject_status check_items(struct reader *reader, const struct tree_node *node,
                                   const char *key, const struct item *items, uint32_t count)
@@ -410,58 +405,43 @@ static sonject_status check_items(struct reader *reader, const struct tree_node 
                       CAMPAIGN_ITEMS_MAX);
 }
 
-static sonject_status finish_chip(struct reader *reader, const struct tree_node *node,
-                                  void *structure)
-{
-    const struct campaign *campaign = structure;
-    if (campaign->chip_rows < 16)
-        refuse_key(reader, node, "rows", "must be at least 16");
-    if (campaign->chip_columns < 16)
-        refuse_key(reader, node, "columns", "must be at least 16");
-    return check_fraction(reader, node, "spread", campaign->spread);
-}
-
+#define STRUCTURE struct campaign
 static const struct field chip_fields[] = {
-    {"rows", "of each image", COUNT32(STRUCTURE, chip_rows, CAMPAIGN_CHIP_MAX), REQUIRED},
-    {"columns", "of each image", COUNT32(STRUCTURE, chip_columns, CAMPAIGN_CHIP_MAX), REQUIRED},
-    {"edge", "pixels that images stay away from swaths' edges",
-     COUNT32(STRUCTURE, edge, UINT32_MAX / 4)},
+    {"rows", "of each image", COUNT32(chip_rows, 16, CAMPAIGN_CHIP_MAX), REQUIRED},
+    {"columns", "of each image", COUNT32(chip_columns, 16, CAMPAIGN_CHIP_MAX), REQUIRED},
+    {"edge", "pixels that images stay away from swaths' edges", COUNT32(edge, 0, UINT32_MAX / 4)},
     {"clearance", "pixels that images stay away from contacts to avoid",
-     COUNT32(STRUCTURE, clearance, UINT32_MAX / 4)},
+     COUNT32(clearance, 0, UINT32_MAX / 4)},
     {"spread", "part of the sides in which objects lie, about the middle, 0 to 1",
-     QUANTITY(STRUCTURE, spread, QUANTITY_NUMBER)},
+     QUANTITY(spread, NUMBER), WITHIN(0.0, 1.0)},
     {"slant_range", "[nearest, farthest] that the middle of an image may have",
      .kind = FIELD_SPECIAL, .read = read_range, .unit = "list of two lengths"},
 };
-static const struct section chip_section = {chip_fields, COUNT(chip_fields), finish_chip};
+static const struct section chip_section = {ROWS(chip_fields)};
 
 static sonject_status finish_clutter(struct reader *reader, const struct tree_node *node,
                                      void *structure)
 {
     const struct campaign *campaign = structure;
     check_items(reader, node, "objects", campaign->clutter, campaign->clutter_count);
-    return check_fraction(reader, node, "alone", campaign->clutter_alone);
+    return SONJECT_OK;
 }
 
 static const struct field clutter_fields[] = {
     {"objects", "list of what clutter may be, as targets are",
-     ENTRIES(STRUCTURE, clutter, clutter_count, "object", item_section), REQUIRED},
+     ENTRIES(clutter, clutter_count, "object", item_section), REQUIRED},
     {"number", "of clutter objects in an image with a target", .kind = FIELD_SPECIAL,
      .unit = "whole number, or a distribution", .read = read_clutter_number},
-    {"alone", "fraction of images with clutter and no target",
-     QUANTITY(STRUCTURE, clutter_alone, QUANTITY_NUMBER)},
+    {"alone", "fraction of images with clutter and no target", QUANTITY(clutter_alone, NUMBER),
+     WITHIN(0.0, 1.0)},
 };
-static const struct section clutter_section = {clutter_fields, COUNT(clutter_fields),
-                                               finish_clutter};
+static const struct section clutter_section = {ROWS(clutter_fields), .finish = finish_clutter};
 
 static sonject_status finish_campaign(struct reader *reader, const struct tree_node *node,
                                       void *structure)
 {
     struct campaign *campaign = structure;
     const double without_target = campaign->empty + campaign->clutter_alone;
-    if (campaign->images == 0)
-        refuse_key(reader, node, "images", "must be at least 1");
-    check_fraction(reader, node, "empty", campaign->empty);
     check_items(reader, node, "targets", campaign->targets, campaign->target_count);
     if (without_target > 1.0)
         refuse_relation(reader, node, "empty", "clutter", "and clutter.alone together are above 1");
@@ -477,17 +457,17 @@ static const struct field campaign_fields[] = {
      REQUIRED},
     {"scene", "scene file with all that is not drawn", .kind = FIELD_SPECIAL,
      .read = read_scene_name, .unit = "file name", REQUIRED},
-    {"images", "number of images", COUNT64(STRUCTURE, images, CAMPAIGN_IMAGES_MAX), REQUIRED},
-    {"seed", "of all that is drawn", COUNT64(STRUCTURE, seed, UINT64_MAX)},
+    {"images", "number of images", COUNT64(images, 1, CAMPAIGN_IMAGES_MAX), REQUIRED},
+    {"seed", "of all that is drawn", COUNT64(seed, 0, 0)},
     {"design", "how values are drawn",
-     WORD(STRUCTURE, design) =
+     WORD(design) =
          {[DESIGN_RANDOM] = "random", [DESIGN_STRATIFIED] = "stratified", [DESIGN_GRID] = "grid"}},
     {"chip", "size of images, and where in swaths they lie", SAME(chip_section), REQUIRED},
     {"outputs", "written beside image and truth: highlight, shadow, masks, energy, field",
      .kind = FIELD_SPECIAL, .read = read_outputs, .unit = "list of words"},
     {"labels", "beside COCO: yolo, voc", .kind = FIELD_SPECIAL, .read = read_outputs,
      .unit = "list of words"},
-    {"empty", "fraction of images without any object", QUANTITY(STRUCTURE, empty, QUANTITY_NUMBER)},
+    {"empty", "fraction of images without any object", QUANTITY(empty, NUMBER), WITHIN(0.0, 1.0)},
     {"splits", "names and fractions, such as {train: 0.8, test: 0.2}", .kind = FIELD_SPECIAL,
      .read = read_splits, .unit = "section"},
     {"swaths", "list of the images that objects are put into", .kind = FIELD_SPECIAL,
@@ -495,11 +475,10 @@ static const struct field campaign_fields[] = {
     {"draw", "what keys of the scene are drawn from", .kind = FIELD_SPECIAL,
      .read = read_campaign_draws, .unit = "section"},
     {"targets", "list of what is to be found",
-     ENTRIES(STRUCTURE, targets, target_count, "target", item_section)},
+     ENTRIES(targets, target_count, "target", item_section)},
     {"clutter", "what else lies there", SAME(clutter_section)},
 };
-static const struct section campaign_section = {campaign_fields, COUNT(campaign_fields),
-                                                finish_campaign};
+static const struct section campaign_section = {ROWS(campaign_fields), .finish = finish_campaign};
 
 static sonject_status fill_campaign(struct tree *tree, const char *const *overrides, size_t count,
                                     struct campaign *campaign)

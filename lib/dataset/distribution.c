@@ -9,7 +9,7 @@
 #include "base/text.h"
 #include "dataset/campaign.h"
 #include "kernels/random.h"
-#include "schema/scene_fields.h"
+#include "schema/keys.h"
 
 #define FEISTEL_ROUNDS 8
 #define STEPS_MAX      1000000
@@ -251,7 +251,7 @@ static const struct field normal_fields[] = {
     {"minimum", "nothing is drawn below it", LATER},
     {"maximum", "nothing is drawn above it", LATER},
 };
-static const struct section normal_section = {normal_fields, COUNT(normal_fields), NULL};
+static const struct section normal_section = {ROWS(normal_fields)};
 
 /* Without limits of its own a normal distribution ends ten deviations from its mean. */
 static sonject_status read_normal(struct reader *reader, const struct tree_node *node,

@@ -12,7 +12,6 @@
 #include "dataset/earlier_result.h"
 #include "dataset/run.h"
 #include "inject/checkpoints.h"
-#include "schema/scene_bands.h"
 #include "schema/scene_file.h"
 #include "trace/sums_file.h"
 

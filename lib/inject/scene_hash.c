@@ -9,7 +9,7 @@
 #include "base/json_document.h"
 #include "device/device.h"
 #include "inject/impulse_file.h"
-#include "schema/scene_schema.h"
+#include "schema/keys.h"
 
 /* Members one by one: the padding of a structure is not part of its value. */
 #define ADD(hash, member) hash_add(hash, &(member), sizeof(member))
@@ -36,31 +36,22 @@ static void add_number(struct hash *hash, double number)
     ADD(hash, told);
 }
 
-/* A section with a structure of its own. */
+/* A section with a structure of its own, which has a digest of its own. */
 static bool is_part(const struct field *field)
 {
-    return field->kind == FIELD_SECTION && field->offset != 0;
+    return field->kind == FIELD_SECTION && (field->offset != 0 || field->is_in_scene);
 }
 
-static void add_rows(struct hash *hash, const struct section *section, const void *structure);
-
-static void add_entries(struct hash *hash, const struct field *field, const void *structure)
-{
-    const uint32_t count =
-        *(const uint32_t *)(const void *)((const char *)structure + field->count_offset);
-    ADD(hash, count);
-    for (uint32_t i = 0; i < count && i < field->maximum; i++)
-        add_rows(hash, field->section,
-                 (const char *)structure + field->offset + i * field->entry_bytes);
-}
-
-/* All that a section's keys set in its structure, but for parts, which have structures of their
- * own. Files count by what is in them, which is the scene's. */
-static void add_rows(struct hash *hash, const struct section *section, const void *structure)
+/* All that a section's keys set in its structure, but for parts. Files count by what is in them,
+ * which is the scene's. */
+static void add_rows(struct hash *hash, const struct section *section, const void *structure,
+                     const struct scene *scene)
 {
     for (size_t i = 0; i < section->count; i++) {
         const struct field *field = &section->fields[i];
-        const void *member = (const char *)structure + field->offset;
+        const void *of = field->is_in_scene ? (const void *)scene : structure;
+        const void *member = (const char *)of + field->offset;
+        const void *below;
         switch (field->kind) {
         case FIELD_QUANTITY:
             add_number(hash, *(const double *)member);
@@ -82,41 +73,59 @@ static void add_rows(struct hash *hash, const struct section *section, const voi
         case FIELD_TEXT:
             hash_add_text(hash, *(char *const *)member ? *(char *const *)member : "");
             break;
-        case FIELD_NAMED:
-            add_rows(hash, field->section, member);
-            continue;
         case FIELD_ENTRIES:
-            add_entries(hash, field, structure);
-            continue;
+            hash_add(hash, (const char *)structure + field->count_offset, sizeof(uint32_t));
+            break;
+        case FIELD_SPECIAL:
+            if (field->member)
+                hash_add(hash, member, sizeof(uint32_t));
+            break;
         case FIELD_PATH:
         case FIELD_FILE:
         case FIELD_SECTION:
-        case FIELD_SPECIAL:
+        case FIELD_NAMED:
             break;
         }
-        if (field->section && !field->read && !is_part(field))
-            add_rows(hash, field->section, structure);
+        for (uint32_t k = 0; !is_part(field) && k < field_entry_count(field, structure); k++) {
+            const struct section *inner = field_below(field, structure, scene, k, &below);
+            if (inner)
+                add_rows(hash, inner, below, scene);
+        }
     }
 }
 
 static void add_section(struct digest *digest, const char *name, const struct section *section,
-                        const void *structure)
+                        const void *structure, const struct scene *scene)
 {
-    char inner[64];
-    add_rows(digest->section, section, structure);
+    char inside[64];
+    const void *below;
+    add_rows(digest->section, section, structure, scene);
     end_section(digest, name);
     for (size_t i = 0; i < section->count; i++) {
         const struct field *field = &section->fields[i];
-        snprintf(inner, sizeof inner, "%s.%s", name, field->key);
-        if (is_part(field))
-            add_section(digest, inner, field->section, (const char *)structure + field->offset);
+        snprintf(inside, sizeof inside, "%s.%s", name, field->key);
+        const struct section *inner = field_below(field, structure, scene, 0, &below);
+        if (inner && is_part(field))
+            add_section(digest, inside, inner, below, scene);
     }
 }
 
-static void add_material(struct hash *hash, const sonject_material_params *material)
+/* The seed is told apart from what else is said of the injection. The array of the element level
+ * is no part of an image. */
+static void add_keys(struct digest *digest, const struct scene *scene)
 {
-    ADD(hash, material->reflection_kind);
-    add_rows(hash, &material_section, material);
+    sonject_injection_params injection = scene->injection;
+    ADD(digest->section, injection.seed);
+    end_section(digest, "injection.seed");
+    injection.seed = 0;
+    for (size_t i = 0; i < scene_section.count; i++) {
+        const struct field *field = &scene_section.fields[i];
+        const void *below;
+        const struct section *inner = field_below(field, scene, scene, 0, &below);
+        if (inner && inner != &elements_section)
+            add_section(digest, field->key, inner, inner == &injection_section ? &injection : below,
+                        scene);
+    }
 }
 
 static void add_table(struct hash *hash, const double *positions, const void *values,
@@ -137,53 +146,15 @@ static void add_response(struct digest *digest, const char *name,
     end_section(digest, name);
 }
 
-static void add_motion(struct digest *digest, const struct aperture_motion *motion)
-{
-    struct hash *hash = digest->section;
-    const struct motion_table *sway = &motion->sway_table, *yaw = &motion->yaw_table;
-    add_table(hash, sway->along_track_m, sway->values, sizeof *sway->values, sway->count);
-    add_table(hash, yaw->along_track_m, yaw->values, sizeof *yaw->values, yaw->count);
-    add_section(digest, "sonar.motion", &motion_section, &motion->params);
-}
-
-static void add_medium(struct digest *digest, const struct scene *scene)
-{
-    const uint64_t count = scene->water_layer_count;
-    ADD(digest->section, count);
-    for (size_t i = 0; i < scene->water_layer_count; i++)
-        add_rows(digest->section, &layer_section, &scene->water_layers[i]);
-    add_section(digest, "medium", &medium_section, &scene->medium);
-}
-
 static void add_relief(struct digest *digest, const struct relief_features *relief)
 {
     struct hash *hash = digest->section;
-    for (uint32_t i = 0; i < relief->count; i++) {
-        ADD(hash, relief->features[i].kind);
-        add_rows(hash, &relief_section, &relief->features[i]);
-    }
-    if (relief->heights_m) {
-        ADD(hash, relief->grid.rows);
-        ADD(hash, relief->grid.columns);
-        ADD(hash, relief->grid.first_along_track_m);
-        ADD(hash, relief->grid.first_ground_range_m);
-        ADD(hash, relief->grid.row_spacing_m);
-        ADD(hash, relief->grid.column_spacing_m);
+    for (uint32_t i = 0; i < relief->count; i++)
+        add_rows(hash, &relief_section, &relief->features[i], NULL);
+    if (relief->heights_m) /* whose grid is of the keys */
         hash_add(hash, relief->heights_m,
                  (size_t)relief->grid.rows * relief->grid.columns * sizeof *relief->heights_m);
-    }
     end_section(digest, "seabed.relief");
-}
-
-/* What has no key, but is of one: the kinds that a key's way of writing tells, and numbers of what
- * the scene has. */
-static void add_object(struct hash *hash, const sonject_object_params *object)
-{
-    ADD(hash, object->burial_kind);
-    add_material(hash, &object->material);
-    ADD(hash, object->mesh);
-    ADD(hash, object->user_shape);
-    add_rows(hash, &object_section, object);
 }
 
 /* Objects by their numbers, and what they are made of all together. */
@@ -192,7 +163,7 @@ static void add_objects(struct digest *digest, const struct scene *scene)
     struct hash *hash = digest->section;
     char name[32];
     for (uint32_t i = 0; i < scene->object_count; i++) {
-        add_object(hash, &scene->objects[i]);
+        add_rows(hash, &object_section, &scene->objects[i], scene);
         snprintf(name, sizeof name, "objects[%lu]", (unsigned long)i);
         end_section(digest, name);
     }
@@ -201,7 +172,7 @@ static void add_objects(struct digest *digest, const struct scene *scene)
         ADD(hash, part->object);
         ADD(hash, part->axes);
         ADD(hash, part->centre);
-        add_object(hash, &part->shape);
+        add_rows(hash, &object_section, &part->shape, scene);
     }
     end_section(digest, "objects[].parts");
 }
@@ -232,37 +203,29 @@ static void add_user_shapes(struct hash *hash, const struct user_shapes *shapes)
     }
 }
 
-/* The seed is told apart from what else is said of the injection. The array of the element level
- * is no part of an image. */
-static void add_settings(struct digest *digest, const struct scene *scene)
+/* What is read from files, or has no keys. */
+static void add_tables(struct digest *digest, const struct scene *scene)
 {
-    sonject_injection_params injection = scene->injection;
-    ADD(digest->section, injection.seed);
-    end_section(digest, "injection.seed");
-    injection.seed = 0;
-    ADD(digest->section, injection.estimate_noise);
-    add_section(digest, "injection", &injection_section, &injection);
-    add_section(digest, "sonar", &sonar_section, &scene->sonar);
-    add_section(digest, "sonar.pulse", &pulse_section, &scene->pulse);
+    struct hash *hash = digest->section;
+    const struct motion_table *tables[] = {&scene->motion.sway_table, &scene->motion.yaw_table};
     add_response(digest, "sonar.pulse.file", &scene->pulse_table);
     add_response(digest, "sonar.measured_response", &scene->cross_range_table);
-    add_motion(digest, &scene->motion);
-    add_medium(digest, scene);
-    add_material(digest->section, &scene->seabed.forward);
-    add_section(digest, "seabed", &seabed_section, &scene->seabed);
+    for (int i = 0; i < 2; i++)
+        add_table(hash, tables[i]->along_track_m, tables[i]->values, sizeof *tables[i]->values,
+                  tables[i]->count);
+    end_section(digest, "sonar.motion.file");
+    for (size_t i = 0; i < scene->water_layer_count; i++)
+        add_rows(hash, &layer_section, &scene->water_layers[i], scene);
+    end_section(digest, "medium.layers");
     add_relief(digest, &scene->relief);
-    add_material(digest->section, &scene->surface.material);
-    add_section(digest, "surface", &surface_section, &scene->surface);
-    add_section(digest, "patch", &patch_section, &scene->patch);
-    ADD(digest->section, scene->input_kind);
-    add_section(digest, "input", &input_section, scene);
 }
 
 static void add_scene(struct digest *digest, const struct scene *scene, const char *input_identity)
 {
     hash_add_text(digest->section, sonject_version());
     end_section(digest, "sonject");
-    add_settings(digest, scene);
+    add_keys(digest, scene);
+    add_tables(digest, scene);
     add_objects(digest, scene);
     add_meshes(digest->section, scene);
     end_section(digest, "objects[].mesh");

@@ -18,61 +18,10 @@
 #define RANDOM_SWAY  0x73776179 /* streams of random numbers that no other part uses */
 #define RANDOM_YAW   0x79617721
 
-void sonject_motion_params_init(sonject_motion_params *motion)
-{
-    memset(motion, 0, sizeof *motion);
-    motion->struct_size = sizeof *motion;
-    motion->random_correlation_m = 1.0;
-    motion->yaw_random_correlation_m = 1.0;
-    for (int i = 0; i < SONJECT_SWAYS_CAPACITY; i++)
-        motion->sways[i].wavelength_m = 1.0;
-    for (int i = 0; i < SONJECT_YAWS_CAPACITY; i++)
-        motion->yaws[i].wavelength_m = 1.0;
-}
-
-static void check_sine(struct check *check, double wavelength, double phase)
-{
-    check_within(check, "wavelength", wavelength, SCALE_MIN_M, SCALE_MAX_M, " m");
-    check_within(check, "phase", phase, -1e3, 1e3, " rad");
-}
-
 static bool params_have_yaw(const sonject_motion_params *motion)
 {
     return motion->yaw_count > 0 || motion->yaw_bias_rad != 0.0 ||
            motion->yaw_random_rms_rad != 0.0;
-}
-
-static void check_yaw(struct check *check, const sonject_motion_params *motion)
-{
-    check_within(check, "yaw.bias", motion->yaw_bias_rad, -YAW_MAX_RAD, YAW_MAX_RAD, " rad");
-    check_within(check, "yaw.sines", motion->yaw_count, 0.0, SONJECT_YAWS_CAPACITY, " entries");
-    for (uint32_t i = 0; i < motion->yaw_count && i < SONJECT_YAWS_CAPACITY; i++) {
-        check_within(check, "amplitude", motion->yaws[i].amplitude_rad, -YAW_MAX_RAD, YAW_MAX_RAD,
-                     " rad");
-        check_sine(check, motion->yaws[i].wavelength_m, motion->yaws[i].phase_rad);
-    }
-    check_within(check, "yaw.random.rms", motion->yaw_random_rms_rad, 0.0, YAW_MAX_RAD, " rad");
-    check_within(check, "yaw.random.correlation", motion->yaw_random_correlation_m, SCALE_MIN_M,
-                 SCALE_MAX_M, " m");
-    if (motion->yaw_advance_m != 0.0 || params_have_yaw(motion))
-        check_within(check, "yaw.advance", motion->yaw_advance_m, SCALE_MIN_M, SWAY_MAX_M, " m");
-}
-
-sonject_status check_motion(const sonject_motion_params *motion, struct report *report,
-                            struct check_listener *listener)
-{
-    struct check check = {report, listener, SONJECT_OK};
-    check_within(&check, "sway", motion->sway_count, 0.0, SONJECT_SWAYS_CAPACITY, " entries");
-    for (uint32_t i = 0; i < motion->sway_count && i < SONJECT_SWAYS_CAPACITY; i++) {
-        check_within(&check, "amplitude", motion->sways[i].amplitude_m, -SWAY_MAX_M, SWAY_MAX_M,
-                     " m");
-        check_sine(&check, motion->sways[i].wavelength_m, motion->sways[i].phase_rad);
-    }
-    check_within(&check, "random.rms", motion->random_rms_m, 0.0, SWAY_MAX_M, " m");
-    check_within(&check, "random.correlation", motion->random_correlation_m, SCALE_MIN_M,
-                 SCALE_MAX_M, " m");
-    check_yaw(&check, motion);
-    return check.status;
 }
 
 bool motion_samples_are_good(enum motion_kind kind, const double *along_track_m,

@@ -7,50 +7,8 @@
 #include "base/memory.h"
 #include "base/ranges.h"
 
-#define INDEX_MAX     1099511627776.0 /* 2^40, as of objects in swath pixels */
-#define HEIGHT_MAX_M  100.0
 #define GRID_SIZE_MAX (UINT32_C(1) << 24)
 #define OVERSHOOT     1.3 /* of irregular ripples where crests meet, over regular ones */
-
-void sonject_relief_params_init(sonject_relief_params *relief)
-{
-    memset(relief, 0, sizeof *relief);
-    relief->struct_size = sizeof *relief;
-    relief->row_spacing_m = 0.025;
-    relief->column_spacing_m = 0.025;
-}
-
-sonject_status check_relief_feature(const struct relief_feature *feature, struct report *report,
-                                    struct check_listener *listener)
-{
-    struct check checks = {report, listener, SONJECT_OK};
-    struct check *check = &checks;
-    const bool has_height = feature->kind == RELIEF_RIPPLES || feature->kind == RELIEF_MOUND;
-    check_within(check, has_height ? "height" : "depth", feature->height_m, 0.0, HEIGHT_MAX_M,
-                 " m");
-    if (feature->kind == RELIEF_RIPPLES) {
-        check_positive_length(check, "wavelength", feature->wavelength_m);
-        check_finite(check, "heading", feature->heading_rad);
-        check_finite(check, "phase", feature->phase_rad);
-        check_within(check, "sharpness", feature->sharpness, 0.0, 1.0, "");
-        check_within(check, "irregularity", feature->irregularity, 0.0, 1.0, "");
-        return check->status;
-    }
-    if (feature->kind == RELIEF_SCOUR) {
-        check_positive_length(check, "width", feature->width_m);
-        return check->status;
-    }
-    check_positive_length(check, "radius", feature->radius_m);
-    check_choice(check, "position", feature->position_kind, SONJECT_POSITION_PIXELS + 1);
-    if (feature->position_kind == SONJECT_POSITION_PIXELS) {
-        check_within(check, "position.row", feature->position_along, -INDEX_MAX, INDEX_MAX, "");
-        check_within(check, "position.column", feature->position_range, -INDEX_MAX, INDEX_MAX, "");
-    } else if (feature->position_kind == SONJECT_POSITION_METRES) {
-        check_coordinate(check, "position.along_track", feature->position_along);
-        check_length(check, "position.slant_range", feature->position_range);
-    }
-    return check->status;
-}
 
 bool relief_grid_fits(uint64_t rows, uint64_t columns)
 {
@@ -70,11 +28,12 @@ static sonject_status check_grid(const sonject_relief_params *grid, const float 
     check_positive_length(&check, "relief's row_spacing", grid->row_spacing_m);
     check_positive_length(&check, "relief's column_spacing", grid->column_spacing_m);
     for (size_t i = 0; check.status == SONJECT_OK && i < (size_t)grid->rows * grid->columns; i++)
-        if (!(fabs((double)heights_m[i]) <= HEIGHT_MAX_M))
+        if (!(fabs((double)heights_m[i]) <= RELIEF_HEIGHT_MAX_M))
             check_failure(&check, "relief",
                           "must be within %g m of the mean seabed; at row %zu, column %zu it is %g "
                           "m",
-                          HEIGHT_MAX_M, i / grid->columns, i % grid->columns, (double)heights_m[i]);
+                          RELIEF_HEIGHT_MAX_M, i / grid->columns, i % grid->columns,
+                          (double)heights_m[i]);
     return check.status;
 }
 

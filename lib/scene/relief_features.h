@@ -12,6 +12,7 @@
 #include "base/ranges.h"
 
 #define RELIEF_FEATURES_MAX  256
+#define RELIEF_HEIGHT_MAX_M  100.0
 #define RELIEF_GRID_SIDE_MAX 16384u /* rows or columns of heights */
 
 enum relief_kind {
@@ -46,9 +47,6 @@ struct relief_features {
     float *heights_m;           /* owned, rows x columns; NULL: none */
 };
 
-/* Checks one feature, as check_ functions of scene/scene.h do. */
-sonject_status check_relief_feature(const struct relief_feature *feature, struct report *report,
-                                    struct check_listener *listener);
 
 /* Whether heights may have so many: 2...RELIEF_GRID_SIDE_MAX of each, at most 2^24 points. */
 bool relief_grid_fits(uint64_t rows, uint64_t columns);

@@ -6,26 +6,6 @@
 
 #include "base/memory.h"
 
-void scene_init(struct scene *scene)
-{
-    memset(scene, 0, sizeof *scene);
-    sonject_sonar_params_init(&scene->sonar);
-    sonject_pulse_params_init(&scene->pulse);
-    sonject_motion_params_init(&scene->motion.params);
-    sonject_medium_params_init(&scene->medium);
-    sonject_seabed_params_init(&scene->seabed);
-    sonject_surface_params_init(&scene->surface);
-    sonject_geometry_params_init(&scene->geometry);
-    sonject_transfer_params_init(&scene->transfer);
-    sonject_injection_params_init(&scene->injection);
-    sonject_elements_params_init(&scene->elements);
-    sonject_synthetic_params_init(&scene->synthetic);
-    scene->patch.struct_size = sizeof scene->patch;
-    sonject_relief_params_init(&scene->relief.grid);
-    scene->input_kind = SONJECT_INPUT_MEMORY;
-    scene->channel = SONJECT_CHANNEL_ONLY;
-}
-
 static void give_up_mesh(struct scene *scene, struct mesh *mesh)
 {
     if (scene->mesh_store)
@@ -52,7 +32,7 @@ void scene_clear(struct scene *scene)
     aperture_motion_clear(&scene->motion);
     relief_features_clear(&scene->relief);
     written_keys_clear(&scene->written);
-    scene_init(scene);
+    memset(scene, 0, sizeof *scene);
 }
 
 /* Room for one more of `count` elements: capacities are powers of two, grown when that is full.

@@ -70,10 +70,11 @@ struct scene {
     struct written_keys written; /* none where no file was read */
 };
 
-/* All defaults; geometry.first_slant_range_m has none and is NaN, which check_geometry refuses. */
+/* All defaults, which the table of keys holds (lib/schema, which defines it and the checks below);
+ * geometry.first_slant_range_m has none and is NaN, which check_geometry refuses. */
 void scene_init(struct scene *scene);
 
-/* Frees what the scene owns and makes it empty again. */
+/* Frees what the scene owns and makes it all zeros, for scene_init or nothing more. */
 void scene_clear(struct scene *scene);
 
 /* Appends a copy, with the name and class that it has by default where it has none. Errors: INPUT

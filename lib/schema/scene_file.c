@@ -1,11 +1,160 @@
+/* Scene files, from their bytes to a scene: overrides, bands, and then the tables of keys. */
 #include "schema/scene_file.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/file.h"
+#include "base/growing_text.h"
+#include "base/memory.h"
 #include "base/text.h"
-#include "schema/scene_bands.h"
+#include "schema/keys.h"
+
+/* ---- Bands: several sonars in one file, each a name and the keys in which it differs. */
+
+bool is_band_name(const char *text)
+{
+    static const char letters[] =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-";
+    return text[0] && strlen(text) < SONJECT_NAME_CAPACITY && text[strspn(text, letters)] == '\0';
+}
+
+/* A band changes what follows, and has no bands of its own. */
+static sonject_status check_band(struct reader *reader, const struct tree_entry *band)
+{
+    static const char *const others[] = {"sonject", "band", "bands"};
+    sonject_status status = SONJECT_OK;
+    const size_t before = key_path_add(&reader->path, band->key);
+    if (!is_band_name(band->key))
+        status = refuse_value(reader, &band->value,
+                              "a band's name is that of a folder: 1 to %d letters, digits, _ and -",
+                              SONJECT_NAME_CAPACITY - 1);
+    else if (band->value.kind != TREE_SECTION)
+        status = refuse_value(reader, &band->value,
+                              "must be a section of the scene's keys that this band changes");
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        if (is_given(&band->value, others[i]))
+            status =
+                refuse_key(reader, &band->value, others[i], "cannot be a band's own; remove it");
+    key_path_shorten(&reader->path, before);
+    return status;
+}
+
+static sonject_status check_bands(struct reader *reader, const struct tree_node *bands)
+{
+    sonject_status status = SONJECT_OK;
+    const size_t before = key_path_add(&reader->path, "bands");
+    if (bands->kind != TREE_SECTION || bands->count == 0)
+        status = refuse_value(reader, bands, "must be a section of bands: their names, and keys");
+    for (size_t i = 0; bands->kind == TREE_SECTION && i < bands->count; i++)
+        if (check_band(reader, &bands->entries[i]) != SONJECT_OK)
+            status = SONJECT_ERROR_INPUT;
+    key_path_shorten(&reader->path, before);
+    return status;
+}
+
+static struct tree_entry *find_entry(struct tree_node *node, const char *key)
+{
+    for (size_t i = 0; node->kind == TREE_SECTION && i < node->count; i++)
+        if (strcmp(node->entries[i].key, key) == 0)
+            return &node->entries[i];
+    return NULL;
+}
+
+/* Moves the upper section's values into the lower one; what they take the place of goes the other
+ * way. */
+static sonject_status lay_over(struct reader *reader, struct tree *tree, struct tree_node *lower,
+                               struct tree_node *upper)
+{
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; status == SONJECT_OK && i < upper->count; i++) {
+        struct tree_entry *above = &upper->entries[i];
+        struct tree_entry *below = find_entry(lower, above->key);
+        const size_t before = key_path_add(&reader->path, above->key);
+        if (below && below->value.kind == TREE_SECTION && above->value.kind == TREE_SECTION) {
+            status = lay_over(reader, tree, &below->value, &above->value);
+        } else {
+            if (!below)
+                status = tree_append(tree, lower, &reader->path, above->key, above->place, &below);
+            if (status == SONJECT_OK) {
+                const struct tree_node hidden = below->value;
+                below->value = above->value;
+                above->value = hidden;
+            }
+        }
+        key_path_shorten(&reader->path, before);
+    }
+    return status;
+}
+
+static void list_names(const struct tree_node *bands, struct word_list *list)
+{
+    for (size_t i = 0; i < bands->count; i++)
+        list_word(list, bands->entries[i].key);
+}
+
+/* One a line, for free(); NULL where memory is out. */
+static char *join_names(const struct tree_node *bands)
+{
+    struct growing_text text = {0};
+    growing_text_add(&text, "%s", "");
+    for (size_t i = 0; i < bands->count; i++)
+        growing_text_add(&text, "%s\n", bands->entries[i].key);
+    return growing_text_end(&text);
+}
+
+/* The scene knows which band it is. */
+static sonject_status keep_names(struct reader *reader, const struct tree_node *bands,
+                                 const char *name)
+{
+    reader->scene->band = copy_text(name);
+    reader->scene->bands = join_names(bands);
+    return reader->scene->band && reader->scene->bands
+               ? SONJECT_OK
+               : report_out_of_memory(reader->report, "the names of bands");
+}
+
+static sonject_status choose_band(struct reader *reader, struct tree *tree)
+{
+    struct word_list list = {{0}, 0};
+    struct tree_entry *bands = find_entry(&tree->root, "bands");
+    const struct tree_entry *chosen = tree_find(&tree->root, "band");
+    if (!bands && !chosen)
+        return SONJECT_OK;
+    if (!bands)
+        return refuse_key(reader, &tree->root, "band", "there are no bands to choose from");
+    sonject_status status = check_bands(reader, &bands->value);
+    if (status != SONJECT_OK)
+        return status;
+    list_names(&bands->value, &list);
+    if (!chosen)
+        return refuse_key(reader, &tree->root, "bands", "choose one of %s (--set band=%s)",
+                          list.text, bands->value.entries[0].key);
+    const size_t before = key_path_add(&reader->path, "band");
+    const char *name = read_text(reader, &chosen->value);
+    struct tree_entry *band = name ? find_entry(&bands->value, name) : NULL;
+    if (!name)
+        status = SONJECT_ERROR_INPUT;
+    else if (!band)
+        status = refuse_word(reader, &chosen->value, name, &list, NULL);
+    key_path_shorten(&reader->path, before);
+    THEN(status, keep_names(reader, &bands->value, name));
+    return status == SONJECT_OK ? lay_over(reader, tree, &tree->root, &band->value) : status;
+}
+
+static sonject_status list_bands(struct reader *reader, char **names)
+{
+    const struct tree_node *root = &reader->tree->root;
+    const struct tree_entry *bands = tree_find(root, "bands");
+    const bool is_open = bands && !tree_find(root, "band");
+    static const struct tree_node none;
+    *names = NULL;
+    CHECK(is_open ? check_bands(reader, &bands->value) : SONJECT_OK);
+    *names = join_names(is_open ? &bands->value : &none);
+    return *names ? SONJECT_OK : report_out_of_memory(reader->report, "the names of bands");
+}
+
+/* ---- The file. */
 
 static sonject_status apply_overrides(struct tree *tree, const struct scene_text *source)
 {
@@ -73,6 +222,9 @@ sonject_status scene_text_read(struct report *report, const struct scene_text *s
 {
     struct tree tree;
     struct mistakes mistakes = {NULL, 0, 0, 0};
+    struct mesh_store *const store = scene->mesh_store;
+    scene_init(scene);
+    scene->mesh_store = store;
     tree_init(&tree, report, source->path);
     tree.mistakes = &mistakes;
     report->message[0] = 0;

@@ -7,11 +7,12 @@
 
 #include "base/report.h"
 #include "scene/scene.h"
-#include "schema/number_table.h"
+#include "schema/tables.h"
 #include "schema/yaml_tree.h"
 
-/* Reads path, applies count overrides "key.path=value" and fills scene, which must be initialised
- * and empty; on failure it is left empty. Contract and errors as of sonject_scene_read. */
+/* Reads path, applies count overrides "key.path=value" and fills scene, which must be all zeros
+ * or as scene_init leaves it; on failure it is left empty. Contract and errors as of
+ * sonject_scene_read. */
 sonject_status scene_file_read(struct report *report, const char *path,
                                const char *const *overrides, size_t count, struct scene *scene);
 
@@ -53,24 +54,21 @@ sonject_status scene_text_tree(const struct scene_text *source, struct tree *tre
 sonject_status scene_text_bands(struct report *report, const struct scene_text *source,
                                 char **names);
 
-struct scene_file_key {
-    char path[64];            /* "objects[].heading" */
-    const char *unit;         /* "deg, rad", "whole number", "word", ...; static */
-    const char *meaning;      /* one line; static */
-    bool is_required;         /* in its section */
-    const char *const *words; /* that it may be, ended by NULL, "" for a place that no word has;
-                                 NULL: it is no word */
-};
+/* Whether a band may have this name, which is a folder's. */
+bool is_band_name(const char *text);
 
-/* Lists every key that has a value of its own. keys: room for capacity entries (NULL if capacity is
- * 0). Returns the number of keys, which may exceed capacity. */
-size_t scene_file_keys(struct scene_file_key *keys, size_t capacity);
+/* Appends the target of a file as an object. placing: what sonject_scene_add_target takes of an
+ * object. On failure the scene is as before. Errors: INPUT, STORAGE, MEMORY. */
+sonject_status scene_append_target(struct scene *scene, struct report *report, const char *path,
+                                   bool allows_user_shapes, const sonject_object_params *placing);
 
 /* All keys as a JSON array, in the tables' order, for free(): objects with path
  * ("objects[].heading"), section (the path of the section that it is in, "" at the top), meaning,
- * kind (quantity, count, flag, word, text, file, section, list or special), unit (as users are told
- * it), is_required, words (null or an array), member (of the C structure; null: none), and preset,
- * least and most in the SI unit, null where there is none. Errors: MEMORY. */
+ * kind (quantity, count, flag, word, name, text, file, section, list or special), unit (as users
+ * are told it), has_value (it may be written as one value; else as a section or list alone),
+ * is_list, is_required (in its section), words (an array, or null), member (of the C structure),
+ * default and range (in words, as users are told), preset, least and most (the same as numbers in
+ * the SI unit; least and most may be open). What there is none of is null. Errors: MEMORY. */
 sonject_status scene_keys_json(struct report *report, char **text);
 
 #endif

@@ -7,8 +7,8 @@
 #include "base/growing_text.h"
 #include "base/memory.h"
 #include "base/text.h"
+#include "schema/keys.h"
 #include "schema/scene_file.h"
-#include "schema/scene_key.h"
 
 sonject_status scene_source_keep(struct scene_source *source, struct report *report,
                                  const char *path, char *text, const char *const *overrides,

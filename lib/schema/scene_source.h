@@ -6,7 +6,7 @@
 #include <stddef.h>
 
 #include "scene/scene.h"
-#include "schema/number_table.h"
+#include "schema/tables.h"
 #include "schema/yaml_tree.h"
 
 /* Starts as all zeros; is for scene_source_clear. All is owned. */

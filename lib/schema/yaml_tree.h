@@ -9,7 +9,6 @@
 
 #include "base/growing_text.h"
 #include "base/report.h"
-#include "schema/mistakes.h"
 
 #define TREE_BYTES_MAX (1024 * 1024)
 #define TREE_DEPTH_MAX 32
@@ -47,6 +46,8 @@ struct tree_entry {
     struct tree_place place; /* of the key */
     struct tree_node value;
 };
+
+struct mistakes;
 
 struct tree {
     struct report *report;
@@ -112,5 +113,32 @@ void tree_write_flow(const struct tree_node *node, struct growing_text *text);
 
 /* The node as the value of an override. *text is for free(). Errors: MEMORY. */
 sonject_status tree_override_text(struct report *report, const struct tree_node *node, char **text);
+
+/* ---- The mistakes of a file that is read to its end, in the order of their places. */
+
+#define MISTAKES_TOLD 50 /* lines of a message at most; the rest is counted */
+
+struct mistake;
+
+/* All zero: none. mistakes_tell frees what it owns. */
+struct mistakes {
+    struct mistake *list;
+    size_t count, capacity;
+    size_t uncounted; /* that there was no room for */
+};
+
+/* Keeps a mistake about the key at path. The first about a key is the one that is told: what comes
+ * after it follows from it. line: the whole message; NULL only marks the key as wrong, where
+ * another message has told why. */
+void mistakes_add(struct mistakes *mistakes, const struct tree *tree,
+                  const struct tree_place *place, const char *path, const char *line);
+
+/* Whether the key at path, one below it, or a section that it is in is wrong. */
+bool mistakes_concern(const struct mistakes *mistakes, const struct tree *tree, const char *path);
+
+/* Ends the reading that had this status. Where there are mistakes they become the report's message,
+ * one a line, and the status INPUT unless a failure other than INPUT ended the reading. */
+sonject_status mistakes_tell(struct mistakes *mistakes, struct report *report,
+                             sonject_status status);
 
 #endif

@@ -112,6 +112,16 @@ void geometry_notes_read(const struct swath_file *file, struct noted_geometry *g
         read_texts(file, geometry);
 }
 
+sonject_status geometry_check_told(const sonject_geometry_params *geometry, struct report *report)
+{
+    struct check check = {report, NULL, SONJECT_OK};
+    check_positive_length(&check, "row_spacing", geometry->row_spacing_m);
+    check_positive_length(&check, "column_spacing", geometry->column_spacing_m);
+    check_length(&check, "first_slant_range", geometry->first_slant_range_m);
+    check_coordinate(&check, "first_along_track", geometry->first_along_track_m);
+    return check.status;
+}
+
 bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_params *geometry)
 {
     struct report unused = {{0}, NULL, NULL};
@@ -122,7 +132,7 @@ bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_pa
     told.first_slant_range_m = noted->first_range_m;
     told.side = noted->side;
     if (noted->axis != RANGE_SLANT || !noted->knows_side ||
-        check_geometry(&told, &unused, NULL) != SONJECT_OK)
+        geometry_check_told(&told, &unused) != SONJECT_OK)
         return false;
     *geometry = told;
     return true;

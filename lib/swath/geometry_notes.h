@@ -40,6 +40,10 @@ void geometry_notes_init(struct geometry_notes *notes, const sonject_sonar_param
  * checked but that numbers are finite. */
 void geometry_notes_read(const struct swath_file *file, struct noted_geometry *geometry);
 
+/* Whether lengths of a geometry that a file tells are such as a sonar can meet; what it says of others
+ * is in the message ("row_spacing must be ..."). Errors: INPUT. */
+sonject_status geometry_check_told(const sonject_geometry_params *geometry, struct report *report);
+
 /* As parameters of a slant range image; false (and nothing changed) where they are not all known,
  * or are none that an image has. */
 bool geometry_notes_tell(const struct noted_geometry *noted, sonject_geometry_params *geometry);

@@ -98,7 +98,7 @@ static sonject_status check_and_set(struct report *report, const struct wanted *
     struct check check = {&why, NULL, SONJECT_OK};
     *wanted->key = "input.geometry";
     if (wanted->geometry)
-        check.status = check_geometry(&wanted->where, &why, NULL);
+        check.status = geometry_check_told(&wanted->where, &why);
     if (check.status == SONJECT_OK)
         *wanted->key = "sonar.altitude";
     if (wanted->altitude)

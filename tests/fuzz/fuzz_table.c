@@ -4,7 +4,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "schema/number_table.h"
+#include "schema/tables.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t count)
 {

@@ -2,11 +2,13 @@
 #ifndef FIRST_KEY_H
 #define FIRST_KEY_H
 
+#include <stdio.h>
+
 #include "base/ranges.h"
 
 struct first_key {
     struct check_listener listener; /* first */
-    const char *key;
+    char key[128];                  /* "": there was no failure */
 };
 
 static inline void hear_first(struct check_listener *listener, const char *key, const char *others,
@@ -15,12 +17,13 @@ static inline void hear_first(struct check_listener *listener, const char *key, 
     struct first_key *first = (struct first_key *)listener;
     (void)others;
     (void)what;
-    first->key = first->key ? first->key : key;
+    if (!*first->key)
+        snprintf(first->key, sizeof first->key, "%s", key);
 }
 
 #define FIRST_KEY                                                                                  \
     {                                                                                              \
-        {hear_first}, NULL                                                                         \
+        {hear_first}, ""                                                                           \
     }
 
 #endif

@@ -3,6 +3,8 @@
 #ifndef SCENE_KEYS_H
 #define SCENE_KEYS_H
 
+#include <jansson.h>
+
 #include "claims.h"
 #include "scene_folder.h"
 
@@ -667,6 +669,25 @@ static const struct key_case {
     {"objects[].parts[].user.code", small, "float shape_distance(); float3 shape_normal();",
      TYPE_NOTHING, 0, 0.0, NULL, A_PART(A_USER "}")},
 };
+
+/* All keys, for json_decref. */
+static inline json_t *list_keys(void)
+{
+    struct report report = {{0}, NULL, NULL};
+    char *text;
+    assert_int_equal(scene_keys_json(&report, &text), SONJECT_OK);
+    json_t *keys = json_loads(text, 0, NULL);
+    assert_true(json_is_array(keys));
+    free(text);
+    return keys;
+}
+
+/* What is said of a key; "" for null. */
+static inline const char *text_of(const json_t *key, const char *what)
+{
+    const char *text = json_string_value(json_object_get(key, what));
+    return text ? text : "";
+}
 
 static inline double number_at(const void *structure, const struct key_case *key)
 {

@@ -53,6 +53,10 @@ static void make_good(struct all *all)
     all->sphere.cut_count = 2;
     all->sphere.cuts[0].distance_m = 0.2;
     all->sphere.cuts[1].azimuth_rad = 3.0;
+    all->sphere.level_kind = SONJECT_LEVEL_TARGET_STRENGTH;
+    all->capsule.burial_kind = SONJECT_BURIAL_FRACTION;
+    all->capsule.material.reflection_kind = SONJECT_REFLECTION_FLUID;
+    all->plane.burial_kind = SONJECT_BURIAL_PROUD;
 }
 
 static sonject_status check_all(const struct all *all, struct report *report,
@@ -96,8 +100,7 @@ static void expect_refused(const struct all *all, const char *name, const char *
     struct first_key first = FIRST_KEY;
     if (check_all(all, &report, &first.listener) != SONJECT_ERROR_INPUT)
         fail_msg("%s of %s was taken", what, name);
-    assert_non_null(first.key);
-    if (strcmp(first.key, name) != 0)
+    if (strncmp(first.key, name, strlen(name)) != 0)
         fail_msg("%s of %s was blamed on %s", what, name, first.key);
     if (strncmp(report.message, first.key, strlen(first.key)) != 0 ||
         report.message[strlen(first.key)] != ' ')
@@ -145,7 +148,7 @@ static const struct number {
     {"first_along_track", offsetof(struct all, geometry.first_along_track_m), -2e6, -1e6, 1e6, 2e6},
     {"parameter", offsetof(struct all, transfer.parameter), NONE, -1e9, 1e9, NONE},
     {"offset", offsetof(struct all, transfer.offset), NONE, -1e9, 1e9, NONE},
-    {"noise_floor", offsetof(struct all, injection.noise_floor_db), NONE, -1e9, 1e9, NONE},
+    {"noise_floor", offsetof(struct all, injection.noise_floor_db), NONE, -1e9, -0.1, 0.0},
     {"influence", offsetof(struct all, injection.influence_db), -201.0, -200.0, 0.0, 0.1},
     {"rays", offsetof(struct all, injection.ray_scale), 0.015, 1.0 / 64.0, 4096.0, 4097.0},
     {"texture_length", offsetof(struct all, synthetic.texture_length_m), 0.0, 1e-6, 1e6, 2e6},
@@ -179,12 +182,10 @@ static const struct number {
     /* the sphere's radius is 0.25 m, and the other cut takes the side away */
     {"cuts", offsetof(struct all, sphere.cuts[0].distance_m), -0.2501, 0.0, 1e6, 2e6},
     {"cuts", offsetof(struct all, sphere.cuts[1].distance_m), -0.2501, 0.0, 1e6, 2e6},
-    {"burial.fraction", offsetof(struct all, sphere.burial_fraction), -0.01, 0.0, 1.0, 1.01},
+    {"burial.fraction", offsetof(struct all, capsule.burial_fraction), -0.01, 0.0, 1.0, 1.01},
     {"match.looks", offsetof(struct all, injection.match_looks), 0.9, 1.0, 64.0, 65.0},
     {"level", offsetof(struct all, sphere.level_db), -201.0, -200.0, 200.0, 201.0},
-    {"burial.proud", offsetof(struct all, sphere.proud_height_m), -0.01, 0.0, 1e6, 2e6},
-    {"position", offsetof(struct all, sphere.position_along), NONE, -1.0, 1.0, NONE},
-    {"position", offsetof(struct all, sphere.position_range), NONE, -1.0, 1.0, NONE},
+    {"burial.proud", offsetof(struct all, plane.proud_height_m), -0.01, 0.0, 1e6, 2e6},
     {"heading", offsetof(struct all, sphere.heading_rad), NONE, -9.0, 9.0, NONE},
     {"pitch", offsetof(struct all, sphere.pitch_rad), NONE, -9.0, 9.0, NONE},
     {"roll", offsetof(struct all, sphere.roll_rad), NONE, -9.0, 9.0, NONE},
@@ -201,11 +202,11 @@ static const struct number {
      0.4958, 0.4959},
     {"material.glossy.slope", offsetof(struct all, sphere.material.glossy_slope), 0.009, 0.01, 1.0,
      1.1},
-    {"material.fluid.density", offsetof(struct all, sphere.material.density_ratio), 0.0009, 0.001,
+    {"material.fluid.density", offsetof(struct all, capsule.material.density_ratio), 0.0009, 0.001,
      100.0, 101.0},
-    {"material.fluid.speed", offsetof(struct all, sphere.material.speed_ratio), 0.009, 0.01, 20.0,
+    {"material.fluid.speed", offsetof(struct all, capsule.material.speed_ratio), 0.009, 0.01, 20.0,
      20.1},
-    {"material.fluid.loss", offsetof(struct all, sphere.material.loss), -0.1, 0.0, 1.0, 1.1},
+    {"material.fluid.loss", offsetof(struct all, capsule.material.loss), -0.1, 0.0, 1.0, 1.1},
     {"forward.reflection", offsetof(struct all, seabed.forward.reflection), -1.01, -1.0, 1.0, 1.01},
     {"forward.roughness", offsetof(struct all, seabed.forward.roughness_m), -0.1, 0.0, 1.0, 1.1},
     {"forward.exponent", offsetof(struct all, seabed.forward.lambert_exponent), 0.9, 1.0, 64.0,
@@ -215,11 +216,6 @@ static const struct number {
      0.9938},
     {"forward.glossy.slope", offsetof(struct all, seabed.forward.glossy_slope), 0.009, 0.01, 1.0,
      1.1},
-    {"forward.fluid.density", offsetof(struct all, seabed.forward.density_ratio), 0.0009, 0.001,
-     100.0, 101.0},
-    {"forward.fluid.speed", offsetof(struct all, seabed.forward.speed_ratio), 0.009, 0.01, 20.0,
-     20.1},
-    {"forward.fluid.loss", offsetof(struct all, seabed.forward.loss), -0.1, 0.0, 1.0, 1.1},
 };
 
 static void put(struct all *all, const struct number *number, double value)
@@ -301,7 +297,6 @@ static void test_choices(void **state)
          SONJECT_REFLECTION_FLUID},
         {"forward.reflection", offsetof(struct all, seabed.forward.reflection_kind),
          SONJECT_REFLECTION_FLUID},
-        {"forward.rule", offsetof(struct all, seabed.forward_rule), SONJECT_FORWARD_MAP},
     };
     struct all all;
     (void)state;
@@ -354,9 +349,6 @@ static void test_window_and_transfer_parameters(void **state)
     all.sonar.taylor_terms = 16;
     all.sonar.taylor_sidelobe_db = 0.0;
     expect_refused(&all, "response.taylor.sidelobes", "0 dB");
-    all.sonar.response_window = SONJECT_WINDOW_HAMMING;
-    all.sonar.taylor_sidelobe_db = NAN;
-    expect_refused(&all, "response.taylor.sidelobes", "NaN");
 }
 
 static void test_relations(void **state)
@@ -495,7 +487,7 @@ static void test_the_sea_surfaces_rough_part(void **state)
     material->glossy_albedo = 0.1;
     assert_int_equal(check_surface(&surface, &report, &first.listener), SONJECT_ERROR_INPUT);
     assert_string_equal(first.key, "glossy.albedo");
-    first.key = NULL;
+    first.key[0] = 0;
     material->glossy_albedo = NAN;
     material->lambert = 0.0796; /* 0.25 / pi = 0.0795775 */
     assert_int_equal(check_surface(&surface, &report, &first.listener), SONJECT_ERROR_INPUT);

@@ -2,7 +2,7 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "claims.h"
-#include "schema/profile_table.h"
+#include "schema/tables.h"
 #include "temporary_folder.h"
 
 static sonject_status read_bytes(void **state, const void *bytes, size_t count,

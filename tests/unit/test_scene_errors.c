@@ -133,12 +133,13 @@ static void test_wrong_values(void **state)
         {BASE "medium: [1500 m/s]\n",
          ":4:9: medium: must be a section of 'key: value' lines, not a list"},
         {BASE "patch: {rows: 1, columns: 2.5}\n",
-         ":4:27: patch.columns: '2.5' is not a whole number from 0 to 1099511627776"},
+         ":4:27: patch.columns: '2.5' is not a whole number from 1 to 1099511627776"},
         {BASE "patch: {rows: 1, columns: -1}\n",
-         ":4:27: patch.columns: '-1' is not a whole number from 0 to 1099511627776"},
+         ":4:27: patch.columns: '-1' is not a whole number from 1 to 1099511627776"},
         {BASE "patch: {rows: 1, columns: 1099511627777}\n",
-         ":4:27: patch.columns: must be at most 1099511627776"},
-        {BASE "patch: {rows: 0, columns: 1}\n", ":4:15: patch.rows: must be at least 1 pixel"},
+         ":4:27: patch.columns: must be 1...1099511627776, not 1099511627777"},
+        {BASE "patch: {rows: 0, columns: 1}\n",
+         ":4:15: patch.rows: must be 1...1099511627776, not 0"},
         {BASE "injection: {seed: 18446744073709551616}\n",
          ":4:19: injection.seed: '18446744073709551616' is not a whole number from 0 to "
          "18446744073709551615"},
@@ -147,19 +148,20 @@ static void test_wrong_values(void **state)
          "'composite'?"},
         {BASE "injection: {mode: 0}\n",
          ":4:19: injection.mode: '0' is not one of composite, resynthesise"},
-        {BASE "injection: {noise_floor: 3 dB}\n",
-         ":4:26: injection.noise_floor: must be below 0 dB, the seabed's own level, not 3 dB"},
+        {BASE "injection: {noise_floor: 3 dB}\n", ":4:26: injection.noise_floor: must be below 0 "
+                                                  "dB (the seabed's own level) or estimate, not "
+                                                  "3"},
         {BASE "injection: {noise_floor: guess}\n",
          ":4:26: injection.noise_floor: 'guess' is not a number with a unit of dB"},
         {BASE "seabed: {lambert: 3 dB}\n",
          ":4:19: seabed.lambert: must be above 0 and at most 1/pi (-4.97 dB), or the seabed "
-         "returns more than it receives; it is 1.99526"},
+         "returns more than it receives, not 1.99526"},
         {START INPUT SONAR_WITH("aperture: wide"),
          ":3:68: sonar.aperture: 'wide' is not a number with a unit of deg, rad"},
         {START INPUT SONAR_WITH("aperture: -3 deg"),
-         ":3:68: sonar.aperture: must be from 0 to 90 deg, auto or none"},
+         ":3:68: sonar.aperture: must be 0...90 deg, auto or none, not -3"},
         {START INPUT SONAR_WITH("aperture: 91 deg"),
-         ":3:68: sonar.aperture: must be from 0 to 90 deg, auto or none"},
+         ":3:68: sonar.aperture: must be 0...90 deg, auto or none, not 91"},
         {START INPUT SONAR_WITH("kind: real"),
          ":3:8: sonar.array: missing; a real aperture needs its length"},
         {START INPUT SONAR_WITH("array: {length: 1 m}"),
@@ -181,8 +183,8 @@ static void test_wrong_values(void **state)
         {OBJECT "cylinder\n    diameter: 1\n    length: 2\n    nose_end: round\n",
          ":8:15: objects[0].nose_end: 'round' is not one of flat, open, spherical, {depth: ...}"},
         {OBJECT "cylinder\n    diameter: 1\n    length: 2\n    tail_end: {depth: 0}\n",
-         ":8:23: objects[0].tail_end.depth: must be above 0; write 'spherical' for a half sphere, "
-         "'flat' for none"},
+         ":8:23: objects[0].tail_end.depth: must be above 0 (write 'spherical' for a half sphere, "
+         "'flat' for none), not 0"},
         {OBJECT "cylinder\n    diameter: 1\n    length: 2\n    nose_end: {depth: 0.6}\n",
          ":8:23: objects[0].nose_end.depth: must be 0...0.5 m (half the diameter), not 0.6"},
         {OBJECT "cylinder\n    diameter: 1\n    length: 0.9\n    nose_end: spherical\n    "
@@ -203,11 +205,12 @@ static void test_wrong_values(void **state)
         {OBJECT "sphere\n    diameter: 1\n    cuts: [{distance: -0.5}]\n",
          ":7:11: objects[0].cuts: leave nothing of the object; move one outwards"},
         {OBJECT "sphere\n    diameter: 1\n    burial: {fraction: 0.5, proud: 0.5}\n",
-         ":7:13: objects[0].burial: needs fraction or proud; give one, or a depth by itself"},
+         ":7:13: objects[0].burial: more than one of fraction and proud is there; give one"},
         {OBJECT "sphere\n    diameter: 1\n    level: {over_seabed: 9, target_strength: 9}\n",
-         ":7:12: objects[0].level: needs target_strength or over_seabed; give one"},
+         ":7:12: objects[0].level: more than one of target_strength and over_seabed is there; "
+         "give one"},
         {OBJECT "sphere\n    diameter: 1\n    level: {over_seabed: 300 dB}\n",
-         ":7:12: objects[0].level: must be -200...200 dB, not 300"},
+         ":7:26: objects[0].level.over_seabed: must be -200...200 dB, not 300"},
         {OBJECT "sphere\n    diameter: 1\n    burial: {fraction: 30}\n",
          ":7:24: objects[0].burial.fraction: must be 0...1, not 30"},
         {OBJECT "sphere\n    diameter: 1 m\n    material: {lambert: 0.3}\n",
@@ -256,7 +259,7 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
         {"input: {uniform: {rows: 65536, columns: 32769}",
          ":2:25: input.uniform.rows: times columns must be at most 2^31 pixels, not 65536 x 32769"},
         {"input: {synthetic: {rows: 1048577, columns: 1}",
-         ":2:27: input.synthetic.rows: must be at most 1048576"},
+         ":2:27: input.synthetic.rows: must be 1...1048576 pixels, not 1048577"},
     };
     static const struct wrong wrong[] = {
         {BASE "seabed: {map: coherent}\n", ":4:15: seabed.map: coherent needs complex pixels; set "
@@ -372,9 +375,10 @@ static void test_interactions(void **state)
     static const struct wrong wrong[] = {
         {BASE "injection: {interactions: 0}\n",
          ":4:27: injection.interactions: must be 1...8 surfaces, not 0"},
-        {BASE "injection: {interactions: 9}\n", ":4:27: injection.interactions: must be at most 8"},
+        {BASE "injection: {interactions: 9}\n",
+         ":4:27: injection.interactions: must be 1...8 surfaces, not 9"},
         {BASE "injection: {interactions: two}\n",
-         ":4:27: injection.interactions: 'two' is not a whole number from 0 to 8"},
+         ":4:27: injection.interactions: 'two' is not a whole number from 1 to 8"},
         {BASE "injection: {estimator: conect}\n",
          ":4:24: injection.estimator: 'conect' is not one of connect, brute_force; did you mean "
          "'connect'?"},
@@ -408,7 +412,7 @@ static void test_elements(void **state)
         {BASE "elements: {source_level: 301 dB}\n",
          ":4:26: elements.source_level: must be 0...300 dB, not 301"},
         {BASE "elements: {aspect_limit: 91 deg}\n",
-         ":4:26: elements.aspect_limit: must be 0...1.5708 rad, not 1.58825"},
+         ":4:26: elements.aspect_limit: must be 0...90 deg, not 91"},
         {BASE "elements: {sampling_rate: 0.1}\n",
          ":4:27: elements.sampling_rate: must be 1...1e+10 Hz, not 0.1"},
         {BASE "elements: {sampling_rate: 20 kHz}\n",

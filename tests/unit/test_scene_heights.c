@@ -157,7 +157,8 @@ static void test_what_is_refused(void **state)
                             "column_spacing: 1, first_ground_range: 0}\n",
          ":7:14: seabed.relief[1].heights: only one file of heights is possible; join them"},
         {HEIGHTS("unit: m") "    mound: {radius: 1 m, height: 1 m}\n",
-         ":6:5: seabed.relief[0]: needs one of ripples, mound, pit, scour and heights; give one"},
+         ":6:5: seabed.relief[0]: more than one of ripples, mound, pit, scour and heights is "
+         "there; give one"},
     };
     static const uint8_t pixels[ROWS * COLUMNS] = {0};
     static const struct raster_layout layout = {ROWS, COLUMNS, 1, PIXEL_UINT8};

@@ -177,7 +177,7 @@ static void test_what_is_wrong(void **state)
                 "    - {bottom: 1, sound_speed: 1500}\n",
          ":7:7: medium.layers[1].density: give it for all layers or for none"},
         {LAYERS "    - {bottom: 0, sound_speed: 1500, density: 0}\n",
-         ":6:47: medium.layers[0].density: must be 1e-06...1e+06, not 0"},
+         ":6:47: medium.layers[0].density: must be 1e-06...1e+06 kg/m3, not 0"},
         {PROFILE "cast.csv\n", ":5:12: medium.profile: must be a section of 'key: value' lines, "
                                "not a single value"},
         {PROFILE "{}\n",

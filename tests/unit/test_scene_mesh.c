@@ -224,7 +224,7 @@ static void test_what_is_refused(void **state)
         {MESH("{file: corner.obj, open: yes}"),
          ":6:36: objects[0].mesh.open: 'yes' is neither true nor false"},
         {MESH("{file: corner.obj, smooth: 200 deg}"),
-         ":6:38: objects[0].mesh.smooth: must be 0 to 180 deg, not 200 deg"},
+         ":6:38: objects[0].mesh.smooth: must be 0...180 deg, not 200"},
         {MESH("{file: corner.obj, up: w}"),
          ":6:34: objects[0].mesh.up: 'w' is not one of x, y, z, -x, -y, -z"},
         {MESH("{file: corner.obj, axes: y}"),

@@ -157,9 +157,9 @@ static void test_refusals(void **state)
         const char *text, *message;
     } cases[] = {
         {BASE("port") "    {pit: 1}\n", ":6:5: seabed.relief: must be a list"},
-        {BASE("port") "  - {}\n", "needs one of ripples, mound, pit, scour and heights"},
+        {BASE("port") "  - {}\n", "none of ripples, mound, pit, scour and heights"},
         {BASE("port") "  - {pit: {radius: 1, depth: 1}, mound: {radius: 1, height: 1}}\n",
-         "needs one of"},
+         "more than one of"},
         {BASE("port") "  - ripples: {height: 1 cm}\n", "relief[0].ripples.wavelength: missing"},
         {BASE("port") "  - ripples: {wavelength: 1 m, height: 1 cm, sharpness: 2}\n",
          "ripples.sharpness: must be 0...1"},

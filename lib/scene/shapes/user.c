@@ -6,8 +6,6 @@
 
 #include "scene/shapes/shape.h"
 
-#define PARAMETER_MOST 1e30
-
 void shape_size_of_user_shape(struct shape_size *size, const struct user_shape *shape)
 {
     size->user_shape = shape;
@@ -45,30 +43,6 @@ const struct shape shape_user = {.name = "user",
                                  .extent = extent,
                                  .cut_extent = extent,
                                  .is_left = is_left};
-
-void sonject_user_shape_params_init(sonject_user_shape_params *shape)
-{
-    memset(shape, 0, sizeof *shape);
-    shape->struct_size = sizeof *shape;
-}
-
-sonject_status check_user_shape(const sonject_user_shape_params *shape, struct report *report,
-                                struct check_listener *listener)
-{
-    struct check check = {report, listener, SONJECT_OK};
-    check_choice(&check, "open", shape->is_open, 2);
-    check_positive_length(&check, "bounding_radius", shape->bounding_radius_m);
-    check_length(&check, "half_length", shape->half_length_m);
-    check_length(&check, "half_width", shape->half_width_m);
-    check_length(&check, "half_height", shape->half_height_m);
-    if (shape->parameter_count > SONJECT_USER_PARAMETERS_CAPACITY)
-        check_failure(&check, "parameters", "must be at most %d, not %lu",
-                      SONJECT_USER_PARAMETERS_CAPACITY, (unsigned long)shape->parameter_count);
-    for (uint32_t i = 0; check.status == SONJECT_OK && i < shape->parameter_count; i++)
-        check_within(&check, "parameters", shape->parameters[i], -PARAMETER_MOST, PARAMETER_MOST,
-                     "");
-    return check.status;
-}
 
 static sonject_status find_snippet(struct user_shapes *shapes, struct report *report,
                                    const sonject_user_shape_params *shape, uint32_t *number)

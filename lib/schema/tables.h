@@ -1,11 +1,12 @@
-/* Tables of numbers as text, such as CSV files. */
-#ifndef SONJECT_SCHEMA_NUMBER_TABLE_H
-#define SONJECT_SCHEMA_NUMBER_TABLE_H
+/* Tables of numbers as text, such as CSV files, and sound-speed profiles among them. */
+#ifndef SONJECT_SCHEMA_TABLES_H
+#define SONJECT_SCHEMA_TABLES_H
 
 #include <stdbool.h>
 #include <stddef.h>
 
 #include "base/report.h"
+#include "medium/water.h"
 
 #define TABLE_COLUMNS_MAX 4
 
@@ -54,5 +55,45 @@ sonject_status number_table_refuse(const struct number_table *table, struct repo
                                    size_t sample, size_t column, const char *what);
 
 void number_table_clear(struct number_table *table);
+
+/* ---- Sound-speed profiles, such as a cast's. */
+
+#define PROFILE_SAMPLES_MAX WATER_LAYERS_MAX /* more of them give more layers */
+#define PROFILE_BYTES_MAX   (1024 * 1024)
+
+/* Samples in the order in which they were written, upwards or downwards. */
+struct profile_table {
+    double *positions_m; /* heights over the mean seabed, or depths below the sea surface; owned */
+    double *speeds_mps;  /* owned */
+    size_t count;
+    bool is_depth;
+};
+
+/* Why a sample cannot be used. */
+struct profile_fault {
+    size_t sample;
+    bool is_speed; /* not its position */
+    char what[200];
+};
+
+/* Reads a table with the columns height_m or depth_m, and sound_speed_mps, and checks all samples.
+ * table: zeroed; on success the caller's for profile_table_clear. Errors and message: as of
+ * number_table_read. */
+sonject_status profile_table_read(struct report *report, const char *path,
+                                  struct profile_table *table);
+
+/* The same of an array. */
+sonject_status profile_table_take(struct report *report, const struct number_array *array,
+                                  struct profile_table *table);
+
+/* Whether there are at least two samples, positions rise or fall all the way, and all numbers are
+ * within their ranges; if not, fault gets the first sample that is wrong. */
+bool profile_table_is_good(const struct profile_table *table, struct profile_fault *fault);
+
+/* Turns a good table into heights that rise; depth_m: of the water, over which a table of depths
+ * ends. */
+void profile_table_to_heights(struct profile_table *table, double depth_m);
+
+void profile_table_clear(struct profile_table *table);
 
 #endif

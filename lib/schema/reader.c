@@ -6,17 +6,9 @@
 #include "base/file.h"
 #include "base/memory.h"
 #include "base/text.h"
-#include "schema/scene_schema.h"
+#include "schema/keys.h"
 
-#define KEYS_LISTED 24 /* of a section, in a message */
-
-void list_word(struct word_list *list, const char *word)
-{
-    const size_t length = strlen(list->text);
-    snprintf(list->text + length, sizeof list->text - length, "%s%s", list->count ? ", " : "",
-             word);
-    list->count++;
-}
+#define KEYS_LISTED 32 /* of a section, in a message */
 
 const char *read_text(struct reader *reader, const struct tree_node *node)
 {
@@ -30,6 +22,11 @@ const char *read_text(struct reader *reader, const struct tree_node *node)
         return NULL;
     }
     return node->text;
+}
+
+bool is_word(const struct tree_node *node, const char *word)
+{
+    return node->kind == TREE_TEXT && node->text && strcmp(node->text, word) == 0;
 }
 
 sonject_status read_quantity(struct reader *reader, const struct tree_node *node,
@@ -61,21 +58,21 @@ sonject_status read_length_unit(struct reader *reader, const struct tree_node *n
     return SONJECT_OK;
 }
 
+/* Numbers that the type holds, but are out of bounds, are told so when all is read. */
 static sonject_status read_count(struct reader *reader, const struct field *field,
                                  const struct tree_node *node, uint64_t *count)
 {
     char excerpt[40];
+    const uint64_t limit = field->kind == FIELD_COUNT32 ? UINT32_MAX : UINT64_MAX;
+    const uint64_t most = field->most > 0.0 ? (uint64_t)field->most : limit;
     const char *text = read_text(reader, node);
     if (!text)
         return SONJECT_ERROR_INPUT;
-    if (!text_to_count(text, count))
-        return refuse_value(reader, node, "'%s' is not a whole number from 0 to %llu",
-                            text_excerpt(excerpt, sizeof excerpt, text),
-                            (unsigned long long)field->maximum);
-    if (*count > field->maximum)
-        return refuse_value(reader, node, "must be at most %llu",
-                            (unsigned long long)field->maximum);
-    return SONJECT_OK;
+    if (text_to_count(text, count) && *count <= limit)
+        return SONJECT_OK;
+    return refuse_value(reader, node, "'%s' is not a whole number from %llu to %llu",
+                        text_excerpt(excerpt, sizeof excerpt, text),
+                        (unsigned long long)field->least, (unsigned long long)most);
 }
 
 static sonject_status read_bool(struct reader *reader, const struct tree_node *node, bool *value)
@@ -89,15 +86,6 @@ static sonject_status read_bool(struct reader *reader, const struct tree_node *n
         return refuse_value(reader, node, "'%s' is neither true nor false",
                             text_excerpt(excerpt, sizeof excerpt, text));
     return SONJECT_OK;
-}
-
-sonject_status refuse_word(const struct reader *reader, const struct tree_node *node,
-                           const char *word, const struct word_list *known, const char *near)
-{
-    char excerpt[40];
-    return refuse_value(reader, node, "'%s' is not one of %s%s%s%s",
-                        text_excerpt(excerpt, sizeof excerpt, word), known->text,
-                        near ? "; did you mean '" : "", near ? near : "", near ? "'?" : "");
 }
 
 static sonject_status read_word(struct reader *reader, const struct field *field,
@@ -125,6 +113,18 @@ static sonject_status read_word(struct reader *reader, const struct field *field
         list_word(&list, key);
     }
     return refuse_word(reader, node, text, &list, near);
+}
+
+/* A number, or a word for one. */
+static sonject_status read_number(struct reader *reader, const struct field *field,
+                                  const struct tree_node *node, double *value)
+{
+    for (size_t i = 0; field->words[i]; i++)
+        if (is_word(node, field->words[i])) {
+            *value = field->word_values[i];
+            return SONJECT_OK;
+        }
+    return read_quantity(reader, node, field->quantity, value);
 }
 
 static sonject_status read_label(struct reader *reader, const struct tree_node *node, char *label)
@@ -199,8 +199,8 @@ static sonject_status read_owned_text(struct reader *reader, const struct tree_n
     return *owned ? SONJECT_OK : report_out_of_memory(reader->report, "a text");
 }
 
-static sonject_status read_subsection(struct reader *reader, const struct section *section,
-                                      const struct tree_node *node, void *structure)
+sonject_status read_subsection(struct reader *reader, const struct section *section,
+                               const struct tree_node *node, void *structure)
 {
     struct tree_node empty = {.kind = TREE_SECTION, .place = node->place};
     return read_section(reader, section, tree_is_null(node) ? &empty : node, structure);
@@ -225,14 +225,14 @@ static sonject_status read_entries(struct reader *reader, const struct field *fi
                                    const struct tree_node *node, void *structure)
 {
     char how[60];
-    const struct list list = {(size_t)field->maximum, how, read_entry};
+    const struct list list = {field->maximum, how, read_entry};
     struct entries entries = {field, (char *)structure + field->offset,
                               (uint32_t *)(void *)((char *)structure + field->count_offset)};
     snprintf(how, sizeof how, "; start each %s with '- '", field->unit);
     return tree_is_null(node) ? SONJECT_OK : read_list(reader, node, &list, &entries);
 }
 
-static sonject_status read_field(struct reader *reader, const struct field *field,
+static sonject_status read_value(struct reader *reader, const struct field *field,
                                  const struct tree_node *node, void *structure)
 {
     void *destination = (char *)structure + field->offset;
@@ -245,7 +245,7 @@ static sonject_status read_field(struct reader *reader, const struct field *fiel
     case FIELD_QUANTITY:
         if (field->section && node->kind != TREE_TEXT)
             return read_section(reader, field->section, node, structure);
-        return read_quantity(reader, node, field->quantity, destination);
+        return read_number(reader, field, node, destination);
     case FIELD_COUNT32:
         status = read_count(reader, field, node, &count);
         if (status == SONJECT_OK)
@@ -285,6 +285,29 @@ static sonject_status read_field(struct reader *reader, const struct field *fiel
     return SONJECT_ERROR_INPUT; /* never: it has a function */
 }
 
+/* Whether a node is a word that stands for a number. */
+static bool is_word_of(const struct field *field, const struct tree_node *node)
+{
+    for (size_t i = 0; field->kind == FIELD_QUANTITY && field->words[i]; i++)
+        if (is_word(node, field->words[i]))
+            return true;
+    return false;
+}
+
+static sonject_status read_field(struct reader *reader, const struct field *field,
+                                 const struct tree_node *node, void *structure)
+{
+    char what[300];
+    void *of = field->is_in_scene ? (void *)reader->scene : structure;
+    CHECK(read_value(reader, field, node, of));
+    if (field->has_kind)
+        memcpy((char *)structure + field->kind_offset, &field->kind_value,
+               sizeof field->kind_value);
+    if (!is_word_of(field, node) && !field_is_sound(field, of, true, what))
+        return refuse_value(reader, node, "%s", what);
+    return SONJECT_OK;
+}
+
 /* The key that was meant is wrong, too, so that nothing calls it missing. */
 static sonject_status refuse_unknown(struct reader *reader, const struct section *section,
                                      const struct tree_entry *entry)
@@ -293,10 +316,11 @@ static sonject_status refuse_unknown(struct reader *reader, const struct section
     struct word_list list = {{0}, 0};
     if (!are_sound(reader, entry->key))
         return SONJECT_ERROR_INPUT;
-    for (size_t i = 0; i < section->count && i < KEYS_LISTED; i++) {
-        keys[i] = section->fields[i].key;
-        list_word(&list, keys[i]);
-    }
+    for (size_t i = 0; i < section->count && list.count < KEYS_LISTED; i++)
+        if (!section->fields[i].is_hidden) {
+            keys[list.count] = section->fields[i].key;
+            list_word(&list, section->fields[i].key);
+        }
     const char *near = nearest_word(entry->key, keys, list.count);
     const size_t before = key_path_add(&reader->path, entry->key);
     if (near)
@@ -317,7 +341,8 @@ static sonject_status find_unknown(struct reader *reader, const struct section *
     sonject_status status = SONJECT_OK;
     for (size_t i = 0; i < node->count; i++) {
         size_t j = 0;
-        while (j < section->count && strcmp(section->fields[j].key, node->entries[i].key) != 0)
+        while (j < section->count && (section->fields[j].is_hidden ||
+                                      strcmp(section->fields[j].key, node->entries[i].key) != 0))
             j++;
         if (j == section->count)
             status = refuse_unknown(reader, section, &node->entries[i]);
@@ -335,6 +360,53 @@ static sonject_status find_missing(struct reader *reader, const struct section *
             status = refuse_key(reader, node, field->key, "missing; add it (%s)", field->meaning);
     }
     return status;
+}
+
+/* "a, b and c" of "a b c"; "a and b, or c and d" of "a+b c+d". */
+static void tell_choice(const char *choice, char text[200])
+{
+    const bool is_of_pairs = strchr(choice, '+') != NULL;
+    size_t length = 0;
+    for (; *choice && length < 190; choice++) {
+        const char *joint = *choice == '+'            ? " and "
+                            : is_of_pairs             ? ", or "
+                            : strchr(choice + 1, ' ') ? ", "
+                                                      : " and ";
+        if (*choice == ' ' || *choice == '+')
+            length += (size_t)snprintf(text + length, 200 - length, "%s", joint);
+        else
+            text[length++] = *choice;
+    }
+    text[length] = 0;
+}
+
+/* That one of the section's choice is there, and nothing of the others. */
+static sonject_status check_choice_given(struct reader *reader, const struct section *section,
+                                         const struct tree_node *node)
+{
+    const char *rest = section->choice;
+    const bool is_of_pairs = strchr(rest, '+') != NULL;
+    size_t whole = 0, begun = 0;
+    bool are_right = true;
+    char key[64], told[200];
+    while (next_key(&rest, key)) {
+        char *plus = strchr(key, '+');
+        if (plus)
+            *plus = ' '; /* two keys, separated by a blank */
+        begun += count_given(node, key) > 0;
+        whole += count_given(node, key) == (plus ? 2 : 1);
+        are_right = are_right && are_sound(reader, key);
+    }
+    const bool may_lack = section->may_lack || (section == &input_section && reader->takes_pixels);
+    if (begun == 1 ? whole == 1 : begun == 0 && may_lack)
+        return SONJECT_OK;
+    if (!are_right && (begun == 0 || is_of_pairs))
+        return SONJECT_ERROR_INPUT; /* one is there, misspelt */
+    tell_choice(section->choice, told);
+    if (is_of_pairs)
+        return refuse_value(reader, node, "needs %s; give one pair", told);
+    return refuse_value(reader, node, "%s of %s is there; give one",
+                        begun == 0 ? "none" : "more than one", told);
 }
 
 bool reading_ends(sonject_status status)
@@ -390,16 +462,23 @@ sonject_status read_section(struct reader *reader, const struct section *section
     sonject_status status = find_unknown(reader, section, node);
     status = settle(reader, node, status, find_missing(reader, section, node));
     for (size_t i = 0; !reading_ends(status) && i < section->count; i++) {
-        const struct tree_entry *entry = tree_find(node, section->fields[i].key);
+        const struct field *field = &section->fields[i];
+        const struct tree_entry *entry = field->is_hidden ? NULL : tree_find(node, field->key);
         if (!entry)
             continue;
         const size_t before = key_path_add(&reader->path, entry->key);
         status = settle(reader, &entry->value, status,
-                        read_field(reader, &section->fields[i], &entry->value, structure));
+                        read_field(reader, field, &entry->value, structure));
         key_path_shorten(&reader->path, before);
     }
-    if (!reading_ends(status) && section->check)
-        status = settle(reader, node, status, section->check(reader, node, structure));
+    if (!reading_ends(status) && section->choice)
+        status = settle(reader, node, status, check_choice_given(reader, section, node));
+    if (!reading_ends(status) && section->finish) {
+        status = settle(reader, node, status, section->finish(reader, node, structure));
+    } else if (!reading_ends(status) && section->relations) {
+        struct check check = check_at(reader, node);
+        section->relations(&check, structure);
+    }
     const bool is_wrong = count_mistakes(reader) > wrong_before;
     return status == SONJECT_OK && is_wrong ? SONJECT_ERROR_INPUT : status;
 }

@@ -1,0 +1,470 @@
+/* What is made from the tables of keys: defaults, checks, the list of all keys. */
+#include "schema/keys.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/json_document.h"
+#include "base/text.h"
+#include "schema/scene_file.h"
+
+#define WHOLE_TYPE(field) ((field)->kind == FIELD_COUNT32 ? UINT32_MAX : UINT64_MAX)
+
+static const struct quantity_text {
+    const char *units; /* as users may write them */
+    const char *si;    /* behind a number in a message */
+} quantity_texts[] = {
+    [QUANTITY_NUMBER] = {"number", ""},
+    [QUANTITY_LENGTH] = {"m, km, cm, mm", " m"},
+    [QUANTITY_FREQUENCY] = {"Hz, kHz, MHz", " Hz"},
+    [QUANTITY_SPEED] = {"m/s, km/s", " m/s"},
+    [QUANTITY_ANGLE] = {"deg, rad", " deg"},
+    [QUANTITY_DECIBEL] = {"dB", " dB"},
+    [QUANTITY_LEVEL] = {"dB, or a linear number", ""},
+    [QUANTITY_ABSORPTION] = {"dB/m, dB/km", " dB/m"},
+    [QUANTITY_TEMPERATURE] = {"C", " C"},
+    [QUANTITY_DENSITY] = {"kg/m3, g/cm3", " kg/m3"},
+    [QUANTITY_TIME] = {"s, ms, us", " s"},
+};
+
+static bool is_count(const struct field *field)
+{
+    return field->kind == FIELD_COUNT32 || field->kind == FIELD_COUNT64;
+}
+
+static bool is_number(const struct field *field)
+{
+    return field->kind == FIELD_QUANTITY || is_count(field);
+}
+
+static bool has_bounds(const struct field *field)
+{
+    return field->least != 0.0 || field->most != 0.0;
+}
+
+/* How many values a word has, with those that no word stands for. */
+static uint32_t count_words(const struct field *field)
+{
+    uint32_t count = 0;
+    while (count < FIELD_WORDS_MAX && field->words[count])
+        count++;
+    return count;
+}
+
+static uint32_t value32(const void *structure, size_t offset)
+{
+    uint32_t value;
+    memcpy(&value, (const char *)structure + offset, sizeof value);
+    return value;
+}
+
+static double number_of(const struct field *field, const void *structure)
+{
+    const char *member = (const char *)structure + field->offset;
+    if (field->kind == FIELD_QUANTITY)
+        return *(const double *)(const void *)member;
+    return field->kind == FIELD_COUNT64 ? (double)*(const uint64_t *)(const void *)member
+                                        : value32(structure, field->offset);
+}
+
+/* As users are told it. */
+static double shown(const struct field *field, double number)
+{
+    return field->kind == FIELD_QUANTITY && field->quantity == QUANTITY_ANGLE ? number * 180.0 / PI
+                                                                              : number;
+}
+
+static const char *unit_behind(const struct field *field)
+{
+    return field->per                      ? field->per
+           : field->kind == FIELD_QUANTITY ? quantity_texts[field->quantity].si
+                                           : "";
+}
+
+bool field_applies(const struct field *field, const void *structure)
+{
+    return !field->has_kind || value32(structure, field->kind_offset) == field->kind_value;
+}
+
+uint32_t field_entry_count(const struct field *field, const void *structure)
+{
+    if (field->kind != FIELD_ENTRIES)
+        return 1;
+    const uint32_t count = value32(structure, field->count_offset);
+    return count < field->maximum ? count : field->maximum;
+}
+
+const struct section *field_below(const struct field *field, const void *structure,
+                                  const struct scene *scene, uint32_t index, const void **below)
+{
+    const void *of = field->is_in_scene ? (const void *)scene : structure;
+    if (!of || field->kind == FIELD_SPECIAL ||
+        (field->read && (field->kind == FIELD_WORD || field->kind == FIELD_QUANTITY)))
+        return NULL;
+    *below = structure; /* keys that are another way to write a value */
+    if (field->kind == FIELD_SECTION || field->kind == FIELD_NAMED || field->kind == FIELD_ENTRIES)
+        *below = (const char *)of + field->offset + index * field->entry_bytes;
+    return field->section;
+}
+
+/* ---- Defaults. */
+
+static void set_preset(const struct field *field, void *structure)
+{
+    char *member = (char *)structure + field->offset;
+    const double preset = field->preset;
+    if (field->kind == FIELD_QUANTITY)
+        *(double *)(void *)member = preset;
+    else if (field->kind == FIELD_COUNT64)
+        *(uint64_t *)(void *)member = (uint64_t)preset;
+    else if (field->kind == FIELD_BOOL)
+        *(bool *)(void *)member = preset != 0.0;
+    else if (field->kind == FIELD_COUNT32 || field->kind == FIELD_FLAG32 ||
+             field->kind == FIELD_WORD)
+        *(uint32_t *)(void *)member = (uint32_t)preset;
+}
+
+void section_defaults(const struct section *section, void *structure, struct scene *scene)
+{
+    if (section->bytes > 0) {
+        const uint32_t size = (uint32_t)section->bytes;
+        memset(structure, 0, section->bytes);
+        memcpy(structure, &size, sizeof size);
+    }
+    for (size_t i = 0; i < section->count; i++) {
+        const struct field *field = &section->fields[i];
+        const uint32_t entries = field->kind == FIELD_ENTRIES ? field->maximum : 1;
+        const void *below;
+        if (!field->is_in_scene || scene)
+            set_preset(field, field->is_in_scene ? (void *)scene : structure);
+        for (uint32_t k = 0; k < entries; k++) {
+            const struct section *inner = field_below(field, structure, scene, k, &below);
+            if (inner) /* of structure, or of scene, both of which may be changed */
+                section_defaults(inner, (void *)(uintptr_t)below, scene);
+        }
+    }
+}
+
+/* ---- Checks. */
+
+static bool stands_for_word(const struct field *field, double number)
+{
+    for (size_t i = 0; field->kind == FIELD_QUANTITY && field->words[i]; i++)
+        if (number == field->word_values[i])
+            return true;
+    return false;
+}
+
+static bool is_within(const struct field *field, double number, bool is_written)
+{
+    if (isnan(number))
+        return (field->bounds & NAN_IS_NONE) != 0;
+    if (!is_written && stands_for_word(field, number))
+        return true;
+    if (number == 0.0 && (field->bounds & ZERO_IS_NONE) && !(is_written && field->is_required))
+        return true;
+    if (!has_bounds(field))
+        return is_count(field) || isfinite(number);
+    return (field->bounds & ABOVE_LEAST ? number > field->least : number >= field->least) &&
+           (field->bounds & BELOW_MOST ? number < field->most : number <= field->most);
+}
+
+/* "1...8 surfaces", "at least 0.01, or auto"; "" for no bounds. */
+static void tell_range(const struct field *field, char text[200])
+{
+    const char *least_is = field->bounds & ABOVE_LEAST ? "above " : "at least ";
+    const char *most_is = field->bounds & BELOW_MOST ? "below " : "at most ";
+    const char *unit = unit_behind(field);
+    const double least = shown(field, field->least), most = shown(field, field->most);
+    const int digits = is_count(field) ? 15 : 6;
+    if (field->range)
+        snprintf(text, 200, "%s", field->range);
+    else if (!has_bounds(field))
+        text[0] = 0;
+    else if (isinf(least))
+        snprintf(text, 200, "%s%.*g%s", most_is, digits, most, unit);
+    else if (isinf(most))
+        snprintf(text, 200, "%s%.*g%s", least_is, digits, least, unit);
+    else if (field->bounds & (ABOVE_LEAST | BELOW_MOST))
+        snprintf(text, 200, "%s%.*g%s and %s%.*g%s", least_is, digits, least, unit, most_is, digits,
+                 most, unit);
+    else
+        snprintf(text, 200, "%.*g...%.*g%s", digits, least, digits, most, unit);
+    for (size_t i = 0; *text && field->kind == FIELD_QUANTITY && field->words[i]; i++)
+        snprintf(text + strlen(text), 200 - strlen(text), "%s%s",
+                 field->words[i + 1] ? ", " : " or ", field->words[i]);
+}
+
+static bool number_is_sound(const struct field *field, const void *structure, bool is_written,
+                            char what[300])
+{
+    char range[200];
+    const double number = number_of(field, structure);
+    if (is_within(field, number, is_written))
+        return true;
+    tell_range(field, range);
+    if (field->is_required && isnan(number))
+        snprintf(what, 300, "must be set: it has no default");
+    else
+        snprintf(what, 300, "must be %s, not %.*g", *range ? range : "a finite number",
+                 is_count(field) ? 15 : 6, shown(field, number));
+    return false;
+}
+
+static bool label_is_sound(const char *text, char what[300])
+{
+    if (!memchr(text, 0, SONJECT_NAME_CAPACITY))
+        snprintf(what, 300, "must be at most %d bytes long", SONJECT_NAME_CAPACITY - 1);
+    else if (!text_is_printable(text))
+        snprintf(what, 300, "must be UTF-8 text without control characters");
+    else
+        return true;
+    return false;
+}
+
+bool field_is_sound(const struct field *field, const void *structure, bool is_written,
+                    char what[300])
+{
+    const char *member = (const char *)structure + field->offset;
+    if (is_number(field))
+        return number_is_sound(field, structure, is_written, what);
+    if (field->kind == FIELD_LABEL)
+        return label_is_sound(member, what);
+    if (field->kind == FIELD_ENTRIES) {
+        const uint32_t count = value32(structure, field->count_offset);
+        snprintf(what, 300, "must be at most %lu, not %lu", (unsigned long)field->maximum,
+                 (unsigned long)count);
+        return count <= field->maximum;
+    }
+    if (field->kind != FIELD_WORD && field->kind != FIELD_FLAG32)
+        return true;
+    const uint32_t choices = field->kind == FIELD_WORD ? count_words(field) : 2;
+    const uint32_t chosen = value32(structure, field->offset);
+    snprintf(what, 300, "has no choice number %lu; the last is %lu", (unsigned long)chosen,
+             (unsigned long)choices - 1);
+    return chosen < choices;
+}
+
+static void check_fields(struct check *check, const struct section *section, const void *structure,
+                         const char *prefix)
+{
+    for (size_t i = 0; i < section->count; i++) {
+        const struct field *field = &section->fields[i];
+        char what[300], name[120], inside[124];
+        const void *below;
+        if (field->is_in_scene || !field_applies(field, structure) ||
+            (field->is_hidden && field->section))
+            continue;
+        snprintf(name, sizeof name, "%s%s", prefix, field->key);
+        if (!field_is_sound(field, structure, false, what))
+            check_failure(check, name, "%s", what);
+        for (uint32_t k = 0; k < field_entry_count(field, structure); k++) {
+            const struct section *inner = field_below(field, structure, NULL, k, &below);
+            if (field->is_list)
+                snprintf(inside, sizeof inside, "%.100s[%lu].", name, (unsigned long)k);
+            else
+                snprintf(inside, sizeof inside, "%s.", name);
+            if (inner)
+                check_fields(check, inner, below, inside);
+        }
+    }
+}
+
+sonject_status section_check(const struct section *section, const void *structure,
+                             struct report *report, struct check_listener *listener)
+{
+    struct check check = {report, listener, SONJECT_OK};
+    check_fields(&check, section, structure, "");
+    if (section->relations)
+        section->relations(&check, structure);
+    return check.status;
+}
+
+/* ---- The list of all keys. */
+
+static const char *kind_of(const struct field *field)
+{
+    static const char *const kinds[] = {
+        [FIELD_QUANTITY] = "quantity", [FIELD_COUNT32] = "count",   [FIELD_COUNT64] = "count",
+        [FIELD_BOOL] = "flag",         [FIELD_FLAG32] = "flag",     [FIELD_WORD] = "word",
+        [FIELD_LABEL] = "text",        [FIELD_TEXT] = "text",       [FIELD_PATH] = "file",
+        [FIELD_FILE] = "file",         [FIELD_SECTION] = "section", [FIELD_NAMED] = "name",
+        [FIELD_ENTRIES] = "list",      [FIELD_SPECIAL] = "special",
+    };
+    return field->kind == FIELD_SPECIAL && field->is_list ? "list" : kinds[field->kind];
+}
+
+static const char *unit_of(const struct field *field)
+{
+    if (field->unit)
+        return field->unit;
+    switch (field->kind) {
+    case FIELD_QUANTITY:
+        return quantity_texts[field->quantity].units;
+    case FIELD_BOOL:
+    case FIELD_FLAG32:
+        return "true or false";
+    case FIELD_PATH:
+    case FIELD_FILE:
+        return "file name";
+    case FIELD_COUNT32:
+    case FIELD_COUNT64:
+        return "whole number";
+    default:
+        return kind_of(field);
+    }
+}
+
+/* Whether the section's choice names the key, which then has no default. */
+static bool is_of_choice(const struct section *section, const char *key)
+{
+    const char *choice = section->choice && !section->may_lack ? section->choice : "";
+    const size_t length = strlen(key);
+    for (const char *at = choice; *at; at += strcspn(at, " +"), at += *at != 0)
+        if (strncmp(at, key, length) == 0 && strchr(" +", at[length]))
+            return true;
+    return false;
+}
+
+/* The default, as a scene file may say it; "" for none. */
+static void tell_preset(const struct section *section, const struct field *field, char text[64])
+{
+    const double preset = shown(field, field->preset);
+    const bool is_none = field->is_required || is_of_choice(section, field->key) || isnan(preset) ||
+                         (preset == 0.0 && (field->bounds & ZERO_IS_NONE));
+    text[0] = 0;
+    if (is_none)
+        return;
+    if (field->kind == FIELD_WORD)
+        snprintf(text, 64, "%s", field->words[(size_t)preset]);
+    else if (field->kind == FIELD_BOOL || field->kind == FIELD_FLAG32)
+        snprintf(text, 64, "%s", preset != 0.0 ? "true" : "false");
+    else if (is_count(field))
+        snprintf(text, 64, "%.15g", preset);
+    else if (field->kind == FIELD_QUANTITY && field->quantity == QUANTITY_LEVEL && preset > 0.0)
+        snprintf(text, 64, "%.4g dB", 10.0 * log10(preset));
+    else if (field->kind == FIELD_QUANTITY && field->quantity == QUANTITY_ANGLE)
+        snprintf(text, 64, "%.4g deg", preset);
+    else if (field->kind == FIELD_QUANTITY)
+        snprintf(text, 64, "%.6g%s", preset, quantity_texts[field->quantity].si);
+    for (size_t i = 0; field->kind == FIELD_QUANTITY && field->words[i]; i++)
+        if (field->preset == field->word_values[i])
+            snprintf(text, 64, "%s", field->words[i]);
+}
+
+/* A section that may be written as a single value, too, has a unit. */
+static bool has_value(const struct field *field)
+{
+    return field->kind == FIELD_WORD || field->kind == FIELD_NAMED ||
+           field->kind == FIELD_QUANTITY || !field->section || (field->unit && !field->is_list);
+}
+
+static json_t *json_or_null(bool is_there, json_t *value)
+{
+    if (is_there)
+        return value;
+    json_decref(value);
+    return json_null();
+}
+
+static json_t *json_of_field(const char *prefix, const struct section *section,
+                             const struct field *field)
+{
+    char preset[64], range[200];
+    const int prefix_length = (int)strlen(prefix) - (*prefix != 0);
+    const bool is_bounded = is_number(field) && has_bounds(field);
+    json_t *words = field->words[0] ? json_array() : NULL;
+    for (uint32_t i = 0; words && i < count_words(field); i++)
+        if (*field->words[i])
+            json_append(&words, json_string(field->words[i]));
+    tell_preset(section, field, preset);
+    tell_range(field, range);
+    return json_pack(
+        "{s:o, s:o, s:s, s:s, s:s, s:b, s:b, s:b, s:o?, s:s?, s:o, s:o, s:o, s:o, s:o}", "path",
+        json_sprintf("%s%s", prefix, field->key), "section",
+        json_sprintf("%.*s", prefix_length, prefix), "meaning", field->meaning, "kind",
+        kind_of(field), "unit", unit_of(field), "has_value", (int)has_value(field), "is_list",
+        (int)field->is_list, "is_required", (int)field->is_required, "words", words, "member",
+        field->member, "default", json_or_null(*preset, json_string(preset)), "range",
+        json_or_null(*range, json_string(range)), "preset",
+        json_or_null(*preset && (is_number(field) || field->kind == FIELD_WORD),
+                     json_number(field->preset)),
+        "least", json_or_null(is_bounded, json_number(field->least)), "most",
+        json_or_null(is_bounded, json_number(field->most)));
+}
+
+/* Tables do not come back to themselves: parts within parts are listed as one key. */
+static void add_json(json_t **keys, const char *prefix, const struct section *section)
+{
+    for (size_t i = 0; i < section->count; i++) {
+        const struct field *field = &section->fields[i];
+        char below[80];
+        if (field->is_hidden)
+            continue;
+        json_append(keys, json_of_field(prefix, section, field));
+        snprintf(below, sizeof below, "%s%s%s", prefix, field->key, field->is_list ? "[]." : ".");
+        if (field->section)
+            add_json(keys, below, field->section);
+    }
+}
+
+sonject_status scene_keys_json(struct report *report, char **text)
+{
+    json_t *keys = json_array();
+    add_json(&keys, "", &scene_section);
+    *text = json_document_text(keys, JSON_INDENT(1) | JSON_REAL_PRECISION(15));
+    json_decref(keys);
+    return *text ? SONJECT_OK : report_out_of_memory(report, "the keys of scenes");
+}
+
+/* ---- Whether there is a key. */
+
+static const struct field *field_of(const struct section *section, const char *key, size_t length)
+{
+    for (size_t i = 0; i < section->count; i++) {
+        const struct field *field = &section->fields[i];
+        if (!field->is_hidden && strlen(field->key) == length &&
+            memcmp(field->key, key, length) == 0)
+            return field;
+    }
+    return NULL;
+}
+
+static const char *nearest_key(const struct section *section, const char *key, size_t length)
+{
+    const char *keys[40];
+    char typed[32] = "";
+    size_t count = 0;
+    if (length >= sizeof typed)
+        return NULL;
+    memcpy(typed, key, length);
+    for (size_t i = 0; i < section->count && count < COUNT(keys); i++)
+        if (!section->fields[i].is_hidden)
+            keys[count++] = section->fields[i].key;
+    return nearest_word(typed, keys, count);
+}
+
+bool scene_key_find(const struct section *top, const char *path, const char **near,
+                    const struct section **section)
+{
+    *section = top;
+    *near = NULL;
+    for (;;) {
+        const size_t length = strcspn(path, ".[");
+        const struct field *field = field_of(*section, path, length);
+        if (!field) {
+            *near = nearest_key(*section, path, length);
+            return false;
+        }
+        path += length;
+        while (*path == '[')
+            path += strcspn(path, "]") + (path[strcspn(path, "]")] == ']');
+        if (!*path)
+            return true;
+        if (*path++ != '.')
+            return false;
+        if (!field->section)
+            return field->kind == FIELD_SPECIAL && *path;
+        *section = field->section;
+    }
+}

@@ -1,0 +1,265 @@
+/* Materials: what surfaces do with sound, by name or key by key; the seabed's and the sea surface's
+ * among them. */
+#include "schema/keys.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "scene/surface_material.h"
+
+/* 1/pi written in decimal digits must not be refused for its last bit. */
+#define ENERGY_SLACK (1.0 + 1e-12)
+
+/* ---- Names. */
+
+struct named_material {
+    const char *name;
+    double density_ratio, speed_ratio, loss; /* to sea water's 1025 kg/m3 and 1500 m/s */
+    double roughness_m;                      /* order of magnitude */
+    double lambert;
+};
+
+/* Objects: densities and compressional speeds of the order that handbooks of acoustics give; fluids
+ * without shear waves, so that reflection is a little low between the critical angles. Sediments:
+ * "APL-UW High-Frequency Ocean Environmental Acoustic Models Handbook", TR 9407 (1994), table 2, as
+ * commonly tabulated; their Lambert part is Mackenzie's. */
+static const struct named_material materials[] = {
+    {"concrete", 2.3, 2.1, 0.01, 1.0e-3, 0.063},
+    {"rubber", 1.1, 1.03, 0.05, 0.5e-3, 0.02},
+    {"wood", 0.9, 1.3, 0.02, 1.0e-3, 0.05},
+    {"rock", 2.5, 2.5, 0.01, 5.0e-3, 0.1},
+    {"gravel", 2.492, 1.3370, 0.01705, 20.0e-3, 1.9953e-3},
+    {"coarse sand", 2.231, 1.2503, 0.01638, 10.0e-3, 1.9953e-3},
+    {"medium sand", 1.845, 1.1782, 0.01624, 5.0e-3, 1.9953e-3},
+    {"fine sand", 1.451, 1.1073, 0.01602, 3.0e-3, 1.9953e-3},
+    {"silt", 1.149, 0.9873, 0.00386, 2.0e-3, 1.9953e-3},
+    {"clay", 1.145, 0.9801, 0.00148, 1.0e-3, 1.9953e-3},
+};
+
+/* Whether names are the same but for '_' and '-' in place of blanks. */
+static bool is_same_name(const char *given, const char *name)
+{
+    for (; *name; given++, name++) {
+        const char letter = *given == '_' || *given == '-' ? ' ' : *given;
+        if (letter != *name)
+            return false;
+    }
+    return *given == 0;
+}
+
+sonject_status sonject_material_named(const char *name, sonject_material_params *material)
+{
+    if (!name || !material)
+        return SONJECT_ERROR_ARGUMENT;
+    if (is_same_name(name, "steel")) {
+        sonject_material_params_init(material);
+        return SONJECT_OK;
+    }
+    for (size_t i = 0; i < COUNT(materials); i++) {
+        const struct named_material *named = &materials[i];
+        if (!is_same_name(name, named->name))
+            continue;
+        sonject_material_params_init(material);
+        material->reflection_kind = SONJECT_REFLECTION_FLUID;
+        material->density_ratio = named->density_ratio;
+        material->speed_ratio = named->speed_ratio;
+        material->loss = named->loss;
+        material->roughness_m = named->roughness_m;
+        material->lambert = named->lambert;
+        return SONJECT_OK;
+    }
+    return SONJECT_ERROR_ARGUMENT;
+}
+
+const char *sonject_material_name(uint32_t index)
+{
+    return index == 0 ? "steel" : index <= COUNT(materials) ? materials[index - 1].name : NULL;
+}
+
+sonject_status read_material_name(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    const char *names[COUNT(materials) + 1];
+    struct word_list list = {{0}, 0};
+    const char *name = read_text(reader, node);
+    if (!name)
+        return SONJECT_ERROR_INPUT;
+    if (sonject_material_named(name, structure) == SONJECT_OK)
+        return SONJECT_OK;
+    while (sonject_material_name((uint32_t)list.count)) {
+        names[list.count] = sonject_material_name((uint32_t)list.count);
+        list_word(&list, names[list.count]);
+    }
+    return refuse_word(reader, node, name, &list, nearest_word(name, names, list.count));
+}
+
+/* The sediment's backscatter stays the seabed's own. */
+sonject_status read_sediment_name(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    sonject_material_params *material = structure;
+    const sonject_status status = read_material_name(reader, node, material);
+    material->lambert = NAN;
+    return status;
+}
+
+/* ---- What a surface returns. */
+
+/* At normal incidence the rough part returns pi * lambert + glossy_albedo of the energy, whatever
+ * the exponent. It must fit into what roughness can take from the smooth part; where nothing is
+ * known of that but its angle-dependent limit, or there is none, into all of it. */
+void relate_energy(struct check *check, const char *prefix, const sonject_material_params *material,
+                   double own_lambert)
+{
+    const bool has_own = isnan(material->lambert) && !isnan(own_lambert);
+    const double lambert = has_own ? own_lambert : material->lambert;
+    const bool is_reduced =
+        material->reflection_kind == SONJECT_REFLECTION_CONSTANT && material->reflection != 0.0;
+    const double available = is_reduced ? material->reflection * material->reflection : 1.0;
+    const char *bound = is_reduced ? "reflection^2" : "1";
+    char key[40], others[160];
+    snprintf(others, sizeof others, "lambert %slambert %sreflection %sname %ssediment", prefix,
+             prefix, prefix, prefix);
+    snprintf(key, sizeof key, "%slambert", prefix);
+    if (!(lambert >= 0.0 && PI * lambert <= available * ENERGY_SLACK))
+        check_relation(check, key, others,
+                       "must be 0...%.4g (%s / pi), or the surface returns more than it receives; "
+                       "it is %s%g",
+                       available / PI, bound, has_own ? "the seabed's own, " : "", lambert);
+    const double left = fmax(0.0, available - PI * lambert);
+    snprintf(key, sizeof key, "%sglossy.albedo", prefix);
+    if (!(material->glossy_albedo >= 0.0 &&
+          PI * lambert + material->glossy_albedo <= available * ENERGY_SLACK))
+        check_relation(check, key, others,
+                       "must be 0...%.4g (%s - pi lambert), or the surface returns more than it "
+                       "receives; it is %g",
+                       left, bound, material->glossy_albedo);
+}
+
+/* ---- Keys of materials. */
+
+/* The keys of fluid may change a named fluid; what is none yet needs them. */
+static sonject_status finish_fluid(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    const sonject_material_params *material = structure;
+    const char *needed = "density speed";
+    char key[64];
+    while (material->reflection_kind != SONJECT_REFLECTION_FLUID && next_key(&needed, key))
+        if (!is_given(node, key))
+            refuse_key(reader, node, key, "missing; a fluid needs it (ratio to the water's)");
+    return SONJECT_OK;
+}
+
+static sonject_status finish_material(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    sonject_material_params *material = structure;
+    if (is_given(node, "reflection") && is_given(node, "fluid"))
+        return refuse_key(reader, node, "reflection",
+                          "fluid tells the reflection at every angle; remove one of the two");
+    if (is_given(node, "reflection"))
+        material->reflection_kind = SONJECT_REFLECTION_CONSTANT;
+    return SONJECT_OK;
+}
+
+#define STRUCTURE sonject_material_params
+static const struct field glossy_fields[] = {
+    {"albedo", "fraction of the energy that the cone returns at most",
+     QUANTITY(glossy_albedo, NUMBER), .range = "0...1, and at most what lambert leaves", REQUIRED},
+    {"slope", "rms slope of the facets that make the cone", QUANTITY(glossy_slope, NUMBER),
+     WITHIN(0.01, 1.0), .preset = 0.1},
+};
+static const struct section glossy_section = {ROWS(glossy_fields)};
+
+static const struct field fluid_fields[] = {
+    {"density", "ratio to the water's", QUANTITY(density_ratio, NUMBER), WITHIN(0.001, 100.0),
+     .per = " times the water's", .preset = 1.0},
+    {"speed", "of sound, ratio to the water's", QUANTITY(speed_ratio, NUMBER), WITHIN(0.01, 20.0),
+     .per = " times the water's", .preset = 1.0},
+    {"loss", "imaginary over real part of the wavenumber", QUANTITY(loss, NUMBER),
+     WITHIN(0.0, 1.0)},
+};
+static const struct section fluid_section = {ROWS(fluid_fields), .finish = finish_fluid};
+
+#define LAMBERT_RANGE                                                                              \
+    .range = "0...reflection^2 / pi, or 1 / pi where there is no reflection, or it is a fluid's"
+
+/* What a material has beside a name, and what it is without keys. */
+#define MATERIAL_FIELDS(smooth, rough_m, mu, mu_bounds)                                            \
+    {"reflection", "told by reflection or fluid", HIDDEN,                                          \
+     WORD(reflection_kind) = {"constant", "fluid"}},                                               \
+        {"reflection", "amplitude of the mirror-like part, -1 to 1", QUANTITY(reflection, NUMBER), \
+         WITHIN(-1.0, 1.0), .preset = (smooth)},                                                   \
+        {"roughness", "rms height", QUANTITY(roughness_m, LENGTH), WITHIN(0.0, 1.0),               \
+         .preset = (rough_m)},                                                                     \
+        {"lambert",                                                                                \
+         "coefficient mu of the rough part",                                                       \
+         QUANTITY(lambert, LEVEL),                                                                 \
+         .preset = (mu),                                                                           \
+         .bounds = (mu_bounds),                                                                    \
+         LAMBERT_RANGE},                                                                           \
+        {"exponent", "of the rough part's cosines, 1 for Lambert's law",                           \
+         QUANTITY(lambert_exponent, NUMBER), WITHIN(1.0, 64.0), .preset = 1.0},                    \
+        {"glossy", "cone about the mirror direction", SAME(glossy_section)},                       \
+    {                                                                                              \
+        "fluid", "what sound enters; gives the reflection at every angle", SAME(fluid_section),    \
+            SETS(reflection_kind, SONJECT_REFLECTION_FLUID)                                        \
+    }
+
+/* Names come first: the other keys change what they stand for. */
+static const struct field material_fields[] = {
+    {"name", "of a known material", SPECIAL(read_material_name, "name")},
+    MATERIAL_FIELDS(0.9, 1.0e-3, 0.1, 0),
+};
+const struct section material_section = {ROWS(material_fields), .finish = finish_material,
+                                         .bytes = sizeof(STRUCTURE)};
+
+static const struct field forward_fields[] = {
+    {"sediment", "name of a known material", SPECIAL(read_sediment_name, "name")},
+    {"rule", "rough part from the model alone, or times the image's map", .kind = FIELD_WORD,
+     .is_in_scene = true, .member = "forward_rule",
+     .offset = offsetof(struct scene, seabed.forward_rule),
+     .words = {[SONJECT_FORWARD_MODEL] = "model", [SONJECT_FORWARD_MAP] = "map"}},
+    MATERIAL_FIELDS(0.0, 0.0, NAN, NAN_IS_NONE),
+};
+const struct section forward_section = {ROWS(forward_fields), .finish = finish_material,
+                                        .bytes = sizeof(STRUCTURE)};
+
+static const struct field waves_fields[] = {
+    {"albedo", "fraction that the cone returns at most, by default what lambert leaves",
+     QUANTITY(glossy_albedo, NUMBER), .range = "0...1, and at most what lambert leaves",
+     NONE_IF_NAN},
+    {"slope", "rms slope of the waves, which make the cone", QUANTITY(glossy_slope, NUMBER),
+     WITHIN(0.01, 1.0), .preset = 0.2},
+};
+static const struct section waves_section = {ROWS(waves_fields)};
+#undef STRUCTURE
+
+/* ---- The sea surface. */
+
+static void relate_surface(struct check *check, const void *structure)
+{
+    const sonject_material_params material = surface_material(structure);
+    relate_energy(check, "", &material, NAN);
+}
+
+/* Air above water, as far as keys do not say other. */
+#define STRUCTURE sonject_surface_params
+static const struct field surface_fields[] = {
+    {"material", "of the surface", HIDDEN, PART(material, material_section)},
+    {"depth", "of the water: height of the surface over the mean seabed",
+     QUANTITY(water_depth_m, LENGTH), FROM_ZERO, REQUIRED},
+    {"reflection", "amplitude of the mirror-like part, -1 to 1",
+     QUANTITY(material.reflection, NUMBER), WITHIN(-1.0, 1.0), .preset = -1.0},
+    {"roughness", "rms height of the waves", QUANTITY(material.roughness_m, LENGTH),
+     WITHIN(0.0, 1.0)},
+    {"lambert", "coefficient mu of the rough part", QUANTITY(material.lambert, LEVEL),
+     LAMBERT_RANGE},
+    {"exponent", "of the rough part's cosines, 1 for Lambert's law",
+     QUANTITY(material.lambert_exponent, NUMBER), WITHIN(1.0, 64.0), .preset = 1.0},
+    {"glossy", "cone about the mirror direction", PART(material, waves_section)},
+};
+const struct section surface_section = {ROWS(surface_fields), .relations = relate_surface,
+                                        .bytes = sizeof(STRUCTURE)};
+#undef STRUCTURE

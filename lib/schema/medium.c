@@ -1,0 +1,314 @@
+/* The keys of the water: one sound speed, layers or a profile, and its absorption. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "schema/keys.h"
+#include "schema/tables.h"
+
+/* What a check of layers or profiles says behind the name that its message begins with. */
+static const char *behind_name(const struct report *check)
+{
+    const char *blank = strchr(check->message, ' ');
+    return blank ? blank + 1 : check->message;
+}
+
+/* That the node is a list of 1...WATER_LAYERS_MAX entries. example: for the message. */
+static sonject_status check_list(struct reader *reader, const struct tree_node *node,
+                                 const char *example)
+{
+    if (node->kind != TREE_LIST || node->count == 0)
+        return refuse_value(reader, node, "must be a list, such as %s", example);
+    if (node->count > WATER_LAYERS_MAX)
+        return refuse_value(reader, node, "has %zu entries; at most %d are possible", node->count,
+                            WATER_LAYERS_MAX);
+    return SONJECT_OK;
+}
+
+static void replace_layers(struct scene *scene, struct water_layer *layers, size_t count)
+{
+    free(scene->water_layers);
+    scene->water_layers = layers;
+    scene->water_layer_count = count;
+}
+
+/* ---- A profile of the sound speed. */
+
+struct numbers {
+    double *values; /* owned; NULL: not given */
+    size_t count;
+};
+
+struct profile_text {
+    char *file; /* owned */
+    struct numbers heights, depths, speeds;
+};
+
+static sonject_status read_numbers(struct reader *reader, const struct tree_node *node,
+                                   enum quantity quantity, const char *example,
+                                   struct numbers *numbers)
+{
+    CHECK(check_list(reader, node, example));
+    numbers->values = allocate_array(node->count, sizeof *numbers->values);
+    CHECK_MEMORY(reader->report, numbers->values, "a sound-speed profile");
+    numbers->count = node->count;
+    sonject_status status = SONJECT_OK;
+    for (size_t i = 0; i < node->count; i++) {
+        const size_t before = key_path_add_index(&reader->path, i);
+        if (read_quantity(reader, &node->entries[i].value, quantity, &numbers->values[i]) !=
+            SONJECT_OK)
+            status = SONJECT_ERROR_INPUT;
+        key_path_shorten(&reader->path, before);
+    }
+    return status;
+}
+
+#define NUMBERS_READER(name, member, quantity, example)                                            \
+    static sonject_status name(struct reader *reader, const struct tree_node *node,                \
+                               void *structure)                                                    \
+    {                                                                                              \
+        struct profile_text *text = structure;                                                     \
+        return read_numbers(reader, node, quantity, example, &text->member);                       \
+    }
+NUMBERS_READER(read_heights, heights, QUANTITY_LENGTH, "[0 m, 12 m, 15 m]")
+NUMBERS_READER(read_depths, depths, QUANTITY_LENGTH, "[0 m, 12 m, 15 m]")
+NUMBERS_READER(read_speeds, speeds, QUANTITY_SPEED, "[1490 m/s, 1500 m/s]")
+
+/* The message about entry `index` of the list that is the section's `key`. */
+static sonject_status refuse_entry(struct reader *reader, const struct tree_node *node,
+                                   const char *key, size_t index, const char *what)
+{
+    const struct tree_node *list = &tree_find(node, key)->value;
+    if (index >= list->count)
+        return refuse_key(reader, node, key, "%s", what);
+    const size_t before = key_path_add(&reader->path, key);
+    key_path_add_index(&reader->path, index);
+    const sonject_status status = refuse_value(reader, &list->entries[index].value, "%s", what);
+    key_path_shorten(&reader->path, before);
+    return status;
+}
+
+/* Moves what the lists say into a table. */
+static sonject_status table_of_lists(struct reader *reader, const struct tree_node *node,
+                                     const char *key, struct profile_text *text,
+                                     struct profile_table *table)
+{
+    struct profile_fault fault;
+    struct numbers *positions = text->depths.values ? &text->depths : &text->heights;
+    if (!text->speeds.values)
+        return refuse_key(reader, node, "sound_speeds", "missing; %s need it", key);
+    if (text->speeds.count != positions->count)
+        return refuse_key(reader, node, "sound_speeds", "has %zu entries, but %s has %zu",
+                          text->speeds.count, key, positions->count);
+    *table = (struct profile_table){positions->values, text->speeds.values, positions->count,
+                                    positions == &text->depths};
+    positions->values = text->speeds.values = NULL;
+    return profile_table_is_good(table, &fault)
+               ? SONJECT_OK
+               : refuse_entry(reader, node, fault.is_speed ? "sound_speeds" : key, fault.sample,
+                              fault.what);
+}
+
+static sonject_status table_of_file(struct reader *reader, const struct tree_node *node,
+                                    const char *file, struct profile_table *table)
+{
+    if (is_given(node, "sound_speeds"))
+        return refuse_key(reader, node, "sound_speeds",
+                          "the file tells them; remove one of the two");
+    const struct number_array *array = find_array(reader, file);
+    return array ? profile_table_take(reader->report, array, table)
+                 : profile_table_read(reader->report, file, table);
+}
+
+static sonject_status layers_of_table(struct reader *reader, const struct tree_node *node,
+                                      const char *key, struct profile_table *table)
+{
+    const double depth = reader->scene->surface.water_depth_m;
+    struct report check = {{0}, NULL, NULL};
+    struct water_layer *layers;
+    size_t count;
+    if (table->is_depth && !is_sound_in_file(reader, "surface.depth"))
+        return SONJECT_ERROR_INPUT;
+    if (table->is_depth && !(depth > 0.0))
+        return refuse_key(reader, node, key,
+                          "depths are meant from the sea surface; set depth in surface");
+    profile_table_to_heights(table, depth);
+    sonject_status status = check_sound_speed_profile(table->positions_m, table->speeds_mps,
+                                                      table->count, &check, NULL);
+    THEN(status, layers_of_profile(table->positions_m, table->speeds_mps, table->count, &check,
+                                   &layers, &count));
+    if (status == SONJECT_ERROR_INPUT)
+        return refuse_key(reader, node, key, "%s", behind_name(&check));
+    if (status != SONJECT_OK)
+        return report_out_of_memory(reader->report, "layers of water");
+    replace_layers(reader->scene, layers, count);
+    return SONJECT_OK;
+}
+
+static sonject_status finish_profile(struct reader *reader, const struct tree_node *node,
+                                     void *structure)
+{
+    struct profile_text *text = structure;
+    struct profile_table table = {NULL, NULL, 0, false};
+    const char *key = text->file ? "file" : text->depths.values ? "depths" : "heights";
+    if (count_given(node, "file heights depths") != 1 ||
+        !are_sound(reader, "file heights depths sound_speeds"))
+        return SONJECT_ERROR_INPUT;
+    sonject_status status = text->file ? table_of_file(reader, node, text->file, &table)
+                                       : table_of_lists(reader, node, key, text, &table);
+    THEN(status, layers_of_table(reader, node, key, &table));
+    profile_table_clear(&table);
+    return status;
+}
+
+#define STRUCTURE struct profile_text
+static const struct field profile_fields[] = {
+    {"file", "table with columns height_m or depth_m, and sound_speed_mps", .kind = FIELD_FILE,
+     MEMBER(file)},
+    {"heights", "over the mean seabed, list", SPECIAL(read_heights, "m, km, cm, mm")},
+    {"depths", "below the sea surface, list; needs surface.depth",
+     SPECIAL(read_depths, "m, km, cm, mm")},
+    {"sound_speeds", "at heights or depths, list", SPECIAL(read_speeds, "m/s, km/s")},
+};
+static const struct section profile_section = {
+    ROWS(profile_fields), .choice = "file heights depths", .finish = finish_profile};
+#undef STRUCTURE
+
+static sonject_status read_profile(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    struct profile_text text = {.file = NULL};
+    (void)structure;
+    const sonject_status status = read_section(reader, &profile_section, node, &text);
+    free(text.file);
+    free(text.heights.values);
+    free(text.depths.values);
+    free(text.speeds.values);
+    return status;
+}
+
+/* ---- Level layers. */
+
+#define STRUCTURE struct water_layer
+static const struct field layer_fields[] = {
+    {"bottom", "height of the lower edge over the mean seabed", QUANTITY(bottom_m, LENGTH),
+     COORDINATE, REQUIRED},
+    {"sound_speed", "of the layer", QUANTITY(speed_mps, SPEED),
+     WITHIN(WATER_SPEED_MIN_MPS, WATER_SPEED_MAX_MPS), REQUIRED},
+    {"density", "of all layers or of none", QUANTITY(density, DENSITY), WITHIN(1e-6, 1e6),
+     NONE_IF_NAN},
+};
+const struct section layer_section = {ROWS(layer_fields)};
+#undef STRUCTURE
+
+/* Densities stand at all layers or at none. node: the list. */
+static sonject_status relate_layers(struct reader *reader, const struct tree_node *node,
+                                    const struct water_layer *layers)
+{
+    struct report check = {{0}, NULL, NULL};
+    struct profile_place place;
+    const char *what = NULL;
+    for (size_t i = 0; !what && i < node->count; i++) {
+        place.index = i;
+        place.key = "density";
+        if (is_given(&node->entries[i].value, "density") !=
+            is_given(&node->entries[0].value, "density"))
+            what = "give it for all layers or for none";
+    }
+    if (!what && check_water_layers(layers, node->count, &check, &place) != SONJECT_OK)
+        what = behind_name(&check);
+    if (!what)
+        return SONJECT_OK;
+    key_path_add_index(&reader->path, place.index);
+    return refuse_key(reader, &node->entries[place.index].value, place.key, "%s", what);
+}
+
+static sonject_status read_layer(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    struct scene *scene = structure;
+    struct water_layer *layer = &scene->water_layers[scene->water_layer_count++];
+    layer->density = 1.0;
+    return read_section(reader, &layer_section, node, layer);
+}
+
+static sonject_status read_layers(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    static const struct list list = {WATER_LAYERS_MAX, "", read_layer};
+    (void)structure;
+    CHECK(check_list(reader, node, "[{bottom: 0 m, sound_speed: 1490 m/s}, {bottom: 12 m, ...}]"));
+    struct water_layer *layers = allocate_array(node->count, sizeof *layers);
+    CHECK_MEMORY(reader->report, layers, "layers of water");
+    replace_layers(reader->scene, layers, 0);
+    CHECK(read_list(reader, node, &list, reader->scene));
+    return relate_layers(reader, node, layers);
+}
+
+/* ---- Absorption. */
+
+static sonject_status finish_sea_water(struct reader *reader, const struct tree_node *node,
+                                       void *structure)
+{
+    (void)structure;
+    const double frequency = reader->scene->sonar.centre_frequency_hz;
+    if (is_sound_in_file(reader, "sonar.frequency") &&
+        !(frequency >= ABSORPTION_FREQUENCY_MIN_HZ && frequency <= ABSORPTION_FREQUENCY_MAX_HZ))
+        return refuse_value(reader, node,
+                            "is known from 200 Hz to 1 MHz, not at the sonar's %g Hz; give it in "
+                            "dB/m",
+                            frequency);
+    return SONJECT_OK;
+}
+
+/* In these ranges the formula of sonject_absorption holds. */
+#define STRUCTURE struct sea_water
+static const struct field sea_water_fields[] = {
+    {"temperature", "of sea water, degrees Celsius", QUANTITY(temperature_celsius, TEMPERATURE),
+     WITHIN(-2.0, 30.0), REQUIRED},
+    {"salinity", "per mille", QUANTITY(salinity_permille, NUMBER), WITHIN(0.0, 40.0),
+     .per = " per mille", REQUIRED},
+    {"depth", "below the sea surface", QUANTITY(depth_m, LENGTH), WITHIN(0.0, 5000.0), REQUIRED},
+    {"ph", "acidity", QUANTITY(ph, NUMBER), WITHIN(7.0, 9.0), .preset = 8.0},
+};
+static const struct section sea_water_section = {ROWS(sea_water_fields),
+                                                 .finish = finish_sea_water};
+#undef STRUCTURE
+
+static sonject_status read_absorption(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    sonject_medium_params *medium = structure;
+    struct sea_water water;
+    if (node->kind == TREE_TEXT)
+        return read_quantity(reader, node, QUANTITY_ABSORPTION, &medium->absorption_db_per_m);
+    section_defaults(&sea_water_section, &water, NULL);
+    CHECK(read_section(reader, &sea_water_section, node, &water));
+    if (is_sound_in_file(reader, "sonar.frequency"))
+        medium->absorption_db_per_m =
+            sonject_absorption(reader->scene->sonar.centre_frequency_hz, water.temperature_celsius,
+                               water.salinity_permille, water.depth_m, water.ph);
+    return SONJECT_OK;
+}
+
+/* ---- The water. */
+
+#define STRUCTURE sonject_medium_params
+static const struct field medium_fields[] = {
+    {"sound_speed", "of the water", QUANTITY(sound_speed_mps, SPEED),
+     WITHIN(WATER_SPEED_MIN_MPS, WATER_SPEED_MAX_MPS), .preset = 1500.0},
+    {"reference_sound_speed",
+     "that the image processor assumed; by default the true one, around the seabed",
+     QUANTITY(reference_sound_speed_mps, SPEED), WITHIN(WATER_SPEED_MIN_MPS, WATER_SPEED_MAX_MPS),
+     NONE_IF_ZERO},
+    {"absorption", "of the water: a number, or a section of what the sea water is like",
+     QUANTITY(absorption_db_per_m, ABSORPTION), WITHIN(0.0, 100.0), .section = &sea_water_section,
+     .read = read_absorption},
+    {"layers", "list of level layers instead of sound_speed, from the seabed upwards",
+     .kind = FIELD_SPECIAL, .read = read_layers, .section = &layer_section, .is_list = true},
+    {"profile", "measured sound speeds instead of sound_speed", .kind = FIELD_SPECIAL,
+     .read = read_profile, .section = &profile_section},
+};
+const struct section medium_section = {ROWS(medium_fields), .choice = "sound_speed layers profile",
+                                       .may_lack = true, .bytes = sizeof(STRUCTURE)};
+#undef STRUCTURE

@@ -1,0 +1,610 @@
+/* The keys of objects: a shape with its sizes, ends, cuts and surface, or parts, or a target's
+ * file; and where it lies. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/file.h"
+#include "base/memory.h"
+#include "base/text.h"
+#include "scene/placement.h"
+#include "scene/shapes/shape.h"
+#include "schema/keys.h"
+#include "schema/scene_file.h"
+
+#define INDEX_MAX  1099511627776.0 /* 2^40 pixels */
+#define LEVELS_MAX 8               /* of lists of parts within lists */
+
+/* ---- The keys that a shape has wherever one is described: in an object, in a part of one, in the
+ * file of a target. Each of their structures begins with a sonject_object_params. */
+
+#define STRUCTURE sonject_object_params
+
+/* {depth: } stands for a spherical end. */
+#define END_SECTION(name, end)                                                                     \
+    static const struct field name##_fields[] = {                                                  \
+        {"depth", "of a spherical end, at most half the diameter",                                 \
+         QUANTITY(end##_depth_m, LENGTH), WITHIN(0.0, HUGE_VAL),                                   \
+         .bounds = ABOVE_LEAST | ZERO_IS_NONE,                                                     \
+         .range = "above 0 (write 'spherical' for a half sphere, 'flat' for none)",                \
+         SETS(end, SONJECT_END_SPHERICAL), REQUIRED},                                              \
+    };                                                                                             \
+    static const struct section name##_section = {ROWS(name##_fields)};
+END_SECTION(nose_end, nose_end)
+END_SECTION(tail_end, tail_end)
+
+#define END_FIELD(end)                                                                             \
+    WORD(end) = {[SONJECT_END_FLAT] = "flat",                                                      \
+                 [SONJECT_END_OPEN] = "open",                                                      \
+                 [SONJECT_END_SPHERICAL] = "spherical"},                                           \
+    .section = &end##_section
+
+#undef STRUCTURE
+#define STRUCTURE sonject_cut
+static const struct field cut_fields[] = {
+    {"azimuth", "of the side that is cut off, from the nose towards the object's own y",
+     QUANTITY(azimuth_rad, ANGLE)},
+    {"elevation", "of that side; 90 deg: the top", QUANTITY(elevation_rad, ANGLE)},
+    {"distance", "of the cut from the centre towards that side", QUANTITY(distance_m, LENGTH),
+     COORDINATE, REQUIRED},
+};
+static const struct section cut_section = {ROWS(cut_fields)};
+#undef STRUCTURE
+
+#define SIZE(its) QUANTITY(its, LENGTH), POSITIVE, NONE_IF_ZERO
+
+#define SHAPE_FIELDS                                                                               \
+    {"shape", "of the object or part; objects are at least half a wavelength large",               \
+     WORD(shape) = {[SONJECT_SHAPE_PLANE] = "plane",                                               \
+                    [SONJECT_SHAPE_SPHERE] = "sphere",                                             \
+                    [SONJECT_SHAPE_CYLINDER] = "cylinder",                                         \
+                    [SONJECT_SHAPE_CAPSULE] = "capsule",                                           \
+                    [SONJECT_SHAPE_DISC] = "disc",                                                 \
+                    [SONJECT_SHAPE_ELLIPSOID] = "ellipsoid",                                       \
+                    [SONJECT_SHAPE_BOX] = "box",                                                   \
+                    [SONJECT_SHAPE_WEDGE] = "wedge",                                               \
+                    [SONJECT_SHAPE_CONE] = "cone",                                                 \
+                    [SONJECT_SHAPE_TRUNCATED_CONE] = "truncated_cone",                             \
+                    [SONJECT_SHAPE_TORUS] = "torus",                                               \
+                    [SONJECT_SHAPE_PARTS] = "",                                                    \
+                    [SONJECT_SHAPE_MESH] = "mesh",                                                 \
+                    [SONJECT_SHAPE_USER] = "user"},                                                \
+     .preset = SONJECT_SHAPE_SPHERE},                                                              \
+        {"user", "code that is the shape, where that is user", .kind = FIELD_SPECIAL,              \
+         .section = &user_section, .read = read_user_shape},                                       \
+        {"length",                                                                                 \
+         "overall along the nose, of plane, cylinder, capsule, ellipsoid, box and wedge",          \
+         SIZE(length_m)},                                                                          \
+        {"width", "overall across the nose, of plane, ellipsoid, box and wedge", SIZE(width_m)},   \
+        {"diameter", "overall, of sphere, cylinder, capsule, disc, cones (below) and torus",       \
+         SIZE(diameter_m)},                                                                        \
+        {"height", "overall when level, of ellipsoid, box, wedge (at the tail), cones and torus",  \
+         SIZE(height_m)},                                                                          \
+        {"top_diameter", "of a truncated cone; 0: a cone", QUANTITY(top_diameter_m, LENGTH),       \
+         FROM_ZERO},                                                                               \
+        {"front_height", "of a wedge at its nose, at most its height",                             \
+         QUANTITY(front_height_m, LENGTH)},                                                        \
+        {"nose_end", "of a cylinder: flat, open, spherical or {depth: }", END_FIELD(nose_end)},    \
+        {"tail_end", "of a cylinder: flat, open, spherical or {depth: }", END_FIELD(tail_end)},    \
+        {"mesh",                                                                                   \
+         "of the shape mesh: its file's name, or a section",                                       \
+         .kind = FIELD_SPECIAL,                                                                    \
+         .unit = "file name",                                                                      \
+         .section = &mesh_section,                                                                 \
+         .read = read_mesh},                                                                       \
+    {                                                                                              \
+        "cuts", "planes that cut parts off any shape, at most 2",                                  \
+            ENTRIES(cuts, cut_count, "cut", cut_section)                                           \
+    }
+
+/* Angles; what heading is counted from differs. */
+#define TURN_FIELDS(heading_meaning)                                                               \
+    {"heading", heading_meaning, QUANTITY(heading_rad, ANGLE)},                                    \
+        {"pitch", "raises the nose", QUANTITY(pitch_rad, ANGLE)},                                  \
+    {                                                                                              \
+        "roll", "about the nose direction", QUANTITY(roll_rad, ANGLE)                              \
+    }
+
+#define SURFACE_FIELD(meant)                                                                       \
+    {                                                                                              \
+        "material", meant, .kind = FIELD_NAMED, MEMBER(material), .section = &material_section,    \
+                           .read = read_material_name                                              \
+    }
+
+#define STRUCTURE sonject_object_params
+static const struct field shape_fields[] = {SHAPE_FIELDS};
+
+/* Shape, energy and all else that members must be to each other. */
+static void relate_object(struct check *check, const void *structure)
+{
+    const sonject_object_params *object = structure;
+    check_shape(check, object);
+    relate_energy(check, "material.", &object->material, NAN);
+}
+
+/* Defaults, no size set, surface as given (NULL: the default one). */
+static void start_shape(sonject_object_params *shape, const sonject_material_params *material)
+{
+    section_defaults(&object_section, shape, NULL);
+    if (material)
+        shape->material = *material;
+}
+
+/* By the sound: no shape's name begins with a u as in "under". */
+static const char *article_of(const char *name)
+{
+    return strchr("aeio", *name) ? "an" : "a";
+}
+
+/* That the section has no key of a shape: reason tells why. */
+static void refuse_shape_keys(struct reader *reader, const struct tree_node *node,
+                              const char *reason)
+{
+    for (size_t i = 0; i < COUNT(shape_fields); i++)
+        if (is_given(node, shape_fields[i].key))
+            refuse_key(reader, node, shape_fields[i].key, "%s; remove it", reason);
+}
+
+/* That the section has the sizes of its shape, and no others; of parts none. */
+static void check_shape_keys(struct reader *reader, const struct tree_node *node, uint32_t shape)
+{
+    static const struct {
+        const char *key;
+        uint32_t bit;
+    } sizes[] = {
+        {"length", SHAPE_HAS_LENGTH},
+        {"width", SHAPE_HAS_WIDTH},
+        {"diameter", SHAPE_HAS_DIAMETER},
+        {"height", SHAPE_HAS_HEIGHT},
+        {"user", SHAPE_HAS_CODE},
+        {"top_diameter", SHAPE_HAS_TOP_DIAMETER},
+        {"front_height", SHAPE_HAS_FRONT_HEIGHT},
+        {"nose_end", SHAPE_HAS_ENDS},
+        {"tail_end", SHAPE_HAS_ENDS},
+        {"mesh", SHAPE_HAS_MESH},
+    };
+    const struct shape *row = shape_of(shape);
+    if (shape == SONJECT_SHAPE_PARTS) {
+        refuse_shape_keys(reader, node, "the parts have shapes of their own");
+        return;
+    }
+    for (size_t i = 0; i < COUNT(sizes); i++) {
+        if ((row->needs & sizes[i].bit) && !is_given(node, sizes[i].key))
+            refuse_relation(reader, node, sizes[i].key, "shape", "missing; %s %s needs it",
+                            article_of(row->name), row->name);
+        if (!((row->needs | row->may_have) & sizes[i].bit) && is_given(node, sizes[i].key))
+            refuse_relation(reader, node, sizes[i].key, "shape", "%s %s has none; remove it",
+                            article_of(row->name), row->name);
+    }
+}
+
+/* What the section itself says. Sizes say nothing where the shape is unknown; what another section
+ * or file tells is checked there. */
+static sonject_status finish_shape(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    sonject_object_params checked = *(const sonject_object_params *)structure;
+    struct check check = check_at(reader, node);
+    if (count_given(node, "shape parts target") == 1 && !is_given(node, "target"))
+        check_shape_keys(reader, node, checked.shape);
+    if (count_given(node, "shape parts target") != 1 || !are_sound(reader, "shape target")) {
+        checked.shape = SONJECT_SHAPE_PARTS;
+        checked.cut_count = 0;
+    }
+    if (!is_given(node, "material"))
+        sonject_material_params_init(&checked.material);
+    relate_object(&check, &checked);
+    return check.status == SONJECT_OK
+               ? check_cuts_in_scene(reader->scene, &checked, NULL, check.listener)
+               : check.status;
+}
+
+/* ---- Parts: a list of shapes, each with its place, or of groups of such. */
+
+/* Where parts of a list are placed, in the object's own frame. */
+struct frame {
+    double axes[3][3]; /* rows: nose, own y, own z */
+    double origin[3];  /* m */
+};
+
+/* A part, or a group of parts, on its way into the scene. */
+struct part_text {
+    sonject_object_params shape; /* first: tables of shapes fill it; angles: the part's */
+    sonject_part_params place;   /* its angles are not used */
+    const struct frame *outer;
+    int level; /* of the list that it stands in, from 1 */
+    bool is_group;
+};
+
+/* A list of parts, and what they have of the object or group that they are in. */
+struct part_list {
+    const struct frame *frame;
+    const sonject_material_params *material;
+    int level;
+};
+
+static struct frame frame_of(const struct part_text *part)
+{
+    struct frame frame;
+    double turned[3][3];
+    const double at[3] = {part->place.along_m, part->place.across_m, part->place.up_m};
+    turn_axes(turned, part->shape.heading_rad, part->shape.pitch_rad, part->shape.roll_rad);
+    compose_axes(frame.axes, turned, (double(*)[3])part->outer->axes);
+    memcpy(frame.origin, part->outer->origin, sizeof frame.origin);
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < 3; k++)
+            frame.origin[k] += at[i] * part->outer->axes[i][k];
+    return frame;
+}
+
+static sonject_status append_part(struct reader *reader, const struct tree_node *node,
+                                  const struct part_text *part)
+{
+    const struct frame frame = frame_of(part);
+    struct scene_part made;
+    if (reader->scene->part_count >= SCENE_PARTS_MAX)
+        return refuse_value(reader, node, "is one part too many: a scene may have %d; split it",
+                            SCENE_PARTS_MAX);
+    memset(&made, 0, sizeof made);
+    made.object = reader->scene->object_count;
+    made.shape = part->shape;
+    made.shape.heading_rad = made.shape.pitch_rad = made.shape.roll_rad = 0.0;
+    memcpy(made.axes, frame.axes, sizeof made.axes);
+    memcpy(made.centre, frame.origin, sizeof made.centre);
+    return scene_append_part(reader->scene, reader->report, &made);
+}
+
+static sonject_status read_part(struct reader *reader, const struct tree_node *node,
+                                void *structure)
+{
+    const struct part_list *list = structure;
+    struct part_text part;
+    memset(&part, 0, sizeof part);
+    start_shape(&part.shape, list->material);
+    part.outer = list->frame;
+    part.level = list->level;
+    const sonject_status status = read_section(reader, &part_section, node, &part);
+    return status != SONJECT_OK || part.is_group ? status : append_part(reader, node, &part);
+}
+
+static sonject_status read_part_list(struct reader *reader, const struct tree_node *node,
+                                     struct part_list list)
+{
+    static const struct list parts = {SIZE_MAX, "; start each part with '- '", read_part};
+    if (list.level > LEVELS_MAX)
+        return refuse_value(reader, node, "nested too deeply; parts may be %d levels deep",
+                            LEVELS_MAX);
+    if (node->kind == TREE_LIST && node->count == 0)
+        return refuse_value(reader, node, "is empty; give at least one part");
+    return read_list(reader, node, &parts, &list);
+}
+
+/* Appends a list of parts to the scene, as those of the object that will be the scene's next.
+ * material: of parts that name none. */
+static sonject_status read_parts(struct reader *reader, const struct tree_node *node,
+                                 const sonject_material_params *material)
+{
+    static const struct frame own = {{{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}},
+                                     {0.0, 0.0, 0.0}};
+    return read_part_list(reader, node, (struct part_list){&own, material, 1});
+}
+
+static sonject_status read_group(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    struct part_text *part = structure;
+    const struct frame frame = frame_of(part);
+    part->is_group = true;
+    part->shape.shape = SONJECT_SHAPE_PARTS;
+    return read_part_list(reader, node,
+                          (struct part_list){&frame, &part->shape.material, part->level + 1});
+}
+#undef STRUCTURE
+
+#define STRUCTURE sonject_part_params
+static const struct field part_place_fields[] = {
+    {"along", "along the object's nose", QUANTITY(along_m, LENGTH), COORDINATE},
+    {"across", "along its own y, to which heading turns the nose", QUANTITY(across_m, LENGTH),
+     COORDINATE},
+    {"up", "along its own z, up when level", QUANTITY(up_m, LENGTH), COORDINATE},
+    {"heading", "said beside at", HIDDEN, QUANTITY(heading_rad, ANGLE)},
+    {"pitch", "said beside at", HIDDEN, QUANTITY(pitch_rad, ANGLE)},
+    {"roll", "said beside at", HIDDEN, QUANTITY(roll_rad, ANGLE)},
+};
+static const struct section part_place_section = {ROWS(part_place_fields),
+                                                  .bytes = sizeof(STRUCTURE)};
+#undef STRUCTURE
+
+/* Keys are read in this order: what is in a group needs the group's pose and surface. */
+#define STRUCTURE sonject_object_params
+static const struct field part_fields[] = {
+    {"name", "of this part or group", LABEL(name)},
+    SHAPE_FIELDS,
+    {"at", "place of the centre in the object or group, by default its origin",
+     .kind = FIELD_SECTION, .section = &part_place_section,
+     .offset = offsetof(struct part_text, place)},
+    TURN_FIELDS("of the part's nose, from that of the object or group towards its own y"),
+    SURFACE_FIELD("surface of the part; by default that of the object or group"),
+    {"parts", "instead of one shape: a group, placed and turned as one",
+     SPECIAL(read_group, "list")},
+};
+const struct section part_section = {ROWS(part_fields), .choice = "shape parts",
+                                     .finish = finish_shape};
+
+/* ---- Targets: files that describe one each. */
+
+/* A target on its way from its file into the scene. */
+struct target_text {
+    sonject_object_params object;  /* first: tables of shapes fill it */
+    char *file;                    /* owned; NULL: there is no file */
+    struct tree tree;              /* of the file */
+    const struct tree_node *parts; /* of the tree; NULL: the target has a shape */
+};
+
+static void target_text_clear(struct target_text *target)
+{
+    if (target->file)
+        tree_clear(&target->tree);
+    free(target->file);
+}
+
+/* Only noted: their surface may be told elsewhere, and read_target_parts reads them. */
+static sonject_status note_parts(struct reader *reader, const struct tree_node *node,
+                                 void *structure)
+{
+    struct target_text *target = structure;
+    (void)reader;
+    target->object.shape = SONJECT_SHAPE_PARTS;
+    target->parts = node;
+    return SONJECT_OK;
+}
+
+/* There is no key for another file: targets are described in one. */
+static const struct field target_fields[] = {
+    {"sonject_target", "version of the format, 1", SPECIAL(read_version, "whole number"), REQUIRED},
+    {"name", "of the target", LABEL(name)},
+    {"class", "label for training", LABEL(class_name)},
+    SHAPE_FIELDS,
+    SURFACE_FIELD("surface of the target: a material's name, or a section"),
+    {"parts", "instead of one shape: the target is their union", SPECIAL(note_parts, "list")},
+};
+static const struct section target_section = {ROWS(target_fields), .choice = "shape parts",
+                                              .finish = finish_shape};
+
+static struct reader reader_of_target(const struct reader *reader, const struct target_text *target)
+{
+    return (struct reader){.report = reader->report,
+                           .tree = &target->tree,
+                           .scene = reader->scene,
+                           .allows_user_shapes = reader->allows_user_shapes};
+}
+
+/* Reads the file that the target names, all but its parts. */
+static sonject_status read_target_file(struct reader *reader, struct tree_place named_at,
+                                       struct target_text *target)
+{
+    char *text = NULL;
+    size_t bytes;
+    CHECK(file_read_whole(reader->report, target->file, TREE_BYTES_MAX, &text, &bytes));
+    tree_init(&target->tree, reader->report, target->file);
+    target->tree.mistakes = reader->tree->mistakes;
+    target->tree.named_at = named_at;
+    sonject_status status = tree_parse(&target->tree, text, bytes);
+    free(text);
+    struct reader inner = reader_of_target(reader, target);
+    if (status == SONJECT_OK && tree_is_null(&target->tree.root))
+        status = refuse_value(&inner, &target->tree.root,
+                              "there is nothing in it; start with 'sonject_target: 1'");
+    THEN(status, read_section(&inner, &target_section, &target->tree.root, target));
+    return status;
+}
+
+/* Appends its parts, if it has any, to the scene; status: of all before. */
+static sonject_status read_target_parts(struct reader *reader, const struct target_text *target,
+                                        sonject_status status)
+{
+    if (!target->parts || reading_ends(status))
+        return status;
+    struct reader inner = reader_of_target(reader, target);
+    key_path_add(&inner.path, "parts");
+    const sonject_status of_parts = read_parts(&inner, target->parts, &target->object.material);
+    return of_parts == SONJECT_OK ? status : of_parts;
+}
+
+/* Place, pose and level of an object, and what it is called, where that is said. */
+static void take_placing(sonject_object_params *to, const sonject_object_params *from)
+{
+    if (from->name[0])
+        memcpy(to->name, from->name, sizeof to->name);
+    if (from->class_name[0])
+        memcpy(to->class_name, from->class_name, sizeof to->class_name);
+    to->position_kind = from->position_kind;
+    to->position_along = from->position_along;
+    to->position_range = from->position_range;
+    to->heading_rad = from->heading_rad;
+    to->pitch_rad = from->pitch_rad;
+    to->roll_rad = from->roll_rad;
+    to->burial_kind = from->burial_kind;
+    to->burial_m = from->burial_m;
+    to->burial_fraction = from->burial_fraction;
+    to->proud_height_m = from->proud_height_m;
+    to->level_kind = from->level_kind;
+    to->level_db = from->level_db;
+}
+
+static sonject_status append_target(struct reader *reader, struct target_text *target,
+                                    const sonject_object_params *placing)
+{
+    static const struct tree_place nowhere;
+    sonject_status status = read_target_file(reader, nowhere, target);
+    if (status == SONJECT_OK) {
+        take_placing(&target->object, placing);
+        status = check_object(&target->object, reader->report, NULL);
+    }
+    status = read_target_parts(reader, target, status);
+    THEN(status, scene_append_object(reader->scene, reader->report, &target->object));
+    return status;
+}
+
+sonject_status scene_append_target(struct scene *scene, struct report *report, const char *path,
+                                   bool allows_user_shapes, const sonject_object_params *placing)
+{
+    char excerpt[400];
+    struct target_text target;
+    struct mistakes mistakes = {NULL, 0, 0, 0};
+    struct tree tree = {.mistakes = &mistakes};
+    struct reader reader = {
+        .report = report, .tree = &tree, .scene = scene, .allows_user_shapes = allows_user_shapes};
+    const struct scene_counts before = scene_count(scene);
+    if (!file_exists(path))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: there is no such target file; check its name",
+                              text_excerpt(excerpt, sizeof excerpt, path));
+    memset(&target, 0, sizeof target);
+    start_shape(&target.object, NULL);
+    target.file = copy_text(path);
+    CHECK_MEMORY(report, target.file, "a path");
+    const sonject_status status =
+        mistakes_tell(&mistakes, report, append_target(&reader, &target, placing));
+    target_text_clear(&target);
+    if (status != SONJECT_OK)
+        scene_cut_back(scene, &before);
+    return status;
+}
+
+/* ---- Objects. */
+
+static const struct field position_fields[] = {
+    {"along_track", "track position", QUANTITY(position_along, LENGTH), COORDINATE,
+     SETS(position_kind, SONJECT_POSITION_METRES)},
+    {"slant_range", "as the image shows it", QUANTITY(position_range, LENGTH), FROM_ZERO,
+     SETS(position_kind, SONJECT_POSITION_METRES)},
+    {"row", "of the swath, may be a fraction", QUANTITY(position_along, NUMBER),
+     WITHIN(-1.0, INDEX_MAX), SETS(position_kind, SONJECT_POSITION_PIXELS)},
+    {"column", "of the swath, may be a fraction", QUANTITY(position_range, NUMBER),
+     WITHIN(-1.0, INDEX_MAX), SETS(position_kind, SONJECT_POSITION_PIXELS)},
+};
+static const struct section position_section = {ROWS(position_fields),
+                                                .choice = "along_track+slant_range row+column"};
+
+static const struct field burial_fields[] = {
+    {"fraction", "of the height that the object has in its pose, 0 to 1",
+     QUANTITY(burial_fraction, NUMBER), WITHIN(0.0, 1.0),
+     SETS(burial_kind, SONJECT_BURIAL_FRACTION)},
+    {"proud", "height of the highest point above the seabed", QUANTITY(proud_height_m, LENGTH),
+     FROM_ZERO, SETS(burial_kind, SONJECT_BURIAL_PROUD)},
+};
+static const struct section burial_section = {ROWS(burial_fields), .choice = "fraction proud"};
+
+static const struct field level_fields[] = {
+    {"target_strength", "of its echo's peak, between pixels too, speckle averaged out, re 1 m^2",
+     QUANTITY(level_db, DECIBEL), WITHIN(-200.0, 200.0),
+     SETS(level_kind, SONJECT_LEVEL_TARGET_STRENGTH)},
+    {"over_seabed", "its echo's peak over the local mean seabed", QUANTITY(level_db, DECIBEL),
+     WITHIN(-200.0, 200.0), SETS(level_kind, SONJECT_LEVEL_OVER_SEABED)},
+};
+static const struct section level_section = {ROWS(level_fields),
+                                             .choice = "target_strength over_seabed"};
+
+/* Objects begin as the target that their file describes, which their own keys then change. */
+static sonject_status read_object_target(struct reader *reader, const struct tree_node *node,
+                                         void *structure)
+{
+    struct target_text *target = structure;
+    CHECK(read_existing_path(reader, node, &target->file));
+    const sonject_status status = read_target_file(reader, node->place, target);
+    if (target->tree.file && mistakes_concern(reader->tree->mistakes, &target->tree, ""))
+        mark_wrong(reader, node, ""); /* whatever the file says is told already */
+    return status;
+}
+
+static sonject_status read_object_parts(struct reader *reader, const struct tree_node *node,
+                                        void *structure)
+{
+    sonject_object_params *object = structure;
+    object->shape = SONJECT_SHAPE_PARTS;
+    return read_parts(reader, node, &object->material);
+}
+
+static sonject_status finish_object(struct reader *reader, const struct tree_node *node,
+                                    void *structure)
+{
+    if (is_given(node, "target") && count_given(node, "shape parts") == 0)
+        refuse_shape_keys(reader, node, "the target's file tells the shape");
+    return finish_shape(reader, node, structure);
+}
+
+/* Keys are read in this order, whatever the file's: a target's file comes first, so that all other
+ * keys change what it says; parts come last, when their surface is known. */
+static const struct field object_fields[] = {
+    {"target", "file that describes the object instead of shape or parts",
+     SPECIAL(read_object_target, "file name")},
+    {"name", "of this object", LABEL(name)},
+    {"class", "label for training; by default the shape", LABEL(class_name)},
+    SHAPE_FIELDS,
+    {"mesh", "number in the scene", HIDDEN, COUNT32(mesh, 0, 0)},
+    {"user", "number in the scene", HIDDEN, COUNT32(user_shape, 0, 0)},
+    {"position",
+     "ground point under the centre: centre, {along_track: , slant_range: } or {row: , column: }",
+     WORD(position_kind) = {[SONJECT_POSITION_PATCH_CENTRE] = "centre",
+                            [SONJECT_POSITION_METRES] = "",
+                            [SONJECT_POSITION_PIXELS] = ""},
+     .section = &position_section},
+    TURN_FIELDS("from along-track towards range"),
+    {"burial", "kind", HIDDEN, WORD(burial_kind) = {"depth", "fraction", "proud"}},
+    {"burial", "depth of the lowest point below the seabed, or {fraction: } or {proud: }",
+     QUANTITY(burial_m, LENGTH), COORDINATE, .section = &burial_section},
+    {"level",
+     "scales the echo to {target_strength: } or {over_seabed: }; by default shape, material "
+     "and seabed.lambert alone set it",
+     WORD(level_kind) = {[SONJECT_LEVEL_PHYSICAL] = "physical",
+                         [SONJECT_LEVEL_TARGET_STRENGTH] = "",
+                         [SONJECT_LEVEL_OVER_SEABED] = ""},
+     .section = &level_section},
+    SURFACE_FIELD("surface of the object: a material's name, or a section"),
+    {"parts", "instead of one shape: the object is their union", .kind = FIELD_SPECIAL,
+     .unit = "list", .section = &part_section, .is_list = true, .read = read_object_parts},
+};
+const struct section object_section = {ROWS(object_fields), .choice = "shape parts target",
+                                       .relations = relate_object, .finish = finish_object,
+                                       .bytes = sizeof(STRUCTURE)};
+#undef STRUCTURE
+
+static sonject_status read_object(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    struct target_text text;
+    (void)structure;
+    memset(&text, 0, sizeof text);
+    start_shape(&text.object, NULL);
+    sonject_status status = read_section(reader, &object_section, node, &text);
+    status = read_target_parts(reader, &text, status);
+    THEN(status, scene_append_object(reader->scene, reader->report, &text.object));
+    target_text_clear(&text);
+    return status;
+}
+
+sonject_status read_objects(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    static const struct list objects = {SCENE_OBJECTS_MAX, "; start each object with '- '",
+                                        read_object};
+    return tree_is_null(node) ? SONJECT_OK : read_list(reader, node, &objects, structure);
+}
+
+/* ---- Objects and parts that C describes: a sphere, unless another shape is set. */
+
+void sonject_object_params_init(sonject_object_params *object)
+{
+    start_shape(object, NULL);
+    object->diameter_m = 0.5;
+}
+
+void sonject_part_params_init(sonject_part_params *part)
+{
+    section_defaults(&part_place_section, part, NULL);
+}
+
+sonject_status check_part(const sonject_part_params *part, struct report *report,
+                          struct check_listener *listener)
+{
+    return section_check(&part_place_section, part, report, listener);
+}

@@ -1,0 +1,467 @@
+/* The keys of the whole file, of its image, and of the injection. */
+#include <string.h>
+
+#include "base/text.h"
+#include "scene/element_plan.h"
+#include "schema/keys.h"
+#include "schema/scene_file.h"
+#include "swath/recording.h"
+#include "swath/xtf_file.h"
+
+#define SIDE_MAX         (UINT32_C(1) << 20)
+#define SWATH_PIXELS_MAX (UINT64_C(1) << 31)
+#define SWATH_INDEX_MAX  (UINT64_C(1) << 40)
+
+/* ---- The image. */
+
+static void relate_sides(struct check *check, uint32_t rows, uint32_t columns)
+{
+    if ((uint64_t)rows * columns > SWATH_PIXELS_MAX)
+        check_relation(check, "rows", "columns",
+                       "times columns must be at most 2^31 pixels, not %lu x %lu",
+                       (unsigned long)rows, (unsigned long)columns);
+}
+
+#define STRUCTURE struct scene
+static void relate_uniform(struct check *check, const void *structure)
+{
+    const struct scene *scene = structure;
+    relate_sides(check, scene->uniform_rows, scene->uniform_columns);
+}
+
+static const struct field uniform_fields[] = {
+    {"rows", "track positions", COUNT32(uniform_rows, 1, SIDE_MAX), .per = " pixels", REQUIRED},
+    {"columns", "range cells", COUNT32(uniform_columns, 1, SIDE_MAX), .per = " pixels", REQUIRED},
+};
+const struct section uniform_section = {ROWS(uniform_fields), .relations = relate_uniform};
+#undef STRUCTURE
+
+#define STRUCTURE sonject_synthetic_params
+static void relate_synthetic(struct check *check, const void *structure)
+{
+    const sonject_synthetic_params *synthetic = structure;
+    relate_sides(check, synthetic->rows, synthetic->columns);
+}
+
+/* The mean level leaves 14 dB to full scale for the targets' highlights. */
+static const struct field synthetic_fields[] = {
+    {"rows", "track positions", COUNT32(rows, 1, SIDE_MAX), .per = " pixels", .preset = 400,
+     REQUIRED},
+    {"columns", "range cells", COUNT32(columns, 1, SIDE_MAX), .per = " pixels", .preset = 400,
+     REQUIRED},
+    {"seed", "of the random seabed", COUNT64(seed, 0, 0), .preset = 1},
+    {"complex", "complex pixels instead of amplitudes", FLAG32(complex_pixels)},
+    {"speckle_shape", "shape of the K distribution, inf for Rayleigh amplitudes",
+     QUANTITY(speckle_shape, NUMBER), WITHIN(0.01, HUGE_VAL), .preset = 10.0,
+     .range = "at least 0.01, or inf for Rayleigh amplitudes"},
+    {"texture_length", "correlation length of the speckle's texture",
+     QUANTITY(texture_length_m, LENGTH), POSITIVE, .preset = 0.1},
+    {"ripple_wavelength", "from crest to crest of the sand ripples",
+     QUANTITY(ripple_wavelength_m, LENGTH), POSITIVE, .preset = 0.6},
+    {"ripple_contrast", "of the ripples, 0 (none) to 1", QUANTITY(ripple_contrast, NUMBER),
+     WITHIN(0.0, 1.0), .preset = 0.6},
+    {"ripple_heading", "direction across the crests, from along-track towards range",
+     QUANTITY(ripple_heading_rad, ANGLE), .preset = 1.25},
+    {"patch_contrast", "level step between sediment patches", QUANTITY(patch_contrast_db, DECIBEL),
+     WITHIN(0.0, 100.0), .preset = 4.0},
+    {"patch_length", "typical size of a sediment patch", QUANTITY(patch_length_m, LENGTH), POSITIVE,
+     .preset = 5.0},
+    {"mean_amplitude", "rms amplitude of the darker sediment", QUANTITY(mean_amplitude, NUMBER),
+     WITHIN(1e-6, 1e6), .preset = 0.1},
+};
+const struct section synthetic_section = {ROWS(synthetic_fields), .relations = relate_synthetic,
+                                          .bytes = sizeof(STRUCTURE)};
+#undef STRUCTURE
+
+/* A row spacing as a sonar's speed and ping rate make it. */
+struct ping_spacing {
+    double speed_mps;
+    double ping_rate_hz;
+};
+
+#define STRUCTURE struct ping_spacing
+static const struct field ping_spacing_fields[] = {
+    {"speed", "of the sonar over the ground", QUANTITY(speed_mps, SPEED), WITHIN(0.0, HUGE_VAL),
+     .bounds = ABOVE_LEAST, REQUIRED},
+    {"ping_rate", "pings, and so rows, a second", QUANTITY(ping_rate_hz, FREQUENCY),
+     WITHIN(0.0, HUGE_VAL), .bounds = ABOVE_LEAST, REQUIRED},
+};
+static const struct section ping_spacing_section = {ROWS(ping_spacing_fields)};
+#undef STRUCTURE
+
+static sonject_status read_row_spacing(struct reader *reader, const struct tree_node *node,
+                                       void *structure)
+{
+    sonject_geometry_params *geometry = structure;
+    struct ping_spacing pings = {0.0, 0.0};
+    if (node->kind != TREE_SECTION)
+        return read_quantity(reader, node, QUANTITY_LENGTH, &geometry->row_spacing_m);
+    CHECK(read_section(reader, &ping_spacing_section, node, &pings));
+    geometry->row_spacing_m = pings.speed_mps / pings.ping_rate_hz;
+    return SONJECT_OK;
+}
+
+/* No first slant range is right for most images, so there is none until it is given. */
+#define STRUCTURE sonject_geometry_params
+static const struct field geometry_fields[] = {
+    {"row_spacing", "distance between track positions, or the speed and ping_rate that make it",
+     QUANTITY(row_spacing_m, LENGTH), POSITIVE, .preset = 0.025, .read = read_row_spacing,
+     .section = &ping_spacing_section, .unit = "m, km, cm, mm, or {speed, ping_rate}", REQUIRED},
+    {"column_spacing", "distance between range cells, in slant range",
+     QUANTITY(column_spacing_m, LENGTH), POSITIVE, .preset = 0.025, REQUIRED},
+    {"first_slant_range", "slant range of column 0 of the whole swath",
+     QUANTITY(first_slant_range_m, LENGTH), FROM_ZERO, .preset = NAN, REQUIRED},
+    {"first_along_track", "track position of row 0", QUANTITY(first_along_track_m, LENGTH),
+     COORDINATE},
+    {"side", "of the track that the image shows",
+     WORD(side) = {[SONJECT_SIDE_PORT] = "port", [SONJECT_SIDE_STARBOARD] = "starboard"}},
+};
+const struct section geometry_section = {ROWS(geometry_fields), .bytes = sizeof(STRUCTURE)};
+#undef STRUCTURE
+
+static sonject_status read_geometry(struct reader *reader, const struct tree_node *node,
+                                    void *structure)
+{
+    struct scene *scene = structure;
+    reader->takes_geometry = is_word(node, "from_file");
+    return reader->takes_geometry ? SONJECT_OK
+                                  : read_section(reader, &geometry_section, node, &scene->geometry);
+}
+
+#define STRUCTURE sonject_transfer_params
+static void relate_transfer(struct check *check, const void *structure)
+{
+    const sonject_transfer_params *transfer = structure;
+    if (transfer->kind == SONJECT_TRANSFER_DECIBEL) {
+        check_within(check, "parameter", transfer->parameter, 1e-6, 1e3, " dB per unit");
+        check_within(check, "offset", transfer->offset, -1e3, 1e3, " dB");
+    } else if (transfer->kind == SONJECT_TRANSFER_GAMMA) {
+        check_within(check, "parameter", transfer->parameter, 0.01, 100.0, " (an exponent)");
+    } else if (transfer->kind == SONJECT_TRANSFER_SCHLICK) {
+        check_within(check, "parameter", transfer->parameter, 1.0, 1e6, "");
+    }
+}
+
+static sonject_status finish_transfer(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    const sonject_transfer_params *transfer = structure;
+    const bool has_parameter = transfer->kind >= SONJECT_TRANSFER_DECIBEL;
+    struct check check = check_at(reader, node);
+    if (has_parameter && !is_given(node, "parameter"))
+        refuse_key(reader, node, "parameter", "missing; this kind of transfer needs it");
+    if (!has_parameter && is_given(node, "parameter"))
+        refuse_relation(reader, node, "parameter", "kind",
+                        "this kind of transfer has none; remove it");
+    if (transfer->kind != SONJECT_TRANSFER_DECIBEL && is_given(node, "offset"))
+        refuse_relation(reader, node, "offset", "kind", "only the decibel kind has one; remove it");
+    relate_transfer(&check, transfer);
+    return check.status;
+}
+
+static const struct field transfer_fields[] = {
+    {"kind", "how stored numbers came from amplitudes",
+     WORD(kind) = {[SONJECT_TRANSFER_AMPLITUDE] = "amplitude",
+                   [SONJECT_TRANSFER_INTENSITY] = "intensity",
+                   [SONJECT_TRANSFER_DECIBEL] = "decibel",
+                   [SONJECT_TRANSFER_GAMMA] = "gamma",
+                   [SONJECT_TRANSFER_SCHLICK] = "schlick"},
+     REQUIRED},
+    {"parameter",
+     "dB per stored unit (decibel, 1e-6 to 1000), exponent (gamma, 0.01 to 100) or b (schlick, 1 "
+     "to 1e6)",
+     QUANTITY(parameter, NUMBER), .preset = 1.0},
+    {"offset", "level of a stored 0 (decibel, -1000 to 1000)", QUANTITY(offset, DECIBEL)},
+    {"full_scale", "largest value that the recorder stores; by default the pixel type's",
+     QUANTITY(full_scale, NUMBER), WITHIN(0.0, 1e30), NONE_IF_ZERO},
+};
+const struct section transfer_section = {ROWS(transfer_fields), .relations = relate_transfer,
+                                         .finish = finish_transfer, .bytes = sizeof(STRUCTURE)};
+#undef STRUCTURE
+
+static sonject_status read_channel(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    struct scene *scene = structure;
+    char excerpt[40];
+    uint64_t number = 0;
+    const char *text = node->kind == TREE_TEXT && node->text ? node->text : "";
+    if (is_word(node, "port"))
+        scene->channel = SONJECT_CHANNEL_PORT;
+    else if (is_word(node, "starboard"))
+        scene->channel = SONJECT_CHANNEL_STARBOARD;
+    else if (text_to_count(text, &number) && number <= XTF_CHANNEL_MAX)
+        scene->channel = (int32_t)number;
+    else
+        return refuse_value(reader, node,
+                            "'%s' is neither port nor starboard nor a channel's "
+                            "number, 0 to %d",
+                            text_excerpt(excerpt, sizeof excerpt, text), XTF_CHANNEL_MAX);
+    return SONJECT_OK;
+}
+
+static sonject_status finish_input(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    const struct scene *scene = structure;
+    const char *file_keys = "channel array complex transfer";
+    char key[64];
+    while (scene->input_kind != SONJECT_INPUT_FILE && next_key(&file_keys, key))
+        if (is_given(node, key) && count_given(node, "path uniform synthetic") == 1)
+            refuse_key(reader, node, key, "belongs to an image file (path), not to %s; remove it",
+                       is_given(node, "uniform") ? "uniform" : "synthetic");
+    return SONJECT_OK;
+}
+
+#define STRUCTURE struct scene
+static const struct field input_fields[] = {
+    {"kind", "of the input", HIDDEN, WORD(input_kind) = {"memory", "file", "uniform", "synthetic"}},
+    {"path", "image file", .kind = FIELD_PATH, MEMBER(input_path),
+     SETS(input_kind, SONJECT_INPUT_FILE)},
+    {"channel", "of an XTF file: port, starboard, or its number there", .kind = FIELD_SPECIAL,
+     MEMBER(channel), .read = read_channel, .unit = "word or whole number"},
+    {"array", "in an HDF5 or MATLAB file of several: its name", TEXT(array)},
+    {"complex", "the file's two channels are real and imaginary part", .kind = FIELD_BOOL,
+     MEMBER(input_is_complex)},
+    {"uniform", "a swath of unit reflectivity", SAME(uniform_section),
+     SETS(input_kind, SONJECT_INPUT_UNIFORM)},
+    {"synthetic", "a swath that sonject makes", PART(synthetic, synthetic_section),
+     SETS(input_kind, SONJECT_INPUT_SYNTHETIC)},
+    {"geometry",
+     "where the pixels lie: row_spacing, column_spacing and first_slant_range, or from_file",
+     PART(geometry, geometry_section), .read = read_geometry, REQUIRED},
+    {"transfer", "what the file's numbers mean", PART(transfer, transfer_section)},
+};
+const struct section input_section = {ROWS(input_fields), .choice = "path uniform synthetic",
+                                      .finish = finish_input};
+#undef STRUCTURE
+
+#define STRUCTURE sonject_patch_params
+static void relate_patch(struct check *check, const void *structure)
+{
+    const sonject_patch_params *patch = structure;
+    if (!patch->first_row && !patch->first_column && !patch->rows && !patch->columns)
+        return; /* all of the swath */
+    if (patch->rows == 0)
+        check_failure(check, "rows", "must be at least 1 pixel");
+    if (patch->columns == 0)
+        check_failure(check, "columns", "must be at least 1 pixel");
+}
+
+static const struct field patch_fields[] = {
+    {"row", "first row of the swath", COUNT64(first_row, 0, SWATH_INDEX_MAX)},
+    {"column", "first column of the swath", COUNT64(first_column, 0, SWATH_INDEX_MAX)},
+    {"rows", "track positions", COUNT64(rows, 1, SWATH_INDEX_MAX), NONE_IF_ZERO, REQUIRED},
+    {"columns", "range cells", COUNT64(columns, 1, SWATH_INDEX_MAX), NONE_IF_ZERO, REQUIRED},
+};
+const struct section patch_section = {ROWS(patch_fields), .relations = relate_patch,
+                                      .bytes = sizeof(STRUCTURE)};
+#undef STRUCTURE
+
+/* ---- The injection. */
+
+#define STRUCTURE sonject_injection_params
+static sonject_status read_noise_floor(struct reader *reader, const struct tree_node *node,
+                                       void *structure)
+{
+    sonject_injection_params *injection = structure;
+    injection->estimate_noise = is_word(node, "estimate");
+    return injection->estimate_noise
+               ? SONJECT_OK
+               : read_quantity(reader, node, QUANTITY_DECIBEL, &injection->noise_floor_db);
+}
+
+static void relate_injection(struct check *check, const void *structure)
+{
+    const sonject_injection_params *injection = structure;
+    if (injection->estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
+        injection->mode != SONJECT_MODE_RESYNTHESISE)
+        check_relation(check, "estimator", "mode",
+                       "brute_force traces the whole patch and needs mode: resynthesise");
+}
+
+static const struct field match_fields[] = {
+    {"response", "widths of the point response: the image's around the targets, or the sonar's",
+     WORD(match_response) = {[SONJECT_MATCH_NOMINAL] = "nominal", [SONJECT_MATCH_IMAGE] = "image"},
+     .preset = SONJECT_MATCH_IMAGE},
+    {"looks", "averaged in a magnitude pixel: image, or 1 to 64", QUANTITY(match_looks, NUMBER),
+     WITHIN(1.0, 64.0), .words = {"image"}, .word_values = {0.0}, .per = " looks",
+     .unit = "number, or image"},
+    {"saturation", "amplitude that cuts highlights: the image's own, or the file's full scale",
+     WORD(match_saturation) =
+         {[SONJECT_MATCH_NOMINAL] = "full_scale", [SONJECT_MATCH_IMAGE] = "image"},
+     .preset = SONJECT_MATCH_IMAGE},
+};
+static const struct section match_section = {ROWS(match_fields)};
+
+static const struct field injection_fields[] = {
+    {"mode", "keep the measured pixels around the target, or trace the patch anew",
+     WORD(mode) =
+         {[SONJECT_MODE_COMPOSITE] = "composite", [SONJECT_MODE_RESYNTHESISE] = "resynthesise"}},
+    {"columns", "that an echo of several interactions goes to",
+     WORD(
+         column_rule) = {[SONJECT_COLUMNS_FOCUSED] = "focused", [SONJECT_COLUMNS_PAPER] = "paper"}},
+    {"noise_floor", "estimated or not", HIDDEN, FLAG32(estimate_noise), .preset = 1},
+    {"noise_floor", "noise over the mean seabed, or estimate", QUANTITY(noise_floor_db, DECIBEL),
+     WITHIN(-HUGE_VAL, 0.0), .bounds = ABOVE_LEAST | BELOW_MOST,
+     .range = "below 0 dB (the seabed's own level)", .preset = -25.0, .words = {"estimate"},
+     .word_values = {-25.0}, .read = read_noise_floor, .unit = "dB, or estimate"},
+    {"influence", "change over the seabed from which a pixel is the target's",
+     QUANTITY(influence_db, DECIBEL), WITHIN(-200.0, 0.0), .preset = -40.0},
+    {"rays", "factor on the number of rays", QUANTITY(ray_scale, NUMBER),
+     WITHIN(1.0 / 64.0, 4096.0), .per = " times the usual number", .preset = 1.0},
+    {"seed", "of all random numbers of the injection", COUNT64(seed, 0, 0), .preset = 1},
+    {"interactions", "surfaces that a path may meet, 1 to 8",
+     COUNT32(interactions, 1, SCENE_INTERACTIONS_MAX), .per = " surfaces", .preset = 1},
+    {"estimator", "how paths to the source are found: all hits connected to it, or by chance",
+     WORD(estimator) = {[SONJECT_ESTIMATOR_CONNECT] = "connect",
+                        [SONJECT_ESTIMATOR_BRUTE_FORCE] = "brute_force"}},
+    {"order_energies", "also keep the energy of each number of interactions",
+     FLAG32(order_energies)},
+    {"match", "what targets take over from a measured magnitude image", SAME(match_section)},
+};
+const struct section injection_section = {ROWS(injection_fields), .relations = relate_injection,
+                                          .bytes = sizeof(STRUCTURE)};
+#undef STRUCTURE
+
+/* ---- The whole file. */
+
+sonject_status read_version(struct reader *reader, const struct tree_node *node, void *structure)
+{
+    (void)structure;
+    return is_word(node, "1")
+               ? SONJECT_OK
+               : refuse_value(reader, node,
+                              "must be 1, the version of the format that is read here");
+}
+
+/* What these keys say was done when the bands were laid over the file. */
+static sonject_status read_band(struct reader *reader, const struct tree_node *node,
+                                void *structure)
+{
+    (void)reader;
+    (void)node;
+    (void)structure;
+    return SONJECT_OK;
+}
+
+/* Geometry and altitude, where they are the input file's to tell. */
+static void take_recording(struct reader *reader)
+{
+    struct report report = {{0}, NULL, NULL};
+    const char *key;
+    if ((reader->takes_geometry || reader->takes_altitude) && are_sound(reader, "input patch") &&
+        recording_describe(&report, reader->takes_geometry, reader->takes_altitude, reader->scene,
+                           &key) != SONJECT_OK)
+        refuse_key(reader, &reader->tree->root, key, "%s", report.message);
+}
+
+static sonject_status finish_scene(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    const struct scene *scene = structure;
+    const sonject_sonar_params *sonar = &scene->sonar;
+    const bool is_complex = scene->input_kind == SONJECT_INPUT_SYNTHETIC
+                                ? scene->synthetic.complex_pixels
+                                : scene->input_is_complex;
+    take_recording(reader);
+    if (scene->seabed.map == SONJECT_MAP_COHERENT && !is_complex &&
+        scene->input_kind != SONJECT_INPUT_MEMORY)
+        refuse_relation(reader, node, "seabed.map",
+                        "input.complex input.synthetic input.uniform input.path",
+                        "coherent needs complex pixels; set complex: true in input if they are");
+    if (scene->surface.water_depth_m > 0.0 && scene->surface.water_depth_m <= sonar->altitude_m)
+        refuse_relation(reader, node, "surface.depth", "sonar.altitude",
+                        "must be above the sonar's altitude of %g m, not %g m", sonar->altitude_m,
+                        scene->surface.water_depth_m);
+    if (scene->injection.estimator == SONJECT_ESTIMATOR_BRUTE_FORCE &&
+        !(sonar->transducer_side_m > 0.0))
+        refuse_relation(reader, node, "injection.estimator", "sonar.transducer",
+                        "brute_force needs a source that rays can hit; set transducer in sonar");
+    const double least_rate =
+        element_least_rate(&scene->elements, sonar->centre_frequency_hz, sonar->bandwidth_hz);
+    if (scene->elements.sampling_rate_hz != 0.0 && scene->elements.sampling_rate_hz < least_rate)
+        refuse_relation(reader, node, "elements.sampling_rate",
+                        "elements.form sonar.frequency sonar.bandwidth",
+                        "must be at least %g Hz for the sonar's band, not %g Hz", least_rate,
+                        scene->elements.sampling_rate_hz);
+    return SONJECT_OK;
+}
+
+/* Keys are read in this order, whatever the file's: the water needs the sonar's frequency and the
+ * surface's depth. */
+#define STRUCTURE struct scene
+static const struct field scene_fields[] = {
+    {"sonject", "version of the format, 1", SPECIAL(read_version, "whole number"), REQUIRED},
+    {"band", "which of the bands this scene is", SPECIAL(read_band, "a band's name")},
+    {"bands", "by name, the keys in which each of several sonars differs from the rest of the file",
+     SPECIAL(read_band, "sections of the scene's keys")},
+    {"input", "where the image comes from: path, uniform or synthetic, and geometry",
+     SAME(input_section), REQUIRED},
+    {"patch", "part of the swath that is worked on; by default all of it",
+     PART(patch, patch_section)},
+    {"sonar", "the sonar: frequency, bandwidth and altitude", PART(sonar, sonar_section), REQUIRED},
+    {"seabed", "the seabed", PART(seabed, seabed_section)},
+    {"relief", "the file's heights", HIDDEN, PART(relief.grid, relief_grid_section)},
+    {"surface", "the sea surface; by default none is heard", PART(surface, surface_section)},
+    {"medium", "the water", PART(medium, medium_section)},
+    {"injection", "how targets are put into the image", PART(injection, injection_section)},
+    {"elements", "the array whose time series `sonject elements` writes",
+     PART(elements, elements_section)},
+    {"objects", "list of the targets", .kind = FIELD_SPECIAL, .read = read_objects,
+     .section = &object_section, .is_list = true},
+};
+const struct section scene_section = {ROWS(scene_fields), .finish = finish_scene};
+#undef STRUCTURE
+
+void scene_init(struct scene *scene)
+{
+    memset(scene, 0, sizeof *scene);
+    section_defaults(&scene_section, scene, scene);
+    scene->channel = SONJECT_CHANNEL_ONLY;
+}
+
+/* ---- The structures that others fill. */
+
+#define CHECKED(name)                                                                              \
+    sonject_status check_##name(const sonject_##name##_params *values, struct report *report,      \
+                                struct check_listener *listener)                                   \
+    {                                                                                              \
+        return section_check(&name##_section, values, report, listener);                           \
+    }
+#define PRESET(name, section)                                                                      \
+    void sonject_##name##_params_init(sonject_##name##_params *values)                             \
+    {                                                                                              \
+        section_defaults(&section, values, NULL);                                                  \
+    }
+#define STRUCTURE_OF(name) CHECKED(name) PRESET(name, name##_section)
+
+STRUCTURE_OF(sonar)
+STRUCTURE_OF(pulse)
+STRUCTURE_OF(motion)
+STRUCTURE_OF(medium)
+STRUCTURE_OF(seabed)
+STRUCTURE_OF(surface)
+STRUCTURE_OF(geometry)
+STRUCTURE_OF(transfer)
+STRUCTURE_OF(injection)
+STRUCTURE_OF(elements)
+STRUCTURE_OF(synthetic)
+CHECKED(patch)
+CHECKED(object)
+PRESET(user_shape, user_section)
+PRESET(material, material_section)
+PRESET(relief, relief_grid_section)
+
+sonject_status check_user_shape(const sonject_user_shape_params *shape, struct report *report,
+                                struct check_listener *listener)
+{
+    return section_check(&user_section, shape, report, listener);
+}
+
+sonject_status check_uniform(uint32_t rows, uint32_t columns, struct report *report,
+                             struct check_listener *listener)
+{
+    struct scene scene = {.uniform_rows = rows, .uniform_columns = columns};
+    return section_check(&uniform_section, &scene, report, listener);
+}

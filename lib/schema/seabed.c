@@ -1,0 +1,297 @@
+/* The keys of the seabed: its strength, the surface for sound that goes on, and its relief. */
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/memory.h"
+#include "schema/keys.h"
+#include "swath/swath_file.h"
+
+#define INDEX_MAX 1099511627776.0 /* 2^40, as of objects in swath pixels */
+
+/* ---- Features of the relief. */
+
+#define STRUCTURE struct relief_feature
+static const struct field place_fields[] = {
+    {"along_track", "track position", QUANTITY(position_along, LENGTH), COORDINATE,
+     SETS(position_kind, SONJECT_POSITION_METRES)},
+    {"slant_range", "of the mean seabed there, as the image shows it",
+     QUANTITY(position_range, LENGTH), FROM_ZERO, SETS(position_kind, SONJECT_POSITION_METRES)},
+    {"row", "of the swath, may be a fraction", QUANTITY(position_along, NUMBER),
+     WITHIN(-INDEX_MAX, INDEX_MAX), SETS(position_kind, SONJECT_POSITION_PIXELS)},
+    {"column", "of the swath, may be a fraction", QUANTITY(position_range, NUMBER),
+     WITHIN(-INDEX_MAX, INDEX_MAX), SETS(position_kind, SONJECT_POSITION_PIXELS)},
+};
+static const struct section place_section = {ROWS(place_fields),
+                                             .choice = "along_track+slant_range row+column"};
+
+#define POSITION_FIELD                                                                             \
+    {                                                                                              \
+        "position", "of its middle: centre, {along_track: , slant_range: } or {row: , column: }",  \
+            WORD(position_kind) = {[SONJECT_POSITION_PATCH_CENTRE] = "centre",                     \
+                                   [SONJECT_POSITION_METRES] = "",                                 \
+                                   [SONJECT_POSITION_PIXELS] = ""},                                \
+            .section = &place_section                                                              \
+    }
+#define HEIGHT QUANTITY(height_m, LENGTH), WITHIN(0.0, RELIEF_HEIGHT_MAX_M), REQUIRED
+#define RADIUS QUANTITY(radius_m, LENGTH), POSITIVE, REQUIRED
+
+static const struct field ripples_fields[] = {
+    {"wavelength", "from crest to crest", QUANTITY(wavelength_m, LENGTH), POSITIVE, REQUIRED},
+    {"height", "from trough to crest", HEIGHT},
+    {"heading", "direction across the crests, from along-track towards range",
+     QUANTITY(heading_rad, ANGLE)},
+    {"phase", "at along-track 0 and ground range 0; a crest is at 0", QUANTITY(phase_rad, ANGLE)},
+    {"sharpness", "of the crests, 0 (a sine) to 1 (narrow crests, wide troughs)",
+     QUANTITY(sharpness, NUMBER), WITHIN(0.0, 1.0)},
+    {"irregularity", "0 (straight crests) to 1 (they wander, fork and end)",
+     QUANTITY(irregularity, NUMBER), WITHIN(0.0, 1.0)},
+    {"seed", "of the irregularity", COUNT64(seed, 0, 0)},
+};
+static const struct section ripples_section = {ROWS(ripples_fields)};
+
+static const struct field mound_fields[] = {
+    POSITION_FIELD,
+    {"radius", "at which it ends, a raised cosine", RADIUS},
+    {"height", "of its top over the ground around", HEIGHT},
+};
+static const struct section mound_section = {ROWS(mound_fields)};
+
+static const struct field pit_fields[] = {
+    POSITION_FIELD,
+    {"radius", "at which it ends, a raised cosine", RADIUS},
+    {"depth", "of its bottom under the ground around", HEIGHT},
+};
+static const struct section pit_section = {ROWS(pit_fields)};
+
+static const struct field scour_fields[] = {
+    {"object", "name of the object that it surrounds", LABEL(object), REQUIRED},
+    {"width", "from the object's outline to where it ends", QUANTITY(width_m, LENGTH), POSITIVE,
+     REQUIRED},
+    {"depth", "at and under the object, which rests on its bottom", HEIGHT},
+};
+static const struct section scour_section = {ROWS(scour_fields)};
+#undef STRUCTURE
+
+/* ---- Heights from an image file: where its pixels lie, and what its numbers mean. */
+
+enum positive_way {
+    POSITIVE_UP,
+    POSITIVE_DOWN
+};
+
+/* What is said about the file: a height is offset_m, and unit_m times the pixel up or down. */
+struct heights_text {
+    char *path;              /* owned */
+    char *array;             /* owned; in a file of several, its name */
+    double unit_m, offset_m; /* m a number of the file; height where that is 0 */
+    uint32_t positive;       /* enum positive_way: where larger numbers lie */
+    sonject_relief_params grid;
+};
+
+static sonject_status read_heights_unit(struct reader *reader, const struct tree_node *node,
+                                        void *structure)
+{
+    return read_length_unit(reader, node, &((struct heights_text *)structure)->unit_m);
+}
+
+#define STRUCTURE struct heights_text
+static const struct field heights_fields[] = {
+    {"file", "image or array of one channel: rows along-track, columns in ground range",
+     .kind = FIELD_FILE, MEMBER(path), REQUIRED},
+    {"array", "in an HDF5 or MATLAB file of several: its name", TEXT(array)},
+    {"unit", "of the file's numbers", SPECIAL(read_heights_unit, "m, km, cm, mm"), REQUIRED},
+    {"positive", "where larger numbers lie: up (heights) or down (depths)",
+     WORD(positive) = {[POSITIVE_UP] = "up", [POSITIVE_DOWN] = "down"}},
+    {"offset", "height over the mean seabed where the file has 0", QUANTITY(offset_m, LENGTH),
+     COORDINATE},
+    {"row_spacing", "distance between rows", QUANTITY(grid.row_spacing_m, LENGTH), POSITIVE,
+     .preset = 0.025, REQUIRED},
+    {"column_spacing", "distance between columns, horizontal",
+     QUANTITY(grid.column_spacing_m, LENGTH), POSITIVE, .preset = 0.025, REQUIRED},
+    {"first_ground_range", "of column 0, horizontal from the track",
+     QUANTITY(grid.first_ground_range_m, LENGTH), COORDINATE, REQUIRED},
+    {"first_along_track", "track position of row 0", QUANTITY(grid.first_along_track_m, LENGTH),
+     COORDINATE},
+};
+static const struct section heights_section = {ROWS(heights_fields)};
+#undef STRUCTURE
+
+/* The grid by itself, as a caller in C gives it. */
+#define STRUCTURE sonject_relief_params
+static const struct field relief_grid_fields[] = {
+    {"rows", "of heights", COUNT32(rows, 2, RELIEF_GRID_SIDE_MAX), NONE_IF_ZERO},
+    {"columns", "of heights", COUNT32(columns, 2, RELIEF_GRID_SIDE_MAX), NONE_IF_ZERO},
+    {"row_spacing", "distance between rows", QUANTITY(row_spacing_m, LENGTH), POSITIVE,
+     .preset = 0.025},
+    {"column_spacing", "distance between columns", QUANTITY(column_spacing_m, LENGTH), POSITIVE,
+     .preset = 0.025},
+    {"first_ground_range", "of column 0", QUANTITY(first_ground_range_m, LENGTH), COORDINATE},
+    {"first_along_track", "of row 0", QUANTITY(first_along_track_m, LENGTH), COORDINATE},
+};
+const struct section relief_grid_section = {ROWS(relief_grid_fields), .bytes = sizeof(STRUCTURE)};
+#undef STRUCTURE
+
+static double number_at(const void *pixels, enum pixel_type type, size_t i)
+{
+    return type == PIXEL_UINT8    ? (double)((const uint8_t *)pixels)[i]
+           : type == PIXEL_UINT16 ? (double)((const uint16_t *)pixels)[i]
+                                  : (double)((const float *)pixels)[i];
+}
+
+static float height_of(const struct heights_text *text, double number)
+{
+    const double unit_m = text->positive == POSITIVE_DOWN ? -text->unit_m : text->unit_m;
+    const double height = text->offset_m + unit_m * number;
+    return (float)(fabs(height) > (double)FLT_MAX ? copysign(INFINITY, height) : height);
+}
+
+/* Heights of an array's numbers, or else of an image file's pixels, of which sizes that no relief
+ * may have are refused before anything is held in memory. What is not a number stays so, and is
+ * refused with the place where it stands. */
+static sonject_status take_heights(struct scene *scene, struct report *report,
+                                   struct heights_text *text, const struct number_array *array,
+                                   struct swath_file *file)
+{
+    struct raster_layout layout = {.channels = 1};
+    struct report check = {{0}, NULL, NULL};
+    if (array) {
+        layout.rows = array->rows;
+        layout.columns = array->column_count;
+    } else {
+        swath_file_layout(file, &layout);
+    }
+    if (layout.channels != 1)
+        return report_failure(report, SONJECT_ERROR_INPUT, "%s: has %lu channels; heights need one",
+                              text->path, (unsigned long)layout.channels);
+    if (!relief_grid_fits(layout.rows, layout.columns))
+        return report_failure(report, SONJECT_ERROR_INPUT,
+                              "%s: has %llu rows and %llu columns; heights need 2...%u each, at "
+                              "most 2^24 points: cut out or thin out",
+                              text->path, (unsigned long long)layout.rows,
+                              (unsigned long long)layout.columns, RELIEF_GRID_SIDE_MAX);
+    const struct region all = {0, 0, layout.rows, layout.columns};
+    const size_t count = (size_t)(layout.rows * layout.columns);
+    void *pixels = array ? NULL : allocate_array(count, pixel_bytes(layout.type));
+    float *heights = allocate_array(count, sizeof *heights);
+    text->grid.rows = (uint32_t)layout.rows;
+    text->grid.columns = (uint32_t)layout.columns;
+    sonject_status status =
+        (array || pixels) && heights ? SONJECT_OK : report_out_of_memory(report, text->path);
+    THEN(status, array ? SONJECT_OK : swath_file_read(report, file, &all, pixels));
+    for (size_t i = 0; status == SONJECT_OK && i < count; i++)
+        heights[i] = height_of(text, array ? array->values[i] : number_at(pixels, layout.type, i));
+    if (status == SONJECT_OK) {
+        status = relief_features_set_grid(&scene->relief, &check, &text->grid, heights);
+        if (status != SONJECT_OK)
+            report_failure(report, status, "%s: %s", text->path, check.message);
+    }
+    free(pixels);
+    free(heights);
+    return status;
+}
+
+static sonject_status load_heights(struct reader *reader, struct report *report,
+                                   struct heights_text *text)
+{
+    struct swath_file *file;
+    const struct number_array *array = find_array(reader, text->path);
+    if (array)
+        return take_heights(reader->scene, report, text, array, NULL);
+    CHECK(swath_file_open_array(report, text->path, SONJECT_CHANNEL_ONLY, text->array, &file));
+    const sonject_status status = take_heights(reader->scene, report, text, NULL, file);
+    swath_file_close(&file);
+    return status;
+}
+
+/* Into the scene; the message about a file that cannot be read gets its place in the scene file. */
+static sonject_status read_relief_heights(struct reader *reader, const struct tree_node *node,
+                                          void *structure)
+{
+    struct heights_text text = {.path = NULL};
+    struct report report = {{0}, NULL, reader->report->host};
+    (void)structure;
+    if (reader->scene->relief.heights_m)
+        return refuse_value(reader, node, "only one file of heights is possible; join them");
+    section_defaults(&relief_grid_section, &text.grid, NULL);
+    sonject_status status = read_section(reader, &heights_section, node, &text);
+    if (status == SONJECT_OK) {
+        status = load_heights(reader, &report, &text);
+        if (status != SONJECT_OK)
+            refuse_key(reader, node, "file", "%s", report.message);
+    }
+    free(text.path);
+    free(text.array);
+    return status;
+}
+
+/* ---- The relief: a list of features. */
+
+#define STRUCTURE struct relief_feature
+static const struct field relief_fields[] = {
+    {"kind", "of feature", HIDDEN, WORD(kind) = {"ripples", "mound", "pit", "scour"}},
+    {"ripples", "of sand", SAME(ripples_section), SETS(kind, RELIEF_RIPPLES)},
+    {"mound", "a round rise", SAME(mound_section), SETS(kind, RELIEF_MOUND)},
+    {"pit", "a round hollow", SAME(pit_section), SETS(kind, RELIEF_PIT)},
+    {"scour", "a hollow around an object", SAME(scour_section), SETS(kind, RELIEF_SCOUR)},
+    {"heights", "from a file", .kind = FIELD_SPECIAL, .section = &heights_section,
+     .read = read_relief_heights},
+};
+const struct section relief_section = {ROWS(relief_fields),
+                                       .choice = "ripples mound pit scour heights"};
+#undef STRUCTURE
+
+static sonject_status read_feature(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    struct relief_feature feature;
+    (void)structure;
+    memset(&feature, 0, sizeof feature);
+    CHECK(read_section(reader, &relief_section, node, &feature));
+    return is_given(node, "heights") /* which are in the scene already */
+               ? SONJECT_OK
+               : relief_features_append(&reader->scene->relief, reader->report, &feature);
+}
+
+static sonject_status read_relief(struct reader *reader, const struct tree_node *node,
+                                  void *structure)
+{
+    static const struct list relief = {RELIEF_FEATURES_MAX, "; start each feature with '- '",
+                                       read_feature};
+    return tree_is_null(node) ? SONJECT_OK : read_list(reader, node, &relief, structure);
+}
+
+/* ---- The seabed. */
+
+static void relate_seabed(struct check *check, const void *structure)
+{
+    const sonject_seabed_params *seabed = structure;
+    relate_energy(check, "forward.", &seabed->forward, seabed->lambert);
+}
+
+/* 10^-2.7: Mackenzie's. 1/pi written in decimal digits must not be refused for its last bit. */
+#define STRUCTURE sonject_seabed_params
+static const struct field seabed_fields[] = {
+    {"lambert", "backscatter mu at normal incidence, -27 dB on Mackenzie's seabed",
+     QUANTITY(lambert, LEVEL), WITHIN(0.0, (1.0 + 1e-12) / PI), .bounds = ABOVE_LEAST,
+     .preset = 1.995262314968879e-3,
+     .range = "above 0 and at most 1/pi (-4.97 dB), or the seabed returns more than it receives"},
+    {"map", "reflectivity that resynthesise takes from the image",
+     WORD(map) = {[SONJECT_MAP_INTENSITY] = "intensity",
+                  [SONJECT_MAP_DESPECKLED] = "despeckled",
+                  [SONJECT_MAP_COHERENT] = "coherent"},
+     .preset = SONJECT_MAP_INTENSITY},
+    {"level_radius", "of the local mean that lambert stands for", QUANTITY(level_radius_m, LENGTH),
+     POSITIVE, .preset = 3.0},
+    {"despeckle_radius", "of the despeckled map's local mean", QUANTITY(despeckle_radius_m, LENGTH),
+     POSITIVE, .preset = 0.1},
+    {"forward", "surface for sound that does not go straight back: a sediment's name, or a section",
+     .kind = FIELD_NAMED, MEMBER(forward), .section = &forward_section, .read = read_sediment_name},
+    {"relief",
+     "list of ripples, mounds, pits, scour and heights, added together; by default all is level",
+     .kind = FIELD_SPECIAL, .section = &relief_section, .is_list = true, .read = read_relief},
+};
+const struct section seabed_section = {ROWS(seabed_fields), .relations = relate_seabed,
+                                       .bytes = sizeof(STRUCTURE)};
+#undef STRUCTURE

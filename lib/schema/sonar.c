@@ -1,0 +1,415 @@
+/* The keys of the sonar: its array, pulse, measured response and motion; and those of the array
+ * whose hydrophones are heard one by one. */
+#include <stdlib.h>
+
+#include "schema/keys.h"
+#include "schema/tables.h"
+
+#define FREQUENCY_MIN_HZ 1.0
+#define FREQUENCY_MAX_HZ 1e9
+#define TABLE_BYTES_MAX  (16 * 1024 * 1024)
+
+/* ---- Tables of samples: files of text with named columns. */
+
+enum {
+    POSITION,
+    TIME,
+    REAL_PART,
+    IMAGINARY_PART
+};
+
+static sonject_status read_table(struct reader *reader, const struct tree_node *node,
+                                 const struct table_format *format, struct number_table *table)
+{
+    char *path = NULL;
+    CHECK(read_existing_path(reader, node, &path));
+    const struct number_array *array = find_array(reader, path);
+    const sonject_status status = array ? number_table_take(reader->report, array, format, table)
+                                        : number_table_read(reader->report, path, format, table);
+    free(path);
+    return status;
+}
+
+static sonject_status read_response_file(struct reader *reader, const struct tree_node *node,
+                                         const struct table_format *format,
+                                         struct response_table *response)
+{
+    struct number_table table;
+    struct response_fault fault;
+    sonject_status status = SONJECT_OK;
+    CHECK(read_table(reader, node, format, &table));
+    const int position = table.values[TIME] ? TIME : POSITION;
+    const double *positions = table.values[position];
+    if (!response_samples_are_good(positions, table.values[REAL_PART], table.values[IMAGINARY_PART],
+                                   table.count, &fault))
+        status =
+            number_table_refuse(&table, reader->report, fault.sample, (size_t)position, fault.what);
+    else
+        status = response_table_set(response, reader->report, positions, table.values[REAL_PART],
+                                    table.values[IMAGINARY_PART], table.count, position == TIME);
+    number_table_clear(&table);
+    return status;
+}
+
+static sonject_status read_motion_file(struct reader *reader, const struct tree_node *node,
+                                       enum motion_kind kind, struct motion_table *motion)
+{
+    const struct table_format format = {
+        {"along_track_m", NULL, kind == MOTION_SWAY ? "sway_m" : "yaw_rad", NULL},
+        1,
+        MOTION_SAMPLES_MAX,
+        TABLE_BYTES_MAX};
+    struct number_table table;
+    size_t sample;
+    const char *what;
+    sonject_status status = SONJECT_OK;
+    CHECK(read_table(reader, node, &format, &table));
+    if (!motion_samples_are_good(kind, table.values[0], table.values[2], table.count, &sample,
+                                 &what))
+        status = number_table_refuse(&table, reader->report, sample, 0, what);
+    else
+        status =
+            motion_table_set(motion, reader->report, table.values[0], table.values[2], table.count);
+    number_table_clear(&table);
+    return status;
+}
+
+/* ---- The pulse. */
+
+static sonject_status read_pulse_file(struct reader *reader, const struct tree_node *node,
+                                      void *structure)
+{
+    static const struct table_format format = {
+        {"range_m", "time_s", "real", "imaginary"}, 1, RESPONSE_SAMPLES_MAX, TABLE_BYTES_MAX};
+    const sonject_pulse_params *pulse = structure;
+    return pulse->kind == SONJECT_PULSE_TABLE
+               ? read_response_file(reader, node, &format, &reader->scene->pulse_table)
+               : SONJECT_OK;
+}
+
+static sonject_status finish_pulse(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    const sonject_pulse_params *pulse = structure;
+    const bool is_table = pulse->kind == SONJECT_PULSE_TABLE;
+    if (is_given(node, "window") && pulse->kind != SONJECT_PULSE_CHIRP)
+        refuse_relation(reader, node, "window", "kind", "only a chirp has one; set kind: chirp");
+    if (is_table != is_given(node, "file"))
+        refuse_relation(reader, node, "file", "kind",
+                        is_table ? "missing; the table is read from it"
+                                 : "belongs to kind: table; remove it");
+    return SONJECT_OK;
+}
+
+#define STRUCTURE sonject_pulse_params
+static const struct field pulse_taylor_fields[] = {
+    {"sidelobes", "depth of the side lobes", QUANTITY(taylor_sidelobe_db, DECIBEL),
+     WITHIN(1.0, 120.0), .preset = 35.0, REQUIRED},
+    {"terms", "side lobes of equal height", COUNT32(taylor_terms, 2, 16), .preset = 5, REQUIRED},
+};
+static const struct section pulse_taylor_section = {ROWS(pulse_taylor_fields)};
+
+static const struct field pulse_window_fields[] = {
+    {"taylor", "sidelobes and terms of a Taylor window", SAME(pulse_taylor_section),
+     SETS(window, SONJECT_PULSE_TAYLOR), REQUIRED},
+};
+static const struct section pulse_window_section = {ROWS(pulse_window_fields)};
+
+/* Kinds come first: only a table has a file to read. */
+static const struct field pulse_fields[] = {
+    {"kind", "gaussian, a compressed linear sweep, or a table",
+     WORD(kind) = {[SONJECT_PULSE_GAUSSIAN] = "gaussian",
+                   [SONJECT_PULSE_CHIRP] = "chirp",
+                   [SONJECT_PULSE_TABLE] = "table"},
+     REQUIRED},
+    {"window", "of a chirp's spectrum: rectangular, hann or {taylor: {sidelobes: , terms: }}",
+     WORD(window) = {[SONJECT_PULSE_RECTANGULAR] = "rectangular",
+                     [SONJECT_PULSE_HANN] = "hann",
+                     [SONJECT_PULSE_TAYLOR] = ""},
+     .section = &pulse_window_section},
+    {"file", "table with columns range_m (beyond the target) or time_s, real, and imaginary",
+     SPECIAL(read_pulse_file, "file name")},
+};
+const struct section pulse_section = {ROWS(pulse_fields), .finish = finish_pulse,
+                                      .bytes = sizeof(STRUCTURE)};
+#undef STRUCTURE
+
+/* ---- Residual motion. */
+
+#define SWAY_MAX_M  1e3
+#define YAW_MAX_RAD 0.1 /* its sine is the angle to 2 parts in 1000 */
+#define SCALE_MIN_M 0.1 /* sway from one centimetre to the next is no motion of a sonar */
+#define SCALE_MAX_M 1e6
+
+#define SINE_FIELDS                                                                                \
+    {"wavelength",                                                                                 \
+     "of the sine, along-track",                                                                   \
+     QUANTITY(wavelength_m, LENGTH),                                                               \
+     WITHIN(SCALE_MIN_M, SCALE_MAX_M),                                                             \
+     .preset = 1.0,                                                                                \
+     REQUIRED},                                                                                    \
+    {                                                                                              \
+        "phase", "of the sine at along-track 0", QUANTITY(phase_rad, ANGLE), WITHIN(-1e3, 1e3)     \
+    }
+
+#define STRUCTURE sonject_sway
+static const struct field sway_fields[] = {
+    {"amplitude", "of the sine", QUANTITY(amplitude_m, LENGTH), WITHIN(-SWAY_MAX_M, SWAY_MAX_M),
+     REQUIRED},
+    SINE_FIELDS,
+};
+static const struct section sway_section = {ROWS(sway_fields)};
+#undef STRUCTURE
+
+#define STRUCTURE sonject_yaw
+static const struct field yaw_sine_fields[] = {
+    {"amplitude", "of the sine", QUANTITY(amplitude_rad, ANGLE), WITHIN(-YAW_MAX_RAD, YAW_MAX_RAD),
+     REQUIRED},
+    SINE_FIELDS,
+};
+static const struct section yaw_sine_section = {ROWS(yaw_sine_fields)};
+#undef STRUCTURE
+
+static sonject_status read_sway_file(struct reader *reader, const struct tree_node *node,
+                                     void *structure)
+{
+    (void)structure;
+    return read_motion_file(reader, node, MOTION_SWAY, &reader->scene->motion.sway_table);
+}
+
+static sonject_status read_yaw_file(struct reader *reader, const struct tree_node *node,
+                                    void *structure)
+{
+    (void)structure;
+    return read_motion_file(reader, node, MOTION_YAW, &reader->scene->motion.yaw_table);
+}
+
+static void relate_motion(struct check *check, const void *structure)
+{
+    const sonject_motion_params *motion = structure;
+    const bool has_yaw =
+        motion->yaw_count > 0 || motion->yaw_bias_rad != 0.0 || motion->yaw_random_rms_rad != 0.0;
+    if (has_yaw && motion->yaw_advance_m == 0.0)
+        check_within(check, "yaw.advance", motion->yaw_advance_m, SCALE_MIN_M, SWAY_MAX_M, " m");
+}
+
+#define STRUCTURE sonject_motion_params
+static const struct field random_fields[] = {
+    {"rms", "of the sway", QUANTITY(random_rms_m, LENGTH), WITHIN(0.0, SWAY_MAX_M), REQUIRED},
+    {"correlation", "length, along-track", QUANTITY(random_correlation_m, LENGTH),
+     WITHIN(SCALE_MIN_M, SCALE_MAX_M), .preset = 1.0, REQUIRED},
+    {"seed", "of the random sway", COUNT64(seed, 0, 0)},
+};
+static const struct section random_section = {ROWS(random_fields)};
+
+static const struct field random_yaw_fields[] = {
+    {"rms", "of the yaw", QUANTITY(yaw_random_rms_rad, ANGLE), WITHIN(0.0, YAW_MAX_RAD), REQUIRED},
+    {"correlation", "length, along-track", QUANTITY(yaw_random_correlation_m, LENGTH),
+     WITHIN(SCALE_MIN_M, SCALE_MAX_M), .preset = 1.0, REQUIRED},
+    {"seed", "of the random yaw", COUNT64(yaw_seed, 0, 0)},
+};
+static const struct section random_yaw_section = {ROWS(random_yaw_fields)};
+
+static const struct field yaw_fields[] = {
+    {"advance", "from ping to ping: what a ping's phase centres fill, half the array",
+     QUANTITY(yaw_advance_m, LENGTH), WITHIN(SCALE_MIN_M, SWAY_MAX_M), NONE_IF_ZERO, REQUIRED},
+    {"bias", "of all pings, bow towards the imaged side", QUANTITY(yaw_bias_rad, ANGLE),
+     WITHIN(-YAW_MAX_RAD, YAW_MAX_RAD)},
+    {"sines", "list of them", ENTRIES(yaws, yaw_count, "sine", yaw_sine_section)},
+    {"random", "yaw of Gaussian autocorrelation", SAME(random_yaw_section)},
+    {"file", "table with columns along_track_m and yaw_rad", SPECIAL(read_yaw_file, "file name")},
+};
+static const struct section yaw_section = {ROWS(yaw_fields)};
+
+static const struct field motion_fields[] = {
+    {"sway", "list of sines, across the track", ENTRIES(sways, sway_count, "sine", sway_section)},
+    {"random", "sway of Gaussian autocorrelation", SAME(random_section)},
+    {"file", "table with columns along_track_m and sway_m", SPECIAL(read_sway_file, "file name")},
+    {"yaw", "of an array of hydrophones, whose heading the processor does not know",
+     SAME(yaw_section)},
+};
+const struct section motion_section = {ROWS(motion_fields), .relations = relate_motion,
+                                       .bytes = sizeof(STRUCTURE)};
+#undef STRUCTURE
+
+/* ---- The sonar. */
+
+static sonject_status read_cross_range(struct reader *reader, const struct tree_node *node,
+                                       void *structure)
+{
+    static const struct table_format format = {
+        {"along_track_m", NULL, "real", "imaginary"}, 1, RESPONSE_SAMPLES_MAX, TABLE_BYTES_MAX};
+    (void)structure;
+    return read_response_file(reader, node, &format, &reader->scene->cross_range_table);
+}
+
+static sonject_status read_altitude(struct reader *reader, const struct tree_node *node,
+                                    void *structure)
+{
+    sonject_sonar_params *sonar = structure;
+    reader->takes_altitude = is_word(node, "from_file");
+    return reader->takes_altitude
+               ? SONJECT_OK
+               : read_quantity(reader, node, QUANTITY_LENGTH, &sonar->altitude_m);
+}
+
+static void relate_sonar(struct check *check, const void *structure)
+{
+    const sonject_sonar_params *sonar = structure;
+    if (sonar->bandwidth_hz >= 2.0 * sonar->centre_frequency_hz)
+        check_relation(check, "bandwidth", "frequency",
+                       "must be below twice the frequency, %g Hz, not %g Hz",
+                       2.0 * sonar->centre_frequency_hz, sonar->bandwidth_hz);
+    if (sonar->kind == SONJECT_SONAR_REAL && sonar->array_length_m == 0.0)
+        check_positive_length(check, "array.length", sonar->array_length_m);
+}
+
+static sonject_status finish_sonar(struct reader *reader, const struct tree_node *node,
+                                   void *structure)
+{
+    const sonject_sonar_params *sonar = structure;
+    const bool is_real = sonar->kind == SONJECT_SONAR_REAL;
+    struct check check = check_at(reader, node);
+    if (is_real && !is_given(node, "array"))
+        refuse_key(reader, node, "array", "missing; a real aperture needs its length");
+    if (!is_real && is_given(node, "array"))
+        refuse_relation(reader, node, "array", "kind",
+                        "belongs to a real aperture; set kind: real");
+    if (is_real && is_given(node, "aperture"))
+        refuse_key(reader, node, "aperture",
+                   "belongs to a synthetic aperture; a real one has that of its array");
+    relate_sonar(&check, sonar);
+    return check.status;
+}
+
+#define STRUCTURE sonject_sonar_params
+static const struct field taylor_fields[] = {
+    {"sidelobes", "depth of the side lobes", QUANTITY(taylor_sidelobe_db, DECIBEL),
+     WITHIN(1.0, 120.0), .preset = 35.0, REQUIRED},
+    {"terms", "side lobes of equal height", COUNT32(taylor_terms, 2, 16), .preset = 5, REQUIRED},
+};
+static const struct section taylor_section = {ROWS(taylor_fields)};
+
+static const struct field response_fields[] = {
+    {"taylor", "sidelobes and terms of a Taylor window", SAME(taylor_section),
+     SETS(response_window, SONJECT_WINDOW_TAYLOR), REQUIRED},
+};
+static const struct section response_section = {ROWS(response_fields)};
+
+/* Turned so far that the beam stays on the imaged side. */
+static const struct field array_fields[] = {
+    {"length", "along the track; sets the beam", QUANTITY(array_length_m, LENGTH), POSITIVE,
+     NONE_IF_ZERO, REQUIRED},
+    {"height", "across; 0 hears all elevations alike", QUANTITY(array_height_m, LENGTH), FROM_ZERO},
+    {"heading", "of the long side, from along-track towards range",
+     QUANTITY(array_heading_rad, ANGLE), WITHIN(-0.25 * PI, 0.25 * PI)},
+    {"pitch", "of the long side over the horizontal", QUANTITY(array_pitch_rad, ANGLE),
+     WITHIN(-0.25 * PI, 0.25 * PI)},
+    {"depression", "of the beam below the horizontal", QUANTITY(array_depression_rad, ANGLE),
+     WITHIN(0.0, 0.5 * PI)},
+};
+static const struct section array_section = {ROWS(array_fields)};
+
+static const struct field sonar_fields[] = {
+    {"frequency", "centre frequency", QUANTITY(centre_frequency_hz, FREQUENCY),
+     WITHIN(FREQUENCY_MIN_HZ, FREQUENCY_MAX_HZ), .preset = 100e3, REQUIRED},
+    {"bandwidth", "sets the range resolution, c / (2 bandwidth)", QUANTITY(bandwidth_hz, FREQUENCY),
+     WITHIN(FREQUENCY_MIN_HZ, FREQUENCY_MAX_HZ), .preset = 30e3, REQUIRED},
+    {"altitude", "height of the track over the mean seabed, or from_file",
+     QUANTITY(altitude_m, LENGTH), POSITIVE, .preset = 10.0, .read = read_altitude,
+     .unit = "m, km, cm, mm, or from_file", REQUIRED},
+    {"resolution", "along-track; by default the row spacing",
+     QUANTITY(along_track_resolution_m, LENGTH), POSITIVE, NONE_IF_ZERO},
+    {"transducer", "side of the source, 0 for a point", QUANTITY(transducer_side_m, LENGTH),
+     FROM_ZERO},
+    {"response", "aspect weighting: rectangular, hamming or {taylor: {sidelobes: , terms: }}",
+     WORD(response_window) = {[SONJECT_WINDOW_RECTANGULAR] = "rectangular",
+                              [SONJECT_WINDOW_HAMMING] = "hamming",
+                              [SONJECT_WINDOW_TAYLOR] = ""},
+     .section = &response_section},
+    {"kind", "synthetic aperture, or the real one of a sidescan",
+     WORD(kind) = {[SONJECT_SONAR_SYNTHETIC] = "synthetic", [SONJECT_SONAR_REAL] = "real"}},
+    {"aperture", "full angle of the aspects that shadows and rough highlights take, auto or none",
+     QUANTITY(aperture_rad, ANGLE), WITHIN(0.0, 0.5 * PI), .preset = -1.0,
+     .words = {"auto", "none"}, .word_values = {-1.0, 0.0}, .unit = "deg, auto or none"},
+    {"array", "of a real aperture", SAME(array_section)},
+    {"pulse", "what a point looks like in range; by default Gaussian",
+     OF_SCENE(pulse, pulse_section)},
+    {"measured_response", "along-track, a table with columns along_track_m, real, and imaginary",
+     SPECIAL(read_cross_range, "file name")},
+    {"motion", "residual motion of a synthetic aperture's sonar",
+     OF_SCENE(motion.params, motion_section)},
+};
+const struct section sonar_section = {ROWS(sonar_fields), .relations = relate_sonar,
+                                      .finish = finish_sonar, .bytes = sizeof(STRUCTURE)};
+#undef STRUCTURE
+
+/* ---- The array of the element level. */
+
+static void relate_elements(struct check *check, const void *structure)
+{
+    const sonject_elements_params *elements = structure;
+    if (elements->last_time_s < elements->first_time_s)
+        check_relation(check, "last_time", "first_time",
+                       "must not be before first_time, %g s, but is %g s", elements->first_time_s,
+                       elements->last_time_s);
+}
+
+#define STRUCTURE sonject_elements_params
+static const struct field pings_fields[] = {
+    {"count", "number of pings; by default as many as see the patch's whole aperture",
+     COUNT32(pings, 1, UINT32_C(1) << 24), NONE_IF_ZERO},
+    {"first",
+     "track position of the array's origin at ping 0; by default the pings are about the patch",
+     QUANTITY(first_ping_m, LENGTH), COORDINATE, NONE_IF_NAN},
+    {"spacing", "way from ping to ping; by default half the array's length",
+     QUANTITY(ping_spacing_m, LENGTH), POSITIVE, NONE_IF_ZERO},
+};
+static const struct section pings_section = {ROWS(pings_fields)};
+
+static const struct field transmitter_fields[] = {
+    {"offset", "of its middle from the array's origin, along-track",
+     QUANTITY(transmitter_offset_m, LENGTH), COORDINATE},
+    {"length", "along-track, 0 for a point; by default twice the resolution",
+     QUANTITY(transmitter_length_m, LENGTH), FROM_ZERO, NONE_IF_NAN},
+};
+static const struct section transmitter_section = {ROWS(transmitter_fields)};
+
+static const struct field hydrophones_fields[] = {
+    {"count", "number of hydrophones", COUNT32(hydrophones, 1, 65536), .preset = 1},
+    {"first",
+     "offset of the first one's middle from the array's origin; by default the array is about it",
+     QUANTITY(first_hydrophone_m, LENGTH), COORDINATE, NONE_IF_NAN},
+    {"spacing", "from middle to middle; by default the length",
+     QUANTITY(hydrophone_spacing_m, LENGTH), POSITIVE, NONE_IF_ZERO},
+    {"length", "along-track, 0 for points; by default twice the resolution",
+     QUANTITY(hydrophone_length_m, LENGTH), FROM_ZERO, NONE_IF_NAN},
+};
+static const struct section hydrophones_section = {ROWS(hydrophones_fields)};
+
+static const struct field elements_fields[] = {
+    {"pings", "where the array is", SAME(pings_section)},
+    {"transmitter", "what sends", SAME(transmitter_section)},
+    {"hydrophones", "what hears", SAME(hydrophones_section)},
+    {"form", "of the series: complex baseband, or real passband",
+     WORD(form) = {[SONJECT_SERIES_BASEBAND] = "baseband", [SONJECT_SERIES_PASSBAND] = "passband"}},
+    {"pulse", "compressed, or the chirp that was sent",
+     WORD(pulse) = {[SONJECT_SERIES_COMPRESSED] = "compressed", [SONJECT_SERIES_CHIRP] = "chirp"}},
+    {"chirp", "its duration", QUANTITY(chirp_duration_s, TIME), WITHIN(1e-9, 100.0),
+     .preset = 0.01},
+    {"sampling_rate", "by default twice the highest frequency in passband, else the bandwidth",
+     QUANTITY(sampling_rate_hz, FREQUENCY), WITHIN(1.0, 1e10), NONE_IF_ZERO},
+    {"first_time", "of the first sample, after transmission; by default what the patch needs",
+     QUANTITY(first_time_s, TIME), WITHIN(0.0, 3600.0), NONE_IF_NAN},
+    {"last_time", "of the last sample at most; by default what the patch needs",
+     QUANTITY(last_time_s, TIME), WITHIN(0.0, 3600.0), NONE_IF_NAN},
+    {"source_level",
+     "rms, over 1 uPa at 1 m: series are pressures in Pa, less absorption; by default they are "
+     "ratios",
+     QUANTITY(source_level_db, DECIBEL), WITHIN(0.0, 300.0), NONE_IF_NAN},
+    {"aspect_limit", "echoes further off abeam are left out; by default none",
+     QUANTITY(aspect_limit_rad, ANGLE), WITHIN(0.0, 0.5 * PI), NONE_IF_ZERO},
+};
+const struct section elements_section = {ROWS(elements_fields), .relations = relate_elements,
+                                         .bytes = sizeof(STRUCTURE)};
+#undef STRUCTURE
