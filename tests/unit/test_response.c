@@ -117,9 +117,9 @@ static void test_hostile_keys(void **state)
         {"motion: {yaw: {advance: 1 cm}}",
          "sonar.motion.yaw.advance: must be 0.1...1000 m, not 0.01"},
         {"motion: {yaw: {advance: 1, bias: -9 deg}}",
-         "sonar.motion.yaw.bias: must be -0.1...0.1 rad, not -0.15"},
+         "sonar.motion.yaw.bias: must be -5.72958...5.72958 deg, not -"},
         {"motion: {yaw: {advance: 1, sines: [{amplitude: 1 rad, wavelength: 1}]}}",
-         "sonar.motion.yaw.sines[0].amplitude: must be -0.1...0.1 rad, not 1"},
+         "sonar.motion.yaw.sines[0].amplitude: must be -5.72958...5.72958 deg, not 57.2958"},
         {"motion: {yaw: {advance: 1, random: {rms: 1 deg, correlation: 0}}}",
          "sonar.motion.yaw.random.correlation: must be 0.1...1e+06 m, not 0"},
     };
