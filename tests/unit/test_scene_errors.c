@@ -256,6 +256,11 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
          ":2:68: input.transfer.offset: only the decibel kind has one; remove it"},
         {"input: {path: a.tif, transfer: {kind: schlick, parameter: 0.5}",
          ":2:59: input.transfer.parameter: must be 1...1e+06, not 0.5"},
+        {"input: {path: a.tif, transfer: {kind: gamma, parameter: 0}",
+         ":2:57: input.transfer.parameter: must be 0.01...100 (an exponent), not 0"},
+        {"input: {path: a.tif, transfer: {kind: decibel, parameter: 0, offset: 1001}",
+         ":2:59: input.transfer.parameter: must be 1e-06...1000 dB per unit, not 0\n"
+         ":2:70: input.transfer.offset: must be -1000...1000 dB, not 1001"},
         {"input: {uniform: {rows: 65536, columns: 32769}",
          ":2:25: input.uniform.rows: times columns must be at most 2^31 pixels, not 65536 x 32769"},
         {"input: {synthetic: {rows: 1048577, columns: 1}",
@@ -281,14 +286,21 @@ static void test_keys_that_exclude_or_need_each_other(void **state)
         {OBJECT "sphere\n    diameter: 1\n    position: {row: 1, slant_range: 40}\n",
          ":7:15: objects[0].position: needs along_track and slant_range, or row and column; give "
          "one pair"},
+        {OBJECT "sphere\n    diameter: 1\n    position: {row: 2e12, column: 2e12}\n",
+         ":7:21: objects[0].position.row: must be -1...1.09951e+12, not 2e+12\n"
+         ":7:35: objects[0].position.column: must be -1...1.09951e+12, not 2e+12"},
+        {OBJECT "sphere\n    diameter: 1\n    position: {along_track: 2e6, slant_range: -1}\n",
+         ":7:29: objects[0].position.along_track: must be -1e+06...1e+06 m, not 2e+06\n"
+         ":7:47: objects[0].position.slant_range: must be 0...1e+06 m, not -1"},
         {OBJECT "sphere\n    diameter: 1\n    position: middle\n",
          ":7:15: objects[0].position: 'middle' is not one of centre, {along_track: ...}, "
          "{slant_range: ...}, {row: ...}, {column: ...}"},
         {START INPUT "sonar: {frequency: 10e3, bandwidth: 20e3, altitude: 10}\n",
          ":3:37: sonar.bandwidth: must be below twice the frequency, 20000 Hz, not 20000 Hz"},
         {START INPUT "sonar: {frequency: 10e3, bandwidth: 1e3, altitude: 10, response: {taylor: "
-                     "{sidelobes: 35 dB, terms: 1}}}\n",
-         ":3:101: sonar.response.taylor.terms: must be 2...16, not 1"},
+                     "{sidelobes: 0 dB, terms: 1}}}\n",
+         ":3:87: sonar.response.taylor.sidelobes: must be 1...120 dB, not 0\n"
+         ":3:100: sonar.response.taylor.terms: must be 2...16, not 1"},
     };
     for (size_t i = 0; i < COUNT(inputs); i++) {
         char text[1000];

@@ -24,17 +24,7 @@ static void expect_arrived(const struct key_case *key, const void *structure)
 
 static void expect_case(struct scene_folder *folder, const struct key_case *key)
 {
-    char override[1400];
-    const char *overrides[2];
-    size_t count = 0;
-    if (key->other)
-        overrides[count++] = key->other;
-    write_override(override, sizeof override, key, key->value);
-    overrides[count++] = override;
-    write_scene(folder, key->base, strlen(key->base));
-    scene_clear(&folder->scene);
-    const sonject_status status =
-        scene_file_read_with(&folder->report, folder->file, overrides, count, true, &folder->scene);
+    const sonject_status status = read_case(folder, key, key->value);
 #if !defined(HAS_RASTER_FILES)
     if (strstr(key->path, ".heights.") && !strstr(key->path, ".array")) {
         /* UNSUPPORTED, or, under an emulator that starts no decoder, INPUT */
@@ -44,7 +34,7 @@ static void expect_case(struct scene_folder *folder, const struct key_case *key)
     }
 #endif
     if (status != SONJECT_OK)
-        fail_msg("%s: %s", override, folder->report.message);
+        fail_msg("%s=%s: %s", key->path, key->value, folder->report.message);
     expect_arrived(key, structure_of(&folder->scene, key->path));
 }
 
@@ -56,10 +46,7 @@ static void expect_not_the_default(struct scene_folder *folder, const struct key
         return;
     if (name && (strcmp(name, ".position") == 0 || strcmp(name, ".level") == 0))
         return; /* the only word for it is the default; its keys have cases of their own */
-    write_scene(folder, key->base, strlen(key->base));
-    scene_clear(&folder->scene);
-    if (scene_file_read_with(&folder->report, folder->file, &key->other, key->other != NULL, true,
-                             &folder->scene) != SONJECT_OK)
+    if (read_case(folder, key, NULL) != SONJECT_OK)
         return; /* the section cannot do without the key */
     const void *structure = structure_of(&folder->scene, key->path);
     if (structure && number_at(structure, key) == key->number)
@@ -78,17 +65,15 @@ static void test_every_key_arrives(void **state)
 static void test_every_key_has_a_case(void **state)
 {
     json_t *keys = list_keys();
-    size_t with_value = 0, i;
+    size_t i;
     json_t *key;
+    (void)state;
     json_array_foreach(keys, i, key)
     {
-        if (!json_is_true(json_object_get(key, "has_value")))
-            continue;
-        case_of(text_of(key, "path"));
         assert_true(text_of(key, "unit")[0] && text_of(key, "meaning")[0]);
-        with_value++;
+        if (json_is_true(json_object_get(key, "has_value")))
+            case_of(text_of(key, "path"));
     }
-    assert_int_equal(with_value, COUNT(cases));
     json_decref(keys);
 }
 

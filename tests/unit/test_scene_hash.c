@@ -25,11 +25,8 @@ static bool is_without_effect(const char *path)
         "objects[].level",
         "objects[].position",
         "objects[].user.file", /* its text counts as code does */
-        "objects[].parts[].user.file",
         "objects[].mesh.file", /* as mesh does */
-        "objects[].parts[].mesh.file",
         "objects[].mesh.open",
-        "objects[].parts[].mesh.open",
     };
     for (size_t i = 0; i < COUNT(others); i++)
         if (strcmp(path, others[i]) == 0)
