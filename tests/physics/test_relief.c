@@ -265,7 +265,7 @@ CLAIM(a_glint_in_a_pit)
         sea_add_mound(sea, 2.0, -0.4, 0.0);
         if (is_hidden)
             sea_add_mound(sea, 1.0, 0.7, -50.0 * 0.025);
-        const double *centre = sea_centre(sea, 0), peak = sea_peak(sea, &range);
+        const double peak = sea_peak(sea, &range), *centre = sea_centre(sea, 0);
         if (is_hidden) {
             expect_below("glint behind a mound over that of a sphere", peak / 0.1, 0.01);
             continue;
