@@ -72,6 +72,16 @@ struct ray {
     struct point origin, direction;
 };
 
+static inline struct ray ray_of(struct point closest, struct point way)
+{
+    struct ray ray;
+    ray.p = (struct vector3){(float)closest.x, (float)closest.y, (float)closest.z};
+    ray.d = (struct vector3){(float)way.x, (float)way.y, (float)way.z};
+    ray.origin = (struct point){ray.p.x, ray.p.y, ray.p.z};
+    ray.direction = (struct point){ray.d.x, ray.d.y, ray.d.z};
+    return ray;
+}
+
 /* From a sonar `range` away from the frame's origin, at a random depression, towards a target,
  * counted from the point closest to the origin. */
 static inline struct ray ray_towards(struct point target, double range)
@@ -81,22 +91,7 @@ static inline struct ray ray_towards(struct point target, double range)
     const struct point sonar = {x, -range * cos(depression), range * sin(depression)};
     struct point way = add(target, sonar, -1.0);
     way = scaled(way, 1.0 / sqrt(dot(way, way)));
-    const struct point from_sonar = {sonar.x, sonar.y, sonar.z};
-    const struct point closest = add(sonar, way, -dot(from_sonar, way));
-    struct ray ray;
-    ray.p.x = (float)closest.x;
-    ray.p.y = (float)closest.y;
-    ray.p.z = (float)closest.z;
-    ray.d.x = (float)way.x;
-    ray.d.y = (float)way.y;
-    ray.d.z = (float)way.z;
-    ray.origin.x = ray.p.x;
-    ray.origin.y = ray.p.y;
-    ray.origin.z = ray.p.z;
-    ray.direction.x = ray.d.x;
-    ray.direction.y = ray.d.y;
-    ray.direction.z = ray.d.z;
-    return ray;
+    return ray_of(add(sonar, way, -dot(sonar, way)), way);
 }
 
 #endif

@@ -1,13 +1,10 @@
 /* Meshes that planes cut, against every triangle in double precision: where rays meet what is left,
  * and how it faces there, for rays from 50 m and 500 m, that start anywhere, through edges and
  * corners, and nearly along the planes. */
-#include "claims.h"
 #include "mesh_samples.h"
 #include "physics/bench.h"
-#include "random_rays.h"
-#include "sixteen_lanes.h"
+#include "ray_claims.h"
 
-#include "device/device.h"
 #include "trace/object_buffer.h"
 
 #define RAYS      15000
@@ -263,16 +260,7 @@ static struct ray ray_through(const struct object_record *record, struct point o
     const struct point aim = add(turned_back(record, own), centre, 1.0);
     const struct point way = turned_back(record, direction);
     const struct point closest = add(aim, way, -dot(aim, way));
-    struct ray ray;
-    ray.p.x = (float)closest.x;
-    ray.p.y = (float)closest.y;
-    ray.p.z = (float)closest.z;
-    ray.d.x = (float)way.x;
-    ray.d.y = (float)way.y;
-    ray.d.z = (float)way.z;
-    ray.origin = (struct point){ray.p.x, ray.p.y, ray.p.z};
-    ray.direction = (struct point){ray.d.x, ray.d.y, ray.d.z};
-    return ray;
+    return ray_of(closest, way);
 }
 
 static struct ray draw_ray(const struct cut_solid *solid, int kind)
@@ -401,7 +389,7 @@ static void test_sheets(void **state)
     compare_sample("open ring", &sample);
 }
 
-/* 16 lanes of native C give the bits of one, rays being together or apart. */
+/* Rays being together or apart. */
 static void test_sixteen_lanes(void **state)
 {
     struct mesh_sample sample;
@@ -410,7 +398,6 @@ static void test_sixteen_lanes(void **state)
     cut_solid_begin(&solid, &sample);
     for (int i = 0; i < 2000; i++) {
         struct ray single[LANES];
-        float rays[6][LANES], distance[LANES], normal[3][LANES];
         if (i % 10 == 0)
             draw_cuts(&solid);
         for (int lane = 0; lane < LANES; lane++) {
@@ -419,32 +406,14 @@ static void test_sixteen_lanes(void **state)
                 single[lane] = single[0];
                 single[lane].p.x += 1e-3f * (float)lane;
             }
-            const struct vector3 p = single[lane].p, d = single[lane].d;
-            const float values[6] = {p.x, p.y, p.z, d.x, d.y, d.z};
-            for (int k = 0; k < 6; k++)
-                rays[k][lane] = values[k];
         }
-        const float minimum = i % 5 ? -100.0f : 0.1f;
-        sixteen_lanes_hit(solid.record, rays, minimum, distance, normal);
-        for (int lane = 0; lane < LANES; lane++) {
-            const float alone =
-                object_distance(solid.record, single[lane].p, single[lane].d, minimum);
-            assert_memory_equal(&alone, &distance[lane], sizeof alone);
-            if (alone > 0.5f * FAR_AWAY)
-                continue;
-            const struct vector3 n =
-                object_normal(solid.record, single[lane].p, single[lane].d, alone);
-            assert_memory_equal(&n.x, &normal[0][lane], sizeof n.x);
-            assert_memory_equal(&n.y, &normal[1][lane], sizeof n.y);
-            assert_memory_equal(&n.z, &normal[2][lane], sizeof n.z);
-        }
+        expect_sixteen_lanes(solid.record, single, i % 5 ? -100.0f : 0.1f);
     }
     cut_solid_end(&solid);
     sample_clear(&sample);
 }
 
-/* No way that leaves the face of a cut outwards meets it again from where echoes go on. */
-static void test_no_self_hit(void **state)
+static void test_no_way_outwards_meets_the_face_of_a_cut_again(void **state)
 {
     struct mesh_sample sample;
     struct cut_solid solid;
@@ -455,17 +424,9 @@ static void test_no_self_hit(void **state)
         if (i % 40 == 0)
             draw_cuts(&solid);
         const struct ray ray = draw_ray(&solid, 0);
-        const float distance = object_distance(solid.record, ray.p, ray.d, -200.0f);
-        if (distance > 0.5f * FAR_AWAY)
-            continue;
-        const struct vector3 n = object_normal(solid.record, ray.p, ray.d, distance);
-        const struct vector3 start = along3(along3(ray.p, ray.d, distance), n, 2.0e-5f);
-        const struct point back = random_direction();
-        const struct vector3 way = {(float)back.x, (float)back.y, (float)back.z};
-        if (dot3(way, n) <= 0.0f)
-            continue;
-        tried++;
-        assert_true(object_distance(solid.record, start, way, 0.0f) > 0.5f * FAR_AWAY);
+        const int is_met = meets_itself(solid.record, &ray, false);
+        assert_true(is_met <= 0);
+        tried += is_met == 0;
     }
     print_message("%d ways leave a cut box\n", tried);
     assert_true(tried > RAYS / 20);
@@ -476,9 +437,11 @@ static void test_no_self_hit(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_solids),      cmocka_unit_test(test_pieces),
-        cmocka_unit_test(test_sheets),      cmocka_unit_test(test_sixteen_lanes),
-        cmocka_unit_test(test_no_self_hit),
+        cmocka_unit_test(test_solids),
+        cmocka_unit_test(test_pieces),
+        cmocka_unit_test(test_sheets),
+        cmocka_unit_test(test_sixteen_lanes),
+        cmocka_unit_test(test_no_way_outwards_meets_the_face_of_a_cut_again),
     };
     return bench_run_on_devices(tests, COUNT(tests));
 }

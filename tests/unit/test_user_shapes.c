@@ -31,54 +31,48 @@ static void expect_code_taken(const char *code)
     snippet_clear(&snippet);
 }
 
+#define NOT_HERE                                                                                   \
+    " is not possible here; known are #define, #if, #ifdef, #ifndef, #elif, #else, #endif and "    \
+    "#error"
+
 /* Each reaches beyond the snippet, or hides something that does. */
 static void test_hostile_code_is_refused_with_its_line(void **state)
 {
-    expect_code_refused(GOOD "#undef FUNCTION\n",
-                        "my.cl:3: #undef is not possible here; known are #define, #if, #ifdef, "
-                        "#ifndef, #elif, #else, #endif and #error");
-    expect_code_refused("#  include \"/etc/passwd\"\n" GOOD,
-                        "my.cl:1: #include is not possible here; known are #define, #if, #ifdef, "
-                        "#ifndef, #elif, #else, #endif and #error");
-    expect_code_refused("/* hidden */ #pragma OPENCL FP_CONTRACT ON\n" GOOD,
-                        "my.cl:1: #pragma is not possible here; known are #define, #if, #ifdef, "
-                        "#ifndef, #elif, #else, #endif and #error");
-    expect_code_refused("#line 7 \"other.cl\"\n" GOOD,
-                        "my.cl:1: #line is not possible here; known are #define, #if, #ifdef, "
-                        "#ifndef, #elif, #else, #endif and #error");
-    expect_code_refused("\n#de\\\nfine X\n" GOOD,
-                        "my.cl:2: #de is not possible here; known are #define, #if, #ifdef, "
-                        "#ifndef, #elif, #else, #endif and #error");
-    expect_code_refused("/*\n*/ # /* */ \\\n include X\n" GOOD,
-                        "my.cl:3: #include is not possible here; known are #define, #if, #ifdef, "
-                        "#ifndef, #elif, #else, #endif and #error");
-    expect_code_refused("// a comment \r#include X\n" GOOD,
-                        "my.cl:1: #include is not possible here; known are #define, #if, #ifdef, "
-                        "#ifndef, #elif, #else, #endif and #error");
-    expect_code_refused("constant char c[] = \"/*\";\n#include X\n//*/\n" GOOD,
-                        "my.cl:2: #include is not possible here; known are #define, #if, #ifdef, "
-                        "#ifndef, #elif, #else, #endif and #error");
-    expect_code_refused("\?\?=undef WIDTH\n" GOOD,
-                        "my.cl:1: trigraph; write the character that is meant, or a space between "
-                        "the signs");
-    expect_code_refused(GOOD "%:undef WIDTH\n", "my.cl:3: digraph; write # instead");
-    expect_code_refused(GOOD "_Pragma(\"x\")\n",
-                        "my.cl:3: _Pragma is not possible here; remove it");
-    expect_code_refused(GOOD "\x01", "my.cl:3: control character; remove it");
-    expect_code_refused("", "my.cl:1: there is no function shape_distance in it; write one");
-    expect_code_refused(DISTANCE, "my.cl:1: there is no function shape_normal in it; write one");
-    expect_code_refused("/*" DISTANCE "*/" NORMAL,
-                        "my.cl:1: there is no function shape_distance in it; write one");
+    static const char *const cases[][2] = {
+        {GOOD "#undef FUNCTION\n", "my.cl:3: #undef" NOT_HERE},
+        {"#  include \"/etc/passwd\"\n" GOOD, "my.cl:1: #include" NOT_HERE},
+        {"/* hidden */ #pragma OPENCL FP_CONTRACT ON\n" GOOD, "my.cl:1: #pragma" NOT_HERE},
+        {"#line 7 \"other.cl\"\n" GOOD, "my.cl:1: #line" NOT_HERE},
+        {"\n#de\\\nfine X\n" GOOD, "my.cl:2: #de" NOT_HERE},
+        {"/*\n*/ # /* */ \\\n include X\n" GOOD, "my.cl:3: #include" NOT_HERE},
+        {"// a comment \r#include X\n" GOOD, "my.cl:1: #include" NOT_HERE},
+        {"constant char c[] = \"/*\";\n#include X\n//*/\n" GOOD, "my.cl:2: #include" NOT_HERE},
+        {"\?\?=undef WIDTH\n" GOOD,
+         "my.cl:1: trigraph; write the character that is meant, or a space between the signs"},
+        {GOOD "%:undef WIDTH\n", "my.cl:3: digraph; write # instead"},
+        {GOOD "_Pragma(\"x\")\n", "my.cl:3: _Pragma is not possible here; remove it"},
+        {GOOD "\x01", "my.cl:3: control character; remove it"},
+        {"", "my.cl:1: there is no function shape_distance in it; write one"},
+        {DISTANCE, "my.cl:1: there is no function shape_normal in it; write one"},
+        {"/*" DISTANCE "*/" NORMAL,
+         "my.cl:1: there is no function shape_distance in it; write one"},
+    };
+    for (size_t i = 0; i < COUNT(cases); i++)
+        expect_code_refused(cases[i][0], cases[i][1]);
 }
 
 static void test_sound_code_is_taken(void **state)
 {
-    expect_code_taken(GOOD);
-    expect_code_taken("#define LONG(x) \\\n  ((x) * {\\\n)\n#if defined(LONG) && 1\n" GOOD
-                      "#else\n#error none\n#endif");
-    expect_code_taken("// a } in a comment \\\n and its second line }\n/* { */ " GOOD "// no end");
-    expect_code_taken("// by 50%: half <% of it\n" GOOD);
-    expect_code_taken("constant char c = '}', d = '\\'';\r\n" GOOD);
+    static const char *const codes[] = {
+        GOOD,
+        "#define LONG(x) \\\n  ((x) * {\\\n)\n#if defined(LONG) && 1\n" GOOD
+        "#else\n#error none\n#endif",
+        "// a } in a comment \\\n and its second line }\n/* { */ " GOOD "// no end",
+        "// by 50%: half <% of it\n" GOOD,
+        "constant char c = '}', d = '\\'';\r\n" GOOD,
+    };
+    for (size_t i = 0; i < COUNT(codes); i++)
+        expect_code_taken(codes[i]);
 }
 
 static void test_size_and_names_are_limited(void **state)
@@ -141,20 +135,27 @@ static void expect_explained(const char *log, long line, const char *message)
 
 static void test_build_logs_become_lines(void **state)
 {
-    expect_explained(
-        "warning: /tmp/x.cl:2:1: unused\nerror: /tmp/x.cl:%ld:10: use of undeclared 'y'\n"
-        "error: /tmp/x.cl:13:1: more\n",
-        2, "a.cl:10: use of undeclared 'y'");
-    expect_explained("<kernel>:%ld:3: error: conflicting types for 'shape_normal'\n  ^\n", 1,
-                     "a.cl:9: conflicting types for 'shape_normal'");
-    expect_explained("error: x.cl:%ld:7 <Spelling=/usr/y.h:9:9>: conflicting types\n", 2,
-                     "a.cl:10: conflicting types");
-    expect_explained("<kernel>:3:1: note: x\nx.cl:%ld: error: gone\n", 1, "a.cl:9: gone");
-    expect_explained("error: x.cl:%ld:1: expected '}'\n", 4, "a.cl: at its end: expected '}'");
-    expect_explained("error: x.cl:%ld:1: function 'shape_normal' is not defined\n", 0,
-                     "a.cl: function 'shape_normal' is not defined");
-    expect_explained("f: Warning: k\nptxas fatal   : no memory\n", 0,
-                     "a.cl: device 'some device' cannot compile it: ptxas fatal   : no memory");
+    static const struct {
+        const char *log;
+        long line;
+        const char *message;
+    } cases[] = {
+        {"warning: /tmp/x.cl:2:1: unused\nerror: /tmp/x.cl:%ld:10: use of undeclared 'y'\n"
+         "error: /tmp/x.cl:13:1: more\n",
+         2, "a.cl:10: use of undeclared 'y'"},
+        {"<kernel>:%ld:3: error: conflicting types for 'shape_normal'\n  ^\n", 1,
+         "a.cl:9: conflicting types for 'shape_normal'"},
+        {"error: x.cl:%ld:7 <Spelling=/usr/y.h:9:9>: conflicting types\n", 2,
+         "a.cl:10: conflicting types"},
+        {"<kernel>:3:1: note: x\nx.cl:%ld: error: gone\n", 1, "a.cl:9: gone"},
+        {"error: x.cl:%ld:1: expected '}'\n", 4, "a.cl: at its end: expected '}'"},
+        {"error: x.cl:%ld:1: function 'shape_normal' is not defined\n", 0,
+         "a.cl: function 'shape_normal' is not defined"},
+        {"f: Warning: k\nptxas fatal   : no memory\n", 0,
+         "a.cl: device 'some device' cannot compile it: ptxas fatal   : no memory"},
+    };
+    for (size_t i = 0; i < COUNT(cases); i++)
+        expect_explained(cases[i].log, cases[i].line, cases[i].message);
 }
 
 static void test_equal_codes_are_one(void **state)
@@ -244,44 +245,39 @@ static void test_code_arrives_with_its_lines(void **state)
     assert_true(shapes->shapes[1].half_width_m == 1.0);
     /* the line of an error in a block is that of the file */
     expect_refused_with_consent(folder, BASE "  - shape: user\n" CODE "        #line 1\n",
-                                "scene.yaml:12: #line is not possible here; known are #define, "
-                                "#if, #ifdef, #ifndef, #elif, #else, #endif and #error");
+                                "scene.yaml:12: #line" NOT_HERE);
 }
 
 static void test_wrong_sections_are_refused(void **state)
 {
+#define OF_USER(keys) BASE "  - {shape: user, user: {" keys "}}\n"
+    static const char *const cases[][2] = {
+        {BASE "  - shape: user\n", "objects[0].user: missing; a user needs it"},
+        {BASE "  - diameter: 1\n    shape: sphere\n" CODE,
+         "objects[0].user: a sphere has none; remove it"},
+        {BASE "  - shape: user\n    diameter: 1\n" CODE,
+         "objects[0].diameter: a user has none; remove it"},
+        {BASE "  - shape: user\n    cuts: [{distance: -2}]\n" CODE,
+         "objects[0].cuts: leave nothing of the object; move one outwards"},
+        {OF_USER("bounding_radius: 1"),
+         "objects[0].user: none of file and code is there; give one"},
+        {OF_USER("bounding_radius: 0, code: x"),
+         ": objects[0].user.bounding_radius: must be 1e-06...1e+06 m, not 0"},
+        {OF_USER("bounding_radius: 1, code: x, parameters: [nan]"),
+         "parameters[0]: 'nan' is not a number"},
+        {OF_USER("bounding_radius: 1, code: x, parameters: [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, "
+                 "12, 13, 14, 15, 16, 17]"),
+         "parameters: has 17 entries; at most 16 are possible"},
+        {OF_USER("bounding_radius: 1, file: absent.cl"), "absent.cl; check its name"},
+        {OF_USER("bounding_radius: 1, code: x"),
+         "scene.yaml:5: there is no function shape_distance in it; write one"},
+    };
     struct scene_folder *folder = *state;
-    expect_refused_with_consent(folder, BASE "  - shape: user\n",
-                                "objects[0].user: missing; a user needs it");
-    expect_refused_with_consent(folder, BASE "  - diameter: 1\n    shape: sphere\n" CODE,
-                                "objects[0].user: a sphere has none; remove it");
-    expect_refused_with_consent(folder, BASE "  - shape: user\n    diameter: 1\n" CODE,
-                                "objects[0].diameter: a user has none; remove it");
-    expect_refused_with_consent(folder, BASE "  - shape: user\n    cuts: [{distance: -2}]\n" CODE,
-                                "objects[0].cuts: leave nothing of the object; move one outwards");
-    assert_int_equal(
-        read_with_consent(folder, BASE "  - shape: user\n    cuts: [{distance: 0}]\n" CODE),
-        SONJECT_OK);
+    for (size_t i = 0; i < COUNT(cases); i++)
+        expect_refused_with_consent(folder, cases[i][0], cases[i][1]);
+    EXPECT_OK(&folder->report,
+              read_with_consent(folder, BASE "  - shape: user\n    cuts: [{distance: 0}]\n" CODE));
     assert_int_equal(folder->scene.objects[0].cut_count, 1);
-    expect_refused_with_consent(folder, BASE "  - {shape: user, user: {bounding_radius: 1}}\n",
-                                "objects[0].user: none of file and code is there; give one");
-    expect_refused_with_consent(
-        folder, BASE "  - {shape: user, user: {bounding_radius: 0, code: x}}\n",
-        ": objects[0].user.bounding_radius: must be 1e-06...1e+06 m, not 0");
-    expect_refused_with_consent(
-        folder, BASE "  - {shape: user, user: {bounding_radius: 1, code: x, parameters: [nan]}}\n",
-        "parameters[0]: 'nan' is not a number");
-    expect_refused_with_consent(
-        folder,
-        BASE "  - {shape: user, user: {bounding_radius: 1, code: x, parameters: [1, 2, 3, 4, 5, 6, "
-             "7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17]}}\n",
-        "parameters: has 17 entries; at most 16 are possible");
-    expect_refused_with_consent(
-        folder, BASE "  - {shape: user, user: {bounding_radius: 1, file: absent.cl}}\n",
-        "absent.cl; check its name");
-    expect_refused_with_consent(
-        folder, BASE "  - {shape: user, user: {bounding_radius: 1, code: x}}\n",
-        "scene.yaml:5: there is no function shape_distance in it; write one");
 }
 
 /* A run is another one for other code, parameters or bounds. */
