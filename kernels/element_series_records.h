@@ -2,7 +2,7 @@
 #ifndef SONJECT_KERNELS_ELEMENT_SERIES_RECORDS_H
 #define SONJECT_KERNELS_ELEMENT_SERIES_RECORDS_H
 
-#include "record_types.h"
+#include "layout.h"
 
 /* Where impulses lie on the grid they were traced on, and how their echoes become samples.
  * Positions on the track count strips, ranges bins from the reference range on. */

@@ -19,13 +19,11 @@
  * unless it is told otherwise. */
 #if defined(WITH_MESHES) || !(defined(__OPENCL_C_VERSION__) || defined(WITHOUT_MESHES))
 #define HAS_MESHES 1
-#include "mesh_cut.h"
 #include "mesh_object.h"
 #else
 #define HAS_MESHES 0
 #endif
 #ifdef WITH_USER_SHAPES /* only where a scene has some, in OpenCL C */
-#include "user_cut.h"
 #include "user_object.h"
 #endif
 

@@ -1,9 +1,19 @@
 /* Records that host and device share. Four-byte members only, so no compiler pads them; the host
- * asserts every size (lib/trace/tracer.c). */
+ * asserts every size (lib/trace/tracer.c and its neighbours). */
 #ifndef SONJECT_KERNELS_LAYOUT_H
 #define SONJECT_KERNELS_LAYOUT_H
 
-#include "record_types.h"
+/* Types of their members. */
+#ifdef __OPENCL_C_VERSION__
+#define RECORD_INT  int
+#define RECORD_WORD uint
+#define TALLY       long
+#else
+#include <stdint.h>
+#define RECORD_INT  int32_t
+#define RECORD_WORD uint32_t
+#define TALLY       int64_t
+#endif
 
 enum shape_kind {
     SHAPE_PLANE = 0,
@@ -317,6 +327,61 @@ struct outcome_record {
 /* The bins, or columns, of a line that may hold anything but zeros, from first on to before end. */
 struct filled_span {
     RECORD_INT first, end;
+};
+
+/* How many spheres around targets there may be. */
+#define FEW_SPHERES_MAX    128 /* more lie in groups (many_targets.h) */
+#define SPHERES_OF_GROUP   16
+#define TARGET_SPHERES_MAX 1280
+#define TARGET_GROUPS_MAX  (TARGET_SPHERES_MAX / SPHERES_OF_GROUP)
+
+/* The seabed's relief: heights over the mean seabed on a level grid, rows along-track, columns in
+ * ground range; 0 outside. */
+#define RELIEF_BLOCK 8 /* cells of a block each way */
+
+/* Behind it lie rows x columns heights (m), as many pairs of slopes (along-track, in range), and
+ * block_rows x block_columns pairs of the highest and lowest point of a block. */
+struct relief_record {
+    RECORD_INT rows, columns; /* grid points, at least 2 each */
+    RECORD_INT block_rows, block_columns;
+    float rows_per_metre, columns_per_metre;
+    float lowest, highest; /* m: a little beyond all heights */
+};
+
+/* The hierarchy over many objects. */
+#define OBJECTS_IN_LOOP    16 /* so many or fewer are tested one after the other */
+#define OBJECTS_IN_PACKET  40 /* likewise, by rays that run apart from each other */
+#define OBJECT_TREE_SLOTS  16 /* children of a branch */
+#define OBJECT_TREE_LEVELS 6  /* most branches from the root to an object, the root included */
+
+/* Boxes are padded by this fraction of the distance from which rays may come: more than the
+ * rounding of all tests (MATH.md, "Many objects"). */
+#define OBJECT_TREE_PADDING 3.814697265625e-6f /* 2^-18 */
+
+/* Boxes of the children, about the tree's middle, m. */
+struct object_branch {
+    float lower_x[OBJECT_TREE_SLOTS], lower_y[OBJECT_TREE_SLOTS], lower_z[OBJECT_TREE_SLOTS];
+    float upper_x[OBJECT_TREE_SLOTS], upper_y[OBJECT_TREE_SLOTS], upper_z[OBJECT_TREE_SLOTS];
+    RECORD_INT child[OBJECT_TREE_SLOTS]; /* >= 0: number of a branch; < 0: ~ number of an object */
+};
+
+/* Its branches lie behind it, the root first. */
+struct object_tree_record {
+    float middle_x, middle_y, middle_z; /* m, in the frame */
+    float farthest; /* m from the middle: rays that start farther away test every object */
+    float slack;    /* m: more than the rounding of distances */
+    float grain;    /* m: rays no further apart than this are tested together */
+    float radius;   /* m about the middle: holds every box */
+    RECORD_INT branches;
+};
+
+/* What the kernels know of a shape that a user wrote, behind the records of all objects. */
+#define USER_PARAMETERS 16
+
+struct user_record {
+    RECORD_INT snippet; /* number of the code among the program's */
+    RECORD_INT is_open; /* no inside: the normal turns to the side that the ray comes from */
+    float parameters[USER_PARAMETERS]; /* 0 beyond those that are given */
 };
 
 #endif

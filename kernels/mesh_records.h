@@ -8,7 +8,7 @@
 #ifndef SONJECT_KERNELS_MESH_RECORDS_H
 #define SONJECT_KERNELS_MESH_RECORDS_H
 
-#include "record_types.h"
+#include "layout.h"
 
 #define MESH_GROUPS 4
 #define MESH_GROUP  4  /* children or triangles in a group */

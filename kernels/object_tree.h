@@ -7,7 +7,6 @@
 #include "interval.h"
 #include "layout.h"
 #include "mesh_ray.h"
-#include "object_tree_records.h"
 
 #define OBJECT_TREE_STACK ((OBJECT_TREE_SLOTS - 1) * OBJECT_TREE_LEVELS + 1)
 

@@ -6,7 +6,7 @@
 #define SONJECT_KERNELS_RELIEF_WALK_H
 
 #include "interval.h"
-#include "relief_records.h"
+#include "layout.h"
 
 #ifdef __OPENCL_C_VERSION__
 #define ROOT_OF_ONE(value) sqrt(value)

@@ -5,7 +5,6 @@
 
 #include "elementary.h"
 #include "layout.h"
-#include "target_numbers.h"
 #include "vector3.h"
 
 /* The cones of all spheres as seen from a point. An opening is 1 - cosine of the cone's half angle;

@@ -1,11 +1,11 @@
-/* One source, any width: the physics is written on `real`, which holds WIDTH lanes.
+/* One source, any width: the physics is written on `vfloat`, which holds WIDTH lanes.
  * OpenCL C at WIDTH 1, 4, 8 or 16, and plain C99 at WIDTH 1 (unit tests) or, with the vector
- * extension of gcc and clang, at WIDTH 16 (benchmark). Every operation used on `real` is exact or
+ * extension of gcc and clang, at WIDTH 16 (benchmark). Every operation used on `vfloat` is exact or
  * correctly rounded lane by lane, so all of them give the same bits. A mask lane is 0 or -1. */
 #ifndef SONJECT_KERNELS_WIDTH_H
 #define SONJECT_KERNELS_WIDTH_H
 
-#include "record_types.h"
+#include "layout.h"
 
 #ifndef WIDTH
 #define WIDTH 1

@@ -99,16 +99,6 @@ struct chain_reach chain_reach_of(const struct tracer *tracer, const struct plac
 #define OBJECT_RAYS_PER_BIN 16.0
 #define ROUGH_RAYS_PER_BIN  2.0 /* where the seabed's rays stand for its own */
 
-static struct span strips_between(const struct tracer *tracer, const struct line_grid *grid,
-                                  double first_x, double last_x)
-{
-    const double per_row = grid->strips_per_row;
-    const double first = floor((view_row_of_x(&tracer->view, first_x) + 0.5) * per_row) - 1.0;
-    const double last = floor((view_row_of_x(&tracer->view, last_x) + 0.5) * per_row) + 1.0;
-    const struct span strips = {(int32_t)first, (int32_t)(last - first) + 1};
-    return strips;
-}
-
 /* Where seabed can be that exchanges sound with some object. */
 struct surroundings {
     double first_x, last_x;         /* along-track, m */

@@ -9,9 +9,8 @@
 #include "trace/checkpoint.h"
 #include "trace/object_buffer.h"
 
-#define BINS_MAX           1.0e9 /* beyond any patch, within a 32-bit number */
-#define FINER_MAX          2.0   /* 4 times the rays */
-#define WIDEST_WAVELENGTHS 0.5   /* of a cell where it meets the next face */
+#define FINER_MAX          2.0 /* 4 times the rays */
+#define WIDEST_WAVELENGTHS 0.5 /* of a cell where it meets the next face */
 #define PAIRS_MAX          (SOURCES_MAX * (SOURCES_MAX + 1) / 2)
 #define ECHOES_A_LAUNCH    ((size_t)1 << 20)
 
@@ -99,15 +98,8 @@ static struct ranges half_paths(const struct tracer *tracer, uint32_t part,
 static struct span corner_pair_bins(const struct tracer *tracer, uint32_t part,
                                     const struct image_pair *pair, const struct line_grid *grid)
 {
-    const struct patch_view *view = &tracer->view;
     const struct ranges half = half_paths(tracer, part, pair);
-    const double per_metre = grid->bins_per_pixel / view->column_spacing_m;
-    const double first = (half.nearest * view->range_ratio - view->first_range_m) * per_metre;
-    const double last = (half.farthest * view->range_ratio - view->first_range_m) * per_metre;
-    struct span bins;
-    bins.first = (int32_t)fmax(fmin(floor(first), BINS_MAX), -BINS_MAX) - 1;
-    bins.count = (int32_t)fmin(ceil(last), BINS_MAX) + 2 - bins.first;
-    return bins_in_patch(tracer, grid, bins);
+    return bins_in_patch(tracer, grid, bins_of_ranges(tracer, grid, half.nearest, half.farthest));
 }
 
 struct span corner_bins(const struct tracer *tracer, uint32_t part, const struct line_grid *grid)

@@ -230,6 +230,16 @@ sonject_status patch_rays_init(struct ray_table *rays, struct ray_table_record *
         elevations_of_points(way, water_way_grazing(way, origin[1], origin[2]), points, 4), record);
 }
 
+struct span strips_between(const struct tracer *tracer, const struct line_grid *grid,
+                           double first_x, double last_x)
+{
+    const double per_row = grid->strips_per_row;
+    const double first = floor((view_row_of_x(&tracer->view, first_x) + 0.5) * per_row) - 1.0;
+    const double last = floor((view_row_of_x(&tracer->view, last_x) + 0.5) * per_row) + 1.0;
+    const struct span strips = {(int32_t)first, (int32_t)(last - first) + 1};
+    return strips;
+}
+
 /* Elevation of the highest object over the central direction. */
 static double highest_elevation(const struct tracer *tracer, double central_grazing, double lowest)
 {

@@ -42,6 +42,11 @@ struct grazing_angles grazing_over_relief(const struct tracer *tracer, struct gr
 sonject_status patch_rays_init(struct ray_table *rays, struct ray_table_record *record,
                                const struct tracer *tracer, const struct line_grid *grid);
 
+/* Strips from one place along the track (m) to another, and one more on each side; in the patch or
+ * beyond. */
+struct span strips_between(const struct tracer *tracer, const struct line_grid *grid,
+                           double first_x, double last_x);
+
 /* Elevation step, rad, that puts rays_per_bin rays (times the scene's ray scale) into a bin where
  * sound meets the seabed at a grazing angle, and elevation covers most range. */
 double fan_elevation_step(const struct tracer *tracer, const struct line_grid *grid,

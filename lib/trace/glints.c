@@ -27,12 +27,8 @@ void glint_strips_init(struct line_grid *grid, const struct tracer *tracer, uint
     grid->bins_per_pixel = (uint32_t)ceil(
         BINS_PER_DEVIATION * view->column_spacing_m / tracer->response.range_deviation_m - 1e-9);
     const double extent = placement_half_extent(placement, along);
-    const double per_row = grid->strips_per_row;
-    grid->strips.first =
-        (int32_t)floor((view_row_of_x(view, placement->centre[0] - extent) + 0.5) * per_row) - 1;
-    grid->strips.count =
-        (int32_t)floor((view_row_of_x(view, placement->centre[0] + extent) + 0.5) * per_row) + 2 -
-        grid->strips.first;
+    grid->strips =
+        strips_between(tracer, grid, placement->centre[0] - extent, placement->centre[0] + extent);
 }
 
 void glint_fan_init(struct fan_record *fan, const struct tracer *tracer, uint32_t number,

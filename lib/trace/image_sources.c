@@ -93,21 +93,27 @@ static double reach_from(const struct sound_source *source, const struct placeme
     return 1.01 * placement_half_extent(placement, sight) + bound * bound / (radius - bound);
 }
 
+struct span bins_of_ranges(const struct tracer *tracer, const struct line_grid *grid,
+                           double nearest_m, double farthest_m)
+{
+    const struct patch_view *view = &tracer->view;
+    const double per_metre = grid->bins_per_pixel / view->column_spacing_m;
+    const double first = (nearest_m * view->range_ratio - view->first_range_m) * per_metre;
+    const double last = (farthest_m * view->range_ratio - view->first_range_m) * per_metre;
+    struct span bins;
+    bins.first = (int32_t)fmax(fmin(floor(first), BINS_MAX), -BINS_MAX) - 1;
+    bins.count = (int32_t)fmin(ceil(last), BINS_MAX) + 2 - bins.first;
+    return bins;
+}
+
 struct span image_pair_bins(const struct tracer *tracer, uint32_t object,
                             const struct image_pair *pair, const struct line_grid *grid)
 {
-    const struct patch_view *view = &tracer->view;
     const struct placement *placement = &tracer->placements[object];
     const double range = half_path(pair, placement);
     const double reach =
         0.5 * (reach_from(pair->outgoing, placement) + reach_from(pair->returning, placement));
-    const double per_metre = grid->bins_per_pixel / view->column_spacing_m;
-    const double first = ((range - reach) * view->range_ratio - view->first_range_m) * per_metre;
-    const double last = ((range + reach) * view->range_ratio - view->first_range_m) * per_metre;
-    struct span bins;
-    bins.first = (int32_t)fmin(floor(first), BINS_MAX) - 1;
-    bins.count = (int32_t)fmin(ceil(last), BINS_MAX) + 2 - bins.first;
-    return bins;
+    return bins_of_ranges(tracer, grid, range - reach, range + reach);
 }
 
 struct span image_pair_bins_in_patch(const struct tracer *tracer, uint32_t object,

@@ -49,6 +49,10 @@ void image_pairs_begin(struct image_pairs *pairs, const struct tracer *tracer, u
  * return anything; false when there is none. */
 bool image_pairs_next(struct image_pairs *pairs, struct image_pair *pair);
 
+/* Bins, of the grid's size, from one range to another, and one more on each side. */
+struct span bins_of_ranges(const struct tracer *tracer, const struct line_grid *grid,
+                           double nearest_m, double farthest_m);
+
 /* Bins of half the path out from one source to the object and back to the other. Of the grid only
  * the size of its bins is used. */
 struct span image_pair_bins(const struct tracer *tracer, uint32_t object,

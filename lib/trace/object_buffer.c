@@ -5,7 +5,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "kernels/relief_records.h"
 #include "scene/shapes/shape.h"
 #include "trace/fan.h"
 #include "user/snippet.h"

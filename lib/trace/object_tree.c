@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "base/memory.h"
-#include "kernels/target_numbers.h"
 #include "mesh/hierarchy.h"
 
 typedef char branch_is_packed[sizeof(struct object_branch) == 112 * 4 ? 1 : -1];

@@ -91,15 +91,8 @@ static struct span part_strips(const struct rough_trace *trace, const struct tra
     const double extent = placement_half_extent(placement, along) +
                           tracer->scene->sonar.transducer_side_m +
                           part_slide(trace, tracer, placement);
-    const double per_row = trace->grid.strips_per_row;
-    const double first =
-        floor((view_row_of_x(&tracer->view, placement->centre[0] - extent) + 0.5) * per_row) - 1.0;
-    const double last =
-        floor((view_row_of_x(&tracer->view, placement->centre[0] + extent) + 0.5) * per_row) + 1.0;
-    struct span strips;
-    strips.first = (int32_t)first;
-    strips.count = (int32_t)(last + 1.0 - first);
-    return strips;
+    return strips_between(tracer, &trace->grid, placement->centre[0] - extent,
+                          placement->centre[0] + extent);
 }
 
 /* Strips beyond the patch's ends from which rays come to parts in it. */

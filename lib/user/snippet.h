@@ -8,7 +8,7 @@
 
 #include "base/report.h"
 #include "device/device.h"
-#include "kernels/user_records.h"
+#include "kernels/layout.h"
 
 struct scene;
 struct user_shape;

@@ -1,4 +1,4 @@
-/* kernels/surface.h, brdf.h and fluid.h against double precision: directions against their
+/* kernels/surface.h and brdf.h against double precision: directions against their
  * density, energies by quadrature over the hemisphere, reflection by complex arithmetic. */
 #include "claims.h"
 
