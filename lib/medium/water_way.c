@@ -234,20 +234,28 @@ static double find_ray(const struct water_way *way, const struct legs *legs, dou
     return x;
 }
 
-static double cosine_in_straight_water(const struct water_way *way, double fastest_speed, double x)
+/* The ray to a height of which the range, or the travel time, is known. */
+struct found_ray {
+    struct legs legs;
+    double last, fastest_speed, x;
+};
+
+static struct found_ray ray_to(const struct water_way *way, double height, double wanted,
+                               bool is_time)
 {
-    return way->water->straight_speed_mps / fastest_speed * x / sqrt(1.0 + x * x);
+    struct found_ray ray = {legs_of(way), last_height(way, height), 0.0, 0.0};
+    ray.fastest_speed = fastest(way, &ray.legs, ray.last);
+    ray.x = find_ray(way, &ray.legs, ray.last, ray.fastest_speed, wanted, is_time);
+    return ray;
 }
 
 double water_way_grazing(const struct water_way *way, double ground_range_m, double height_m)
 {
     if (way->is_straight)
         return atan2(way->image_height_m - height_m, ground_range_m);
-    const struct legs legs = legs_of(way);
-    const double last = last_height(way, height_m);
-    const double fastest_speed = fastest(way, &legs, last);
-    const double x = find_ray(way, &legs, last, fastest_speed, ground_range_m, false);
-    const double grazing = acos(cosine_in_straight_water(way, fastest_speed, x));
+    const struct found_ray ray = ray_to(way, height_m, ground_range_m, false);
+    const double grazing = acos(way->water->straight_speed_mps / ray.fastest_speed * ray.x /
+                                sqrt(1.0 + ray.x * ray.x));
     return way->comes_from_seabed ? -grazing : grazing;
 }
 
@@ -255,11 +263,9 @@ double water_way_range(const struct water_way *way, double ground_range_m, doubl
 {
     if (way->is_straight)
         return hypot(ground_range_m, way->image_height_m - height_m);
-    const struct legs legs = legs_of(way);
-    const double last = last_height(way, height_m);
-    const double fastest_speed = fastest(way, &legs, last);
-    const double x = find_ray(way, &legs, last, fastest_speed, ground_range_m, false);
-    return sum_way(way, &legs, last, fastest_speed, x).time * way->water->straight_speed_mps;
+    const struct found_ray ray = ray_to(way, height_m, ground_range_m, false);
+    return sum_way(way, &ray.legs, ray.last, ray.fastest_speed, ray.x).time *
+           way->water->straight_speed_mps;
 }
 
 double water_way_ground_range(const struct water_way *way, double straight_range_m)
@@ -271,10 +277,9 @@ double water_way_ground_range(const struct water_way *way, double straight_range
     }
     const struct legs legs = legs_of(way);
     const double last = last_height(way, 0.0);
-    const double fastest_speed = fastest(way, &legs, last);
     const double time = straight_range_m / way->water->straight_speed_mps;
-    if (time <= sum_way(way, &legs, last, fastest_speed, 0.0).time)
+    if (time <= sum_way(way, &legs, last, fastest(way, &legs, last), 0.0).time)
         return 0.0;
-    const double x = find_ray(way, &legs, last, fastest_speed, time, true);
-    return sum_way(way, &legs, last, fastest_speed, x).range;
+    const struct found_ray ray = ray_to(way, 0.0, time, true);
+    return sum_way(way, &ray.legs, ray.last, ray.fastest_speed, ray.x).range;
 }

@@ -385,18 +385,18 @@ static void add_tile_to_planes(const int64_t *tile, struct span rows, struct spa
     }
 }
 
-static sonject_status trace_pair(struct corner_sums *sums, struct corner_launch *launch,
+static sonject_status trace_pair(struct corner_sums *sums, struct corner_launch *corner,
                                  const struct corners *corners, struct tracer *tracer,
                                  const struct line_grid *grid)
 {
     const double ratio = tracer->view.range_ratio;
     const struct span all = corners->first_hits;
     CHECK_MEMORY(tracer->report, corner_sums_init(sums, grid), "echoes of corners");
-    sums->amplitude_of_quantum = ratio * ratio / launch->launch.fan.quanta;
-    for (int32_t done = 0; done < all.count; done += launch->chunk) {
+    sums->amplitude_of_quantum = ratio * ratio / corner->launch.fan.quanta;
+    for (int32_t done = 0; done < all.count; done += corner->chunk) {
         const int32_t left = all.count - done;
-        const struct span strips = {all.first + done, left < launch->chunk ? left : launch->chunk};
-        CHECK(corner_launch_strips(launch, tracer, strips, sums));
+        const struct span strips = {all.first + done, left < corner->chunk ? left : corner->chunk};
+        CHECK(corner_launch_strips(corner, tracer, strips, sums));
     }
     return share_sums(sums, tracer->checkpoint);
 }
@@ -405,16 +405,16 @@ static sonject_status trace_pairs(struct corners *corners, struct tracer *tracer
 {
     struct image_pairs pairs;
     struct image_pair pair;
-    struct corner_launch launch;
+    struct corner_launch corner;
     struct line_grid grid;
     image_pairs_begin(&pairs, tracer, part, true, 2);
     while (image_pairs_next(&pairs, &pair)) {
-        CHECK(corner_launch_begin(&launch, &grid, corners, tracer, part, &pair));
+        CHECK(corner_launch_begin(&corner, &grid, corners, tracer, part, &pair));
         if (grid.bins.count == 0)
             continue;
         const sonject_status status =
-            trace_pair(&corners->sums[corners->count++], &launch, corners, tracer, &grid);
-        corner_launch_end(&launch);
+            trace_pair(&corners->sums[corners->count++], &corner, corners, tracer, &grid);
+        corner_launch_end(&corner);
         CHECK(status);
     }
     return SONJECT_OK;

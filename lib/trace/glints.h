@@ -117,13 +117,13 @@ struct corner_launch {
  * chunk by chunk of first hits. The grid's bins.count is 0, and nothing is held, where there can be
  * none; else to be given to corner_launch_end. */
 void corners_init(struct corners *corners, const struct tracer *tracer, uint32_t part);
-sonject_status corner_launch_begin(struct corner_launch *launch, struct line_grid *grid,
+sonject_status corner_launch_begin(struct corner_launch *corner, struct line_grid *grid,
                                    const struct corners *corners, struct tracer *tracer,
                                    uint32_t part, const struct image_pair *pair);
-void corner_launch_end(struct corner_launch *launch);
+void corner_launch_end(struct corner_launch *corner);
 
 /* Adds the echoes of first hits in strips.count <= chunk sub-strips to the sums. */
-sonject_status corner_launch_strips(struct corner_launch *launch, struct tracer *tracer,
+sonject_status corner_launch_strips(struct corner_launch *corner, struct tracer *tracer,
                                     struct span strips, struct corner_sums *sums);
 
 struct glints {

@@ -73,36 +73,36 @@ static void make_scene(struct bench *bench, const struct variant *variant)
 }
 
 static uint64_t add_on_device(struct bench *bench, const struct corners *corners,
-                              struct corner_launch *launch, int32_t wanted_chunk,
+                              struct corner_launch *corner, int32_t wanted_chunk,
                               struct corner_sums *sums)
 {
     const struct span all = corners->first_hits;
-    const int32_t chunk = wanted_chunk < launch->chunk ? wanted_chunk : launch->chunk;
+    const int32_t chunk = wanted_chunk < corner->chunk ? wanted_chunk : corner->chunk;
     bench->tracer.counts.impulses = 0;
     for (int32_t done = 0; done < all.count; done += chunk) {
         const int32_t left = all.count - done;
         const struct span strips = {all.first + done, left < chunk ? left : chunk};
-        EXPECT_OK(&bench->report, corner_launch_strips(launch, &bench->tracer, strips, sums));
+        EXPECT_OK(&bench->report, corner_launch_strips(corner, &bench->tracer, strips, sums));
     }
     return bench->tracer.counts.impulses;
 }
 
 static uint64_t add_as_c(struct bench *bench, const struct corners *corners,
-                         struct corner_launch *launch, struct corner_sums *sums)
+                         struct corner_launch *corner, struct corner_sums *sums)
 {
     struct object_record *objects =
-        bench_copy_buffer(bench, launch->launch.buffers[CORNER_OBJECTS]);
-    struct corner_echo_record *echoes = calloc(launch->capacity, sizeof *echoes);
+        bench_copy_buffer(bench, corner->launch.buffers[CORNER_OBJECTS]);
+    struct corner_echo_record *echoes = calloc(corner->capacity, sizeof *echoes);
     uint64_t impulses = 0;
     assert_non_null(echoes);
-    launch->launch.fan.strips = 1;
-    launch->launch.fan.segments = 1;
+    corner->launch.fan.strips = 1;
+    corner->launch.fan.segments = 1;
     for (int32_t strip = 0; strip < corners->first_hits.count; strip++) {
         uint32_t listed = 0;
-        launch->launch.fan.first_strip = corners->first_hits.first + strip;
+        corner->launch.fan.first_strip = corners->first_hits.first + strip;
         const struct outcome_record outcome =
-            trace_corners_strip(&launch->launch.fan, launch->launch.rays.pieces, &launch->sources,
-                                &launch->record, objects, echoes, &listed, 0, 0);
+            trace_corners_strip(&corner->launch.fan, corner->launch.rays.pieces, &corner->sources,
+                                &corner->record, objects, echoes, &listed, 0, 0);
         assert_int_equal(outcome.faults, 0);
         assert_int_equal(outcome.impulses, listed);
         impulses += listed;
@@ -128,23 +128,23 @@ static uint64_t compare_pair(struct bench *bench, const struct corners *corners,
                              const struct image_pair *pair)
 {
     static const int32_t chunks[] = {1 << 20, 37};
-    struct corner_launch launch;
+    struct corner_launch corner;
     struct line_grid grid;
     struct corner_sums expected, measured;
     EXPECT_OK(&bench->report,
-              corner_launch_begin(&launch, &grid, corners, &bench->tracer, part, pair));
+              corner_launch_begin(&corner, &grid, corners, &bench->tracer, part, pair));
     if (grid.bins.count == 0)
         return 0;
     assert_true(corner_sums_init(&expected, &grid));
-    const uint64_t impulses = add_as_c(bench, corners, &launch, &expected);
+    const uint64_t impulses = add_as_c(bench, corners, &corner, &expected);
     for (size_t i = 0; i < COUNT(chunks); i++) {
         assert_true(corner_sums_init(&measured, &grid));
-        assert_int_equal(add_on_device(bench, corners, &launch, chunks[i], &measured), impulses);
+        assert_int_equal(add_on_device(bench, corners, &corner, chunks[i], &measured), impulses);
         expect_same(&measured, &expected);
         corner_sums_clear(&measured);
     }
     corner_sums_clear(&expected);
-    corner_launch_end(&launch);
+    corner_launch_end(&corner);
     return impulses;
 }
 

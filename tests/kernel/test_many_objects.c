@@ -52,7 +52,7 @@ static void draw_ray(float *input, uint32_t i, enum ray_kind kind,
     struct point from = point_on(other);
     struct point to = target;
     if (kind == RAYS_TOGETHER) {
-        /* counted from abreast of the frame's origin, 1 mm from ray to ray */
+        /* counted from broadside of the frame's origin, 1 mm from ray to ray */
         const struct point back = {0.0, -0.94, 0.34};
         to.x += uniform(-0.01, 0.01);
         to.z += 1e-3 * (i % 16);

@@ -137,7 +137,7 @@ static void expect_same(const char *what, const int64_t *measured, const int64_t
     assert_true(filled > count / 100);
 }
 
-static void test_widths_and_company(void **state)
+static void test_width_and_what_is_out_of_the_way_change_no_bits(void **state)
 {
     uint32_t widths[BENCH_WIDTHS];
     const size_t count = bench_widths(widths);
@@ -149,8 +149,8 @@ static void test_widths_and_company(void **state)
     assert_int_equal(alone.glint_elements, narrow.glint_elements);
     expect_same("all tiles, most and fewest lanes", wide.tiles, narrow.tiles, narrow.tile_elements);
     expect_same("glint, most and fewest lanes", wide.glint, narrow.glint, narrow.glint_elements);
-    expect_same("the sphere's tile in company", narrow.sphere, alone.sphere, TILE_PLANES);
-    expect_same("its glint in company", narrow.glint, alone.glint, alone.glint_elements);
+    expect_same("the sphere's tile among others", narrow.sphere, alone.sphere, TILE_PLANES);
+    expect_same("its glint among others", narrow.glint, alone.glint, alone.glint_elements);
     tallies_clear(&wide);
     tallies_clear(&narrow);
     tallies_clear(&alone);
@@ -158,6 +158,7 @@ static void test_widths_and_company(void **state)
 
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_widths_and_company)};
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_width_and_what_is_out_of_the_way_change_no_bits)};
     return bench_run_on_devices(tests, COUNT(tests));
 }

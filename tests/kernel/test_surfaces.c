@@ -458,51 +458,6 @@ static void test_reciprocity(void **state)
     assert_true(worst < 6.0);
 }
 
-/* What a bounce weighs, f cos(out) / density, has the albedo as its mean. */
-static void expect_mean_weight(const struct surface_record *surface, double angle, double *worst)
-{
-    const struct vector3 back = direction_at(angle, PI);
-    double sum = 0.0, squares = 0.0;
-    for (int i = 0; i < SAMPLES; i++) {
-        const float choice = random_deviate(), u = random_deviate(), v = random_deviate();
-        const struct vector3 direction =
-            sample_rough_direction(surface, surface_normal(), back, choice, u, v);
-        const double density =
-            (double)rough_direction_density(surface, surface_normal(), back, direction);
-        if (!(density > 0.0))
-            continue;
-        const double weight = (double)rough_scattering(surface, surface_normal(), back, direction) *
-                              component(direction, 2) / density;
-        sum += weight;
-        squares += weight * weight;
-    }
-    const double mean = sum / SAMPLES;
-    const double error = sqrt(fmax(0.0, squares / SAMPLES - mean * mean) / SAMPLES);
-    const double exact = albedo(surface, angle);
-    const double off = fabs(mean - exact) / (error + 0.25 * QUADRATURE * exact + 1e-7);
-    *worst = fmax(*worst, off);
-    if (off > 4.0)
-        print_message("at %.4f rad: mean weight %.6f, albedo %.6f\n", angle, mean, exact);
-    assert_true(off < 4.0); /* standard errors, and the error of the quadrature */
-}
-
-static void test_weights(void **state)
-{
-    static const double angles[] = {0.0, 45.0, 80.0, 89.0};
-    for (int kind = 0; kind < KINDS; kind++) {
-        double worst = 0.0;
-        const struct surface_record surface = rough_kind(kind);
-        const struct surface_record over_steel = over_smooth(1, &surface);
-        const struct surface_record over_sand = over_smooth(3, &surface);
-        for (size_t i = 0; i < COUNT(angles); i++) {
-            expect_mean_weight(&surface, degrees(angles[i]), &worst);
-            expect_mean_weight(&over_steel, degrees(angles[i]), &worst);
-            expect_mean_weight(&over_sand, degrees(angles[i]), &worst);
-        }
-        print_message("kind %d: mean weight off by at most %.2f standard errors\n", kind, worst);
-    }
-}
-
 /* ---- Reflection ---- */
 
 /* Error of R: roundings of its own, and those of s^2 = n^2 - sin^2, which the square root enlarges
@@ -677,6 +632,6 @@ static void test_rough_part_apart(void **state)
 }
 
 TEST_PROGRAM(NULL, NULL, TEST(test_formulas), TEST(test_directions), TEST(test_rough_furnace),
-             TEST(test_furnace_over_smooth_part), TEST(test_reciprocity), TEST(test_weights),
+             TEST(test_furnace_over_smooth_part), TEST(test_reciprocity),
              TEST(test_fluid_reflection), TEST(test_critical_angle), TEST(test_intromission_angle),
              TEST(test_grazing_limit), TEST(test_mirror_part), TEST(test_rough_part_apart))

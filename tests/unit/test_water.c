@@ -321,7 +321,7 @@ static void compare_tube(const struct water *water, const struct reference_way *
         const double launch_sine = sqrt(1.0 - pow(cos(angles[i]) * c0 / c, 2.0));
         const double back =
             fabs(sin(landing[1]) - sin(landing[0])) / (ray.ground_range_m * apart * launch_sine);
-        expect_relative("intensity of the way home over that of the way out", back / there,
+        expect_relative("intensity of the return path over that of the way out", back / there,
                         c * c / (c0 * c0), 1e-5);
         const double amplitude = ray.spreading / (ray.ground_range_m * ray.wavefront_m);
         expect_relative("intensity there and back", amplitude * amplitude, there * back, 2e-5);
