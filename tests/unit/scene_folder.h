@@ -8,14 +8,22 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "schema/scene_file.h"
 #include "new_file.h"
+#include "schema/scene_file.h"
 
 #define SCENE_FOLDER_CAPACITY 1024
 
 #ifndef SOURCE_ROOT
 #define SOURCE_ROOT "."
 #endif
+
+/* A scene of three lines that lacks nothing, and its lines. */
+#define START "sonject: 1\n"
+#define INPUT                                                                                      \
+    "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
+    "first_slant_range: 40}}\n"
+#define SONAR "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
+#define BASE  START INPUT SONAR
 
 struct scene_folder {
     char folder[SCENE_FOLDER_CAPACITY];
@@ -53,12 +61,31 @@ static inline int remove_scene_folder(void **state)
     return result;
 }
 
+/* The path of a file of the folder; valid until the next one. */
+static inline const char *file_in(const struct scene_folder *folder, const char *name)
+{
+    static char path[SCENE_FOLDER_CAPACITY + 64];
+    snprintf(path, sizeof path, "%s/%s", folder->folder, name);
+    return path;
+}
+
+static inline void write_file(const struct scene_folder *folder, const char *name,
+                              const void *bytes, size_t count)
+{
+    FILE *file = open_new_file(file_in(folder, name));
+    assert_non_null(file);
+    assert_int_equal(fwrite(bytes, 1, count, file), count);
+    assert_int_equal(fclose(file), 0);
+}
+
+static inline void remove_file(const struct scene_folder *folder, const char *name)
+{
+    assert_int_equal(unlink(file_in(folder, name)), 0);
+}
+
 static inline void write_scene(struct scene_folder *folder, const char *text, size_t bytes)
 {
-    FILE *file = open_new_file(folder->file);
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, bytes, file), bytes);
-    assert_int_equal(fclose(file), 0);
+    write_file(folder, "scene.yaml", text, bytes);
 }
 
 /* Reads the file that is there. overrides may be NULL if count is 0. */

@@ -9,7 +9,7 @@
 #include "scene_folder.h"
 
 #define GEOMETRY "geometry: {row_spacing: 1, column_spacing: 1, first_slant_range: 40}\n"
-#define SONAR    "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10"
+#define ARRAY    "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10"
 #define UNIFORM  "sonject: 1\ninput:\n  uniform: {rows: 4, columns: 5}\n  "
 
 static const char small[] = "sonject: 1\n"
@@ -23,25 +23,25 @@ static const char small[] = "sonject: 1\n"
                             "transducer: 5 cm}\n"
                             "objects:\n"
                             "  - {shape: sphere, diameter: 0.5 m}\n";
-static const char file[] = "sonject: 1\ninput:\n  path: swath.tif\n  " GEOMETRY SONAR "}\n";
+static const char file[] = "sonject: 1\ninput:\n  path: swath.tif\n  " GEOMETRY ARRAY "}\n";
 
 /* The scenes that some keys want; all others take the small one. */
 static const struct {
     const char *path, *text;
 } bases[] = {
     {"input.synthetic.",
-     "sonject: 1\ninput:\n  synthetic: {rows: 4, columns: 5}\n  " GEOMETRY SONAR "}\n"},
+     "sonject: 1\ninput:\n  synthetic: {rows: 4, columns: 5}\n  " GEOMETRY ARRAY "}\n"},
     {"input.geometry.row_spacing.",
      UNIFORM "geometry: {row_spacing: {speed: 1, ping_rate: 20}, column_spacing: 1, "
-             "first_slant_range: 40}\n" SONAR "}\n"},
-    {"band ", UNIFORM GEOMETRY SONAR "}\nbands: {low: {}, high: {sonar: {frequency: 400e3}}}\n"},
-    {"sonar.array.", UNIFORM GEOMETRY SONAR ", kind: real, array: {length: 1 m}}\n"},
+             "first_slant_range: 40}\n" ARRAY "}\n"},
+    {"band ", UNIFORM GEOMETRY ARRAY "}\nbands: {low: {}, high: {sonar: {frequency: 400e3}}}\n"},
+    {"sonar.array.", UNIFORM GEOMETRY ARRAY ", kind: real, array: {length: 1 m}}\n"},
     {"input.path", file},
     {"input.channel", file},
     {"input.array", file},
     {"input.complex", file},
     {"input.transfer.", file},
-    {"medium.profile.", UNIFORM GEOMETRY SONAR "}\nsurface: {depth: 20 m}\n"},
+    {"medium.profile.", UNIFORM GEOMETRY ARRAY "}\nsurface: {depth: 20 m}\n"},
 };
 
 enum type {

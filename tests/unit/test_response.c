@@ -8,7 +8,7 @@
 
 #include "scene_folder.h"
 
-#define BASE                                                                                       \
+#define RESPONSE                                                                                   \
     "sonject: 1\n"                                                                                 \
     "input:\n"                                                                                     \
     "  uniform: {rows: 4, columns: 5}\n"                                                           \
@@ -33,7 +33,7 @@ static void expect_refused_table(struct scene_folder *folder, const char *key, c
 {
     char scene[1200], path[SCENE_FOLDER_CAPACITY + 16], expected[SCENE_FOLDER_CAPACITY + 300];
     write_table(folder, table, path, sizeof path);
-    snprintf(scene, sizeof scene, BASE "  %s\n", key);
+    snprintf(scene, sizeof scene, RESPONSE "  %s\n", key);
     write_scene(folder, scene, strlen(scene));
     const sonject_status status = read_scene(folder, NULL, 0);
     (void)unlink(path);
@@ -126,7 +126,7 @@ static void test_hostile_keys(void **state)
     for (size_t i = 0; i < COUNT(cases); i++) {
         struct scene_folder *folder = *state;
         char scene[1200];
-        snprintf(scene, sizeof scene, BASE "  %s\n", cases[i].key);
+        snprintf(scene, sizeof scene, RESPONSE "  %s\n", cases[i].key);
         write_scene(folder, scene, strlen(scene));
         assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
         if (!strstr(folder->report.message, cases[i].message))

@@ -4,13 +4,7 @@
 #include "claims.h"
 #include "scene_folder.h"
 
-#define START "sonject: 1\n"
-#define INPUT                                                                                      \
-    "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
-    "first_slant_range: 40}}\n"
-#define SONAR            "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
 #define SONAR_WITH(keys) "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10, " keys "}\n"
-#define BASE             START INPUT SONAR /* three lines */
 #define OBJECT           BASE "objects:\n  - shape: "
 
 struct wrong {

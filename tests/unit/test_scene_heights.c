@@ -7,39 +7,25 @@
 #include "scene_folder.h"
 #include "swath/raster_file.h"
 
-/* Five lines. */
-#define BASE                                                                                       \
-    "sonject: 1\n"                                                                                 \
-    "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
-    "first_slant_range: 40}}\n"                                                                    \
-    "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"                                   \
-    "seabed:\n"                                                                                    \
-    "  relief:\n"
+#define RELIEF BASE "seabed:\n  relief:\n" /* five lines */
 #define HEIGHTS(keys)                                                                              \
-    BASE "  - heights: {file: heights.tif, row_spacing: 50 cm, column_spacing: 25 cm, "            \
-         "first_ground_range: 30 m, " keys "}\n"
+    RELIEF "  - heights: {file: heights.tif, row_spacing: 50 cm, column_spacing: 25 cm, "          \
+           "first_ground_range: 30 m, " keys "}\n"
 
 #define ROWS    3
 #define COLUMNS 4
 
-static const char *heights_file(const struct scene_folder *folder)
-{
-    static char path[SCENE_FOLDER_CAPACITY + 64];
-    snprintf(path, sizeof path, "%s/heights.tif", folder->folder);
-    return path;
-}
-
 static void write_heights(struct scene_folder *folder, const struct raster_layout *layout,
                           const void *pixels)
 {
-    assert_int_equal(
-        raster_file_write(&folder->report, heights_file(folder), layout, NULL, NULL, 0, pixels),
-        SONJECT_OK);
+    assert_int_equal(raster_file_write(&folder->report, file_in(folder, "heights.tif"), layout,
+                                       NULL, NULL, 0, pixels),
+                     SONJECT_OK);
 }
 
 static int remove_heights(void **state)
 {
-    (void)unlink(heights_file(*state));
+    (void)unlink(file_in(*state, "heights.tif"));
     return remove_scene_folder(state);
 }
 
@@ -116,7 +102,7 @@ static void test_heights_among_features(void **state)
     static const struct raster_layout layout = {ROWS, COLUMNS, 1, PIXEL_FLOAT32};
     struct scene_folder *folder = *state;
     write_heights(folder, &layout, flat);
-    expect_scene_taken(folder, BASE
+    expect_scene_taken(folder, RELIEF
                        "  - mound: {radius: 1 m, height: 10 cm}\n"
                        "  - heights: {file: heights.tif, unit: m, row_spacing: 1, column_spacing: "
                        "1, first_ground_range: 0}\n"
@@ -131,10 +117,10 @@ static void test_what_is_refused(void **state)
     static const struct {
         const char *text, *message;
     } wrong[] = {
-        {BASE "  - heights: heights.tif\n",
+        {RELIEF "  - heights: heights.tif\n",
          ":6:14: seabed.relief[0].heights: must be a section of 'key: value' lines, not a single "
          "value"},
-        {BASE "  - heights: {file: heights.tif, first_ground_range: 0}\n",
+        {RELIEF "  - heights: {file: heights.tif, first_ground_range: 0}\n",
          ":6:14: seabed.relief[0].heights.unit: missing; add it (of the file's numbers)\n"
          ":6:14: seabed.relief[0].heights.row_spacing: missing; add it (distance between rows)\n"
          ":6:14: seabed.relief[0].heights.column_spacing: missing; add it (distance between "
@@ -150,8 +136,8 @@ static void test_what_is_refused(void **state)
          ":6:122: seabed.relief[0].heights.positive: 'left' is not one of up, down"},
         {HEIGHTS("unit: m, offset: nan"), ":6:120: seabed.relief[0].heights.offset: 'nan' is not a "
                                           "number with a unit of m, km, cm, mm"},
-        {BASE "  - heights: {file: heights.tif, unit: m, row_spacing: 0, column_spacing: 1, "
-              "first_ground_range: 0}\n",
+        {RELIEF "  - heights: {file: heights.tif, unit: m, row_spacing: 0, column_spacing: 1, "
+                "first_ground_range: 0}\n",
          ":6:56: seabed.relief[0].heights.row_spacing: must be 1e-06...1e+06 m, not 0"},
         {HEIGHTS("unit: m") "  - heights: {file: heights.tif, unit: m, row_spacing: 1, "
                             "column_spacing: 1, first_ground_range: 0}\n",
@@ -179,7 +165,7 @@ static void expect_bad_file(struct scene_folder *folder, const char *keys, const
     assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
     const char *message = folder->report.message;
     if (strncmp(message, place, strlen(place)) != 0 || !strstr(message, what) ||
-        !strstr(message, heights_file(folder)) || strchr(message, '\n'))
+        !strstr(message, file_in(folder, "heights.tif")) || strchr(message, '\n'))
         fail_msg("'%s' is not '%s... %s'", message, place, what);
     assert_null(folder->scene.relief.heights_m);
 }
@@ -217,11 +203,11 @@ static void test_files_that_are_no_heights(void **state)
     }
     free(many);
     write_heights(folder, &plain, hole);
-    assert_int_equal(truncate(heights_file(folder), 90), 0);
+    assert_int_equal(truncate(file_in(folder, "heights.tif"), 90), 0);
     expect_bad_file(folder, "unit: m", "");
-    assert_int_equal(truncate(heights_file(folder), 0), 0);
+    assert_int_equal(truncate(file_in(folder, "heights.tif"), 0), 0);
     expect_bad_file(folder, "unit: m", "");
-    assert_int_equal(unlink(heights_file(folder)), 0);
+    assert_int_equal(unlink(file_in(folder, "heights.tif")), 0);
     expect_bad_file(folder, "unit: m", "there is no file");
 }
 

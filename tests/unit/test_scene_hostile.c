@@ -159,10 +159,7 @@ static void test_too_many_keys(void **state)
 
 static void test_too_many_objects(void **state)
 {
-    static const char head[] =
-        "sonject: 1\ninput: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, "
-        "column_spacing: 1, first_slant_range: 40}}\n"
-        "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\nobjects:\n";
+    static const char head[] = BASE "objects:\n";
     static const char object[] = "  - {shape: sphere, diameter: 1}\n";
     char *text = repeated(head, object, 250, "");
     assert_int_equal(expect_taken_or_explained(*state, text, strlen(text)), SONJECT_OK);
@@ -194,9 +191,7 @@ static void test_long_words(void **state)
 static void test_long_numbers(void **state)
 {
     static const char head[] =
-        "sonject: 1\ninput: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, "
-        "column_spacing: 1, first_slant_range: 40}}\n"
-        "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10.";
+        START INPUT "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10.";
     struct scene_folder *folder = *state;
     char *text = repeated(head, "0", 500000, "1}\n");
     assert_int_equal(expect_taken_or_explained(folder, text, strlen(text)), SONJECT_OK);
@@ -322,36 +317,26 @@ static void test_mutated_examples(void **state)
 
 /* A target is a scene, or a message that leads to a line of its file. */
 static sonject_status expect_target_taken_or_explained(struct scene_folder *folder,
-                                                       const char *path, const char *text,
-                                                       size_t bytes)
+                                                       const char *text, size_t bytes)
 {
-    FILE *file = open_new_file(path);
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, bytes, file), bytes);
-    assert_int_equal(fclose(file), 0);
+    write_file(folder, "target.yaml", text, bytes);
     const sonject_status status = read_with_code(folder);
     if (status == SONJECT_OK || names_what_cannot_be_read(folder, status))
         return status;
     if (status != SONJECT_ERROR_INPUT || !folder->report.message[0])
         fail_msg("status %d: %s", (int)status, folder->report.message);
-    expect_places(folder->report.message, path, text, bytes);
+    expect_places(folder->report.message, file_in(folder, "target.yaml"), text, bytes);
     assert_int_equal(folder->scene.object_count + folder->scene.part_count, 0);
     return status;
 }
 
 static void test_mutated_targets(void **state)
 {
-    static const char scene[] =
-        "sonject: 1\ninput: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, "
-        "column_spacing: 1, first_slant_range: 40}}\n"
-        "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
-        "objects: [{target: target.yaml}]\n";
+    static const char scene[] = BASE "objects: [{target: target.yaml}]\n";
     struct scene_folder *folder = *state;
     struct dice dice = {UINT64_C(0xD1B54A32D192ED03)};
-    char path[SCENE_FOLDER_CAPACITY + 16];
     const size_t wanted = mutations_wanted() / 10;
     size_t refused = 0;
-    snprintf(path, sizeof path, "%s/target.yaml", folder->folder);
     write_scene(folder, scene, strlen(scene));
     for (size_t i = 0; i < COUNT(targets); i++) {
         char name[64];
@@ -365,15 +350,14 @@ static void test_mutated_targets(void **state)
             memcpy(mutated, text, bytes);
             for (size_t changes = 1 + throw(&dice, 4); changes > 0 && length > 0; changes--)
                 length = mutate(&dice, mutated, length);
-            refused +=
-                expect_target_taken_or_explained(folder, path, mutated, length) != SONJECT_OK;
+            refused += expect_target_taken_or_explained(folder, mutated, length) != SONJECT_OK;
         }
         free(text);
     }
     /* the change may be in a comment or a number, or not */
     print_message("targets: %zu of %zu refused\n", refused, COUNT(targets) * wanted);
     assert_true(refused > 0 && refused < COUNT(targets) * wanted);
-    (void)unlink(path);
+    remove_file(folder, "target.yaml");
 }
 
 TEST_PROGRAM(make_scene_folder, remove_scene_folder, TEST(test_alias_bomb), TEST(test_deep_nesting),

@@ -5,12 +5,7 @@
 #include "scene_folder.h"
 
 /* Three lines; the medium stands before what it needs. */
-#define BASE                                                                                       \
-    "sonject: 1\n"                                                                                 \
-    "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
-    "first_slant_range: 40}}\n"                                                                    \
-    "# the water\n"
-#define SONAR   "sonar: {frequency: 100 kHz, bandwidth: 30 kHz, altitude: 10 m}\n"
+#define HEAD    START INPUT "# the water\n"
 #define SURFACE "surface: {depth: 25 m}\n"
 #define CAST    SOURCE_ROOT "/tests/unit/cast.csv"
 
@@ -27,7 +22,7 @@ static void expect_layer(const struct scene *scene, size_t i, double bottom, dou
 static void test_layers(void **state)
 {
     struct scene_folder *folder = *state;
-    expect_scene_taken(folder, BASE "medium:\n"
+    expect_scene_taken(folder, HEAD "medium:\n"
                                     "  reference_sound_speed: 1500 m/s\n"
                                     "  layers:\n"
                                     "    - {bottom: 0 m, sound_speed: 1490 m/s, density: 1025}\n"
@@ -37,10 +32,10 @@ static void test_layers(void **state)
     expect_layer(&folder->scene, 0, 0.0, 1490.0, 1025.0);
     expect_layer(&folder->scene, 1, 12.0, 1520.0, 1024.0);
     assert_true(folder->scene.medium.reference_sound_speed_mps == 1500.0);
-    expect_scene_taken(folder, BASE "medium: {layers: [{bottom: 0, sound_speed: 1490}, "
+    expect_scene_taken(folder, HEAD "medium: {layers: [{bottom: 0, sound_speed: 1490}, "
                                     "{sound_speed: 1510, bottom: 3}]}\n" SONAR);
     expect_layer(&folder->scene, 1, 3.0, 1510.0, 1.0);
-    expect_scene_taken(folder, BASE "medium: {sound_speed: 1490}\n" SONAR);
+    expect_scene_taken(folder, HEAD "medium: {sound_speed: 1490}\n" SONAR);
     assert_null(folder->scene.water_layers);
     assert_int_equal(folder->scene.water_layer_count, 0);
 }
@@ -61,14 +56,14 @@ static void expect_corners(struct scene_folder *folder, const char *text)
 static void test_profiles(void **state)
 {
     struct scene_folder *folder = *state;
-    expect_corners(folder, BASE "medium: {profile: {file: " CAST "}}\n" SONAR);
-    expect_corners(folder, BASE "medium: {profile: {heights: [3, 12 m], sound_speeds: [1490, "
+    expect_corners(folder, HEAD "medium: {profile: {file: " CAST "}}\n" SONAR);
+    expect_corners(folder, HEAD "medium: {profile: {heights: [3, 12 m], sound_speeds: [1490, "
                                 "1.49025 km/s]}}\n" SONAR);
-    expect_corners(folder, BASE "medium: {profile: {heights: [20, 12, 3], sound_speeds: [1490.25, "
+    expect_corners(folder, HEAD "medium: {profile: {heights: [20, 12, 3], sound_speeds: [1490.25, "
                                 "1490.25, 1490]}}\n" SONAR);
-    expect_corners(folder, BASE "medium: {profile: {depths: [13 m, 22 m], sound_speeds: [1490.25, "
+    expect_corners(folder, HEAD "medium: {profile: {depths: [13 m, 22 m], sound_speeds: [1490.25, "
                                 "1490]}}\n" SONAR SURFACE);
-    expect_corners(folder, BASE "medium: {profile: {depths: [22, 13, 0], sound_speeds: [1490, "
+    expect_corners(folder, HEAD "medium: {profile: {depths: [22, 13, 0], sound_speeds: [1490, "
                                 "1490.25, 1490.25]}}\n" SURFACE SONAR);
 }
 
@@ -76,22 +71,18 @@ static void test_profiles(void **state)
 static void test_files_are_looked_for_beside_the_scene(void **state)
 {
     struct scene_folder *folder = *state;
-    char beside[SCENE_FOLDER_CAPACITY + 16];
+    static const char warm[] = "height_m sound_speed_mps\n1 1500\n2 warm\n";
+    static const char good[] = "height_m sound_speed_mps\n1 1500\n2 1500\n";
+    char beside[SCENE_FOLDER_CAPACITY + 64];
     const char *absent = "medium.profile.file=cast-of-nobody.csv";
     const char *there = "medium.profile.file=" CAST;
-    static const char text[] = BASE "medium: {profile: {file: cast.csv}}\n" SONAR;
-    snprintf(beside, sizeof beside, "%s/cast.csv", folder->folder);
-    FILE *cast = fopen(beside, "w");
-    assert_non_null(cast);
-    fputs("height_m sound_speed_mps\n1 1500\n2 1500\n", cast);
-    fclose(cast);
+    static const char text[] = HEAD "medium: {profile: {file: cast.csv}}\n" SONAR;
+    write_file(folder, "cast.csv", good, strlen(good));
+    strcpy(beside, file_in(folder, "cast.csv"));
     expect_scene_taken(folder, text);
     assert_int_equal(folder->scene.water_layer_count, 1);
     expect_layer(&folder->scene, 0, 0.0, 1500.0, 1.0);
-    cast = fopen(beside, "w");
-    assert_non_null(cast);
-    fputs("height_m sound_speed_mps\n1 1500\n2 warm\n", cast);
-    fclose(cast);
+    write_file(folder, "cast.csv", warm, strlen(warm));
     write_scene(folder, text, strlen(text));
     assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
     assert_int_equal(strncmp(folder->report.message, beside, strlen(beside)), 0);
@@ -113,16 +104,16 @@ static void test_absorption(void **state)
 {
     struct scene_folder *folder = *state;
     const double *absorption = &folder->scene.medium.absorption_db_per_m;
-    expect_scene_taken(folder, BASE "medium: {}\n" SONAR);
+    expect_scene_taken(folder, HEAD "medium: {}\n" SONAR);
     assert_true(*absorption == 0.0);
-    expect_scene_taken(folder, BASE "medium: {absorption: 0.03 dB/m}\n" SONAR);
+    expect_scene_taken(folder, HEAD "medium: {absorption: 0.03 dB/m}\n" SONAR);
     assert_true(*absorption == 0.03);
-    expect_scene_taken(folder, BASE "medium: {absorption: 34 dB/km}\n" SONAR);
+    expect_scene_taken(folder, HEAD "medium: {absorption: 34 dB/km}\n" SONAR);
     assert_true(*absorption == 0.034);
-    expect_scene_taken(folder, BASE "medium: {absorption: {temperature: 12 C, salinity: 34, depth: "
+    expect_scene_taken(folder, HEAD "medium: {absorption: {temperature: 12 C, salinity: 34, depth: "
                                     "20 m, ph: 7.9}}\n" SONAR);
     assert_true(*absorption == sonject_absorption(100e3, 12.0, 34.0, 20.0, 7.9));
-    expect_scene_taken(folder, BASE "medium: {absorption: {temperature: -1, salinity: 5, depth: "
+    expect_scene_taken(folder, HEAD "medium: {absorption: {temperature: -1, salinity: 5, depth: "
                                     "0.2 km}}\n" SONAR);
     assert_true(*absorption == sonject_absorption(100e3, -1.0, 5.0, 200.0, 8.0));
     const char *frequency = "sonar.frequency=455 kHz";
@@ -131,7 +122,7 @@ static void test_absorption(void **state)
 }
 
 #define GOOD_PROFILE "profile: {heights: [0 m, 9 m], sound_speeds: [1500, 1490]}\n"
-#define MEDIUM       BASE "medium:\n" /* its keys begin on line 5 */
+#define MEDIUM       HEAD "medium:\n" /* its keys begin on line 5 */
 #define LAYERS       MEDIUM "  layers:\n"
 #define PROFILE      MEDIUM "  profile: "
 

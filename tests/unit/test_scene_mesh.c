@@ -8,35 +8,11 @@
 #include "inject/scene_hash.h"
 #include "scene_folder.h"
 
-#define SCENE                                                                                      \
-    "sonject: 1\ninput: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, "              \
-    "column_spacing: 1, first_slant_range: 40}}\n"                                                 \
-    "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\nobjects:\n"
+#define SCENE BASE "objects:\n"
 
 /* A corner of a box: four faces, 1 x 2 x 3 units. */
 static const char corner[] = "v 0 0 0\nv 1 0 0\nv 0 2 0\nv 0 0 3\n"
                              "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
-
-static const char *file_in(const struct scene_folder *folder, const char *name)
-{
-    static char path[SCENE_FOLDER_CAPACITY + 64];
-    snprintf(path, sizeof path, "%s/%s", folder->folder, name);
-    return path;
-}
-
-static void write_file(const struct scene_folder *folder, const char *name, const void *bytes,
-                       size_t count)
-{
-    FILE *file = fopen(file_in(folder, name), "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(bytes, 1, count, file), count);
-    assert_int_equal(fclose(file), 0);
-}
-
-static void remove_file(const struct scene_folder *folder, const char *name)
-{
-    assert_int_equal(unlink(file_in(folder, name)), 0);
-}
 
 static void expect_size(const struct scene_folder *folder, double x, double y, double z)
 {

@@ -5,12 +5,6 @@
 #include "dataset/campaign.h"
 #include "scene_folder.h"
 
-#define INPUT                                                                                      \
-    "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
-    "first_slant_range: 40}}\n"
-#define SONAR "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
-#define BASE  "sonject: 1\n" INPUT SONAR
-
 static size_t lines_of(const char *message)
 {
     size_t lines = *message != 0;
@@ -103,29 +97,20 @@ static void test_overrides_come_behind_the_file(void **state)
     assert_string_equal(folder->report.message, expected);
 }
 
-static void write_other(const struct scene_folder *folder, char *path, const char *name,
-                        const char *text)
-{
-    sprintf(path, "%s/%s", folder->folder, name);
-    FILE *file = open_new_file(path);
-    assert_non_null(file);
-    fputs(text, file);
-    fclose(file);
-}
-
 static void test_a_targets_mistakes_stand_where_it_is_named(void **state)
 {
     struct scene_folder *folder = *state;
-    char target[SCENE_FOLDER_CAPACITY + 20];
+    char target[SCENE_FOLDER_CAPACITY + 64];
     char expected[10 * SCENE_FOLDER_CAPACITY];
     static const char text[] = BASE "objects:\n"
                                     "  - {target: t.yaml, heading: north}\n"
                                     "  - {target: t.yaml}\n"
                                     "  - {target: absent.yaml}\n"
                                     "seabed: {lambert: loud}\n";
-    write_other(
-        folder, target, "t.yaml",
-        "sonject_target: 1\nclass: \"a\\tb\"\nparts:\n  - {shape: sphere}\n  - {shape: shpere}\n");
+    static const char described[] =
+        "sonject_target: 1\nclass: \"a\\tb\"\nparts:\n  - {shape: sphere}\n  - {shape: shpere}\n";
+    write_file(folder, "t.yaml", described, strlen(described));
+    strcpy(target, file_in(folder, "t.yaml"));
     write_scene(folder, text, strlen(text));
     assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
     unlink(target);
@@ -172,7 +157,7 @@ static void test_campaign_files_tell_all(void **state)
 {
     struct scene_folder *folder = *state;
     struct campaign campaign;
-    char path[SCENE_FOLDER_CAPACITY + 20];
+    char path[SCENE_FOLDER_CAPACITY + 64];
     char expected[10 * SCENE_FOLDER_CAPACITY];
     static const char *const lines[] = {
         ":3:9: images: must be 1...10000000, not 0",
@@ -182,11 +167,13 @@ static void test_campaign_files_tell_all(void **state)
         ":9:5: targets[0].object: missing; add it (keys of an object that are not drawn)",
         ":9:40: targets[0].draw.hedding: scenes have no such key; did you mean 'heading'?",
         ":10:8: draw.sonar.frequncy: scenes have no such key; did you mean 'frequency'?"};
-    write_other(folder, path, "campaign.yaml",
-                "sonject_campaign: 1\nscene: s.yaml\nimages: 0\nchip: {rows: 4, columns: 64}\n"
-                "labels: [\"yoolo\"]\nswaths:\n  - {split: all}\ntargets:\n"
-                "  - {class: ball, weight: 1,    draw: {hedding: 3}}\n"
-                "draw: {sonar.frequncy: 3}\n");
+    static const char text[] =
+        "sonject_campaign: 1\nscene: s.yaml\nimages: 0\nchip: {rows: 4, columns: 64}\n"
+        "labels: [\"yoolo\"]\nswaths:\n  - {split: all}\ntargets:\n"
+        "  - {class: ball, weight: 1,    draw: {hedding: 3}}\n"
+        "draw: {sonar.frequncy: 3}\n";
+    write_file(folder, "campaign.yaml", text, strlen(text));
+    strcpy(path, file_in(folder, "campaign.yaml"));
     assert_int_equal(campaign_read(&folder->report, path, NULL, 0, &campaign), SONJECT_ERROR_INPUT);
     campaign_clear(&campaign);
     unlink(path);

@@ -5,11 +5,6 @@
 #include "claims.h"
 #include "scene_folder.h"
 
-#define BASE                                                                                       \
-    "sonject: 1\n"                                                                                 \
-    "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
-    "first_slant_range: 40}}\n"                                                                    \
-    "sonar: {frequency: 100e3, bandwidth: 30e3, altitude: 10}\n"
 #define OBJECT BASE "objects:\n  - " /* five lines, its keys begin in column 5 */
 
 static const struct scene_part *part_at(const struct scene_folder *folder, uint32_t index)
@@ -207,35 +202,23 @@ static void test_too_many_parts(void **state)
     free(text);
 }
 
-struct target_file {
-    char path[SCENE_FOLDER_CAPACITY + 32];
-};
-
-/* folder/target.yaml */
-static struct target_file write_target(const struct scene_folder *folder, const char *text)
+static void write_target(const struct scene_folder *folder, const char *text)
 {
-    struct target_file target;
-    snprintf(target.path, sizeof target.path, "%s/target.yaml", folder->folder);
-    FILE *file = fopen(target.path, "wb");
-    assert_non_null(file);
-    assert_int_equal(fwrite(text, 1, strlen(text), file), strlen(text));
-    assert_int_equal(fclose(file), 0);
-    return target;
+    write_file(folder, "target.yaml", text, strlen(text));
 }
 
 static void test_targets_are_files(void **state)
 {
     struct scene_folder *folder = *state;
-    const struct target_file target =
-        write_target(folder, "sonject_target: 1\nname: twin\nclass: clutter\n"
-                             "material: {reflection: 0.75, roughness: 2 mm}\n"
-                             "parts: [{shape: sphere, diameter: 1, at: {along: 1}},\n"
-                             "  {shape: disc, diameter: 2, material: {reflection: 0.875}}]\n");
+    write_target(folder, "sonject_target: 1\nname: twin\nclass: clutter\n"
+                         "material: {reflection: 0.75, roughness: 2 mm}\n"
+                         "parts: [{shape: sphere, diameter: 1, at: {along: 1}},\n"
+                         "  {shape: disc, diameter: 2, material: {reflection: 0.875}}]\n");
     expect_scene_taken(folder, BASE "objects:\n"
                                     "  - target: target.yaml\n"
                                     "  - {name: other, class: mine, target: target.yaml, heading: "
                                     "90 deg, material: {roughness: 7 mm}, burial: 10 cm}\n");
-    unlink(target.path);
+    remove_file(folder, "target.yaml");
     const sonject_object_params *objects = folder->scene.objects;
     assert_int_equal(folder->scene.part_count, 4);
     for (uint32_t i = 0; i < 4; i++) {
@@ -256,10 +239,9 @@ static void test_targets_are_files(void **state)
 static void test_targets_may_have_one_shape(void **state)
 {
     struct scene_folder *folder = *state;
-    const struct target_file target =
-        write_target(folder, "sonject_target: 1\nshape: torus\ndiameter: 1\nheight: 0.2\n");
+    write_target(folder, "sonject_target: 1\nshape: torus\ndiameter: 1\nheight: 0.2\n");
     expect_scene_taken(folder, OBJECT "target: target.yaml\n");
-    unlink(target.path);
+    remove_file(folder, "target.yaml");
     assert_int_equal(folder->scene.objects[0].shape, SONJECT_SHAPE_TORUS);
     assert_true(folder->scene.objects[0].height_m == 0.2);
     assert_int_equal(folder->scene.part_count, 0);
@@ -297,13 +279,14 @@ static void test_targets_that_are_wrong(void **state)
     static const char scene[] = OBJECT "target: target.yaml\n";
     write_scene(folder, scene, strlen(scene));
     for (size_t i = 0; i < COUNT(wrong); i++) {
-        const struct target_file target = write_target(folder, wrong[i].text);
+        write_target(folder, wrong[i].text);
         assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
-        unlink(target.path);
-        const size_t length = strlen(target.path);
-        if (strncmp(folder->report.message, target.path, length) != 0 ||
+        remove_file(folder, "target.yaml");
+        const char *path = file_in(folder, "target.yaml");
+        const size_t length = strlen(path);
+        if (strncmp(folder->report.message, path, length) != 0 ||
             strcmp(folder->report.message + length, wrong[i].message) != 0)
-            fail_msg("the message is\n%s\nand not\n%s%s", folder->report.message, target.path,
+            fail_msg("the message is\n%s\nand not\n%s%s", folder->report.message, path,
                      wrong[i].message);
         assert_int_equal(folder->scene.object_count, 0);
         assert_int_equal(folder->scene.part_count, 0);
@@ -320,8 +303,7 @@ static void test_scenes_that_name_targets_wrongly(void **state)
     expect_scene_refused(folder, OBJECT "target: absent.yaml\n", message);
     expect_scene_refused(folder, OBJECT "target:\n",
                          ":5:12: objects[0].target: has no value; write one or remove the key");
-    const struct target_file target =
-        write_target(folder, "sonject_target: 1\nparts: [{shape: sphere, diameter: 1}]\n");
+    write_target(folder, "sonject_target: 1\nparts: [{shape: sphere, diameter: 1}]\n");
     expect_scene_refused(folder, OBJECT "target: target.yaml\n    diameter: 1\n",
                          ":6:15: objects[0].diameter: the target's file tells the shape; remove "
                          "it");
@@ -332,7 +314,7 @@ static void test_scenes_that_name_targets_wrongly(void **state)
                          OBJECT "target: target.yaml\n    parts: [{shape: disc, diameter: 1}]\n",
                          ":5:5: objects[0]: more than one of shape, parts and target is there; "
                          "give one");
-    unlink(target.path);
+    remove_file(folder, "target.yaml");
 }
 
 /* A file that is as long as no target is. */
@@ -344,14 +326,15 @@ static void test_large_targets_are_refused(void **state)
     assert_non_null(text);
     memset(text, '#', bytes);
     text[bytes] = 0;
-    const struct target_file target = write_target(folder, text);
+    write_target(folder, text);
     free(text);
     static const char scene[] = OBJECT "target: target.yaml\n";
     write_scene(folder, scene, strlen(scene));
     assert_int_equal(read_scene(folder, NULL, 0), SONJECT_ERROR_INPUT);
-    assert_memory_equal(folder->report.message, target.path, strlen(target.path));
+    const char *path = file_in(folder, "target.yaml");
+    assert_memory_equal(folder->report.message, path, strlen(path));
     assert_non_null(strstr(folder->report.message, "larger than"));
-    unlink(target.path);
+    remove_file(folder, "target.yaml");
 }
 
 static void test_the_library_of_targets(void **state)

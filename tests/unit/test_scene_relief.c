@@ -7,7 +7,7 @@
 #include "scene_folder.h"
 
 /* Five lines; a feature's keys begin in column 7. */
-#define BASE(side)                                                                                 \
+#define SEEN_FROM(side)                                                                            \
     "sonject: 1\n"                                                                                 \
     "input: {uniform: {rows: 400, columns: 400}, geometry: {row_spacing: 2.5 cm, "                 \
     "column_spacing: 2.5 cm, first_slant_range: 40, side: " side "}}\n"                            \
@@ -70,15 +70,17 @@ static void take(struct scene_folder *folder, struct ground *ground, const char 
 static void test_features_lie_where_they_are_told(void **state)
 {
     static const char *const texts[] = {
-        BASE("port") "  - mound: {position: {along_track: 3 m, slant_range: 43 m}, radius: 1 m, "
-                     "height: 30 cm}\n"
-                     "  - pit: {position: {row: 280, column: 240}, radius: 1 m, depth: 20 cm}\n"
-                     "  - scour: {object: can, width: 50 cm, depth: 10 cm}\n" OBJECTS,
-        BASE("starboard") "  - mound: {position: {along_track: 3 m, slant_range: 43 m}, radius: 1 "
-                          "m, height: 30 cm}\n"
-                          "  - pit: {position: {row: 280, column: 240}, radius: 1 m, depth: 20 "
-                          "cm}\n"
-                          "  - scour: {object: can, width: 50 cm, depth: 10 cm}\n" OBJECTS};
+        SEEN_FROM(
+            "port") "  - mound: {position: {along_track: 3 m, slant_range: 43 m}, radius: 1 m, "
+                    "height: 30 cm}\n"
+                    "  - pit: {position: {row: 280, column: 240}, radius: 1 m, depth: 20 cm}\n"
+                    "  - scour: {object: can, width: 50 cm, depth: 10 cm}\n" OBJECTS,
+        SEEN_FROM(
+            "starboard") "  - mound: {position: {along_track: 3 m, slant_range: 43 m}, radius: 1 "
+                         "m, height: 30 cm}\n"
+                         "  - pit: {position: {row: 280, column: 240}, radius: 1 m, depth: 20 "
+                         "cm}\n"
+                         "  - scour: {object: can, width: 50 cm, depth: 10 cm}\n" OBJECTS};
     for (int side = 0; side < 2; side++) {
         struct ground ground;
         take(*state, &ground, texts[side]);
@@ -103,10 +105,11 @@ static void test_features_lie_where_they_are_told(void **state)
 static void test_ripples(void **state)
 {
     static const char *const texts[] = {
-        BASE("port") "  - ripples: {wavelength: 80 cm, height: 6 cm, heading: 30 deg, sharpness: "
-                     "0.5, phase: 20 deg}\n",
-        BASE("starboard") "  - ripples: {wavelength: 80 cm, height: 6 cm, heading: 30 deg, "
-                          "sharpness: 0.5, phase: 20 deg}\n"};
+        SEEN_FROM(
+            "port") "  - ripples: {wavelength: 80 cm, height: 6 cm, heading: 30 deg, sharpness: "
+                    "0.5, phase: 20 deg}\n",
+        SEEN_FROM("starboard") "  - ripples: {wavelength: 80 cm, height: 6 cm, heading: 30 deg, "
+                               "sharpness: 0.5, phase: 20 deg}\n"};
     for (int side = 0; side < 2; side++) {
         struct ground ground;
         take(*state, &ground, texts[side]);
@@ -133,11 +136,14 @@ static void test_irregular_ripples(void **state)
 {
     struct ground one, same, other;
     take(*state, &one,
-         BASE("port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 4}\n");
+         SEEN_FROM(
+             "port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 4}\n");
     take(*state, &same,
-         BASE("port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 4}\n");
+         SEEN_FROM(
+             "port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 4}\n");
     take(*state, &other,
-         BASE("port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 5}\n");
+         SEEN_FROM(
+             "port") "  - ripples: {wavelength: 80 cm, height: 6 cm, irregularity: 1, seed: 5}\n");
     const struct relief *relief = one.placements.relief;
     const size_t bytes = (size_t)relief->rows * relief->columns * sizeof(float);
     assert_memory_equal(relief->heights, same.placements.relief->heights, bytes);
@@ -156,19 +162,20 @@ static void test_refusals(void **state)
     static const struct {
         const char *text, *message;
     } cases[] = {
-        {BASE("port") "    {pit: 1}\n", ":6:5: seabed.relief: must be a list"},
-        {BASE("port") "  - {}\n", "none of ripples, mound, pit, scour and heights"},
-        {BASE("port") "  - {pit: {radius: 1, depth: 1}, mound: {radius: 1, height: 1}}\n",
+        {SEEN_FROM("port") "    {pit: 1}\n", ":6:5: seabed.relief: must be a list"},
+        {SEEN_FROM("port") "  - {}\n", "none of ripples, mound, pit, scour and heights"},
+        {SEEN_FROM("port") "  - {pit: {radius: 1, depth: 1}, mound: {radius: 1, height: 1}}\n",
          "more than one of"},
-        {BASE("port") "  - ripples: {height: 1 cm}\n", "relief[0].ripples.wavelength: missing"},
-        {BASE("port") "  - ripples: {wavelength: 1 m, height: 1 cm, sharpness: 2}\n",
+        {SEEN_FROM("port") "  - ripples: {height: 1 cm}\n",
+         "relief[0].ripples.wavelength: missing"},
+        {SEEN_FROM("port") "  - ripples: {wavelength: 1 m, height: 1 cm, sharpness: 2}\n",
          "ripples.sharpness: must be 0...1"},
-        {BASE("port") "  - pit: {radius: 0, depth: 1 cm}\n", "pit.radius: must be"},
-        {BASE("port") "  - pit: {radius: 1, depth: -1 cm}\n", "pit.depth: must be 0...100 m"},
-        {BASE("port") "  - mound: {radius: 1, height: 1 cm, position: {row: 1}}\n",
+        {SEEN_FROM("port") "  - pit: {radius: 0, depth: 1 cm}\n", "pit.radius: must be"},
+        {SEEN_FROM("port") "  - pit: {radius: 1, depth: -1 cm}\n", "pit.depth: must be 0...100 m"},
+        {SEEN_FROM("port") "  - mound: {radius: 1, height: 1 cm, position: {row: 1}}\n",
          "give one pair"},
-        {BASE("port") "  - scour: {width: 1, depth: 1 cm}\n", "scour.object: missing"},
-        {BASE("port") "  - dune: {}\n", "dune"},
+        {SEEN_FROM("port") "  - scour: {width: 1, depth: 1 cm}\n", "scour.object: missing"},
+        {SEEN_FROM("port") "  - dune: {}\n", "dune"},
     };
     struct scene_folder *folder = *state;
     for (size_t i = 0; i < COUNT(cases); i++) {
@@ -185,13 +192,14 @@ static void test_refusals_in_use(void **state)
     static const struct {
         const char *text, *message;
     } cases[] = {
-        {BASE("port") "  - scour: {object: tin, width: 1 m, depth: 1 cm}\n" OBJECTS,
+        {SEEN_FROM("port") "  - scour: {object: tin, width: 1 m, depth: 1 cm}\n" OBJECTS,
          "scour around 'tin': no object has that name"},
-        {BASE("port") "  - mound: {radius: 1 m, height: 2 m}\n", "rises by"},
-        {BASE("port") "  - mound: {radius: 20 m, height: 6 m}\n", "half the sonar's altitude"},
-        {BASE("port") "  - ripples: {wavelength: 5 mm, height: 1 mm}\n", "use a smaller patch"},
-        {BASE("port") "  - mound: {radius: 1 m, height: 10 cm}\n"
-                      "  forward: medium sand\n",
+        {SEEN_FROM("port") "  - mound: {radius: 1 m, height: 2 m}\n", "rises by"},
+        {SEEN_FROM("port") "  - mound: {radius: 20 m, height: 6 m}\n", "half the sonar's altitude"},
+        {SEEN_FROM("port") "  - ripples: {wavelength: 5 mm, height: 1 mm}\n",
+         "use a smaller patch"},
+        {SEEN_FROM("port") "  - mound: {radius: 1 m, height: 10 cm}\n"
+                           "  forward: medium sand\n",
          "cannot be smooth"},
     };
     struct scene_folder *folder = *state;
@@ -215,7 +223,7 @@ static void test_hash(void **state)
 {
     struct scene_folder *folder = *state;
     char before[HASH_TEXT_CAPACITY], after[HASH_TEXT_CAPACITY];
-    expect_scene_taken(folder, BASE("port") "  - mound: {radius: 1 m, height: 10 cm}\n");
+    expect_scene_taken(folder, SEEN_FROM("port") "  - mound: {radius: 1 m, height: 10 cm}\n");
     struct relief_feature *feature = folder->scene.relief.features;
     double *numbers[] = {&feature->height_m,      &feature->wavelength_m, &feature->heading_rad,
                          &feature->phase_rad,     &feature->sharpness,    &feature->irregularity,

@@ -115,14 +115,6 @@ static void test_the_scene_is_that_of_a_scene_file(void **state)
     sonject_context_release(&context);
 }
 
-static void write_file(const char *path, const char *text)
-{
-    FILE *file = fopen(path, "wb");
-    assert_non_null(file);
-    fputs(text, file);
-    assert_int_equal(fclose(file), 0);
-}
-
 /* Refused after some of it was taken into the scene already. */
 static const struct {
     const char *text, *words;
@@ -153,7 +145,7 @@ static void test_refused_files_leave_the_scene(void **state)
     snprintf(path, sizeof path, "%s/target.yaml", folder->folder);
     for (size_t i = 0; i < sizeof refused / sizeof *refused; i++) {
         uint32_t index = 99;
-        write_file(path, refused[i].text);
+        write_file(folder, "target.yaml", refused[i].text, strlen(refused[i].text));
         assert_int_equal(sonject_scene_add_target(scene, path, &params, NULL, &index),
                          SONJECT_ERROR_INPUT);
         if (!strstr(sonject_context_message(context), refused[i].words))

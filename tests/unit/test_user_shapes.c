@@ -172,6 +172,7 @@ static void test_equal_codes_are_one(void **state)
     user_shapes_clear(&shapes);
 }
 
+#undef BASE
 #define BASE                                                                                       \
     "sonject: 1\n"                                                                                 \
     "input: {uniform: {rows: 4, columns: 5}, geometry: {row_spacing: 1, column_spacing: 1, "       \
